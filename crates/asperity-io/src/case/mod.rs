@@ -1,0 +1,1 @@
+//! Case files: TOML text with units to the objects of the solver.

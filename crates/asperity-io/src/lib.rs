@@ -1,0 +1,5 @@
+//! The files of asperity: case files in, measured topographies in, results out.
+
+pub mod case;
+pub mod store;
+pub mod topography;

@@ -1,0 +1,1 @@
+//! The result: one Zarr v3 group.

@@ -1,0 +1,1 @@
+//! Measured topographies: one reader per format.

@@ -1,0 +1,99 @@
+//! What can go wrong, with the numbers that a user needs to mend it.
+
+use thiserror::Error;
+
+/// The error of every fallible call of this crate.
+#[derive(Debug, Clone, Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// An argument is outside its domain.
+    #[error("{what} is {value}, but must be {expected}")]
+    Invalid {
+        /// The quantity, in the field's words ("Poisson's ratio", "radius").
+        what: String,
+        /// The value as given.
+        value: String,
+        /// What is accepted, with unit.
+        expected: String,
+    },
+    /// The load cannot be carried: W > H A (no solution exists).
+    #[error(
+        "the load {load:e} N exceeds {max:e} N, the hardness times the area that can touch; \
+         lower the load, raise the hardness or enlarge the domain"
+    )]
+    Infeasible {
+        /// Load asked for \[N\].
+        load: f64,
+        /// Largest load that the hardness allows \[N\].
+        max: f64,
+    },
+    /// A periodic body pressed into full contact under approach control: the mean pressure is
+    /// not determined by the approach.
+    #[error(
+        "the approach {approach:e} m closes the whole periodic gap (largest with a determined load: \
+         {max:e} m); use load control for full contact"
+    )]
+    Undetermined {
+        /// Approach asked for \[m\].
+        approach: f64,
+        /// The approach at which the mean gap closes \[m\].
+        max: f64,
+    },
+    /// The solver stopped before it met its tolerance; the state that it reached is kept by the caller.
+    #[error(transparent)]
+    NotConverged(#[from] NotConverged),
+}
+
+/// Where a solve stopped that did not meet its tolerance.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[error(
+    "{method} stopped after {iterations} iterations at residual {residual:.2e} (tolerance {tolerance:.1e}, \
+     certified energy-norm error {certificate:.1e}){}; loosen the tolerance or allow more iterations",
+    match .time { Some(t) => format!(" at t = {t} s"), None => String::new() }
+)]
+pub struct NotConverged {
+    /// Solver name.
+    pub method: &'static str,
+    /// Iterations done.
+    pub iterations: usize,
+    /// KKT residual of the best state (see `contact`).
+    pub residual: f64,
+    /// Tolerance asked for.
+    pub tolerance: f64,
+    /// Certified relative energy-norm error of the best state.
+    pub certificate: f64,
+    /// Time of the step, where the solve belongs to a march \[s\].
+    pub time: Option<f64>,
+}
+
+/// Result of this crate.
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+impl Error {
+    /// `what` is `value`, but must be `expected`.
+    pub fn invalid(
+        what: impl Into<String>,
+        value: impl std::fmt::Display,
+        expected: impl Into<String>,
+    ) -> Self {
+        Error::Invalid { what: what.into(), value: value.to_string(), expected: expected.into() }
+    }
+}
+
+/// `Ok(value)` where it is finite and > 0.
+pub(crate) fn positive(what: &str, value: f64, unit: &str) -> Result<f64> {
+    if value.is_finite() && value > 0.0 {
+        Ok(value)
+    } else {
+        Err(Error::invalid(what, value, format!("finite and greater than 0 {unit}").trim_end()))
+    }
+}
+
+/// `Ok(value)` where it is finite and >= 0.
+pub(crate) fn non_negative(what: &str, value: f64, unit: &str) -> Result<f64> {
+    if value.is_finite() && value >= 0.0 {
+        Ok(value)
+    } else {
+        Err(Error::invalid(what, value, format!("finite and not less than 0 {unit}").trim_end()))
+    }
+}

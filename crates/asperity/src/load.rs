@@ -1,0 +1,237 @@
+//! What is prescribed over time: a load, a mean pressure or an approach.
+//!
+//! A history is piecewise smooth. Where it jumps it has two values, `before(t)` and `after(t)`;
+//! the march takes a jump as a step of zero length. Every history is zero before t = 0.
+
+use crate::error::{Error, Result, non_negative, positive};
+
+/// The prescribed quantity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Control {
+    /// Normal load W \[N\].
+    Load,
+    /// Mean pressure W / (Lx Ly) \[Pa\].
+    Pressure,
+    /// Rigid-body approach w \[m\].
+    Approach,
+}
+
+/// A value over time, from t = 0 on.
+#[derive(Clone, Debug, PartialEq)]
+pub enum History {
+    /// `value` from t = 0+ on.
+    Step {
+        /// Value held.
+        value: f64,
+    },
+    /// Linear from 0 to `value` during `duration`, then held.
+    Ramp {
+        /// Value reached.
+        value: f64,
+        /// Time to reach it \[s\].
+        duration: f64,
+    },
+    /// Linear from 0 to `peak` during `rise`, back to 0 during `fall`, then 0.
+    Triangle {
+        /// Largest value.
+        peak: f64,
+        /// Time up \[s\].
+        rise: f64,
+        /// Time down \[s\].
+        fall: f64,
+    },
+    /// As the triangle, with `hold` at the peak.
+    Trapezoid {
+        /// Largest value.
+        peak: f64,
+        /// Time up \[s\].
+        rise: f64,
+        /// Time at the peak \[s\].
+        hold: f64,
+        /// Time down \[s\].
+        fall: f64,
+    },
+    /// mean + amplitude sin(2 pi frequency t).
+    Sine {
+        /// Mean value.
+        mean: f64,
+        /// Amplitude.
+        amplitude: f64,
+        /// Frequency \[Hz\].
+        frequency: f64,
+    },
+    /// Linear between (time \[s\], value) points; two points at one time are a jump; held after the last.
+    Table {
+        /// Points in order of time, the first at t = 0.
+        points: Vec<(f64, f64)>,
+    },
+}
+
+/// A control and its history.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Loading {
+    /// What is prescribed.
+    pub control: Control,
+    /// Its value over time.
+    pub history: History,
+}
+
+impl History {
+    /// Checks that values and durations are finite and in order.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] naming the quantity.
+    pub fn validate(&self) -> Result<()> {
+        let finite = |what: &str, value: f64| {
+            if value.is_finite() { Ok(()) } else { Err(Error::invalid(what, value, "finite")) }
+        };
+        match self {
+            History::Step { value } => finite("value of the step", *value),
+            History::Ramp { value, duration } => {
+                positive("duration of the ramp", *duration, "s")?;
+                finite("value of the ramp", *value)
+            }
+            History::Triangle { peak, rise, fall } => {
+                positive("rise of the triangle", *rise, "s")?;
+                positive("fall of the triangle", *fall, "s")?;
+                finite("peak of the triangle", *peak)
+            }
+            History::Trapezoid { peak, rise, hold, fall } => {
+                positive("rise of the trapezoid", *rise, "s")?;
+                non_negative("hold of the trapezoid", *hold, "s")?;
+                positive("fall of the trapezoid", *fall, "s")?;
+                finite("peak of the trapezoid", *peak)
+            }
+            History::Sine { mean, amplitude, frequency } => {
+                positive("frequency of the sine", *frequency, "Hz")?;
+                finite("mean of the sine", *mean)?;
+                finite("amplitude of the sine", *amplitude)
+            }
+            History::Table { points } => validate_table(points),
+        }
+    }
+
+    /// Value just before t (the limit from the left); 0 at t = 0.
+    pub fn before(&self, t: f64) -> f64 {
+        if t <= 0.0 { 0.0 } else { self.limit(t, Side::Before) }
+    }
+
+    /// Value just after t (the limit from the right).
+    pub fn after(&self, t: f64) -> f64 {
+        if t < 0.0 { 0.0 } else { self.limit(t, Side::After) }
+    }
+
+    /// Times in (0, end) where the history bends or jumps, in order.
+    pub fn breaks(&self, end: f64) -> Vec<f64> {
+        let mut times = match self {
+            History::Step { .. } | History::Sine { .. } => vec![],
+            History::Ramp { duration, .. } => vec![*duration],
+            History::Triangle { rise, fall, .. } => vec![*rise, rise + fall],
+            History::Trapezoid { rise, hold, fall, .. } => {
+                vec![*rise, rise + hold, rise + hold + fall]
+            }
+            History::Table { points } => points.iter().map(|p| p.0).collect(),
+        };
+        times.retain(|t| *t > 0.0 && *t < end);
+        times.dedup();
+        times
+    }
+
+    /// Smallest and largest value over \[0, end\].
+    pub fn range(&self, end: f64) -> [f64; 2] {
+        let mut range = [f64::INFINITY, f64::NEG_INFINITY];
+        let mut include = |v: f64| range = [range[0].min(v), range[1].max(v)];
+        include(self.after(0.0));
+        for t in self.breaks(end).into_iter().chain([end]) {
+            include(self.before(t));
+            include(self.after(t));
+        }
+        if let History::Sine { mean, amplitude, .. } = self {
+            include(mean - amplitude.abs());
+            include(mean + amplitude.abs());
+        }
+        range
+    }
+
+    fn limit(&self, t: f64, side: Side) -> f64 {
+        match self {
+            History::Step { value } => *value,
+            History::Ramp { value, duration } => value * (t / duration).min(1.0),
+            History::Triangle { peak, rise, fall } => trapezoid(t, *peak, *rise, 0.0, *fall),
+            History::Trapezoid { peak, rise, hold, fall } => trapezoid(t, *peak, *rise, *hold, *fall),
+            History::Sine { mean, amplitude, frequency } => {
+                mean + amplitude * (std::f64::consts::TAU * frequency * t).sin()
+            }
+            History::Table { points } => interpolate(points, t, side),
+        }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Side {
+    Before,
+    After,
+}
+
+fn trapezoid(t: f64, peak: f64, rise: f64, hold: f64, fall: f64) -> f64 {
+    if t < rise {
+        peak * t / rise
+    } else if t <= rise + hold {
+        peak
+    } else {
+        (peak * (1.0 - (t - rise - hold) / fall)).max(0.0f64.min(peak))
+    }
+}
+
+fn interpolate(points: &[(f64, f64)], t: f64, side: Side) -> f64 {
+    // The first point that lies after t; at a jump, `Before` stops at the first of the pair.
+    let next = match side {
+        Side::After => points.partition_point(|p| p.0 <= t),
+        Side::Before => points.partition_point(|p| p.0 < t),
+    };
+    match next {
+        0 => points[0].1,
+        n if n == points.len() => points[n - 1].1,
+        n => {
+            let ((t0, v0), (t1, v1)) = (points[n - 1], points[n]);
+            v0 + (v1 - v0) * (t - t0) / (t1 - t0)
+        }
+    }
+}
+
+fn validate_table(points: &[(f64, f64)]) -> Result<()> {
+    let Some(first) = points.first() else {
+        return Err(Error::invalid("table of the history", "empty", "one point at least"));
+    };
+    if first.0 != 0.0 {
+        return Err(Error::invalid("first time of the history's table", format!("{} s", first.0), "0 s"));
+    }
+    for (n, (t, v)) in points.iter().enumerate() {
+        if !t.is_finite() || !v.is_finite() {
+            return Err(Error::invalid(
+                format!("point {} of the history's table", n + 1),
+                format!("({t}, {v})"),
+                "finite",
+            ));
+        }
+    }
+    for (n, pair) in points.windows(2).enumerate() {
+        if pair[1].0 < pair[0].0 {
+            return Err(Error::invalid(
+                format!("time of point {} of the history's table", n + 2),
+                format!("{} s after {} s", pair[1].0, pair[0].0),
+                "not less than the time before it",
+            ));
+        }
+    }
+    for (n, triple) in points.windows(3).enumerate() {
+        if triple[0].0 == triple[2].0 {
+            return Err(Error::invalid(
+                format!("time of point {} of the history's table", n + 3),
+                format!("{} s", triple[2].0),
+                "given at most twice (a jump has one value before and one after)",
+            ));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,1 @@
+//! Closed forms and one-dimensional solutions to check against.

@@ -1,0 +1,1 @@
+//! From shapes and heights to the undeformed gap.

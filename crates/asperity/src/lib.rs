@@ -1,7 +1,10 @@
 //! Contact of rough, linear viscoelastic bodies.
 
+pub mod convolution;
 pub mod error;
+mod field;
 pub mod grid;
+pub mod kernel;
 pub mod load;
 pub mod material;
 pub mod reference;

@@ -1,0 +1,140 @@
+//! The convolution engine: u = F^-1 [ S F p ] with a real, even spectrum S, planned once and
+//! applied many times.
+//!
+//! The transform lengths \[mx, my\] are at least the domain's cells \[nx, ny\]; the cells beyond the
+//! domain are zeros on the way in and are not computed on the way out. With mx >= 2 nx - 1 the
+//! cyclic convolution is the linear one of the free half-space (DC-FFT: Liu, Wang & Liu, Wear 243,
+//! 2000); with mx = nx it is the periodic one.
+//!
+//! Normalisation: forward and inverse transforms together are the identity.
+
+mod pruned;
+mod spectrum;
+
+use ndarray::ArrayView2;
+
+pub use spectrum::even_spectrum;
+
+/// A planned convolution. Bit-identical for any number of threads; `apply_into` allocates nothing.
+pub struct Convolution {
+    engine: Box<dyn Engine>,
+}
+
+/// What a back end does.
+trait Engine: Send {
+    /// output = S * input; both of length nx ny.
+    fn apply_into(&mut self, input: &[f64], output: &mut [f64]);
+}
+
+impl Convolution {
+    /// Plans a convolution of `cells` = \[nx, ny\] with transforms of `lengths` = \[mx, my\].
+    ///
+    /// `spectrum` has the shape (mx/2 + 1, my/2 + 1): the real multiplier S(kx, ky), even in kx and ky.
+    ///
+    /// # Panics
+    /// Where the shapes contradict each other: they come from the operators of this crate.
+    pub fn new(cells: [usize; 2], lengths: [usize; 2], spectrum: ArrayView2<f64>) -> Self {
+        assert!(lengths[0] >= cells[0] && lengths[1] >= cells[1]);
+        assert_eq!(spectrum.dim(), (lengths[0] / 2 + 1, lengths[1] / 2 + 1));
+        Convolution { engine: Box::new(pruned::Pruned::new(cells, lengths, spectrum)) }
+    }
+
+    /// A length of at least `minimum` that transforms fast: the least 2^a 3^b 5^c.
+    pub fn good_length(minimum: usize) -> usize {
+        let mut best = minimum.max(1).next_power_of_two();
+        let mut five = 1;
+        while five < best {
+            let mut three = five;
+            while three < best {
+                let length = three * minimum.div_ceil(three).max(1).next_power_of_two();
+                if length >= minimum && length < best {
+                    best = length;
+                }
+                three *= 3;
+            }
+            five *= 5;
+        }
+        best
+    }
+
+    /// `output` = S * `input`; both C-order, nx ny cells.
+    pub fn apply_into(&mut self, input: &[f64], output: &mut [f64]) {
+        self.engine.apply_into(input, output);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::Array2;
+
+    /// The slow truth: sum over all cells with the kernel K(min(i, mx - i), min(j, my - j)).
+    fn direct(cells: [usize; 2], lengths: [usize; 2], kernel: &Array2<f64>, input: &[f64]) -> Vec<f64> {
+        let wrap = |d: usize, m: usize| d.min(m - d);
+        let mut out = vec![0.0; input.len()];
+        for i in 0..cells[0] {
+            for j in 0..cells[1] {
+                for a in 0..cells[0] {
+                    for b in 0..cells[1] {
+                        let k = kernel[(wrap(i.abs_diff(a), lengths[0]), wrap(j.abs_diff(b), lengths[1]))];
+                        out[i * cells[1] + j] += k * input[a * cells[1] + b];
+                    }
+                }
+            }
+        }
+        out
+    }
+
+    #[test]
+    fn equals_the_direct_sum_on_any_shape() {
+        for (cells, lengths) in [
+            ([1, 1], [1, 1]),
+            ([1, 7], [1, 13]),
+            ([5, 1], [9, 2]),
+            ([8, 8], [16, 16]),
+            ([7, 12], [15, 24]),
+            ([9, 10], [9, 10]),
+            ([13, 6], [13, 12]),
+        ] {
+            let kernel = Array2::from_shape_fn((lengths[0] / 2 + 1, lengths[1] / 2 + 1), |(i, j)| {
+                1.0 / (1.0 + (i * i) as f64 + 2.0 * (j * j) as f64)
+            });
+            let input: Vec<f64> = (0..cells[0] * cells[1]).map(|n| ((n * 37 % 11) as f64) - 4.0).collect();
+            let spectrum = even_spectrum(&kernel, lengths);
+            let mut output = vec![0.0; input.len()];
+            Convolution::new(cells, lengths, spectrum.view()).apply_into(&input, &mut output);
+            let exact = direct(cells, lengths, &kernel, &input);
+            for (u, e) in output.iter().zip(&exact) {
+                // sums of ~100 terms of size 5: a few roundings of that size
+                assert!((u - e).abs() < 1e-13, "{cells:?} {lengths:?}: {u} against {e}");
+            }
+        }
+    }
+
+    #[test]
+    fn has_the_same_bits_for_any_number_of_threads() {
+        let (cells, lengths) = ([96, 80], [192, 160]);
+        let kernel = Array2::from_shape_fn((97, 81), |(i, j)| 1.0 / (1.0 + (i + 3 * j) as f64));
+        let spectrum = even_spectrum(&kernel, lengths);
+        let input: Vec<f64> = (0..96 * 80).map(|n| (n as f64).sin()).collect();
+        let on = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let mut output = vec![0.0; input.len()];
+                Convolution::new(cells, lengths, spectrum.view()).apply_into(&input, &mut output);
+                output
+            })
+        };
+        assert_eq!(on(1), on(2));
+        assert_eq!(on(1), on(5));
+    }
+
+    #[test]
+    fn good_lengths_are_smooth_and_least() {
+        for (minimum, length) in
+            [(1, 1), (7, 8), (17, 18), (127, 128), (129, 135), (2047, 2048), (2049, 2160)]
+        {
+            assert_eq!(Convolution::good_length(minimum), length, "for {minimum}");
+        }
+    }
+}

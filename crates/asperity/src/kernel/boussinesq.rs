@@ -1,0 +1,148 @@
+//! Love's influence coefficient: the displacement that a uniformly loaded rectangle causes on an
+//! elastic half-space (Love 1929; Johnson, Contact Mechanics, 1985, eq. 3.25).
+//!
+//! u(x, y) = (1/pi) integral over the rectangle of p / sqrt((x-x')^2 + (y-y')^2) for E* = 1.
+//!
+//! The closed form is a second difference of f(x, y) = x asinh(y/|x|) + y asinh(x/|y|). Far away the
+//! difference loses digits as eps (distance/side)^2, so from [`FAR`] sides on the integral is taken
+//! by a Gauss rule instead, whose error falls as (side/distance)^(2 points).
+
+/// Distance, in longest sides of the cell, from which the Gauss rule is the more accurate form.
+const FAR: f64 = 6.0;
+
+/// Mean-free coefficient K(x, y) \[m\]: displacement at (x, y) from the centre of a cell of sides
+/// `side` = \[dx, dy\] under unit pressure, for unit contact modulus.
+///
+/// Relative error below 1e-13 at any distance (compared with 40-digit arithmetic in the tests).
+///
+/// Source: SC17 eq. 8; Johnson 1985 eq. 3.25.
+///
+/// ```
+/// // At the centre of a square cell of side s: 4 s ln(1 + sqrt 2) / pi.
+/// let k = asperity::kernel::love(0.0, 0.0, [1.0, 1.0]);
+/// assert!((k - 4.0 * (1.0 + 2f64.sqrt()).ln() / std::f64::consts::PI).abs() < 1e-15);
+/// ```
+pub fn love(x: f64, y: f64, side: [f64; 2]) -> f64 {
+    let [dx, dy] = side;
+    // A long cell is cut into nearly square ones: both forms then hold their digits.
+    let parts = [(dx / dy).round().max(1.0), (dy / dx).round().max(1.0)];
+    let [a, b] = [0.5 * dx / parts[0], 0.5 * dy / parts[1]];
+    let mut k = 0.0;
+    for m in 0..parts[0] as usize {
+        for n in 0..parts[1] as usize {
+            let px = x.abs() - (2.0 * m as f64 + 1.0 - parts[0]) * a;
+            let py = y.abs() - (2.0 * n as f64 + 1.0 - parts[1]) * b;
+            k += nearly_square(px, py, a, b);
+        }
+    }
+    k
+}
+
+fn nearly_square(x: f64, y: f64, a: f64, b: f64) -> f64 {
+    let longest = 2.0 * a.max(b);
+    let distance = (x * x + y * y).sqrt() / longest;
+    let integral = if distance < FAR {
+        closed_form(x, y, a, b)
+    } else if distance < 60.0 {
+        gauss(x, y, a, b, &GAUSS_6)
+    } else if distance < 600.0 {
+        gauss(x, y, a, b, &GAUSS_4)
+    } else {
+        gauss(x, y, a, b, &GAUSS_3)
+    };
+    integral / std::f64::consts::PI
+}
+
+/// f(x+a,y+b) - f(x-a,y+b) - f(x+a,y-b) + f(x-a,y-b).
+fn closed_form(x: f64, y: f64, a: f64, b: f64) -> f64 {
+    f(x + a, y + b) - f(x - a, y + b) - f(x + a, y - b) + f(x - a, y - b)
+}
+
+fn f(x: f64, y: f64) -> f64 {
+    let term = |u: f64, v: f64| if u == 0.0 { 0.0 } else { u * libm::asinh(v / u.abs()) };
+    term(x, y) + term(y, x)
+}
+
+/// integral of 1/r over the rectangle of half-sides a, b by a product Gauss-Legendre rule.
+fn gauss<const N: usize>(x: f64, y: f64, a: f64, b: f64, rule: &[(f64, f64); N]) -> f64 {
+    let mut sum = 0.0;
+    for (s, ws) in rule {
+        let dx = x - a * s;
+        for (t, wt) in rule {
+            let dy = y - b * t;
+            sum += ws * wt / (dx * dx + dy * dy).sqrt();
+        }
+    }
+    a * b * sum
+}
+
+/// Nodes and weights on \[-1, 1\] (Abramowitz & Stegun, table 25.4).
+const GAUSS_6: [(f64, f64); 6] = [
+    (-0.932_469_514_203_152_1, 0.171_324_492_379_170_36),
+    (-0.661_209_386_466_264_5, 0.360_761_573_048_138_6),
+    (-0.238_619_186_083_196_9, 0.467_913_934_572_691_04),
+    (0.238_619_186_083_196_9, 0.467_913_934_572_691_04),
+    (0.661_209_386_466_264_5, 0.360_761_573_048_138_6),
+    (0.932_469_514_203_152_1, 0.171_324_492_379_170_36),
+];
+const GAUSS_4: [(f64, f64); 4] = [
+    (-0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
+    (-0.339_981_043_584_856_26, 0.652_145_154_862_546_1),
+    (0.339_981_043_584_856_26, 0.652_145_154_862_546_1),
+    (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
+];
+const GAUSS_3: [(f64, f64); 3] = [
+    (-0.774_596_669_241_483_4, 0.555_555_555_555_555_6),
+    (0.0, 0.888_888_888_888_888_9),
+    (0.774_596_669_241_483_4, 0.555_555_555_555_555_6),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// (x, y, side, K) with K from 60-digit arithmetic.
+    const EXACT: [(f64, f64, [f64; 2], f64); 22] = [
+        (0.0, 0.0, [1.0, 1.0], 1.1221997046783603),
+        (1.0, 0.0, [1.0, 1.0], 0.33042149328895688),
+        (5.0, 3.0, [1.0, 1.0], 0.054657094883300476),
+        (5.75, 0.0, [1.0, 1.0], 0.055427820460765531),
+        (6.0, 0.0, [1.0, 1.0], 0.053112900362948487),
+        (6.0, 6.0, [1.0, 1.0], 0.037534994639939479),
+        (59.0, 7.0, [1.0, 1.0], 0.0053575705753996027),
+        (61.0, 1.0, [1.0, 1.0], 0.0052175522218858868),
+        (599.0, 10.0, [1.0, 1.0], 0.00053132817188880254),
+        (601.0, 3.0, [1.0, 1.0], 0.00052962721685805486),
+        (4095.0, 4095.0, [1.0, 1.0], 5.4964366134043471e-5),
+        (100000.0, 1.0, [1.0, 1.0], 3.1830988616920147e-6),
+        (0.0, 0.0, [1.0, 0.25], 0.49092589867204938),
+        (0.0, 1.5, [1.0, 0.25], 0.052226386440593658),
+        (3.0, 0.25, [1.0, 0.25], 0.026670873877761528),
+        (0.0, 4.0, [1.0, 0.25], 0.019849300806245775),
+        (0.0, 2.0, [8.0, 1.0], 0.92629290448727262),
+        (16.0, 3.0, [8.0, 1.0], 0.15949118140364876),
+        (0.0, 700.0, [8.0, 1.0], 0.0036378080919214561),
+        (0.0, 1.0, [0.03125, 1.0], 0.010927379134270486),
+        (0.3125, 0.0, [0.03125, 1.0], 0.024856743981306126),
+        (1.40625, 2.0, [1.40625, 1.0], 0.1844398957273871),
+    ];
+
+    #[test]
+    fn coefficients_hold_thirteen_digits_at_any_distance_and_aspect() {
+        for (x, y, side, exact) in EXACT {
+            for (x, y) in [(x, y), (-x, y), (x, -y)] {
+                let error = (love(x, y, side) / exact - 1.0).abs();
+                assert!(error < 1e-13, "K({x}, {y}, {side:?}) is off by {error:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn coefficients_scale_with_length() {
+        // Lengths times 2^-20 give K times 2^-20 exactly.
+        let s = 2f64.powi(-20);
+        for (x, y, side, _) in EXACT {
+            assert_eq!(love(x * s, y * s, [side[0] * s, side[1] * s]), s * love(x, y, side));
+        }
+    }
+}

@@ -42,6 +42,9 @@ pub enum Error {
     /// The solver stopped before it met its tolerance; the state that it reached is kept by the caller.
     #[error(transparent)]
     NotConverged(#[from] NotConverged),
+    /// Somebody asked to stop; the rows so far are complete.
+    #[error("interrupted")]
+    Interrupted,
 }
 
 /// Where a solve stopped that did not meet its tolerance.

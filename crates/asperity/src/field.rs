@@ -169,12 +169,6 @@ pub(crate) fn minimum(field: &[f64]) -> f64 {
     sweep(field, &|f: &[f64]| Min(f.iter().fold(f64::INFINITY, |m, v| smaller(*v, m)))).0
 }
 
-/// Largest finite cell; minus infinity where there is none.
-pub(crate) fn maximum_finite(field: &[f64]) -> f64 {
-    let finite = |v: f64| if v < f64::INFINITY { v } else { f64::NEG_INFINITY };
-    sweep(field, &|f: &[f64]| Max(f.iter().fold(f64::NEG_INFINITY, |m, v| larger(finite(*v), m)))).0
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

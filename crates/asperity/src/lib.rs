@@ -1,5 +1,6 @@
 //! Contact of rough, linear viscoelastic bodies.
 
+pub mod contact;
 pub mod convolution;
 pub mod error;
 mod field;
@@ -7,9 +8,11 @@ pub mod grid;
 pub mod kernel;
 pub mod load;
 pub mod material;
+pub mod operator;
 pub mod reference;
 pub mod surface;
 
+pub use contact::{ContactState, Method, Outcome, Prescribed, Problem, Solver, SolverOptions};
 pub use error::{Error, NotConverged, Result};
 pub use grid::{Boundary, Grid};
 pub use load::{Control, History, Loading};

@@ -8,8 +8,8 @@
 use std::sync::Arc;
 
 use ndarray::parallel::prelude::*;
-use rayon::slice::{ParallelSlice, ParallelSliceMut};
 use ndarray::{Array2, ArrayView2, Axis};
+use rayon::slice::{ParallelSlice, ParallelSliceMut};
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};

@@ -1,0 +1,226 @@
+//! One elastic contact: the convex problem inside every time step.
+//!
+//! Find 0 <= p <= H minimising f(p) = p'(cK)p/2 + h'p, with the sum of p given (load control) or
+//! minus w sum p (approach control). Its optimality conditions are the contact conditions on the gap
+//! g = cKp + h - w: p = 0 where g >= 0, 0 < p < H where g = 0, p = H where g <= 0. The solution is
+//! unique. This module knows neither time nor material: c is a number, h a field.
+//!
+//! Two methods: [`ProjectedCg`] (default) and [`PolonskyKeer`] (SC17's, corrected).
+
+// The closures of a sweep spell out the slices that they walk.
+#![allow(clippy::type_complexity)]
+
+mod gauss_seidel;
+mod polonsky_keer;
+mod projected_cg;
+mod residual;
+mod shift;
+mod start;
+mod state;
+
+pub use gauss_seidel::gauss_seidel;
+pub use polonsky_keer::PolonskyKeer;
+pub use projected_cg::ProjectedCg;
+pub use state::ContactState;
+
+use std::sync::atomic::AtomicBool;
+
+use crate::error::{Error, NotConverged, Result};
+use crate::field::{Max, minimum, strands, sweep};
+use crate::grid::Boundary;
+use crate::operator::Operator;
+
+/// One elastic contact of unit operator K.
+#[derive(Clone, Copy, Debug)]
+pub struct Problem<'a> {
+    /// Undeformed gap h \[m\], nx ny cells; infinite where a cell cannot touch.
+    pub gap: &'a [f64],
+    /// Compliance c = 1/E* \[1/Pa\].
+    pub compliance: f64,
+    /// Cut-off H of the pressure \[Pa\]; infinite for none.
+    pub hardness: f64,
+    /// What is given.
+    pub prescribed: Prescribed,
+}
+
+/// The given quantity of one contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Prescribed {
+    /// Normal load W \[N\].
+    Load(f64),
+    /// Rigid-body approach w \[m\].
+    Approach(f64),
+}
+
+/// The solver of the contact problem.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum Method {
+    /// Preconditioned projected conjugate gradients, one convolution per iteration.
+    #[default]
+    ProjectedCg,
+    /// Polonsky & Keer (Wear 231, 1999) with a pressure cut-off, SC17 section 3 as corrected.
+    PolonskyKeer,
+}
+
+/// When and how to stop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SolverOptions {
+    /// The method; default [`Method::ProjectedCg`].
+    pub method: Method,
+    /// Largest violation of the contact conditions, relative to the pressure-weighted mean
+    /// displacement; default 1e-6.
+    pub tolerance: f64,
+    /// Iterations after which a solve is given up; default 5000.
+    pub max_iterations: usize,
+}
+
+impl Default for SolverOptions {
+    fn default() -> Self {
+        SolverOptions { method: Method::default(), tolerance: 1e-6, max_iterations: 5000 }
+    }
+}
+
+impl SolverOptions {
+    /// Checks the ranges.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where the tolerance is not in \[1e-14, 0.1\] or no iteration is allowed.
+    pub fn validate(&self) -> Result<()> {
+        if !(self.tolerance >= 1e-14 && self.tolerance <= 0.1) {
+            return Err(Error::invalid("solver tolerance", self.tolerance, "between 1e-14 and 0.1"));
+        }
+        if self.max_iterations == 0 {
+            return Err(Error::invalid("largest number of iterations", 0, "at least 1"));
+        }
+        Ok(())
+    }
+}
+
+/// What a solve did and how good its result is.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Outcome {
+    /// Iterations.
+    pub iterations: usize,
+    /// Applications of K.
+    pub convolutions: usize,
+    /// Largest violation of the contact conditions over the pressure-weighted mean displacement.
+    pub residual: f64,
+    /// sqrt(Gamma / p'u), a bound of |p - p*|_K / |p|_K: the certified relative energy-norm error.
+    pub certificate: f64,
+    /// Every touching cell is at the hardness: the approach is only bounded from below.
+    pub saturated: bool,
+}
+
+/// A contact solver with its own working memory.
+pub enum Solver {
+    /// Preconditioned projected conjugate gradients.
+    ProjectedCg(Box<ProjectedCg>),
+    /// Polonsky & Keer.
+    PolonskyKeer(Box<PolonskyKeer>),
+}
+
+impl Solver {
+    /// Plans a solver for the operator's grid.
+    pub fn new(method: Method, operator: &dyn Operator) -> Self {
+        match method {
+            Method::ProjectedCg => Solver::ProjectedCg(Box::new(ProjectedCg::new(operator.grid()))),
+            Method::PolonskyKeer => Solver::PolonskyKeer(Box::new(PolonskyKeer::new(operator.grid()))),
+        }
+    }
+
+    /// Solves `problem`, starting from the pressure in `state`, which becomes the solution.
+    ///
+    /// # Errors
+    /// [`Error::Infeasible`] where W > H times the area that can touch, [`Error::Undetermined`] where
+    /// an approach closes a periodic gap, [`Error::Invalid`] for a negative load,
+    /// [`Error::NotConverged`] (the state then holds the best pressure), [`Error::Interrupted`].
+    pub fn solve(
+        &mut self,
+        operator: &mut dyn Operator,
+        problem: &Problem,
+        options: &SolverOptions,
+        state: &mut ContactState,
+        interrupt: Option<&AtomicBool>,
+    ) -> Result<Outcome> {
+        if let Some(outcome) = trivial(operator, problem, state)? {
+            return Ok(outcome);
+        }
+        match self {
+            Solver::ProjectedCg(s) => s.solve(operator, problem, options, state, interrupt),
+            Solver::PolonskyKeer(s) => s.solve(operator, problem, options, state, interrupt),
+        }
+    }
+}
+
+/// The cases that need no iteration: no load, no touch, full saturation; and those without a solution.
+fn trivial(
+    operator: &mut dyn Operator,
+    problem: &Problem,
+    state: &mut ContactState,
+) -> Result<Option<Outcome>> {
+    let first_touch = minimum(problem.gap);
+    let touchable =
+        sweep(problem.gap, &|h: &[f64]| strands(h.len(), |i| [f64::from(u8::from(h[i] < f64::INFINITY))]))[0];
+    match problem.prescribed {
+        Prescribed::Load(load) => {
+            if !(load >= 0.0 && load.is_finite()) {
+                return Err(Error::invalid("load", format!("{load} N"), "finite and not negative"));
+            }
+            if load == 0.0 {
+                state.lift_off(first_touch);
+                return Ok(Some(Outcome::default()));
+            }
+            let max = problem.hardness * operator.grid().cell_area() * touchable;
+            if load > max * (1.0 + 1e-12) || touchable == 0.0 {
+                return Err(Error::Infeasible { load, max });
+            }
+            if load >= max * (1.0 - 1e-12) {
+                let at_bound = |h: f64| if h < f64::INFINITY { problem.hardness } else { 0.0 };
+                state.pressure.iter_mut().zip(problem.gap).for_each(|(p, h)| *p = at_bound(*h));
+                operator.apply_into(&state.pressure, &mut state.unit_displacement);
+                state.approach =
+                    sweep((problem.gap, &state.unit_displacement[..]), &|(h, u): (&[f64], &[f64])| {
+                        let cells = h.iter().zip(u).filter(|(h, _)| **h < f64::INFINITY);
+                        Max(cells.fold(f64::NEG_INFINITY, |m, (h, u)| m.max(h + problem.compliance * u)))
+                    })
+                    .0;
+                return Ok(Some(Outcome { convolutions: 1, saturated: true, ..Outcome::default() }));
+            }
+        }
+        Prescribed::Approach(approach) => {
+            if !approach.is_finite() {
+                return Err(Error::invalid("approach", format!("{approach} m"), "finite"));
+            }
+            if approach <= first_touch {
+                state.lift_off(approach);
+                return Ok(Some(Outcome::default()));
+            }
+            if operator.boundary() == Boundary::Periodic && problem.hardness.is_infinite() {
+                // K has no mean: full contact at the approach where the mean gap closes.
+                // A cell that cannot touch makes the mean infinite, and every approach determined.
+                let max = crate::field::sum(problem.gap) / problem.gap.len() as f64;
+                if approach >= max {
+                    return Err(Error::Undetermined { approach, max });
+                }
+            }
+        }
+    }
+    Ok(None)
+}
+
+/// The error of a solve that stopped early.
+fn not_converged(method: &'static str, options: &SolverOptions, outcome: &Outcome) -> Error {
+    Error::NotConverged(NotConverged {
+        method,
+        iterations: outcome.iterations,
+        residual: outcome.residual,
+        tolerance: options.tolerance,
+        certificate: outcome.certificate,
+        time: None,
+    })
+}
+
+/// True where somebody asked to stop.
+fn interrupted(interrupt: Option<&AtomicBool>) -> bool {
+    interrupt.is_some_and(|flag| flag.load(std::sync::atomic::Ordering::Relaxed))
+}

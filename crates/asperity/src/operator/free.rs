@@ -1,0 +1,81 @@
+//! The free half-space: Love's coefficients, zero-padded to at least twice the cells (DC-FFT; Liu,
+//! Wang & Liu, Wear 243, 2000).
+
+use ndarray::Array2;
+use ndarray::parallel::prelude::*;
+
+use super::Operator;
+use crate::convolution::{Convolution, even_spectrum};
+use crate::grid::{Boundary, Grid};
+use crate::kernel::love;
+
+/// u(i, j) = sum K(i - i', j - j') p(i', j'), with no pressure outside the domain.
+pub struct Free {
+    grid: Grid,
+    convolution: Convolution,
+    self_influence: f64,
+}
+
+impl Free {
+    /// Plans the operator; the influence coefficients are computed here.
+    pub fn new(grid: Grid) -> Self {
+        let lengths = grid.cells().map(|n| Convolution::good_length(2 * n - 1));
+        let kernel = influence(&grid, lengths);
+        let self_influence = kernel[(0, 0)];
+        let spectrum = even_spectrum(&kernel, lengths);
+        debug_assert!(spectrum.iter().all(|s| *s > 0.0), "the kernel is positive definite");
+        Free { grid, convolution: Convolution::new(grid.cells(), lengths, spectrum.view()), self_influence }
+    }
+}
+
+/// K on the quadrant of the padded torus. Beyond the domain the true coefficients go on: no output
+/// of the domain reads them, and the kernel stays smooth and its spectrum positive.
+fn influence(grid: &Grid, lengths: [usize; 2]) -> Array2<f64> {
+    let [dx, dy] = grid.spacing();
+    let mut kernel = Array2::zeros((lengths[0] / 2 + 1, lengths[1] / 2 + 1));
+    kernel.outer_iter_mut().into_par_iter().enumerate().for_each(|(i, mut row)| {
+        for (j, k) in row.iter_mut().enumerate() {
+            *k = love(i as f64 * dx, j as f64 * dy, [dx, dy]);
+        }
+    });
+    kernel
+}
+
+impl Operator for Free {
+    fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    fn boundary(&self) -> Boundary {
+        Boundary::Free
+    }
+
+    fn apply_into(&mut self, p: &[f64], u: &mut [f64]) {
+        self.convolution.apply_into(p, u);
+    }
+
+    fn self_influence(&self) -> f64 {
+        self.self_influence
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_spectrum_is_positive_for_any_shape() {
+        for (cells, size) in [
+            ([1, 1], [1.0, 1.0]),
+            ([3, 50], [1.0, 1.0]),
+            ([64, 64], [1.0, 1.0]),
+            ([33, 17], [1.0, 4.0]),
+            ([65, 129], [3.0, 2.0]),
+        ] {
+            let grid = Grid::new(cells, size).unwrap();
+            let lengths = cells.map(|n: usize| Convolution::good_length(2 * n - 1));
+            let spectrum = even_spectrum(&influence(&grid, lengths), lengths);
+            assert!(spectrum.iter().all(|s| *s > 0.0), "{cells:?} {size:?}");
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! The operator K of the half-space: u = K p for unit contact modulus.
+//!
+//! Everything elastic and geometric is in K; the material enters as the scalar compliance that
+//! multiplies it (theory: space and time separate).
+
+mod dense;
+mod free;
+mod periodic;
+
+pub use dense::Dense;
+pub use free::Free;
+pub use periodic::Periodic;
+
+use crate::convolution::Convolution;
+use crate::grid::{Boundary, Grid};
+use crate::kernel::inverse_kernel;
+
+/// u = K p: symmetric, positive (semi)definite, in metres times the pressure's unit.
+pub trait Operator: Send {
+    /// The grid that the operator works on.
+    fn grid(&self) -> &Grid;
+
+    /// Free or periodic.
+    fn boundary(&self) -> Boundary;
+
+    /// u = K p; both C-order of nx ny cells.
+    fn apply_into(&mut self, p: &[f64], u: &mut [f64]);
+
+    /// Displacement of a cell under its own unit pressure \[m\].
+    fn self_influence(&self) -> f64;
+}
+
+/// The operator of a grid and its boundary.
+pub fn half_space(grid: Grid, boundary: Boundary) -> Box<dyn Operator> {
+    match boundary {
+        Boundary::Free => Box::new(Free::new(grid)),
+        Boundary::Periodic => Box::new(Periodic::new(grid)),
+    }
+}
+
+/// S(kx, ky) = `symbol`(qx, qy) on the wave vectors of the unpadded grid.
+pub(crate) fn wave_spectrum(grid: &Grid, symbol: impl Fn(f64, f64) -> f64) -> ndarray::Array2<f64> {
+    let [nx, ny] = grid.cells();
+    let [lx, ly] = grid.size();
+    let tau = std::f64::consts::TAU;
+    ndarray::Array2::from_shape_fn((nx / 2 + 1, ny / 2 + 1), |(kx, ky)| {
+        symbol(tau * kx as f64 / lx, tau * ky as f64 / ly)
+    })
+}
+
+/// The approximate inverse of K: the symbol |q|/2 on the unpadded grid, the mean like half the first wave.
+///
+/// A quarter of a free convolution, and as good a preconditioner as the padded one.
+pub(crate) fn approximate_inverse(grid: &Grid) -> Convolution {
+    let [lx, ly] = grid.size();
+    let mean = 0.25 * std::f64::consts::TAU / lx.max(ly);
+    let spectrum = wave_spectrum(grid, |qx, qy| inverse_kernel(qx, qy, mean));
+    Convolution::new(grid.cells(), grid.cells(), spectrum.view())
+}

@@ -1,7 +1,19 @@
 //! Linear viscoelastic materials: creep, relaxation, models. Knows time, no space.
+//!
+//! A material is its creep function, a [`Creep`] (Prony series of retarded terms), or equally its
+//! relaxation function, a [`Relaxation`]; each converts into the other exactly. A [`Material`] is
+//! such a function together with the measure in which its moduli are meant (Young's or shear
+//! modulus); a [`Body`] closes it with Poisson's ratio or the bulk modulus and yields the contact
+//! creep compliance C(t), all that the contact needs to know.
 
+mod body;
+mod convert;
 mod creep;
+mod models;
 mod relaxation;
+mod series;
 
+pub use body::{Body, Lateral, pair_creep, pair_hardness};
 pub use creep::{Creep, CreepTerm};
+pub use models::{Material, Modulus};
 pub use relaxation::{Relaxation, RelaxationTerm};

@@ -1,0 +1,410 @@
+//! Synthetic self-affine roughness.
+//!
+//! A Gaussian surface is a sum of plane waves with independent complex normal amplitudes,
+//!
+//! ```text
+//! z(x, y) = sum over k of A_k exp(i q.x),   q = 2 pi (kx / Lx, ky / Ly),   <|A_k|^2> ~ C(|q|),
+//! ```
+//!
+//! with the power spectrum of a self-affine surface: flat from the longest wavelength to the
+//! roll-off, then C ~ q^(-2 (1 + H)) down to the shortest, and zero beyond either end (B. N. J.
+//! Persson et al., J. Phys.: Condens. Matter 17 (2005) R1, section 4; T. D. B. Jacobs et al., Surf.
+//! Topogr.: Metrol. Prop. 5 (2017) 013001, section 3). The sum is scaled so that this surface, not the
+//! ensemble, has the rms gradient or rms height asked for.
+//!
+//! The amplitude of a wave depends on the seed and on (kx, ky) alone. So the same seed on a finer
+//! grid samples the same surface, a smaller `shortest` adds waves and keeps the long ones in
+//! proportion, and every machine and thread count gives the same bits.
+
+use std::f64::consts::TAU;
+
+use ndarray::Array2;
+use ndarray::parallel::prelude::*;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+use rustfft::num_complex::Complex64;
+
+use super::fourier::Transform;
+use crate::error::{Error, Result, positive};
+use crate::grid::Grid;
+
+/// How rough a synthetic surface is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Roughness {
+    /// Root mean square of |grad z| (spectral derivative, whole domain).
+    RmsGradient(f64),
+    /// Root mean square of z \[m\]; the mean is zero.
+    RmsHeight(f64),
+}
+
+/// An isotropic self-affine Gaussian surface, periodic on the domain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SelfAffine {
+    /// Hurst exponent H, 0 < H <= 1; the fractal dimension is 3 - H.
+    pub hurst: f64,
+    /// Exact rms gradient or rms height of the surface.
+    pub roughness: Roughness,
+    /// Longest wavelength \[m\]; at most the longer side of the domain.
+    pub longest: f64,
+    /// Shortest wavelength \[m\]; at least two cells.
+    pub shortest: f64,
+    /// Wavelength at which the flat part ends \[m\], between `shortest` and `longest`; equal to
+    /// `longest` there is no flat part.
+    pub roll_off: f64,
+    /// Seed of the random amplitudes.
+    pub seed: u64,
+}
+
+/// Wavelengths that agree to this share are the same: 0.1 mm / 1024 is no exact binary number.
+const SAME: f64 = 1e-9;
+
+impl SelfAffine {
+    /// Heights at the cell centres \[m\], shape (nx, ny), mean zero.
+    ///
+    /// Waves that stand exactly on the grid's Nyquist frequency along an axis are left out: a grid
+    /// cannot tell their phase.
+    ///
+    /// ```
+    /// use asperity::{Grid, surface::{Roughness, SelfAffine, statistics}};
+    ///
+    /// let grid = Grid::new([64, 64], [1e-3, 1e-3])?;
+    /// let surface = SelfAffine {
+    ///     hurst: 0.8,
+    ///     roughness: Roughness::RmsGradient(0.1),
+    ///     longest: 5e-4,
+    ///     shortest: 6e-5,
+    ///     roll_off: 2e-4,
+    ///     seed: 1,
+    /// };
+    /// let heights = surface.heights(&grid)?;
+    /// let gradient = statistics::rms_gradient(&grid, heights.view())?;
+    /// assert!((gradient - 0.1).abs() < 1e-12);
+    /// # Ok::<(), asperity::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where the exponent, the roughness or a wavelength is outside its domain,
+    /// the wavelengths are out of order or do not fit the grid, or no wave of the domain falls between
+    /// them.
+    pub fn heights(&self, grid: &Grid) -> Result<Array2<f64>> {
+        self.validate(grid)?;
+        let waves = Waves::new(grid, TAU / self.shortest);
+        let amplitude = |q: f64| self.spectrum(q).sqrt();
+        let (mut columns, moments) = waves.amplitudes(self.seed, amplitude);
+        if moments.height <= 0.0 {
+            return Err(Error::invalid(
+                "band of wavelengths",
+                format!("{:e} m to {:e} m", self.shortest, self.longest),
+                "wide enough to hold a wave that fits the domain (size over an integer along x and y)",
+            ));
+        }
+        let scale = match self.roughness {
+            Roughness::RmsHeight(height) => height / moments.height.sqrt(),
+            Roughness::RmsGradient(gradient) => gradient / moments.gradient.sqrt(),
+        };
+        let heights = waves.sum(&mut columns, scale);
+        if heights.iter().all(|z| z.is_finite()) {
+            Ok(heights)
+        } else {
+            Err(Error::invalid(
+                "height of the self-affine surface",
+                "too large for a number",
+                "finite; check the roughness and its unit",
+            ))
+        }
+    }
+
+    /// Power spectrum up to a factor: 1 on the flat part, (q / q_rolloff)^(-2 (1 + H)) beyond.
+    fn spectrum(&self, q: f64) -> f64 {
+        if q < TAU / self.longest * (1.0 - SAME) || q > TAU / self.shortest * (1.0 + SAME) {
+            return 0.0;
+        }
+        libm::pow((q * self.roll_off / TAU).max(1.0), -2.0 * (1.0 + self.hurst))
+    }
+
+    /// Checks the numbers, also against the grid.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] as [`heights`](Self::heights).
+    pub fn validate(&self, grid: &Grid) -> Result<()> {
+        if !(self.hurst > 0.0 && self.hurst <= 1.0) {
+            return Err(Error::invalid("Hurst exponent", self.hurst, "greater than 0 and at most 1"));
+        }
+        match self.roughness {
+            Roughness::RmsGradient(g) => positive("rms gradient", g, "")?,
+            Roughness::RmsHeight(h) => positive("rms height", h, "m")?,
+        };
+        positive("longest wavelength", self.longest, "m")?;
+        positive("shortest wavelength", self.shortest, "m")?;
+        positive("roll-off wavelength", self.roll_off, "m")?;
+        let meters = |l: f64| format!("{l:e} m");
+        let [dx, dy] = grid.spacing();
+        let (two_cells, domain) = (2.0 * dx.max(dy), grid.size()[0].max(grid.size()[1]));
+        if self.shortest < two_cells * (1.0 - SAME) {
+            return Err(Error::invalid(
+                "shortest wavelength",
+                meters(self.shortest),
+                format!("at least two cells, {}; refine the grid or cut longer waves off", meters(two_cells)),
+            ));
+        }
+        if self.longest > domain * (1.0 + SAME) {
+            return Err(Error::invalid(
+                "longest wavelength",
+                meters(self.longest),
+                format!("at most the size of the domain, {}", meters(domain)),
+            ));
+        }
+        if !(self.shortest <= self.roll_off && self.roll_off <= self.longest) {
+            return Err(Error::invalid(
+                "roll-off wavelength",
+                meters(self.roll_off),
+                format!(
+                    "between the shortest, {}, and the longest, {}",
+                    meters(self.shortest),
+                    meters(self.longest)
+                ),
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// The plane waves of a domain with |q| up to a largest, one half plane of them: ky > 0, and ky = 0
+/// with kx > 0. The others are their conjugates.
+struct Waves {
+    cells: [usize; 2],
+    /// 2 pi / L along x and y.
+    fundamental: [f64; 2],
+    largest: f64,
+}
+
+/// Mean of z^2 and of |grad z|^2 before scaling.
+#[derive(Clone, Copy)]
+struct Moments {
+    height: f64,
+    gradient: f64,
+}
+
+impl Waves {
+    fn new(grid: &Grid, largest: f64) -> Self {
+        let fundamental = grid.size().map(|length| TAU / length);
+        Waves { cells: grid.cells(), fundamental, largest: largest * (1.0 + SAME) }
+    }
+
+    /// Largest index along an axis: below Nyquist and within the band.
+    fn reach(&self, axis: usize, largest: f64) -> usize {
+        let nyquist = (self.cells[axis] - 1) / 2;
+        nyquist.min((largest / self.fundamental[axis]) as usize)
+    }
+
+    /// Column ky holds A_k at index kx (negative ones from the end), with the phase that moves the
+    /// samples from the corners to the centres of the cells.
+    fn amplitudes(&self, seed: u64, amplitude: impl Fn(f64) -> f64 + Sync) -> (Vec<Vec<Complex64>>, Moments) {
+        let (columns, moments): (Vec<_>, Vec<_>) = (0..=self.reach(1, self.largest))
+            .into_par_iter()
+            .map(|ky| self.column(seed, ky, &amplitude))
+            .unzip();
+        let zero = Moments { height: 0.0, gradient: 0.0 };
+        let total = moments.iter().fold(zero, |sum, m| Moments {
+            height: sum.height + m.height,
+            gradient: sum.gradient + m.gradient,
+        });
+        (columns, total)
+    }
+
+    fn column(
+        &self,
+        seed: u64,
+        ky: usize,
+        amplitude: &(impl Fn(f64) -> f64 + Sync),
+    ) -> (Vec<Complex64>, Moments) {
+        let [nx, ny] = self.cells;
+        let mut column = vec![Complex64::ZERO; nx];
+        let mut moments = Moments { height: 0.0, gradient: 0.0 };
+        let mut random = generator(seed, ky as u64);
+        let qy = self.fundamental[1] * ky as f64;
+        let room = (self.largest * self.largest - qy * qy).max(0.0).sqrt();
+        let reach = self.reach(0, room) as i64;
+        // 0, 1, -1, 2, -2, ...: a wave's place in the stream does not depend on how many follow.
+        for kx in (0..=reach).flat_map(|k| [k, -k]).skip(1) {
+            let normal = complex_normal(&mut random);
+            if ky == 0 && kx <= 0 {
+                continue;
+            }
+            let qx = self.fundamental[0] * kx as f64;
+            let q2 = qx * qx + qy * qy;
+            let a = normal * amplitude(q2.sqrt());
+            // This wave and its conjugate.
+            moments.height += 2.0 * a.norm_sqr();
+            moments.gradient += 2.0 * q2 * a.norm_sqr();
+            let half_a_cell = 0.5 * TAU * (kx as f64 / nx as f64 + ky as f64 / ny as f64);
+            let (sin, cos) = libm::sincos(half_a_cell);
+            column[kx.rem_euclid(nx as i64) as usize] = a * Complex64::new(cos, sin);
+        }
+        (column, moments)
+    }
+
+    /// scale * (sum of the waves and their conjugates) at the cell centres.
+    fn sum(&self, columns: &mut [Vec<Complex64>], scale: f64) -> Array2<f64> {
+        let [nx, ny] = self.cells;
+        let along_x = Transform::new(nx);
+        columns.par_iter_mut().for_each_init(
+            || vec![Complex64::ZERO; along_x.scratch_len()],
+            |scratch, column| along_x.apply(column, scratch),
+        );
+        let along_y = Transform::new(ny);
+        let mut heights = Array2::zeros((nx, ny));
+        heights.outer_iter_mut().into_par_iter().enumerate().for_each_init(
+            || (vec![Complex64::ZERO; ny], vec![Complex64::ZERO; along_y.scratch_len()]),
+            |(row, scratch), (i, mut out)| {
+                row.fill(Complex64::ZERO);
+                for (ky, column) in columns.iter().enumerate() {
+                    row[ky] = column[i];
+                }
+                along_y.apply(row, scratch);
+                for (z, w) in out.iter_mut().zip(row.iter()) {
+                    *z = 2.0 * scale * w.re; // a wave plus its conjugate
+                }
+            },
+        );
+        heights
+    }
+}
+
+/// One stream of random numbers per ky.
+fn generator(seed: u64, stream: u64) -> ChaCha8Rng {
+    let mut key = [0; 32];
+    key[..8].copy_from_slice(&seed.to_le_bytes());
+    let mut random = ChaCha8Rng::from_seed(key);
+    random.set_stream(stream);
+    random
+}
+
+/// A complex number with independent normal parts (Box & Muller 1958).
+fn complex_normal(random: &mut ChaCha8Rng) -> Complex64 {
+    const ULP: f64 = 1.0 / (1u64 << 53) as f64;
+    let radius = (-2.0 * libm::log(((random.next_u64() >> 11) + 1) as f64 * ULP)).sqrt();
+    let (sin, cos) = libm::sincos(TAU * ((random.next_u64() >> 11) as f64 * ULP));
+    Complex64::new(radius * cos, radius * sin)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::statistics;
+
+    fn surface() -> SelfAffine {
+        SelfAffine {
+            hurst: 0.8,
+            roughness: Roughness::RmsGradient(0.1),
+            longest: 1e-3,
+            shortest: 1e-4,
+            roll_off: 4e-4,
+            seed: 7,
+        }
+    }
+
+    fn grid(cells: [usize; 2]) -> Grid {
+        Grid::new(cells, [1e-3, 1e-3]).unwrap()
+    }
+
+    /// Transforms that add a few hundred waves round to this share of the largest height.
+    const ROUNDING: f64 = 1e-13;
+
+    #[test]
+    fn the_roughness_is_exact_on_the_grid() {
+        for cells in [[64, 64], [50, 33], [21, 128]] {
+            let heights = surface().heights(&grid(cells)).unwrap();
+            let gradient = statistics::rms_gradient(&grid(cells), heights.view()).unwrap();
+            assert!((gradient / 0.1 - 1.0).abs() < ROUNDING, "{gradient}");
+            let given = SelfAffine { roughness: Roughness::RmsHeight(3e-6), ..surface() };
+            let heights = given.heights(&grid(cells)).unwrap();
+            let rms = statistics::rms_height(heights.view()).unwrap();
+            assert!((rms / 3e-6 - 1.0).abs() < ROUNDING, "{rms}");
+            assert!(heights.mean().unwrap().abs() < ROUNDING * 3e-6);
+        }
+    }
+
+    #[test]
+    fn a_finer_grid_samples_the_same_surface() {
+        // Every third cell centre of the fine grid is a cell centre of the coarse one.
+        let (coarse, fine) = (grid([30, 28]), grid([90, 84]));
+        let (coarse, fine) = (surface().heights(&coarse).unwrap(), surface().heights(&fine).unwrap());
+        let largest = coarse.iter().fold(0.0f64, |m, z| m.max(z.abs()));
+        for ((i, j), z) in coarse.indexed_iter() {
+            assert!((z - fine[[3 * i + 1, 3 * j + 1]]).abs() < ROUNDING * largest);
+        }
+    }
+
+    #[test]
+    fn the_spectrum_is_flat_then_falls_and_ends() {
+        // |A_k|^2 averaged over 200 seeds follows C(q): its mean is exponential with 1/sqrt(200 x
+        // waves in the ring) scatter, under 2 % for rings of 20 waves and more; 5 sigma = 8 %.
+        let grid = grid([64, 64]);
+        let waves = Waves::new(&grid, TAU / 1e-4);
+        let ring = |k: i64| {
+            let (mut power, mut count) = (0.0, 0);
+            for seed in 0..200 {
+                let s = SelfAffine { seed, ..surface() };
+                let (columns, _) = waves.amplitudes(seed, |q| s.spectrum(q).sqrt());
+                for (ky, column) in columns.iter().enumerate() {
+                    for (i, a) in column.iter().enumerate() {
+                        let kx = if i < 32 { i as i64 } else { i as i64 - 64 };
+                        let r = ((kx * kx + (ky * ky) as i64) as f64).sqrt();
+                        if (r - k as f64).abs() < 0.5 && (ky > 0 || kx > 0) {
+                            let q = r * TAU / 1e-3;
+                            let flat = TAU / 4e-4;
+                            let c = if q <= flat { 1.0 } else { (q / flat).powf(-3.6) };
+                            power += a.norm_sqr() / (2.0 * c);
+                            count += 1;
+                        }
+                    }
+                }
+            }
+            power / count as f64
+        };
+        for k in [3, 6, 9] {
+            assert!((ring(k) - 1.0).abs() < 0.08, "ring {k}: {}", ring(k));
+        }
+        let heights = surface().heights(&grid).unwrap();
+        assert_eq!(waves.reach(1, waves.largest), 10); // nothing beyond 1 mm / 0.1 mm
+        assert_eq!(heights.dim(), (64, 64));
+    }
+
+    #[test]
+    fn seeds_differ_and_repeat() {
+        let of = |seed| SelfAffine { seed, ..surface() }.heights(&grid([32, 32])).unwrap();
+        assert_eq!(of(1), of(1));
+        assert_ne!(of(1), of(2));
+    }
+
+    #[test]
+    fn the_bits_are_these_on_every_machine() {
+        let heights = surface().heights(&grid([24, 20])).unwrap();
+        let bits = [[0, 0], [5, 11], [23, 19]].map(|at| heights[at].to_bits());
+        assert_eq!(bits, [13748743255368971658, 13745790284808236751, 13745802750176475578]);
+    }
+
+    #[test]
+    fn numbers_outside_their_domain_are_named() {
+        for (surface, word) in [
+            (SelfAffine { hurst: 0.0, ..surface() }, "Hurst"),
+            (SelfAffine { hurst: f64::NAN, ..surface() }, "Hurst"),
+            (SelfAffine { hurst: 1.1, ..surface() }, "Hurst"),
+            (SelfAffine { roughness: Roughness::RmsHeight(-1.0), ..surface() }, "rms height"),
+            (SelfAffine { shortest: 1e-5, ..surface() }, "two cells"),
+            (SelfAffine { longest: 2e-3, ..surface() }, "size of the domain"),
+            (SelfAffine { roll_off: 5e-5, ..surface() }, "roll-off"),
+            (SelfAffine { longest: f64::INFINITY, ..surface() }, "longest"),
+            // 1 mm / 2.5 lies between the waves 2 and sqrt(5); 1 mm / 2.1 holds none of them.
+            (
+                SelfAffine { longest: 1e-3 / 2.05, roll_off: 1e-3 / 2.1, shortest: 1e-3 / 2.1, ..surface() },
+                "band",
+            ),
+            (SelfAffine { roughness: Roughness::RmsHeight(1e308), ..surface() }, "too large"),
+        ] {
+            let message = surface.heights(&grid([64, 64])).unwrap_err().to_string();
+            assert!(message.contains(word), "{message:?} lacks {word:?}");
+        }
+    }
+}

@@ -1,0 +1,228 @@
+//! Smooth shapes: the gap h(x, y) that a body leaves over a flat one it touches at its centre.
+//!
+//! ```text
+//! sphere       r^2 / (2 R)                       the paraboloid of Hertz's theory
+//! ellipsoid    x^2 / (2 Rx) + y^2 / (2 Ry)
+//! cone         slope r
+//! flat punch   0 inside, never touching outside
+//! wave         A (1 - cos(2 pi x / lx) cos(2 pi y / ly))
+//! ```
+//!
+//! K. L. Johnson, Contact Mechanics (Cambridge, 1985), sections 4.1, 3.8, 5.2 and 13.2.
+
+use std::f64::consts::TAU;
+
+use crate::error::{Error, Result, positive};
+
+/// A smooth shape, placed with its centre on the centre of the domain or at an offset from it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shape {
+    /// h = r^2 / (2 radius): the paraboloid that stands for a sphere where the contact is small
+    /// against the radius. An infinite radius is a flat.
+    Sphere {
+        /// Radius R \[m\].
+        radius: f64,
+    },
+    /// h = x^2 / (2 radius_x) + y^2 / (2 radius_y). An infinite radius is straight along that
+    /// axis: two of them a flat, one a cylinder.
+    Ellipsoid {
+        /// Principal radius along x \[m\].
+        radius_x: f64,
+        /// Principal radius along y \[m\].
+        radius_y: f64,
+    },
+    /// h = slope r.
+    Cone {
+        /// Rise per length, the cotangent of the cone's half angle.
+        slope: f64,
+    },
+    /// h = 0 where a cell's centre lies inside (its edge included), [`f64::INFINITY`] outside.
+    FlatPunch(Punch),
+    /// h = amplitude (1 - cos(2 pi x / lx) cos(2 pi y / ly)), a crest at the centre.
+    ///
+    /// An infinite wavelength is straight along that axis: `[l, INFINITY]` is the wave
+    /// amplitude (1 - cos(2 pi x / l)) of Westergaard, two finite ones the double wave of Johnson,
+    /// Greenwood and Higginson (two crests on each lx x ly). The height from trough to crest is
+    /// twice the amplitude. On a periodic domain the domain should hold whole waves.
+    Wave {
+        /// Amplitude A \[m\].
+        amplitude: f64,
+        /// Wavelengths \[lx, ly\] \[m\], not both infinite.
+        wavelength: [f64; 2],
+    },
+}
+
+/// Outline of a flat punch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Punch {
+    /// r <= radius.
+    Circle {
+        /// Radius \[m\].
+        radius: f64,
+    },
+    /// |x| <= size\[0\] / 2 and |y| <= size\[1\] / 2.
+    Rectangle {
+        /// Edges along x and y \[m\].
+        size: [f64; 2],
+    },
+}
+
+impl Shape {
+    /// The name used in messages and case files.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Shape::Sphere { .. } => "sphere",
+            Shape::Ellipsoid { .. } => "ellipsoid",
+            Shape::Cone { .. } => "cone",
+            Shape::FlatPunch(_) => "flat punch",
+            Shape::Wave { .. } => "wave",
+        }
+    }
+
+    /// Gap h \[m\] at the offset (x, y) \[m\] from the shape's centre.
+    ///
+    /// ```
+    /// use asperity::surface::Shape;
+    /// let wave = Shape::Wave { amplitude: 1e-6, wavelength: [1e-3, f64::INFINITY] };
+    /// assert_eq!(wave.gap(0.0, 0.3), 0.0);                     // crest
+    /// assert!((wave.gap(0.5e-3, 0.0) - 2e-6).abs() < 1e-20);   // trough
+    /// ```
+    pub fn gap(&self, x: f64, y: f64) -> f64 {
+        match self {
+            Shape::Sphere { radius } => (x * x + y * y) / (2.0 * radius),
+            Shape::Ellipsoid { radius_x, radius_y } => x * x / (2.0 * radius_x) + y * y / (2.0 * radius_y),
+            Shape::Cone { slope } => slope * (x * x + y * y).sqrt(),
+            Shape::FlatPunch(punch) => {
+                if punch.covers(x, y) {
+                    0.0
+                } else {
+                    f64::INFINITY
+                }
+            }
+            Shape::Wave { amplitude, wavelength: [lx, ly] } => {
+                amplitude * (1.0 - libm::cos(TAU * x / lx) * libm::cos(TAU * y / ly))
+            }
+        }
+    }
+
+    /// Checks the shape's numbers.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where a radius or wavelength is not positive (infinity is accepted), the
+    /// slope or a punch's size is not positive, or the amplitude is not finite.
+    pub fn validate(&self) -> Result<()> {
+        match self {
+            Shape::Sphere { radius } => radius_or_flat("radius of the sphere", *radius),
+            Shape::Ellipsoid { radius_x, radius_y } => {
+                radius_or_flat("radius of the ellipsoid along x", *radius_x)?;
+                radius_or_flat("radius of the ellipsoid along y", *radius_y)
+            }
+            Shape::Cone { slope } => positive("slope of the cone", *slope, "").map(drop),
+            Shape::FlatPunch(Punch::Circle { radius }) => radius_or_flat("radius of the flat punch", *radius),
+            Shape::FlatPunch(Punch::Rectangle { size }) => {
+                radius_or_flat("size of the flat punch along x", size[0])?;
+                radius_or_flat("size of the flat punch along y", size[1])
+            }
+            Shape::Wave { amplitude, wavelength } => {
+                if !amplitude.is_finite() {
+                    return Err(Error::invalid("amplitude of the wave", amplitude, "finite, in m"));
+                }
+                radius_or_flat("wavelength along x", wavelength[0])?;
+                radius_or_flat("wavelength along y", wavelength[1])?;
+                if wavelength.iter().all(|l| l.is_infinite()) {
+                    return Err(Error::invalid(
+                        "wavelength of the wave",
+                        "infinite along x and y",
+                        "finite along one axis at least",
+                    ));
+                }
+                Ok(())
+            }
+        }
+    }
+}
+
+impl Punch {
+    /// Whether the offset (x, y) \[m\] from the punch's centre lies under it; the edge does, to
+    /// 1 part in 1e12, so that rounding does not decide about cells whose centre is on it.
+    pub fn covers(&self, x: f64, y: f64) -> bool {
+        const EDGE: f64 = 1.0 + 1e-12;
+        match self {
+            Punch::Circle { radius } => (x * x + y * y).sqrt() <= radius * EDGE,
+            Punch::Rectangle { size } => x.abs() <= 0.5 * size[0] * EDGE && y.abs() <= 0.5 * size[1] * EDGE,
+        }
+    }
+}
+
+/// A length > 0 that may be infinite: straight along that axis.
+fn radius_or_flat(what: &str, value: f64) -> Result<()> {
+    if value > 0.0 {
+        Ok(())
+    } else {
+        Err(Error::invalid(what, value, "greater than 0 m (inf for a straight line)"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    // Rounding of a handful of operations on numbers of order one.
+    const ROUNDING: f64 = 1e-15;
+
+    #[test]
+    fn an_infinite_radius_is_flat() {
+        assert_eq!(Shape::Sphere { radius: f64::INFINITY }.gap(3.0, 4.0), 0.0);
+        let cylinder = Shape::Ellipsoid { radius_x: 2.0, radius_y: f64::INFINITY };
+        assert_eq!(cylinder.gap(2.0, 7.0), 1.0);
+    }
+
+    #[test]
+    fn an_ellipsoid_of_equal_radii_is_the_sphere() {
+        let (sphere, ellipsoid) =
+            (Shape::Sphere { radius: 3.0 }, Shape::Ellipsoid { radius_x: 3.0, radius_y: 3.0 });
+        assert!((sphere.gap(0.3, -0.7) - ellipsoid.gap(0.3, -0.7)).abs() < ROUNDING);
+    }
+
+    #[test]
+    fn the_cone_rises_by_its_slope() {
+        assert!((Shape::Cone { slope: 0.1 }.gap(3.0, -4.0) - 0.5).abs() < ROUNDING);
+    }
+
+    #[test]
+    fn the_edge_belongs_to_the_punch() {
+        let circle = Shape::FlatPunch(Punch::Circle { radius: 0.3 });
+        assert_eq!(circle.gap(0.1 + 0.2, 0.0), 0.0); // 0.30000000000000004
+        assert_eq!(circle.gap(0.301, 0.0), f64::INFINITY);
+        let rectangle = Shape::FlatPunch(Punch::Rectangle { size: [2.0, 1.0] });
+        assert_eq!(rectangle.gap(-1.0, 0.5), 0.0);
+        assert_eq!(rectangle.gap(0.0, 0.6), f64::INFINITY);
+    }
+
+    #[test]
+    fn the_double_wave_has_two_crests_of_johnsons_curvature() {
+        let (a, l) = (0.01, 1.0);
+        let wave = Shape::Wave { amplitude: a, wavelength: [l, l] };
+        assert!(wave.gap(0.5, 0.5).abs() < ROUNDING);
+        // Near a crest h = r^2 / (2 R), R = l^2 / (4 pi^2 A); the next term is r^2/l^2 smaller.
+        let (r, radius) = (1e-4, l * l / (TAU * TAU * a));
+        assert!((wave.gap(r, 0.0) * 2.0 * radius / (r * r) - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn absurd_numbers_are_named() {
+        for (shape, word) in [
+            (Shape::Sphere { radius: 0.0 }, "radius of the sphere"),
+            (Shape::Sphere { radius: f64::NAN }, "radius of the sphere"),
+            (Shape::Ellipsoid { radius_x: 1.0, radius_y: -1.0 }, "along y"),
+            (Shape::Cone { slope: f64::INFINITY }, "slope"),
+            (Shape::FlatPunch(Punch::Circle { radius: -1.0 }), "flat punch"),
+            (Shape::Wave { amplitude: f64::NAN, wavelength: [1.0, 1.0] }, "amplitude"),
+            (Shape::Wave { amplitude: 1.0, wavelength: [0.0, 1.0] }, "along x"),
+            (Shape::Wave { amplitude: 1.0, wavelength: [f64::INFINITY; 2] }, "infinite"),
+        ] {
+            let message = shape.validate().unwrap_err().to_string();
+            assert!(message.contains(word), "{message:?} lacks {word:?}");
+        }
+    }
+}

@@ -1,1 +1,122 @@
-//! Measured topographies: one reader per format.
+//! Measured topographies: heights over a rectangle, from the files of instruments and programs.
+//!
+//! [`read`] finds the format from the content and gives heights in metres on a grid with axis 0 = x, undefined
+//! points as NaN, the physical size in metres, and what else the file says. Size and unit are never guessed: where
+//! a file does not state them, the error asks for them by name.
+//!
+//! | format | source |
+//! |---|---|
+//! | text matrix, CSV | Gwyddion, SPIP, Nova and Wyko headers; any decimal mark |
+//! | XYZ | points of a regular grid in any order |
+//! | NPY, NPZ | NumPy |
+//!
+//! All text and binary formats may be packed by gzip.
+
+mod error;
+mod finish;
+mod format;
+mod grid;
+mod npy;
+mod sample;
+mod text;
+mod unit;
+mod unpack;
+
+use std::path::Path;
+
+use ndarray::Array2;
+
+pub use error::{Problem, TopographyError};
+pub use format::{Format, detect};
+
+use finish::finish;
+
+/// Heights over a rectangle, with what the file says about them.
+///
+/// Point (i, j) stands for the cell with its centre at ((i + 1/2) Lx/nx, (j + 1/2) Ly/ny).
+#[derive(Clone, Debug)]
+pub struct Topography {
+    /// Where it came from.
+    pub format: Format,
+    /// Heights \[m\], shape (nx, ny), axis 0 = x, C order; NaN where the file says that there is no value.
+    pub heights: Array2<f64>,
+    /// Physical size \[Lx, Ly\] in metres.
+    pub size: [f64; 2],
+    /// Name of the channel, where the file names it.
+    pub channel: Option<String>,
+    /// Names of all channels that hold heights, in the order of the file.
+    pub channels: Vec<String>,
+    /// What else the file says (instrument, date, comment, ...), in the order of the file.
+    pub metadata: Vec<(String, String)>,
+}
+
+impl Topography {
+    /// Number of undefined points.
+    pub fn undefined(&self) -> usize {
+        self.heights.iter().filter(|h| h.is_nan()).count()
+    }
+}
+
+/// What the caller knows and the file may not say.
+///
+/// The defaults take everything from the file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ReadOptions {
+    /// Physical size \[Lx, Ly\] in metres; replaces that of the file. Default: the file's.
+    pub size: Option<[f64; 2]>,
+    /// Metres per unit of the heights; replaces that of the file. Where a file gives lateral coordinates without a
+    /// unit and `size` is not given either, it is their unit too. Default: the file's.
+    pub height_unit: Option<f64>,
+    /// Name (any case) or number (from 0) of the channel. Default: the first that holds heights.
+    pub channel: Option<String>,
+    /// Format. Default: found from the content.
+    pub format: Option<Format>,
+}
+
+/// Reads a topography from a file.
+///
+/// # Errors
+/// [`TopographyError`] with the path: no access, an unknown, broken or truncated file, no such channel, or a size or
+/// unit that neither the file nor `options` state.
+pub fn read(path: &Path, options: &ReadOptions) -> Result<Topography, TopographyError> {
+    let in_file = |problem| TopographyError { path: Some(path.to_owned()), problem };
+    let bytes = std::fs::read(path).map_err(|e| in_file(Problem::Io(e)))?;
+    parse(&bytes, options).map_err(in_file)
+}
+
+/// Reads a topography from the bytes of a file; see [`read`].
+///
+/// ```
+/// use asperity_io::topography::{read_bytes, ReadOptions};
+///
+/// let file = b"# Channel: Z\n# Width: 3 um\n# Height: 2 um\n# Value units: nm\n1 2 3\n4 5 nan\n";
+/// let surface = read_bytes(file, &ReadOptions::default())?;
+/// assert_eq!(surface.heights.dim(), (3, 2));
+/// assert_eq!(surface.heights[[1, 0]], 2e-9); // axis 0 = x runs along a line of the file
+/// assert_eq!(surface.size, [3e-6, 2e-6]);
+/// assert_eq!(surface.undefined(), 1);
+/// # Ok::<(), asperity_io::topography::TopographyError>(())
+/// ```
+///
+/// # Errors
+/// As [`read`], without a path.
+pub fn read_bytes(bytes: &[u8], options: &ReadOptions) -> Result<Topography, TopographyError> {
+    parse(bytes, options).map_err(|problem| TopographyError { path: None, problem })
+}
+
+fn parse(bytes: &[u8], options: &ReadOptions) -> Result<Topography, Problem> {
+    let unpacked = unpack::gunzip(bytes)?;
+    let bytes = unpacked.as_deref().unwrap_or(bytes);
+    let format = match options.format {
+        Some(format) => format,
+        None => detect(bytes).ok_or(Problem::Unrecognised)?,
+    };
+    let channel = options.channel.as_deref();
+    let measured = match format {
+        Format::Text | Format::Csv => text::read_matrix(bytes, channel)?,
+        Format::Xyz => text::read_xyz(bytes, channel)?,
+        Format::Npy => npy::read_npy(bytes)?,
+        Format::Npz => npy::read_npz(bytes, channel)?,
+    };
+    finish(format, measured, options)
+}

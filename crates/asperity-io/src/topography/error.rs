@@ -1,0 +1,143 @@
+//! Why a file cannot be read or written as a topography, and what to do about it.
+
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use super::Format;
+
+/// A file that cannot be read or written as a topography.
+#[derive(Debug, Error)]
+#[error("{}{problem}", match .path { Some(path) => format!("{}: ", path.display()), None => String::new() })]
+pub struct TopographyError {
+    /// The file, where the topography came from or goes to one.
+    pub path: Option<PathBuf>,
+    /// What is wrong.
+    #[source]
+    pub problem: Problem,
+}
+
+/// What is wrong with a topography file.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum Problem {
+    /// The operating system refuses.
+    #[error("{0}")]
+    Io(#[from] std::io::Error),
+    /// The content belongs to none of the formats.
+    #[error(
+        "the content is none of the known formats (text, XYZ, CSV, NPY, NPZ, NetCDF, HDF5, SDF, BCR, X3P, SUR, \
+         GWY, AL3D, OPD); export it from the instrument's software as X3P, SDF or text"
+    )]
+    Unrecognised,
+    /// The file states no physical size, or one without a unit.
+    #[error(
+        "the {format} file holds no physical size{detail}; give the lengths along x and y (`size`, --size A,B)"
+    )]
+    MissingSize {
+        /// Format of the file.
+        format: Format,
+        /// What it holds instead.
+        detail: String,
+    },
+    /// The file states no unit of the heights, or none of length.
+    #[error(
+        "the {format} file holds no unit of length for its heights{detail}; give it (`height_unit`, --height-unit U)"
+    )]
+    MissingHeightUnit {
+        /// Format of the file.
+        format: Format,
+        /// What it holds instead.
+        detail: String,
+    },
+    /// No channel of that name.
+    #[error("no channel {wanted:?}; the file holds {}", list(.available))]
+    NoChannel {
+        /// The name or number asked for.
+        wanted: String,
+        /// What the file has.
+        available: Vec<String>,
+    },
+    /// The file holds nothing that can be heights over a rectangle.
+    #[error("the {format} file holds no map of heights: {detail}")]
+    NoHeights {
+        /// Format of the file.
+        format: Format,
+        /// What it holds instead.
+        detail: String,
+    },
+    /// The file ends too early.
+    #[error("{what} needs {needed} bytes, but {available} are left; the file is truncated")]
+    Truncated {
+        /// The part of the file.
+        what: String,
+        /// Its length.
+        needed: u64,
+        /// What the file still has.
+        available: u64,
+    },
+    /// A value in the file that the format does not allow.
+    #[error("{what} is {value}, but must be {expected}")]
+    Malformed {
+        /// The part of the file, with the line where it is text.
+        what: String,
+        /// What the file says.
+        value: String,
+        /// What it must say.
+        expected: String,
+    },
+    /// Allowed by the format, but not read here.
+    #[error("{what} is not supported; {instead}")]
+    Unsupported {
+        /// The feature.
+        what: String,
+        /// What to do.
+        instead: String,
+    },
+    /// An option that the caller gave.
+    #[error("{what} is {value}, but must be {expected}")]
+    Option {
+        /// The option.
+        what: &'static str,
+        /// As given.
+        value: String,
+        /// What is accepted.
+        expected: &'static str,
+    },
+}
+
+impl Problem {
+    /// `what` is `value`, but must be `expected`.
+    pub(super) fn malformed(
+        what: impl Into<String>,
+        value: impl ToString,
+        expected: impl Into<String>,
+    ) -> Self {
+        let mut value = value.to_string();
+        // A hostile file must not fill the terminal.
+        if value.chars().count() > 80 {
+            value = value.chars().take(80).chain(['…']).collect();
+        }
+        Problem::Malformed { what: what.into(), value, expected: expected.into() }
+    }
+
+    /// `what` needs `needed` bytes of `available`.
+    pub(super) fn truncated(what: impl Into<String>, needed: u64, available: u64) -> Self {
+        Problem::Truncated { what: what.into(), needed, available }
+    }
+
+    /// `what` is not read here; do `instead`.
+    pub(super) fn unsupported(what: impl Into<String>, instead: impl Into<String>) -> Self {
+        Problem::Unsupported { what: what.into(), instead: instead.into() }
+    }
+}
+
+fn list(names: &[String]) -> String {
+    const SHOWN: usize = 20;
+    let mut text: Vec<String> =
+        names.iter().take(SHOWN).enumerate().map(|(i, n)| format!("{i}: {n:?}")).collect();
+    if names.len() > SHOWN {
+        text.push(format!("and {} more", names.len() - SHOWN));
+    }
+    text.join(", ")
+}

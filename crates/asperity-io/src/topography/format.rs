@@ -1,0 +1,81 @@
+//! The formats and how to tell them apart: by content, never by the file's name.
+
+use std::{fmt, str::FromStr};
+
+use super::{text, unpack};
+
+/// A file format.
+///
+/// Its name, as `Display` writes it and `FromStr` takes it, is the usual ending of the file name; text matrices are
+/// `asc`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Format {
+    /// Text matrix: one line per y, values along x.
+    Text,
+    /// Text matrix with values parted by commas or semicolons.
+    Csv,
+    /// Lines of x, y and height.
+    Xyz,
+    /// One NumPy array.
+    Npy,
+    /// Zip of NumPy arrays.
+    Npz,
+}
+
+impl Format {
+    /// Every format.
+    pub const ALL: [Format; 5] = [Format::Text, Format::Csv, Format::Xyz, Format::Npy, Format::Npz];
+
+    /// Name of the format.
+    pub fn name(self) -> &'static str {
+        match self {
+            Format::Text => "asc",
+            Format::Csv => "csv",
+            Format::Xyz => "xyz",
+            Format::Npy => "npy",
+            Format::Npz => "npz",
+        }
+    }
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Format {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        let lower = name.to_ascii_lowercase();
+        let lower = match lower.as_str() {
+            "text" | "txt" | "matrix" => "asc",
+            other => other,
+        };
+        Format::ALL.into_iter().find(|f| f.name() == lower).ok_or_else(|| {
+            let names: Vec<_> = Format::ALL.iter().map(|f| f.name()).collect();
+            format!("unknown topography format {name:?}; expected one of {}", names.join(", "))
+        })
+    }
+}
+
+/// The format of a file with this content (looking into gzip), or `None` where it is none of the known.
+pub fn detect(bytes: &[u8]) -> Option<Format> {
+    if unpack::is_gzip(bytes) {
+        // The signatures and the first lines of text are near the start; a zip archive inside gzip is not looked for.
+        return detect_plain(&unpack::gunzip_prefix(bytes, 1 << 20));
+    }
+    detect_plain(bytes)
+}
+
+fn detect_plain(bytes: &[u8]) -> Option<Format> {
+    if bytes.starts_with(b"\x93NUMPY") {
+        Some(Format::Npy)
+    } else if bytes.starts_with(b"PK\x03\x04") {
+        unpack::zip_format(bytes)
+    } else {
+        text::detect(bytes)
+    }
+}

@@ -1,0 +1,286 @@
+//! NumPy arrays: NPY, and NPZ, a zip of them.
+//!
+//! The header is a Python dictionary `{'descr': '<f8', 'fortran_order': False, 'shape': (4, 3), }` after the
+//! signature, the version and its length (NumPy Enhancement Proposal 1). Axis 0 of the array is x. NPY states
+//! neither size nor unit; an NPZ states them where it has the arrays `size` (two lengths) and `unit` (text, of the
+//! size and the heights), as the writer of this crate puts them.
+
+use ndarray::Array2;
+
+use super::finish::{Lateral, Measured, Unit, choose};
+use super::sample::{Kind, Order, decode};
+use super::unit::{LoneA, metres};
+use super::unpack::Archive;
+use super::{Format, Problem, grid};
+
+const SIGNATURE: &[u8] = b"\x93NUMPY";
+
+/// Reads an NPY file.
+pub(super) fn read_npy(bytes: &[u8]) -> Result<Measured, Problem> {
+    let array = Npy::parse(bytes)?;
+    Ok(Measured {
+        heights: array.heights(Format::Npy)?,
+        unit: Unit::Unstated,
+        lateral: Lateral::Unstated(String::new()),
+        channel: None,
+        channels: Vec::new(),
+        metadata: Vec::new(),
+    })
+}
+
+/// Reads the channel asked for of an NPZ file: each two-dimensional array is one.
+pub(super) fn read_npz(bytes: &[u8], channel: Option<&str>) -> Result<Measured, Problem> {
+    let mut archive = Archive::open(bytes)?;
+    let (mut maps, mut size, mut unit) = (Vec::new(), None, None);
+    for member in archive.names() {
+        let Some(name) = member.strip_suffix(".npy") else { continue };
+        let content = archive.member(&member)?;
+        let Ok(array) = Npy::parse(&content) else { continue };
+        match name {
+            "size" if array.shape == [2] => {
+                size = array.values().ok().and_then(|v| <[f64; 2]>::try_from(v).ok());
+            }
+            "unit" if array.shape.is_empty() => unit = array.text(),
+            _ if array.shape.len() == 2 && array.kind().is_some() => maps.push((name.to_owned(), content)),
+            _ => {}
+        }
+    }
+    let names: Vec<String> = maps.iter().map(|(name, _)| name.clone()).collect();
+    let default = names.iter().position(|n| n == "heights").unwrap_or(0);
+    let index = match channel {
+        None if !names.is_empty() => default,
+        _ => choose(Format::Npz, &names, channel)?,
+    };
+    let array = Npy::parse(&maps[index].1)?;
+    let unit = match unit {
+        None => Unit::Unstated,
+        Some(label) => metres(&label, LoneA::Angstrom).map_or(Unit::Other(label), Unit::Metres),
+    };
+    let lateral = match (size, &unit) {
+        (Some(size), Unit::Metres(metres)) => Lateral::Metres(size.map(|l| l * metres)),
+        (Some(size), _) => Lateral::Bare(size),
+        (None, _) => Lateral::Unstated(String::new()),
+    };
+    Ok(Measured {
+        heights: array.heights(Format::Npz)?,
+        unit,
+        lateral,
+        channel: Some(names[index].clone()),
+        channels: names,
+        metadata: Vec::new(),
+    })
+}
+
+/// An array in an NPY file.
+struct Npy<'a> {
+    descr: &'a str,
+    fortran_order: bool,
+    shape: Vec<u64>,
+    data: &'a [u8],
+}
+
+impl<'a> Npy<'a> {
+    fn parse(bytes: &'a [u8]) -> Result<Self, Problem> {
+        let truncated = || Problem::truncated("the NPY header", 12, bytes.len() as u64);
+        let rest = bytes
+            .strip_prefix(SIGNATURE)
+            .ok_or_else(|| Problem::malformed("the signature", "something else", "\\x93NUMPY"))?;
+        let (&[major, _minor], rest) = rest.split_first_chunk::<2>().ok_or_else(truncated)?;
+        let (length, rest) = if major == 1 {
+            let (length, rest) = rest.split_first_chunk::<2>().ok_or_else(truncated)?;
+            (usize::from(u16::from_le_bytes(*length)), rest)
+        } else {
+            let (length, rest) = rest.split_first_chunk::<4>().ok_or_else(truncated)?;
+            (u32::from_le_bytes(*length) as usize, rest)
+        };
+        let (header, data) = rest
+            .split_at_checked(length)
+            .ok_or_else(|| Problem::truncated("the NPY header", length as u64, rest.len() as u64))?;
+        let header = std::str::from_utf8(header)
+            .map_err(|_| Problem::malformed("the NPY header", "not text", "a Python dictionary"))?;
+        let field = |key: &str| {
+            // Keys are quoted by ' or "; no value contains one of them as text.
+            let at = header.find(&format!("'{key}'")).or_else(|| header.find(&format!("\"{key}\"")));
+            at.and_then(|at| header[at + key.len() + 2..].trim_start().strip_prefix(':'))
+                .map(str::trim_start)
+                .ok_or_else(|| {
+                    Problem::malformed("the NPY header", header, format!("a dictionary with the key {key:?}"))
+                })
+        };
+        let descr = field("descr")?;
+        let descr = match descr.chars().next() {
+            Some(quote @ ('\'' | '"')) => descr[1..].split(quote).next().unwrap_or_default(),
+            _ => {
+                return Err(Problem::unsupported(
+                    "an NPY file of records (a structured type)",
+                    "save one field of it as an array of its own",
+                ));
+            }
+        };
+        let fortran_order = match field("fortran_order")? {
+            value if value.starts_with("False") => false,
+            value if value.starts_with("True") => true,
+            value => {
+                return Err(Problem::malformed("'fortran_order' in the NPY header", value, "True or False"));
+            }
+        };
+        let tuple = field("shape")?;
+        let inner = tuple.strip_prefix('(').and_then(|t| t.split_once(')')).map(|(inner, _)| inner);
+        let shape = inner
+            .map(|t| {
+                t.split(',').map(str::trim).filter(|n| !n.is_empty()).map(|n| n.trim_end_matches('L').parse())
+            })
+            .and_then(|numbers| numbers.collect::<Result<Vec<u64>, _>>().ok())
+            .ok_or_else(|| {
+                Problem::malformed("'shape' in the NPY header", tuple, "a tuple of whole numbers")
+            })?;
+        Ok(Npy { descr, fortran_order, shape, data })
+    }
+
+    /// Type and order of the numbers, or `None` where they are no real numbers.
+    fn kind(&self) -> Option<(Kind, Order)> {
+        let (order, name) = match self.descr.as_bytes().first()? {
+            b'<' => (Order::Little, &self.descr[1..]),
+            b'>' => (Order::Big, &self.descr[1..]),
+            // "|": one byte; "=": of the machine that wrote it, which is little-endian.
+            b'|' | b'=' => (Order::Little, &self.descr[1..]),
+            _ => (Order::Little, self.descr),
+        };
+        let kind = match name {
+            "f2" => Kind::F16,
+            "f4" => Kind::F32,
+            "f8" => Kind::F64,
+            "i1" => Kind::I8,
+            "i2" => Kind::I16,
+            "i4" => Kind::I32,
+            "i8" => Kind::I64,
+            "u1" | "b1" => Kind::U8,
+            "u2" => Kind::U16,
+            "u4" => Kind::U32,
+            "u8" => Kind::U64,
+            _ => return None,
+        };
+        Some((kind, order))
+    }
+
+    /// The numbers in the order of the file.
+    fn values(&self) -> Result<Vec<f64>, Problem> {
+        let (kind, order) = self.kind().ok_or_else(|| {
+            Problem::unsupported(
+                format!("an NPY file of numbers of type {:?}", self.descr),
+                "save real numbers (float64, float32, integers)",
+            )
+        })?;
+        let count = self.shape.iter().try_fold(1u64, |n, m| n.checked_mul(*m)).unwrap_or(u64::MAX);
+        let count = grid::points(count, 1)?;
+        decode(self.data, kind, order, count, "the NPY array")
+    }
+
+    fn heights(&self, format: Format) -> Result<Array2<f64>, Problem> {
+        let &[nx, ny] = self.shape.as_slice() else {
+            let detail = format!("its array has the shape {:?}, not (nx, ny)", self.shape);
+            return Err(Problem::NoHeights { format, detail });
+        };
+        grid::points(nx, ny)?;
+        let (nx, ny) = (nx as usize, ny as usize);
+        let values = self.values()?;
+        // In Fortran order x runs fastest.
+        if self.fortran_order {
+            return Ok(grid::from_lines(nx, ny, &values));
+        }
+        Array2::from_shape_vec((nx, ny), values)
+            .map_err(|e| Problem::malformed("the NPY array", e, "nx times ny numbers"))
+    }
+
+    /// The text of an array of one string ('<U2': UCS-4, '|S2': bytes).
+    fn text(&self) -> Option<String> {
+        let text: String = match self.descr.get(..2)? {
+            "<U" => self
+                .data
+                .as_chunks::<4>()
+                .0
+                .iter()
+                .filter_map(|c| char::from_u32(u32::from_le_bytes(*c)))
+                .collect(),
+            ">U" => self
+                .data
+                .as_chunks::<4>()
+                .0
+                .iter()
+                .filter_map(|c| char::from_u32(u32::from_be_bytes(*c)))
+                .collect(),
+            "|S" => String::from_utf8_lossy(self.data).into_owned(),
+            _ => return None,
+        };
+        Some(text.trim_matches('\0').to_owned())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::topography::{Problem, ReadOptions, Topography, TopographyError, read_bytes};
+
+    const UM: f64 = 1e-6;
+
+    /// The 3 x 2 array [[0, 1], [2, 3], [4, 5]] as NumPy writes it.
+    fn npy(descr: &str, fortran: bool, data: &[u8]) -> Vec<u8> {
+        let order = if fortran { "True" } else { "False" };
+        let header = format!("{{'descr': '{descr}', 'fortran_order': {order}, 'shape': (3, 2), }}\n");
+        let mut file = b"\x93NUMPY\x01\x00".to_vec();
+        file.extend((header.len() as u16).to_le_bytes());
+        file.extend(header.bytes());
+        file.extend(data);
+        file
+    }
+
+    fn read(file: &[u8]) -> Result<Topography, TopographyError> {
+        read_bytes(file, &ReadOptions { size: Some([3.0, 2.0]), height_unit: Some(UM), ..Default::default() })
+    }
+
+    #[test]
+    fn axis_0_is_x_in_both_orders_and_all_types() {
+        let c_order = [0u8, 1, 2, 3, 4, 5];
+        let f_order = [0u8, 2, 4, 1, 3, 5];
+        let files = [
+            npy("<f8", false, &c_order.map(|v| f64::from(v).to_le_bytes()).concat()),
+            npy("<f8", true, &f_order.map(|v| f64::from(v).to_le_bytes()).concat()),
+            npy(">f4", false, &c_order.map(|v| f32::from(v).to_be_bytes()).concat()),
+            npy("<i2", true, &f_order.map(|v| i16::from(v).to_le_bytes()).concat()),
+            npy(">u8", false, &c_order.map(|v| u64::from(v).to_be_bytes()).concat()),
+            npy("|u1", false, &c_order),
+        ];
+        for file in files {
+            let surface = read(&file).unwrap();
+            for ((x, y), h) in surface.heights.indexed_iter() {
+                assert_eq!(*h, (2 * x + y) as f64 * UM);
+            }
+            assert_eq!(surface.size, [3.0, 2.0]);
+        }
+    }
+
+    #[test]
+    fn size_and_unit_are_asked_for_by_name() {
+        let file = npy("|u1", false, &[0; 6]);
+        let message = |options| read_bytes(&file, &options).unwrap_err().to_string();
+        let no_unit = message(ReadOptions { size: Some([1.0, 1.0]), ..Default::default() });
+        assert!(no_unit.contains("--height-unit"), "{no_unit}");
+        let no_size = message(ReadOptions { height_unit: Some(1.0), ..Default::default() });
+        assert!(no_size.contains("--size"), "{no_size}");
+    }
+
+    #[test]
+    fn what_is_no_map_of_real_numbers_is_refused() {
+        let problem = |file: &[u8]| read(file).unwrap_err().problem;
+        assert!(matches!(problem(&npy("<c16", false, &[0; 96])), Problem::Unsupported { .. }));
+        assert!(matches!(
+            problem(&npy("<f8", false, &[0; 47])),
+            Problem::Truncated { needed: 48, available: 47, .. }
+        ));
+        let mut flat = npy("<f8", false, &[0; 48]);
+        let at = flat.windows(6).position(|w| w == b"(3, 2)").unwrap();
+        flat[at..at + 6].copy_from_slice(b"(6,  )");
+        assert!(matches!(problem(&flat), Problem::NoHeights { .. }));
+        flat[at..at + 6].copy_from_slice(b"(-3,2)");
+        assert!(matches!(problem(&flat), Problem::Malformed { .. }));
+    }
+}

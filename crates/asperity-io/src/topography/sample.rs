@@ -1,0 +1,132 @@
+//! Binary numbers of every width and byte order as f64.
+
+use rayon::prelude::*;
+
+use super::Problem;
+
+/// Type of a binary number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    U8,
+    I8,
+    U16,
+    I16,
+    U32,
+    I32,
+    U64,
+    I64,
+    F16,
+    F32,
+    F64,
+}
+
+/// Order of the bytes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Order {
+    Little,
+    Big,
+}
+
+impl Kind {
+    /// Bytes of one number.
+    pub(super) fn width(self) -> usize {
+        match self {
+            Kind::U8 | Kind::I8 => 1,
+            Kind::U16 | Kind::I16 | Kind::F16 => 2,
+            Kind::U32 | Kind::I32 | Kind::F32 => 4,
+            Kind::U64 | Kind::I64 | Kind::F64 => 8,
+        }
+    }
+}
+
+/// The first `count` numbers of `bytes`.
+///
+/// # Errors
+/// [`Problem::Truncated`] where there are fewer; nothing is allocated then.
+pub(super) fn decode(
+    bytes: &[u8],
+    kind: Kind,
+    order: Order,
+    count: usize,
+    what: &str,
+) -> Result<Vec<f64>, Problem> {
+    let needed = count as u64 * kind.width() as u64;
+    let available = bytes.len() as u64;
+    if available < needed {
+        return Err(Problem::truncated(what, needed, available));
+    }
+    let bytes = &bytes[..needed as usize];
+    macro_rules! numbers {
+        ($number:ty, $width:literal) => {
+            match order {
+                Order::Little => convert::<$width>(bytes, |b| <$number>::from_le_bytes(b) as f64),
+                Order::Big => convert::<$width>(bytes, |b| <$number>::from_be_bytes(b) as f64),
+            }
+        };
+    }
+    Ok(match kind {
+        Kind::U8 => convert::<1>(bytes, |[b]| f64::from(b)),
+        Kind::I8 => convert::<1>(bytes, |[b]| f64::from(b as i8)),
+        Kind::U16 => numbers!(u16, 2),
+        Kind::I16 => numbers!(i16, 2),
+        Kind::U32 => numbers!(u32, 4),
+        Kind::I32 => numbers!(i32, 4),
+        Kind::U64 => numbers!(u64, 8),
+        Kind::I64 => numbers!(i64, 8),
+        Kind::F16 => match order {
+            Order::Little => convert::<2>(bytes, |b| half(u16::from_le_bytes(b))),
+            Order::Big => convert::<2>(bytes, |b| half(u16::from_be_bytes(b))),
+        },
+        Kind::F32 => numbers!(f32, 4),
+        Kind::F64 => numbers!(f64, 8),
+    })
+}
+
+fn convert<const WIDTH: usize>(bytes: &[u8], number: impl Fn([u8; WIDTH]) -> f64 + Sync) -> Vec<f64> {
+    let (numbers, _) = bytes.as_chunks::<WIDTH>();
+    numbers.par_iter().with_min_len(1 << 14).map(|b| number(*b)).collect()
+}
+
+/// IEEE 754 binary16: sign, 5 bits of exponent (bias 15), 10 bits of fraction.
+fn half(bits: u16) -> f64 {
+    let sign = if bits >> 15 == 1 { -1.0 } else { 1.0 };
+    let fraction = f64::from(bits & 0x3ff);
+    sign * match bits >> 10 & 0x1f {
+        0 => fraction * 2f64.powi(-24),
+        31 if fraction == 0.0 => f64::INFINITY,
+        31 => f64::NAN,
+        exponent => (1024.0 + fraction) * 2f64.powi(i32::from(exponent) - 25),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn halves_are_ieee_754() {
+        // Table of binary16: 1, -2, largest, smallest normal, smallest subnormal.
+        for (bits, value) in [
+            (0x3c00, 1.0),
+            (0xc000, -2.0),
+            (0x7bff, 65504.0),
+            (0x0400, 2f64.powi(-14)),
+            (0x0001, 2f64.powi(-24)),
+        ] {
+            assert_eq!(half(bits), value);
+        }
+        assert!(half(0x7e00).is_nan() && half(0x7c00).is_infinite());
+    }
+
+    #[test]
+    fn the_order_of_the_bytes_is_kept() {
+        let (little, big) = (1.5f32.to_le_bytes(), 1.5f32.to_be_bytes());
+        assert_eq!(decode(&little, Kind::F32, Order::Little, 1, "x").ok(), Some(vec![1.5]));
+        assert_eq!(decode(&big, Kind::F32, Order::Big, 1, "x").ok(), Some(vec![1.5]));
+        assert_eq!(decode(&[0xff, 0xfe], Kind::I16, Order::Big, 1, "x").ok(), Some(vec![-2.0]));
+        assert!(matches!(
+            decode(&[0; 7], Kind::F64, Order::Big, usize::MAX / 16, "x"),
+            Err(Problem::Truncated { available: 7, .. })
+        ));
+    }
+}

@@ -1,0 +1,323 @@
+//! The header lines of text files: names, sizes and units.
+//!
+//! Understood are the headers of Gwyddion ("# Width: 10.00 µm", in any language), SPIP and Attocube ("x-length =
+//! 1000"), Nova ("Scale X = 0.1"), Wyko ("Pixel_size 7 4 0.0016"), of interferometers ("pixel size=3.7e-7 m"), and
+//! rows of column names with units ("x [mm]; y [mm]; z [µm]"). Other lines are kept as metadata.
+
+use super::encoding;
+use super::labels::{Label, label};
+use crate::topography::finish::{Lateral, Unit};
+use crate::topography::unit::{LoneA, metres};
+
+/// Most header lines that are kept as metadata.
+const MOST_METADATA: usize = 200;
+
+/// A length as the file writes it.
+#[derive(Clone, Debug, PartialEq)]
+struct Length {
+    value: f64,
+    /// Text after the number.
+    unit: String,
+}
+
+/// A column named in a row above the numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Column {
+    pub(super) name: String,
+    pub(super) unit: Option<String>,
+}
+
+/// What the header lines so far say.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Header {
+    pub(super) channel: Option<String>,
+    /// Points along x and y, for a check.
+    pub(super) points: [Option<u64>; 2],
+    length: [Option<Length>; 2],
+    spacing: [Option<Length>; 2],
+    lateral_unit: [Option<String>; 2],
+    value_unit: Option<String>,
+    /// Value per number of the file.
+    scale: Option<f64>,
+    /// Names of the columns, from the last line before the numbers.
+    pub(super) columns: Vec<Column>,
+    /// "label: value" comments that no known label explains, for the order of Gwyddion's lines.
+    unexplained: Vec<(String, String)>,
+    spip: bool,
+    wyko: Option<Wyko>,
+    pub(super) metadata: Vec<(String, String)>,
+}
+
+/// Numbers in Wyko's header: heights in wavelengths, lengths in millimetres.
+#[derive(Clone, Debug, Default)]
+struct Wyko {
+    real_units: bool,
+    pixel_size: Option<f64>,
+    aspect: Option<f64>,
+    wavelength: Option<f64>,
+    mult: Option<f64>,
+}
+
+impl Header {
+    /// Whether the header can only belong to a matrix.
+    pub(super) fn says_matrix(&self) -> bool {
+        self.wyko.is_some()
+            || self.length.iter().chain(&self.spacing).any(Option::is_some)
+            || self.points.iter().any(Option::is_some)
+            || self.gwyddion_sizes().is_some()
+    }
+
+    /// Forgets what belongs to one block only.
+    pub(super) fn next_block(&mut self) {
+        self.unexplained.clear();
+        self.columns.clear();
+    }
+
+    /// Takes in one header line.
+    pub(super) fn line(&mut self, line: &[u8]) {
+        // Longer lines are no header of any program.
+        let line = encoding::label(&line[..line.len().min(4096)]);
+        let is_comment = line.trim_start().starts_with(['#', '%']);
+        let text = line.trim().trim_start_matches(['#', '%', '/', ';', ' ', '\t']).trim();
+        if text.is_empty() {
+            return;
+        }
+        if self.metadata.len() < MOST_METADATA {
+            let (key, value) = split(text).unwrap_or(("", text));
+            self.metadata.push((key.to_owned(), value.to_owned()));
+        }
+        self.columns = columns(text, &self.columns);
+        if let Some(flags) = text.strip_prefix("Wyko ASCII Data File Format") {
+            // Three flags; the second is 1 where heights are in nanometres instead of wavelengths.
+            let real_units = flags.split_whitespace().nth(1).is_some_and(|f| f != "0");
+            self.wyko = Some(Wyko { real_units, ..Wyko::default() });
+        } else if self.wyko.is_some() {
+            self.wyko_line(text);
+        } else if let Some((key, value)) = split(text) {
+            self.entry(is_comment, key, value);
+        }
+    }
+
+    fn entry(&mut self, is_comment: bool, key: &str, value: &str) {
+        match label(key) {
+            Some(Label::Channel) => return self.channel = Some(value.to_owned()),
+            Some(Label::Width) => return self.length[0] = length(value),
+            Some(Label::Height) => return self.length[1] = length(value),
+            Some(Label::LateralUnits) => {
+                return self.lateral_unit = [Some(value.to_owned()), Some(value.to_owned())];
+            }
+            Some(Label::ValueUnits) => return self.value_unit = Some(value.to_owned()),
+            None => {}
+        }
+        let unit = || Some(value.to_owned());
+        match key.to_lowercase().as_str() {
+            // "h=305 w=75"
+            "h" => {
+                let (height, rest) = value.split_once(char::is_whitespace).unwrap_or((value, ""));
+                self.points[1] = height.parse().ok();
+                if let Some(width) = rest.trim().strip_prefix("w=") {
+                    self.points[0] = width.trim().parse().ok();
+                }
+            }
+            "w" => self.points[0] = value.parse().ok(),
+            "x-pixels" | "nx" => self.points[0] = value.parse().ok(),
+            "y-pixels" | "ny" => self.points[1] = value.parse().ok(),
+            "x-length" => self.length[0] = length(value),
+            "y-length" => self.length[1] = length(value),
+            "scale x" => self.spacing[0] = length(value),
+            "scale y" => self.spacing[1] = length(value),
+            "pixel size" => self.spacing = [length(value), length(value)],
+            "x-unit" => self.lateral_unit[0] = unit(),
+            "y-unit" => self.lateral_unit[1] = unit(),
+            "unit x" => self.lateral_unit = [unit(), unit()],
+            "unit y" => self.lateral_unit[1] = unit(),
+            "z-unit" | "unit data" => self.value_unit = unit(),
+            "bit2nm" if self.value_unit.is_none() => {
+                self.scale = number(value).map(|(bits, _)| bits);
+                self.value_unit = Some("nm".to_owned());
+            }
+            "file format" => self.spip |= value.eq_ignore_ascii_case("ascii"),
+            key if key.starts_with("height conversion factor") => {
+                // "height conversion factor (-> m)=2.9e-8"
+                let unit = key.split_once("->").map(|(_, unit)| unit.trim_end_matches(')').trim());
+                self.value_unit = unit.map(str::to_owned);
+                self.scale = number(value).map(|(factor, _)| factor);
+            }
+            _ if is_comment && self.unexplained.len() < MOST_METADATA => {
+                self.unexplained.push((key.to_owned(), value.to_owned()));
+            }
+            _ => {}
+        }
+    }
+
+    /// "Pixel_size 7 4 0.0016": name, type, length, value.
+    fn wyko_line(&mut self, text: &str) {
+        let words: Vec<&str> = text.split_whitespace().collect();
+        let Some(wyko) = &mut self.wyko else { return };
+        let value = words.get(3).and_then(|w| w.parse().ok());
+        match words.as_slice() {
+            // A line of the file is one position along "X": the values along it are those of "Y".
+            ["X", "Size", lines] => self.points[1] = lines.parse().ok(),
+            ["Y", "Size", values] => self.points[0] = values.parse().ok(),
+            ["Pixel_size", ..] => wyko.pixel_size = value,
+            ["Aspect", ..] => wyko.aspect = value,
+            ["Wavelength", ..] => wyko.wavelength = value,
+            ["Mult", ..] => wyko.mult = value,
+            [name, "3", ..] => self.channel = Some((*name).to_owned()),
+            _ => {}
+        }
+    }
+
+    /// Gwyddion's lines in a language without known labels: channel, width, height, unit of the values.
+    fn gwyddion_sizes(&self) -> Option<([Length; 2], Option<&str>, Option<&str>)> {
+        let with_unit =
+            |entry: &(String, String)| length(&entry.1).filter(|l| metres(&l.unit, LoneA::Ampere).is_some());
+        let at = self.unexplained.windows(2).position(|pair| pair.iter().all(|e| with_unit(e).is_some()))?;
+        let sizes = [with_unit(&self.unexplained[at])?, with_unit(&self.unexplained[at + 1])?];
+        let value = |index: Option<usize>| index.and_then(|i| self.unexplained.get(i)).map(|e| e.1.as_str());
+        Some((sizes, value(at.checked_sub(1)), value(Some(at + 2))))
+    }
+
+    /// The channel, the lengths, the unit of the heights and the height per number, for nx x ny numbers.
+    pub(super) fn scales(&self, points: [usize; 2]) -> (Option<String>, Lateral, Unit, f64) {
+        if let Some(wyko) = &self.wyko {
+            return self.wyko_scales(wyko, points);
+        }
+        let mut length = self.length.clone();
+        let mut channel = self.channel.clone();
+        let mut value_unit = self.value_unit.as_deref();
+        if length == [None, None]
+            && let Some(([x, y], name, unit)) = self.gwyddion_sizes()
+        {
+            length = [Some(x), Some(y)];
+            channel = channel.or(name.map(str::to_owned));
+            value_unit = value_unit.or(unit);
+        }
+        for axis in 0..2 {
+            // One pixel size stands for both axes.
+            let spacing = self.spacing[axis].clone().or(self.spacing[1 - axis].clone());
+            if length[axis].is_none() {
+                length[axis] = spacing.map(|s| Length { value: s.value * points[axis] as f64, ..s });
+            }
+        }
+        (channel, self.lateral(length), named(value_unit), self.scale.unwrap_or(1.0))
+    }
+
+    fn lateral(&self, length: [Option<Length>; 2]) -> Lateral {
+        let [Some(x), Some(y)] = length else { return Lateral::Unstated(String::new()) };
+        let unit = |length: &Length, axis: usize| {
+            if !length.unit.is_empty() {
+                return metres(&length.unit, LoneA::Ampere);
+            }
+            let stated = self.lateral_unit[axis].as_ref().or(self.lateral_unit[0].as_ref());
+            match stated {
+                Some(label) => metres(label, LoneA::Ampere),
+                // SPIP writes lengths in nanometres.
+                None => self.spip.then_some(1e-9),
+            }
+        };
+        match (unit(&x, 0), unit(&y, 1)) {
+            (Some(ux), Some(uy)) => Lateral::Metres([x.value * ux, y.value * uy]),
+            _ if x.unit.is_empty() && y.unit.is_empty() => Lateral::Bare([x.value, y.value]),
+            _ => Lateral::Unstated(format!(" in a unit of length (it says {:?})", x.unit)),
+        }
+    }
+
+    fn wyko_scales(&self, wyko: &Wyko, points: [usize; 2]) -> (Option<String>, Lateral, Unit, f64) {
+        const MM: f64 = 1e-3;
+        const NM: f64 = 1e-9;
+        let lateral = match wyko.pixel_size {
+            Some(pixel) => {
+                let aspect = wyko.aspect.unwrap_or(1.0);
+                Lateral::Metres([pixel * aspect * points[0] as f64 * MM, pixel * points[1] as f64 * MM])
+            }
+            None => Lateral::Unstated(String::new()),
+        };
+        let scale = match (wyko.real_units, wyko.wavelength, wyko.mult) {
+            (false, Some(wavelength), Some(mult)) if mult != 0.0 => wavelength / mult,
+            _ => 1.0,
+        };
+        (self.channel.clone(), lateral, Unit::Metres(NM), scale)
+    }
+
+    /// Units of the x, y and height columns of points, from column names or Gwyddion's XYZ header.
+    pub(super) fn point_units(&self, [x, y, z]: [usize; 3]) -> ([Option<String>; 2], Unit) {
+        let of_column = |i: usize| self.columns.get(i).and_then(|c| c.unit.clone());
+        let mut lateral =
+            [of_column(x).or(self.lateral_unit[0].clone()), of_column(y).or(self.lateral_unit[1].clone())];
+        let mut value = of_column(z).or(self.value_unit.clone());
+        if lateral == [None, None] {
+            // "# <lateral units>: µm", "# <value units>: nm" in a language without known labels.
+            let mut units = self.unexplained.iter().filter(|e| metres(&e.1, LoneA::Ampere).is_some());
+            if let (Some((_, first)), second) = (units.next(), units.next()) {
+                match (second, &value) {
+                    (Some((_, second)), None) => {
+                        lateral = [Some(first.clone()), Some(first.clone())];
+                        value = Some(second.clone());
+                    }
+                    (None, Some(_)) => lateral = [Some(first.clone()), Some(first.clone())],
+                    _ => {}
+                }
+            }
+        }
+        (lateral, named(value.as_deref()))
+    }
+}
+
+/// The unit of that name.
+fn named(label: Option<&str>) -> Unit {
+    match label.map(str::trim) {
+        None | Some("") => Unit::Unstated,
+        Some(label) => metres(label, LoneA::Ampere).map_or(Unit::Other(label.to_owned()), Unit::Metres),
+    }
+}
+
+/// "key: value", "key = value", with the wide colon of Japanese and Chinese too.
+fn split(text: &str) -> Option<(&str, &str)> {
+    let at = text.find([':', '=', '\u{ff1a}'])?;
+    // The arrow in "height conversion factor (-> m)" has no "=", and "(-> m)=" comes first.
+    let (key, rest) = text.split_at(at);
+    let value = rest.trim_start_matches([':', '=', '\u{ff1a}']);
+    (!key.trim().is_empty()).then_some((key.trim(), value.trim()))
+}
+
+/// The number at the start of a text, with a decimal point or comma, and the rest.
+fn number(text: &str) -> Option<(f64, &str)> {
+    let text = text.trim();
+    let end = text
+        .char_indices()
+        .find(|(at, c)| {
+            let exponent = matches!(c, 'e' | 'E')
+                && text[at + 1..].trim_start_matches(['+', '-']).starts_with(|c: char| c.is_ascii_digit());
+            !(c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | ',') || exponent)
+        })
+        .map_or(text.len(), |(at, _)| at);
+    let (digits, rest) = text.split_at(end);
+    let value: f64 = digits.replace(',', ".").parse().ok()?;
+    value.is_finite().then_some((value, rest.trim()))
+}
+
+fn length(text: &str) -> Option<Length> {
+    let (value, unit) = number(text)?;
+    Some(Length { value, unit: unit.trim_matches(['[', ']', '(', ')']).to_owned() })
+}
+
+/// Names of columns ("x [mm]; y [mm]; z [µm]"), with a following row of units ("mm; mm; µm").
+fn columns(text: &str, before: &[Column]) -> Vec<Column> {
+    let separator = [';', '\t', ','].into_iter().find(|s| text.contains(*s)).unwrap_or(' ');
+    let fields: Vec<&str> =
+        text.split(separator).map(|f| f.trim().trim_matches('"')).filter(|f| !f.is_empty()).collect();
+    let bare = |field: &str| field.trim_matches(['[', ']', '(', ')']).to_owned();
+    if fields.len() == before.len() && fields.iter().all(|f| metres(&bare(f), LoneA::Angstrom).is_some()) {
+        let units = fields.iter().map(|f| Some(bare(f)));
+        return before.iter().zip(units).map(|(c, unit)| Column { name: c.name.clone(), unit }).collect();
+    }
+    let column = |field: &&str| {
+        let (name, unit) = match field.split_once(['[', '(']) {
+            Some((name, unit)) => (name.trim(), Some(unit.trim_end_matches([']', ')']).trim().to_owned())),
+            None => (*field, None),
+        };
+        Column { name: name.to_owned(), unit }
+    };
+    fields.iter().take(1000).map(column).collect()
+}

@@ -1,0 +1,244 @@
+//! The numbers of a block, in parallel by runs of lines.
+
+use memchr::{memchr, memchr_iter};
+use rayon::prelude::*;
+
+use super::dialect::{Dialect, Separator, is_undefined};
+use super::{Block, encoding};
+use crate::topography::Problem;
+
+/// The numbers of a block line by line.
+pub(super) struct Table {
+    pub(super) columns: usize,
+    pub(super) lines: usize,
+    pub(super) values: Vec<f64>,
+}
+
+/// Number of values on the lines of a block, from its first lines.
+pub(super) fn columns(dialect: Dialect, data: &[u8]) -> usize {
+    let mut lines = data.split(|b| *b == b'\n').map(<[u8]>::trim_ascii).filter(|l| !l.is_empty());
+    let first = lines.next().unwrap_or_default();
+    match dialect.separator {
+        Separator::Blank => first.split(u8::is_ascii_whitespace).filter(|t| !t.is_empty()).count(),
+        Separator::Byte(byte) => {
+            let fields = first.split(|b| *b == byte).count();
+            // A separator that ends every line stands after the last value, else before an undefined one.
+            let ends_lines = first.ends_with(&[byte]) && lines.take(100).all(|l| l.ends_with(&[byte]));
+            if ends_lines { fields - 1 } else { fields }
+        }
+    }
+}
+
+/// Parses the block.
+pub(super) fn table(dialect: Dialect, block: &Block) -> Result<Table, Problem> {
+    let columns = columns(dialect, block.data);
+    let runs = runs(block.data);
+    let parsed: Vec<_> = runs.into_par_iter().map(|run| (run, parse_run(dialect, columns, run))).collect();
+    let mut values = Vec::new();
+    let mut lines_before = block.line;
+    let length = parsed.iter().map(|(_, p)| p.as_ref().map_or(0, Vec::len)).sum();
+    for (run, parsed) in parsed {
+        match parsed {
+            Ok(run_values) if values.is_empty() && run_values.len() == length => values = run_values,
+            Ok(run_values) => {
+                values.reserve_exact(length - values.len());
+                values.extend_from_slice(&run_values);
+            }
+            Err(fault) => return Err(fault.problem(lines_before, run, columns)),
+        }
+        lines_before += memchr_iter(b'\n', run).count();
+    }
+    Ok(Table { columns, lines: values.len() / columns.max(1), values })
+}
+
+/// The block cut at line ends into runs that keep the threads busy.
+fn runs(mut data: &[u8]) -> Vec<&[u8]> {
+    const LENGTH: usize = 1 << 20;
+    let mut runs = Vec::with_capacity(data.len() / LENGTH + 1);
+    while data.len() > LENGTH {
+        let end = memchr(b'\n', &data[LENGTH..]).map_or(data.len(), |n| LENGTH + n + 1);
+        let (run, rest) = data.split_at(end);
+        runs.push(run);
+        data = rest;
+    }
+    runs.push(data);
+    runs
+}
+
+/// What is wrong in a run, at which byte of it.
+enum Fault {
+    Number { at: usize, length: usize },
+    Columns { at: usize, found: usize },
+}
+
+impl Fault {
+    fn problem(self, first_line: usize, run: &[u8], columns: usize) -> Problem {
+        let line = |at: usize| first_line + memchr_iter(b'\n', &run[..at]).count();
+        match self {
+            Fault::Number { at, length } => Problem::malformed(
+                format!("line {}", line(at)),
+                format!("{:?} where a number was expected", encoding::label(&run[at..at + length])),
+                "all numbers, or marks of undefined points such as nan",
+            ),
+            Fault::Columns { at, found } => Problem::malformed(
+                format!("line {}", line(at)),
+                format!("{found} values long"),
+                format!("{columns} values long as the lines before it (the file may be truncated)"),
+            ),
+        }
+    }
+}
+
+fn parse_run(dialect: Dialect, columns: usize, run: &[u8]) -> Result<Vec<f64>, Fault> {
+    let mut values = Vec::new();
+    let mut at = 0;
+    while at < run.len() {
+        let end = memchr(b'\n', &run[at..]).map_or(run.len(), |n| at + n);
+        let before = values.len();
+        match dialect.separator {
+            Separator::Blank => blank_line(dialect.decimal_comma, run, at, end, &mut values)?,
+            Separator::Byte(byte) => {
+                delimited_line(byte, dialect.decimal_comma, columns, run, at, end, &mut values)?
+            }
+        }
+        let found = values.len() - before;
+        if found != columns && found != 0 {
+            return Err(Fault::Columns { at, found });
+        }
+        at = end + 1;
+    }
+    Ok(values)
+}
+
+/// A line of numbers that blanks part.
+fn blank_line(
+    comma: bool,
+    run: &[u8],
+    mut at: usize,
+    end: usize,
+    values: &mut Vec<f64>,
+) -> Result<(), Fault> {
+    loop {
+        while at < end && is_blank(run[at]) {
+            at += 1;
+        }
+        if at >= end {
+            return Ok(());
+        }
+        if !comma
+            && let Ok((value, length)) = fast_float2::parse_partial::<f64, _>(&run[at..end])
+            && value.is_finite()
+            && run.get(at + length).is_none_or(|b| is_blank(*b) || *b == b'\n')
+        {
+            values.push(value);
+            at += length;
+            continue;
+        }
+        let length = run[at..end].iter().position(|b| is_blank(*b)).unwrap_or(end - at);
+        values.push(token(comma, &run[at..at + length]).ok_or(Fault::Number { at, length })?);
+        at += length;
+    }
+}
+
+/// A line of numbers that a comma or semicolon parts.
+fn delimited_line(
+    separator: u8,
+    comma: bool,
+    columns: usize,
+    run: &[u8],
+    start: usize,
+    end: usize,
+    values: &mut Vec<f64>,
+) -> Result<(), Fault> {
+    if run[start..end].trim_ascii().is_empty() {
+        return Ok(());
+    }
+    let mut at = start;
+    let mut found = 0;
+    loop {
+        let stop = memchr(separator, &run[at..end]).map_or(end, |n| at + n);
+        let field = run[at..stop].trim_ascii();
+        // A separator at the end of the line ends the last value.
+        if !(stop == end && field.is_empty() && found == columns) {
+            values.push(token(comma, field).ok_or(Fault::Number { at, length: stop - at })?);
+            found += 1;
+        }
+        if stop == end {
+            return Ok(());
+        }
+        at = stop + 1;
+    }
+}
+
+fn is_blank(byte: u8) -> bool {
+    byte.is_ascii_whitespace() || byte == 0x1a
+}
+
+/// One number, NaN for a mark of an undefined point, `None` for anything else.
+fn token(comma: bool, token: &[u8]) -> Option<f64> {
+    const LONGEST: usize = 64;
+    if !comma
+        && let Ok(value) = fast_float2::parse::<f64, _>(token)
+        && value.is_finite()
+    {
+        return Some(value);
+    }
+    if is_undefined(token) {
+        return Some(f64::NAN);
+    }
+    // Decimal commas, and the exponents of Fortran (1.5D-3).
+    let mut plain = [0; LONGEST];
+    let plain = plain.get_mut(..token.len())?;
+    for (to, from) in plain.iter_mut().zip(token) {
+        *to = match from {
+            b',' if comma => b'.',
+            b'd' | b'D' => b'e',
+            other => *other,
+        };
+    }
+    fast_float2::parse::<f64, _>(&*plain).ok().filter(|v| v.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::topography::text::header::Header;
+
+    fn parse(text: &str) -> Result<Table, Problem> {
+        let block = Block { header: Header::default(), data: text.as_bytes(), line: 5 };
+        table(Dialect::of([block.data].into_iter())?, &block)
+    }
+
+    #[test]
+    fn numbers_of_every_spelling_are_read() {
+        let table = parse("1 -2.5e-003\t+.5\r\n\n 1.5D2  nan 3.\n").unwrap();
+        assert_eq!((table.columns, table.lines), (3, 2));
+        assert_eq!(table.values[..4], [1.0, -2.5e-3, 0.5, 150.0]);
+        assert!(table.values[4].is_nan() && table.values[5] == 3.0);
+        let table = parse("1,5;;-,25;\n2;3;4;\n").unwrap();
+        assert_eq!((table.columns, table.lines), (3, 2));
+        assert_eq!((table.values[0], table.values[2]), (1.5, -0.25));
+        assert!(table.values[1].is_nan());
+    }
+
+    #[test]
+    fn a_fault_is_named_with_its_line() {
+        for (text, line) in [("1 2\n3 4x\n", "line 6"), ("1 2\n\n3\n", "line 7"), ("1 1e999\n", "line 5")] {
+            let message = parse(text).err().unwrap().to_string();
+            assert!(message.contains(line), "{message}");
+        }
+    }
+
+    #[test]
+    fn runs_of_lines_join_without_loss() {
+        // More than two runs of 1 MiB; integers are exact.
+        let (nx, ny) = (300, 2000);
+        let text: String = (0..ny)
+            .map(|y| (0..nx).map(|x| format!("{}", y * nx + x)).collect::<Vec<_>>().join(" ") + "\n")
+            .collect();
+        assert!(text.len() > 3 << 20);
+        let table = parse(&text).unwrap();
+        assert!(table.values.iter().enumerate().all(|(k, v)| *v == k as f64));
+        assert_eq!((table.columns, table.lines), (nx, ny));
+    }
+}

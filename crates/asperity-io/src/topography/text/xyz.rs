@@ -1,0 +1,170 @@
+//! Points (x, y, height) of a regular grid, in any order; missing points are undefined.
+//!
+//! The spacing is found from the sorted coordinates: values that differ by rounding only are one position, the
+//! smallest step between positions is the spacing, and every position must lie on a multiple of it.
+
+use ndarray::Array2;
+use rayon::prelude::*;
+
+use super::header::Column;
+use super::parse::{Table, table};
+use super::{Text, decode};
+use crate::topography::finish::{Lateral, Measured, choose};
+use crate::topography::unit::{LoneA, metres};
+use crate::topography::{Format, Problem, grid};
+
+/// Most grid points per point of the file: a file that covers less is no grid.
+const MOST_CELLS_PER_POINT: usize = 16;
+
+/// Positions of the x and y columns, where a row of names gives them.
+pub(super) fn named_columns(columns: &[Column]) -> Option<[usize; 2]> {
+    let axis = |letter: char| {
+        columns.iter().position(|c| {
+            let name = c.name.to_lowercase();
+            let tail = name.strip_prefix(letter);
+            tail.is_some_and(|t| {
+                t.is_empty() || ["coord", "pos", "-axis", " axis"].iter().any(|w| t.contains(w))
+            })
+        })
+    };
+    Some([axis('x')?, axis('y')?])
+}
+
+/// Reads points.
+pub(crate) fn read_xyz(bytes: &[u8], channel: Option<&str>) -> Result<Measured, Problem> {
+    let bytes = decode(bytes)?;
+    let text = Text::split(&bytes)?;
+    let none = |detail: String| Problem::NoHeights { format: Format::Xyz, detail };
+    let block = match text.blocks.as_slice() {
+        [] => return Err(none("no line of numbers".into())),
+        [block] => block,
+        more => return Err(none(format!("{} blocks of numbers between other lines", more.len()))),
+    };
+    let table = table(text.dialect, block)?;
+    let header = &block.header;
+    if table.columns < 3 {
+        return Err(none(format!("its lines have {} values, not x, y and a height", table.columns)));
+    }
+    let named = named_columns(&header.columns).filter(|_| header.columns.len() == table.columns);
+    let [x, y] = named.unwrap_or([0, 1]);
+    let heights: Vec<usize> = (0..table.columns).filter(|c| *c != x && *c != y).collect();
+    let names: Vec<String> = match named {
+        Some(_) => heights.iter().map(|c| header.columns[*c].name.clone()).collect(),
+        None => heights.iter().map(|c| format!("column {}", c + 1)).collect(),
+    };
+    let z = heights[choose(Format::Xyz, &names, channel)?];
+
+    let [x_axis, y_axis] = [(x, "x"), (y, "y")].map(|(column, name)| Axis::of(&table, column, name));
+    let (x_axis, y_axis) = (x_axis?, y_axis?);
+    let map = gridded(&table, [x, y, z], &x_axis, &y_axis, block.line)?;
+    let size = [x_axis.size(), y_axis.size()];
+    let (units, unit) = header.point_units([x, y, z]);
+    let lateral = match &units {
+        [Some(ux), Some(uy)] => match (metres(ux, LoneA::Ampere), metres(uy, LoneA::Ampere)) {
+            (Some(ux), Some(uy)) => Lateral::Metres([size[0] * ux, size[1] * uy]),
+            _ => Lateral::Unstated(format!(" in a unit of length (it says {ux:?})")),
+        },
+        _ => Lateral::Bare(size),
+    };
+    let (channel, channels) = match named {
+        Some(_) => (Some(header.columns[z].name.clone()), names),
+        None => (header.channel.clone(), Vec::new()),
+    };
+    Ok(Measured { heights: map, unit, lateral, channel, channels, metadata: header.metadata.clone() })
+}
+
+/// Equally spaced positions.
+struct Axis {
+    first: f64,
+    spacing: f64,
+    points: usize,
+}
+
+impl Axis {
+    fn size(&self) -> f64 {
+        self.spacing * self.points as f64
+    }
+
+    fn index(&self, coordinate: f64) -> usize {
+        // In range because `first` is the least and the last point the greatest coordinate.
+        ((coordinate - self.first) / self.spacing).round() as usize
+    }
+
+    fn of(table: &Table, column: usize, name: &str) -> Result<Self, Problem> {
+        let mut sorted: Vec<f64> = table.values.iter().skip(column).step_by(table.columns).copied().collect();
+        if sorted.iter().any(|v| v.is_nan()) {
+            return Err(Problem::malformed(format!("a {name} coordinate"), "undefined", "a number"));
+        }
+        sorted.par_sort_unstable_by(f64::total_cmp);
+        let (Some(first), Some(last)) = (sorted.first(), sorted.last()) else {
+            return Err(Problem::NoHeights { format: Format::Xyz, detail: "no points".into() });
+        };
+        let range = last - first;
+        if !(range > 0.0 && range.is_finite()) {
+            let detail = format!("all points have {name} = {first}, a profile and not an area");
+            return Err(Problem::NoHeights { format: Format::Xyz, detail });
+        }
+        // Rounding of the coordinates in the file: from 15 digits to 4.
+        (4..=12)
+            .rev()
+            .find_map(|digits| Axis::with_tolerance(&sorted, range * 10f64.powi(-digits)))
+            .ok_or_else(|| irregular(name))
+    }
+
+    fn with_tolerance(sorted: &[f64], tolerance: f64) -> Option<Self> {
+        // Positions: means of runs without a step above the tolerance.
+        let mut positions = Vec::new();
+        for run in sorted.chunk_by(|a, b| b - a <= tolerance) {
+            positions.push(run[0] + run.iter().map(|v| v - run[0]).sum::<f64>() / run.len() as f64);
+        }
+        let (first, last) = (*positions.first()?, *positions.last()?);
+        let least = positions.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
+        let steps = ((last - first) / least).round();
+        if !(steps >= 1.0 && steps < (MOST_CELLS_PER_POINT * sorted.len()) as f64) {
+            return None;
+        }
+        let axis = Axis { first, spacing: (last - first) / steps, points: steps as usize + 1 };
+        // Between grid points at most a tenth of the spacing: more is no rounding but another grid.
+        let on_grid = |v: &f64| {
+            let steps = (v - first) / axis.spacing;
+            (steps - steps.round()).abs() < 0.1
+        };
+        (sorted.iter().all(on_grid)).then_some(axis)
+    }
+}
+
+fn irregular(name: &str) -> Problem {
+    Problem::unsupported(
+        format!("a set of points whose {name} coordinates are not equally spaced"),
+        "resample it to a regular grid along x and y first, or give the format `asc` if it is a matrix of three columns",
+    )
+}
+
+fn gridded(
+    table: &Table,
+    [x, y, z]: [usize; 3],
+    x_axis: &Axis,
+    y_axis: &Axis,
+    first_line: usize,
+) -> Result<Array2<f64>, Problem> {
+    let cells = grid::points(x_axis.points as u64, y_axis.points as u64)?;
+    if cells > MOST_CELLS_PER_POINT * table.lines {
+        return Err(irregular("x and y"));
+    }
+    let mut heights = Array2::from_elem((x_axis.points, y_axis.points), f64::NAN);
+    let mut seen = Array2::from_elem((x_axis.points, y_axis.points), false);
+    for (line, point) in table.values.chunks_exact(table.columns).enumerate() {
+        let cell = [x_axis.index(point[x]), y_axis.index(point[y])];
+        if let (Some(height), Some(seen)) = (heights.get_mut(cell), seen.get_mut(cell)) {
+            if std::mem::replace(seen, true) {
+                return Err(Problem::malformed(
+                    format!("point {} of the list (from line {first_line})", line + 1),
+                    format!("again at x = {}, y = {}", point[x], point[y]),
+                    "at a place of its own; give the format `asc` if this is a matrix of three columns",
+                ));
+            }
+            *height = point[z];
+        }
+    }
+    Ok(heights)
+}

@@ -1,0 +1,315 @@
+//! The memory of a Prony series: one field per branch, in displacement space.
+//!
+//! Branch strains obey lambda de/dt + e = C U; flow obeys dv/dt = U/eta. Over a step both become
+//! e' = keep e + old U_n + new U_(n+1), exact for the pressure assumed in between:
+//!
+//! - piecewise linear (second order): x = dt/lambda, E = exp(-x), phi = (1 - E)/x;
+//!   keep = E, old = C (phi - E), new = C (1 - phi); flow: keep = 1, old = new = dt/(2 eta);
+//! - piecewise constant (SC17's assumption; first order, L-stable): keep = E, old = 0,
+//!   new = C (1 - E); flow: keep = 1, old = 0, new = dt/eta.
+//!
+//! So c = C0 + sum new, g = sum (keep e + old U_n). The update of the last step and the history of the
+//! next are one sweep: each branch is read and written once per step.
+
+use crate::field::{BLOCK, Cells, sweep};
+use crate::march::Scheme;
+use crate::material::Creep;
+
+/// Share of the retarded compliance below which the instantaneous one is too small for the linear
+/// scheme, which would ring: such steps take the pressure as constant.
+const STIFFEST: f64 = 0.05;
+
+pub(super) struct Memory {
+    instantaneous: f64,
+    branches: Vec<Branch>,
+    scheme: Scheme,
+    cells: usize,
+    /// Branch fields, interleaved by blocks of cells: \[block\]\[branch\]\[cell\].
+    strains: Vec<f64>,
+    /// The step whose end state is not yet in `strains`: its length and scheme.
+    pending: Option<(f64, Scheme)>,
+    /// The rules of the pending step and, during a sweep, of the next.
+    update: Vec<Rule>,
+    next: Vec<Rule>,
+}
+
+#[derive(Clone, Copy)]
+enum Branch {
+    Retarded { compliance: f64, time: f64 },
+    Flow { fluidity: f64 },
+}
+
+/// e' = keep e + old U_n + new U_(n+1).
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Rule {
+    keep: f64,
+    old: f64,
+    new: f64,
+}
+
+impl Rule {
+    /// The state as it is.
+    const IDENTITY: Rule = Rule { keep: 1.0, old: 0.0, new: 0.0 };
+}
+
+impl Branch {
+    fn rule(self, dt: f64, scheme: Scheme) -> Rule {
+        match (self, scheme) {
+            (Branch::Retarded { compliance, time }, Scheme::Linear) => {
+                let x = dt / time;
+                let keep = libm::exp(-x);
+                let (phi, one_minus_phi) = mean_decay(x);
+                Rule { keep, old: compliance * (phi - keep), new: compliance * one_minus_phi }
+            }
+            (Branch::Retarded { compliance, time }, _) => {
+                let x = dt / time;
+                Rule { keep: libm::exp(-x), old: 0.0, new: -compliance * libm::expm1(-x) }
+            }
+            (Branch::Flow { fluidity }, Scheme::Linear) => {
+                Rule { keep: 1.0, old: 0.5 * fluidity * dt, new: 0.5 * fluidity * dt }
+            }
+            (Branch::Flow { fluidity }, _) => Rule { keep: 1.0, old: 0.0, new: fluidity * dt },
+        }
+    }
+}
+
+/// phi = (1 - exp(-x))/x and 1 - phi, each to full precision.
+fn mean_decay(x: f64) -> (f64, f64) {
+    if x < 1e-2 {
+        // 1 - phi = x/2 - x^2/6 + x^3/24 - ...: seven terms leave less than 1e-16 of the first.
+        let mut term = 0.5 * x;
+        let mut sum = term;
+        for k in 3..9 {
+            term *= -x / f64::from(k);
+            sum += term;
+        }
+        (1.0 - sum, sum)
+    } else {
+        let phi = -libm::expm1(-x) / x;
+        (phi, 1.0 - phi)
+    }
+}
+
+impl Memory {
+    pub(super) fn new(creep: &Creep, scheme: Scheme, cells: usize) -> Self {
+        let retarded = creep
+            .terms
+            .iter()
+            .map(|t| Branch::Retarded { compliance: t.compliance, time: t.retardation_time });
+        let flow = (creep.fluidity > 0.0).then_some(Branch::Flow { fluidity: creep.fluidity });
+        let branches: Vec<Branch> = retarded.chain(flow).collect();
+        Memory {
+            instantaneous: creep.instantaneous,
+            scheme,
+            cells,
+            strains: vec![0.0; cells * branches.len()],
+            update: vec![Rule::IDENTITY; branches.len()],
+            next: vec![Rule::IDENTITY; branches.len()],
+            branches,
+            pending: None,
+        }
+    }
+
+    /// The scheme that a step of length `dt` can take without ringing.
+    fn scheme_of(&self, dt: f64) -> Scheme {
+        if self.scheme == Scheme::Linear {
+            let retarded: f64 = self.branches.iter().map(|b| b.rule(dt, Scheme::Linear).new).sum();
+            if self.instantaneous >= STIFFEST * retarded {
+                return Scheme::Linear;
+            }
+        }
+        Scheme::Constant
+    }
+
+    /// Takes in the step before, with `unit` = U_n and `previous` = U_(n-1); writes
+    /// `gap` = `rigid` + g for a step of length `dt` and returns its compliance c.
+    pub(super) fn history(
+        &mut self,
+        dt: f64,
+        previous: &[f64],
+        unit: &[f64],
+        rigid: &[f64],
+        gap: &mut [f64],
+    ) -> f64 {
+        let scheme = self.scheme_of(dt);
+        let branches = &self.branches;
+        self.next.iter_mut().zip(branches).for_each(|(rule, b)| *rule = b.rule(dt, scheme));
+        let (update, next) = (&self.update, &self.next);
+        let strains =
+            Interleaved { cells: self.cells, branches: self.branches.len(), data: &mut self.strains };
+        sweep((strains, (previous, unit), rigid, gap), &|(strains, (previous, unit), rigid, gap): (
+            Interleaved,
+            (&[f64], &[f64]),
+            &[f64],
+            &mut [f64],
+        )| {
+            let n = gap.len();
+            let (previous, unit) = (&previous[..n], &unit[..n]);
+            gap.copy_from_slice(rigid);
+            for ((e, update), next) in strains.data.chunks_exact_mut(n).zip(update).zip(next) {
+                for i in 0..n {
+                    e[i] = update.keep * e[i] + update.old * previous[i] + update.new * unit[i];
+                    gap[i] += next.keep * e[i] + next.old * unit[i];
+                }
+            }
+        });
+        std::mem::swap(&mut self.update, &mut self.next);
+        self.pending = Some((dt, scheme));
+        self.instantaneous + self.update.iter().map(|r| r.new).sum::<f64>()
+    }
+
+    /// g of the pending step, with `unit` = U at its beginning.
+    pub(super) fn remembered(&self, unit: &[f64], g: &mut [f64]) {
+        let mut strains = &self.strains[..];
+        for (g, unit) in g.chunks_mut(BLOCK).zip(unit.chunks(BLOCK)) {
+            g.fill(0.0);
+            for rule in &self.update {
+                let (e, rest) = strains.split_at(g.len());
+                g.iter_mut().zip(e).zip(unit).for_each(|((g, e), u)| *g += rule.keep * e + rule.old * u);
+                strains = rest;
+            }
+        }
+    }
+
+    /// Scalars and branch fields.
+    pub(super) fn save(&self) -> (Vec<f64>, Vec<Vec<f64>>) {
+        let scalars = match self.pending {
+            Some((dt, scheme)) => vec![dt, f64::from(u8::from(scheme == Scheme::Linear))],
+            None => vec![],
+        };
+        let mut fields = vec![Vec::with_capacity(self.cells); self.branches.len()];
+        let mut rest = &self.strains[..];
+        while !rest.is_empty() {
+            let n = BLOCK.min(rest.len() / self.branches.len());
+            for field in &mut fields {
+                let (block, after) = rest.split_at(n);
+                field.extend_from_slice(block);
+                rest = after;
+            }
+        }
+        (scalars, fields)
+    }
+
+    /// Takes back what [`Memory::save`] gave; false where it does not fit.
+    pub(super) fn load(&mut self, scalars: &[f64], fields: &[Vec<f64>]) -> bool {
+        if fields.len() != self.branches.len() || fields.iter().any(|f| f.len() != self.cells) {
+            return false;
+        }
+        self.pending = match scalars {
+            [] => None,
+            [dt, linear] => {
+                let scheme = if *linear == 1.0 { Scheme::Linear } else { Scheme::Constant };
+                let rules = self.update.iter_mut().zip(&self.branches);
+                rules.for_each(|(rule, b)| *rule = b.rule(*dt, scheme));
+                Some((*dt, scheme))
+            }
+            _ => return false,
+        };
+        self.strains.clear();
+        for start in (0..self.cells).step_by(BLOCK) {
+            let end = self.cells.min(start + BLOCK);
+            fields.iter().for_each(|f| self.strains.extend_from_slice(&f[start..end]));
+        }
+        true
+    }
+}
+
+/// Branch fields whose blocks of cells lie side by side, so that a sweep's block is one slice.
+struct Interleaved<'a> {
+    cells: usize,
+    branches: usize,
+    data: &'a mut [f64],
+}
+
+impl Cells for Interleaved<'_> {
+    fn cells(&self) -> usize {
+        self.cells
+    }
+
+    fn split(self, mid: usize) -> (Self, Self) {
+        let (first, second) = self.data.split_at_mut(mid * self.branches);
+        (
+            Interleaved { cells: mid, branches: self.branches, data: first },
+            Interleaved { cells: self.cells - mid, branches: self.branches, data: second },
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::CreepTerm;
+
+    fn zener(instantaneous: f64) -> Creep {
+        let terms = vec![
+            CreepTerm { compliance: 1.0, retardation_time: 0.5 },
+            CreepTerm { compliance: 0.3, retardation_time: 7.0 },
+        ];
+        Creep { instantaneous, terms, fluidity: 0.1 }
+    }
+
+    #[test]
+    fn both_forms_of_the_mean_decay_agree_where_they_meet() {
+        for x in [1e-9, 1e-4, 0.00999999, 0.0100001, 0.3, 40.0] {
+            let (phi, rest) = mean_decay(x);
+            // integral of exp(-x s) over [0, 1] by Simpson's rule on 2000 panels (error < x^4 1e-14)
+            let n = 2000;
+            let f = |k: usize| (-x * k as f64 / n as f64).exp();
+            let sum: f64 =
+                (1..n).map(|k| if k % 2 == 1 { 4.0 * f(k) } else { 2.0 * f(k) }).sum::<f64>() + f(0) + f(n);
+            assert!((phi - sum / (3.0 * n as f64)).abs() < 1e-9, "{x}");
+            assert!((phi + rest - 1.0).abs() < 1e-15);
+            assert!((rest / (0.5 * x) - 1.0).abs() < 0.34 * x + 1e-15);
+        }
+    }
+
+    #[test]
+    fn a_ramp_of_displacement_history_is_exact_in_the_linear_scheme() {
+        // U(t) = t: u(t) = integral C = creep.integral(t), whatever the steps; several blocks of cells.
+        let creep = zener(2.0);
+        let n = 2 * BLOCK + 3;
+        let mut memory = Memory::new(&creep, Scheme::Linear, n);
+        let rigid = vec![0.25; n];
+        let (mut before, mut last, mut gap) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+        let mut t = 0.0;
+        for dt in [0.1, 0.03, 2.0, 1e-7, 0.5] {
+            let c = memory.history(dt, &before, &last, &rigid, &mut gap);
+            t += dt;
+            std::mem::swap(&mut before, &mut last);
+            last.fill(t);
+            for (cell, gap) in gap.iter().enumerate() {
+                let u = c * t + gap - 0.25;
+                assert!((u - creep.integral(t)).abs() < 1e-13, "cell {cell}, t = {t}");
+            }
+        }
+        // A checkpoint on the way changes no bit.
+        let (scalars, fields) = memory.save();
+        let mut copy = Memory::new(&creep, Scheme::Linear, n);
+        assert!(copy.load(&scalars, &fields));
+        let mut again = vec![0.0; n];
+        let c = memory.history(0.7, &before, &last, &rigid, &mut gap);
+        assert_eq!(c, copy.history(0.7, &before, &last, &rigid, &mut again));
+        assert_eq!(gap, again);
+    }
+
+    #[test]
+    fn a_step_of_displacement_history_is_exact_in_the_constant_scheme() {
+        let creep = zener(0.0);
+        let mut memory = Memory::new(&creep, Scheme::Constant, 1);
+        let (mut before, mut last, mut gap) = (vec![0.0], vec![0.0], vec![0.0]);
+        let mut t = 0.0;
+        for dt in [0.1, 0.03, 2.0, 0.5] {
+            let c = memory.history(dt, &before, &last, &[0.0], &mut gap);
+            t += dt;
+            std::mem::swap(&mut before, &mut last);
+            last[0] = 1.0;
+            assert!((c + gap[0] - creep.value(t)).abs() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn a_soft_start_switches_to_the_constant_scheme() {
+        assert_eq!(Memory::new(&zener(0.0), Scheme::Linear, 1).scheme_of(0.1), Scheme::Constant);
+        assert_eq!(Memory::new(&zener(2.0), Scheme::Linear, 1).scheme_of(100.0), Scheme::Linear);
+    }
+}

@@ -1,0 +1,185 @@
+//! What a row of the result tells: numbers of the contact, and the fields on request.
+
+use ndarray::parallel::prelude::*;
+use ndarray::{Array2, ArrayView2, Axis};
+
+use crate::contact::{ContactState, Outcome};
+use crate::field::{Max, larger, strands, sweep};
+use crate::grid::Boundary;
+use crate::march::{Past, Simulation};
+use crate::time::Instant;
+
+/// The numbers of one row.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Row {
+    /// t \[s\].
+    pub time: f64,
+    /// W = cell area times sum p \[N\].
+    pub load: f64,
+    /// w \[m\], zero at first touch of the undeformed bodies.
+    pub approach: f64,
+    /// Area of the cells with p > 0 \[m^2\].
+    pub contact_area: f64,
+    /// Contact area less the share of its perimeter (Yastrebov, Anciaux & Molinari 2017) \[m^2\].
+    pub contact_area_corrected: f64,
+    /// Contact area over the domain's.
+    pub contact_fraction: f64,
+    /// Area of the cells at the hardness \[m^2\].
+    pub capped_area: f64,
+    /// W over the domain's area \[Pa\].
+    pub mean_pressure: f64,
+    /// Largest p \[Pa\].
+    pub max_pressure: f64,
+    /// Mean gap of the cells that can touch \[m\]; flattened overlap counts as negative.
+    pub mean_gap: f64,
+    /// Iterations of the solver.
+    pub iterations: usize,
+    /// Applications of K.
+    pub convolutions: usize,
+    /// Largest violation of the contact conditions over the pressure-weighted mean displacement.
+    pub residual: f64,
+    /// Certified relative energy-norm error of the pressure.
+    pub certificate: f64,
+}
+
+/// (pi - 1 + ln 2)/24: the mean excess of a counted area per perimeter and cell.
+const PERIMETER_SHARE: f64 = (std::f64::consts::PI - 1.0 + std::f64::consts::LN_2) / 24.0;
+
+/// One row of a march: the state, lent until the march goes on.
+#[derive(Clone, Copy)]
+pub struct Step<'a> {
+    pub(super) index: usize,
+    pub(super) instant: Instant,
+    pub(super) simulation: &'a Simulation,
+    pub(super) state: &'a ContactState,
+    /// h0 + g.
+    pub(super) gap: &'a [f64],
+    /// c: u = c U + g.
+    pub(super) compliance: f64,
+    pub(super) outcome: Outcome,
+    pub(super) past: &'a Past,
+    /// U of the row before.
+    pub(super) before: &'a [f64],
+}
+
+impl<'a> Step<'a> {
+    /// Number of the row; 0 is t = 0+.
+    pub fn index(&self) -> usize {
+        self.index
+    }
+
+    /// Time, length of the step, prescribed value.
+    pub fn instant(&self) -> Instant {
+        self.instant
+    }
+
+    /// True where every touching cell is at the hardness: the approach is only bounded from below.
+    pub fn saturated(&self) -> bool {
+        self.outcome.saturated
+    }
+
+    /// Pressure \[Pa\], shape (nx, ny).
+    pub fn pressure(&self) -> ArrayView2<'a, f64> {
+        to_view(self.simulation.grid.shape(), &self.state.pressure)
+    }
+
+    /// Gap h = h0 + u - w \[m\]: 0 in contact, negative where capped cells are flattened.
+    pub fn gap_into(&self, gap: &mut Array2<f64>) {
+        let (c, w) = (self.compliance, self.state.approach);
+        let cells = self.state.unit_displacement.iter().zip(self.gap);
+        gap.iter_mut().zip(cells).for_each(|(gap, (u, h))| *gap = c * u + h - w);
+    }
+
+    /// Normal displacement u = integral C d(Kp) of both surfaces together \[m\].
+    pub fn displacement_into(&self, displacement: &mut Array2<f64>) {
+        if let Some(displacement) = displacement.as_slice_mut() {
+            self.past.remembered(self.before, displacement);
+        }
+        let cells = displacement.iter_mut().zip(&self.state.unit_displacement);
+        cells.for_each(|(g, u)| *g += self.compliance * u);
+    }
+
+    /// 0 out of contact, 1 in contact, 2 at the hardness.
+    pub fn contact_into(&self, contact: &mut Array2<u8>) {
+        let hardness = self.simulation.hardness;
+        let state = |p: f64| u8::from(p > 0.0) + u8::from(p >= hardness);
+        contact.iter_mut().zip(&self.state.pressure).for_each(|(c, p)| *c = state(*p));
+    }
+
+    /// The numbers of the row.
+    pub fn row(&self) -> Row {
+        let grid = &self.simulation.grid;
+        let (c, w, hardness) = (self.compliance, self.state.approach, self.simulation.hardness);
+        let ([pressure, touching, capped, gap, touchable], Max(peak)) = sweep(
+            (&self.state.pressure[..], &self.state.unit_displacement[..], self.gap),
+            &|(p, u, h): (&[f64], &[f64], &[f64])| {
+                let mut peak = 0.0;
+                let n = p.len();
+                let (u, h) = (&u[..n], &h[..n]);
+                let sums = strands(n, |i| {
+                    peak = larger(p[i], peak);
+                    let can_touch = h[i] < f64::INFINITY;
+                    let one = |yes: bool| f64::from(u8::from(yes));
+                    let gap = if can_touch { c * u[i] + h[i] - w } else { 0.0 };
+                    [p[i], one(p[i] > 0.0), one(p[i] >= hardness), gap, one(can_touch)]
+                });
+                (sums, Max(peak))
+            },
+        );
+        let cell = grid.cell_area();
+        let contact_area = touching * cell;
+        Row {
+            time: self.instant.time,
+            load: pressure * cell,
+            approach: w,
+            contact_area,
+            contact_area_corrected: contact_area - PERIMETER_SHARE * self.contact_edges() as f64 * cell,
+            contact_fraction: touching / grid.len() as f64,
+            capped_area: capped * cell,
+            mean_pressure: pressure / grid.len() as f64,
+            max_pressure: peak,
+            mean_gap: gap / touchable,
+            iterations: self.outcome.iterations,
+            convolutions: self.outcome.convolutions,
+            residual: self.outcome.residual,
+            certificate: self.outcome.certificate,
+        }
+    }
+
+    /// Number of edges between a touching and an open cell; the border of a free domain is none.
+    fn contact_edges(&self) -> usize {
+        let pressure = self.pressure();
+        let periodic = self.simulation.boundary == Boundary::Periodic;
+        let (nx, ny) = pressure.dim();
+        let touches = |i: usize, j: usize| pressure[(i, j)] > 0.0;
+        pressure
+            .axis_iter(Axis(0))
+            .into_par_iter()
+            .enumerate()
+            .map(|(i, row)| {
+                let next = if i + 1 < nx { Some(i + 1) } else { (periodic && nx > 1).then_some(0) };
+                let mut edges = 0;
+                for (j, p) in row.iter().enumerate() {
+                    let here = *p > 0.0;
+                    let right = if j + 1 < ny { Some(j + 1) } else { (periodic && ny > 1).then_some(0) };
+                    edges += usize::from(right.is_some_and(|r| touches(i, r) != here));
+                    edges += usize::from(next.is_some_and(|n| touches(n, j) != here));
+                }
+                edges
+            })
+            .sum()
+    }
+}
+
+/// The cells as a field.
+fn to_view(shape: (usize, usize), cells: &[f64]) -> ArrayView2<'_, f64> {
+    let at = |(i, j): (usize, usize)| i * shape.1 + j;
+    debug_assert_eq!(cells.len(), at((shape.0, 0)));
+    ArrayView2::from_shape(shape, cells)
+        .unwrap_or_else(|_| ArrayView2::from_shape((0, 0), &[]).expect("empty"))
+}
+
+/// The cells as a field of their own.
+pub(super) fn to_array(shape: (usize, usize), cells: &[f64]) -> Array2<f64> {
+    to_view(shape, cells).to_owned()
+}

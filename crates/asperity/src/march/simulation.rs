@@ -1,0 +1,174 @@
+//! What is simulated: all that a march needs to know.
+
+use ndarray::Array2;
+
+use crate::contact::SolverOptions;
+use crate::error::{Error, Result};
+use crate::grid::{Boundary, Grid};
+use crate::load::{Control, History, Loading};
+use crate::material::Creep;
+use crate::time::{Instant, TimeGrid};
+
+/// How the hereditary integral is taken over a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum Scheme {
+    /// Pressure linear in each step: second order. Steps of a material without (or almost without)
+    /// instantaneous compliance, where this would ring, take the constant form.
+    #[default]
+    Linear,
+    /// Pressure constant in each step: first order, L-stable; SC17's assumption.
+    Constant,
+    /// SC17's full hereditary sum, pressure constant in each step: every past state is kept.
+    Direct,
+}
+
+/// A contact of two bodies under a history of load or approach.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    /// The domain.
+    pub grid: Grid,
+    /// Free or periodic.
+    pub boundary: Boundary,
+    /// Undeformed gap h0 \[m\], shape (nx, ny), least value 0; infinite where a cell cannot touch.
+    pub gap: Array2<f64>,
+    /// Contact creep compliance C(t) of the pair \[1/Pa\].
+    pub creep: Creep,
+    /// Cut-off of the pressure \[Pa\]; infinite for none.
+    pub hardness: f64,
+    /// What is prescribed.
+    pub loading: Loading,
+    /// When the state is computed.
+    pub times: TimeGrid,
+    /// Instants that are steps besides \[s\].
+    pub include: Vec<f64>,
+    /// How time is discretised.
+    pub scheme: Scheme,
+    /// How each step is solved.
+    pub solver: SolverOptions,
+}
+
+impl Simulation {
+    /// A free half-space of unit compliance under no load for one second, to set the rest on.
+    pub fn new(grid: Grid, gap: Array2<f64>) -> Self {
+        Simulation {
+            grid,
+            boundary: Boundary::Free,
+            gap,
+            creep: Creep::elastic(1.0),
+            hardness: f64::INFINITY,
+            loading: Loading { control: Control::Load, history: History::Step { value: 0.0 } },
+            times: TimeGrid::Uniform { end: 1.0, steps: 1 },
+            include: vec![],
+            scheme: Scheme::default(),
+            solver: SolverOptions::default(),
+        }
+    }
+
+    /// All rows: t = 0+, the steps, the breaks and jumps of the history.
+    pub fn instants(&self) -> Vec<Instant> {
+        self.times.instants(&self.loading.history, &self.include)
+    }
+
+    /// Memory that a march takes, in bytes per cell: fields of solver, march and history.
+    pub fn bytes_per_cell(&self) -> usize {
+        let padded = match self.boundary {
+            // complex rows of the padded transform, and its spectrum
+            Boundary::Free => 16 + 8,
+            Boundary::Periodic => 8 + 2,
+        };
+        let solver = 41 + 8 + 2;
+        let march = 7 * 8;
+        let memory = match self.scheme {
+            Scheme::Direct => self.instants().len(),
+            _ => self.creep.terms.len() + usize::from(self.creep.fluidity > 0.0),
+        };
+        padded + solver + march + 8 * memory
+    }
+
+    /// Checks all that can be known before the first solve.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`], [`Error::Infeasible`].
+    pub fn validate(&self) -> Result<()> {
+        if self.gap.dim() != self.grid.shape() {
+            let [nx, ny] = self.grid.cells();
+            return Err(Error::invalid(
+                "shape of the gap",
+                format!("{:?}", self.gap.dim()),
+                format!("that of the grid, ({nx}, {ny})"),
+            ));
+        }
+        if !self.gap.is_standard_layout() {
+            return Err(Error::invalid("memory order of the gap", "not C-order", "C-order"));
+        }
+        if let Some(((i, j), h)) =
+            self.gap.indexed_iter().find(|(_, h)| h.is_nan() || **h == f64::NEG_INFINITY)
+        {
+            return Err(Error::invalid(
+                format!("gap at cell ({i}, {j})"),
+                h,
+                "a number (infinite where the cell cannot touch)",
+            ));
+        }
+        let touchable = self.gap.iter().filter(|h| h.is_finite()).count();
+        if touchable == 0 {
+            return Err(Error::invalid("gap", "infinite everywhere", "finite in one cell at least"));
+        }
+        self.creep.validate()?;
+        if self.creep.value(f64::MAX.sqrt()) <= 0.0 {
+            return Err(Error::invalid(
+                "contact creep compliance",
+                0,
+                "greater than 0 (both bodies are rigid)",
+            ));
+        }
+        if self.hardness.is_nan() || self.hardness <= 0.0 {
+            return Err(Error::invalid("hardness", format!("{} Pa", self.hardness), "greater than 0"));
+        }
+        self.loading.history.validate()?;
+        self.times.validate()?;
+        self.solver.validate()?;
+        self.validate_load(touchable as f64)?;
+        self.validate_jumps()
+    }
+
+    fn validate_load(&self, touchable: f64) -> Result<()> {
+        let [least, most] = self.loading.history.range(self.times.end());
+        let factor = match self.loading.control {
+            Control::Approach => return Ok(()),
+            Control::Load => 1.0,
+            Control::Pressure => self.grid.area(),
+        };
+        if least < 0.0 {
+            let (what, unit) = match self.loading.control {
+                Control::Pressure => ("smallest mean pressure", "Pa"),
+                _ => ("smallest load", "N"),
+            };
+            return Err(Error::invalid(what, format!("{least} {unit}"), "not negative (bodies only press)"));
+        }
+        let max = self.hardness * self.grid.cell_area() * touchable;
+        if most * factor > max * (1.0 + 1e-12) {
+            return Err(Error::Infeasible { load: most * factor, max });
+        }
+        Ok(())
+    }
+
+    /// Without instantaneous compliance nothing follows a jump.
+    fn validate_jumps(&self) -> Result<()> {
+        if self.creep.instantaneous > 0.0 {
+            return Ok(());
+        }
+        let mut last = 0.0;
+        for instant in self.instants() {
+            if instant.jump && instant.value != last {
+                return Err(Error::invalid(
+                    format!("jump of the history at t = {} s", instant.time),
+                    format!("{:e} to {:e}", last, instant.value),
+                    "a ramp: the material has no instantaneous compliance, so no contact follows a jump",
+                ));
+            }
+            last = instant.value;
+        }
+        Ok(())
+    }
+}

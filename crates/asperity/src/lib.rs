@@ -13,6 +13,7 @@ pub mod operator;
 pub mod reference;
 pub mod surface;
 pub mod time;
+pub mod verification;
 
 pub use contact::{ContactState, Method, Outcome, Prescribed, Problem, Solver, SolverOptions};
 pub use error::{Error, NotConverged, Result};

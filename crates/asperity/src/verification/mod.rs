@@ -1,0 +1,144 @@
+//! The solver against facts that it does not know: closed forms, one-dimensional solutions, and
+//! invariants that hold on every grid.
+//!
+//! `asperity verify` prints these checks and the tests assert them. Each tolerance follows from the
+//! discretisation, never from the error found: approach and peak pressure converge as (dx/a)^2, an
+//! area is known to a part of its last ring of cells, invariants hold to the solver's tolerance.
+
+mod elastic;
+mod invariants;
+mod viscoelastic;
+
+use crate::error::Result;
+use crate::grid::Grid;
+use crate::load::{Control, History, Loading};
+use crate::march::{March, Row, Simulation};
+use crate::material::{Creep, CreepTerm, Relaxation, RelaxationTerm};
+use crate::surface::{Part, Shape, undeformed_gap};
+
+/// One compared quantity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Check {
+    /// The case.
+    pub case: &'static str,
+    /// What is compared, with its instant where there is one.
+    pub quantity: String,
+    /// The independent fact and its source.
+    pub fact: &'static str,
+    /// |found/expected - 1|, or the difference in the unit that the quantity names.
+    pub error: f64,
+    /// What the discretisation allows.
+    pub tolerance: f64,
+}
+
+impl Check {
+    /// True where the error is within the tolerance (a NaN is not).
+    pub fn ok(&self) -> bool {
+        self.error <= self.tolerance
+    }
+}
+
+/// A case: its name and the function that runs it.
+pub type Case = (&'static str, fn() -> Result<Vec<Check>>);
+
+/// All cases, in the order of the documentation.
+pub const CASES: [Case; 15] = [
+    ("hertz-sphere", elastic::hertz_sphere),
+    ("hertz-ellipse", elastic::hertz_ellipse),
+    ("cone", elastic::cone),
+    ("flat-punch", elastic::flat_punch),
+    ("westergaard-wave", elastic::westergaard_wave),
+    ("capped-hertz", elastic::capped_hertz),
+    ("ting-step", viscoelastic::ting_step),
+    ("ting-triangle", viscoelastic::ting_triangle),
+    ("westergaard-creep", viscoelastic::westergaard_creep),
+    ("held-approach", viscoelastic::held_approach),
+    ("flat-punch-history", viscoelastic::flat_punch_history),
+    ("order-in-time", viscoelastic::order_in_time),
+    ("one-elastic-solve", invariants::one_elastic_solve),
+    ("long-time-limit", invariants::long_time_limit),
+    ("duality", invariants::duality),
+];
+
+/// The checks of one case, as it gathers them.
+struct Checks {
+    case: &'static str,
+    fact: &'static str,
+    list: Vec<Check>,
+}
+
+impl Checks {
+    fn new(case: &'static str, fact: &'static str) -> Self {
+        Checks { case, fact, list: vec![] }
+    }
+
+    /// |found/expected - 1| against a tolerance.
+    fn relative(&mut self, quantity: impl Into<String>, found: f64, expected: f64, tolerance: f64) {
+        self.absolute(quantity, (found / expected - 1.0).abs(), tolerance);
+    }
+
+    /// An error against a tolerance.
+    fn absolute(&mut self, quantity: impl Into<String>, error: f64, tolerance: f64) {
+        let (case, fact) = (self.case, self.fact);
+        self.list.push(Check { case, quantity: quantity.into(), fact, error, tolerance });
+    }
+}
+
+/// E*(t) = 2 + 2 exp(-t/0.5), so C(t) = 1/4 + (1 - exp(-t))/4: a Zener solid with G = G_K = tau = 1.
+fn zener() -> Creep {
+    let terms = vec![CreepTerm { compliance: 0.25, retardation_time: 1.0 }];
+    Creep { instantaneous: 0.25, terms, fluidity: 0.0 }
+}
+
+/// The relaxation modulus of [`zener`].
+fn zener_relaxation() -> Relaxation {
+    let terms = vec![RelaxationTerm { modulus: 2.0, relaxation_time: 0.5 }];
+    Relaxation { equilibrium: 2.0, terms, viscosity: 0.0 }
+}
+
+/// One shape on a square domain of n x n cells.
+fn shape_on(n: usize, size: f64, shape: Shape) -> Result<Simulation> {
+    let grid = Grid::new([n, n], [size, size])?;
+    let gap = undeformed_gap(&grid, &[Part::Shape { shape, center: [0.0, 0.0] }])?;
+    Ok(Simulation::new(grid, gap))
+}
+
+fn step_load(value: f64) -> Loading {
+    Loading { control: Control::Load, history: History::Step { value } }
+}
+
+/// The rows of a simulation.
+fn rows(simulation: Simulation) -> Result<Vec<Row>> {
+    let mut march = March::new(simulation)?;
+    let mut rows = Vec::with_capacity(march.len());
+    while let Some(step) = march.advance()? {
+        rows.push(step.row());
+    }
+    Ok(rows)
+}
+
+/// An elastic contact of unit modulus under a load: its row and the pressure along the middle row.
+fn elastic_contact(simulation: Simulation, load: f64) -> Result<(Row, Vec<f64>)> {
+    let mut march = March::new(Simulation { loading: step_load(load), ..simulation })?;
+    let Some(step) = march.advance()? else {
+        return Ok((Row::default(), vec![]));
+    };
+    let pressure = step.pressure();
+    let middle = pressure.row(pressure.nrows() / 2).to_vec();
+    Ok((step.row(), middle))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_case_holds() {
+        for (name, run) in CASES {
+            for check in run().unwrap() {
+                assert_eq!(check.case, name);
+                assert!(check.ok(), "{name}, {}: {:e} > {:e}", check.quantity, check.error, check.tolerance);
+            }
+        }
+    }
+}

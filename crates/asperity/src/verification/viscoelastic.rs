@@ -1,0 +1,206 @@
+//! Viscoelastic contacts against solutions in time.
+
+use super::{Check, Checks, rows, shape_on, zener, zener_relaxation};
+use crate::contact::SolverOptions;
+use crate::error::Result;
+use crate::grid::{Boundary, Grid};
+use crate::load::{Control, History, Loading};
+use crate::march::{March, Simulation};
+use crate::reference::{CircularPunch, Ting, WestergaardStep};
+use crate::surface::{Part, Punch, Shape, undeformed_gap};
+use crate::time::TimeGrid;
+
+fn tight() -> SolverOptions {
+    SolverOptions { tolerance: 1e-8, ..SolverOptions::default() }
+}
+
+pub(super) fn ting_step() -> Result<Vec<Check>> {
+    let mut checks = Checks::new("ting-step", "Lee & Radok 1960, Ting 1966 (SC17 eq. 21, corrected)");
+    let history = History::Step { value: 1.0 };
+    sphere_follows(
+        &mut checks,
+        &history,
+        1.0,
+        129,
+        TimeGrid::Uniform { end: 4.0, steps: 80 },
+        &[0.0, 0.5, 1.0, 4.0],
+    )?;
+    Ok(checks.list)
+}
+
+pub(super) fn ting_triangle() -> Result<Vec<Check>> {
+    let mut checks = Checks::new("ting-triangle", "Ting 1966: the contact grows, then shrinks");
+    let history = History::Triangle { peak: 1.0, rise: 1.0, fall: 1.0 };
+    let times = TimeGrid::Uniform { end: 2.0, steps: 80 };
+    sphere_follows(&mut checks, &history, 1.0, 129, times, &[0.5, 1.0, 1.25, 1.5, 1.75])?;
+    Ok(checks.list)
+}
+
+/// A unit sphere under a load history, compared with Ting's solution at some of its instants.
+fn sphere_follows(
+    checks: &mut Checks,
+    history: &History,
+    radius: f64,
+    n: usize,
+    times: TimeGrid,
+    instants: &[f64],
+) -> Result<()> {
+    let size = 1.8;
+    let dx = size / n as f64;
+    let exact = Ting::new(radius, &zener(), history, times.end())?;
+    let simulation = Simulation {
+        creep: zener(),
+        loading: Loading { control: Control::Load, history: history.clone() },
+        times,
+        ..shape_on(n, size, Shape::Sphere { radius })?
+    };
+    let mut march = March::new(simulation)?;
+    while let Some(step) = march.advance()? {
+        let row = step.row();
+        if !instants.iter().any(|t| (t - row.time).abs() < 1e-9) {
+            continue;
+        }
+        let state = exact.at(row.time)?;
+        let at = |what: &str| format!("{what} at t = {}", row.time);
+        // Second order in space; the 80 steps per history add 1e-4 (their order is checked apart).
+        let tolerance = (dx / state.contact_radius).powi(2) + 1e-4;
+        checks.relative(at("approach"), row.approach, state.approach, tolerance);
+        let centre = step.pressure()[(n / 2, n / 2)];
+        checks.relative(at("pressure in the middle"), centre, state.peak_pressure, 2.0 * tolerance);
+        let area = std::f64::consts::PI * state.contact_radius.powi(2);
+        checks.relative(
+            at("contact area, corrected"),
+            row.contact_area_corrected,
+            area,
+            0.2 * 2.0 * dx / state.contact_radius,
+        );
+    }
+    Ok(())
+}
+
+pub(super) fn westergaard_creep() -> Result<Vec<Check>> {
+    let mut checks =
+        Checks::new("westergaard-creep", "Westergaard's wave on a viscoelastic body, hereditary integral");
+    let n = 512;
+    let pressure = 0.037_699_111_843_077_52;
+    let grid = Grid::new([n, 4], [1.0, 4.0 / n as f64])?;
+    let shape = Shape::Wave { amplitude: 0.01, wavelength: [1.0, f64::INFINITY] };
+    let gap = undeformed_gap(&grid, &[Part::Shape { shape, center: [0.0, 0.0] }])?;
+    let exact = WestergaardStep::under_pressure(0.01, 1.0, &zener(), pressure)?;
+    let simulation = Simulation {
+        boundary: Boundary::Periodic,
+        creep: zener(),
+        loading: Loading { control: Control::Pressure, history: History::Step { value: pressure } },
+        times: TimeGrid::Uniform { end: 4.0, steps: 80 },
+        ..Simulation::new(grid, gap)
+    };
+    let dx = 1.0 / n as f64;
+    for row in rows(simulation)?.iter().step_by(20) {
+        let shape = exact.shape(row.time)?;
+        let at = |what: &str| format!("{what} at t = {}", row.time);
+        checks.absolute(
+            at("contact fraction"),
+            (row.contact_fraction - shape.contact_fraction()).abs(),
+            2.0 * dx,
+        );
+        checks.absolute(
+            at("mean gap over amplitude"),
+            (row.mean_gap - shape.mean_gap()).abs() / 0.01,
+            2.0 * dx,
+        );
+    }
+    Ok(checks.list)
+}
+
+pub(super) fn held_approach() -> Result<Vec<Check>> {
+    let mut checks =
+        Checks::new("held-approach", "W(t) = (4/3) E*(t) sqrt(R) delta^(3/2): the contact set is frozen");
+    let n = 97;
+    let size = 0.6;
+    let depth = 0.04;
+    let simulation = Simulation {
+        creep: zener(),
+        loading: Loading { control: Control::Approach, history: History::Step { value: depth } },
+        times: TimeGrid::Uniform { end: 2.0, steps: 80 },
+        solver: tight(),
+        ..shape_on(n, size, Shape::Sphere { radius: 1.0 })?
+    };
+    let rows = rows(simulation)?;
+    let modulus = zener_relaxation();
+    let exact = 4.0 / 3.0 * modulus.value(0.0) * depth.powf(1.5);
+    let (dx, a) = (size / n as f64, depth.sqrt());
+    checks.relative("load at t = 0", rows[0].load, exact, 2.0 * (dx / a).powi(2));
+    let last = &rows[rows.len() - 1];
+    // dt = tau/20: second-order error (dt/tau)^2/12 of the relaxing share.
+    let tolerance = (0.025f64 / 0.5).powi(2) / 12.0;
+    checks.relative(
+        "load at t = 2 over load at t = 0",
+        last.load / rows[0].load,
+        modulus.value(2.0) / modulus.value(0.0),
+        tolerance,
+    );
+    checks.absolute(
+        "change of the contact area",
+        (last.contact_area / rows[0].contact_area - 1.0).abs(),
+        0.0,
+    );
+    Ok(checks.list)
+}
+
+pub(super) fn flat_punch_history() -> Result<Vec<Check>> {
+    let mut checks = Checks::new(
+        "flat-punch-history",
+        "delta(t) = (1/2a) integral C(t-s) dW(s): exact for any step length",
+    );
+    let points = vec![(0.0, 1.0), (1.0, 1.0), (2.0, 2.0), (3.0, 2.0), (3.0, 1.0)];
+    let history = History::Table { points };
+    let simulation = Simulation {
+        creep: zener(),
+        loading: Loading { control: Control::Load, history: history.clone() },
+        times: TimeGrid::List(vec![0.5, 1.5, 2.5, 3.5, 4.0, 6.0, 10.0]),
+        solver: SolverOptions { tolerance: 1e-10, ..SolverOptions::default() },
+        ..shape_on(48, 2.4, Shape::FlatPunch(Punch::Circle { radius: 1.0 }))?
+    };
+    let rows = rows(simulation)?;
+    let depth = |t: f64| CircularPunch::viscoelastic(1.0, &zener(), &history, t).map(|p| p.approach);
+    // The grid's punch differs from a circle by one factor, the same at all times.
+    let factor = rows[0].approach / depth(0.0)?;
+    for row in rows.iter().filter(|r| r.time != 3.0) {
+        checks.relative(
+            format!("approach at t = {}", row.time),
+            row.approach / factor,
+            depth(row.time)?,
+            1e-8,
+        );
+    }
+    Ok(checks.list)
+}
+
+pub(super) fn order_in_time() -> Result<Vec<Check>> {
+    let mut checks = Checks::new("order-in-time", "twice the steps, a quarter of the error (second order)");
+    let solve = |steps: usize| -> Result<f64> {
+        let simulation = Simulation {
+            creep: zener(),
+            loading: Loading { control: Control::Approach, history: History::Step { value: 0.04 } },
+            times: TimeGrid::Uniform { end: 1.0, steps },
+            solver: SolverOptions { tolerance: 1e-11, ..SolverOptions::default() },
+            ..shape_on(33, 0.6, Shape::Sphere { radius: 1.0 })?
+        };
+        Ok(rows(simulation)?.last().map_or(f64::NAN, |r| r.load))
+    };
+    let modulus = zener_relaxation();
+    let start = rows(Simulation {
+        creep: zener(),
+        loading: Loading { control: Control::Approach, history: History::Step { value: 0.04 } },
+        solver: SolverOptions { tolerance: 1e-11, ..SolverOptions::default() },
+        ..shape_on(33, 0.6, Shape::Sphere { radius: 1.0 })?
+    })?[0]
+        .load;
+    let exact = start * modulus.value(1.0) / modulus.value(0.0);
+    let errors = [10, 20, 40].map(|n| solve(n).map(|w| (w / exact - 1.0).abs()));
+    let [coarse, middle, fine] = errors;
+    let (coarse, middle, fine) = (coarse?, middle?, fine?);
+    checks.absolute("order short of 2, 10 to 20 steps", (2.0 - (coarse / middle).log2()).abs(), 0.02);
+    checks.absolute("order short of 2, 20 to 40 steps", (2.0 - (middle / fine).log2()).abs(), 0.02);
+    Ok(checks.list)
+}

@@ -1,1 +1,64 @@
-//! The result: one Zarr v3 group.
+//! The result: one Zarr v3 group, a directory that xarray opens with `open_zarr`.
+//!
+//! | array | dimensions | |
+//! |---|---|---|
+//! | the [`SCALARS`], with the coordinate `time` | `time` | one number per step |
+//! | `pressure`, `gap`, `displacement`, `contact` | `field_time`, `x`, `y` | fields of the chosen steps |
+//! | `field_time`, `field_step` | `field_time` | time and row of each stored field |
+//! | `initial_gap` | `x`, `y` | undeformed gap |
+//! | `x`, `y` | | centres of the cells |
+//!
+//! Numbers keep their bits. Each array has `units` and `long_name`; the attributes of the group hold
+//! the case file as text (`case`), its numbers as JSON text (`setup`), the `version`, the `status` and the
+//! work done. `checkpoint` holds the state from which a stopped run goes on.
+//!
+//! A step is visible once it is whole: rows and fields are written first, then the group's document,
+//! which counts them, is replaced by a rename. What a killed process leaves is the result up
+//! to the last step appended.
+//!
+//! ```
+//! use asperity::Grid;
+//! use asperity_io::store::{At, Field, FieldKind, Header, Outcome, Reader, Row, Status, Writer};
+//! use ndarray::Array2;
+//!
+//! # let directory = tempfile::tempdir()?;
+//! # let path = directory.path().join("result.zarr");
+//! let header = Header {
+//!     title: "a punch".into(),
+//!     case_text: String::new(),
+//!     version: "0.1.0".into(),
+//!     grid: Grid::new([4, 3], [4e-3, 3e-3])?,
+//!     fields: vec![FieldKind::Pressure],
+//!     rows_expected: Some(1),
+//!     setup: Default::default(),
+//! };
+//! let mut writer = Writer::create(&path, &header, Array2::zeros((4, 3)).view(), false)?;
+//! let row = Row { time: 0.0, load: 12.0, ..Row::default() };
+//! writer.append(&row, &[Field::Pressure(Array2::from_elem((4, 3), 1e6).view())])?;
+//! writer.finish(&Outcome::new(Status::Complete))?;
+//!
+//! let reader = Reader::open(&path)?;
+//! assert_eq!(reader.series("load")?, [12.0]);
+//! assert_eq!(reader.field(FieldKind::Pressure, At::Last)?[[3, 2]], 1e6);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod checkpoint;
+mod chunks;
+mod column;
+mod create;
+mod document;
+mod error;
+mod header;
+mod layout;
+mod reader;
+mod replace;
+mod resume;
+mod writer;
+
+pub use asperity::march::{Checkpoint, Row};
+pub use error::{Result, StoreError};
+pub use header::{Header, Status, Work};
+pub use layout::{FieldKind, SCALARS, Scalar};
+pub use reader::{At, Reader};
+pub use writer::{Field, Outcome, Writer};

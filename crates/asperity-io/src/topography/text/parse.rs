@@ -36,7 +36,7 @@ pub(super) fn table(dialect: Dialect, block: &Block) -> Result<Table, Problem> {
     let parsed: Vec<_> = runs.into_par_iter().map(|run| (run, parse_run(dialect, columns, run))).collect();
     let mut values = Vec::new();
     let mut lines_before = block.line;
-    let length = parsed.iter().map(|(_, p)| p.as_ref().map_or(0, Vec::len)).sum();
+    let length: usize = parsed.iter().map(|(_, p)| p.as_ref().map_or(0, Vec::len)).sum();
     for (run, parsed) in parsed {
         match parsed {
             Ok(run_values) if values.is_empty() && run_values.len() == length => values = run_values,

@@ -1,0 +1,200 @@
+//! The state from which a march goes on: one file, replaced as a whole.
+//!
+//! `checkpoint/state.bin`: eight bytes of magic, the length of a JSON header (u64), the header
+//! `{step, scalars, fields: [{name, shape}]}`, then the numbers as little-endian doubles, then the
+//! CRC-32 of all before it. It lies in a group of its own, so that the directory stays a sound
+//! Zarr hierarchy.
+
+use std::fs::{self, File};
+use std::io::{BufReader, Read, Write};
+use std::path::{Path, PathBuf};
+
+use asperity::march::Checkpoint;
+use flate2::Crc;
+use ndarray::Array2;
+use serde::{Deserialize, Serialize};
+
+use super::document::write_bare_group;
+use super::error::{Result, StoreError, io};
+
+/// Directory of the checkpoint in a result.
+pub(super) const DIRECTORY: &str = "checkpoint";
+const FILE: &str = "state.bin";
+const PARTIAL: &str = "state.bin.partial";
+/// Ends with the number of the form.
+const MAGIC: &[u8; 8] = b"ASPCHK\0\x01";
+const LONGEST_HEADER: u64 = 1 << 20;
+
+#[derive(Serialize, Deserialize)]
+struct Contents {
+    step: usize,
+    scalars: usize,
+    fields: Vec<FieldShape>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct FieldShape {
+    name: String,
+    shape: (usize, usize),
+}
+
+/// Replaces the checkpoint of the result at `root`.
+pub(super) fn write(root: &Path, checkpoint: &Checkpoint) -> Result<()> {
+    let directory = root.join(DIRECTORY);
+    if !directory.is_dir() {
+        fs::create_dir(&directory).map_err(io("make", &directory))?;
+        write_bare_group(&directory, "state from which the run goes on")?;
+    }
+    let (path, partial) = (directory.join(FILE), directory.join(PARTIAL));
+    let written = write_file(&partial, checkpoint).and_then(|()| fs::rename(&partial, &path));
+    written.map_err(|source| {
+        let _ = fs::remove_file(&partial);
+        StoreError::Io { path, action: "write", source }
+    })
+}
+
+fn write_file(path: &Path, checkpoint: &Checkpoint) -> std::io::Result<()> {
+    let fields = checkpoint.fields.iter();
+    let contents = Contents {
+        step: checkpoint.step,
+        scalars: checkpoint.scalars.len(),
+        fields: fields.map(|(name, f)| FieldShape { name: name.clone(), shape: f.dim() }).collect(),
+    };
+    let header = serde_json::to_vec(&contents)?;
+    let mut file = Summed { inner: File::create(path)?, crc: Crc::new(), bytes: Vec::new() };
+    file.put(MAGIC)?;
+    file.put(&(header.len() as u64).to_le_bytes())?;
+    file.put(&header)?;
+    file.put_numbers(&checkpoint.scalars)?;
+    for (_, field) in &checkpoint.fields {
+        let field = field.as_standard_layout();
+        file.put_numbers(field.as_slice().unwrap_or_default())?;
+    }
+    let sum = file.crc.sum();
+    file.put(&sum.to_le_bytes())
+}
+
+/// The checkpoint of the result at `root`, or `None` where none was written.
+pub(super) fn read(root: &Path) -> Result<Option<Checkpoint>> {
+    let path = root.join(DIRECTORY).join(FILE);
+    let file = match File::open(&path) {
+        Ok(file) => file,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+        Err(source) => return Err(StoreError::Io { path, action: "read", source }),
+    };
+    let length = file.metadata().map_err(io("read", &path))?.len();
+    let checkpoint = read_file(file, length).map_err(|error| match error {
+        Unreadable::System(source) => StoreError::Io { path: path.clone(), action: "read", source },
+        Unreadable::Damaged(what) => damaged(&path, what),
+    })?;
+    Ok(Some(checkpoint))
+}
+
+/// The error of a checkpoint that cannot be used.
+pub(super) fn damaged(path: &Path, what: String) -> StoreError {
+    let hint = "remove it, then --resume starts from the beginning";
+    StoreError::Corrupt { path: path.to_owned(), what, hint }
+}
+
+/// The file of the checkpoint.
+pub(super) fn path(root: &Path) -> PathBuf {
+    root.join(DIRECTORY).join(FILE)
+}
+
+/// Removes the checkpoint; nothing happens where there is none.
+pub(super) fn remove(root: &Path) -> Result<()> {
+    let directory = root.join(DIRECTORY);
+    match fs::remove_dir_all(&directory) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(io("remove", &directory)(error)),
+        _ => Ok(()),
+    }
+}
+
+enum Unreadable {
+    System(std::io::Error),
+    Damaged(String),
+}
+
+impl From<std::io::Error> for Unreadable {
+    fn from(error: std::io::Error) -> Self {
+        match error.kind() {
+            std::io::ErrorKind::UnexpectedEof => Unreadable::Damaged("it ends too early".into()),
+            _ => Unreadable::System(error),
+        }
+    }
+}
+
+fn read_file(file: File, length: u64) -> Result<Checkpoint, Unreadable> {
+    let damaged = |what: &str| Unreadable::Damaged(what.to_owned());
+    let mut file = BufReader::with_capacity(1 << 18, file);
+    let mut crc = Crc::new();
+    let mut prefix = [0; 16];
+    file.read_exact(&mut prefix)?;
+    crc.update(&prefix);
+    let (magic, size) = prefix.split_at(8);
+    if magic != MAGIC {
+        return Err(damaged("it does not begin as a checkpoint of this version"));
+    }
+    let size = size.try_into().map_or(u64::MAX, u64::from_le_bytes);
+    if size > LONGEST_HEADER.min(length) {
+        return Err(damaged("its header is too long"));
+    }
+    let mut header = vec![0; size as usize];
+    file.read_exact(&mut header)?;
+    crc.update(&header);
+    let contents: Contents = serde_json::from_slice(&header)
+        .map_err(|error| Unreadable::Damaged(format!("its header: {error}")))?;
+    // The length of the file has to be that of the header's numbers before memory is asked for.
+    let numbers = contents.fields.iter().try_fold(contents.scalars, |sum, field| {
+        field.shape.0.checked_mul(field.shape.1).and_then(|cells| sum.checked_add(cells))
+    });
+    let expected = numbers.and_then(|n| (n as u64).checked_mul(8)).and_then(|n| n.checked_add(16 + size + 4));
+    if expected != Some(length) {
+        return Err(damaged("its length is not that of its contents"));
+    }
+    let mut numbers = |count: usize| -> Result<Vec<f64>, Unreadable> {
+        let mut bytes = vec![0; 8 * count];
+        file.read_exact(&mut bytes)?;
+        crc.update(&bytes);
+        Ok(bytes.as_chunks::<8>().0.iter().map(|b| f64::from_le_bytes(*b)).collect())
+    };
+    let scalars = numbers(contents.scalars)?;
+    let mut fields = Vec::with_capacity(contents.fields.len());
+    for FieldShape { name, shape } in contents.fields {
+        let field = Array2::from_shape_vec(shape, numbers(shape.0 * shape.1)?);
+        fields.push((name, field.map_err(|error| Unreadable::Damaged(error.to_string()))?));
+    }
+    let mut sum = [0; 4];
+    file.read_exact(&mut sum)?;
+    if u32::from_le_bytes(sum) != crc.sum() {
+        return Err(damaged("its checksum is wrong"));
+    }
+    Ok(Checkpoint { step: contents.step, scalars, fields })
+}
+
+/// A file that sums what is written to it.
+struct Summed {
+    inner: File,
+    crc: Crc,
+    bytes: Vec<u8>,
+}
+
+impl Summed {
+    fn put(&mut self, bytes: &[u8]) -> std::io::Result<()> {
+        self.crc.update(bytes);
+        self.inner.write_all(bytes)
+    }
+
+    fn put_numbers(&mut self, numbers: &[f64]) -> std::io::Result<()> {
+        let mut bytes = std::mem::take(&mut self.bytes);
+        for part in numbers.chunks(1 << 15) {
+            bytes.resize(8 * part.len(), 0);
+            for (bytes, number) in bytes.chunks_exact_mut(8).zip(part) {
+                bytes.copy_from_slice(&number.to_le_bytes());
+            }
+            self.put(&bytes)?;
+        }
+        self.bytes = bytes;
+        Ok(())
+    }
+}

@@ -1,0 +1,151 @@
+//! How a result comes to be at its path: built beside it, then renamed, never half-made.
+
+use std::fs::{self, File};
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use ndarray::ArrayView2;
+
+use super::checkpoint;
+use super::chunks::Chunks;
+use super::document::{self, Document};
+use super::error::{Result, StoreError, input, io};
+use super::layout::{FieldKind, SCALARS};
+use super::writer::{lock, remove};
+
+/// Lets `build` fill a new directory, which then appears at `path`; returns its lock.
+pub(super) fn publish(
+    path: &Path,
+    force: bool,
+    build: impl FnOnce(&Path) -> Result<()>,
+) -> Result<Option<File>> {
+    // Without a closing slash, which would look through a link.
+    let path: &Path = &path.components().collect::<PathBuf>();
+    let old = vacate(path, force)?;
+    let partial = make_beside(path, "partial")?;
+    let built = build(&partial).and_then(|()| lock(&partial)).and_then(|held| {
+        if old.is_some() {
+            let aside = free_name(path, "old")?;
+            fs::rename(path, &aside).map_err(io("replace", path))?;
+            fs::rename(&partial, path).map_err(|source| {
+                let _ = fs::rename(&aside, path);
+                StoreError::Io { path: path.to_owned(), action: "write", source }
+            })?;
+            remove(&aside)?;
+        } else {
+            fs::rename(&partial, path).map_err(io("write", path))?;
+        }
+        Ok(held)
+    });
+    built.map_err(|error| {
+        let _ = fs::remove_dir_all(&partial);
+        match error {
+            // Said of the path that the user knows.
+            StoreError::Io { path: file, action, source } => {
+                let file = file.strip_prefix(&partial).map_or(file.clone(), |part| path.join(part));
+                StoreError::Io { path: file, action, source }
+            }
+            other => other,
+        }
+    })
+}
+
+/// Whether `path` may be written: `None` where it is free, the lock of the old result where it may be replaced.
+fn vacate(path: &Path, force: bool) -> Result<Option<Option<File>>> {
+    let metadata = match fs::symlink_metadata(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(io("look at", path)(error)),
+        Ok(metadata) => metadata,
+    };
+    let foreign = |found: &str| StoreError::Foreign { path: path.to_owned(), found: found.to_owned() };
+    if metadata.is_symlink() {
+        return Err(foreign("is a link"));
+    }
+    if metadata.is_dir() && !document::is_result(path) {
+        return Err(foreign("is a directory, but not a result of asperity"));
+    }
+    if !metadata.is_dir() {
+        return Err(foreign("is a file"));
+    }
+    if !force {
+        return Err(StoreError::Exists { path: path.to_owned() });
+    }
+    for entry in fs::read_dir(path).map_err(io("read", path))? {
+        let name = entry.map_err(io("read", path))?.file_name();
+        if !name.to_str().is_some_and(is_part) {
+            return Err(foreign(&format!("is a result that other files were put into ({})", name.display())));
+        }
+    }
+    Ok(Some(lock(path)?))
+}
+
+/// Whether a result has an entry of that name.
+fn is_part(name: &str) -> bool {
+    document::owns(name)
+        || name == checkpoint::DIRECTORY
+        || ["field_time", "field_step", "x", "y", "initial_gap"].contains(&name)
+        || SCALARS.iter().any(|scalar| scalar.name == name)
+        || FieldKind::from_name(name).is_some()
+}
+
+/// A new directory beside `path`.
+fn make_beside(path: &Path, role: &str) -> Result<PathBuf> {
+    let directory = free_name(path, role)?;
+    match fs::create_dir(&directory) {
+        Ok(()) => Ok(directory),
+        Err(source) => {
+            let parent = directory.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+            let (path, action) = match source.kind() {
+                ErrorKind::NotFound | ErrorKind::NotADirectory => (parent, "write into"),
+                _ => (path, "make"),
+            };
+            Err(StoreError::Io { path: path.to_owned(), action, source })
+        }
+    }
+}
+
+/// A name beside `path` that is not taken.
+fn free_name(path: &Path, role: &str) -> Result<PathBuf> {
+    let Some(name) = path.file_name() else {
+        return Err(input("path of the result", path.display(), "the path of a directory to be made"));
+    };
+    let mut beside = std::ffi::OsString::from(".");
+    beside.push(name);
+    beside.push(format!(".{role}-{}", std::process::id()));
+    let base = path.with_file_name(beside);
+    let names = (0..100).map(|n| {
+        let mut name = base.clone().into_os_string();
+        if n > 0 {
+            name.push(format!("-{n}"));
+        }
+        PathBuf::from(name)
+    });
+    Ok(names.into_iter().find(|name| fs::symlink_metadata(name).is_err()).unwrap_or(base))
+}
+
+/// Writes what does not change over time: the coordinates x and y, and the undeformed gap.
+pub(super) fn write_constants(
+    root: &Path,
+    document: &Document,
+    initial_gap: ArrayView2<'_, f64>,
+) -> Result<()> {
+    let grid = &document.header.grid;
+    let [nx, ny] = grid.cells();
+    for spec in document.arrays() {
+        let centres: Vec<f64> = match spec.name {
+            "x" => (0..nx).map(|i| grid.x(i)).collect(),
+            "y" => (0..ny).map(|j| grid.y(j)).collect(),
+            "initial_gap" => {
+                Chunks::new(root, &spec)?.write_map(&[], initial_gap)?;
+                continue;
+            }
+            _ => continue,
+        };
+        let chunks = Chunks::new(root, &spec)?;
+        let path = chunks.path(&[0]);
+        let directory = path.parent().unwrap_or(root);
+        fs::create_dir_all(directory).map_err(io("make", directory))?;
+        chunks.write(&[0], &centres)?;
+    }
+    Ok(())
+}

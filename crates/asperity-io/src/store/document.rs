@@ -1,0 +1,170 @@
+//! The document of the group (`zarr.json`): attributes and, consolidated, the metadata of every array.
+//!
+//! It is the one place that says how many rows and fields there are, and it is replaced by renaming:
+//! a reader sees a step as a whole or not at all, whenever the run is killed. The arrays' own
+//! documents repeat their part for readers that do not consolidate; they may lag behind, all by
+//! the same number of rows.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde_json::{Map, Value, json};
+
+use super::error::{Result, StoreError, corrupt, io};
+use super::header::{self, Header, Progress};
+use super::layout::{self, ArraySpec, LEVEL};
+use super::replace::replace;
+
+const NAME: &str = "zarr.json";
+/// The other file of the pair (see [`super::replace`]); that of the group lies in an array's directory, where
+/// no reader of the hierarchy looks.
+const PARTNER: &str = "zarr.json.partner";
+const GROUP_PARTNER: &str = "time/group.json.partner";
+/// Documents larger than this are not read (a result's has tens of kilobytes and its case file).
+const LARGEST: u64 = 64 << 20;
+
+/// What the group's document says.
+#[derive(Clone, Debug)]
+pub(super) struct Document {
+    pub(super) header: Header,
+    pub(super) progress: Progress,
+}
+
+/// The documents as JSON, kept between steps: only a few numbers of them change.
+pub(super) struct Pages {
+    group: Value,
+}
+
+impl Pages {
+    pub(super) fn new(document: &Document) -> Self {
+        let arrays = document.arrays();
+        let metadata: Map<_, _> =
+            arrays.iter().map(|array| (array.name.to_owned(), array.document(LEVEL))).collect();
+        let mut attributes = header::attributes(&document.header);
+        header::put_progress(&mut attributes, &document.progress);
+        let consolidated = json!({"kind": "inline", "must_understand": false, "metadata": metadata});
+        let group = json!({
+            "zarr_format": 3,
+            "node_type": "group",
+            "attributes": attributes,
+            "consolidated_metadata": consolidated,
+        });
+        Pages { group }
+    }
+
+    /// Replaces the group's document: from now on readers see `progress`.
+    pub(super) fn commit(&mut self, root: &Path, progress: &Progress) -> Result<()> {
+        if let Some(attributes) = self.group["attributes"].as_object_mut() {
+            header::put_progress(attributes, progress);
+        }
+        if let Some(arrays) = self.group["consolidated_metadata"]["metadata"].as_object_mut() {
+            for array in arrays.values_mut() {
+                match array["dimension_names"][0].as_str() {
+                    Some("time") => array["shape"][0] = json!(progress.rows),
+                    Some("field_time") => array["shape"][0] = json!(progress.maps),
+                    _ => {}
+                }
+            }
+        }
+        replace(&root.join(NAME), &root.join(GROUP_PARTNER), self.group.to_string().as_bytes())
+    }
+
+    /// Brings the arrays' own documents up to what was committed.
+    pub(super) fn write_arrays(&self, root: &Path) -> Result<()> {
+        for (name, array) in self.group["consolidated_metadata"]["metadata"].as_object().into_iter().flatten()
+        {
+            let directory = root.join(name);
+            fs::create_dir_all(&directory).map_err(io("make", &directory))?;
+            replace(&directory.join(NAME), &directory.join(PARTNER), array.to_string().as_bytes())?;
+        }
+        Ok(())
+    }
+
+    /// Removes the second files of the pairs; the next replacement makes them again.
+    pub(super) fn tidy(&self, root: &Path) {
+        // What cannot be removed does no harm: it is no part of the hierarchy.
+        let _ = fs::remove_file(root.join(GROUP_PARTNER));
+        for (name, _) in self.group["consolidated_metadata"]["metadata"].as_object().into_iter().flatten() {
+            let _ = fs::remove_file(root.join(name).join(PARTNER));
+        }
+    }
+}
+
+impl Document {
+    /// All arrays of the result.
+    pub(super) fn arrays(&self) -> Vec<ArraySpec> {
+        layout::arrays(&self.header, self.progress.rows, self.progress.maps)
+    }
+
+    /// Reads and checks the document of the result at `root`.
+    pub(super) fn read(root: &Path) -> Result<Document> {
+        let (file, document) = read_json(root)?;
+        let empty = Map::new();
+        let attributes = document.get("attributes").and_then(Value::as_object).unwrap_or(&empty);
+        let (header, status, work) = header::parse(attributes, root, &file)?;
+        let metadata = document
+            .pointer("/consolidated_metadata/metadata")
+            .and_then(Value::as_object)
+            .ok_or_else(|| corrupt(&file, "the consolidated metadata are missing"))?;
+        let length = |name: &str| {
+            let shape = metadata.get(name).and_then(|array| array.pointer("/shape/0"));
+            let length = shape.and_then(Value::as_u64).and_then(|n| usize::try_from(n).ok());
+            length.ok_or_else(|| corrupt(&file, format_args!("the array `{name}` is missing or malformed")))
+        };
+        let progress = Progress { status, work, rows: length("time")?, maps: length("field_time")? };
+        let document = Document { header, progress };
+        for array in document.arrays() {
+            if metadata.get(array.name).is_none_or(|stored| !same_form(stored, &array.document(LEVEL))) {
+                let what = format!("the array `{}` is missing or not of the form of a result", array.name);
+                return Err(corrupt(&file, what));
+            }
+        }
+        Ok(document)
+    }
+}
+
+/// Whether the directory is marked as a result, of whatever version.
+pub(super) fn is_result(root: &Path) -> bool {
+    read_json(root).is_ok_and(|(_, document)| {
+        document.get("attributes").and_then(Value::as_object).is_some_and(header::is_marked)
+    })
+}
+
+/// Names that a result has in its directory besides its arrays.
+pub(super) fn owns(name: &str) -> bool {
+    name == NAME
+}
+
+/// A group without arrays, as `zarr.json` of `directory`.
+pub(super) fn write_bare_group(directory: &Path, long_name: &str) -> Result<()> {
+    let document = json!({
+        "zarr_format": 3, "node_type": "group", "attributes": {"long_name": long_name},
+    });
+    replace(&directory.join(NAME), &directory.join(PARTNER), document.to_string().as_bytes())
+}
+
+fn read_json(root: &Path) -> Result<(PathBuf, Value)> {
+    let absent = |why: String| StoreError::NotAResult { path: root.to_owned(), why };
+    let file = root.join(NAME);
+    let length = match fs::metadata(&file) {
+        Ok(metadata) => metadata.len(),
+        Err(_) if !root.exists() => return Err(absent("there is no such file or directory".into())),
+        Err(_) if !root.is_dir() => return Err(absent("it is a file, a result is a directory".into())),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+            return Err(absent(format!("it has no {NAME}")));
+        }
+        Err(source) => return Err(StoreError::Io { path: file, action: "read", source }),
+    };
+    if length > LARGEST {
+        return Err(corrupt(&file, format_args!("{length} bytes, more than a result's document has")));
+    }
+    let bytes = fs::read(&file).map_err(io("read", &file))?;
+    let document = serde_json::from_slice(&bytes).map_err(|error| corrupt(&file, error))?;
+    Ok((file, document))
+}
+
+/// Same array but for its attributes.
+fn same_form(stored: &Value, expected: &Value) -> bool {
+    let (Some(stored), Some(expected)) = (stored.as_object(), expected.as_object()) else { return false };
+    expected.iter().all(|(key, value)| key == "attributes" || stored.get(key) == Some(value))
+}

@@ -1,0 +1,199 @@
+//! What a result says about itself: the attributes of its group.
+
+use std::path::Path;
+
+use asperity::Grid;
+use serde_json::{Map, Value, json};
+
+use super::error::{Result, StoreError, corrupt};
+use super::layout::FieldKind;
+
+/// Value of the attribute `format`: marks the directories that this store may replace.
+const FORMAT: &str = "asperity-result";
+/// Number of the form described in [`super`]; it grows when an older reader would misread a newer result.
+const SCHEMA: u64 = 1;
+
+/// What is known of a run before it starts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Header {
+    /// Title of the case.
+    pub title: String,
+    /// The case file as text, as it was run.
+    pub case_text: String,
+    /// Version of asperity that runs it.
+    pub version: String,
+    /// The grid of the fields.
+    pub grid: Grid,
+    /// The fields that are kept.
+    pub fields: Vec<FieldKind>,
+    /// Rows of the full run, where known.
+    pub rows_expected: Option<usize>,
+    /// The case in numbers (bodies, creep terms, boundary, ...), for readers that know no case files.
+    pub setup: Map<String, Value>,
+}
+
+/// How far a run has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Status {
+    /// Under way, or killed: see [`Reader::is_being_written`](super::Reader::is_being_written).
+    Running,
+    /// All rows are there.
+    Complete,
+    /// Stopped by its user; can be resumed.
+    Interrupted,
+    /// Stopped by an error, named in [`Work::message`]; the rows before it are good.
+    Failed,
+}
+
+/// Work done so far, over all sessions of a resumed run.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Work {
+    /// Time on the clock \[s\].
+    pub wall_s: f64,
+    /// Iterations of all rows.
+    pub iterations: u64,
+    /// Convolutions of all rows.
+    pub convolutions: u64,
+    /// Largest memory of the process \[byte\], where measured.
+    pub peak_memory_bytes: Option<u64>,
+    /// Threads used, where known.
+    pub threads: Option<usize>,
+    /// Why a run stopped that is not complete.
+    pub message: Option<String>,
+}
+
+impl Status {
+    const ALL: [Status; 4] = [Status::Running, Status::Complete, Status::Interrupted, Status::Failed];
+
+    /// The word in the attribute `status`.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Status::Running => "running",
+            Status::Complete => "complete",
+            Status::Interrupted => "interrupted",
+            Status::Failed => "failed",
+        }
+    }
+}
+
+impl std::fmt::Display for Status {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.as_str())
+    }
+}
+
+/// How much of a run is stored.
+#[derive(Clone, Debug)]
+pub(super) struct Progress {
+    pub(super) status: Status,
+    pub(super) work: Work,
+    /// Rows.
+    pub(super) rows: usize,
+    /// Instants of the fields.
+    pub(super) maps: usize,
+}
+
+impl Default for Progress {
+    fn default() -> Self {
+        Progress { status: Status::Running, work: Work::default(), rows: 0, maps: 0 }
+    }
+}
+
+/// Attributes of the group. Flat, of numbers and text only, so that xarray can pass them on to NetCDF.
+pub(super) fn attributes(header: &Header) -> Map<String, Value> {
+    let [nx, ny] = header.grid.cells();
+    let [lx, ly] = header.grid.size();
+    let fields: Vec<_> = header.fields.iter().map(|kind| kind.name()).collect();
+    let mut map = Map::new();
+    let mut put = |key: &str, value: Value| map.insert(key.to_owned(), value);
+    put("title", json!(header.title));
+    put("format", json!(FORMAT));
+    put("schema", json!(SCHEMA));
+    put("version", json!(header.version));
+    put("case", json!(header.case_text));
+    put("setup", json!(Value::Object(header.setup.clone()).to_string()));
+    put("cells", json!([nx, ny]));
+    put("size", json!([lx, ly]));
+    put("fields", json!(fields.join(" ")));
+    if let Some(rows) = header.rows_expected {
+        put("rows_expected", json!(rows));
+    }
+    map
+}
+
+/// Sets the attributes that change as the run goes on.
+pub(super) fn put_progress(map: &mut Map<String, Value>, progress: &Progress) {
+    let work = &progress.work;
+    let mut put = |key: &str, value: Option<Value>| match value {
+        Some(value) => map.insert(key.to_owned(), value),
+        None => map.shift_remove(key),
+    };
+    put("status", Some(json!(progress.status.as_str())));
+    put("status_message", work.message.as_ref().map(|message| json!(message)));
+    put("work_wall_s", Some(json!(work.wall_s)));
+    put("work_iterations", Some(json!(work.iterations)));
+    put("work_convolutions", Some(json!(work.convolutions)));
+    put("work_peak_memory_bytes", work.peak_memory_bytes.map(|bytes| json!(bytes)));
+    put("work_threads", work.threads.map(|threads| json!(threads)));
+}
+
+/// Whether the attributes are those of a result of any version.
+pub(super) fn is_marked(attributes: &Map<String, Value>) -> bool {
+    attributes.get("format").and_then(Value::as_str) == Some(FORMAT)
+}
+
+/// The inverse of [`attributes`] and [`put_progress`]; `path` is the result, `file` the document they were read from.
+pub(super) fn parse(
+    attributes: &Map<String, Value>,
+    path: &Path,
+    file: &Path,
+) -> Result<(Header, Status, Work)> {
+    if !is_marked(attributes) {
+        let why = format!("its Zarr group lacks the attribute format = \"{FORMAT}\"");
+        return Err(StoreError::NotAResult { path: path.to_owned(), why });
+    }
+    let missing = |key: &str| corrupt(file, format_args!("the attribute `{key}` is missing or malformed"));
+    let text = |key: &str| attributes.get(key).and_then(Value::as_str).ok_or_else(|| missing(key));
+    let count = |key: &str| attributes.get(key).and_then(Value::as_u64);
+    let pair = |key: &str| match attributes.get(key).and_then(Value::as_array).map(Vec::as_slice) {
+        Some([a, b]) => Ok((a.clone(), b.clone())),
+        _ => Err(missing(key)),
+    };
+
+    let version = text("version")?.to_owned();
+    let schema = count("schema").ok_or_else(|| missing("schema"))?;
+    if schema > SCHEMA {
+        return Err(StoreError::Newer { path: path.to_owned(), version, schema, known: SCHEMA });
+    }
+    let (nx, ny) = pair("cells")?;
+    let (lx, ly) = pair("size")?;
+    let (Some(nx), Some(ny)) = (nx.as_u64(), ny.as_u64()) else { return Err(missing("cells")) };
+    let (Some(lx), Some(ly)) = (lx.as_f64(), ly.as_f64()) else { return Err(missing("size")) };
+    let cells = [usize::try_from(nx), usize::try_from(ny)].map(|n| n.unwrap_or(usize::MAX));
+    let grid = Grid::new(cells, [lx, ly]).map_err(|error| corrupt(file, error))?;
+    let fields = text("fields")?
+        .split_whitespace()
+        .map(|name| FieldKind::from_name(name).ok_or_else(|| missing("fields")))
+        .collect::<Result<Vec<_>>>()?;
+    let setup = serde_json::from_str(text("setup")?).map_err(|_| missing("setup"))?;
+    let word = text("status")?;
+    let status = Status::ALL.into_iter().find(|s| s.as_str() == word).ok_or_else(|| missing("status"))?;
+    let header = Header {
+        title: text("title")?.to_owned(),
+        case_text: text("case")?.to_owned(),
+        version,
+        grid,
+        fields,
+        rows_expected: count("rows_expected").and_then(|n| usize::try_from(n).ok()),
+        setup,
+    };
+    let work = Work {
+        wall_s: attributes.get("work_wall_s").and_then(Value::as_f64).unwrap_or(0.0),
+        iterations: count("work_iterations").unwrap_or(0),
+        convolutions: count("work_convolutions").unwrap_or(0),
+        peak_memory_bytes: count("work_peak_memory_bytes"),
+        threads: count("work_threads").and_then(|n| usize::try_from(n).ok()),
+        message: attributes.get("status_message").and_then(Value::as_str).map(str::to_owned),
+    };
+    Ok((header, status, work))
+}

@@ -1,0 +1,311 @@
+//! Names, units, dimensions and chunks of the arrays of a result.
+
+use asperity::march::Row;
+use serde_json::{Value, json};
+
+use super::header::Header;
+
+/// Rows per chunk of the per-step arrays: 32 KiB, one file each for all but the longest runs.
+pub(super) const ROWS_PER_CHUNK: usize = 4096;
+/// Longest side of a field's chunk: 512 KiB of doubles, enough chunks of a map for every core.
+const LONGEST_SIDE: usize = 256;
+
+/// A field on the grid that a result may keep over time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum FieldKind {
+    /// Pressure p \[Pa\], positive in compression.
+    Pressure,
+    /// Gap h \[m\] of the deformed surfaces.
+    Gap,
+    /// Normal displacement u \[m\].
+    Displacement,
+    /// Contact state: 0 out of contact, 1 in contact, 2 at the hardness.
+    Contact,
+}
+
+impl FieldKind {
+    /// Every kind.
+    pub const ALL: [FieldKind; 4] =
+        [FieldKind::Pressure, FieldKind::Gap, FieldKind::Displacement, FieldKind::Contact];
+
+    /// Its name in case files and results.
+    pub fn name(self) -> &'static str {
+        match self {
+            FieldKind::Pressure => "pressure",
+            FieldKind::Gap => "gap",
+            FieldKind::Displacement => "displacement",
+            FieldKind::Contact => "contact",
+        }
+    }
+
+    /// The kind of that name.
+    pub fn from_name(name: &str) -> Option<FieldKind> {
+        FieldKind::ALL.into_iter().find(|kind| kind.name() == name)
+    }
+
+    /// Its unit; "1" where it has none.
+    pub fn units(self) -> &'static str {
+        match self {
+            FieldKind::Pressure => "Pa",
+            FieldKind::Gap | FieldKind::Displacement => "m",
+            FieldKind::Contact => "1",
+        }
+    }
+
+    /// What it is, for axes and legends.
+    pub fn long_name(self) -> &'static str {
+        match self {
+            FieldKind::Pressure => "contact pressure",
+            FieldKind::Gap => "gap between the deformed surfaces",
+            FieldKind::Displacement => "normal displacement",
+            FieldKind::Contact => "contact state",
+        }
+    }
+}
+
+impl std::fmt::Display for FieldKind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// A number that each step has one of.
+#[derive(Clone, Copy, Debug)]
+pub struct Scalar {
+    /// Its name in results.
+    pub name: &'static str,
+    /// Its unit; "1" where it has none.
+    pub units: &'static str,
+    /// What it is, for axes and legends.
+    pub long_name: &'static str,
+    pub(super) entry: Entry,
+}
+
+/// Where a row keeps a scalar.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Entry {
+    Real(fn(&mut Row) -> &mut f64),
+    Count(fn(&mut Row) -> &mut usize),
+}
+
+impl Entry {
+    fn data_type(self) -> DataType {
+        match self {
+            Entry::Real(_) => DataType::Float64,
+            Entry::Count(_) => DataType::Int64,
+        }
+    }
+
+    /// The eight bytes that stand for it in the store.
+    pub(super) fn to_bytes(self, row: &Row) -> [u8; 8] {
+        let mut row = *row;
+        match self {
+            Entry::Real(entry) => entry(&mut row).to_le_bytes(),
+            Entry::Count(entry) => i64::try_from(*entry(&mut row)).unwrap_or(i64::MAX).to_le_bytes(),
+        }
+    }
+
+    /// Sets it from those bytes; `None` where they hold no count.
+    pub(super) fn set(self, row: &mut Row, bytes: [u8; 8]) -> Option<()> {
+        match self {
+            Entry::Real(entry) => *entry(row) = f64::from_le_bytes(bytes),
+            Entry::Count(entry) => *entry(row) = usize::try_from(i64::from_le_bytes(bytes)).ok()?,
+        }
+        Some(())
+    }
+}
+
+macro_rules! scalars {
+    ($($kind:ident $name:ident [$units:literal] $long_name:literal;)*) => {
+        [$(Scalar {
+            name: stringify!($name),
+            units: $units,
+            long_name: $long_name,
+            entry: Entry::$kind(|row| &mut row.$name),
+        }),*]
+    };
+}
+
+/// The per-step numbers of a result, `time` first.
+pub const SCALARS: [Scalar; 14] = scalars![
+    Real time ["s"] "time";
+    Real load ["N"] "normal load";
+    Real approach ["m"] "rigid-body approach";
+    Real contact_area ["m2"] "contact area";
+    Real contact_area_corrected ["m2"] "contact area corrected by its perimeter";
+    Real contact_fraction ["1"] "contact area over nominal area";
+    Real capped_area ["m2"] "area at the hardness";
+    Real mean_pressure ["Pa"] "load over nominal area";
+    Real max_pressure ["Pa"] "largest pressure";
+    Real mean_gap ["m"] "mean gap";
+    Count iterations ["1"] "iterations of the solver";
+    Count convolutions ["1"] "convolutions";
+    Real residual ["1"] "KKT residual";
+    Real certificate ["1"] "certified relative error in the energy norm";
+];
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum DataType {
+    Float64,
+    Int64,
+    UInt8,
+}
+
+/// One array of the group.
+#[derive(Clone, Debug)]
+pub(super) struct ArraySpec {
+    pub(super) name: &'static str,
+    pub(super) data_type: DataType,
+    pub(super) dimensions: &'static [&'static str],
+    pub(super) shape: Vec<usize>,
+    pub(super) chunk: Vec<usize>,
+    pub(super) compressed: bool,
+    attributes: Value,
+}
+
+impl ArraySpec {
+    /// Metadata document (`zarr.json`) of the array, its chunks deflated with `level`.
+    pub(super) fn document(&self, level: u8) -> Value {
+        let mut codecs = vec![match self.data_type {
+            DataType::UInt8 => json!({"name": "bytes"}),
+            _ => json!({"name": "bytes", "configuration": {"endian": "little"}}),
+        }];
+        if self.compressed {
+            codecs.push(json!({"name": "gzip", "configuration": {"level": level}}));
+        }
+        // Filled with what no run produces, so that a lost chunk cannot pass for data.
+        let (data_type, fill_value) = match self.data_type {
+            DataType::Float64 => ("float64", json!("NaN")),
+            DataType::Int64 => ("int64", json!(-1)),
+            DataType::UInt8 => ("uint8", json!(255)),
+        };
+        json!({
+            "zarr_format": 3,
+            "node_type": "array",
+            "shape": self.shape,
+            "data_type": data_type,
+            "chunk_grid": {"name": "regular", "configuration": {"chunk_shape": self.chunk}},
+            "chunk_key_encoding": {"name": "default", "configuration": {"separator": "/"}},
+            "fill_value": fill_value,
+            "codecs": codecs,
+            "attributes": self.attributes,
+            "dimension_names": self.dimensions,
+        })
+    }
+}
+
+/// Level of the deflated chunks and of the metadata.
+pub(super) const LEVEL: u8 = 1;
+
+/// All arrays of a result with `rows` rows and `maps` instants of its fields.
+pub(super) fn arrays(header: &Header, rows: usize, maps: usize) -> Vec<ArraySpec> {
+    let [nx, ny] = header.grid.cells();
+    let mut arrays: Vec<_> = SCALARS
+        .iter()
+        .map(|s| series(s.name, s.entry.data_type(), "time", rows, s.units, s.long_name))
+        .collect();
+    arrays.push(series("field_time", DataType::Float64, "field_time", maps, "s", "time of the fields"));
+    arrays.push(series("field_step", DataType::Int64, "field_time", maps, "1", "row of the fields"));
+    arrays.push(coordinate("x", nx, "x, centres of the cells"));
+    arrays.push(coordinate("y", ny, "y, centres of the cells"));
+    arrays.push(ArraySpec {
+        name: "initial_gap",
+        data_type: DataType::Float64,
+        dimensions: &["x", "y"],
+        shape: vec![nx, ny],
+        chunk: vec![side(nx), side(ny)],
+        compressed: true,
+        attributes: json!({"units": "m", "long_name": "undeformed gap"}),
+    });
+    for kind in FieldKind::ALL.into_iter().filter(|kind| header.fields.contains(kind)) {
+        let mut attributes = json!({"units": kind.units(), "long_name": kind.long_name()});
+        if kind == FieldKind::Contact {
+            attributes["flag_values"] = json!([0, 1, 2]);
+            attributes["flag_meanings"] = json!("out_of_contact in_contact at_hardness");
+        }
+        arrays.push(ArraySpec {
+            name: kind.name(),
+            data_type: if kind == FieldKind::Contact { DataType::UInt8 } else { DataType::Float64 },
+            dimensions: &["field_time", "x", "y"],
+            shape: vec![maps, nx, ny],
+            chunk: vec![1, side(nx), side(ny)],
+            compressed: true,
+            attributes,
+        });
+    }
+    arrays
+}
+
+fn series(
+    name: &'static str,
+    data_type: DataType,
+    dimension: &'static str,
+    length: usize,
+    units: &str,
+    long_name: &str,
+) -> ArraySpec {
+    ArraySpec {
+        name,
+        data_type,
+        dimensions: if dimension == "time" { &["time"] } else { &["field_time"] },
+        shape: vec![length],
+        chunk: vec![ROWS_PER_CHUNK],
+        compressed: false,
+        attributes: json!({"units": units, "long_name": long_name}),
+    }
+}
+
+fn coordinate(name: &'static str, cells: usize, long_name: &str) -> ArraySpec {
+    ArraySpec {
+        name,
+        data_type: DataType::Float64,
+        dimensions: if name == "x" { &["x"] } else { &["y"] },
+        shape: vec![cells],
+        chunk: vec![cells],
+        compressed: false,
+        attributes: json!({"units": "m", "long_name": long_name}),
+    }
+}
+
+/// Side of a chunk: equal pieces no longer than [`LONGEST_SIDE`], so that little is padded.
+fn side(cells: usize) -> usize {
+    cells.div_ceil(cells.div_ceil(LONGEST_SIDE))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn chunks_cover_a_side_with_less_than_one_cell_of_padding_per_chunk() {
+        for cells in 1..2000 {
+            let side = side(cells);
+            let chunks = cells.div_ceil(side);
+            assert!(side <= LONGEST_SIDE && side * chunks >= cells && side * chunks < cells + chunks);
+        }
+    }
+
+    #[test]
+    fn a_scalar_keeps_the_bits_of_its_row() {
+        let row = Row {
+            load: -0.0,
+            residual: f64::NAN,
+            certificate: f64::INFINITY,
+            iterations: 7,
+            ..Row::default()
+        };
+        let mut back = Row::default();
+        for scalar in SCALARS {
+            scalar.entry.set(&mut back, scalar.entry.to_bytes(&row)).unwrap();
+        }
+        assert_eq!(back.load.to_bits(), row.load.to_bits());
+        assert!(back.residual.is_nan());
+        assert_eq!((back.certificate, back.iterations), (f64::INFINITY, 7));
+    }
+
+    #[test]
+    fn a_negative_count_is_refused() {
+        let iterations = SCALARS.iter().find(|s| s.name == "iterations").unwrap();
+        assert!(iterations.entry.set(&mut Row::default(), (-1i64).to_le_bytes()).is_none());
+    }
+}

@@ -1,0 +1,236 @@
+//! The reading end of a result.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use asperity::march::Row;
+use ndarray::Array2;
+
+use super::chunks::Chunks;
+use super::column;
+use super::document::Document;
+use super::error::{Result, StoreError, corrupt};
+use super::header::{Header, Status, Work};
+use super::layout::{ArraySpec, Entry, FieldKind, SCALARS};
+
+/// A result as it is at the instant of opening; a run that goes on is seen by opening it again.
+#[derive(Clone, Debug)]
+pub struct Reader {
+    root: PathBuf,
+    document: Document,
+    field_times: Vec<f64>,
+    field_steps: Vec<usize>,
+}
+
+/// Which of the stored instants of a field.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum At {
+    /// Number of the instant, from 0.
+    Index(usize),
+    /// The stored instant that is nearest to this time \[s\]; of two at the same time (before and after a
+    /// jump) the later.
+    Time(f64),
+    /// The last one.
+    Last,
+}
+
+impl Reader {
+    /// Opens the result at `path`, finished or not.
+    ///
+    /// # Errors
+    /// [`StoreError::NotAResult`] where there is none, [`StoreError::Newer`] where it is of a later form,
+    /// [`StoreError::Corrupt`] where it is damaged, [`StoreError::Io`] where the system refuses.
+    pub fn open(path: &Path) -> Result<Reader> {
+        let document = Document::read(path)?;
+        let mut reader =
+            Reader { root: path.to_owned(), document, field_times: Vec::new(), field_steps: Vec::new() };
+        let maps = reader.document.progress.maps;
+        let times = column::read(path, &reader.spec("field_time")?, maps)?;
+        let steps = column::read(path, &reader.spec("field_step")?, maps)?;
+        reader.field_times = times.into_iter().map(f64::from_le_bytes).collect();
+        let rows = reader.document.progress.rows;
+        let step = |bytes| usize::try_from(i64::from_le_bytes(bytes)).ok().filter(|step| *step < rows);
+        let steps: Option<Vec<usize>> = steps.into_iter().map(step).collect();
+        reader.field_steps =
+            steps.ok_or_else(|| corrupt(&path.join("field_step"), "a number in it is not that of a row"))?;
+        Ok(reader)
+    }
+
+    /// The directory of the result.
+    pub fn path(&self) -> &Path {
+        &self.root
+    }
+
+    /// What the result says of its case.
+    pub fn header(&self) -> &Header {
+        &self.document.header
+    }
+
+    /// How far the run has come, as it says itself.
+    pub fn status(&self) -> Status {
+        self.document.progress.status
+    }
+
+    /// The work that it took.
+    pub fn work(&self) -> &Work {
+        &self.document.progress.work
+    }
+
+    /// Whether a process is writing the result now. A result that says [`Status::Running`] without that
+    /// was killed. (False as well where the file system has no locks.)
+    pub fn is_being_written(&self) -> bool {
+        let shared = File::open(&self.root).map(|directory| directory.try_lock_shared());
+        matches!(shared, Ok(Err(std::fs::TryLockError::WouldBlock)))
+    }
+
+    /// Rows.
+    pub fn len(&self) -> usize {
+        self.document.progress.rows
+    }
+
+    /// Whether no row is stored yet.
+    pub fn is_empty(&self) -> bool {
+        self.document.progress.rows == 0
+    }
+
+    /// All rows, in order of time.
+    ///
+    /// # Errors
+    /// [`StoreError::Corrupt`] where a file is missing or damaged, [`StoreError::Io`] where the system refuses.
+    pub fn rows(&self) -> Result<Vec<Row>> {
+        let mut rows = Vec::new();
+        for scalar in SCALARS {
+            let numbers = column::read(&self.root, &self.spec(scalar.name)?, self.len())?;
+            // The length is trusted once the files have shown to hold it.
+            rows.resize(numbers.len(), Row::default());
+            column::fill(&mut rows, scalar.entry, &numbers)
+                .ok_or_else(|| corrupt(&self.root.join(scalar.name), "a count in it is negative"))?;
+        }
+        Ok(rows)
+    }
+
+    /// One scalar of every row, by its name in [`SCALARS`], in its unit.
+    ///
+    /// # Errors
+    /// [`StoreError::Missing`] where there is no such scalar, and those of [`rows`](Self::rows).
+    pub fn series(&self, name: &str) -> Result<Vec<f64>> {
+        let Some(scalar) = SCALARS.iter().find(|scalar| scalar.name == name) else {
+            let names: Vec<_> = SCALARS.iter().map(|scalar| scalar.name).collect();
+            return Err(self.missing(format!("series `{name}`"), names.join(", ")));
+        };
+        let numbers = column::read(&self.root, &self.spec(name)?, self.len())?;
+        Ok(numbers
+            .into_iter()
+            .map(|bytes| match scalar.entry {
+                Entry::Real(_) => f64::from_le_bytes(bytes),
+                Entry::Count(_) => i64::from_le_bytes(bytes) as f64,
+            })
+            .collect())
+    }
+
+    /// Times of the stored fields \[s\].
+    pub fn field_times(&self) -> &[f64] {
+        &self.field_times
+    }
+
+    /// Rows of the stored fields.
+    pub fn field_steps(&self) -> &[usize] {
+        &self.field_steps
+    }
+
+    /// Number of the stored instant that `at` means.
+    ///
+    /// # Errors
+    /// [`StoreError::Missing`] where there is none.
+    pub fn index(&self, at: At) -> Result<usize> {
+        let times = &self.field_times;
+        let found = match at {
+            At::Index(index) => (index < times.len()).then_some(index),
+            At::Last => times.len().checked_sub(1),
+            At::Time(time) => {
+                let distance = |t: &f64| (t - time).abs();
+                let mut candidates = times.iter().enumerate().filter(|(_, t)| distance(t).is_finite());
+                let first = candidates.next();
+                let nearest = first.map(|first| {
+                    candidates.fold(
+                        first,
+                        |best, next| if distance(next.1) <= distance(best.1) { next } else { best },
+                    )
+                });
+                nearest.map(|(index, _)| index)
+            }
+        };
+        found.ok_or_else(|| {
+            let what = match at {
+                At::Index(index) => format!("fields of number {index}"),
+                At::Time(time) => format!("fields at {time} s"),
+                At::Last => "fields".to_owned(),
+            };
+            let available = match times[..] {
+                [] => "fields at no time yet".to_owned(),
+                [first, .., last] => format!("fields at {} times from {first} s to {last} s", times.len()),
+                [only] => format!("fields at {only} s"),
+            };
+            self.missing(what, available)
+        })
+    }
+
+    /// A field at a stored instant, in the unit of its kind (shape of the grid, axes x and y).
+    /// The contact state comes as 0, 1, 2.
+    ///
+    /// # Errors
+    /// [`StoreError::Missing`] where the kind or the instant was not kept, [`StoreError::Corrupt`] where a
+    /// file is missing or damaged, [`StoreError::Io`] where the system refuses.
+    pub fn field(&self, kind: FieldKind, at: At) -> Result<Array2<f64>> {
+        if kind == FieldKind::Contact {
+            return Ok(self.contact(at)?.mapv(f64::from));
+        }
+        let (chunks, index) = self.field_chunks(kind, at)?;
+        chunks.read_map(&[index], self.header().grid.shape())
+    }
+
+    /// The contact state at a stored instant: 0 out of contact, 1 in contact, 2 at the hardness.
+    ///
+    /// # Errors
+    /// As of [`field`](Self::field).
+    pub fn contact(&self, at: At) -> Result<Array2<u8>> {
+        let (chunks, index) = self.field_chunks(FieldKind::Contact, at)?;
+        chunks.read_map(&[index], self.header().grid.shape())
+    }
+
+    /// The undeformed gap \[m\].
+    ///
+    /// # Errors
+    /// [`StoreError::Corrupt`] where a file is missing or damaged, [`StoreError::Io`] where the system refuses.
+    pub fn initial_gap(&self) -> Result<Array2<f64>> {
+        Chunks::new(&self.root, &self.spec("initial_gap")?)?.read_map(&[], self.header().grid.shape())
+    }
+
+    pub(super) fn into_document(self) -> Document {
+        self.document
+    }
+
+    fn field_chunks(&self, kind: FieldKind, at: At) -> Result<(Chunks, u64)> {
+        let kept = &self.header().fields;
+        if !kept.contains(&kind) {
+            let names: Vec<_> = kept.iter().map(|kind| kind.name()).collect();
+            let available = if names.is_empty() {
+                "no fields".to_owned()
+            } else {
+                format!("the fields {}", names.join(", "))
+            };
+            return Err(self.missing(format!("field `{kind}`"), available));
+        }
+        let index = self.index(at)? as u64;
+        Ok((Chunks::new(&self.root, &self.spec(kind.name())?)?, index))
+    }
+
+    fn spec(&self, name: &str) -> Result<ArraySpec> {
+        let spec = self.document.arrays().into_iter().find(|spec| spec.name == name);
+        spec.ok_or_else(|| self.missing(format!("array `{name}`"), "the arrays of a result".into()))
+    }
+
+    fn missing(&self, what: String, available: String) -> StoreError {
+        StoreError::Missing { path: self.root.clone(), what, available }
+    }
+}

@@ -1,0 +1,136 @@
+//! Going on with a run that stopped.
+
+use std::path::Path;
+
+use asperity::march::Checkpoint;
+use ndarray::ArrayView2;
+
+use super::checkpoint;
+use super::document::{Document, Pages};
+use super::error::{Result, StoreError};
+use super::header::{Header, Status};
+use super::reader::Reader;
+use super::writer::{Writer, lock, remove};
+
+impl Writer {
+    /// Opens the result at `path` to go on from its checkpoint. Rows and fields after the checkpoint
+    /// are taken back (the run computes them again, to the same bits); without a checkpoint all are,
+    /// and the run starts anew.
+    ///
+    /// # Errors
+    /// [`StoreError::Mismatch`] where `header` or `initial_gap` \[m\] is not that of the result (the case,
+    /// or a file that it names, has changed); [`StoreError::Complete`] where nothing is left to do;
+    /// [`StoreError::Busy`] where another process is writing it; [`StoreError::NotAResult`],
+    /// [`StoreError::Newer`], [`StoreError::Corrupt`] and [`StoreError::Io`] as of [`Reader::open`].
+    pub fn resume(
+        path: &Path,
+        header: &Header,
+        initial_gap: ArrayView2<'_, f64>,
+    ) -> Result<(Writer, Option<Checkpoint>)> {
+        let reader = Reader::open(path)?;
+        let held = lock(path)?;
+        // Once more: a run that ended meanwhile has changed it.
+        let reader = if held.is_some() { Reader::open(path)? } else { reader };
+        compare(path, reader.header(), header)?;
+        if reader.status() == Status::Complete {
+            return Err(StoreError::Complete { path: path.to_owned(), rows: reader.len() });
+        }
+        compare_gap(path, reader.initial_gap()?.view(), initial_gap)?;
+
+        let checkpoint = checkpoint::read(path)?;
+        let rows = checkpoint.as_ref().map_or(0, |checkpoint| checkpoint.step);
+        if rows > reader.len() {
+            let what = format!("it is of row {rows}, but {} rows are stored", reader.len());
+            return Err(checkpoint::damaged(&checkpoint::path(path), what));
+        }
+        let all = reader.rows()?;
+        let maps = reader.field_steps().iter().take_while(|step| **step < rows).count();
+
+        let Document { header: mut kept, mut progress } = reader.into_document();
+        let stored_maps = std::mem::replace(&mut progress.maps, maps);
+        progress.rows = rows;
+        progress.status = Status::Running;
+        progress.work.message = None;
+        progress.work.iterations = all[..rows].iter().map(|row| row.iterations as u64).sum();
+        progress.work.convolutions = all[..rows].iter().map(|row| row.convolutions as u64).sum();
+        if !kept.version.split(", ").any(|version| version == header.version) {
+            kept.version = format!("{}, {}", kept.version, header.version);
+        }
+        kept.rows_expected = header.rows_expected;
+        let document = Document { header: kept, progress };
+        let mut pages = Pages::new(&document);
+        pages.commit(path, &document.progress)?;
+        pages.write_arrays(path)?;
+        // The map after the last one counted may have been half written.
+        for kind in &document.header.fields {
+            for map in maps..=stored_maps {
+                remove(&path.join(kind.name()).join("c").join(map.to_string()))?;
+            }
+        }
+        let last_time = all[..rows].last().map_or(f64::NEG_INFINITY, |row| row.time);
+        Ok((Writer::attach(path, document, held, last_time)?, checkpoint))
+    }
+}
+
+/// Compares what decides the numbers of a run.
+fn compare(path: &Path, stored: &Header, given: &Header) -> Result<()> {
+    let mismatch = |what: &str, stored: String, given: String| {
+        Err(StoreError::Mismatch { path: path.to_owned(), what: what.to_owned(), stored, given })
+    };
+    if stored.case_text != given.case_text {
+        let mut lines = (stored.case_text.lines(), given.case_text.lines());
+        let mut number = 0;
+        let quote = |line: Option<&str>| line.map_or("missing".into(), |line| format!("`{}`", line.trim()));
+        loop {
+            number += 1;
+            let (old, new) = (lines.0.next(), lines.1.next());
+            if old != new {
+                return mismatch(&format!("line {number} of the case"), quote(old), quote(new));
+            }
+            if old.is_none() {
+                return mismatch("the case", "of other line ends".into(), "not".into());
+            }
+        }
+    }
+    if stored.grid != given.grid {
+        let name = |header: &Header| {
+            let ([nx, ny], [lx, ly]) = (header.grid.cells(), header.grid.size());
+            format!("{nx} x {ny} cells over {lx:e} m x {ly:e} m")
+        };
+        return mismatch("the grid", name(stored), name(given));
+    }
+    if stored.fields != given.fields {
+        let names = |header: &Header| {
+            let names: Vec<_> = header.fields.iter().map(|kind| kind.name()).collect();
+            if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+        };
+        return mismatch("the list of fields", names(stored), names(given));
+    }
+    let keys = stored.setup.keys().chain(given.setup.keys());
+    for key in keys {
+        let (old, new) = (stored.setup.get(key), given.setup.get(key));
+        if old != new {
+            let show = |value: Option<&serde_json::Value>| value.map_or("missing".into(), |v| v.to_string());
+            return mismatch(&format!("`{key}`"), show(old), show(new));
+        }
+    }
+    Ok(())
+}
+
+/// The surfaces may come from files that have changed.
+fn compare_gap(path: &Path, stored: ArrayView2<'_, f64>, given: ArrayView2<'_, f64>) -> Result<()> {
+    let mismatch = |what: String, stored: String, given: String| {
+        Err(StoreError::Mismatch { path: path.to_owned(), what, stored, given })
+    };
+    if stored.dim() != given.dim() {
+        let show = |(nx, ny): (usize, usize)| format!("{nx} x {ny}");
+        return mismatch("the shape of the undeformed gap".into(), show(stored.dim()), show(given.dim()));
+    }
+    for ((cell, old), new) in stored.indexed_iter().zip(given) {
+        if old.to_bits() != new.to_bits() {
+            let what = format!("the undeformed gap at cell ({}, {})", cell.0, cell.1);
+            return mismatch(what, format!("{old:e} m"), format!("{new:e} m (has a surface changed?)"));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,354 @@
+//! The writing end of a result.
+
+use std::fs::{self, File, TryLockError};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use asperity::march::{Checkpoint, Row};
+use ndarray::ArrayView2;
+
+use super::checkpoint;
+use super::chunks::Chunks;
+use super::column::Column;
+use super::create;
+use super::document::{Document, Pages};
+use super::error::{Result, StoreError, input, io};
+use super::header::{Header, Progress, Status, Work};
+use super::layout::{Entry, FieldKind, SCALARS};
+
+/// The arrays' own documents are brought up to date when they have lagged this long.
+const LAG: Duration = Duration::from_secs(1);
+/// A checkpoint is due when the time since the last is this many times what its writing took.
+const CHECKPOINT_SHARE: u32 = 100;
+
+/// A field of one step, to be kept.
+#[derive(Clone, Copy, Debug)]
+pub enum Field<'a> {
+    /// Pressure \[Pa\].
+    Pressure(ArrayView2<'a, f64>),
+    /// Gap \[m\].
+    Gap(ArrayView2<'a, f64>),
+    /// Normal displacement \[m\].
+    Displacement(ArrayView2<'a, f64>),
+    /// 0 out of contact, 1 in contact, 2 at the hardness.
+    Contact(ArrayView2<'a, u8>),
+}
+
+impl Field<'_> {
+    /// Its kind.
+    pub fn kind(&self) -> FieldKind {
+        match self {
+            Field::Pressure(_) => FieldKind::Pressure,
+            Field::Gap(_) => FieldKind::Gap,
+            Field::Displacement(_) => FieldKind::Displacement,
+            Field::Contact(_) => FieldKind::Contact,
+        }
+    }
+
+    fn dim(&self) -> (usize, usize) {
+        match self {
+            Field::Pressure(map) | Field::Gap(map) | Field::Displacement(map) => map.dim(),
+            Field::Contact(map) => map.dim(),
+        }
+    }
+}
+
+/// How a run ended.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// How far it came.
+    pub status: Status,
+    /// Why it stopped, where it is not complete.
+    pub message: Option<String>,
+    /// Largest memory of the process \[byte\], where measured.
+    pub peak_memory_bytes: Option<u64>,
+    /// Threads used, where known.
+    pub threads: Option<usize>,
+}
+
+impl Outcome {
+    /// An end without further particulars.
+    pub fn new(status: Status) -> Self {
+        Outcome { status, message: None, peak_memory_bytes: None, threads: None }
+    }
+}
+
+/// A result that is being written.
+///
+/// A step is handed to the operating system as a whole before [`append`](Self::append) returns, so that
+/// a process killed at any instant leaves a readable result with every step appended before.
+/// (Nothing is synchronised to the medium: what a loss of power takes is up to the file system.)
+/// Dropped without [`finish`](Self::finish), the result stays as that of a killed run.
+pub struct Writer {
+    root: PathBuf,
+    header: Header,
+    progress: Progress,
+    pages: Pages,
+    columns: Vec<(Entry, Column)>,
+    field_time: Column,
+    field_step: Column,
+    fields: Vec<(FieldKind, Chunks)>,
+    last_time: f64,
+    wall_before: f64,
+    started: Instant,
+    documents_written: Instant,
+    documents_behind: bool,
+    checkpoint: Option<(Instant, Duration)>,
+    _lock: Option<File>,
+}
+
+impl std::fmt::Debug for Writer {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Writer").field("root", &self.root).field("rows", &self.progress.rows).finish()
+    }
+}
+
+impl Writer {
+    /// Starts a result at `path`, with no rows yet. `initial_gap` \[m\] has the shape of the grid.
+    ///
+    /// With `force` a result that is there already is replaced. The directory appears as a whole:
+    /// a failure on the way leaves what was there.
+    ///
+    /// # Errors
+    /// [`StoreError::Exists`] where something is at `path` and `force` is not set;
+    /// [`StoreError::Foreign`] where it is not a result or holds other files, which are never removed;
+    /// [`StoreError::Busy`] where a run is writing it; [`StoreError::Input`] where the shape is wrong;
+    /// [`StoreError::Io`] where the system refuses.
+    pub fn create(
+        path: &Path,
+        header: &Header,
+        initial_gap: ArrayView2<'_, f64>,
+        force: bool,
+    ) -> Result<Writer> {
+        check_shape("shape of the initial gap", initial_gap.dim(), header)?;
+        if let Some(kind) =
+            header.fields.iter().find(|kind| header.fields.iter().filter(|k| k == kind).count() > 1)
+        {
+            return Err(input("fields of the result", format!("{kind} twice"), "each named once"));
+        }
+        let document = Document { header: header.clone(), progress: Progress::default() };
+        let lock = create::publish(path, force, |root| {
+            create::write_constants(root, &document, initial_gap)?;
+            let mut pages = Pages::new(&document);
+            pages.write_arrays(root)?;
+            pages.commit(root, &document.progress)
+        })?;
+        Writer::attach(path, document, lock, f64::NEG_INFINITY)
+    }
+
+    /// A writer that goes on after the rows and fields of `document`.
+    pub(super) fn attach(
+        root: &Path,
+        document: Document,
+        lock: Option<File>,
+        last_time: f64,
+    ) -> Result<Writer> {
+        let specs = document.arrays();
+        let spec = |name: &str| {
+            specs.iter().find(|spec| spec.name == name).ok_or_else(|| input("array", name, "one of a result"))
+        };
+        let columns = SCALARS.iter().map(|s| Ok((s.entry, Column::new(root, spec(s.name)?)?)));
+        let fields = document.header.fields.iter();
+        let fields = fields.map(|kind| Ok((*kind, Chunks::new(root, spec(kind.name())?)?)));
+        Ok(Writer {
+            columns: columns.collect::<Result<_>>()?,
+            field_time: Column::new(root, spec("field_time")?)?,
+            field_step: Column::new(root, spec("field_step")?)?,
+            fields: fields.collect::<Result<_>>()?,
+            root: root.to_owned(),
+            last_time,
+            wall_before: document.progress.work.wall_s,
+            started: Instant::now(),
+            documents_written: Instant::now(),
+            documents_behind: false,
+            checkpoint: None,
+            pages: Pages::new(&document),
+            header: document.header,
+            progress: document.progress,
+            _lock: lock,
+        })
+    }
+
+    /// The directory of the result.
+    pub fn path(&self) -> &Path {
+        &self.root
+    }
+
+    /// Rows stored so far.
+    pub fn len(&self) -> usize {
+        self.progress.rows
+    }
+
+    /// Whether no row is stored yet.
+    pub fn is_empty(&self) -> bool {
+        self.progress.rows == 0
+    }
+
+    /// Work done so far, with that of the sessions before a resume.
+    pub fn work(&self) -> &Work {
+        &self.progress.work
+    }
+
+    /// Appends a step: its row and, where the step is one whose fields are kept, all fields of the
+    /// header (in any order; none otherwise).
+    ///
+    /// # Errors
+    /// [`StoreError::Input`] where the fields are not those of the header or time runs backwards;
+    /// [`StoreError::Io`] where the system refuses, for example on a full disk. The step is then not
+    /// stored, those before it are, and the same step may be appended again.
+    pub fn append(&mut self, row: &Row, fields: &[Field<'_>]) -> Result<()> {
+        if row.time.is_nan() || row.time < self.last_time {
+            let expected = format!("not less than the time before it, {} s", self.last_time);
+            return Err(input("time of the row", format!("{} s", row.time), expected));
+        }
+        self.check_fields(fields)?;
+        let Progress { rows, maps, .. } = self.progress;
+        for (entry, column) in &mut self.columns {
+            column.put(rows, entry.to_bytes(row))?;
+        }
+        for field in fields {
+            let index = [maps as u64];
+            let Some((_, chunks)) = self.fields.iter().find(|(kind, _)| *kind == field.kind()) else {
+                continue;
+            };
+            match field {
+                Field::Pressure(map) | Field::Gap(map) | Field::Displacement(map) => {
+                    chunks.write_map(&index, *map)?;
+                }
+                Field::Contact(map) => chunks.write_map(&index, *map)?,
+            }
+        }
+        let mut progress = self.progress.clone();
+        if !fields.is_empty() {
+            self.field_time.put(maps, row.time.to_le_bytes())?;
+            self.field_step.put(maps, (rows as i64).to_le_bytes())?;
+            progress.maps += 1;
+        }
+        progress.rows += 1;
+        progress.work.iterations += row.iterations as u64;
+        progress.work.convolutions += row.convolutions as u64;
+        progress.work.wall_s = self.wall();
+        self.pages.commit(&self.root, &progress)?;
+        self.progress = progress;
+        self.last_time = row.time;
+        self.documents_behind = true;
+        if self.documents_written.elapsed() > LAG {
+            self.flush_documents()?;
+        }
+        Ok(())
+    }
+
+    /// Whether writing a checkpoint now keeps the writing of all of them below 1 % of the time. A killed run
+    /// repeats what came after its last checkpoint.
+    pub fn checkpoint_due(&self) -> bool {
+        self.checkpoint.is_none_or(|(at, cost)| at.elapsed() > CHECKPOINT_SHARE * cost)
+    }
+
+    /// Replaces the checkpoint by the state after the last row appended.
+    ///
+    /// # Errors
+    /// [`StoreError::Input`] where the checkpoint is not of the rows stored; [`StoreError::Io`] where the
+    /// system refuses (the checkpoint before it is kept).
+    pub fn checkpoint(&mut self, checkpoint: &Checkpoint) -> Result<()> {
+        if checkpoint.step != self.progress.rows {
+            let expected = format!("{}, the rows stored", self.progress.rows);
+            return Err(input("step of the checkpoint", checkpoint.step, expected));
+        }
+        let start = Instant::now();
+        checkpoint::write(&self.root, checkpoint)?;
+        self.checkpoint = Some((Instant::now(), start.elapsed()));
+        Ok(())
+    }
+
+    /// Ends the result. Where the run is complete its checkpoint is removed, otherwise it is kept for
+    /// [`resume`](Self::resume).
+    ///
+    /// # Errors
+    /// [`StoreError::Io`] where the system refuses.
+    pub fn finish(mut self, outcome: &Outcome) -> Result<Work> {
+        let wall = self.wall();
+        let Progress { status, work, .. } = &mut self.progress;
+        *status = outcome.status;
+        work.message = outcome.message.clone();
+        work.peak_memory_bytes = work.peak_memory_bytes.max(outcome.peak_memory_bytes);
+        work.threads = outcome.threads.or(work.threads);
+        work.wall_s = wall;
+        self.pages.commit(&self.root, &self.progress)?;
+        self.flush_documents()?;
+        if outcome.status == Status::Complete {
+            checkpoint::remove(&self.root)?;
+        }
+        self.pages.tidy(&self.root);
+        Ok(self.progress.work.clone())
+    }
+
+    fn wall(&self) -> f64 {
+        self.wall_before + self.started.elapsed().as_secs_f64()
+    }
+
+    fn check_fields(&self, fields: &[Field<'_>]) -> Result<()> {
+        let header = &self.header;
+        for field in fields {
+            check_shape(&format!("shape of the {}", field.kind()), field.dim(), header)?;
+        }
+        let same = fields.len() == self.fields.len()
+            && self.fields.iter().all(|(kind, _)| fields.iter().any(|field| field.kind() == *kind));
+        if fields.is_empty() || same {
+            return Ok(());
+        }
+        let names = |kinds: &mut dyn Iterator<Item = FieldKind>| {
+            kinds.map(|kind| kind.name()).collect::<Vec<_>>().join(", ")
+        };
+        let given = names(&mut fields.iter().map(Field::kind));
+        let expected = names(&mut header.fields.iter().copied());
+        Err(input("fields of the step", given, format!("those of the result: {expected}")))
+    }
+
+    fn flush_documents(&mut self) -> Result<()> {
+        self.pages.write_arrays(&self.root)?;
+        self.documents_written = Instant::now();
+        self.documents_behind = false;
+        Ok(())
+    }
+}
+
+impl Drop for Writer {
+    fn drop(&mut self) {
+        if self.documents_behind {
+            // Nobody is left to tell; readers of the group's document miss nothing.
+            let _ = self.flush_documents();
+        }
+    }
+}
+
+/// Takes the result at `root` for writing. The system frees it when the process ends, however it ends.
+pub(super) fn lock(root: &Path) -> Result<Option<File>> {
+    // Not every file system can lock, nor can every system open a directory: there, nothing is held.
+    let Ok(directory) = File::open(root) else { return Ok(None) };
+    // A reader that looks whether the result is being written holds it for an instant.
+    for pause in [1, 5, 25, 100, 0] {
+        match directory.try_lock() {
+            Ok(()) => return Ok(Some(directory)),
+            Err(TryLockError::Error(_)) => return Ok(None),
+            Err(TryLockError::WouldBlock) => std::thread::sleep(Duration::from_millis(pause)),
+        }
+    }
+    Err(StoreError::Busy { path: root.to_owned() })
+}
+
+fn check_shape(what: &str, (nx, ny): (usize, usize), header: &Header) -> Result<()> {
+    if (nx, ny) == header.grid.shape() {
+        return Ok(());
+    }
+    let [mx, my] = header.grid.cells();
+    Err(input(what, format!("{nx} x {ny}"), format!("that of the grid, {mx} x {my}")))
+}
+
+/// Removes a file or directory of a result; nothing happens where it is absent.
+pub(super) fn remove(path: &Path) -> Result<()> {
+    let removed = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
+    match removed {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(io("remove", path)(error)),
+        _ => Ok(()),
+    }
+}

@@ -1,0 +1,296 @@
+//! Damaged and hostile results are answered: no panic, no hang, no number that was not written.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use asperity_io::store::{At, FieldKind, Reader, Result, StoreError, Writer};
+use proptest::prelude::*;
+use proptest::test_runner::{RngAlgorithm, TestRng};
+
+use crate::{Case, bits, place};
+
+const FIELDS: [FieldKind; 2] = [FieldKind::Pressure, FieldKind::Contact];
+
+fn case() -> Case {
+    Case::new([40, 30], &FIELDS)
+}
+
+fn write(path: &Path) {
+    let case = case();
+    let mut writer = Writer::create(path, &case.header, case.gap.view(), false).unwrap();
+    case.run(&mut writer, 0, 4);
+    writer.checkpoint(&case.checkpoint(4)).unwrap();
+}
+
+/// Reads all there is.
+fn read_all(path: &Path) -> Result<()> {
+    let reader = Reader::open(path)?;
+    reader.rows()?;
+    reader.initial_gap()?;
+    for index in 0..reader.field_times().len() {
+        for kind in reader.header().fields.clone() {
+            reader.field(kind, At::Index(index))?;
+        }
+    }
+    Ok(())
+}
+
+fn edit(path: &Path, change: impl Fn(&mut serde_json::Value)) {
+    let file = path.join("zarr.json");
+    let mut document = serde_json::from_slice(&fs::read(&file).unwrap()).unwrap();
+    change(&mut document);
+    fs::write(&file, document.to_string()).unwrap();
+}
+
+/// The error after a change of the group's document.
+fn after(change: impl Fn(&mut serde_json::Value)) -> StoreError {
+    let (_directory, path) = place();
+    write(&path);
+    edit(&path, change);
+    read_all(&path).unwrap_err()
+}
+
+#[test]
+fn what_is_no_result_is_said_to_be_none() {
+    let (directory, path) = place();
+    let why = |path: &Path| match Reader::open(path) {
+        Err(StoreError::NotAResult { why, .. }) => why,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(why(&path), "there is no such file or directory");
+    assert_eq!(why(directory.path()), "it has no zarr.json");
+    fs::write(&path, "x").unwrap();
+    assert_eq!(why(&path), "it is a file, a result is a directory");
+    fs::remove_file(&path).unwrap();
+    write(&path);
+    assert_eq!(why(&path.join("load")), "its Zarr group lacks the attribute format = \"asperity-result\"");
+}
+
+#[test]
+fn a_later_form_is_said_to_be_later() {
+    let error = after(|document| {
+        document["attributes"]["schema"] = 2.into();
+        document["attributes"]["version"] = "7.1.0".into();
+    });
+    assert!(matches!(error, StoreError::Newer { schema: 2, known: 1, .. }));
+    assert!(error.to_string().ends_with(
+        "was written by asperity 7.1.0 in form 2, this version reads up to form 1; update asperity"
+    ));
+}
+
+#[test]
+fn attributes_out_of_order_are_named() {
+    for key in ["title", "version", "schema", "case", "setup", "status", "cells", "size", "fields"] {
+        for value in [serde_json::Value::Null, "7".into(), serde_json::json!([-1, 2]), serde_json::json!({})]
+        {
+            if (key, &value) == ("title", &"7".into()) || [("version"), "case"].contains(&key) && value == "7"
+            {
+                continue; // any text will do
+            }
+            let error = after(|document| document["attributes"][key] = value.clone());
+            assert!(matches!(error, StoreError::Corrupt { .. }), "{key} = {value}: {error}");
+            assert!(error.to_string().contains(key), "{error}");
+        }
+    }
+}
+
+#[test]
+fn absurd_sizes_ask_for_no_memory() {
+    let shape = |name: &str, n: u64| {
+        let pointer = format!("/consolidated_metadata/metadata/{name}/shape/0");
+        move |document: &mut serde_json::Value| *document.pointer_mut(&pointer).unwrap() = n.into()
+    };
+    for n in [5000, 1 << 40, u64::MAX] {
+        assert!(matches!(after(shape("time", n)), StoreError::Corrupt { .. }));
+        assert!(matches!(after(shape("field_time", n)), StoreError::Corrupt { .. }));
+    }
+    // A grid of 2^31 cells, all arrays in accord, but hardly any file.
+    let error = after(|document| {
+        let (nx, ny) = (1u64 << 16, 1u64 << 15);
+        document["attributes"]["cells"] = serde_json::json!([nx, ny]);
+        let arrays = document["consolidated_metadata"]["metadata"].as_object_mut().unwrap();
+        for (name, array) in arrays {
+            let lead =
+                array["shape"].as_array().unwrap().len() - 2.min(array["shape"].as_array().unwrap().len());
+            match name.as_str() {
+                "x" | "y" => {
+                    let n = if name == "x" { nx } else { ny };
+                    array["shape"] = serde_json::json!([n]);
+                    array["chunk_grid"]["configuration"]["chunk_shape"] = serde_json::json!([n]);
+                }
+                "initial_gap" | "pressure" | "contact" => {
+                    for (k, n) in [(lead, nx), (lead + 1, ny)] {
+                        array["shape"][k] = n.into();
+                        array["chunk_grid"]["configuration"]["chunk_shape"][k] = 256.into();
+                    }
+                }
+                _ => {}
+            }
+        }
+    });
+    assert!(error.to_string().contains("the chunk is missing"), "{error}");
+}
+
+#[test]
+fn a_lost_chunk_is_not_taken_for_data() {
+    for chunk in ["load/c/0", "field_step/c/0", "initial_gap/c/0/0", "pressure/c/1/0/0", "contact/c/0/0/0"] {
+        let (_directory, path) = place();
+        write(&path);
+        fs::remove_file(path.join(chunk)).unwrap();
+        let error = read_all(&path).unwrap_err();
+        assert!(error.to_string().contains(chunk) && error.to_string().contains("missing"), "{error}");
+    }
+}
+
+#[test]
+fn a_damaged_map_is_found_by_its_checksum() {
+    let (_directory, path) = place();
+    write(&path);
+    let case = case();
+    let mut found = 0;
+    let mut damages = 0;
+    for chunk in ["initial_gap/c/0/0", "pressure/c/1/0/0", "contact/c/0/0/0"] {
+        let file = path.join(chunk);
+        let sound = fs::read(&file).unwrap();
+        // Beyond the ten bytes of the header of gzip, which say nothing of the numbers.
+        for position in (10..sound.len()).step_by(1 + sound.len() / 50) {
+            let mut damaged = sound.clone();
+            damaged[position] ^= 0x10;
+            fs::write(&file, &damaged).unwrap();
+            damages += 1;
+            match read_all(&path) {
+                Err(StoreError::Corrupt { .. }) => found += 1,
+                Err(error) => panic!("{error}"),
+                // Five bits before a block that is not compressed mean nothing.
+                Ok(()) => {
+                    let reader = Reader::open(&path).unwrap();
+                    assert_eq!(bits(&reader.initial_gap().unwrap()), bits(&case.gap));
+                    let pressure = reader.field(FieldKind::Pressure, At::Last).unwrap();
+                    assert_eq!(bits(&pressure), bits(&case.pressure(2)));
+                    assert_eq!(reader.contact(At::Index(0)).unwrap(), case.contact(0));
+                }
+            }
+        }
+        fs::write(&file, &sound).unwrap();
+    }
+    assert!(damages > 100 && found > damages - 5, "{found} of {damages} found");
+    read_all(&path).unwrap();
+}
+
+#[test]
+fn a_damaged_checkpoint_is_not_resumed_from() {
+    let (_directory, path) = place();
+    write(&path);
+    let (file, case) = (path.join("checkpoint/state.bin"), case());
+    let sound = fs::read(&file).unwrap();
+    let mut copies: Vec<Vec<u8>> = (0..sound.len())
+        .step_by(1 + sound.len() / 60)
+        .map(|position| {
+            let mut damaged = sound.clone();
+            damaged[position] ^= 0x04;
+            damaged
+        })
+        .collect();
+    copies.extend((0..sound.len()).step_by(1 + sound.len() / 20).map(|length| sound[..length].to_vec()));
+    copies.push([&sound[..], &[0]].concat());
+    for damaged in copies {
+        fs::write(&file, damaged).unwrap();
+        let error = Writer::resume(&path, &case.header, case.gap.view()).unwrap_err();
+        assert!(matches!(error, StoreError::Corrupt { .. }), "{error}");
+        assert!(error.to_string().contains("remove it, then --resume starts from the beginning"), "{error}");
+    }
+    assert_eq!(Reader::open(&path).unwrap().len(), 4);
+    fs::remove_file(&file).unwrap();
+    let (writer, state) = Writer::resume(&path, &case.header, case.gap.view()).unwrap();
+    assert!(state.is_none() && writer.is_empty());
+}
+
+#[test]
+fn a_checkpoint_of_rows_that_are_not_there_is_refused() {
+    let (_directory, path) = place();
+    write(&path);
+    let state = fs::read(path.join("checkpoint/state.bin")).unwrap();
+    let case = case();
+    let mut writer = Writer::create(&path, &case.header, case.gap.view(), true).unwrap();
+    case.run(&mut writer, 0, 2);
+    writer.checkpoint(&case.checkpoint(2)).unwrap();
+    drop(writer);
+    fs::write(path.join("checkpoint/state.bin"), state).unwrap();
+    let error = Writer::resume(&path, &case.header, case.gap.view()).unwrap_err();
+    assert!(error.to_string().contains("it is of row 4, but 2 rows are stored"), "{error}");
+}
+
+fn files(directory: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let mut entries: Vec<_> = fs::read_dir(directory).unwrap().map(|entry| entry.unwrap().path()).collect();
+    entries.sort();
+    for path in entries {
+        if path.is_dir() { found.extend(files(&path)) } else { found.push(path) }
+    }
+    found
+}
+
+/// Any file cut, grown or with bytes changed gets an answer.
+#[test]
+fn any_damage_is_answered() {
+    let (_directory, path) = place();
+    write(&path);
+    let sound: Vec<_> = files(&path).into_iter().map(|file| (fs::read(&file).unwrap(), file)).collect();
+    let case = case();
+    let damage = (
+        any::<prop::sample::Index>(),
+        any::<prop::sample::Index>(),
+        prop::collection::vec(any::<u8>(), 0..9),
+        any::<bool>(),
+    );
+    let config = ProptestConfig { cases: 100, failure_persistence: None, ..ProptestConfig::default() };
+    let mut runner = proptest::test_runner::TestRunner::new_with_rng(
+        config,
+        TestRng::deterministic_rng(RngAlgorithm::ChaCha),
+    );
+    let answered = runner.run(&damage, |(which, at, bytes, cut)| {
+        let (contents, file) = which.get(&sound);
+        let mut contents = contents.clone();
+        let position = at.index(contents.len().max(1));
+        if cut {
+            contents.truncate(position);
+        }
+        let end = contents.len().min(position + bytes.len());
+        contents.splice(position.min(end)..end, bytes);
+        fs::write(file, &contents).unwrap();
+        let _ = read_all(&path);
+        if Writer::resume(&path, &case.header, case.gap.view()).is_ok() {
+            // It has taken rows back.
+            fs::remove_dir_all(&path).unwrap();
+            for (contents, file) in &sound {
+                fs::create_dir_all(file.parent().unwrap()).unwrap();
+                fs::write(file, contents).unwrap();
+            }
+        }
+        fs::write(file, which.get(&sound).0.as_slice()).unwrap();
+        read_all(&path).map_err(|error| TestCaseError::fail(error.to_string()))
+    });
+    answered.unwrap();
+}
+
+#[test]
+fn a_result_is_the_same_for_any_number_of_threads() {
+    let case = Case::new([600, 300], &FIELDS);
+    let mut all = Vec::new();
+    for threads in [1, 3] {
+        let (_directory, path) = place();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let mut writer = Writer::create(&path, &case.header, case.gap.view(), false).unwrap();
+            case.run(&mut writer, 0, 1);
+        });
+        let chunks: Vec<_> =
+            files(&path).into_iter().filter(|file| !file.to_string_lossy().contains(".json")).collect();
+        let contents: Vec<_> = chunks.iter().map(|file| fs::read(file).unwrap()).collect();
+        let read =
+            pool.install(|| Reader::open(&path).unwrap().field(FieldKind::Pressure, At::Last).unwrap());
+        assert_eq!(bits(&read), bits(&case.pressure(0)));
+        all.push(contents);
+    }
+    assert_eq!(all[0], all[1]);
+}

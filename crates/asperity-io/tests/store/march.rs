@@ -1,0 +1,96 @@
+//! A march that was stopped and resumed by way of its result ends with the bits of one that was not.
+
+use asperity::march::{March, Simulation};
+use asperity::material::{Creep, CreepTerm};
+use asperity::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
+use asperity::time::TimeGrid;
+use asperity::{Control, Grid, History, Loading};
+use asperity_io::store::{At, Field, FieldKind, Outcome, Reader, Status, Writer};
+use ndarray::Array2;
+
+use crate::{Case, bits, place, row_bits};
+
+const FIELDS: [FieldKind; 4] = FieldKind::ALL;
+
+/// A rough sphere on a Zener solid under a load that jumps, cut off by a hardness.
+fn simulation() -> Simulation {
+    let grid = Grid::new([32, 24], [1e-3, 0.75e-3]).unwrap();
+    let sphere = Part::Shape { shape: Shape::Sphere { radius: 10e-3 }, center: [0.0, 0.0] };
+    let roughness = Part::SelfAffine(SelfAffine {
+        hurst: 0.8,
+        roughness: Roughness::RmsHeight(2e-7),
+        longest: 5e-4,
+        shortest: 1e-4,
+        roll_off: 5e-4,
+        seed: 1,
+    });
+    let terms = vec![CreepTerm { compliance: 1e-8, retardation_time: 1.0 }];
+    let points = vec![(0.0, 0.2), (1.0, 0.4), (1.0, 0.1), (2.0, 0.3)];
+    Simulation {
+        creep: Creep { instantaneous: 1e-8, terms, fluidity: 1e-9 },
+        hardness: 2e6,
+        loading: Loading { control: Control::Load, history: History::Table { points } },
+        times: TimeGrid::Uniform { end: 3.0, steps: 12 },
+        ..Simulation::new(grid, undeformed_gap(&grid, &[sphere, roughness]).unwrap())
+    }
+}
+
+/// Advances and stores up to row `end`; the fields of every third row.
+fn go(march: &mut March, writer: &mut Writer, end: usize) {
+    let shape = march.simulation().grid.shape();
+    let (mut gap, mut displacement) = (Array2::zeros(shape), Array2::zeros(shape));
+    let mut contact = Array2::zeros(shape);
+    while writer.len() < end {
+        let Some(step) = march.advance().unwrap() else { break };
+        step.gap_into(&mut gap);
+        step.displacement_into(&mut displacement);
+        step.contact_into(&mut contact);
+        let fields = [
+            Field::Pressure(step.pressure()),
+            Field::Gap(gap.view()),
+            Field::Displacement(displacement.view()),
+            Field::Contact(contact.view()),
+        ];
+        let kept = if step.index() % 3 == 0 { &fields[..] } else { &[] };
+        writer.append(&step.row(), kept).unwrap();
+    }
+}
+
+#[test]
+fn a_resumed_march_ends_with_the_same_bits() {
+    let mut header = Case::new([1, 1], &FIELDS).header;
+    header.grid = simulation().grid;
+    let (_directory, whole) = place();
+    let mut march = March::new(simulation()).unwrap();
+    let mut writer = Writer::create(&whole, &header, march.simulation().gap.view(), false).unwrap();
+    go(&mut march, &mut writer, usize::MAX);
+    writer.finish(&Outcome::new(Status::Complete)).unwrap();
+
+    let (_directory, parts) = place();
+    let mut march = March::new(simulation()).unwrap();
+    let mut writer = Writer::create(&parts, &header, march.simulation().gap.view(), false).unwrap();
+    go(&mut march, &mut writer, 5);
+    writer.checkpoint(&march.checkpoint()).unwrap();
+    go(&mut march, &mut writer, 8);
+    drop((march, writer));
+
+    let simulation = simulation();
+    let (mut writer, checkpoint) = Writer::resume(&parts, &header, simulation.gap.view()).unwrap();
+    let mut march = March::resume(simulation, &checkpoint.unwrap()).unwrap();
+    go(&mut march, &mut writer, usize::MAX);
+    writer.finish(&Outcome::new(Status::Complete)).unwrap();
+
+    let (whole, parts) = (Reader::open(&whole).unwrap(), Reader::open(&parts).unwrap());
+    assert_eq!(parts.len(), whole.len());
+    assert!(parts.len() > 13); // the jump is a row of its own
+    for (one, other) in parts.rows().unwrap().iter().zip(whole.rows().unwrap()) {
+        assert_eq!(row_bits(one), row_bits(&other));
+    }
+    assert_eq!(parts.field_steps(), whole.field_steps());
+    for index in 0..whole.field_steps().len() {
+        for kind in FIELDS {
+            let [one, other] = [&parts, &whole].map(|r| bits(&r.field(kind, At::Index(index)).unwrap()));
+            assert_eq!(one, other, "{kind} {index}");
+        }
+    }
+}

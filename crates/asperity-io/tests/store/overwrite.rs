@@ -1,0 +1,120 @@
+//! Nothing is overwritten unasked, nothing but a result is ever removed, nothing is left half-made.
+
+use std::fs;
+use std::path::Path;
+
+use asperity_io::store::{FieldKind, Reader, StoreError, Writer};
+
+use crate::{Case, place};
+
+fn names(directory: &Path) -> Vec<String> {
+    let mut names: Vec<_> =
+        fs::read_dir(directory).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn a_result_is_replaced_by_force_only() {
+    let case = Case::new([4, 3], &[FieldKind::Gap]);
+    let (directory, path) = place();
+    let mut writer = Writer::create(&path, &case.header, case.gap.view(), false).unwrap();
+    case.run(&mut writer, 0, 4);
+    writer.checkpoint(&case.checkpoint(4)).unwrap();
+    drop(writer);
+    let again = Writer::create(&path, &case.header, case.gap.view(), false);
+    assert!(matches!(again, Err(StoreError::Exists { .. })));
+    assert_eq!(Reader::open(&path).unwrap().len(), 4);
+
+    drop(Writer::create(&path, &case.header, case.gap.view(), true).unwrap());
+    assert_eq!(Reader::open(&path).unwrap().len(), 0);
+    assert!(!path.join("checkpoint").exists());
+    assert_eq!(names(directory.path()), ["result.zarr"]);
+    // A path with a closing slash is the same directory.
+    drop(Writer::create(&path.join(""), &case.header, case.gap.view(), true).unwrap());
+    assert_eq!(names(directory.path()), ["result.zarr"]);
+}
+
+#[test]
+fn what_is_not_a_result_is_left_alone() {
+    let case = Case::new([4, 3], &[]);
+    let (directory, path) = place();
+    let refused = |what: &str| {
+        for force in [false, true] {
+            let error = Writer::create(&path, &case.header, case.gap.view(), force).unwrap_err();
+            assert!(matches!(error, StoreError::Foreign { .. }), "{error}");
+            assert!(error.to_string().contains(what), "{error}");
+        }
+    };
+    fs::write(&path, "a file").unwrap();
+    refused("is a file");
+    assert_eq!(fs::read_to_string(&path).unwrap(), "a file");
+    fs::remove_file(&path).unwrap();
+
+    fs::create_dir(&path).unwrap();
+    fs::write(path.join("zarr.json"), r#"{"zarr_format": 3, "node_type": "group", "attributes": {}}"#)
+        .unwrap();
+    refused("is a directory, but not a result");
+    assert_eq!(names(&path), ["zarr.json"]);
+    fs::remove_dir_all(&path).unwrap();
+
+    #[cfg(unix)]
+    {
+        let target = directory.path().join("target.zarr");
+        drop(Writer::create(&target, &case.header, case.gap.view(), false).unwrap());
+        std::os::unix::fs::symlink(&target, &path).unwrap();
+        refused("is a link");
+        fs::remove_file(&path).unwrap();
+        assert!(Reader::open(&target).is_ok());
+        fs::remove_dir_all(&target).unwrap();
+    }
+    assert!(names(directory.path()).is_empty());
+}
+
+#[test]
+fn a_result_that_holds_other_files_is_not_removed() {
+    let case = Case::new([4, 3], &[]);
+    let (_directory, path) = place();
+    drop(Writer::create(&path, &case.header, case.gap.view(), false).unwrap());
+    fs::write(path.join("notes.txt"), "mine").unwrap();
+    let error = Writer::create(&path, &case.header, case.gap.view(), true).unwrap_err();
+    assert!(error.to_string().contains("notes.txt"), "{error}");
+    assert_eq!(fs::read_to_string(path.join("notes.txt")).unwrap(), "mine");
+}
+
+#[test]
+fn a_place_that_cannot_be_written_is_named_and_nothing_is_left() {
+    let case = Case::new([4, 3], &[]);
+    let (directory, path) = place();
+    let error = Writer::create(&path.join("result.zarr"), &case.header, case.gap.view(), false).unwrap_err();
+    let message = error.to_string();
+    assert!(
+        message.contains("cannot write into") && message.contains("make its directory first"),
+        "{message}"
+    );
+    fs::write(&path, "").unwrap();
+    let error = Writer::create(&path.join("result.zarr"), &case.header, case.gap.view(), false).unwrap_err();
+    assert!(matches!(error, StoreError::Io { .. }), "{error}");
+    fs::remove_file(&path).unwrap();
+    for odd in ["..", "/", ""] {
+        assert!(Writer::create(Path::new(odd), &case.header, case.gap.view(), true).is_err());
+    }
+    assert!(names(directory.path()).is_empty());
+}
+
+#[test]
+fn a_step_that_could_not_be_written_can_be_appended_again() {
+    let case = Case::new([4, 3], &[FieldKind::Gap]);
+    let (_directory, path) = place();
+    let mut writer = Writer::create(&path, &case.header, case.gap.view(), false).unwrap();
+    case.run(&mut writer, 0, 2);
+    // The directory of the next map is taken by a file: as good as a full disk.
+    fs::write(path.join("gap/c/1"), "").unwrap();
+    let error = case.append(&mut writer, 2, true).unwrap_err();
+    assert!(matches!(error, StoreError::Io { .. }), "{error}");
+    let reader = Reader::open(&path).unwrap();
+    assert_eq!((reader.len(), reader.field_steps().len(), writer.len()), (2, 1, 2));
+    fs::remove_file(path.join("gap/c/1")).unwrap();
+    case.append(&mut writer, 2, true).unwrap();
+    assert_eq!(Reader::open(&path).unwrap().field_steps(), [0, 2]);
+}

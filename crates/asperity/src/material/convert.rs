@@ -231,6 +231,7 @@ fn bisect(upper: f64, is_before_root: impl Fn(f64) -> bool) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::material::series::tests::random;
 
     fn relative(a: f64, b: f64) -> f64 {
         (a - b).abs() / b.abs().max(f64::MIN_POSITIVE)
@@ -244,18 +245,6 @@ mod tests {
                 relative(a.modulus, b.modulus).max(relative(a.relaxation_time, b.relaxation_time))
             });
         terms.fold(relative(a.equilibrium, b.equilibrium).max(relative(a.viscosity, b.viscosity)), f64::max)
-    }
-
-    /// Deterministic numbers in \[0, 1) (splitmix64).
-    fn random(seed: u64) -> impl FnMut() -> f64 {
-        let mut state = seed;
-        move || {
-            state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
-            let mut z = state;
-            z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-            ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
-        }
     }
 
     fn round_trip(relaxation: &Relaxation) -> f64 {

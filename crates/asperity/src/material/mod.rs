@@ -9,11 +9,22 @@
 mod body;
 mod convert;
 mod creep;
+mod data;
+mod fit;
+mod fractional;
+mod mittag_leffler;
 mod models;
+mod nnls;
+mod prony_sum;
+mod quadrature;
+mod refine;
 mod relaxation;
 mod series;
+mod spectrum;
 
 pub use body::{Body, Lateral, pair_creep, pair_hardness};
 pub use creep::{Creep, CreepTerm};
+pub use fit::{Fit, FitOptions, LongTime, Misfit, fit_creep, fit_dma, fit_relaxation};
+pub use fractional::{Approximation, Fractional};
 pub use models::{Material, Modulus};
 pub use relaxation::{Relaxation, RelaxationTerm};

@@ -1,0 +1,258 @@
+//! Measured curves before the fit: order, sign, noise, and what no passive material can do.
+
+use crate::error::{Error, Result};
+
+/// More points than a curve needs.
+const MOST_POINTS: usize = 10_000_000;
+/// Widest range of times or frequencies.
+const MOST_DECADES: f64 = 60.0;
+
+/// The words of one kind of curve.
+#[derive(Clone, Copy)]
+pub(super) struct Words {
+    /// "time" or "angular frequency"
+    pub abscissa: &'static str,
+    pub abscissa_unit: &'static str,
+    /// "relaxation modulus"
+    pub ordinate: &'static str,
+    pub ordinate_unit: &'static str,
+}
+
+impl Words {
+    /// "relaxation modulus of point 3 (time 0.5 s)"
+    fn point(&self, n: usize, x: f64) -> String {
+        format!("{} of point {} ({} {x:e} {})", self.ordinate, n + 1, self.abscissa, self.abscissa_unit)
+    }
+
+    fn value(&self, value: f64) -> String {
+        format!("{value:e} {}", self.ordinate_unit)
+    }
+}
+
+/// Which way a passive material goes along the abscissa.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Trend {
+    Falls,
+    Rises,
+}
+
+/// Checks that the abscissae increase strictly from a positive number (or from 0, where `zero`).
+pub(super) fn check_abscissae(words: Words, xs: &[f64], zero: bool) -> Result<()> {
+    let name = |n: usize| format!("{} of point {}", words.abscissa, n + 1);
+    if xs.len() < 2 || xs.len() > MOST_POINTS {
+        return Err(Error::invalid(
+            format!("number of points of the {}", words.ordinate),
+            xs.len(),
+            format!("between 2 and {MOST_POINTS}"),
+        ));
+    }
+    for (n, x) in xs.iter().enumerate() {
+        let positive = *x >= f64::MIN_POSITIVE || (zero && n == 0 && *x == 0.0);
+        if !(positive && x.is_finite()) {
+            let least = if zero && n == 0 { "not less than" } else { "greater than" };
+            let expected = format!("finite and {least} 0 {}", words.abscissa_unit);
+            return Err(Error::invalid(name(n), x, expected));
+        }
+    }
+    for (n, pair) in xs.windows(2).enumerate() {
+        if pair[1] <= pair[0] {
+            return Err(Error::invalid(
+                name(n + 1),
+                format!("{:e} {}", pair[1], words.abscissa_unit),
+                format!("greater than the one before it, {:e} (in order, none twice)", pair[0]),
+            ));
+        }
+    }
+    let first = if xs[0] > 0.0 { xs[0] } else { xs[1] };
+    let decades = xs[xs.len() - 1].log10() - first.log10();
+    if decades > MOST_DECADES {
+        return Err(Error::invalid(
+            format!("range of the {}", words.abscissa),
+            format!("{decades:.0} decades"),
+            format!("at most {MOST_DECADES} decades"),
+        ));
+    }
+    Ok(())
+}
+
+/// Checks that there is one finite, positive (or not negative) value for each abscissa.
+pub(super) fn check_values(words: Words, xs: &[f64], values: &[f64], zero: bool) -> Result<()> {
+    if values.len() != xs.len() {
+        return Err(Error::invalid(
+            format!("number of values of the {}", words.ordinate),
+            values.len(),
+            format!("{}, one for each {}", xs.len(), words.abscissa),
+        ));
+    }
+    for (n, (x, value)) in xs.iter().zip(values).enumerate() {
+        if !(value.is_finite() && (*value >= f64::MIN_POSITIVE || (zero && *value == 0.0))) {
+            let bound = if zero { "not less than" } else { "greater than" };
+            return Err(Error::invalid(
+                words.point(n, *x),
+                words.value(*value),
+                format!("finite and {bound} 0, as for every passive material"),
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Relative scatter of a curve (standard deviation), from the distances between each point and the line
+/// through its neighbours; the median makes it blind to single outliers. 0 for fewer than 5 points.
+pub(super) fn noise(xs: &[f64], values: &[f64]) -> f64 {
+    if xs.len() < 5 {
+        return 0.0;
+    }
+    let mut distances: Vec<f64> = (1..xs.len() - 1)
+        .map(|k| {
+            let share = (xs[k] - xs[k - 1]) / (xs[k + 1] - xs[k - 1]);
+            let line = values[k - 1] + share * (values[k + 1] - values[k - 1]);
+            // Variance of value - (1 - share) before - share after.
+            let spread = (1.0 + share * share + (1.0 - share) * (1.0 - share)).sqrt();
+            let scale = values[k].max(line);
+            if scale > 0.0 { (values[k] - line).abs() / (spread * scale) } else { 0.0 }
+        })
+        .collect();
+    let middle = distances.len() / 2;
+    // The median of the absolute value of a normal variable is 0.6745 of its standard deviation.
+    *distances.select_nth_unstable_by(middle, f64::total_cmp).1 / 0.6745
+}
+
+/// Means over a hundredth of a decade, as (abscissa, value, count), where there are more than 1000 points
+/// (instruments sample evenly in time): the fit then costs the same for any number of points.
+pub(super) fn thin(xs: &[f64], values: &[f64]) -> Vec<(f64, f64, f64)> {
+    let points = xs.iter().zip(values);
+    if xs.len() <= 1000 {
+        return points.map(|(x, value)| (*x, *value, 1.0)).collect();
+    }
+    let mut bins: Vec<(f64, f64, f64)> = vec![];
+    let mut current = None;
+    for (x, value) in points {
+        let bin = (100.0 * x.log10()).floor();
+        match bins.last_mut() {
+            Some(last) if current == Some(bin) => {
+                last.2 += 1.0;
+                last.0 += (x - last.0) / last.2;
+                last.1 += (value - last.1) / last.2;
+            }
+            _ => bins.push((*x, *value, 1.0)),
+        }
+        current = Some(bin);
+    }
+    bins
+}
+
+/// Refuses a curve that goes the wrong way by more than its scatter explains: the distance of the two
+/// extremes of N normal deviates, and at least one per cent.
+pub(super) fn check_trend(words: Words, trend: Trend, xs: &[f64], values: &[f64]) -> Result<()> {
+    let extremes = 2.0 * (1.0 + (2.0 * (xs.len() as f64).ln()).sqrt());
+    let allowed = (extremes * noise(xs, values)).max(0.01);
+    let mut extreme = 0;
+    for (n, value) in values.iter().enumerate() {
+        let reference = values[extreme];
+        let (wrong, further) = match trend {
+            Trend::Falls => (*value > reference * (1.0 + allowed), *value < reference),
+            Trend::Rises => (*value < reference * (1.0 - allowed), *value > reference),
+        };
+        if wrong {
+            let (not, side) = match trend {
+                Trend::Falls => ("not rise", "above"),
+                Trend::Rises => ("not fall", "below"),
+            };
+            return Err(Error::invalid(
+                words.point(n, xs[n]),
+                words.value(*value),
+                format!(
+                    "not more than {:.1} % {side} the {} at {} {:e} {}: in a passive material it does {not}",
+                    100.0 * allowed,
+                    words.value(reference),
+                    words.abscissa,
+                    xs[extreme],
+                    words.abscissa_unit
+                ),
+            ));
+        }
+        if further {
+            extreme = n;
+        }
+    }
+    Ok(())
+}
+
+/// Refuses a curve that the best passive material misses systematically: where the mean of up to five
+/// neighbouring relative residuals exceeds `limit` (or 5 standard deviations of such a mean).
+pub(super) fn check_misfit(
+    words: Words,
+    xs: &[f64],
+    values: &[f64],
+    residuals: &[f64],
+    limit: f64,
+) -> Result<()> {
+    let window = residuals.len().div_ceil(4).min(5);
+    let allowed = limit.max(5.0 * noise(xs, values) / (window as f64).sqrt());
+    let worst = residuals
+        .windows(window)
+        .map(|r| r.iter().sum::<f64>() / window as f64)
+        .enumerate()
+        .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+    match worst {
+        Some((start, mean)) if mean.is_nan() || mean.abs() > allowed => {
+            let n = start + window / 2;
+            Err(Error::invalid(
+                words.point(n, xs[n]),
+                words.value(values[n]),
+                format!(
+                    "within {:.0} % of a passive material; the nearest one lies {:.1} % {} the data there",
+                    100.0 * allowed,
+                    100.0 * mean.abs(),
+                    if mean > 0.0 { "above" } else { "below" }
+                ),
+            ))
+        }
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WORDS: Words =
+        Words { abscissa: "time", abscissa_unit: "s", ordinate: "relaxation modulus", ordinate_unit: "Pa" };
+
+    #[test]
+    fn scatter_is_measured_and_an_outlier_is_not_scatter() {
+        let xs: Vec<f64> = (1..200).map(f64::from).collect();
+        let mut values: Vec<f64> = xs.iter().map(|x| 5.0 - 0.01 * x).collect();
+        values[50] *= 2.0;
+        // A straight line has none but rounding.
+        assert!(noise(&xs, &values) < 1e-15);
+    }
+
+    #[test]
+    fn thinning_keeps_the_mean() {
+        let xs: Vec<f64> = (1..50_000).map(f64::from).collect();
+        let values: Vec<f64> = xs.iter().map(|x| 2.0 * x).collect();
+        let bins = thin(&xs, &values);
+        assert!(bins.len() < 470, "{}", bins.len());
+        assert_eq!(bins.iter().map(|b| b.2).sum::<f64>(), 49_999.0);
+        // Means of a straight line lie on it, up to the rounding of 600 updates.
+        assert!(bins.iter().all(|(x, value, _)| (value / x - 2.0).abs() < 1e-12));
+    }
+
+    #[test]
+    fn disorder_is_named_with_its_place() {
+        let says = |xs: &[f64], words: &str| {
+            let error = check_abscissae(WORDS, xs, true).unwrap_err().to_string();
+            assert!(error.contains(words), "{error}");
+        };
+        says(&[1.0], "number of points of the relaxation modulus is 1");
+        says(&[], "number of points");
+        says(&[1.0, 1.0], "time of point 2 is 1e0 s, but must be greater than the one before it");
+        says(&[1.0, 3.0, 2.0], "time of point 3 is 2e0 s");
+        says(&[0.0, 0.0], "time of point 2 is 0");
+        says(&[-1.0, 0.0], "time of point 1 is -1");
+        says(&[1.0, f64::NAN], "time of point 2 is NaN");
+        says(&[1e-40, 1e40], "80 decades");
+    }
+}

@@ -1,0 +1,512 @@
+//! Prony series from measured curves: relaxation E(t), creep C(t), and E'(omega), E''(omega) of a DMA.
+//!
+//! A passive material has non-negative weights only (S. Bernstein's theorem: E(t) is completely
+//! monotone), so the fit is a non-negative least squares on a logarithmic grid of times (3 per decade,
+//! one decade beyond the data), each row weighted by one over its value. Terms that the data do not
+//! call for are then merged and left out, and the times that remain are refined. What a fit cannot
+//! reach, no material of this kind can: data too far from every passive material are refused, with the
+//! place.
+
+use crate::error::{Error, Result, non_negative, positive};
+use crate::material::data::{self, Trend, Words};
+use crate::material::spectrum::{Kernel, Problem, Row, Spectrum};
+use crate::material::{Creep, CreepTerm, Relaxation, RelaxationTerm};
+
+/// What happens at times longer than the data show.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum LongTime {
+    /// Whatever fits best.
+    #[default]
+    Free,
+    /// A solid: no flow term in a creep function.
+    Solid,
+    /// A fluid: no equilibrium modulus in a relaxation function.
+    Fluid,
+}
+
+/// How to fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FitOptions {
+    /// Times of the grid per decade, default 3, from 0.5 to 20.
+    pub per_decade: f64,
+    /// Decades of the grid beyond the data on either side, default 1, at most 5.
+    pub margin: f64,
+    /// Default: whatever fits best.
+    pub long_time: LongTime,
+    /// Largest systematic relative misfit before the data are refused, default 0.1.
+    pub limit: f64,
+}
+
+impl Default for FitOptions {
+    fn default() -> Self {
+        FitOptions { per_decade: 3.0, margin: 1.0, long_time: LongTime::Free, limit: 0.1 }
+    }
+}
+
+/// A function fitted to data, and how well.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fit<F> {
+    /// The Prony series; `function.terms.len()` is the number of terms.
+    pub function: F,
+    /// Distance between data and function.
+    pub misfit: Misfit,
+    /// First and last time that the data cover \[s\]; for a DMA 1/omega.
+    pub window: [f64; 2],
+    /// Relative scatter of the data, from the distances of neighbours (standard deviation).
+    pub noise: f64,
+}
+
+/// Relative distance between data and fit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Misfit {
+    /// Largest |fit/data - 1|.
+    pub max: f64,
+    /// Root of the mean square of fit/data - 1.
+    pub rms: f64,
+    /// Where the largest is: time \[s\] or angular frequency \[rad/s\].
+    pub worst: f64,
+}
+
+impl<F> Fit<F> {
+    /// A sentence with the numbers where a run from `first` to `last` \[s\] leaves the fitted window.
+    pub fn beyond(&self, first: f64, last: f64) -> Option<String> {
+        let [start, end] = self.window;
+        // Rounding of 1/omega is no extrapolation.
+        (first < start * (1.0 - 1e-9) || last > end * (1.0 + 1e-9)).then(|| {
+            format!(
+                "the run needs the material from {first:e} s to {last:e} s, but the data cover only \
+                 {start:e} s to {end:e} s; beyond them the fit is an extrapolation"
+            )
+        })
+    }
+}
+
+/// Fits E(t) \[Pa\] at increasing times \[s\] (0 may be the first) of a relaxation test.
+///
+/// ```
+/// use asperity::material::{FitOptions, Relaxation, fit_relaxation};
+/// let pmma = Relaxation::absolute(1973e6, &[(254.776e6, 8.93), (263.6628e6, 117.96)])?;
+/// let times: Vec<f64> = (0..60).map(|k| 10f64.powf(-0.5 + 0.06 * k as f64)).collect();
+/// let moduli: Vec<f64> = times.iter().map(|t| pmma.value(*t)).collect();
+/// let fit = fit_relaxation(&times, &moduli, &FitOptions::default())?;
+/// // Exact data give the material back.
+/// assert!(fit.misfit.max < 1e-5 && fit.function.terms.len() == 2);
+/// assert!((fit.function.terms[0].relaxation_time / 8.93 - 1.0).abs() < 1e-3);
+/// # Ok::<(), asperity::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::Invalid`] naming the point: fewer than two, times out of order or twice, values that are
+/// not positive, that grow with time by more than their scatter, or from which every passive material
+/// stays further away than `options.limit`.
+pub fn fit_relaxation(times: &[f64], moduli: &[f64], options: &FitOptions) -> Result<Fit<Relaxation>> {
+    let words =
+        Words { abscissa: "time", abscissa_unit: "s", ordinate: "relaxation modulus", ordinate_unit: "Pa" };
+    options.validate()?;
+    data::check_abscissae(words, times, true)?;
+    data::check_values(words, times, moduli, false)?;
+    data::check_trend(words, Trend::Falls, times, moduli)?;
+    let window = window(times);
+    // A term much faster than the first time is invisible, exp(-10) of itself there, and would follow
+    // the noise of one point to any size; half the first time still shows (unless t = 0 is measured).
+    let margin = 10f64.powf(options.margin);
+    let fastest = if times[0] == 0.0 { margin } else { margin.min(2.0) };
+    let curve = Curve { words, kernel: Kernel::Relaxation, xs: times, values: moduli, floor: 0.0 };
+    let problem = Problem {
+        rows: curve.rows(),
+        constant: options.long_time != LongTime::Fluid,
+        flow: false,
+        range: [window[0] / fastest, window[1] * margin],
+    };
+    let (spectrum, misfit) = options.solve(&problem, &[curve])?;
+    let noise = data::noise(times, moduli);
+    Ok(Fit { function: relaxation(spectrum)?, misfit, window, noise })
+}
+
+/// Fits C(t) \[1/Pa\] at increasing times \[s\] of a creep test, whatever compliance it is (uniaxial or
+/// shear). The first point may be (0, 0): then there is no instantaneous compliance.
+///
+/// ```
+/// use asperity::material::{FitOptions, Material, Modulus, fit_creep};
+/// let burgers = Material::burgers(Modulus::Shear, 1e9, 500.0, 2e9, 3.0)?;
+/// let times: Vec<f64> = (0..50).map(|k| 10f64.powf(-1.0 + 0.06 * k as f64)).collect();
+/// let compliances: Vec<f64> = times.iter().map(|t| burgers.creep().value(*t)).collect();
+/// let fit = fit_creep(&times, &compliances, &FitOptions::default())?;
+/// assert!(fit.misfit.max < 1e-5);
+/// assert!((fit.function.fluidity * 500e9 - 1.0).abs() < 1e-3);
+/// # Ok::<(), asperity::Error>(())
+/// ```
+///
+/// # Errors
+/// As [`fit_relaxation`], for a compliance that falls with time.
+pub fn fit_creep(times: &[f64], compliances: &[f64], options: &FitOptions) -> Result<Fit<Creep>> {
+    let words =
+        Words { abscissa: "time", abscissa_unit: "s", ordinate: "creep compliance", ordinate_unit: "1/Pa" };
+    options.validate()?;
+    data::check_abscissae(words, times, true)?;
+    let from_zero = times[0] == 0.0 && compliances.first() == Some(&0.0);
+    let (kept, values) = if from_zero { (&times[1..], &compliances[1..]) } else { (times, compliances) };
+    data::check_values(words, kept, values, false)?;
+    data::check_trend(words, Trend::Rises, kept, values)?;
+    let (window, margin) = (window(times), 10f64.powf(options.margin));
+    let curve = Curve { words, kernel: Kernel::Creep, xs: kept, values, floor: 0.0 };
+    let problem = Problem {
+        rows: curve.rows(),
+        constant: !from_zero,
+        flow: options.long_time != LongTime::Solid,
+        range: [window[0] / margin, window[1] * margin],
+    };
+    let (spectrum, misfit) = options.solve(&problem, &[curve])?;
+    Ok(Fit { function: creep(spectrum)?, misfit, window, noise: data::noise(kept, values) })
+}
+
+/// Fits storage and loss modulus E', E'' \[Pa\] at increasing angular frequencies \[rad/s\] (2 pi f) of a
+/// dynamic mechanical analysis. Both moduli are met at once, by one relaxation function.
+///
+/// ```
+/// use asperity::material::{FitOptions, Relaxation, fit_dma};
+/// let rubber = Relaxation::absolute(1e6, &[(5e8, 1e-4), (8e7, 1e-2), (3e6, 2.0)])?;
+/// let omega: Vec<f64> = (0..40).map(|k| 10f64.powf(-2.0 + 0.2 * k as f64)).collect();
+/// let (storage, loss): (Vec<_>, Vec<_>) = omega.iter().map(|w| rubber.complex(*w)).unzip();
+/// let fit = fit_dma(&omega, &storage, &loss, &FitOptions::default())?;
+/// assert!(fit.misfit.max < 1e-4);
+/// assert!((fit.function.value(0.1) / rubber.value(0.1) - 1.0).abs() < 1e-4);
+/// # Ok::<(), asperity::Error>(())
+/// ```
+///
+/// # Errors
+/// As [`fit_relaxation`]: frequencies out of order, negative moduli, a storage modulus that falls with
+/// frequency, and pairs E', E'' that belong to no passive material (Kramers & Kronig).
+pub fn fit_dma(
+    omega: &[f64],
+    storage: &[f64],
+    loss: &[f64],
+    options: &FitOptions,
+) -> Result<Fit<Relaxation>> {
+    let words = Words {
+        abscissa: "angular frequency",
+        abscissa_unit: "rad/s",
+        ordinate: "storage modulus",
+        ordinate_unit: "Pa",
+    };
+    let loss_words = Words { ordinate: "loss modulus", ..words };
+    options.validate()?;
+    data::check_abscissae(words, omega, false)?;
+    data::check_values(words, omega, storage, false)?;
+    data::check_values(loss_words, omega, loss, true)?;
+    data::check_trend(words, Trend::Rises, omega, storage)?;
+    let window = [1.0 / omega[omega.len() - 1], 1.0 / omega[0]];
+    let margin = 10f64.powf(options.margin);
+    // A loss below a thousandth of the stored energy is below what instruments tell.
+    let floor = 1e-3 * storage.iter().copied().fold(f64::INFINITY, f64::min);
+    let curves = [
+        Curve { words, kernel: Kernel::Storage, xs: omega, values: storage, floor: 0.0 },
+        Curve { words: loss_words, kernel: Kernel::Loss, xs: omega, values: loss, floor },
+    ];
+    let problem = Problem {
+        rows: curves.iter().flat_map(Curve::rows).collect(),
+        constant: options.long_time != LongTime::Fluid,
+        flow: false,
+        range: [window[0] / margin, window[1] * margin],
+    };
+    let (spectrum, misfit) = options.solve(&problem, &curves)?;
+    let noise = data::noise(omega, storage).max(data::noise(omega, loss));
+    Ok(Fit { function: relaxation(spectrum)?, misfit, window, noise })
+}
+
+impl FitOptions {
+    fn validate(&self) -> Result<()> {
+        if !(0.5..=20.0).contains(&self.per_decade) {
+            return Err(Error::invalid("times per decade of the fit", self.per_decade, "from 0.5 to 20"));
+        }
+        non_negative("margin of the fit", self.margin, "decades")?;
+        if self.margin > 5.0 {
+            return Err(Error::invalid("margin of the fit", self.margin, "at most 5 decades"));
+        }
+        positive("largest misfit of the fit", self.limit, "").map(|_| ())
+    }
+
+    /// Fits, and measures the misfit at every point of every curve.
+    fn solve(&self, problem: &Problem, curves: &[Curve]) -> Result<(Spectrum, Misfit)> {
+        let spectrum = problem.fit(self.per_decade);
+        let mut misfit = Misfit { max: 0.0, rms: 0.0, worst: 0.0 };
+        let (mut squares, mut count) = (0.0, 0);
+        for curve in curves {
+            let residuals = curve.residuals(&spectrum);
+            data::check_misfit(curve.words, curve.xs, curve.values, &residuals, self.limit)?;
+            for (r, x) in residuals.iter().zip(curve.xs) {
+                squares += r * r;
+                if r.abs() > misfit.max {
+                    (misfit.max, misfit.worst) = (r.abs(), *x);
+                }
+            }
+            count += residuals.len();
+        }
+        misfit.rms = (squares / count as f64).sqrt();
+        Ok((spectrum, misfit))
+    }
+}
+
+/// One measured curve.
+struct Curve<'a> {
+    words: Words,
+    kernel: Kernel,
+    xs: &'a [f64],
+    values: &'a [f64],
+    /// Smallest scale of a value: residuals are relative to the larger of the two.
+    floor: f64,
+}
+
+impl Curve<'_> {
+    fn rows(&self) -> Vec<Row> {
+        // The mean of n points weighs as much as they do.
+        let row = |(x, value, count): (f64, f64, f64)| Row {
+            kernel: self.kernel,
+            x,
+            value,
+            weight: count.sqrt() / value.max(self.floor),
+        };
+        data::thin(self.xs, self.values).into_iter().map(row).collect()
+    }
+
+    /// Relative residuals (fit - value) at all points.
+    fn residuals(&self, spectrum: &Spectrum) -> Vec<f64> {
+        let residual =
+            |(x, value): (&f64, &f64)| (spectrum.value(self.kernel, *x) - value) / value.max(self.floor);
+        self.xs.iter().zip(self.values).map(residual).collect()
+    }
+}
+
+/// First positive and last time.
+fn window(times: &[f64]) -> [f64; 2] {
+    [if times[0] > 0.0 { times[0] } else { times[1] }, times[times.len() - 1]]
+}
+
+pub(super) fn relaxation(spectrum: Spectrum) -> Result<Relaxation> {
+    let terms = spectrum.terms.iter();
+    let relaxation = Relaxation {
+        equilibrium: spectrum.constant,
+        terms: terms.map(|&(relaxation_time, modulus)| RelaxationTerm { modulus, relaxation_time }).collect(),
+        viscosity: 0.0,
+    };
+    relaxation.validate()?;
+    Ok(relaxation)
+}
+
+fn creep(spectrum: Spectrum) -> Result<Creep> {
+    let terms = spectrum.terms.iter();
+    let creep = Creep {
+        instantaneous: spectrum.constant,
+        terms: terms
+            .map(|&(retardation_time, compliance)| CreepTerm { compliance, retardation_time })
+            .collect(),
+        fluidity: spectrum.flow,
+    };
+    creep.validate()?;
+    Ok(creep)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::series::tests::random;
+
+    fn logspace(first: f64, last: f64, count: usize) -> Vec<f64> {
+        let step = (last / first).log10() / (count - 1) as f64;
+        (0..count).map(|k| first * 10f64.powf(step * k as f64)).collect()
+    }
+
+    /// Normal deviates by Box & Muller.
+    fn normal(seed: u64) -> impl FnMut() -> f64 {
+        let mut random = random(seed);
+        move || (-2.0 * (1.0 - random()).ln()).sqrt() * (std::f64::consts::TAU * random()).cos()
+    }
+
+    /// 13 terms, one per decade, with uneven weights.
+    fn thirteen() -> Relaxation {
+        let weights = [3.0, 8.0, 20.0, 60.0, 90.0, 40.0, 25.0, 10.0, 6.0, 3.0, 1.5, 0.8, 0.3];
+        let terms: Vec<_> =
+            weights.iter().enumerate().map(|(k, w)| (1e6 * w, 2.3 * 10f64.powi(k as i32 - 7))).collect();
+        Relaxation::absolute(0.5e6, &terms).unwrap()
+    }
+
+    #[test]
+    fn thirteen_noisy_terms_are_recovered_to_the_noise() {
+        let (truth, mut normal) = (thirteen(), normal(11));
+        let times = logspace(1e-7, 1e6, 400);
+        let moduli: Vec<f64> = times.iter().map(|t| truth.value(*t) * (1.0 + 0.02 * normal())).collect();
+        let fit = fit_relaxation(&times, &moduli, &FitOptions::default()).unwrap();
+        // The scatter of the scatter of 400 points: 1/sqrt(800), and twice that of a median.
+        assert!((fit.noise / 0.02 - 1.0).abs() < 0.2, "{}", fit.noise);
+        // What remains is the noise, less what 26 parameters take up.
+        assert!((fit.misfit.rms / 0.02 - 1.0).abs() < 0.1, "{:?}", fit.misfit);
+        // About 14 points per parameter pair: the curve is known to 0.02 sqrt(26/400), 3 sigma of it.
+        let error = times.iter().map(|t| (fit.function.value(*t) / truth.value(*t) - 1.0).abs());
+        let error = error.fold(0.0, f64::max);
+        assert!(error < 0.015, "{error}");
+        assert!(fit.function.terms.len() <= 14, "{}", fit.function.terms.len());
+    }
+
+    #[test]
+    fn exact_data_give_the_material_back() {
+        let (truth, options) = (thirteen(), FitOptions::default());
+        let times = logspace(1e-7, 1e6, 200);
+        let moduli: Vec<f64> = times.iter().map(|t| truth.value(*t)).collect();
+        let compliances: Vec<f64> = times.iter().map(|t| truth.to_creep().unwrap().value(*t)).collect();
+        let omega = logspace(1e-6, 1e7, 200);
+        let (storage, loss): (Vec<_>, Vec<_>) = omega.iter().map(|w| truth.complex(*w)).unzip();
+        let fits = [
+            fit_relaxation(&times, &moduli, &options).unwrap().function,
+            fit_creep(&times, &compliances, &options).unwrap().function.to_relaxation().unwrap(),
+            fit_dma(&omega, &storage, &loss, &options).unwrap().function,
+        ];
+        for fit in fits {
+            assert_eq!(fit.terms.len(), 13);
+            for (fitted, term) in fit.terms.iter().zip(&truth.terms) {
+                // Levenberg-Marquardt stops at residuals of 1e-7 at most; terms a decade apart are
+                // known some hundred times less well than the curve.
+                assert!((fitted.modulus / term.modulus - 1.0).abs() < 1e-4, "{fitted:?} {term:?}");
+                assert!((fitted.relaxation_time / term.relaxation_time - 1.0).abs() < 1e-4, "{fitted:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn storage_and_loss_of_a_fit_obey_kramers_and_kronig() {
+        // E'(w) - E'(0) = (2/pi) w^2 P int_0^inf [E''(u)/u] / (w^2 - u^2) du, with noisy data in and the
+        // fit's E'' integrated; u = w exp(y), the pole taken out by symmetry in y.
+        let (truth, mut normal) = (thirteen(), normal(2));
+        let omega = logspace(1e-6, 1e7, 120);
+        let (storage, loss): (Vec<_>, Vec<_>) = omega
+            .iter()
+            .map(|w| truth.complex(*w))
+            .map(|(e1, e2)| (e1 * (1.0 + 0.01 * normal()), e2 * (1.0 + 0.01 * normal())))
+            .unzip();
+        let fit = fit_dma(&omega, &storage, &loss, &FitOptions::default()).unwrap().function;
+        for w in [1e-3, 1.0, 1e4] {
+            let step = 0.05;
+            let integral: f64 = (0..800)
+                .map(|k| step * (f64::from(k) + 0.5))
+                .map(|y: f64| {
+                    let (above, below) = (fit.complex(w * y.exp()).1, fit.complex(w * (-y).exp()).1);
+                    // 1/(1 - e^2y) above and 1/(1 - e^-2y) = 1 - 1/(1 - e^2y) below.
+                    let kernel = -1.0 / (2.0 * y).exp_m1();
+                    above * kernel + below * (1.0 - kernel)
+                })
+                .sum();
+            let storage = fit.equilibrium + 2.0 / std::f64::consts::PI * step * integral;
+            // Midpoint rule of a smooth integrand with strip pi/2 around y = 0.
+            assert!((storage / fit.complex(w).0 - 1.0).abs() < 1e-6, "{w}");
+        }
+    }
+
+    #[test]
+    fn an_elastic_curve_has_no_terms() {
+        let times = logspace(1.0, 1e3, 30);
+        let fit = fit_relaxation(&times, &[5e6; 30], &FitOptions::default()).unwrap();
+        assert!(fit.function.terms.is_empty() && (fit.function.equilibrium / 5e6 - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_creep_test_from_zero_has_no_instantaneous_compliance() {
+        let kelvin_voigt =
+            Creep { terms: vec![CreepTerm { compliance: 1e-6, retardation_time: 2.0 }], ..Creep::default() };
+        let times: Vec<f64> = (0..40).map(|k| 0.25 * f64::from(k)).collect();
+        let values: Vec<f64> = times.iter().map(|t| kelvin_voigt.value(*t)).collect();
+        let fit = fit_creep(&times, &values, &FitOptions::default()).unwrap();
+        assert_eq!(fit.function.instantaneous, 0.0);
+        assert!(fit.misfit.max < 1e-6, "{:?}", fit.misfit);
+    }
+
+    #[test]
+    fn long_times_follow_the_option() {
+        let times = logspace(1e-2, 1e2, 50);
+        let moduli: Vec<f64> = times.iter().map(|t| 1e6 * (0.1 + (-t).exp())).collect();
+        let fluid = FitOptions { long_time: LongTime::Fluid, ..FitOptions::default() };
+        assert_eq!(fit_relaxation(&times, &moduli, &fluid).unwrap().function.equilibrium, 0.0);
+        let compliances: Vec<f64> = times.iter().map(|t| 1e-6 * (1.0 + t)).collect();
+        let solid = FitOptions { long_time: LongTime::Solid, ..FitOptions::default() };
+        let fit = fit_creep(&times, &compliances, &solid).unwrap();
+        assert!(fit.function.fluidity == 0.0 && fit.misfit.max < 0.05, "{:?}", fit.misfit);
+    }
+
+    #[test]
+    fn evenly_sampled_records_of_any_length_are_fitted() {
+        let pmma = Relaxation::absolute(1973e6, &[(254.776e6, 8.93), (263.6628e6, 117.96)]).unwrap();
+        let mut normal = normal(4);
+        let times: Vec<f64> = (1..200_000).map(|k| 0.005 * f64::from(k)).collect();
+        let moduli: Vec<f64> = times.iter().map(|t| pmma.value(*t) * (1.0 + 0.01 * normal())).collect();
+        let fit = fit_relaxation(&times, &moduli, &FitOptions::default()).unwrap();
+        assert!((fit.misfit.rms / 0.01 - 1.0).abs() < 0.02, "{:?}", fit.misfit);
+        for t in [0.1, 1.0, 10.0, 100.0, 1000.0] {
+            // 0.01/sqrt(points per decade), and the sampling starts with one point per 5 ms.
+            let error = (fit.function.value(t) / pmma.value(t) - 1.0).abs();
+            assert!(error < 2e-3, "{t} {error}");
+        }
+    }
+
+    #[test]
+    fn what_no_passive_material_can_do_is_refused_with_its_place() {
+        let options = FitOptions::default();
+        let refused = |result: Result<()>, words: &[&str]| {
+            let error = result.unwrap_err().to_string();
+            for word in words {
+                assert!(error.contains(word), "{error}");
+            }
+        };
+        let times = logspace(1e-2, 1e2, 41);
+        let relaxing: Vec<f64> = times.iter().map(|t| 1e6 * (1.0 + (-t).exp())).collect();
+        let fit = |moduli: &[f64]| fit_relaxation(&times, moduli, &options).map(|_| ());
+        let mut growing = relaxing.clone();
+        growing[30] *= 1.5;
+        refused(fit(&growing), &["relaxation modulus of point 31 (time 1e1 s)", "does not rise"]);
+        let mut negative = relaxing.clone();
+        negative[7] = -1.0;
+        refused(fit(&negative), &["relaxation modulus of point 8", "-1e0 Pa"]);
+        negative[7] = f64::NAN;
+        refused(fit(&negative), &["relaxation modulus of point 8", "NaN"]);
+        refused(fit(&relaxing[1..]), &["number of values", "41"]);
+        // A drop that is faster than any relaxation: from 2 to 1 within a tenth of a decade.
+        let dropping: Vec<f64> = times.iter().map(|t| if *t < 1.0 { 2e6 } else { 1e6 }).collect();
+        refused(fit(&dropping), &["passive material", "%"]);
+        // Creep that falls.
+        let falling: Vec<f64> = times.iter().map(|t| 1e-6 * (2.0 - t / 100.0)).collect();
+        refused(fit_creep(&times, &falling, &options).map(|_| ()), &["creep compliance", "does not fall"]);
+        // Storage that falls with frequency, loss that is negative, and a pair that breaks Kramers-Kronig.
+        let solid = Relaxation::absolute(1e6, &[(1e6, 1.0)]).unwrap();
+        let (storage, loss): (Vec<_>, Vec<_>) = times.iter().map(|w| solid.complex(*w)).unzip();
+        let dma = |s: &[f64], l: &[f64]| fit_dma(&times, s, l, &options).map(|_| ());
+        let reversed: Vec<f64> = storage.iter().rev().copied().collect();
+        refused(dma(&reversed, &loss), &["storage modulus of point", "does not fall"]);
+        let mut negative = loss.clone();
+        negative[3] = -1.0;
+        refused(dma(&storage, &negative), &["loss modulus of point 4"]);
+        let tripled: Vec<f64> = loss.iter().map(|l| 3.0 * l).collect();
+        refused(dma(&storage, &tripled), &["modulus of point", "passive material"]);
+        assert!(dma(&storage, &loss).is_ok());
+    }
+
+    #[test]
+    fn a_run_beyond_the_data_is_told_so() {
+        let times = logspace(1.0, 100.0, 20);
+        let moduli: Vec<f64> = times.iter().map(|t| 1e6 * (1.0 + (-t / 9.0).exp())).collect();
+        let fit = fit_relaxation(&times, &moduli, &FitOptions::default()).unwrap();
+        assert_eq!(fit.beyond(1.0, 100.0), None);
+        let words = fit.beyond(0.1, 1e3).unwrap();
+        assert!(words.contains("1e-1 s to 1e3 s") && words.contains("1e0 s to 1e2 s"), "{words}");
+    }
+
+    #[test]
+    fn bad_options_are_named() {
+        let bad = |options: FitOptions, words: &str| {
+            let error = fit_relaxation(&[1.0, 2.0], &[2.0, 1.0], &options).unwrap_err().to_string();
+            assert!(error.contains(words), "{error}");
+        };
+        let default = FitOptions::default();
+        bad(FitOptions { per_decade: 0.0, ..default }, "times per decade");
+        bad(FitOptions { per_decade: f64::NAN, ..default }, "times per decade");
+        bad(FitOptions { margin: -1.0, ..default }, "margin");
+        bad(FitOptions { margin: 100.0, ..default }, "margin");
+        bad(FitOptions { limit: 0.0, ..default }, "misfit");
+    }
+}

@@ -2,7 +2,7 @@
 
 use std::{fmt, str::FromStr};
 
-use super::{text, unpack};
+use super::{al3d, bcr, gwy, opd, sdf, sur, text, unpack};
 
 /// A file format.
 ///
@@ -21,11 +21,44 @@ pub enum Format {
     Npy,
     /// Zip of NumPy arrays.
     Npz,
+    /// ISO 25178-71 surface data file, text or binary.
+    Sdf,
+    /// BCR-STM or BCRF.
+    Bcr,
+    /// ISO 25178-72.
+    X3p,
+    /// Digital Surf (MountainsMap).
+    Sur,
+    /// Gwyddion.
+    Gwy,
+    /// Alicona Imaging.
+    Al3d,
+    /// Wyko.
+    Opd,
+    /// NetCDF, classic or NetCDF-4.
+    NetCdf,
+    /// Other HDF5.
+    Hdf5,
 }
 
 impl Format {
     /// Every format.
-    pub const ALL: [Format; 5] = [Format::Text, Format::Csv, Format::Xyz, Format::Npy, Format::Npz];
+    pub const ALL: [Format; 14] = [
+        Format::Text,
+        Format::Csv,
+        Format::Xyz,
+        Format::Npy,
+        Format::Npz,
+        Format::Sdf,
+        Format::Bcr,
+        Format::X3p,
+        Format::Sur,
+        Format::Gwy,
+        Format::Al3d,
+        Format::Opd,
+        Format::NetCdf,
+        Format::Hdf5,
+    ];
 
     /// Name of the format.
     pub fn name(self) -> &'static str {
@@ -35,6 +68,15 @@ impl Format {
             Format::Xyz => "xyz",
             Format::Npy => "npy",
             Format::Npz => "npz",
+            Format::Sdf => "sdf",
+            Format::Bcr => "bcr",
+            Format::X3p => "x3p",
+            Format::Sur => "sur",
+            Format::Gwy => "gwy",
+            Format::Al3d => "al3d",
+            Format::Opd => "opd",
+            Format::NetCdf => "nc",
+            Format::Hdf5 => "h5",
         }
     }
 }
@@ -52,6 +94,9 @@ impl FromStr for Format {
         let lower = name.to_ascii_lowercase();
         let lower = match lower.as_str() {
             "text" | "txt" | "matrix" => "asc",
+            "bcrf" => "bcr",
+            "netcdf" => "nc",
+            "hdf5" => "h5",
             other => other,
         };
         Format::ALL.into_iter().find(|f| f.name() == lower).ok_or_else(|| {
@@ -75,6 +120,18 @@ fn detect_plain(bytes: &[u8]) -> Option<Format> {
         Some(Format::Npy)
     } else if bytes.starts_with(b"PK\x03\x04") {
         unpack::zip_format(bytes)
+    } else if sur::is_sur(bytes) {
+        Some(Format::Sur)
+    } else if gwy::is_gwy(bytes) {
+        Some(Format::Gwy)
+    } else if al3d::is_al3d(bytes) {
+        Some(Format::Al3d)
+    } else if opd::is_opd(bytes) {
+        Some(Format::Opd)
+    } else if sdf::is_sdf(bytes) {
+        Some(Format::Sdf)
+    } else if bcr::is_bcr(bytes) {
+        Some(Format::Bcr)
     } else {
         text::detect(bytes)
     }

@@ -12,15 +12,23 @@
 //!
 //! All text and binary formats may be packed by gzip.
 
+mod al3d;
+mod bcr;
+mod cursor;
 mod error;
 mod finish;
 mod format;
 mod grid;
+mod gwy;
 mod npy;
+mod opd;
 mod sample;
+mod sdf;
+mod sur;
 mod text;
 mod unit;
 mod unpack;
+mod x3p;
 
 use std::path::Path;
 
@@ -117,6 +125,14 @@ fn parse(bytes: &[u8], options: &ReadOptions) -> Result<Topography, Problem> {
         Format::Xyz => text::read_xyz(bytes, channel)?,
         Format::Npy => npy::read_npy(bytes)?,
         Format::Npz => npy::read_npz(bytes, channel)?,
+        Format::Sdf => sdf::read_sdf(bytes)?,
+        Format::Bcr => bcr::read_bcr(bytes)?,
+        Format::X3p => x3p::read_x3p(bytes, channel)?,
+        Format::Sur => sur::read_sur(bytes, channel)?,
+        Format::Gwy => gwy::read_gwy(bytes, channel)?,
+        Format::Al3d => al3d::read_al3d(bytes)?,
+        Format::Opd => opd::read_opd(bytes, channel)?,
+        Format::NetCdf | Format::Hdf5 => return Err(Problem::Unrecognised),
     };
     finish(format, measured, options)
 }

@@ -25,7 +25,7 @@ pub(super) fn read_bounded(source: impl Read, most: u64, what: &str) -> Result<V
         return Err(Problem::malformed(
             format!("the unpacked length of {what}"),
             format!("more than {most} bytes"),
-            "no more than 256 times the packed length; unpack the file first if it is genuine",
+            "no longer than the file says and 256 times its packed length; unpack it first if it is genuine",
         ));
     }
     Ok(bytes)
@@ -84,5 +84,9 @@ impl<'a> Archive<'a> {
 /// Which format a zip archive is.
 pub(super) fn zip_format(bytes: &[u8]) -> Option<Format> {
     let names = Archive::open(bytes).ok()?.names();
-    names.iter().any(|n| n.ends_with(".npy")).then_some(Format::Npz)
+    if names.iter().any(|n| n == "main.xml") {
+        Some(Format::X3p)
+    } else {
+        names.iter().any(|n| n.ends_with(".npy")).then_some(Format::Npz)
+    }
 }

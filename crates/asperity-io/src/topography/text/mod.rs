@@ -22,6 +22,7 @@ use header::Header;
 use super::{Format, Problem};
 
 pub(super) use matrix::read_matrix;
+pub(super) use parse::numbers;
 pub(super) use xyz::read_xyz;
 
 /// One block of numbers and what the lines before it say.

@@ -29,26 +29,42 @@ pub(super) fn columns(dialect: Dialect, data: &[u8]) -> usize {
     }
 }
 
-/// Parses the block.
+/// Parses the block: lines of equally many numbers.
 pub(super) fn table(dialect: Dialect, block: &Block) -> Result<Table, Problem> {
     let columns = columns(dialect, block.data);
-    let runs = runs(block.data);
-    let parsed: Vec<_> = runs.into_par_iter().map(|run| (run, parse_run(dialect, columns, run))).collect();
+    let values = parse(dialect, Some(columns), block.data, block.line)?;
+    Ok(Table { columns, lines: values.len() / columns.max(1), values })
+}
+
+/// The numbers of lines of any length, parted by blanks, from this line of the file on.
+pub(crate) fn numbers(data: &[u8], first_line: usize) -> Result<Vec<f64>, Problem> {
+    let dialect = Dialect { separator: Separator::Blank, decimal_comma: false };
+    parse(dialect, None, data, first_line)
+}
+
+fn parse(
+    dialect: Dialect,
+    columns: Option<usize>,
+    data: &[u8],
+    first_line: usize,
+) -> Result<Vec<f64>, Problem> {
+    let parsed: Vec<_> =
+        runs(data).into_par_iter().map(|run| (run, parse_run(dialect, columns, run))).collect();
+    let length = parsed.iter().map(|(_, p)| p.as_ref().map_or(0, Vec::len)).sum();
     let mut values = Vec::new();
-    let mut lines_before = block.line;
-    let length: usize = parsed.iter().map(|(_, p)| p.as_ref().map_or(0, Vec::len)).sum();
+    let mut line = first_line;
     for (run, parsed) in parsed {
         match parsed {
-            Ok(run_values) if values.is_empty() && run_values.len() == length => values = run_values,
+            Ok(run_values) if run_values.len() == length => values = run_values,
             Ok(run_values) => {
                 values.reserve_exact(length - values.len());
                 values.extend_from_slice(&run_values);
             }
-            Err(fault) => return Err(fault.problem(lines_before, run, columns)),
+            Err(fault) => return Err(fault.problem(line, run)),
         }
-        lines_before += memchr_iter(b'\n', run).count();
+        line += memchr_iter(b'\n', run).count();
     }
-    Ok(Table { columns, lines: values.len() / columns.max(1), values })
+    Ok(values)
 }
 
 /// The block cut at line ends into runs that keep the threads busy.
@@ -68,11 +84,11 @@ fn runs(mut data: &[u8]) -> Vec<&[u8]> {
 /// What is wrong in a run, at which byte of it.
 enum Fault {
     Number { at: usize, length: usize },
-    Columns { at: usize, found: usize },
+    Columns { at: usize, found: usize, columns: usize },
 }
 
 impl Fault {
-    fn problem(self, first_line: usize, run: &[u8], columns: usize) -> Problem {
+    fn problem(self, first_line: usize, run: &[u8]) -> Problem {
         let line = |at: usize| first_line + memchr_iter(b'\n', &run[..at]).count();
         match self {
             Fault::Number { at, length } => Problem::malformed(
@@ -80,7 +96,7 @@ impl Fault {
                 format!("{:?} where a number was expected", encoding::label(&run[at..at + length])),
                 "all numbers, or marks of undefined points such as nan",
             ),
-            Fault::Columns { at, found } => Problem::malformed(
+            Fault::Columns { at, found, columns } => Problem::malformed(
                 format!("line {}", line(at)),
                 format!("{found} values long"),
                 format!("{columns} values long as the lines before it (the file may be truncated)"),
@@ -89,7 +105,7 @@ impl Fault {
     }
 }
 
-fn parse_run(dialect: Dialect, columns: usize, run: &[u8]) -> Result<Vec<f64>, Fault> {
+fn parse_run(dialect: Dialect, columns: Option<usize>, run: &[u8]) -> Result<Vec<f64>, Fault> {
     let mut values = Vec::new();
     let mut at = 0;
     while at < run.len() {
@@ -102,8 +118,11 @@ fn parse_run(dialect: Dialect, columns: usize, run: &[u8]) -> Result<Vec<f64>, F
             }
         }
         let found = values.len() - before;
-        if found != columns && found != 0 {
-            return Err(Fault::Columns { at, found });
+        if let Some(columns) = columns
+            && found != columns
+            && found != 0
+        {
+            return Err(Fault::Columns { at, found, columns });
         }
         at = end + 1;
     }
@@ -144,7 +163,7 @@ fn blank_line(
 fn delimited_line(
     separator: u8,
     comma: bool,
-    columns: usize,
+    columns: Option<usize>,
     run: &[u8],
     start: usize,
     end: usize,
@@ -159,7 +178,7 @@ fn delimited_line(
         let stop = memchr(separator, &run[at..end]).map_or(end, |n| at + n);
         let field = run[at..stop].trim_ascii();
         // A separator at the end of the line ends the last value.
-        if !(stop == end && field.is_empty() && found == columns) {
+        if !(stop == end && field.is_empty() && columns == Some(found)) {
             values.push(token(comma, field).ok_or(Fault::Number { at, length: stop - at })?);
             found += 1;
         }

@@ -1,0 +1,233 @@
+//! Gwyddion GWY: a tree of named values.
+//!
+//! After the signature "GWYP" follows one object: its type name, its length and its components, each a name, a type
+//! letter and a value ("i" int32, "d" double, "s" string, "D" array of doubles, "o" object, ...). Channel N is the
+//! object `/N/data` (GwyDataField: xres, yres, xreal, yreal, si_unit_xy, si_unit_z, data), its title
+//! `/N/data/title`, its mask `/N/mask`; masked points are read as undefined. (Gwyddion user guide, "Gwyddion file
+//! format".)
+
+use std::collections::BTreeMap;
+
+use super::cursor::{Cursor, text};
+use super::finish::{Lateral, Measured, Unit, choose};
+use super::sample::{Kind, Order, decode};
+use super::unit::{LoneA, metres};
+use super::{Format, Problem, grid};
+
+const SIGNATURE: &[u8] = b"GWYP";
+/// Objects lie in objects: Gwyddion nests some five deep.
+const DEEPEST: usize = 32;
+
+/// Whether the bytes are a GWY file.
+pub(super) fn is_gwy(bytes: &[u8]) -> bool {
+    bytes.starts_with(SIGNATURE)
+}
+
+/// Reads the channel asked for.
+pub(super) fn read_gwy(bytes: &[u8], channel: Option<&str>) -> Result<Measured, Problem> {
+    let mut cursor = Cursor::new(bytes, Order::Little);
+    cursor.bytes(SIGNATURE.len() as u64, "the signature")?;
+    let container = Object::parse(&mut cursor, 0)?;
+    let mut numbers: Vec<u32> = container.components.keys().filter_map(|name| number(name)).collect();
+    numbers.sort_unstable();
+    numbers.dedup();
+    let field = |n: u32, key: &str| match container.get(&format!("/{n}/{key}")) {
+        Some(Value::Object(field)) if field.kind == b"GwyDataField" => Some(field),
+        _ => None,
+    };
+    // Channels of heights; all channels where none has a unit of length.
+    let all: Vec<(u32, &Object)> = numbers.iter().filter_map(|n| Some((*n, field(*n, "data")?))).collect();
+    let heights: Vec<_> =
+        all.iter().filter(|(_, f)| matches!(f.unit("si_unit_z"), Unit::Metres(_))).copied().collect();
+    let fields = if heights.is_empty() { all } else { heights };
+    let names: Vec<String> = fields
+        .iter()
+        .map(|(n, _)| match container.get(&format!("/{n}/data/title")) {
+            Some(Value::Text(title)) if !text(title).is_empty() => text(title),
+            _ => format!("channel {n}"),
+        })
+        .collect();
+    let index = choose(Format::Gwy, &names, channel)?;
+    let (n, data) = fields[index];
+
+    let (nx, ny, mut values) = data.values()?;
+    if let Some(mask) = field(n, "mask") {
+        let (mask_x, mask_y, mask) = mask.values()?;
+        if (mask_x, mask_y) != (nx, ny) {
+            let expected = format!("{nx} x {ny} as the heights are");
+            return Err(Problem::malformed("the mask", format!("{mask_x} x {mask_y}"), expected));
+        }
+        for (value, masked) in values.iter_mut().zip(mask) {
+            if masked > 0.5 {
+                *value = f64::NAN;
+            }
+        }
+    }
+    let length = |key: &str| match data.get(key) {
+        Some(Value::Double(length)) if length.is_finite() && *length != 0.0 => Some(length.abs()),
+        _ => None,
+    };
+    let lateral = match (length("xreal"), length("yreal"), data.unit("si_unit_xy")) {
+        (Some(x), Some(y), Unit::Metres(metres)) => Lateral::Metres([x * metres, y * metres]),
+        (Some(x), Some(y), Unit::Unstated) => Lateral::Bare([x, y]),
+        (_, _, Unit::Other(label)) => Lateral::Unstated(format!(" in a unit of length (it says {label:?})")),
+        _ => Lateral::Unstated(String::new()),
+    };
+    let metadata = match container.get(&format!("/{n}/meta")) {
+        Some(Value::Object(meta)) => meta
+            .components
+            .iter()
+            .filter_map(|(key, value)| match value {
+                Value::Text(value) => Some((text(key), text(value))),
+                _ => None,
+            })
+            .collect(),
+        _ => Vec::new(),
+    };
+    Ok(Measured {
+        heights: grid::from_lines(nx, ny, &values),
+        unit: data.unit("si_unit_z"),
+        lateral,
+        channel: Some(names[index].clone()),
+        channels: names,
+        metadata,
+    })
+}
+
+/// N of "/N/data".
+fn number(key: &[u8]) -> Option<u32> {
+    std::str::from_utf8(key).ok()?.strip_prefix('/')?.strip_suffix("/data")?.parse().ok()
+}
+
+/// A value that matters here; others are skipped.
+enum Value<'a> {
+    Int(i32),
+    Double(f64),
+    Text(&'a [u8]),
+    /// The bytes of an array of doubles.
+    Doubles(&'a [u8]),
+    Object(Object<'a>),
+    Skipped,
+}
+
+struct Object<'a> {
+    kind: &'a [u8],
+    components: BTreeMap<&'a [u8], Value<'a>>,
+}
+
+impl<'a> Object<'a> {
+    fn parse(cursor: &mut Cursor<'a>, depth: usize) -> Result<Self, Problem> {
+        if depth > DEEPEST {
+            return Err(Problem::malformed(
+                "the depth of nested objects",
+                depth,
+                format!("at most {DEEPEST}"),
+            ));
+        }
+        let kind = string(cursor)?;
+        let length = cursor.u32("the length of an object")?;
+        let content = cursor.bytes(u64::from(length), &format!("the object {:?}", text(kind)))?;
+        let mut inner = Cursor::new(content, Order::Little);
+        let mut components = BTreeMap::new();
+        while !inner.rest().is_empty() {
+            let name = string(&mut inner)?;
+            match Value::parse(&mut inner, name, depth)? {
+                Value::Skipped => {}
+                value => drop(components.insert(name, value)),
+            }
+        }
+        Ok(Object { kind, components })
+    }
+
+    fn get(&self, key: &str) -> Option<&Value<'a>> {
+        self.components.get(key.as_bytes())
+    }
+
+    /// Unit of a data field. A missing unit means a number without dimension.
+    fn unit(&self, key: &str) -> Unit {
+        let Some(Value::Object(unit)) = self.get(key) else { return Unit::Unstated };
+        match unit.get("unitstr") {
+            // A lone A is the ampere of Gwyddion's current channels.
+            Some(Value::Text(label)) if !text(label).is_empty() => {
+                metres(&text(label), LoneA::Ampere).map_or(Unit::Other(text(label)), Unit::Metres)
+            }
+            _ => Unit::Unstated,
+        }
+    }
+
+    /// nx, ny and the values of a data field, line by line.
+    fn values(&self) -> Result<(usize, usize, Vec<f64>), Problem> {
+        let resolution = |key: &str| match self.get(key) {
+            Some(Value::Int(n)) => Ok(u64::try_from(*n).unwrap_or(0)),
+            _ => Err(Problem::malformed(format!("{key:?} of the data field"), "missing", "present")),
+        };
+        let (nx, ny) = (resolution("xres")?, resolution("yres")?);
+        let points = grid::points(nx, ny)?;
+        let Some(Value::Doubles(bytes)) = self.get("data") else {
+            return Err(Problem::malformed("\"data\" of the data field", "missing", "an array of doubles"));
+        };
+        let values = decode(bytes, Kind::F64, Order::Little, points, "the data field")?;
+        Ok((nx as usize, ny as usize, values))
+    }
+}
+
+impl<'a> Value<'a> {
+    fn parse(c: &mut Cursor<'a>, name: &[u8], depth: usize) -> Result<Self, Problem> {
+        let what = || format!("the component {:?}", text(name));
+        let kind = c.u8(&what())?;
+        let array = |c: &mut Cursor<'a>, width: u64| {
+            let count = c.u32(&what())?;
+            c.bytes(u64::from(count) * width, &what())
+        };
+        Ok(match kind {
+            b'b' | b'c' => {
+                c.u8(&what())?;
+                Value::Skipped
+            }
+            b'i' => Value::Int(c.i32(&what())?),
+            b'q' => {
+                c.bytes(8, &what())?;
+                Value::Skipped
+            }
+            b'd' => Value::Double(c.f64(&what())?),
+            b's' => Value::Text(string(c)?),
+            b'o' => Value::Object(Object::parse(c, depth + 1)?),
+            b'C' => skip(array(c, 1)?),
+            b'I' => skip(array(c, 4)?),
+            b'Q' => skip(array(c, 8)?),
+            b'D' => Value::Doubles(array(c, 8)?),
+            b'S' => {
+                for _ in 0..c.u32(&what())? {
+                    string(c)?;
+                }
+                Value::Skipped
+            }
+            b'O' => {
+                for _ in 0..c.u32(&what())? {
+                    Object::parse(c, depth + 1)?;
+                }
+                Value::Skipped
+            }
+            other => {
+                let kind = char::from(other);
+                return Err(Problem::malformed(
+                    format!("the type of {}", what()),
+                    kind,
+                    "one of bciqdsoCIQDSO",
+                ));
+            }
+        })
+    }
+}
+
+fn skip<'a>(_: &[u8]) -> Value<'a> {
+    Value::Skipped
+}
+
+/// A string that ends with a zero.
+fn string<'a>(cursor: &mut Cursor<'a>) -> Result<&'a [u8], Problem> {
+    let rest = cursor.rest();
+    let length = memchr::memchr(0, rest)
+        .ok_or_else(|| Problem::truncated("a string", rest.len() as u64 + 1, rest.len() as u64))?;
+    Ok(&cursor.bytes(length as u64 + 1, "a string")?[..length])
+}

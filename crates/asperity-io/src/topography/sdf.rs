@@ -1,0 +1,161 @@
+//! ISO 25178-71 SDF, surface data files, as text (aISO-1.0) and binary (bISO-1.0); also version 2.0, whose counts
+//! have 32 bits.
+//!
+//! Header: manufacturer, dates, NumPoints (along x), NumProfiles (along y), the scales along x, y, z in metres per
+//! unit, the type of the numbers; then the profiles one after the other. Undefined points are BAD in text and the
+//! least number of a signed type (the greatest of an unsigned one, which early files use) in binary.
+
+use super::cursor::{Cursor, text};
+use super::finish::{Lateral, Measured, Unit};
+use super::sample::{Kind, Order, decode};
+use super::text::numbers;
+use super::{Problem, grid};
+
+/// Whether the bytes are an SDF file.
+pub(super) fn is_sdf(bytes: &[u8]) -> bool {
+    matches!(bytes.trim_ascii_start().first_chunk(), Some(b"aISO-1.0" | b"aISO-2.0"))
+        || matches!(bytes.first_chunk(), Some(b"bISO-1.0" | b"bISO-2.0"))
+}
+
+/// What a header of either kind says.
+struct Header {
+    points: u64,
+    profiles: u64,
+    scale: [f64; 3],
+    kind: Kind,
+    metadata: Vec<(String, String)>,
+}
+
+/// Reads the surface.
+pub(super) fn read_sdf(bytes: &[u8]) -> Result<Measured, Problem> {
+    if bytes.first() == Some(&b'b') { read_binary(bytes) } else { read_text(bytes) }
+}
+
+/// Types of numbers by their code.
+fn kind(code: u64) -> Result<Kind, Problem> {
+    const KINDS: [Kind; 8] =
+        [Kind::U8, Kind::U16, Kind::U32, Kind::F32, Kind::I8, Kind::I16, Kind::I32, Kind::F64];
+    let index = usize::try_from(code).ok();
+    index
+        .and_then(|i| KINDS.get(i).copied())
+        .ok_or_else(|| Problem::malformed("DataType of the SDF header", code, "from 0 to 7"))
+}
+
+/// The number that marks an undefined point.
+fn undefined(kind: Kind) -> Option<f64> {
+    match kind {
+        Kind::I8 => Some(f64::from(i8::MIN)),
+        Kind::I16 => Some(f64::from(i16::MIN)),
+        Kind::I32 => Some(f64::from(i32::MIN)),
+        Kind::U16 => Some(f64::from(u16::MAX)),
+        Kind::U32 => Some(f64::from(u32::MAX)),
+        Kind::F32 => Some(f64::from(f32::MIN)),
+        Kind::F64 => Some(f64::MIN),
+        _ => None,
+    }
+}
+
+fn read_binary(bytes: &[u8]) -> Result<Measured, Problem> {
+    const H: &str = "the SDF header";
+    let mut c = Cursor::new(bytes, Order::Little);
+    let version = c.bytes(8, H)?;
+    let mut metadata = Vec::new();
+    for (key, length) in [("ManufacID", 10), ("CreateDate", 12), ("ModDate", 12)] {
+        metadata.push((key.to_owned(), c.text(length, H)?));
+    }
+    let (points, profiles) = match version {
+        b"bISO-2.0" => (u64::from(c.u32(H)?), u64::from(c.u32(H)?)),
+        _ => (u64::from(c.u16(H)?), u64::from(c.u16(H)?)),
+    };
+    let scale = [c.f64(H)?, c.f64(H)?, c.f64(H)?];
+    let _resolution = c.f64(H)?;
+    let [compression, data_type, _check] = [c.u8(H)?, c.u8(H)?, c.u8(H)?];
+    refuse_compression(u64::from(compression))?;
+    let header = Header { points, profiles, scale, kind: kind(u64::from(data_type))?, metadata };
+    let count = grid::points(points, profiles)?;
+    let mut values = decode(c.rest(), header.kind, Order::Little, count, "the points of the SDF file")?;
+    if let Some(undefined) = undefined(header.kind) {
+        values.iter_mut().filter(|v| **v == undefined).for_each(|v| *v = f64::NAN);
+    }
+    header.measured(&values)
+}
+
+fn read_text(bytes: &[u8]) -> Result<Measured, Problem> {
+    let (header, data, line) = split(bytes)?;
+    let mut metadata = Vec::new();
+    for entry in header.split(|b| *b == b'\n').map(text).filter(|l| !l.starts_with(';')) {
+        if let Some((key, value)) = entry.split_once('=') {
+            metadata.push((key.trim().to_owned(), value.trim().to_owned()));
+        }
+    }
+    let get = |key: &str| metadata.iter().find(|(k, _)| k.eq_ignore_ascii_case(key)).map(|(_, v)| v.as_str());
+    let number = |key: &str| {
+        let value = get(key).unwrap_or("missing");
+        value
+            .parse::<f64>()
+            .map_err(|_| Problem::malformed(format!("{key} of the SDF header"), value, "a number"))
+    };
+    let whole = |key: &str| {
+        let value = get(key).unwrap_or("missing");
+        value
+            .parse::<u64>()
+            .map_err(|_| Problem::malformed(format!("{key} of the SDF header"), value, "a whole number"))
+    };
+    if get("Compression").is_some() {
+        refuse_compression(whole("Compression")?)?;
+    }
+    let (points, profiles) = (whole("NumPoints")?, whole("NumProfiles")?);
+    let scale = [number("Xscale")?, number("Yscale")?, number("Zscale")?];
+    let kind = kind(whole("DataType")?)?;
+    let count = grid::points(points, profiles)?;
+    let values = numbers(data, line)?;
+    if values.len() != count {
+        let expected = format!("{points} x {profiles} as the header says (the file may be truncated)");
+        return Err(Problem::malformed("the number of points", values.len(), expected));
+    }
+    Header { points, profiles, scale, kind, metadata }.measured(&values)
+}
+
+/// Header and numbers, which lines of one asterisk end, and the line where the numbers start. The trailer after
+/// the second asterisk is free text.
+fn split(bytes: &[u8]) -> Result<(&[u8], &[u8], usize), Problem> {
+    let asterisk = |from: usize| {
+        let line_start = |at: usize| bytes[from..at].iter().rev().find(|b| !matches!(b, b' ' | b'\t'));
+        memchr::memchr_iter(b'*', &bytes[from..])
+            .map(|n| from + n)
+            .find(|at| line_start(*at).is_none_or(|b| matches!(b, b'\n' | b'\r')))
+    };
+    let end = asterisk(0).ok_or_else(|| {
+        Problem::malformed("the end of the SDF header", "missing", "a line with one asterisk")
+    })?;
+    let stop = asterisk(end + 1).unwrap_or(bytes.len());
+    let line = 1 + memchr::memchr_iter(b'\n', &bytes[..end]).count();
+    Ok((&bytes[..end], &bytes[end + 1..stop], line))
+}
+
+fn refuse_compression(code: u64) -> Result<(), Problem> {
+    if code == 0 {
+        return Ok(());
+    }
+    Err(Problem::unsupported(
+        format!("compression {code} of an SDF file, for which ISO 25178-71 defines no method"),
+        "export the file without compression",
+    ))
+}
+
+impl Header {
+    fn measured(self, values: &[f64]) -> Result<Measured, Problem> {
+        let (nx, ny) = (self.points as usize, self.profiles as usize);
+        let [dx, dy, dz] = self.scale;
+        let mut heights = grid::from_lines(nx, ny, values);
+        heights.par_mapv_inplace(|v| v * dz);
+        Ok(Measured {
+            heights,
+            unit: Unit::Metres(1.0),
+            lateral: Lateral::Metres([nx as f64 * dx, ny as f64 * dy]),
+            channel: None,
+            channels: Vec::new(),
+            metadata: self.metadata,
+        })
+    }
+}

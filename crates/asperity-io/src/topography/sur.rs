@@ -1,0 +1,263 @@
+//! Digital Surf SUR, the files of MountainsMap and of many instruments.
+//!
+//! An object is a header of 512 bytes, a comment, a private zone and the points as 16- or 32-bit integers, line by
+//! line; since 2010 the points may be packed as zlib streams (signature DSCOMPRESSED). A file holds several objects
+//! one after the other: the layers of a surface, or a surface and its images. Height = integer x spacing, plus the
+//! offset where the z axis is absolute; on a relative axis the offset has no meaning. Points that were not measured
+//! have the value (least z - 2).
+//!
+//! Layout after the "Surface format" of Digital Surf as the readers of Gwyddion and RosettaSciIO know it.
+
+use flate2::read::ZlibDecoder;
+use ndarray::Axis;
+
+use super::cursor::Cursor;
+use super::finish::{Lateral, Measured, Unit, choose};
+use super::sample::{Kind, Order, decode};
+use super::unit::{LoneA, metres};
+use super::unpack::{most_unpacked, read_bounded};
+use super::{Format, Problem, grid};
+
+/// Whether the bytes are a SUR file.
+pub(super) fn is_sur(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"DIGITAL SURF") || bytes.starts_with(b"DSCOMPRESSED")
+}
+
+/// Kinds of objects whose first object, or every one, is a surface.
+mod studiable {
+    pub(super) const PROFILE: i16 = 1;
+    pub(super) const SURFACE: i16 = 2;
+    pub(super) const SERIES_OF_SURFACES: i16 = 5;
+    pub(super) const MULTILAYER_SURFACE: i16 = 8;
+    pub(super) const INTENSITY_SURFACE: i16 = 11;
+    pub(super) const RGB_SURFACE: i16 = 13;
+    pub(super) const RGB_INTENSITY_SURFACE: i16 = 16;
+}
+
+/// Reads the surface asked for.
+pub(super) fn read_sur(bytes: &[u8], channel: Option<&str>) -> Result<Measured, Problem> {
+    let mut cursor = Cursor::new(bytes, Order::Little);
+    let first = Object::parse(&mut cursor)?;
+    // The first header counts the objects; "P size" is the number of channels of each, 0 for one.
+    let count = usize::from(first.objects.max(1)) * usize::from(first.channels.max(1));
+    let all_are_surfaces = matches!(
+        first.kind,
+        studiable::SURFACE | studiable::SERIES_OF_SURFACES | studiable::MULTILAYER_SURFACE
+    );
+    let has_surface = all_are_surfaces
+        || matches!(
+            first.kind,
+            studiable::INTENSITY_SURFACE | studiable::RGB_SURFACE | studiable::RGB_INTENSITY_SURFACE
+        )
+        // Gwyddion writes surfaces as profiles of many lines.
+        || (first.kind == studiable::PROFILE && first.lines > 1);
+    if !has_surface {
+        let detail = format!("its objects are of the kind {}, not surfaces", first.kind);
+        return Err(Problem::NoHeights { format: Format::Sur, detail });
+    }
+    let mut objects = vec![first];
+    while all_are_surfaces && objects.len() < count && !cursor.rest().is_empty() {
+        objects.push(Object::parse(&mut cursor)?);
+    }
+    let names: Vec<String> = match objects.as_slice() {
+        [only] => vec![only.name.clone()],
+        more => more
+            .iter()
+            .enumerate()
+            .map(|(i, o)| if o.name.is_empty() { format!("layer {i}") } else { format!("{} {i}", o.name) })
+            .collect(),
+    };
+    let index = choose(Format::Sur, &names, channel)?;
+    objects.swap_remove(index).measured(names, index)
+}
+
+/// One object: what the header says, and its points.
+struct Object<'a> {
+    objects: u16,
+    channels: u16,
+    kind: i16,
+    name: String,
+    special_points: bool,
+    absolute: bool,
+    bits: i16,
+    least: i32,
+    points: u32,
+    lines: u32,
+    values_per_point: u32,
+    spacing: [f32; 3],
+    unit: [String; 3],
+    inversion: i16,
+    offset: f32,
+    metadata: Vec<(String, String)>,
+    data: Data<'a>,
+}
+
+enum Data<'a> {
+    Plain(&'a [u8]),
+    /// zlib streams and their unpacked lengths.
+    Packed(Vec<(&'a [u8], u32)>),
+}
+
+impl<'a> Object<'a> {
+    fn parse(c: &mut Cursor<'a>) -> Result<Self, Problem> {
+        const H: &str = "the SUR header";
+        let signature = c.text(12, H)?;
+        let packed = match signature.as_str() {
+            "DIGITAL SURF" => false,
+            "DSCOMPRESSED" => true,
+            _ => {
+                return Err(Problem::malformed(
+                    "the signature of a SUR object",
+                    signature,
+                    "\"DIGITAL SURF\"",
+                ));
+            }
+        };
+        let _format = c.i16(H)?;
+        let objects = c.u16(H)?;
+        let _version = c.i16(H)?;
+        let kind = c.i16(H)?;
+        let name = c.text(30, H)?;
+        let operator = c.text(30, H)?;
+        let channels = c.u16(H)?;
+        let [_acquisition, _range] = [c.i16(H)?, c.i16(H)?];
+        let special_points = c.i16(H)? == 1;
+        let absolute = c.i16(H)? != 0;
+        let _gauge_resolution = c.f32(H)?;
+        let values_per_point = c.u32(H)?;
+        let bits = c.i16(H)?;
+        let [least, _most] = [c.i32(H)?, c.i32(H)?];
+        let [points, lines, _total] = [c.u32(H)?, c.u32(H)?, c.u32(H)?];
+        let spacing = [c.f32(H)?, c.f32(H)?, c.f32(H)?];
+        let _axis_names = c.bytes(3 * 16, H)?;
+        let unit = [c.text(16, H)?, c.text(16, H)?, c.text(16, H)?];
+        let _length_units_and_ratios = c.bytes(3 * 16 + 3 * 4, H)?;
+        let _replica = c.i16(H)?;
+        let inversion = c.i16(H)?;
+        let _levelled = c.i16(H)?;
+        let _obsolete = c.bytes(12, H)?;
+        let [second, minute, hour, day, month, year, _weekday] =
+            [c.i16(H)?, c.i16(H)?, c.i16(H)?, c.i16(H)?, c.i16(H)?, c.i16(H)?, c.i16(H)?];
+        let _duration = c.f32(H)?;
+        let _packed_length = c.u32(H)?;
+        let _obsolete = c.bytes(6, H)?;
+        let [comment_length, private_length] = [c.u16(H)?, c.u16(H)?];
+        let _client_zone = c.bytes(128, H)?;
+        let [_offset_x, _offset_y, offset] = [c.f32(H)?, c.f32(H)?, c.f32(H)?];
+        let _time_axis = c.bytes(4 + 4 + 13 + 13, H)?;
+        let comment = c.text(u64::from(comment_length), "the SUR comment")?;
+        let _private = c.bytes(u64::from(private_length), "the private zone of the SUR object")?;
+
+        let data = if packed {
+            let count = c.u32("the number of packed streams")?;
+            let lengths = c.bytes(8 * u64::from(count), "the lengths of the packed streams")?;
+            let mut lengths = Cursor::new(lengths, Order::Little);
+            let mut streams = Vec::new();
+            for _ in 0..count {
+                let [unpacked, packed] = [lengths.u32("a length")?, lengths.u32("a length")?];
+                streams.push((c.bytes(u64::from(packed), "a packed stream")?, unpacked));
+            }
+            Data::Packed(streams)
+        } else {
+            let points = grid::points(u64::from(points), u64::from(lines))? as u64;
+            let width = u64::from(bits.unsigned_abs()) / 8;
+            let length = points.saturating_mul(width).saturating_mul(u64::from(values_per_point.max(1)));
+            Data::Plain(c.bytes(length, "the points of the SUR object")?)
+        };
+        let mut metadata = Vec::new();
+        for (key, value) in [("operator", operator), ("comment", comment)] {
+            if !value.is_empty() {
+                metadata.push((key.to_owned(), value));
+            }
+        }
+        if year > 0 {
+            let date = format!("{year:04}-{month:02}-{day:02} {hour:02}:{minute:02}:{second:02}");
+            metadata.push(("date".to_owned(), date));
+        }
+        Ok(Object {
+            objects,
+            channels,
+            kind,
+            name,
+            special_points,
+            absolute,
+            bits,
+            least,
+            points,
+            lines,
+            values_per_point,
+            spacing,
+            unit,
+            inversion,
+            offset,
+            metadata,
+            data,
+        })
+    }
+
+    fn measured(mut self, names: Vec<String>, index: usize) -> Result<Measured, Problem> {
+        let (nx, ny) = (self.points as usize, self.lines as usize);
+        let count = grid::points(u64::from(self.points), u64::from(self.lines))?;
+        if self.values_per_point > 1 {
+            let what = format!("a SUR object with {} values per point", self.values_per_point);
+            return Err(Problem::unsupported(what, "export the surface alone from MountainsMap"));
+        }
+        let kind = match self.bits {
+            16 => Kind::I16,
+            32 => Kind::I32,
+            other => return Err(Problem::malformed("the bits per point", other, "16 or 32")),
+        };
+        let unpacked;
+        let bytes = match &self.data {
+            Data::Plain(bytes) => *bytes,
+            Data::Packed(streams) => {
+                unpacked = unpack(streams)?;
+                unpacked.as_slice()
+            }
+        };
+        let mut values = decode(bytes, kind, Order::Little, count, "the points of the SUR object")?;
+        if self.special_points {
+            let undefined = f64::from(self.least) - 2.0;
+            values.iter_mut().filter(|v| **v == undefined).for_each(|v| *v = f64::NAN);
+        }
+        let mut heights = grid::from_lines(nx, ny, &values);
+        // 1: heights inverted; 2: and mirrored left-right; 3: and upside down.
+        match self.inversion {
+            2 => heights.invert_axis(Axis(0)),
+            3 => heights.invert_axis(Axis(1)),
+            _ => {}
+        }
+        let sign = if matches!(self.inversion, 1..=3) { -1.0 } else { 1.0 };
+        let [dx, dy, dz] = self.spacing.map(f64::from);
+        let offset = f64::from(self.offset);
+        if offset != 0.0 {
+            self.metadata.push(("z offset".to_owned(), format!("{offset} {}", self.unit[2])));
+        }
+        let offset = if self.absolute { offset } else { 0.0 };
+        let mut heights = heights.as_standard_layout().into_owned();
+        heights.par_mapv_inplace(|v| sign * v * dz + offset);
+
+        let [ux, uy, uz] = self.unit.each_ref().map(|u| metres(u, LoneA::Angstrom));
+        let lateral = match (ux, uy) {
+            (Some(ux), Some(uy)) => Lateral::Metres([nx as f64 * dx.abs() * ux, ny as f64 * dy.abs() * uy]),
+            _ if self.unit[0].is_empty() => Lateral::Bare([nx as f64 * dx.abs(), ny as f64 * dy.abs()]),
+            _ => Lateral::Unstated(format!(" in a unit of length (it says {:?})", self.unit[0])),
+        };
+        let unit = match (uz, self.unit[2].as_str()) {
+            (Some(uz), _) => Unit::Metres(uz),
+            (None, "") => Unit::Unstated,
+            (None, label) => Unit::Other(label.to_owned()),
+        };
+        let channel = Some(names[index].clone()).filter(|n| !n.is_empty());
+        Ok(Measured { heights, unit, lateral, channel, channels: names, metadata: self.metadata })
+    }
+}
+
+fn unpack(streams: &[(&[u8], u32)]) -> Result<Vec<u8>, Problem> {
+    let mut bytes = Vec::new();
+    for (stream, length) in streams {
+        let most = most_unpacked(stream.len()).min(u64::from(*length));
+        bytes.extend(read_bounded(ZlibDecoder::new(*stream), most, "the points of the SUR object")?);
+    }
+    Ok(bytes)
+}

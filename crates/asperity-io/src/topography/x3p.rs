@@ -1,0 +1,226 @@
+//! X3P, ISO 25178-72 (ISO 5436-2): a zip archive of an XML description and a binary matrix.
+//!
+//! `main.xml` gives in Record1 the axes (type I: equally spaced by Increment from Offset; data type I = int16,
+//! L = int32, F = binary32, D = binary64), in Record3 the size of the matrix and either a link to the binary
+//! points (x runs fastest, little-endian) with a link to the bit mask of valid points, or the points as a list of
+//! `Datum`. Lengths are metres. Height = number x Increment + Offset of the z axis.
+
+use std::collections::HashMap;
+
+use quick_xml::Reader;
+use quick_xml::events::Event;
+
+use super::finish::{Lateral, Measured, Unit, choose};
+use super::sample::{Kind, Order, decode};
+use super::unpack::Archive;
+use super::{Format, Problem, grid};
+
+/// Elements nest five deep in the standard's schema.
+const DEEPEST: usize = 32;
+
+/// Reads the layer asked for.
+pub(super) fn read_x3p(bytes: &[u8], channel: Option<&str>) -> Result<Measured, Problem> {
+    let mut archive = Archive::open(bytes)?;
+    let xml = archive.member("main.xml")?;
+    let main = Main::parse(&xml)?;
+    main.check()?;
+    let [nx, ny] =
+        [main.whole("Record3/MatrixDimension/SizeX")?, main.whole("Record3/MatrixDimension/SizeY")?];
+    let layers = main.whole("Record3/MatrixDimension/SizeZ").unwrap_or(1).max(1);
+    let count = grid::points(nx, ny)?;
+    let all = grid::points(nx.saturating_mul(ny), layers)?;
+    let names: Vec<String> = match layers {
+        1 => vec![String::new()],
+        // More layers than bytes are refused when the points are read; no list of names for them.
+        _ => (0..layers.min(1 << 16)).map(|i| format!("layer {i}")).collect(),
+    };
+    let layer = choose(Format::X3p, &names, channel)?;
+    let range = layer * count..(layer + 1) * count;
+
+    let increment = main.number_or("Record1/Axes/CZ/Increment", 1.0)?;
+    let offset = main.number_or("Record1/Axes/CZ/Offset", 0.0)?;
+    let values = match main.get("Record3/DataLink/PointDataLink") {
+        Some(link) => main.linked(&mut archive, link, all, range)?,
+        None if main.data.len() == all => main.data[range].to_vec(),
+        None => {
+            let expected = format!("{nx} x {ny} x {layers} as MatrixDimension says");
+            return Err(Problem::malformed("the number of points in DataList", main.data.len(), expected));
+        }
+    };
+    let (nx, ny) = (nx as usize, ny as usize);
+    let mut heights = grid::from_lines(nx, ny, &values);
+    heights.par_mapv_inplace(|v| v * increment + offset);
+    let [dx, dy] = [main.number("Record1/Axes/CX/Increment")?, main.number("Record1/Axes/CY/Increment")?];
+    let channel = (layers > 1).then(|| names[layer].clone());
+    Ok(Measured {
+        heights,
+        unit: Unit::Metres(1.0),
+        lateral: Lateral::Metres([nx as f64 * dx.abs(), ny as f64 * dy.abs()]),
+        channel,
+        channels: if layers > 1 { names } else { Vec::new() },
+        metadata: main.metadata(),
+    })
+}
+
+/// The elements of main.xml by their path below the root, and the list of data.
+struct Main {
+    elements: HashMap<String, String>,
+    order: Vec<String>,
+    data: Vec<f64>,
+}
+
+impl Main {
+    fn parse(xml: &[u8]) -> Result<Self, Problem> {
+        let broken = |e: String| Problem::malformed("main.xml", e, "well-formed XML");
+        let xml = String::from_utf8_lossy(xml);
+        let mut reader = Reader::from_str(xml.trim_start_matches('\u{feff}'));
+        let mut main = Main { elements: HashMap::new(), order: Vec::new(), data: Vec::new() };
+        let mut path: Vec<String> = Vec::new();
+        let mut content = String::new();
+        loop {
+            match reader.read_event().map_err(|e| broken(e.to_string()))? {
+                Event::Start(element) => {
+                    if path.len() == DEEPEST {
+                        return Err(broken(format!("more than {DEEPEST} elements deep")));
+                    }
+                    path.push(element.local_name().as_ref().to_owned());
+                    content.clear();
+                }
+                // <Datum/> is an undefined point.
+                Event::Empty(element) if element.local_name().as_ref() == "Datum" => main.data.push(f64::NAN),
+                Event::Text(text) => content.push_str(&text.xml10_content()),
+                Event::GeneralRef(reference) => {
+                    let character = match reference.resolve_char_ref() {
+                        Ok(Some(character)) => Some(character.to_string()),
+                        _ => quick_xml::escape::resolve_predefined_entity(&reference).map(str::to_owned),
+                    };
+                    content.push_str(&character.unwrap_or_default());
+                }
+                Event::CData(text) => content.push_str(&text),
+                Event::End(_) => {
+                    let text = content.trim();
+                    match path.last().map(String::as_str) {
+                        Some("Datum") => main.data.push(datum(text)?),
+                        Some(_) if !text.is_empty() => {
+                            let key = path[1..].join("/");
+                            if main.elements.insert(key.clone(), text.to_owned()).is_none() {
+                                main.order.push(key);
+                            }
+                        }
+                        _ => {}
+                    }
+                    path.pop();
+                    content.clear();
+                }
+                Event::Eof if path.is_empty() => return Ok(main),
+                Event::Eof => return Err(broken("it ends inside an element".into())),
+                _ => {}
+            }
+        }
+    }
+
+    fn get(&self, path: &str) -> Option<&str> {
+        self.elements.get(path).map(String::as_str)
+    }
+
+    fn number(&self, path: &str) -> Result<f64, Problem> {
+        let value = self.get(path).unwrap_or("missing");
+        value.parse().map_err(|_| Problem::malformed(format!("{path} in main.xml"), value, "a number"))
+    }
+
+    fn number_or(&self, path: &str, default: f64) -> Result<f64, Problem> {
+        if self.get(path).is_some() { self.number(path) } else { Ok(default) }
+    }
+
+    fn whole(&self, path: &str) -> Result<u64, Problem> {
+        let value = self.get(path).unwrap_or("missing");
+        value.parse().map_err(|_| Problem::malformed(format!("{path} in main.xml"), value, "a whole number"))
+    }
+
+    /// Refuses profiles, point clouds and points that are not equally spaced.
+    fn check(&self) -> Result<(), Problem> {
+        if let Some(kind @ ("PRF" | "PCL")) = self.get("Record1/FeatureType") {
+            let detail = format!("its feature type is {kind}, not SUR");
+            return Err(Problem::NoHeights { format: Format::X3p, detail });
+        }
+        for axis in ["CX", "CY"] {
+            if self.get(&format!("Record1/Axes/{axis}/AxisType")) == Some("A") {
+                return Err(Problem::unsupported(
+                    format!("an X3P file whose points are not equally spaced (axis {axis} is absolute)"),
+                    "resample it to a regular grid before the export",
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// The points of one layer from a member of the archive; `all` is their number in all layers.
+    fn linked(
+        &self,
+        archive: &mut Archive,
+        link: &str,
+        all: usize,
+        range: std::ops::Range<usize>,
+    ) -> Result<Vec<f64>, Problem> {
+        let kind = match self.get("Record1/Axes/CZ/DataType") {
+            Some("I") => Kind::I16,
+            Some("L") => Kind::I32,
+            Some("F") => Kind::F32,
+            Some("D") => Kind::F64,
+            other => {
+                let other = other.unwrap_or("missing");
+                return Err(Problem::malformed(
+                    "Record1/Axes/CZ/DataType in main.xml",
+                    other,
+                    "I, L, F or D",
+                ));
+            }
+        };
+        let content = archive.member(link)?;
+        let needed = all as u64 * kind.width() as u64;
+        if (content.len() as u64) < needed {
+            return Err(Problem::truncated(format!("the points in {link:?}"), needed, content.len() as u64));
+        }
+        let bytes = &content[range.start * kind.width()..range.end * kind.width()];
+        let mut values = decode(bytes, kind, Order::Little, range.len(), "the points")?;
+        if let Some(link) = self.get("Record3/DataLink/ValidPointsLink") {
+            let mask = archive.member(link)?;
+            let needed = all.div_ceil(8);
+            if mask.len() < needed {
+                return Err(Problem::truncated(
+                    format!("the mask in {link:?}"),
+                    needed as u64,
+                    mask.len() as u64,
+                ));
+            }
+            // One bit per point, the least significant first; 1 = valid.
+            for (value, point) in values.iter_mut().zip(range) {
+                if mask[point / 8] >> (point % 8) & 1 == 0 {
+                    *value = f64::NAN;
+                }
+            }
+        }
+        Ok(values)
+    }
+
+    /// Record2: instrument, dates, comment.
+    fn metadata(self) -> Vec<(String, String)> {
+        let Main { mut elements, order, .. } = self;
+        order
+            .into_iter()
+            .filter_map(|key| {
+                let value = elements.remove(&key)?;
+                Some((key.strip_prefix("Record2/")?.to_owned(), value))
+            })
+            .collect()
+    }
+}
+
+/// A list entry: the height alone, or "x;y;height"; an empty one is undefined.
+fn datum(text: &str) -> Result<f64, Problem> {
+    let text = text.rsplit(';').next().unwrap_or_default().trim();
+    if text.is_empty() {
+        return Ok(f64::NAN);
+    }
+    text.parse().map_err(|_| Problem::malformed("a Datum in main.xml", text, "a number"))
+}

@@ -2,7 +2,7 @@
 
 use std::{fmt, str::FromStr};
 
-use super::{al3d, bcr, gwy, opd, sdf, sur, text, unpack};
+use super::{al3d, bcr, gwy, netcdf, opd, sdf, sur, text, unpack};
 
 /// A file format.
 ///
@@ -132,6 +132,8 @@ fn detect_plain(bytes: &[u8]) -> Option<Format> {
         Some(Format::Sdf)
     } else if bcr::is_bcr(bytes) {
         Some(Format::Bcr)
+    } else if let Some(format) = netcdf::detect(bytes) {
+        Some(format)
     } else {
         text::detect(bytes)
     }

@@ -9,6 +9,14 @@
 //! | text matrix, CSV | Gwyddion, SPIP, Nova and Wyko headers; any decimal mark |
 //! | XYZ | points of a regular grid in any order |
 //! | NPY, NPZ | NumPy |
+//! | NetCDF, HDF5 | contact.engineering; classic and NetCDF-4 |
+//! | SDF | ISO 25178-71, text and binary |
+//! | X3P | ISO 25178-72 |
+//! | SUR | Digital Surf, MountainsMap; plain and packed |
+//! | GWY | Gwyddion |
+//! | AL3D | Alicona |
+//! | OPD | Wyko |
+//! | BCR, BCRF | Image Metrology |
 //!
 //! All text and binary formats may be packed by gzip.
 
@@ -20,6 +28,7 @@ mod finish;
 mod format;
 mod grid;
 mod gwy;
+mod netcdf;
 mod npy;
 mod opd;
 mod sample;
@@ -120,19 +129,20 @@ fn parse(bytes: &[u8], options: &ReadOptions) -> Result<Topography, Problem> {
         None => detect(bytes).ok_or(Problem::Unrecognised)?,
     };
     let channel = options.channel.as_deref();
-    let measured = match format {
-        Format::Text | Format::Csv => text::read_matrix(bytes, channel)?,
-        Format::Xyz => text::read_xyz(bytes, channel)?,
-        Format::Npy => npy::read_npy(bytes)?,
-        Format::Npz => npy::read_npz(bytes, channel)?,
-        Format::Sdf => sdf::read_sdf(bytes)?,
-        Format::Bcr => bcr::read_bcr(bytes)?,
-        Format::X3p => x3p::read_x3p(bytes, channel)?,
-        Format::Sur => sur::read_sur(bytes, channel)?,
-        Format::Gwy => gwy::read_gwy(bytes, channel)?,
-        Format::Al3d => al3d::read_al3d(bytes)?,
-        Format::Opd => opd::read_opd(bytes, channel)?,
-        Format::NetCdf | Format::Hdf5 => return Err(Problem::Unrecognised),
+    let (format, measured) = match format {
+        Format::Text | Format::Csv => (format, text::read_matrix(bytes, channel)?),
+        Format::Xyz => (format, text::read_xyz(bytes, channel)?),
+        Format::Npy => (format, npy::read_npy(bytes)?),
+        Format::Npz => (format, npy::read_npz(bytes, channel)?),
+        Format::Sdf => (format, sdf::read_sdf(bytes)?),
+        Format::Bcr => (format, bcr::read_bcr(bytes)?),
+        Format::X3p => (format, x3p::read_x3p(bytes, channel)?),
+        Format::Sur => (format, sur::read_sur(bytes, channel)?),
+        Format::Gwy => (format, gwy::read_gwy(bytes, channel)?),
+        Format::Al3d => (format, al3d::read_al3d(bytes)?),
+        Format::Opd => (format, opd::read_opd(bytes, channel)?),
+        // NetCDF-4 is HDF5; the content tells which.
+        Format::NetCdf | Format::Hdf5 => netcdf::read_netcdf(bytes, channel)?,
     };
     finish(format, measured, options)
 }

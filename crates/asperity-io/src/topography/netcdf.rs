@@ -1,0 +1,191 @@
+//! NetCDF, classic (CDF-1, -2, -5) and NetCDF-4, as contact.engineering writes it, and other HDF5.
+//!
+//! A topography is the variable `heights` over the dimensions x and y; the attribute `length` of the variables `x`
+//! and `y` is the physical size, `unit` of all three the unit. A variable `mask` that is not 0 marks undefined
+//! points, as do `_FillValue`, `missing_value` and the valid range of the NetCDF conventions. Other files: every
+//! two-dimensional variable of numbers is a channel, the first dimension is x unless the names say (y, x), and the
+//! coordinates give the size where they are equally spaced.
+
+use ndarray::{Array2, ArrayD, Ix2};
+use netcdf_reader::{NcAttrValue, NcFile, NcFormat, NcOpenOptions, NcType, NcVariable};
+
+use super::finish::{Lateral, Measured, Unit, choose};
+use super::unit::{LoneA, metres};
+use super::unpack::most_unpacked;
+use super::{Format, Problem, grid};
+
+/// What NetCDF writes where a variable was never written.
+const DEFAULT_FILL: f64 = 9.969_209_968_386_869e36;
+
+/// Which of the two the bytes are.
+pub(super) fn detect(bytes: &[u8]) -> Option<Format> {
+    match bytes {
+        [b'C', b'D', b'F', 1 | 2 | 5, ..] => Some(Format::NetCdf),
+        _ if bytes.starts_with(b"\x89HDF\r\n\x1a\n") => Some(Format::Hdf5),
+        _ => None,
+    }
+}
+
+/// Reads the variable asked for, and tells NetCDF-4 from other HDF5.
+pub(super) fn read_netcdf(bytes: &[u8], channel: Option<&str>) -> Result<(Format, Measured), Problem> {
+    let most = usize::try_from(most_unpacked(bytes.len())).unwrap_or(usize::MAX);
+    let options = NcOpenOptions { max_read_bytes: most, max_chunk_bytes: most, ..NcOpenOptions::default() };
+    let file = NcFile::from_bytes_with_options(bytes, options).map_err(|e| broken("the file", e))?;
+    let maps = maps(&file)?;
+    let is_netcdf = !matches!(file.format(), NcFormat::Nc4 | NcFormat::Nc4Classic)
+        || file.dimensions().is_ok_and(|d| !d.is_empty());
+    let format = if is_netcdf { Format::NetCdf } else { Format::Hdf5 };
+    let names: Vec<String> = maps.iter().map(|(name, _)| name.clone()).collect();
+    let index = match names.iter().position(|n| n == "heights") {
+        Some(heights) if channel.is_none() => heights,
+        _ => choose(format, &names, channel)?,
+    };
+    let (name, variable) = &maps[index];
+
+    let shape = variable.shape();
+    let points = grid::points(shape[0], shape[1])?;
+    // Classic files hold every number; packed ones are bounded by `most_unpacked`.
+    if (points as u64).saturating_mul(width(&variable.dtype)) > most as u64 {
+        return Err(Problem::truncated(format!("the variable {name:?}"), points as u64, bytes.len() as u64));
+    }
+    let mut heights = two_dimensional(file.read_variable_unpacked_masked(name), name)?;
+    let fill = |h: f64| (h / DEFAULT_FILL - 1.0).abs() < 1e-6;
+    heights.par_mapv_inplace(|h| if fill(h) { f64::NAN } else { h });
+    if let Ok(mask) = file.variable(&sibling(name, "mask"))
+        && mask.shape() == shape
+    {
+        let mask = two_dimensional(file.read_variable_as_f64(&sibling(name, "mask")), "mask")?;
+        heights.zip_mut_with(&mask, |h, masked| {
+            if *masked != 0.0 {
+                *h = f64::NAN;
+            }
+        });
+    }
+    let dimension = |axis: usize| variable.dimensions().get(axis).map_or("", |d| d.name.as_str());
+    let y_first =
+        dimension(0).to_lowercase().starts_with('y') && dimension(1).to_lowercase().starts_with('x');
+    let (x, y) = if y_first { (dimension(1), dimension(0)) } else { (dimension(0), dimension(1)) };
+    let lengths = [length(&file, &sibling(name, x)), length(&file, &sibling(name, y))];
+    if y_first {
+        heights = heights.reversed_axes().as_standard_layout().into_owned();
+    }
+
+    let (lateral, lateral_label) = lateral(lengths);
+    let label = label(variable).or_else(|| {
+        // contact.engineering gives one unit for lengths and heights.
+        lateral_label.filter(|_| name == "heights")
+    });
+    let unit = match label {
+        None => Unit::Unstated,
+        Some(label) => metres(&label, LoneA::Angstrom).map_or(Unit::Other(label), Unit::Metres),
+    };
+    let metadata = file.global_attributes().unwrap_or_default().iter();
+    let metadata = metadata.filter_map(|a| Some((a.name.clone(), text(&a.value)?))).collect();
+    let channel = Some(name.clone());
+    Ok((format, Measured { heights, unit, lateral, channel, channels: names, metadata }))
+}
+
+fn broken(what: &str, error: impl std::fmt::Display) -> Problem {
+    Problem::malformed(what, error, "whole, undamaged NetCDF or HDF5")
+}
+
+/// The two-dimensional variables of numbers with their paths, those of outer groups first.
+fn maps(file: &NcFile) -> Result<Vec<(String, &NcVariable)>, Problem> {
+    const MOST: usize = 10_000;
+    let root = file.root_group().map_err(|e| broken("the root group", e))?;
+    let mut maps = Vec::new();
+    let mut groups = std::collections::VecDeque::from([(String::new(), root)]);
+    while let Some((path, group)) = groups.pop_front() {
+        for variable in &group.variables {
+            let is_map =
+                variable.shape().len() == 2 && width(&variable.dtype) > 0 && variable.name() != "mask";
+            if is_map && maps.len() < MOST {
+                maps.push((format!("{path}{}", variable.name()), variable));
+            }
+        }
+        for inner in &group.groups {
+            groups.push_back((format!("{path}{}/", inner.name), inner));
+        }
+    }
+    Ok(maps)
+}
+
+/// Bytes of a number of this type, 0 where it is none.
+fn width(kind: &NcType) -> u64 {
+    match kind {
+        NcType::Byte | NcType::UByte => 1,
+        NcType::Short | NcType::UShort => 2,
+        NcType::Int | NcType::UInt | NcType::Float => 4,
+        NcType::Int64 | NcType::UInt64 | NcType::Double => 8,
+        _ => 0,
+    }
+}
+
+fn two_dimensional(
+    read: Result<ArrayD<f64>, impl std::fmt::Display>,
+    name: &str,
+) -> Result<Array2<f64>, Problem> {
+    let what = format!("the variable {name:?}");
+    let array = read.map_err(|e| broken(&what, e))?;
+    let array = array.into_dimensionality::<Ix2>().map_err(|e| broken(&what, e))?;
+    Ok(array.as_standard_layout().into_owned())
+}
+
+/// The path of another variable in the same group.
+fn sibling(path: &str, name: &str) -> String {
+    match path.rsplit_once('/') {
+        Some((group, _)) => format!("{group}/{name}"),
+        None => name.to_owned(),
+    }
+}
+
+/// Length along an axis from its coordinate variable, with the label of its unit.
+fn length(file: &NcFile, name: &str) -> Option<(f64, Option<String>)> {
+    let variable = file.variable(name).ok()?;
+    let stated = variable.attribute("length").and_then(|a| a.value.as_f64());
+    let length = stated.or_else(|| spaced(&file.read_variable_as_f64(name).ok()?))?;
+    Some((length, label(variable)))
+}
+
+/// n times the spacing of equally spaced coordinates.
+fn spaced(coordinates: &ArrayD<f64>) -> Option<f64> {
+    let (first, last) = (coordinates.first()?, coordinates.last()?);
+    let n = coordinates.len();
+    let spacing = (last - first) / (n.checked_sub(1).filter(|n| *n > 0)? as f64);
+    // Binary32 coordinates keep seven digits of the whole range.
+    let tolerance = 1e-3 * spacing.abs();
+    let is_spaced = |(i, x): (usize, &f64)| (x - (first + i as f64 * spacing)).abs() <= tolerance;
+    let equal = coordinates.ndim() == 1 && coordinates.iter().enumerate().all(is_spaced);
+    (equal && spacing != 0.0).then_some(spacing.abs() * n as f64)
+}
+
+/// `unit` of contact.engineering or `units` of the NetCDF conventions.
+fn label(variable: &NcVariable) -> Option<String> {
+    let attribute = variable.attribute("unit").or_else(|| variable.attribute("units"))?;
+    text(&attribute.value).filter(|t| !t.is_empty())
+}
+
+fn text(value: &NcAttrValue) -> Option<String> {
+    match value {
+        NcAttrValue::Chars(text) => Some(text.trim_matches(['\0', ' ']).to_owned()),
+        NcAttrValue::Strings(texts) => texts.first().map(|t| t.trim().to_owned()),
+        _ => None,
+    }
+}
+
+/// The size, and the label of the unit where both axes have the same.
+fn lateral(lengths: [Option<(f64, Option<String>)>; 2]) -> (Lateral, Option<String>) {
+    let [Some((x, x_label)), Some((y, y_label))] = lengths else {
+        return (Lateral::Unstated(String::new()), None);
+    };
+    let unit = |label: &Option<String>| label.as_ref().map(|l| metres(l, LoneA::Angstrom));
+    let lateral = match (unit(&x_label), unit(&y_label)) {
+        (Some(Some(ux)), Some(Some(uy))) => Lateral::Metres([x * ux, y * uy]),
+        (Some(None), _) | (_, Some(None)) => {
+            let label = x_label.clone().or(y_label.clone()).unwrap_or_default();
+            Lateral::Unstated(format!(" in a unit of length (it says {label:?})"))
+        }
+        _ => Lateral::Bare([x, y]),
+    };
+    (lateral, x_label.filter(|label| y_label.as_ref() == Some(label)))
+}

@@ -37,6 +37,7 @@ mod sur;
 mod text;
 mod unit;
 mod unpack;
+mod write;
 mod x3p;
 
 use std::path::Path;
@@ -45,6 +46,7 @@ use ndarray::Array2;
 
 pub use error::{Problem, TopographyError};
 pub use format::{Format, detect};
+pub use write::{to_bytes, write};
 
 use finish::finish;
 

@@ -1,0 +1,91 @@
+//! Topographies into files that other programs read: NPZ, GWY, X3P, SDF, NetCDF and text.
+//!
+//! Every writer states size and unit (metres), keeps all digits of the heights and marks undefined points in the
+//! way of the format, so that reading gives the same topography back.
+
+mod gwy;
+mod netcdf;
+mod npz;
+mod sdf;
+mod text;
+mod x3p;
+
+use std::path::Path;
+
+use super::{Format, Problem, Topography, TopographyError};
+
+/// Writes a topography into a file; an existing one is replaced.
+///
+/// # Errors
+/// As [`to_bytes`], and where the file cannot be written.
+pub fn write(path: &Path, topography: &Topography, format: Format) -> Result<(), TopographyError> {
+    let in_file = |problem| TopographyError { path: Some(path.to_owned()), problem };
+    let bytes = encode(topography, format).map_err(in_file)?;
+    std::fs::write(path, bytes).map_err(|e| in_file(Problem::Io(e)))
+}
+
+/// The bytes of a file that holds a topography.
+///
+/// ```
+/// use asperity_io::topography::{Format, ReadOptions, read_bytes, to_bytes};
+///
+/// let text = b"# Channel: Z\n# Width: 3 um\n# Height: 2 um\n# Value units: nm\n1 2 3\n4 5 nan\n";
+/// let surface = read_bytes(text, &ReadOptions::default())?;
+/// let again = read_bytes(&to_bytes(&surface, Format::X3p)?, &ReadOptions::default())?;
+/// assert_eq!(again.format, Format::X3p);
+/// assert_eq!(again.heights[[0, 1]], 4e-9);
+/// assert_eq!(again.undefined(), 1);
+/// # Ok::<(), asperity_io::topography::TopographyError>(())
+/// ```
+///
+/// # Errors
+/// [`Problem::Option`] where the format is not among those that can be written (NPZ, GWY, X3P, SDF, NetCDF, text),
+/// [`Problem::Unsupported`] where the format cannot hold so many points, [`Problem::Malformed`] where heights or
+/// size are empty or no numbers.
+pub fn to_bytes(topography: &Topography, format: Format) -> Result<Vec<u8>, TopographyError> {
+    encode(topography, format).map_err(|problem| TopographyError { path: None, problem })
+}
+
+fn encode(topography: &Topography, format: Format) -> Result<Vec<u8>, Problem> {
+    let (nx, ny) = topography.heights.dim();
+    super::grid::points(nx as u64, ny as u64)?;
+    let [lx, ly] = topography.size;
+    if !(lx > 0.0 && ly > 0.0 && lx.is_finite() && ly.is_finite()) {
+        let value = format!("{lx:e} m x {ly:e} m");
+        return Err(Problem::malformed("the physical size", value, "positive and finite"));
+    }
+    match format {
+        Format::Npz => npz::encode(topography),
+        Format::Gwy => gwy::encode(topography),
+        Format::X3p => x3p::encode(topography),
+        Format::Sdf => sdf::encode(topography),
+        Format::NetCdf => netcdf::encode(topography),
+        Format::Text => Ok(text::encode(topography)),
+        other => Err(Problem::Option {
+            what: "the format to write",
+            value: other.to_string(),
+            expected: "one of npz, gwy, x3p, sdf, nc, asc",
+        }),
+    }
+}
+
+/// Name of the channel, as a file states it.
+fn title(topography: &Topography) -> &str {
+    match topography.channel.as_deref().map(str::trim) {
+        None | Some("") => "heights",
+        Some(name) => name,
+    }
+}
+
+/// Heights line by line (x runs fastest) as little-endian bytes, undefined points as NaN.
+fn lines(topography: &Topography) -> Vec<u8> {
+    // The transpose in C order is what a file holds line by line.
+    let lines = topography.heights.t();
+    let mut bytes = Vec::with_capacity(8 * lines.len());
+    for line in lines.rows() {
+        for height in line {
+            bytes.extend_from_slice(&height.to_le_bytes());
+        }
+    }
+    bytes
+}

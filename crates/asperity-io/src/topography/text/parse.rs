@@ -50,7 +50,7 @@ fn parse(
 ) -> Result<Vec<f64>, Problem> {
     let parsed: Vec<_> =
         runs(data).into_par_iter().map(|run| (run, parse_run(dialect, columns, run))).collect();
-    let length = parsed.iter().map(|(_, p)| p.as_ref().map_or(0, Vec::len)).sum();
+    let length = parsed.iter().map(|(_, p)| p.as_ref().map_or(0, Vec::len)).sum::<usize>();
     let mut values = Vec::new();
     let mut line = first_line;
     for (run, parsed) in parsed {

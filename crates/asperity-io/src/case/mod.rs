@@ -1,1 +1,290 @@
 //! Case files: TOML text with units to the objects of the solver.
+//!
+//! ```text
+//! text --overrides--> text --read--> raw structs --convert--> Case --simulation--> asperity's Simulation
+//!                                     (one key)   (many keys)       (files, gap)
+//! ```
+//!
+//! A fault is reported with its key, line and value, what was expected and what to do: see [`CaseErrors`].
+//! The format is described by its JSON [`schema`], which is made from the same structs that read it, and by
+//! the commented [`templates`].
+//!
+//! ```
+//! use asperity_io::case::Case;
+//!
+//! let text = r#"
+//!     [domain]
+//!     cells = [32, 32]
+//!     size = ["1 mm", "1 mm"]
+//!     [[surface]]
+//!     kind = "sphere"
+//!     radius = "10 mm"
+//!     [[body]]
+//!     poisson = 0.3
+//!     material = { model = "elastic", young = "210 GPa" }
+//!     [load]
+//!     control = "load"
+//!     history = { kind = "step", value = "5 N" }
+//!     [time]
+//!     end = "1 s"
+//!     steps = 1
+//! "#;
+//! let case = Case::parse(text, ".".as_ref(), &["load.history.value=8 N".into()])?;
+//! assert_eq!(case.grid.spacing(), [1e-3 / 32.0; 2]); // metres
+//! assert_eq!(case.loading.history.after(0.0), 8.0); // newtons
+//!
+//! let errors = Case::parse(&text.replace("210 GPa", "210 mm"), ".".as_ref(), &[]).unwrap_err();
+//! assert_eq!(errors.errors[0].key, "body[0].material.young");
+//! assert_eq!(errors.errors[0].line, Some(10));
+//! # Ok::<(), asperity_io::case::CaseErrors>(())
+//! ```
+
+mod convert;
+mod describe;
+mod error;
+mod march;
+mod measured;
+mod memory;
+mod overrides;
+mod plan;
+pub mod quantity;
+mod raw;
+mod read;
+mod schema;
+pub mod templates;
+mod text;
+mod words;
+
+use std::io::Read;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use asperity::material::{Body, Creep};
+use asperity::surface::undeformed_gap;
+use asperity::{Boundary, Control, Grid, Loading, SolverOptions};
+use ndarray::Array2;
+
+pub use describe::Description;
+pub use error::{CaseError, CaseErrors};
+pub use measured::Measured;
+pub use plan::{Field, Output, Rows, Surface};
+pub use schema::schema;
+
+use march::{Scheme, Simulation, TimeGrid};
+use overrides::Override;
+use text::Text;
+
+/// A case file is text that a person writes; more is a mistake.
+const MOST_BYTES: u64 = 16 << 20;
+
+/// A checked case: everything in SI.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// Title, where the file has one.
+    pub title: Option<String>,
+    /// Name of the file.
+    pub name: String,
+    /// Text of the file after the overrides.
+    pub source: String,
+    /// The computational domain.
+    pub grid: Grid,
+    /// What surrounds it.
+    pub boundary: Boundary,
+    /// The parts of the undeformed gap.
+    pub surfaces: Vec<Surface>,
+    /// The deformable bodies, one or two.
+    pub bodies: Vec<Body>,
+    /// Contact creep compliance C(t) of the pair \[1/Pa\].
+    pub creep: Creep,
+    /// Cut-off H of the pressure \[Pa\], the softer body's; infinite without.
+    pub hardness: f64,
+    /// What is prescribed over time.
+    pub loading: Loading,
+    /// The instants of the solution, those of `output.times` among them.
+    pub times: TimeGrid,
+    /// How the pressure goes over a step.
+    pub scheme: Scheme,
+    /// How each step is solved.
+    pub solver: SolverOptions,
+    /// What is stored, and where.
+    pub output: Output,
+    /// Rows of the result.
+    rows: usize,
+    /// Memory of the run in bytes.
+    memory: u128,
+    /// Place of the history in the source.
+    history: Range<usize>,
+}
+
+impl Case {
+    /// Reads a case file, with `overrides` of the form `KEY=VALUE` applied to it.
+    ///
+    /// # Errors
+    /// [`CaseErrors`] where the file cannot be read, or with what is wrong in it.
+    pub fn read(path: &Path, overrides: &[String]) -> Result<Case, CaseErrors> {
+        let name = path.display().to_string();
+        let text = file_text(path)
+            .map_err(|(reason, help)| CaseErrors::without_place(&name, reason, "a case file", Some(help)))?;
+        let dir = path.parent().unwrap_or(Path::new(""));
+        let stem = path.file_stem().map_or("result".into(), |stem| stem.to_string_lossy());
+        Case::from_text(&name, text, dir, format!("{stem}.zarr").into(), overrides)
+    }
+
+    /// A case from text; relative paths in it begin at `dir`, and the result's path is "result.zarr" where the
+    /// text names none.
+    ///
+    /// # Errors
+    /// [`CaseErrors`] with what is wrong in it.
+    pub fn parse(text: &str, dir: &Path, overrides: &[String]) -> Result<Case, CaseErrors> {
+        Case::from_text("case", text.to_owned(), dir, "result.zarr".into(), overrides)
+    }
+
+    fn from_text(
+        name: &str,
+        source: String,
+        dir: &Path,
+        output: PathBuf,
+        overrides: &[String],
+    ) -> Result<Case, CaseErrors> {
+        let (source, set) = overridden(name, source, overrides)?;
+        let result = Text::parse(&source).and_then(|text| {
+            let document = read::document(&text)?;
+            convert::case(&text, &document, dir, output)
+        });
+        match result {
+            Ok(case) => Ok(Case { name: name.to_owned(), ..case }),
+            Err(mut errors) => {
+                for error in &mut errors {
+                    if set.iter().any(|key| is_inside(&error.key, key)) {
+                        let help = error.help.take().map(|help| format!("; {help}")).unwrap_or_default();
+                        error.help = Some(format!("set by an override{help}"));
+                    }
+                }
+                Err(CaseErrors { name: name.to_owned(), source, errors })
+            }
+        }
+    }
+
+    /// The undeformed gap \[m\], shape (nx, ny), smallest value 0, infinite where a cell cannot touch. Reads
+    /// the topography files and makes the synthetic roughness.
+    ///
+    /// # Errors
+    /// [`CaseErrors`] where a file cannot be read or does not fit the domain, or no cell can touch.
+    pub fn gap(&self) -> Result<Array2<f64>, CaseErrors> {
+        let mut parts = Vec::with_capacity(self.surfaces.len());
+        for surface in &self.surfaces {
+            parts.push(match surface {
+                Surface::Part(part) => part.clone(),
+                Surface::File(file) => {
+                    file.part(&self.grid).map_err(|reason| self.fault(&file.span, reason))?
+                }
+            });
+        }
+        undeformed_gap(&self.grid, &parts).map_err(|error| {
+            CaseErrors::without_place(&self.name, format!("surface: {error}"), "a gap that can close", None)
+        })
+    }
+
+    /// The simulation of the case: the gap is built here.
+    ///
+    /// # Errors
+    /// As [`gap`](Self::gap); a load above the hardness times the area that can touch.
+    pub fn simulation(&self) -> Result<Simulation, CaseErrors> {
+        let gap = self.gap()?;
+        self.bearable(&gap)?;
+        Ok(Simulation {
+            grid: self.grid,
+            boundary: self.boundary,
+            gap,
+            creep: self.creep.clone(),
+            hardness: self.hardness,
+            loading: self.loading.clone(),
+            times: self.times.clone(),
+            scheme: self.scheme,
+            solver: self.solver,
+        })
+    }
+
+    /// Under a punch only a part of the domain bears.
+    fn bearable(&self, gap: &Array2<f64>) -> Result<(), CaseErrors> {
+        let touching = gap.iter().filter(|h| h.is_finite()).count() as f64 * self.grid.cell_area();
+        let [_, largest] = self.loading.history.range(self.times.end());
+        let load = match self.loading.control {
+            Control::Load => largest,
+            Control::Pressure => largest * self.grid.area(),
+            Control::Approach => return Ok(()),
+        };
+        let limit = self.hardness * touching;
+        if load <= limit * (1.0 + 1e-12) {
+            return Ok(());
+        }
+        let [load, limit, hardness, touching] = [load, limit, self.hardness, touching].map(words::number);
+        let reason = format!(
+            "the history reaches a load of {load} N, but the bodies bear at most {limit} N: the hardness {hardness} Pa \
+             times the area {touching} m^2 that can touch"
+        );
+        Err(self.fault(&self.history, reason))
+    }
+
+    fn fault(&self, span: &Range<usize>, reason: String) -> CaseErrors {
+        let errors = match Text::parse(&self.source) {
+            Ok(text) => {
+                vec![text.fault(span, reason, "", None)]
+            }
+            Err(errors) => errors, // cannot be: the source was read before
+        };
+        CaseErrors { name: self.name.clone(), source: self.source.clone(), errors }
+    }
+}
+
+/// Whether `key` is `outer` or a key below it.
+fn is_inside(key: &str, outer: &str) -> bool {
+    key.strip_prefix(outer).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+}
+
+/// The text with the overrides applied, and the keys that they set.
+fn overridden(name: &str, source: String, overrides: &[String]) -> Result<(String, Vec<String>), CaseErrors> {
+    if overrides.is_empty() {
+        return Ok((source, Vec::new()));
+    }
+    // What is no TOML is reported by the reader, with its place.
+    let Ok(mut document) = source.parse::<toml_edit::DocumentMut>() else { return Ok((source, Vec::new())) };
+    let mut keys = Vec::with_capacity(overrides.len());
+    for text in overrides {
+        let change = Override::parse(text).and_then(|change| change.apply(&mut document).map(|()| change));
+        match change {
+            Ok(change) => keys.push(change.key),
+            Err(reason) => {
+                let message = format!("cannot set {reason}");
+                return Err(CaseErrors::without_place(name, message, "KEY=VALUE", None));
+            }
+        }
+    }
+    Ok((document.to_string(), keys))
+}
+
+/// The text of the file; or what is wrong and what to do.
+fn file_text(path: &Path) -> Result<String, (String, String)> {
+    let file = std::fs::File::open(path).map_err(|error| match error.kind() {
+        std::io::ErrorKind::NotFound => {
+            ("there is no such file".to_owned(), "`asperity new TEMPLATE` writes a starter case".to_owned())
+        }
+        _ => (format!("the file cannot be read: {error}"), "check the path and its permissions".to_owned()),
+    })?;
+    let mut bytes = Vec::new();
+    file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(|error| {
+        (format!("the file cannot be read: {error}"), "name a case file, not a directory".to_owned())
+    })?;
+    if bytes.len() as u64 > MOST_BYTES {
+        let reason = format!("the file is larger than {} MB, which no case file is", MOST_BYTES >> 20);
+        return Err((reason, "name a TOML case file".to_owned()));
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let byte = error.utf8_error().valid_up_to();
+        let line = 1 + error.as_bytes().iter().take(byte).filter(|b| **b == b'\n').count();
+        (
+            format!("the file is not UTF-8 text (line {line}, byte {byte})"),
+            "name a TOML case file, saved as UTF-8".to_owned(),
+        )
+    })
+}

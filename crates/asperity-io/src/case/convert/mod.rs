@@ -1,0 +1,162 @@
+//! From what is written to what is solved: the checks that need more than one key, and the conversion into
+//! the objects of the solver.
+
+mod body;
+mod domain;
+mod history_file;
+mod load;
+mod output;
+mod surface;
+mod time;
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use super::Case;
+use super::error::CaseError;
+use super::quantity::QuantityError;
+use super::raw::{At, Document};
+use super::text::{MOST_ERRORS, Text};
+
+/// The case that a document describes, or the faults found.
+///
+/// `dir` is where its relative paths begin, `output` the result's path where it names none.
+pub fn case(
+    text: &Text<'_>,
+    document: &Document,
+    dir: &Path,
+    output: PathBuf,
+) -> Result<Case, Vec<CaseError>> {
+    let mut checks = Checks { text, dir, errors: Vec::new() };
+    let grid = domain::grid(&mut checks, &document.domain.value);
+    let surfaces = surface::surfaces(&mut checks, &document.surface, grid.as_ref());
+    let pair = body::pair(&mut checks, &document.body);
+    let times = time::times(&mut checks, &document.time, pair.as_ref());
+    let load = &document.load.value;
+    let loading = load::loading(&mut checks, load, times.as_ref(), grid.as_ref(), pair.as_ref());
+    let output = output::output(&mut checks, &document.output, times.as_ref(), output);
+    let times = times.map(|times| time::with(times, output.as_ref()));
+
+    let scheme = time::scheme(document.time.value.scheme);
+    let rows = match (&times, &loading) {
+        (Some(times), Some(loading)) => time::rows(times, &loading.history),
+        _ => 0,
+    };
+    let branches = pair.as_ref().map_or(0, |pair| pair.creep.terms.len());
+    let memory = domain::memory(&mut checks, &document.domain.value, branches, rows, scheme);
+
+    checks.errors.sort_by_key(|error| error.span.as_ref().map_or(usize::MAX, |span| span.start));
+    match (checks.errors.is_empty(), grid, surfaces, pair, loading, times, output) {
+        (true, Some(grid), Some(surfaces), Some(pair), Some(loading), Some(times), Some(output)) => {
+            Ok(Case {
+                title: document.title.clone(),
+                name: String::new(),
+                source: text.source.to_owned(),
+                grid,
+                boundary: domain::boundary(document.domain.value.boundary),
+                surfaces,
+                bodies: pair.bodies,
+                creep: pair.creep,
+                hardness: pair.hardness,
+                loading,
+                times: times.grid,
+                scheme,
+                solver: output::solver(&document.solver),
+                output,
+                rows,
+                memory,
+                history: document.load.value.history.span.clone(),
+            })
+        }
+        _ => Err(checks.errors),
+    }
+}
+
+/// The faults found so far, and the means to word the next one.
+struct Checks<'c, 't> {
+    text: &'c Text<'t>,
+    dir: &'c Path,
+    errors: Vec<CaseError>,
+}
+
+impl Checks<'_, '_> {
+    fn push(&mut self, error: impl FnOnce(&Text<'_>) -> CaseError) {
+        // Finding the key of a place takes a walk over the file: a long bad table must not take one per line.
+        if self.errors.len() < MOST_ERRORS {
+            self.errors.push(error(self.text));
+        }
+    }
+
+    /// The value at `span` is not what is expected there.
+    fn wrong(&mut self, span: &Range<usize>, expected: &str, help: Option<&str>) {
+        self.push(|text| text.wrong(span, expected, help.map(str::to_owned)));
+    }
+
+    /// A sentence says best what is wrong at `span`.
+    fn fault(&mut self, span: &Range<usize>, message: String, expected: &str, help: Option<&str>) {
+        self.push(|text| text.fault(span, message, expected, help.map(str::to_owned)));
+    }
+
+    /// The solver's own check refuses what stands at `span`.
+    fn core<T>(&mut self, span: &Range<usize>, result: asperity::Result<T>) -> Option<T> {
+        let error = match result {
+            Ok(value) => return Some(value),
+            Err(error) => error,
+        };
+        self.push(|text| {
+            let expected = match &error {
+                asperity::Error::Invalid { expected, .. } => expected.clone(),
+                _ => String::new(),
+            };
+            text.fault(span, error.to_string(), &expected, None)
+        });
+        None
+    }
+
+    /// The quantity, or its error at its place.
+    fn quantity<T, Q>(&mut self, at: &At<Q>, result: Result<T, QuantityError>) -> Option<T> {
+        match result {
+            Ok(value) => Some(value),
+            Err(error) => {
+                self.wrong(&at.span, &error.expected, error.help.as_deref());
+                None
+            }
+        }
+    }
+
+    /// Which of several keys is given, where exactly one must be.
+    fn exactly_one<'k>(&mut self, table: &Range<usize>, keys: &[(&'k str, bool)]) -> Option<&'k str> {
+        let given: Vec<&str> = keys.iter().filter(|key| key.1).map(|key| key.0).collect();
+        if let [one] = given.as_slice() {
+            return Some(one);
+        }
+        let names: Vec<String> = keys.iter().map(|key| format!("`{}`", key.0)).collect();
+        let names = names.join(" or ");
+        self.push(|text| {
+            let path = text.path(table);
+            let message = match given.is_empty() {
+                true => format!("{path} needs {names}"),
+                false => format!("{path} has {}, but needs only one of them", given.join(" and ")),
+            };
+            text.error(table, path, None, &names, None, message)
+        });
+        None
+    }
+
+    /// The path of an existing file, relative to the case file.
+    fn file(&mut self, path: &At<String>) -> Option<PathBuf> {
+        let full = self.dir.join(&path.value);
+        let reason = match std::fs::metadata(&full) {
+            Ok(metadata) if metadata.is_file() => return Some(full),
+            Ok(_) => "is not a file".to_owned(),
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => "does not exist".to_owned(),
+            Err(error) => format!("cannot be read: {error}"),
+        };
+        self.push(|text| {
+            let message = format!("{} {reason}", full.display());
+            let help = "paths are relative to the directory of the case file".to_owned();
+            text.fault(&path.span, message, "a file", Some(help))
+        });
+        None
+    }
+}

@@ -1,0 +1,183 @@
+//! `[load]` and `[time]`: what is prescribed, and the instants of the solution.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::{At, Two};
+use crate::case::quantity::range::{NonNegative, Positive};
+use crate::case::quantity::{Frequency, Prescribed, Time as Duration, Whole};
+
+/// What presses the bodies together.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Load {
+    /// The prescribed quantity.
+    pub control: Control,
+    /// Its value over time, 0 before t = 0.
+    #[schemars(example = serde_json::json!({ "kind": "step", "value": "0.5 N" }))]
+    pub history: At<History>,
+}
+
+/// The prescribed quantity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Control {
+    /// Normal load, in N.
+    Load,
+    /// Mean pressure over the domain, in Pa.
+    Pressure,
+    /// Rigid-body approach, in m, 0 at first touch.
+    Approach,
+}
+
+/// A value over time.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(tag = "kind")]
+pub enum History {
+    /// Applied at once and held.
+    Step(Step),
+    /// Linear rise, then held.
+    Ramp(Ramp),
+    /// Linear rise and fall, then 0.
+    Triangle(Triangle),
+    /// Linear rise, hold, linear fall, then 0.
+    Trapezoid(Trapezoid),
+    /// mean + amplitude sin(2 pi frequency t).
+    Sine(Sine),
+    /// Straight lines between points; two points at one time are a jump.
+    Table(Table),
+    /// The points of a table from a file of two columns, time and value.
+    File(File),
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Step {
+    /// Value held from t = 0 on.
+    #[schemars(example = "0.5 N")]
+    pub value: At<Prescribed>,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Ramp {
+    /// Value reached and held.
+    #[schemars(example = "0.5 N")]
+    pub value: At<Prescribed>,
+    /// Time to reach it.
+    #[schemars(example = "10 s")]
+    pub duration: Duration<Positive>,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Triangle {
+    /// Largest value.
+    #[schemars(example = "0.5 N")]
+    pub peak: At<Prescribed>,
+    /// Time up.
+    #[schemars(example = "10 s")]
+    pub rise: Duration<Positive>,
+    /// Time down.
+    #[schemars(example = "10 s")]
+    pub fall: Duration<Positive>,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Trapezoid {
+    /// Largest value.
+    #[schemars(example = "0.5 N")]
+    pub peak: At<Prescribed>,
+    /// Time up.
+    #[schemars(example = "10 s")]
+    pub rise: Duration<Positive>,
+    /// Time at the peak.
+    #[schemars(example = "60 s")]
+    pub hold: Duration<NonNegative>,
+    /// Time down.
+    #[schemars(example = "10 s")]
+    pub fall: Duration<Positive>,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Sine {
+    /// Mean value.
+    #[schemars(example = "0.5 N")]
+    pub mean: At<Prescribed>,
+    /// Amplitude; not above the mean where a load or a pressure is prescribed.
+    #[schemars(example = "0.2 N")]
+    pub amplitude: At<Prescribed>,
+    /// Frequency.
+    #[schemars(example = "2 Hz")]
+    pub frequency: Frequency<Positive>,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Table {
+    /// Pairs [time, value] in order of time, the first at 0; a time given twice is a jump.
+    #[schemars(example = [["0 s", "0 N"], ["10 s", "0.5 N"]])]
+    #[schemars(length(min = 1))]
+    pub points: At<Vec<At<Two<Duration, At<Prescribed>>>>>,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct File {
+    /// The file, relative to the case file: one line per point, time and value separated by comma, semicolon
+    /// or blanks, each with unit or in SI; `#` begins a comment, one header line may name the columns with
+    /// units, as in "time [s], load [mN]".
+    #[schemars(example = "history.csv")]
+    pub path: At<String>,
+}
+
+/// The instants of the solution.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Instants")]
+pub struct Time {
+    /// Last instant; with `steps`.
+    #[schemars(example = "500 s")]
+    pub end: Option<At<Duration<Positive>>>,
+    /// Number of steps from 0 to `end`; breaks and jumps of the history come on top.
+    #[schemars(example = 100)]
+    pub steps: Option<At<Whole<1>>>,
+    /// How the steps are spread; "uniform" if not given.
+    pub spacing: Option<At<Spacing>>,
+    /// First instant after 0 where the spacing is "log"; if not given, a tenth of the shortest retardation
+    /// time, but not later than a uniform step.
+    #[schemars(example = "0.1 s")]
+    pub first: Option<At<Duration<Positive>>>,
+    /// The instants after 0 one by one, in place of `end` and `steps`.
+    #[schemars(example = ["1 s", "10 s", "100 s"])]
+    pub times: Option<At<Vec<At<Duration<Positive>>>>>,
+    /// How the pressure goes over a step; "linear" if not given.
+    #[serde(default)]
+    pub scheme: Scheme,
+}
+
+/// How the steps are spread.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Spacing {
+    /// Equal steps.
+    Uniform,
+    /// Steps that grow by a constant factor.
+    Log,
+}
+
+/// How the pressure goes over a step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Scheme {
+    /// Linear in time: second order.
+    #[default]
+    Linear,
+    /// Constant over each step: first order, very stable.
+    Constant,
+    /// The full hereditary sum over all steps; slow, keeps every pressure field.
+    Direct,
+}

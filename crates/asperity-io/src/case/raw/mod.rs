@@ -1,0 +1,165 @@
+//! The case file as it is written: one struct per section, one field per key.
+//!
+//! The comments on the fields are the descriptions in the JSON Schema; the types of the fields carry
+//! dimension and range. What needs more than one key to judge is checked in `convert`.
+
+mod body;
+mod load;
+mod run;
+mod surface;
+
+use std::borrow::Cow;
+use std::fmt;
+use std::marker::PhantomData;
+use std::ops::Range;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::{Error, IgnoredAny, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+
+pub use body::{Body, CreepTerm, Material, Measure, Prony};
+pub use load::{Control, History, Load, Scheme, Sine, Spacing, Table, Time};
+pub use run::{Field, Method, Output, Plasticity, Precision, Solver};
+pub use surface::{File, Fill, Level, SelfAffine, Surface};
+
+use super::quantity::range::Positive;
+use super::quantity::{Length, Whole};
+
+/// A case of asperity: two bodies, the gap between them, a load over time.
+#[derive(Debug, JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct Document {
+    /// Title of the case, kept in the result.
+    #[schemars(example = "PMMA rough sphere, step load")]
+    pub title: Option<String>,
+    /// The computational domain: a rectangle of equal cells.
+    pub domain: At<Domain>,
+    /// The parts whose sum is the undeformed gap.
+    #[schemars(length(min = 1))]
+    pub surface: Vec<At<Surface>>,
+    /// The deformable bodies, one or two; a missing second body is rigid.
+    #[schemars(length(min = 1, max = 2))]
+    pub body: Vec<At<Body>>,
+    /// What presses the bodies together.
+    pub load: At<Load>,
+    /// The instants of the solution.
+    pub time: At<Time>,
+    /// How each step is solved.
+    #[schemars(default)]
+    pub solver: Solver,
+    /// What is stored, and where.
+    #[schemars(default)]
+    pub output: Output,
+}
+
+/// A rectangle of equal cells.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Domain {
+    /// Number of cells along x and y; any numbers, also not square and not powers of two.
+    #[schemars(example = [1024, 1024])]
+    pub cells: At<Two<Whole<1>>>,
+    /// Length of the domain along x and y.
+    #[schemars(example = ["0.1 mm", "0.1 mm"])]
+    pub size: Two<Length<Positive>>,
+    /// What surrounds the domain; "free" if not given.
+    #[serde(default)]
+    pub boundary: Boundary,
+}
+
+/// What surrounds the domain.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Boundary {
+    /// A half-space without pressure outside the domain (zero-padded convolution).
+    #[default]
+    Free,
+    /// The domain repeats along x and y.
+    Periodic,
+}
+
+/// A list of two values: along x and y, or time and value.
+#[derive(Clone, Copy, Debug)]
+pub struct Two<A, B = A>(pub A, pub B);
+
+impl<A> Two<A> {
+    /// Both values, converted.
+    pub fn map<T>(self, convert: impl Fn(A) -> T) -> [T; 2] {
+        [convert(self.0), convert(self.1)]
+    }
+}
+
+impl<'de, A: Deserialize<'de>, B: Deserialize<'de>> Deserialize<'de> for Two<A, B> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct TwoVisitor<A, B>(PhantomData<fn() -> (A, B)>);
+
+        impl<'de, A: Deserialize<'de>, B: Deserialize<'de>> Visitor<'de> for TwoVisitor<A, B> {
+            type Value = Two<A, B>;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a list of two values in brackets")
+            }
+
+            fn visit_seq<S: SeqAccess<'de>>(self, mut values: S) -> Result<Two<A, B>, S::Error> {
+                let missing = |n| S::Error::invalid_length(n, &"a list of two values in brackets");
+                let first = values.next_element()?.ok_or_else(|| missing(0))?;
+                let second = values.next_element()?.ok_or_else(|| missing(1))?;
+                match values.next_element::<IgnoredAny>()? {
+                    None => Ok(Two(first, second)),
+                    Some(_) => Err(missing(3)),
+                }
+            }
+        }
+
+        deserializer.deserialize_seq(TwoVisitor(PhantomData))
+    }
+}
+
+impl<A: JsonSchema, B: JsonSchema> JsonSchema for Two<A, B> {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        format!("{}And{}", A::schema_name(), B::schema_name()).into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let items = [generator.subschema_for::<A>(), generator.subschema_for::<B>()];
+        json_schema!({ "type": "array", "prefixItems": items, "minItems": 2, "maxItems": 2 })
+    }
+}
+
+/// A value and its place in the text.
+#[derive(Clone, Debug)]
+pub struct At<T> {
+    /// Bytes of the source that hold the value.
+    pub span: Range<usize>,
+    /// The value.
+    pub value: T,
+}
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for At<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let spanned = toml::Spanned::<T>::deserialize(deserializer)?;
+        Ok(At { span: spanned.span(), value: spanned.into_inner() })
+    }
+}
+
+impl<T: JsonSchema> JsonSchema for At<T> {
+    fn inline_schema() -> bool {
+        T::inline_schema()
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        T::schema_name()
+    }
+
+    fn schema_id() -> Cow<'static, str> {
+        T::schema_id()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        T::json_schema(generator)
+    }
+}

@@ -1,0 +1,156 @@
+//! From the TOML tree to the structs of `raw`: section by section, so that each can report its own fault.
+//!
+//! Unions are tagged by a key (`kind`, `model`). serde reads such a union through a buffer that loses the
+//! places in the text; so the tag is moved outwards first: `{ kind = "sphere", radius = 1 }` becomes
+//! `{ sphere = { radius = 1 } }`, which keeps them.
+
+use serde::de::DeserializeOwned;
+use toml::Spanned;
+use toml::de::{DeString, DeTable, DeValue, ValueDeserializer};
+
+use super::error::CaseError;
+use super::raw::Document;
+use super::text::{MOST_ERRORS, Text};
+use super::words;
+
+/// The keys of the root.
+pub const SECTIONS: &[&str] = &["title", "domain", "surface", "body", "load", "time", "solver", "output"];
+
+/// The document, or the faults that its sections have.
+pub fn document(text: &Text<'_>) -> Result<Document, Vec<CaseError>> {
+    let mut reader = Reader { text, errors: Vec::new(), misspelt: Vec::new() };
+    for key in text.root.keys().take(MOST_ERRORS) {
+        if !SECTIONS.contains(&key.get_ref().as_ref()) {
+            reader.errors.push(words::unknown_key(text, &key.span(), key.get_ref(), SECTIONS));
+            reader.misspelt.extend(words::nearest(key.get_ref(), SECTIONS));
+        }
+    }
+    let title = reader.optional("title");
+    let domain = reader.required("domain", None);
+    let surface = reader.list("surface", Some(Tag { inside: None, key: "kind" }));
+    let body = reader.list("body", Some(Tag { inside: Some("material"), key: "model" }));
+    let load = reader.required("load", Some(Tag { inside: Some("history"), key: "kind" }));
+    let time = reader.required("time", None);
+    let solver = reader.optional("solver").unwrap_or_default();
+    let output = reader.optional("output").unwrap_or_default();
+    reader.errors.sort_by_key(|error| error.span.as_ref().map_or(usize::MAX, |span| span.start));
+    match (reader.errors.is_empty(), domain, load, time) {
+        (true, Some(domain), Some(load), Some(time)) => {
+            Ok(Document { title, domain, surface, body, load, time, solver, output })
+        }
+        _ => Err(reader.errors),
+    }
+}
+
+/// Where a section holds a tagged union: in itself, or in its table `inside`.
+#[derive(Clone, Copy)]
+struct Tag {
+    inside: Option<&'static str>,
+    key: &'static str,
+}
+
+struct Reader<'r, 't> {
+    text: &'r Text<'t>,
+    errors: Vec<CaseError>,
+    /// Sections that are there under a name that is nearly theirs.
+    misspelt: Vec<&'static str>,
+}
+
+impl<'t> Reader<'_, 't> {
+    fn required<T: DeserializeOwned>(&mut self, key: &'static str, tag: Option<Tag>) -> Option<T> {
+        match self.text.root.get(key) {
+            Some(value) => self.read(value, tag),
+            None => {
+                self.missing(key);
+                None
+            }
+        }
+    }
+
+    fn missing(&mut self, section: &str) {
+        if !self.misspelt.contains(&section) {
+            self.errors.push(words::missing_section(section));
+        }
+    }
+
+    fn optional<T: DeserializeOwned>(&mut self, key: &str) -> Option<T> {
+        self.text.root.get(key).and_then(|value| self.read(value, None))
+    }
+
+    fn list<T: DeserializeOwned>(&mut self, key: &'static str, tag: Option<Tag>) -> Vec<T> {
+        let Some(value) = self.text.root.get(key) else {
+            self.missing(key);
+            return Vec::new();
+        };
+        let DeValue::Array(array) = value.get_ref() else {
+            let help = Some(format!("begin each with a line [[{key}]]"));
+            self.errors.push(self.text.wrong(&value.span(), "a list of tables", help));
+            return Vec::new();
+        };
+        if array.is_empty() {
+            self.errors.push(self.text.wrong(&value.span(), "a list of one table at least", None));
+        }
+        let mut sections = Vec::new();
+        for element in array.iter() {
+            // Many alike have one cause.
+            if self.errors.len() >= MOST_ERRORS {
+                break;
+            }
+            sections.extend(self.read(element, tag));
+        }
+        sections
+    }
+
+    fn read<T: DeserializeOwned>(&mut self, value: &Spanned<DeValue<'t>>, tag: Option<Tag>) -> Option<T> {
+        let mut value = value.clone();
+        if let Some(tag) = tag
+            && let Err(error) = self.move_tag(&mut value, tag)
+        {
+            self.errors.push(error);
+            return None;
+        }
+        let span = value.span();
+        match T::deserialize(ValueDeserializer::from(value)) {
+            Ok(section) => Some(section),
+            Err(error) => {
+                self.errors.push(words::translate(self.text, &error, span));
+                None
+            }
+        }
+    }
+
+    fn move_tag(&self, value: &mut Spanned<DeValue<'t>>, tag: Tag) -> Result<(), CaseError> {
+        let Some(inside) = tag.inside else {
+            return self.outwards(value, tag.key);
+        };
+        let DeValue::Table(table) = value.get_mut() else {
+            return Ok(()); // serde says what the section is
+        };
+        match table.get_mut(inside) {
+            Some(union) => self.outwards(union, tag.key),
+            None => Ok(()), // serde says that it is missing
+        }
+    }
+
+    /// `{ tag = name, ... }` becomes `{ name = { ... } }`.
+    fn outwards(&self, value: &mut Spanned<DeValue<'t>>, tag: &str) -> Result<(), CaseError> {
+        let span = value.span();
+        let DeValue::Table(table) = value.get_mut() else {
+            let expected = format!("a table that begins with the key `{tag}`");
+            return Err(self.text.wrong(&span, &expected, None));
+        };
+        let Some(name) = table.remove(tag) else {
+            return Err(words::missing_key(self.text, &span, tag));
+        };
+        let place = name.span();
+        let DeValue::String(name) = name.into_inner() else {
+            return Err(words::wrong_choice(self.text, &place, None));
+        };
+        let inner = std::mem::take(table);
+        let mut outer = DeTable::new();
+        let key: Spanned<DeString<'t>> = Spanned::new(place, name);
+        outer.insert(key, Spanned::new(span, DeValue::Table(inner)));
+        *table = outer;
+        Ok(())
+    }
+}

@@ -1,0 +1,47 @@
+//! Commented starter cases, as `asperity new` writes them.
+
+/// A starter case.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Template {
+    /// Its name, as `asperity new NAME` takes it.
+    pub name: &'static str,
+    /// The case file.
+    pub text: &'static str,
+}
+
+macro_rules! templates {
+    ($($name:literal),*) => {
+        /// All starter cases, the simplest first.
+        pub const TEMPLATES: &[Template] =
+            &[$(Template { name: $name, text: include_str!(concat!("templates/", $name, ".toml")) }),*];
+    };
+}
+
+templates!(
+    "hertz",
+    "zener-step",
+    "relaxation",
+    "pmma-indentation",
+    "flat-punch",
+    "capped-cycle",
+    "periodic-rough",
+    "rough-pmma"
+);
+
+impl Template {
+    /// The starter case of that name.
+    ///
+    /// ```
+    /// use asperity_io::case::templates::Template;
+    /// assert!(Template::find("hertz").is_some_and(|hertz| hertz.text.contains("kind = \"sphere\"")));
+    /// ```
+    pub fn find(name: &str) -> Option<&'static Template> {
+        TEMPLATES.iter().find(|template| template.name == name)
+    }
+
+    /// What the case is, from its title.
+    pub fn title(&self) -> &'static str {
+        let line = self.text.lines().find_map(|line| line.strip_prefix("title = "));
+        line.unwrap_or_default().trim_matches('"')
+    }
+}

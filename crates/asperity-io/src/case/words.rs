@@ -1,0 +1,239 @@
+//! The words of an error about a key: what serde found, said to a user.
+
+use std::ops::Range;
+
+use serde_json::Value;
+
+use super::error::CaseError;
+use super::schema;
+use super::text::{Text, join};
+
+/// Names that the format has, or will have, but this version does not know: they are refused, never ignored.
+const NOT_AVAILABLE: &[(&str, &str)] = &[
+    ("springpot", NOT_YET),
+    ("fractional-zener", NOT_YET),
+    ("fractional-maxwell", NOT_YET),
+    ("relaxation-table", NOT_YET),
+    ("creep-table", NOT_YET),
+    ("dma", NOT_YET),
+    ("wlf", NOT_YET),
+    ("arrhenius", NOT_YET),
+    ("stages", NOT_YET),
+    ("adaptive", NOT_YET),
+    ("mixed", NOT_YET),
+    ("accumulate", NOT_YET),
+    ("array", "is for arrays that a Python program passes; in a case file use kind = \"file\""),
+];
+const NOT_YET: &str = "is not available in this version";
+
+fn not_available(name: &str) -> Option<&'static str> {
+    NOT_AVAILABLE.iter().find(|known| known.0 == name).map(|known| known.1)
+}
+
+/// A fault that serde found while it read the section at `section`.
+pub fn translate(text: &Text<'_>, error: &toml::de::Error, section: Range<usize>) -> CaseError {
+    let message = error.message();
+    let span = error.span().unwrap_or(section);
+    // The user's name stands between the first backtick and the last "`, expected"; the rest is serde's.
+    let named = |prefix| {
+        let rest = message.strip_prefix(prefix)?;
+        rest.rsplit_once("`, expected ").or_else(|| rest.rsplit_once("`, there "))
+    };
+    if let Some((name, known)) = named("unknown field `") {
+        return unknown_key(text, &span, name, &backticked(known));
+    }
+    if let Some((name, known)) = named("unknown variant `") {
+        return wrong_choice(text, &span, Some((name, &backticked(known))));
+    }
+    if let Some(key) = message.strip_prefix("missing field `") {
+        return missing_key(text, &span, key.trim_end_matches('`'));
+    }
+    if message.starts_with("wanted ") || message.starts_with("expected ") {
+        return wrong_choice(text, &span, None);
+    }
+    for prefix in ["invalid type: ", "invalid value: ", "invalid length "] {
+        let rest = message.strip_prefix(prefix).and_then(|rest| rest.split_once(", expected "));
+        if let Some((_, expected)) = rest {
+            return text.wrong(&span, plain(expected), None);
+        }
+    }
+    // The quantities' own words: what was expected, then what is wrong with the value.
+    match message.split_once('\n') {
+        Some((expected, help)) => text.wrong(&span, expected, Some(help.to_owned())),
+        None => text.wrong(&span, message, None),
+    }
+}
+
+/// A key that the table at its place does not have.
+pub fn unknown_key(text: &Text<'_>, span: &Range<usize>, name: &str, known: &[&str]) -> CaseError {
+    let key = text.path(span);
+    let table = match key.strip_suffix(name).map(|table| table.trim_end_matches('.')) {
+        None | Some("") => "the case file".to_owned(),
+        Some(table) => table.to_owned(),
+    };
+    let expected = match known {
+        [] => "no key".to_owned(),
+        _ => format!("one of {}", known.join(", ")),
+    };
+    let (message, help) = match (not_available(name), nearest(name, known)) {
+        (Some(reason), _) => (format!("{key} {reason}"), None),
+        (None, Some(near)) => {
+            (format!("{table} has no key `{name}`"), Some(format!("did you mean `{near}`?")))
+        }
+        (None, None) => {
+            let keys = if known.is_empty() {
+                "it has none".into()
+            } else {
+                format!("its keys: {}", known.join(", "))
+            };
+            (format!("{table} has no key `{name}`"), Some(keys))
+        }
+    };
+    text.error(span, key, None, &expected, help, message)
+}
+
+/// A value that is none of the words that its key takes.
+pub fn wrong_choice(text: &Text<'_>, span: &Range<usize>, found: Option<(&str, &[&str])>) -> CaseError {
+    let names = match found {
+        Some((_, known)) => known.iter().map(|name| (*name).to_owned()).collect(),
+        None => schema::choices(&text.path(span)),
+    };
+    let quoted: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
+    let expected = match quoted.as_slice() {
+        [] => "a word".to_owned(),
+        [one] => one.clone(),
+        _ => format!("one of {}", quoted.join(", ")),
+    };
+    if let Some((name, known)) = found {
+        if let Some(reason) = not_available(name) {
+            let message = format!("\"{name}\" {reason}");
+            return text.fault(span, message, &expected, Some(format!("available: {}", quoted.join(", "))));
+        }
+        if let Some(near) = nearest(name, known) {
+            return text.wrong(span, &expected, Some(format!("did you mean \"{near}\"?")));
+        }
+    }
+    text.wrong(span, &expected, None)
+}
+
+/// A key that the table at `span` needs and does not have.
+pub fn missing_key(text: &Text<'_>, span: &Range<usize>, name: &str) -> CaseError {
+    // A header line can stand for several tables; the schema knows which of them has the key.
+    let paths = text.tables(span).into_iter().map(|table| join(&table, name));
+    let key = paths.filter(|path| !schema::find(path).is_empty()).last();
+    let key = key.unwrap_or_else(|| join(&text.path(span), name));
+    let (expected, help) = wanted(&key, name);
+    let message = format!("{key} is missing");
+    text.error(span, key, None, &expected, help, message)
+}
+
+/// A section that the file needs and does not have.
+pub fn missing_section(name: &str) -> CaseError {
+    let header = match name {
+        "surface" | "body" => format!("[[{name}]]"),
+        _ => format!("[{name}]"),
+    };
+    let description = schema::find(name).iter().find_map(description);
+    CaseError {
+        key: name.to_owned(),
+        span: None,
+        line: None,
+        value: None,
+        expected: format!("a section {header}"),
+        help: description,
+        message: format!("the section {header} is missing"),
+    }
+}
+
+/// What a key means and how it is written, from the schema.
+fn wanted(key: &str, name: &str) -> (String, Option<String>) {
+    let found = schema::find(key);
+    let expected = found.iter().find_map(description).unwrap_or_else(|| "a value".into());
+    let example = found.iter().find_map(|schema| schema.get("examples")?.get(0));
+    let help = match example {
+        Some(example) => Some(format!("add {name} = {}", in_toml(example))),
+        None => match schema::choices(key) {
+            choices if choices.is_empty() => None,
+            choices => Some(format!("add {name} = \"{}\"", choices.join("\" or \""))),
+        },
+    };
+    (expected, help)
+}
+
+/// An example of the schema, as a case file writes it.
+fn in_toml(example: &Value) -> String {
+    match toml::Value::try_from(example) {
+        Ok(value) => value.to_string(),
+        Err(_) => example.to_string(),
+    }
+}
+
+fn description(schema: &Value) -> Option<String> {
+    Some(schema.get("description")?.as_str()?.to_owned())
+}
+
+/// The known name that a misspelt one is close to.
+pub fn nearest<'n>(name: &str, known: &[&'n str]) -> Option<&'n str> {
+    if name.len() > 64 {
+        return None; // the distance is quadratic in the length
+    }
+    let distance = |known: &str| strsim::damerau_levenshtein(&name.to_lowercase(), known);
+    let near = known.iter().min_by_key(|known| distance(known))?;
+    let similar = distance(near) <= 1 + near.len().min(name.len()) / 4;
+    (similar || near.starts_with(name) && name.len() > 2).then_some(*near)
+}
+
+fn backticked(list: &str) -> Vec<&str> {
+    list.split('`').skip(1).step_by(2).collect()
+}
+
+fn plain(expected: &str) -> &str {
+    match expected {
+        "a boolean" => "true or false",
+        "a string" => "text in quotes",
+        "a sequence" => "a list in brackets",
+        other if other.starts_with("struct ") => "a table",
+        other => other,
+    }
+}
+
+/// A number of a message: six digits, powers of ten only where they shorten it.
+pub fn number(value: f64) -> String {
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    match rounded.abs() {
+        0.0 => "0".to_owned(),
+        size if (1e-3..1e6).contains(&size) => rounded.to_string(),
+        _ => format!("{rounded:e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        for (value, text) in [
+            (0.5, "0.5"),
+            (0.1 + 0.2, "0.3"),
+            (100.0, "100"),
+            (3e8, "3e8"),
+            (1e-9, "1e-9"),
+            (1.0 / 3.0, "0.333333"),
+            (-2e-4, "-2e-4"),
+            (f64::INFINITY, "inf"),
+        ] {
+            assert_eq!(number(value), text);
+        }
+    }
+
+    #[test]
+    fn near_names_are_found_and_far_ones_are_not() {
+        let known = ["poisson", "bulk_modulus", "hardness"];
+        assert_eq!(nearest("poison", &known), Some("poisson"));
+        assert_eq!(nearest("Hardness", &known), Some("hardness"));
+        assert_eq!(nearest("bulk", &known), Some("bulk_modulus"));
+        assert_eq!(nearest("yield", &known), None);
+        assert_eq!(nearest(&"x".repeat(100_000), &known), None);
+    }
+}

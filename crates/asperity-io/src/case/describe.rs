@@ -1,12 +1,11 @@
 //! What a case will do, in numbers: for `asperity check`.
 
-use asperity::Boundary;
+use asperity::surface::Part;
+use asperity::{Boundary, Scheme};
 use serde::Serialize;
 
-use super::march::Scheme;
 use super::plan::Surface;
 use super::{Case, Rows};
-use asperity::surface::Part;
 
 /// What will be solved, and what it takes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -44,16 +43,16 @@ pub struct Description {
     /// Fields that are stored.
     pub fields: Vec<&'static str>,
     /// Memory of the run, estimated from above \[bytes\].
-    pub memory_bytes: u128,
+    pub memory_bytes: u64,
     /// Stored fields before compression \[bytes\].
-    pub result_bytes: u128,
+    pub result_bytes: u64,
 }
 
 impl Case {
     /// What the case will do.
     pub fn describe(&self) -> Description {
         let stored_rows = self.stored_rows();
-        let field_bytes: u128 = self.output.fields.iter().map(|field| field.bytes()).sum();
+        let field_bytes: u64 = self.output.fields.iter().map(|field| field.bytes()).sum();
         Description {
             title: self.title.clone(),
             cells: self.grid.cells(),
@@ -78,9 +77,9 @@ impl Case {
             },
             stored_rows,
             fields: self.output.fields.iter().map(|field| field.name()).collect(),
-            memory_bytes: self.memory,
+            memory_bytes: u64::try_from(self.memory).unwrap_or(u64::MAX),
             // initial_gap is always stored
-            result_bytes: self.grid.len() as u128 * (8 + stored_rows as u128 * field_bytes),
+            result_bytes: (self.grid.len() as u64).saturating_mul(8 + stored_rows as u64 * field_bytes),
         }
     }
 

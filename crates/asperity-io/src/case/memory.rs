@@ -1,21 +1,19 @@
 //! How much memory a run needs, and how much there is.
 
-/// Bytes per cell of a run without retarded terms: padded spectrum of the influence function, the solver's
-/// vectors, transforms, gap, histories. A measured upper bound, not a sum of parts.
+/// Bytes per cell of a run whose bodies remember nothing: spectrum and rows of the padded transform, the solver's
+/// and the march's fields, a checkpoint while it is written, what is stored. An upper bound.
 const BYTES_PER_CELL: u128 = 200;
-/// Bytes per cell and retarded term: its field, and what a checkpoint of it takes while it is written.
-const BYTES_PER_TERM: u128 = 16;
-/// One field of doubles.
-const BYTES_PER_FIELD: u128 = 8;
+/// Bytes per cell and remembered field: the field, and its copy in a checkpoint.
+const BYTES_PER_FIELD: u128 = 16;
 
 /// Where the system does not say how much memory it has.
 const ASSUMED: u128 = 64 << 30;
 
-/// Bytes that a run takes: `branches` retarded terms, `kept` whole pressure fields (direct scheme).
-pub fn estimate(cells: [usize; 2], branches: usize, kept: usize) -> u128 {
+/// Bytes that a run takes whose bodies remember `fields` fields: one per retarded term and one for flow; one per
+/// row where the full hereditary sum is taken.
+pub fn estimate(cells: [usize; 2], fields: usize) -> u128 {
     let cells = cells[0] as u128 * cells[1] as u128;
-    let per_cell = BYTES_PER_CELL + BYTES_PER_TERM * branches as u128 + BYTES_PER_FIELD * kept as u128;
-    cells.saturating_mul(per_cell)
+    cells.saturating_mul(BYTES_PER_CELL + BYTES_PER_FIELD * fields as u128)
 }
 
 /// Memory of the machine in bytes; 64 GiB where the system does not tell.
@@ -49,13 +47,27 @@ pub fn words(bytes: u128) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use asperity::material::{Creep, CreepTerm};
+    use asperity::{Boundary, Grid, Simulation};
 
     #[test]
-    fn the_estimate_grows_with_terms_and_kept_fields() {
-        assert_eq!(estimate([1024, 1024], 0, 0), 200 << 20);
-        assert_eq!(estimate([1024, 1024], 2, 0), 232 << 20);
-        assert_eq!(estimate([10, 10], 0, 101), 100 * (200 + 808));
-        assert!(estimate([usize::MAX, usize::MAX], usize::MAX, usize::MAX) > ASSUMED);
+    fn the_estimate_bounds_what_the_march_says_of_itself() {
+        let grid = Grid::new([4, 4], [1.0, 1.0]).unwrap();
+        let term = |n: usize| CreepTerm { compliance: 1.0, retardation_time: n as f64 + 1.0 };
+        for (terms, fluidity) in [(0, 0.0), (2, 0.0), (40, 1.0)] {
+            for boundary in [Boundary::Free, Boundary::Periodic] {
+                let creep = Creep { instantaneous: 1.0, terms: (0..terms).map(term).collect(), fluidity };
+                let flow = usize::from(fluidity > 0.0);
+                let simulation =
+                    Simulation { boundary, creep, ..Simulation::new(grid, ndarray::Array2::zeros((4, 4))) };
+                // Five fields more are copied into a checkpoint or staged for the result.
+                let march = 16 * (simulation.bytes_per_cell() + 8 * (terms + flow) + 5 * 8) as u128;
+                let bound = estimate([4, 4], terms + flow);
+                assert!(march <= bound && bound < 2 * march, "{march} {bound}");
+            }
+        }
+        assert_eq!(estimate([1024, 1024], 2), 232 << 20);
+        assert!(estimate([usize::MAX, usize::MAX], usize::MAX) > ASSUMED); // no overflow
     }
 
     #[test]

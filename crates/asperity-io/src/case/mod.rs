@@ -42,7 +42,6 @@
 mod convert;
 mod describe;
 mod error;
-mod march;
 mod measured;
 mod memory;
 mod overrides;
@@ -61,7 +60,7 @@ use std::path::{Path, PathBuf};
 
 use asperity::material::{Body, Creep};
 use asperity::surface::undeformed_gap;
-use asperity::{Boundary, Control, Grid, Loading, SolverOptions};
+use asperity::{Boundary, Error, Grid, Loading, Scheme, Simulation, SolverOptions, TimeGrid};
 use ndarray::Array2;
 
 pub use describe::Description;
@@ -70,7 +69,6 @@ pub use measured::Measured;
 pub use plan::{Field, Output, Rows, Surface};
 pub use schema::schema;
 
-use march::{Scheme, Simulation, TimeGrid};
 use overrides::Override;
 use text::Text;
 
@@ -100,8 +98,10 @@ pub struct Case {
     pub hardness: f64,
     /// What is prescribed over time.
     pub loading: Loading,
-    /// The instants of the solution, those of `output.times` among them.
+    /// The instants of the solution.
     pub times: TimeGrid,
+    /// Instants that are steps besides \[s\]: those of `output.times`.
+    pub include: Vec<f64>,
     /// How the pressure goes over a step.
     pub scheme: Scheme,
     /// How each step is solved.
@@ -185,45 +185,28 @@ impl Case {
         })
     }
 
-    /// The simulation of the case: the gap is built here.
+    /// The simulation of the case, checked: the gap is built here.
     ///
     /// # Errors
     /// As [`gap`](Self::gap); a load above the hardness times the area that can touch.
     pub fn simulation(&self) -> Result<Simulation, CaseErrors> {
-        let gap = self.gap()?;
-        self.bearable(&gap)?;
-        Ok(Simulation {
-            grid: self.grid,
+        let simulation = Simulation {
             boundary: self.boundary,
-            gap,
             creep: self.creep.clone(),
             hardness: self.hardness,
             loading: self.loading.clone(),
             times: self.times.clone(),
+            include: self.include.clone(),
             scheme: self.scheme,
             solver: self.solver,
-        })
-    }
-
-    /// Under a punch only a part of the domain bears.
-    fn bearable(&self, gap: &Array2<f64>) -> Result<(), CaseErrors> {
-        let touching = gap.iter().filter(|h| h.is_finite()).count() as f64 * self.grid.cell_area();
-        let [_, largest] = self.loading.history.range(self.times.end());
-        let load = match self.loading.control {
-            Control::Load => largest,
-            Control::Pressure => largest * self.grid.area(),
-            Control::Approach => return Ok(()),
+            ..Simulation::new(self.grid, self.gap()?)
         };
-        let limit = self.hardness * touching;
-        if load <= limit * (1.0 + 1e-12) {
-            return Ok(());
+        match simulation.validate() {
+            Ok(()) => Ok(simulation),
+            // Under a punch only a part of the domain bears.
+            Err(error @ Error::Infeasible { .. }) => Err(self.fault(&self.history, error.to_string())),
+            Err(error) => Err(CaseErrors::without_place(&self.name, error.to_string(), "", None)),
         }
-        let [load, limit, hardness, touching] = [load, limit, self.hardness, touching].map(words::number);
-        let reason = format!(
-            "the history reaches a load of {load} N, but the bodies bear at most {limit} N: the hardness {hardness} Pa \
-             times the area {touching} m^2 that can touch"
-        );
-        Err(self.fault(&self.history, reason))
     }
 
     fn fault(&self, span: &Range<usize>, reason: String) -> CaseErrors {

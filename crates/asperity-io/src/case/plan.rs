@@ -40,7 +40,7 @@ pub enum Rows {
 }
 
 /// Times that agree to this share are the same: "0.1 s" times 3 is not quite "0.3 s".
-pub(super) const SAME: f64 = 1e-9;
+const SAME: f64 = 1e-9;
 
 impl Rows {
     /// Whether the fields of `row` (from 0, at `time` \[s\]) are stored, in a run whose last row is `last`.
@@ -76,7 +76,7 @@ impl Field {
     }
 
     /// Bytes per cell.
-    pub(super) fn bytes(self) -> u128 {
+    pub(super) fn bytes(self) -> u64 {
         if self == Field::Contact { 1 } else { 8 }
     }
 }

@@ -106,7 +106,7 @@ impl<'t> Reader<'_, 't> {
         if let Some(tag) = tag
             && let Err(error) = self.move_tag(&mut value, tag)
         {
-            self.errors.push(error);
+            self.errors.push(*error);
             return None;
         }
         let span = value.span();
@@ -119,7 +119,7 @@ impl<'t> Reader<'_, 't> {
         }
     }
 
-    fn move_tag(&self, value: &mut Spanned<DeValue<'t>>, tag: Tag) -> Result<(), CaseError> {
+    fn move_tag(&self, value: &mut Spanned<DeValue<'t>>, tag: Tag) -> Result<(), Box<CaseError>> {
         let Some(inside) = tag.inside else {
             return self.outwards(value, tag.key);
         };
@@ -133,18 +133,18 @@ impl<'t> Reader<'_, 't> {
     }
 
     /// `{ tag = name, ... }` becomes `{ name = { ... } }`.
-    fn outwards(&self, value: &mut Spanned<DeValue<'t>>, tag: &str) -> Result<(), CaseError> {
+    fn outwards(&self, value: &mut Spanned<DeValue<'t>>, tag: &str) -> Result<(), Box<CaseError>> {
         let span = value.span();
         let DeValue::Table(table) = value.get_mut() else {
             let expected = format!("a table that begins with the key `{tag}`");
-            return Err(self.text.wrong(&span, &expected, None));
+            return Err(self.text.wrong(&span, &expected, None).into());
         };
         let Some(name) = table.remove(tag) else {
-            return Err(words::missing_key(self.text, &span, tag));
+            return Err(words::missing_key(self.text, &span, tag).into());
         };
         let place = name.span();
         let DeValue::String(name) = name.into_inner() else {
-            return Err(words::wrong_choice(self.text, &place, None));
+            return Err(words::wrong_choice(self.text, &place, None).into());
         };
         let inner = std::mem::take(table);
         let mut outer = DeTable::new();

@@ -116,3 +116,117 @@ fn items(schema: &Value) -> Option<Value> {
     let tuple = schema.get("prefixItems").and_then(|items| items.get(0));
     schema.get("items").filter(|items| items.is_object()).or(tuple).map(resolve)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::templates::TEMPLATES;
+    use toml::Value as Toml;
+
+    /// Every key of a table and below, as a path.
+    fn keys(value: &Toml, path: &str, paths: &mut Vec<String>) {
+        match value {
+            Toml::Table(table) => {
+                for (key, value) in table {
+                    let path = crate::case::text::join(path, key);
+                    paths.push(path.clone());
+                    keys(value, &path, paths);
+                }
+            }
+            Toml::Array(array) => {
+                for (n, value) in array.iter().enumerate() {
+                    keys(value, &format!("{path}[{n}]"), paths);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    #[test]
+    fn every_key_of_the_starter_cases_is_in_the_schema() {
+        for template in TEMPLATES {
+            let mut paths = Vec::new();
+            keys(&Toml::Table(template.text.parse().unwrap()), "", &mut paths);
+            assert!(paths.len() > 15, "{}", template.name);
+            for path in paths {
+                assert!(!find(&path).is_empty(), "{}: {path}", template.name);
+            }
+        }
+        for path in
+            ["domian", "body[0].poison", "surface[0].kind.x", "time[0].end", "body[0].material[0].model"]
+        {
+            assert!(find(path).is_empty(), "{path}");
+        }
+    }
+
+    /// Calls `check` with the name and the schema of every key.
+    fn every_property(schema: &Value, check: &mut dyn FnMut(&str, &Value)) {
+        match schema {
+            Value::Object(object) => {
+                for (name, property) in
+                    object.get("properties").and_then(Value::as_object).into_iter().flatten()
+                {
+                    check(name, property);
+                }
+                object.values().for_each(|value| every_property(value, check));
+            }
+            Value::Array(array) => array.iter().for_each(|value| every_property(value, check)),
+            _ => {}
+        }
+    }
+
+    #[test]
+    fn every_key_has_a_description_and_shows_how_it_is_written() {
+        let mut count = 0;
+        every_property(generated(), &mut |name, property| {
+            if property.get("const").is_some() {
+                return; // the tag of a union's member, which is described as a whole
+            }
+            count += 1;
+            let resolved = resolve(property);
+            assert!(description_of(&resolved).len() > 5, "{name} has no description");
+            let shown = resolved.get("examples").is_some()
+                || members(&resolved).iter().any(|m| m.get("const").is_some() || m.get("enum").is_some())
+                || ["domain", "surface", "body", "load", "time", "solver", "output"].contains(&name);
+            assert!(shown, "{name} has no example: {resolved}");
+        });
+        assert!(count > 80, "{count}");
+    }
+
+    fn description_of(schema: &Value) -> &str {
+        schema.get("description").and_then(Value::as_str).unwrap_or_default()
+    }
+
+    #[test]
+    fn no_key_is_null_and_every_reference_leads_somewhere() {
+        let text = generated().to_string();
+        assert!(!text.contains("\"null\""));
+        for reference in text.split("\"$ref\":\"#").skip(1) {
+            let pointer = reference.split('"').next().unwrap();
+            assert!(generated().pointer(pointer).is_some(), "{pointer}");
+        }
+    }
+
+    #[test]
+    fn choices_are_the_words_of_a_key() {
+        assert_eq!(choices("domain.boundary"), ["free", "periodic"]);
+        assert_eq!(choices("solver.method"), ["projected-cg", "polonsky-keer"]);
+        assert_eq!(choices("surface[3].kind").len(), 7);
+        assert_eq!(choices("time.spacing"), ["uniform", "log"]);
+        assert!(choices("domain.cells").is_empty());
+    }
+
+    #[test]
+    fn the_schema_beside_the_examples_is_this_one() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/case.schema.json");
+        let Ok(text) = std::fs::read_to_string(path) else {
+            eprintln!("skipped: {path} is not there (the package without its repository)");
+            return;
+        };
+        let stored: Value = serde_json::from_str(&text).unwrap();
+        assert!(
+            stored == schema(),
+            "regenerate it: cargo run --release -- schema > examples/case.schema.json"
+        );
+    }
+}

@@ -119,8 +119,8 @@ pub fn wrong_choice(text: &Text<'_>, span: &Range<usize>, found: Option<(&str, &
 /// A key that the table at `span` needs and does not have.
 pub fn missing_key(text: &Text<'_>, span: &Range<usize>, name: &str) -> CaseError {
     // A header line can stand for several tables; the schema knows which of them has the key.
-    let paths = text.tables(span).into_iter().map(|table| join(&table, name));
-    let key = paths.filter(|path| !schema::find(path).is_empty()).last();
+    let mut paths = text.tables(span).into_iter().map(|table| join(&table, name));
+    let key = paths.rfind(|path| !schema::find(path).is_empty());
     let key = key.unwrap_or_else(|| join(&text.path(span), name));
     let (expected, help) = wanted(&key, name);
     let message = format!("{key} is missing");
@@ -179,8 +179,10 @@ pub fn nearest<'n>(name: &str, known: &[&'n str]) -> Option<&'n str> {
     }
     let distance = |known: &str| strsim::damerau_levenshtein(&name.to_lowercase(), known);
     let near = known.iter().min_by_key(|known| distance(known))?;
-    let similar = distance(near) <= 1 + near.len().min(name.len()) / 4;
-    (similar || near.starts_with(name) && name.len() > 2).then_some(*near)
+    if distance(near) <= 1 + near.len().min(name.len()) / 4 {
+        return Some(near);
+    }
+    known.iter().find(|known| name.len() > 2 && known.starts_with(name)).copied()
 }
 
 fn backticked(list: &str) -> Vec<&str> {

@@ -2,10 +2,9 @@
 
 use std::ops::Range;
 
-use asperity::{Control, Grid, History, Loading};
+use asperity::{Control, Grid, History, Loading, TimeGrid};
 
 use super::body::Pair;
-use super::time::Times;
 use super::{Checks, history_file};
 use crate::case::quantity::range::{Finite, NonNegative};
 use crate::case::quantity::{Prescribed, QuantityError, dimension};
@@ -15,7 +14,7 @@ use crate::case::words::number;
 pub fn loading(
     checks: &mut Checks<'_, '_>,
     load: &raw::Load,
-    times: Option<&Times>,
+    times: Option<&TimeGrid>,
     grid: Option<&Grid>,
     pair: Option<&Pair>,
 ) -> Option<Loading> {
@@ -28,10 +27,10 @@ pub fn loading(
     let history = checks.core(&load.history.span, history.validate().map(|()| history))?;
     let loading = Loading { control, history };
     if let (Some(times), Some(grid), Some(pair)) = (times, grid, pair) {
-        bearable(checks, &loading, &place, times.end, grid, pair);
+        bearable(checks, &loading, &place, times.end(), grid, pair);
     }
     if let (Some(times), Some(pair)) = (times, pair) {
-        jumps(checks, &loading, &load.history.span, times.end, pair);
+        jumps(checks, &loading, &load.history.span, times.end(), pair);
     }
     Some(loading)
 }
@@ -188,11 +187,8 @@ fn jumps(checks: &mut Checks<'_, '_>, loading: &Loading, place: &Range<usize>, e
         return;
     }
     let history = &loading.history;
-    let instants = std::iter::once(0.0).chain(history.breaks(end)).chain([end]);
-    // Below first touch an approach may jump as it likes.
-    let jump = instants
-        .map(|t| (t, history.before(t), history.after(t)))
-        .find(|(_, before, after)| before != after && before.max(*after) > 0.0);
+    let instants = std::iter::once(0.0).chain(history.breaks(end));
+    let jump = instants.map(|t| (t, history.before(t), history.after(t))).find(|(_, b, a)| a != b);
     let Some((t, before, after)) = jump else { return };
     let unit = unit(loading.control);
     let [t, before, after] = [t, before, after].map(number);

@@ -12,8 +12,11 @@ mod time;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use asperity::Scheme;
+
 use super::Case;
 use super::error::CaseError;
+use super::plan::Rows;
 use super::quantity::QuantityError;
 use super::raw::{At, Document};
 use super::text::{MOST_ERRORS, Text};
@@ -35,15 +38,21 @@ pub fn case(
     let load = &document.load.value;
     let loading = load::loading(&mut checks, load, times.as_ref(), grid.as_ref(), pair.as_ref());
     let output = output::output(&mut checks, &document.output, times.as_ref(), output);
-    let times = times.map(|times| time::with(times, output.as_ref()));
-
+    let include = match output.as_ref().map(|output| &output.rows) {
+        Some(Rows::At(times)) => times.clone(),
+        _ => Vec::new(),
+    };
     let scheme = time::scheme(document.time.value.scheme);
     let rows = match (&times, &loading) {
-        (Some(times), Some(loading)) => time::rows(times, &loading.history),
+        (Some(times), Some(loading)) => times.instants(&loading.history, &include).len(),
         _ => 0,
     };
-    let branches = pair.as_ref().map_or(0, |pair| pair.creep.terms.len());
-    let memory = domain::memory(&mut checks, &document.domain.value, branches, rows, scheme);
+    let fields = match (scheme, &pair) {
+        (Scheme::Direct, _) => rows,
+        (_, Some(pair)) => pair.creep.terms.len() + usize::from(pair.creep.fluidity > 0.0),
+        (_, None) => 0,
+    };
+    let memory = domain::memory(&mut checks, &document.domain.value, fields, scheme);
 
     checks.errors.sort_by_key(|error| error.span.as_ref().map_or(usize::MAX, |span| span.start));
     match (checks.errors.is_empty(), grid, surfaces, pair, loading, times, output) {
@@ -59,7 +68,8 @@ pub fn case(
                 creep: pair.creep,
                 hardness: pair.hardness,
                 loading,
-                times: times.grid,
+                times,
+                include,
                 scheme,
                 solver: output::solver(&document.solver),
                 output,

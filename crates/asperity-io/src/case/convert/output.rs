@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
-use asperity::{Method, SolverOptions};
+use asperity::{Method, SolverOptions, TimeGrid};
 
 use super::Checks;
-use super::time::{self, Times};
+use super::time;
 use crate::case::plan::{Output, Rows};
 use crate::case::raw::{self, Field};
 use crate::case::words::number;
@@ -29,7 +29,7 @@ pub fn solver(solver: &raw::Solver) -> SolverOptions {
 pub fn output(
     checks: &mut Checks<'_, '_>,
     output: &raw::Output,
-    times: Option<&Times>,
+    times: Option<&TimeGrid>,
     default_path: PathBuf,
 ) -> Option<Output> {
     let path = match &output.path {
@@ -51,10 +51,10 @@ pub fn output(
             return None;
         }
         (Some(every), None) => Rows::Every(every.value.count()),
-        (None, None) => Rows::Every(times?.steps().div_ceil(10).max(1)),
+        (None, None) => Rows::Every(time::steps(times?).div_ceil(10)),
         (None, Some(list)) => {
             let instants = time::increasing(checks, &list.value, |time| time.get())?;
-            let end = times?.end;
+            let end = times?.end();
             if let Some(late) = list.value.iter().find(|at| at.value.get() > end) {
                 checks.wrong(
                     &late.span,

@@ -2,37 +2,19 @@
 
 use std::ops::Range;
 
-use asperity::History;
+use asperity::{Scheme, TimeGrid};
 
 use super::Checks;
 use super::body::Pair;
-use crate::case::march::{Scheme, TimeGrid};
-use crate::case::plan::{Output, Rows, SAME};
 use crate::case::quantity::Time as Duration;
 use crate::case::quantity::range::Positive;
 use crate::case::raw::{self, At, Spacing};
 use crate::case::words;
 
-/// The instants of the solution.
-pub struct Times {
-    pub grid: TimeGrid,
-    pub end: f64,
-}
-
-impl Times {
-    /// Steps of the grid, without the breaks of the history.
-    pub fn steps(&self) -> usize {
-        match &self.grid {
-            TimeGrid::Uniform { steps, .. } | TimeGrid::Logarithmic { steps, .. } => *steps,
-            TimeGrid::List(times) => times.len(),
-        }
-    }
-}
-
-/// More steps than this are a slip of the pen: one solve a millisecond takes three hours.
+/// More steps than this are a slip of the pen (and more than a time grid takes).
 pub const MOST_STEPS: usize = 10_000_000;
 
-pub fn times(checks: &mut Checks<'_, '_>, time: &At<raw::Time>, pair: Option<&Pair>) -> Option<Times> {
+pub fn times(checks: &mut Checks<'_, '_>, time: &At<raw::Time>, pair: Option<&Pair>) -> Option<TimeGrid> {
     let raw = &time.value;
     if let Some(times) = &raw.times {
         let mut alone = true;
@@ -68,7 +50,7 @@ pub fn times(checks: &mut Checks<'_, '_>, time: &At<raw::Time>, pair: Option<&Pa
         );
         return None;
     }
-    let grid = match raw.spacing.as_ref().map_or(Spacing::Uniform, |at| at.value) {
+    Some(match raw.spacing.as_ref().map_or(Spacing::Uniform, |at| at.value) {
         Spacing::Uniform => {
             if let Some(first) = &raw.first {
                 let message = "`first` belongs to spacing = \"log\"".to_owned();
@@ -89,8 +71,7 @@ pub fn times(checks: &mut Checks<'_, '_>, time: &At<raw::Time>, pair: Option<&Pa
             };
             TimeGrid::Logarithmic { end, steps: count, first }
         }
-    };
-    Some(Times { grid, end })
+    })
 }
 
 /// A tenth of the shortest retardation time, but not later than a uniform step.
@@ -113,13 +94,12 @@ fn before_end(
     None
 }
 
-fn list(checks: &mut Checks<'_, '_>, times: &At<Vec<At<Duration<Positive>>>>) -> Option<Times> {
-    let Some(last) = times.value.last() else {
+fn list(checks: &mut Checks<'_, '_>, times: &At<Vec<At<Duration<Positive>>>>) -> Option<TimeGrid> {
+    if times.value.is_empty() {
         checks.wrong(&times.span, "a list of one time at least", None);
         return None;
-    };
-    let instants = increasing(checks, &times.value, |time| time.get())?;
-    Some(Times { grid: TimeGrid::List(instants), end: last.value.get() })
+    }
+    increasing(checks, &times.value, |time| time.get()).map(TimeGrid::List)
 }
 
 /// The values, where each is larger than the one before.
@@ -145,58 +125,10 @@ pub fn scheme(scheme: raw::Scheme) -> Scheme {
     }
 }
 
-/// The times, with those at which fields are stored among them.
-pub fn with(times: Times, output: Option<&Output>) -> Times {
-    let Some(Rows::At(stored)) = output.map(|output| &output.rows) else { return times };
-    let mut instants = instants(&times.grid);
-    let there = |t: f64| {
-        let after = instants.partition_point(|i| *i < t * (1.0 - SAME));
-        t == 0.0 || instants.get(after).is_some_and(|i| *i <= t * (1.0 + SAME))
-    };
-    let more: Vec<f64> = stored.iter().copied().filter(|t| !there(*t)).collect();
-    if more.is_empty() {
-        return times;
-    }
-    instants.extend(more);
-    instants.sort_by(f64::total_cmp);
-    Times { grid: TimeGrid::List(instants), end: times.end }
-}
-
-/// The rows of the result: 0+, one per step, one more per jump.
-pub fn rows(times: &Times, history: &History) -> usize {
-    let breaks = history.breaks(times.end);
-    let extra = breaks.iter().filter(|t| !is_instant(&times.grid, **t)).count();
-    let jump = |t: &&f64| history.before(**t) != history.after(**t);
-    let jumps = breaks.iter().chain([&times.end]).filter(jump).count();
-    1 + times.steps() + extra + jumps
-}
-
-/// Whether the grid has an instant at t, 0 < t < end.
-fn is_instant(grid: &TimeGrid, t: f64) -> bool {
-    let near = |instant: f64| (instant - t).abs() <= SAME * t;
+/// Steps of the grid, without the breaks of the history.
+pub fn steps(grid: &TimeGrid) -> usize {
     match grid {
-        TimeGrid::Uniform { end, steps } => {
-            let step = end / *steps as f64;
-            near((t / step).round() * step)
-        }
-        TimeGrid::Logarithmic { .. } => instants(grid).into_iter().any(near),
-        TimeGrid::List(times) => {
-            let after = times.partition_point(|instant| *instant < t * (1.0 - SAME));
-            times.get(after).is_some_and(|instant| near(*instant))
-        }
-    }
-}
-
-fn instants(grid: &TimeGrid) -> Vec<f64> {
-    match grid {
-        TimeGrid::Uniform { end, steps } => {
-            (1..=*steps).map(|n| if n == *steps { *end } else { end * n as f64 / *steps as f64 }).collect()
-        }
-        TimeGrid::Logarithmic { end, steps, first } => {
-            let ratio = end / first;
-            let power = |n: usize| n as f64 / (*steps - 1).max(1) as f64;
-            (0..*steps).map(|n| if n + 1 == *steps { *end } else { first * ratio.powf(power(n)) }).collect()
-        }
-        TimeGrid::List(times) => times.clone(),
+        TimeGrid::Uniform { steps, .. } | TimeGrid::Logarithmic { steps, .. } => *steps,
+        TimeGrid::List(times) => times.len(),
     }
 }

@@ -12,6 +12,7 @@
 //! # Ok::<(), asperity_io::case::quantity::QuantityError>(())
 //! ```
 
+mod decimal;
 pub mod range;
 mod serial;
 pub mod unit;
@@ -20,6 +21,7 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::str::FromStr;
 
+use decimal::Decimal;
 use range::{Finite, Range};
 pub use serial::{Prescribed, Whole};
 use unit::{Powers, Unit};
@@ -46,7 +48,7 @@ pub mod dimension {
 
     macro_rules! dimension {
         ($type:ident, $name:literal, $si:literal, $units:literal, $example:literal, $powers:expr) => {
-            #[doc = concat!("The dimension of ", $name, " [", $si, "].")]
+            #[doc = concat!("The dimension of ", $name, ".")]
             #[derive(Clone, Copy, Debug, PartialEq)]
             pub struct $type;
 
@@ -201,67 +203,6 @@ fn help<D: Dimension>(reason: &str) -> String {
 /// "length" of "a length".
 fn bare(name: &str) -> &str {
     name.strip_prefix("a ").unwrap_or(name)
-}
-
-/// A decimal number as text: mantissa and power of ten, so that scaling by a power of ten is exact.
-struct Decimal<'t> {
-    mantissa: &'t str,
-    exponent: i64,
-}
-
-impl<'t> Decimal<'t> {
-    /// The longest number at the start of `text`, and the rest.
-    fn split(text: &'t str) -> Option<(Self, &'t str)> {
-        let unsigned = text.strip_prefix(['+', '-']).unwrap_or(text);
-        let sign = text.len() - unsigned.len();
-        if let Some(rest) = unsigned.strip_prefix("inf") {
-            let rest = rest.strip_prefix("inity").unwrap_or(rest);
-            return Some((Decimal { mantissa: &text[..sign + 3], exponent: 0 }, rest));
-        }
-        let digits = |text: &str| text.bytes().take_while(u8::is_ascii_digit).count();
-        let whole = digits(unsigned);
-        let mut length = whole;
-        if unsigned[length..].starts_with('.') {
-            let fraction = digits(&unsigned[length + 1..]);
-            if whole + fraction == 0 {
-                return None;
-            }
-            length += 1 + fraction;
-        }
-        if length == 0 {
-            return None;
-        }
-        let mantissa = &text[..sign + length];
-        let mut rest = &unsigned[length..];
-        let mut exponent = 0;
-        // An `e` is an exponent only where digits follow it.
-        if let Some(after) = rest.strip_prefix(['e', 'E']) {
-            let signed = after.strip_prefix(['+', '-']).unwrap_or(after);
-            let count = digits(signed);
-            if count > 0 {
-                let sign = after.len() - signed.len();
-                let text = &after[..sign + count];
-                // Beyond this the value is 0 or too large, whatever the mantissa.
-                let beyond = if text.starts_with('-') { -1_000_000_000 } else { 1_000_000_000 };
-                exponent = text.parse().unwrap_or(beyond).clamp(-1_000_000_000, 1_000_000_000);
-                rest = &signed[count..];
-            }
-        }
-        Some((Decimal { mantissa, exponent }, rest))
-    }
-
-    fn infinite(&self) -> bool {
-        self.mantissa.ends_with("inf")
-    }
-
-    /// The nearest double to the number times 10^shift.
-    fn scaled(&self, shift: i32) -> f64 {
-        let text = match self.infinite() {
-            true => self.mantissa.to_owned(),
-            false => format!("{}e{}", self.mantissa, self.exponent + i64::from(shift)),
-        };
-        text.parse().unwrap_or(f64::NAN) // `new` refuses NaN; `split` leaves only what parses
-    }
 }
 
 #[cfg(test)]

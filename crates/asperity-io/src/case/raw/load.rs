@@ -115,13 +115,16 @@ pub struct Sine {
     pub frequency: Frequency<Positive>,
 }
 
+/// Time and value.
+pub type Point = Two<Duration, At<Prescribed>>;
+
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Table {
     /// Pairs [time, value] in order of time, the first at 0; a time given twice is a jump.
     #[schemars(example = [["0 s", "0 N"], ["10 s", "0.5 N"]])]
     #[schemars(length(min = 1))]
-    pub points: At<Vec<At<Two<Duration, At<Prescribed>>>>>,
+    pub points: At<Vec<At<Point>>>,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]

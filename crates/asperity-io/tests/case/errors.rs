@@ -1,0 +1,492 @@
+//! A table of faults: an edit of a good case, and what the error must say about it.
+
+use std::path::Path;
+
+use asperity_io::case::{Case, CaseError, CaseErrors};
+
+/// A good case with one of everything that the faults below need.
+const GOOD: &str = r#"title = "good"
+[domain]
+cells = [32, 16]
+size = ["2 mm", "1 mm"]
+boundary = "free"
+[[surface]]
+kind = "sphere"
+radius = "10 mm"
+[[surface]]
+kind = "self-affine"
+hurst = 0.8
+rms_gradient = 0.01
+longest = "0.5 mm"
+shortest = "0.2 mm"
+seed = 1
+[[body]]
+name = "first"
+poisson = 0.4
+hardness = "10 MPa"
+material = { model = "zener", shear = "2 MPa", shear_kelvin = "2 MPa", retardation_time = "1 s" }
+[[body]]
+poisson = 0.3
+[body.material]
+model = "prony"
+modulus = "young"
+equilibrium = "1 GPa"
+terms = [
+  { modulus = "1 GPa", time = "1 s" },
+  { modulus = "2 GPa", time = "10 s" },
+]
+[load]
+control = "load"
+history = { kind = "table", points = [
+  ["0 s", "0 N"],
+  ["1 s", "2 N"],
+  ["2 s", "1 N"],
+] }
+[time]
+end = "10 s"
+steps = 20
+[solver]
+method = "projected-cg"
+tolerance = 1e-6
+[output]
+fields = ["pressure"]
+times = ["1 s", "5 s"]
+"#;
+
+fn errors(text: &str) -> Vec<CaseError> {
+    match Case::parse(text, Path::new("."), &[]) {
+        Ok(_) => panic!("accepted:\n{text}"),
+        Err(errors) => errors.errors,
+    }
+}
+
+/// Replaces `old` by `new` in the good case; the first error has the key, the line and the words.
+#[track_caller]
+fn says(old: &str, new: &str, key: &str, line: usize, words: &[&str]) {
+    assert!(GOOD.contains(old), "{old:?} is not in the good case");
+    let text = GOOD.replacen(old, new, 1);
+    let found = &errors(&text)[0];
+    let shown = found.to_string();
+    assert_eq!((found.key.as_str(), found.line), (key, Some(line)), "{shown}");
+    for word in words {
+        assert!(shown.contains(word), "{shown:?} lacks {word:?}");
+    }
+    assert!(shown.contains(key) || key.contains('.'), "{shown:?} does not name {key}");
+    let span = found.span.clone().unwrap();
+    assert!(text.get(span.clone()).is_some_and(|there| !there.is_empty()), "{shown}: {span:?}");
+    assert_eq!(text[..span.start].matches('\n').count() + 1, line);
+}
+
+#[test]
+fn the_good_case_is_good() {
+    let case = Case::parse(GOOD, Path::new("."), &[]).unwrap();
+    assert_eq!(case.bodies.len(), 2);
+    case.simulation().unwrap();
+}
+
+#[test]
+fn units_and_numbers() {
+    says(
+        "\"10 MPa\"",
+        "\"10 m\"",
+        "body[0].hardness",
+        19,
+        &[
+            "\"10 m\"",
+            "a pressure greater than 0",
+            "such as \"300 MPa\"",
+            "\"m\" is the unit of a length",
+            "kPa",
+        ],
+    );
+    says("\"10 MPa\"", "\"10 mpa\"", "body[0].hardness", 19, &["\"mpa\" is not a known unit", "MPa"]);
+    says("\"10 mm\"", "\"10,5 mm\"", "surface[0].radius", 8, &["decimal point"]);
+    says("\"10 mm\"", "\"ten mm\"", "surface[0].radius", 8, &["does not begin with a number"]);
+    says("\"10 mm\"", "true", "surface[0].radius", 8, &["is true", "a length greater than 0"]);
+    says("\"10 mm\"", "2020-01-01", "surface[0].radius", 8, &["a length greater than 0"]);
+    says("\"10 mm\"", "nan", "surface[0].radius", 8, &["nan"]);
+    says("\"10 mm\"", "-0.01", "surface[0].radius", 8, &["is -0.01", "\"inf\" for a flat"]);
+    says("\"1 s\" }", "\"inf\" }", "body[0].material.retardation_time", 20, &["a time greater than 0"]);
+    says("0.8", "1.2", "surface[1].hurst", 11, &["greater than 0 and at most 1"]);
+    says("0.4", "0.51", "body[0].poisson", 18, &["is 0.51", "at most 0.5"]);
+    says("1e-6", "1", "solver.tolerance", 43, &["from 1e-14 to 0.1"]);
+    says("seed = 1", "seed = -1", "surface[1].seed", 15, &["a whole number, 0 or more"]);
+    says("seed = 1", "seed = 1.5", "surface[1].seed", 15, &["a whole number, 0 or more"]);
+}
+
+#[test]
+fn keys_and_words() {
+    says(
+        "hardness",
+        "hardnes",
+        "body[0].hardnes",
+        19,
+        &["body[0] has no key `hardnes`", "did you mean `hardness`?"],
+    );
+    says(
+        "shear_kelvin",
+        "shear2",
+        "body[0].material.shear2",
+        20,
+        &["has no key `shear2`", "did you mean `shear`?"],
+    );
+    says(
+        "modulus = \"1 GPa\"",
+        "moduls = \"1 GPa\"",
+        "body[1].material.terms[0].moduls",
+        28,
+        &["did you mean `modulus`?"],
+    );
+    says("[solver]", "[sovler]", "sovler", 41, &["no key `sovler`", "did you mean `solver`?"]);
+    says("[solver]", "[wheel]", "wheel", 41, &["no key `wheel`", "its keys: title, domain"]);
+    says(
+        "\"zener\"",
+        "\"zenner\"",
+        "body[0].material.model",
+        20,
+        &["\"zenner\"", "did you mean \"zener\"?", "burgers"],
+    );
+    says("\"load\"", "\"force\"", "load.control", 32, &["one of \"load\", \"pressure\", \"approach\""]);
+    says("\"free\"", "3", "domain.boundary", 5, &["one of \"free\", \"periodic\""]);
+    says("[\"pressure\"]", "[\"presure\"]", "output.fields[0]", 45, &["did you mean \"pressure\"?"]);
+    says("poisson = 0.4\n", "", "body[0]", 16, &["needs `poisson` or `bulk_modulus`"]);
+    says("radius = \"10 mm\"\n", "", "surface[0].radius", 6, &["is missing", "add radius = \"0.5 mm\""]);
+    says("kind = \"sphere\"\n", "", "surface[0].kind", 6, &["is missing", "\"ellipsoid\""]);
+    says("control = \"load\"\n", "", "load.control", 31, &["is missing", "\"approach\""]);
+    says("steps = 20\n", "", "time.steps", 38, &["is missing", "add steps = 100"]);
+    says("title = \"good\"", "title = good", "", 1, &["this is not TOML"]);
+    says("title = \"good\"", "title = \"good\"\ntitle = \"twice\"", "", 2, &["duplicate key"]);
+    says("poisson = 0.3", "poisson = 0.3\nbulk_modulus = \"4 GPa\"", "body[1]", 21, &["only one of them"]);
+    says(
+        "rms_gradient = 0.01",
+        "rms_gradient = 0.01\nrms_height = 1e-6",
+        "surface[1]",
+        9,
+        &["rms_gradient and rms_height"],
+    );
+}
+
+#[test]
+fn a_missing_section_is_named_with_its_header() {
+    for (start, end, words) in [
+        ("[domain]", "[[surface]]", "the section [domain] is missing"),
+        ("[[surface]]", "[[body]]", "the section [[surface]] is missing"),
+        ("[[body]]", "[load]", "the section [[body]] is missing"),
+        ("[load]", "[time]", "the section [load] is missing"),
+        ("[time]", "[solver]", "the section [time] is missing"),
+    ] {
+        let (from, to) = (GOOD.find(start).unwrap(), GOOD.find(end).unwrap());
+        let found = errors(&format!("{}{}", &GOOD[..from], &GOOD[to..]));
+        assert!(found[0].to_string().contains(words), "{found:?}");
+    }
+    let found = errors("");
+    assert_eq!(found.len(), 5, "{found:?}");
+}
+
+#[test]
+fn shapes_of_values() {
+    says("[32, 16]", "[32]", "domain.cells", 3, &["is [32]", "a list of two values"]);
+    says("[32, 16]", "[32, 16, 8]", "domain.cells", 3, &["a list of two values"]);
+    says("[32, 16]", "32", "domain.cells", 3, &["a list of two values"]);
+    says("[32, 16]", "[32, 0]", "domain.cells[1]", 3, &["is 0", "a whole number, 1 or more"]);
+    says("[32, 16]", "[32, -5]", "domain.cells[1]", 3, &["is -5", "a whole number, 1 or more"]);
+    says("[32, 16]", "[32, \"16\"]", "domain.cells[1]", 3, &["a whole number, 1 or more"]);
+    says("\"1 mm\"]", "\"0 mm\"]", "domain.size[1]", 4, &["a length greater than 0"]);
+    says("[[surface]]\nkind = \"self-affine\"", "[x]\nkind = \"self-affine\"", "x", 9, &["no key `x`"]);
+    says("[\"1 s\", \"2 N\"]", "[\"1 s\"]", "load.history.points[1]", 35, &["a list of two values"]);
+    says("fields = [\"pressure\"]", "fields = \"pressure\"", "output.fields", 45, &["a list"]);
+    says("name = \"first\"", "name = 1", "body[0].name", 17, &["text in quotes"]);
+    says("[\"1 s\", \"5 s\"]", "[]\ncheckpoint = \"yes\"", "output.checkpoint", 47, &["true or false"]);
+    let surface = "[surface]\nkind = \"sphere\"\n";
+    let from = GOOD.find("[[surface]]").unwrap();
+    let to = GOOD.find("[[body]]").unwrap();
+    let found = errors(&format!("{}{surface}{}", &GOOD[..from], &GOOD[to..]));
+    assert!(found[0].to_string().contains("begin each with a line [[surface]]"), "{found:?}");
+}
+
+#[test]
+fn sizes() {
+    // 2 bodies of 1 and 2 terms: 3 fields. 1e6 * 1e6 * (200 + 48) bytes = 248 TB.
+    says(
+        "[32, 16]",
+        "[1000000, 1000000]",
+        "domain.cells",
+        3,
+        &["1000000 x 1000000 cells", "248 TB", "this machine has"],
+    );
+    says(
+        "[32, 16]",
+        "[9223372036854775807, 9223372036854775807]",
+        "domain.cells",
+        3,
+        &["9223372036854775807 x 9223372036854775807", "this machine has"],
+    );
+    says("[32, 16]", "[10000000, 1]", "domain.cells", 3, &["no longer than 1e6 times its width"]);
+    says("steps = 20", "steps = 1000000000000", "time.steps", 40, &["is 1000000000000", "10000000 at most"]);
+    // 2400 x 1600 cells, 1e6 pressure fields: 61 TB
+    let direct = GOOD
+        .replace("steps = 20", "steps = 1000000\nscheme = \"direct\"")
+        .replace("[32, 16]", "[2400, 1600]");
+    let shown = errors(&direct)[0].to_string();
+    for words in [
+        "line 3",
+        "the 1000001 pressure fields that the direct scheme keeps",
+        "61",
+        "TB",
+        "scheme = \"linear\"",
+    ] {
+        assert!(shown.contains(words), "{shown}");
+    }
+    says("\"0.2 mm\"", "\"0.1 mm\"", "surface[1].shortest", 14, &["at least two cells"]);
+    says("\"0.5 mm\"", "\"3 mm\"", "surface[1].longest", 13, &["at most the size of the domain"]);
+}
+
+#[test]
+fn loads() {
+    let at = "load.history.points[1][1]";
+    says("\"2 N\"", "\"-2 N\"", at, 35, &["\"-2 N\"", "not less than 0", "prescribe the approach"]);
+    says("\"2 N\"", "\"2 MPa\"", at, 35, &["a force", "unit of a pressure"]);
+    // 10 MPa on 2 mm^2 is 20 N
+    says(
+        "\"2 N\"",
+        "\"21 N\"",
+        at,
+        35,
+        &["reaches 21 N", "at most 20 N", "hardness 1e7 Pa", "area 2e-6 m^2"],
+    );
+    says(
+        "\"1 s\", \"2 N\"",
+        "\"3 s\", \"2 N\"",
+        "load.history.points[2]",
+        36,
+        &["at 3 s or later", "order of time"],
+    );
+    says("\"0 s\", \"0 N\"", "\"0.5 s\", \"0 N\"", "load.history.points[0]", 34, &["a point at 0 s"]);
+    says(
+        "[\"2 s\", \"1 N\"]",
+        "[\"1 s\", \"3 N\"],\n [\"1 s\", \"4 N\"]",
+        "load.history",
+        33,
+        &["at most twice"],
+    );
+    says(
+        "control = \"load\"",
+        "control = \"pressure\"",
+        "load.history.points[0][1]",
+        34,
+        &["a pressure not less than 0"],
+    );
+    says(
+        "control = \"load\"",
+        "control = \"approach\"",
+        "load.history.points[0][1]",
+        34,
+        &["a length such as"],
+    );
+    let table = &GOOD[GOOD.find("history = ").unwrap()..GOOD.find("[time]").unwrap()];
+    let sine = "history = { kind = \"sine\", mean = \"1 N\", amplitude = \"2 N\", frequency = \"1 Hz\" }\n";
+    says(table, sine, "load.history.amplitude", 33, &["at most the mean, 1 N", "negative"]);
+    let flat = "history = { kind = \"ramp\", value = \"1 N\", duration = \"0 s\" }\n";
+    says(table, flat, "load.history.duration", 33, &["a time greater than 0"]);
+    let missing = "history = { kind = \"file\", path = \"nowhere.csv\" }\n";
+    says(
+        table,
+        missing,
+        "load.history.path",
+        33,
+        &["nowhere.csv does not exist", "directory of the case file"],
+    );
+}
+
+#[test]
+fn a_jump_needs_bodies_that_yield_at_once() {
+    let from = GOOD.find("[[body]]").unwrap();
+    let to = GOOD.find("[load]").unwrap();
+    let kelvin = "[[body]]\npoisson = 0.5\nmaterial = { model = \"kelvin-voigt\", young = \"1 MPa\", retardation_time = 1 }\n";
+    let ramped = format!("{}{kelvin}{}", &GOOD[..from], &GOOD[to..]);
+    Case::parse(&ramped, Path::new("."), &[]).unwrap(); // the table has no jump
+    for (old, new, at) in [
+        ("[\"0 s\", \"0 N\"]", "[\"0 s\", \"1 N\"]", "t = 0 s"),
+        ("[\"2 s\", \"1 N\"]", "[\"1 s\", \"1 N\"]", "t = 1 s"),
+    ] {
+        let found = errors(&ramped.replacen(old, new, 1));
+        assert_eq!(found[0].key, "load.history");
+        let shown = found[0].to_string();
+        for word in [at, "no instantaneous compliance", "use a ramp"] {
+            assert!(shown.contains(word), "{shown}");
+        }
+    }
+}
+
+#[test]
+fn times() {
+    let grid = "end = \"10 s\"\nsteps = 20\n";
+    says(
+        grid,
+        "times = [\"1 s\", \"3 s\", \"2 s\"]\n",
+        "time.times[2]",
+        39,
+        &["is \"2 s\"", "later than the time before it, 3 s"],
+    );
+    says(grid, "times = [\"0 s\", \"3 s\"]\n", "time.times[0]", 39, &["a time greater than 0"]);
+    says(grid, "times = []\n", "time.times", 39, &["one time at least"]);
+    says(grid, "times = [1]\nsteps = 3\n", "time.steps", 40, &["does not go with `times`"]);
+    says("steps = 20", "steps = 20\nfirst = \"1 s\"", "time.first", 41, &["belongs to spacing = \"log\""]);
+    says(
+        "steps = 20",
+        "steps = 20\nspacing = \"log\"\nfirst = \"11 s\"",
+        "time.first",
+        42,
+        &["before time.end, 10 s"],
+    );
+    says(
+        "[\"1 s\", \"5 s\"]",
+        "[\"5 s\", \"1 s\"]",
+        "output.times[1]",
+        46,
+        &["later than the time before it, 5 s"],
+    );
+    says("[\"1 s\", \"5 s\"]", "[\"5 s\", \"15 s\"]", "output.times[1]", 46, &["the end of the run, 10 s"]);
+    says("[\"1 s\", \"5 s\"]", "[\"5 s\"]\nevery = 3", "output.times", 46, &["exclude each other"]);
+    says("[\"1 s\", \"5 s\"]", "[]\nevery = 0", "output.every", 47, &["a whole number, 1 or more"]);
+    says("[\"1 s\", \"5 s\"]", "[]\npath = \"\"", "output.path", 47, &["a directory"]);
+}
+
+#[test]
+fn materials() {
+    let material = "body[0].material";
+    says("shear_kelvin", "young_kelvin", material, 20, &["needs `shear_kelvin`"]);
+    says("shear = \"2 MPa\", ", "", material, 20, &["needs `young` or `shear`"]);
+    says("shear = \"2 MPa\", ", "shear = 1, young = 2, ", material, 20, &["young and shear", "only one"]);
+    says(
+        "{ modulus = \"2 GPa\"",
+        "{ fraction = 0.5",
+        "body[1].material.terms[1]",
+        29,
+        &["must have `modulus` and not `fraction`"],
+    );
+    says(
+        "equilibrium = \"1 GPa\"\n",
+        "",
+        "body[1].material",
+        23,
+        &["needs `equilibrium` or `instantaneous`"],
+    );
+    says(
+        "equilibrium = \"1 GPa\"",
+        "equilibrium = \"-1 GPa\"",
+        "body[1].material.equilibrium",
+        26,
+        &["not less than 0"],
+    );
+    let prony = &GOOD[GOOD.find("equilibrium").unwrap()..GOOD.find("[load]").unwrap()];
+    let fractions =
+        "instantaneous = \"1 GPa\"\nterms = [{ fraction = 0.7, time = 1 }, { fraction = 0.4, time = 2 }]\n";
+    says(prony, fractions, "body[1].material", 23, &["sum of the fractions", "1.1", "at most 1"]);
+    let soft = "poisson = 0.3\n";
+    says(soft, "bulk_modulus = \"1 MPa\"\n", "body[1]", 21, &["bulk modulus of body 2", "ninth"]);
+    let rigid = "{ model = \"creep\", compliance = \"shear\", instantaneous = 0, terms = [] }";
+    let zener = &GOOD[GOOD.find("{ model").unwrap()..GOOD.find("\n[[body]]\npoisson").unwrap()];
+    says(zener, rigid, material, 20, &["compliance"]);
+    let third = "[[body]]\npoisson = 0.3\nmaterial = { model = \"elastic\", young = 1 }\n[load]";
+    says("[load]", third, "body[2]", 31, &["at most two bodies"]);
+    let many = format!("terms = [{}]\n", "{ modulus = 1, time = 1 },".repeat(2000));
+    let terms = &GOOD[GOOD.find("terms").unwrap()..GOOD.find("[load]").unwrap()];
+    says(terms, &many, "body[1].material.terms", 27, &["2000 terms", "may have 1000"]);
+}
+
+#[test]
+fn what_this_version_lacks_is_refused_not_ignored() {
+    let words = "not available in this version";
+    for model in ["springpot", "fractional-zener", "relaxation-table", "creep-table", "dma"] {
+        says("\"zener\"", &format!("\"{model}\""), "body[0].material.model", 20, &[model, words]);
+    }
+    says("control = \"load\"", "control = \"load\"\nstages = []", "load.stages", 33, &[words]);
+    says("steps = 20", "steps = 20\nspacing = \"adaptive\"", "time.spacing", 41, &["adaptive", words]);
+    says("1e-6", "1e-6\nprecision = \"mixed\"", "solver.precision", 44, &["mixed", words]);
+    says("1e-6", "1e-6\nplasticity = \"accumulate\"", "solver.plasticity", 44, &["accumulate", words]);
+    says("\"sphere\"", "\"array\"", "surface[0].kind", 7, &["Python"]);
+}
+
+#[test]
+fn several_sections_report_at_once_in_order_of_place() {
+    let text = GOOD
+        .replace("0.8", "8")
+        .replace("\"10 MPa\"", "\"10 m\"")
+        .replace("steps = 20", "steps = 0")
+        .replace("\"projected-cg\"", "\"cg\"");
+    let found = errors(&text);
+    let keys: Vec<&str> = found.iter().map(|error| error.key.as_str()).collect();
+    assert_eq!(keys, ["surface[1].hurst", "body[0].hardness", "time.steps", "solver.method"]);
+
+    let text = GOOD.replace("\"2 N\"", "\"21 N\"").replace("\"5 s\"]", "\"15 s\"]").replace("\"3 mm\"", "");
+    let found = errors(&text);
+    let keys: Vec<&str> = found.iter().map(|error| error.key.as_str()).collect();
+    assert_eq!(keys, ["load.history.points[1][1]", "output.times[1]"]);
+}
+
+#[test]
+fn a_long_bad_list_does_not_drown_the_user() {
+    let points: String = (0..20_000).map(|n| format!("[\"{n} s\", \"-1 N\"],\n")).collect();
+    let table = &GOOD[GOOD.find("history = ").unwrap()..GOOD.find("[time]").unwrap()];
+    let text = GOOD.replace(table, &format!("history = {{ kind = \"table\", points = [{points}] }}\n"));
+    assert!(errors(&text).len() <= 20);
+    let surfaces = format!("{GOOD}\n{}", "[[surface]]\nkind = \"cone\"\nslope = -1\n".repeat(5000));
+    assert!(errors(&surfaces).len() <= 20);
+}
+
+#[test]
+fn the_display_names_the_file_and_every_fault() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("my case.toml");
+    std::fs::write(&path, GOOD.replace("0.4", "4").replace("1e-6", "1")).unwrap();
+    let errors: CaseErrors = Case::read(&path, &[]).unwrap_err();
+    let shown = errors.to_string();
+    let lines: Vec<&str> = shown.lines().collect();
+    assert_eq!(lines.len(), 2, "{shown}");
+    assert!(lines.iter().all(|line| line.starts_with(&path.display().to_string())));
+    assert!(lines[0].ends_with(
+        "my case.toml: line 18: body[0].poisson is 4, but must be a number greater than -1 and at most 0.5, such as 0.38"
+    ));
+}
+
+#[test]
+fn a_file_that_is_none_is_said() {
+    let dir = tempfile::tempdir().unwrap();
+    let says = |path: &Path, words: &[&str]| {
+        let shown = Case::read(path, &[]).unwrap_err().to_string();
+        for word in words {
+            assert!(shown.contains(word), "{shown}");
+        }
+    };
+    says(&dir.path().join("none.toml"), &["none.toml: there is no such file", "asperity new"]);
+    says(dir.path(), &["cannot be read"]);
+    let binary = dir.path().join("binary.toml");
+    std::fs::write(&binary, b"title = 1\nx = \xff\xfe").unwrap();
+    says(&binary, &["not UTF-8 text (line 2, byte 14)"]);
+    let large = dir.path().join("large.toml");
+    std::fs::File::create(&large).unwrap().set_len(17 << 20).unwrap();
+    says(&large, &["larger than 16 MB"]);
+}
+
+#[test]
+fn overrides_are_read_as_if_written() {
+    let with = |overrides: &[&str]| {
+        let overrides: Vec<String> = overrides.iter().map(|text| text.to_string()).collect();
+        Case::parse(GOOD, Path::new("."), &overrides)
+    };
+    let case = with(&["domain.cells=[64,8]", "body.0.hardness=20 MPa", "output.fields=[]"]);
+    // 2 mm / 64 would need a shortest wavelength of two cells of 1 mm / 8
+    let shown = case.unwrap_err().to_string();
+    assert!(shown.contains("surface[1].shortest") && shown.contains("line 14"), "{shown}");
+    let case = with(&["domain.cells=[64,32]", "body[0].hardness=20 MPa", "output.fields=[]"]).unwrap();
+    assert_eq!((case.grid.cells(), case.hardness), ([64, 32], 20e6));
+    assert!(case.output.fields.is_empty() && case.source.contains("cells = [64,32]"));
+
+    let error = &with(&["body.0.hardnes=20 MPa"]).unwrap_err().errors[0];
+    assert_eq!(error.key, "body[0].hardnes");
+    assert_eq!(error.help.as_deref(), Some("set by an override; did you mean `hardness`?"));
+    let shown = with(&["body.7.name=x"]).unwrap_err().to_string();
+    assert!(shown.contains("cannot set body[7].name: there is no element 7, the list has 2"), "{shown}");
+    assert!(with(&["nonsense"]).unwrap_err().to_string().contains("KEY=VALUE"));
+}

@@ -1,0 +1,98 @@
+//! The starter cases and the examples of the repository.
+
+use std::path::{Path, PathBuf};
+
+use asperity::March;
+use asperity_io::case::templates::{TEMPLATES, Template};
+use asperity_io::case::{Case, Field, Rows};
+
+fn examples() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples")
+}
+
+#[test]
+fn every_starter_case_is_read_and_described() {
+    assert!(TEMPLATES.len() >= 8);
+    for template in TEMPLATES {
+        assert!(template.text.starts_with("#:schema case.schema.json\n"), "{}", template.name);
+        assert!(template.text.lines().filter(|line| line.contains('#')).count() >= 5, "{}", template.name);
+        assert!(template.text.lines().all(|line| line.len() <= 120), "{}", template.name);
+        let case = Case::parse(template.text, Path::new("."), &[]).unwrap();
+        assert_eq!(case.title.as_deref(), Some(template.title()));
+        let description = case.describe();
+        assert!(description.rows > 10 && description.stored_rows >= 2, "{description:?}");
+        assert!(description.memory_bytes < 1 << 30, "{description:?}");
+    }
+    assert!(Template::find("hertz").is_some() && Template::find("nothing").is_none());
+}
+
+#[test]
+fn every_starter_case_is_solved_on_a_coarse_grid() {
+    for template in TEMPLATES {
+        let mut overrides = vec!["domain.cells=[64,64]".to_owned()];
+        if template.text.contains("shortest") {
+            overrides.push("surface.0.shortest=1e-4".to_owned());
+        }
+        if template.name == "rough-pmma" {
+            // 64 cells resolve waves of 3.1 um
+            overrides[1] = "surface.1.shortest=4 um".to_owned();
+        }
+        let case = Case::parse(template.text, Path::new("."), &overrides)
+            .unwrap_or_else(|errors| panic!("{errors}"));
+        let simulation = case.simulation().unwrap_or_else(|errors| panic!("{errors}"));
+        assert_eq!(simulation.gap.dim(), (64, 64));
+        let mut march = March::new(simulation).unwrap();
+        assert_eq!(march.len(), case.describe().rows, "{}", template.name);
+        let mut largest: f64 = 0.0;
+        while let Some(step) = march.advance().unwrap_or_else(|error| panic!("{}: {error}", template.name)) {
+            let row = step.row();
+            assert!(row.max_pressure <= case.hardness && row.residual <= case.solver.tolerance);
+            largest = largest.max(row.contact_fraction);
+        }
+        // A contact that can be seen, and that stays away from the edges of a free domain (a disc that touches
+        // them covers pi/4); rough-pmma fills the patch up to its corners, as in the paper.
+        let most = if template.name == "rough-pmma" { 0.9 } else { 0.3 };
+        assert!(largest > 0.001 && largest < most, "{}: {largest}", template.name);
+    }
+}
+
+#[test]
+fn the_examples_of_the_repository_are_the_starter_cases() {
+    if !examples().exists() {
+        eprintln!("skipped: the package without its repository has no examples");
+        return;
+    }
+    for template in TEMPLATES {
+        let path = examples().join(format!("{}.toml", template.name));
+        let text = std::fs::read_to_string(&path).unwrap();
+        assert!(text == template.text, "{} differs from its template; copy it", path.display());
+    }
+    for entry in std::fs::read_dir(examples()).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|extension| extension == "toml") {
+            Case::read(&path, &[]).unwrap_or_else(|errors| panic!("{errors}"));
+        }
+    }
+}
+
+#[test]
+fn the_case_of_the_paper_is_the_paper_s() {
+    let case = Case::parse(Template::find("rough-pmma").unwrap().text, Path::new("."), &[]).unwrap();
+    assert_eq!(case.grid.cells(), [1024, 1024]);
+    assert_eq!(case.grid.size(), [0.1e-3, 0.1e-3]);
+    assert_eq!(case.hardness, 300e6);
+    assert_eq!(case.loading.history.after(0.0), 0.5);
+    // C(0) = (1 - 0.38^2) / 2491.44 MPa (theory: E(0) of eq. 23), exact up to the root finding
+    let modulus = 1.0 / case.creep.instantaneous;
+    assert!((modulus * (1.0 - 0.38 * 0.38) / 2491.4388e6 - 1.0).abs() < 1e-12, "{modulus}");
+    let times: Vec<f64> = case.creep.terms.iter().map(|term| term.retardation_time).collect();
+    // theory section 3, ten digits given
+    assert!((times[0] / 9.936295903 - 1.0).abs() < 1e-9 && (times[1] / 133.8704875 - 1.0).abs() < 1e-9);
+    let description = case.describe();
+    assert_eq!((description.rows, description.stored_rows), (101, 11));
+    assert_eq!(description.memory_bytes, (1 << 20) * 232);
+    assert_eq!(case.output.path, Path::new("rough_pmma.zarr"));
+    assert_eq!(case.output.fields.iter().copied().collect::<Vec<_>>(), [Field::Pressure, Field::Gap]);
+    assert_eq!(case.output.rows, Rows::Every(10));
+    assert!(case.output.checkpoint);
+}

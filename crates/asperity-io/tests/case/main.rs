@@ -1,0 +1,6 @@
+//! Case files: the starter cases hold, and what is wrong is named with key, line and words.
+
+mod errors;
+mod examples;
+mod hostile;
+mod values;

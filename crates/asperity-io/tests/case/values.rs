@@ -1,0 +1,288 @@
+//! What a good case comes to: every kind of surface, material, history and time grid, in SI.
+
+use std::path::Path;
+
+use asperity::material::Lateral;
+use asperity::surface::{Part, Punch, Roughness, Shape};
+use asperity::{Boundary, Control, History, Method, Scheme, TimeGrid};
+use asperity_io::case::{Case, Field, Rows, Surface};
+
+const FRAME: &str = r#"
+domain = { cells = [40, 20], size = ["2 mm", "1 mm"], boundary = "periodic" }
+surface = [SURFACE]
+body = [BODY]
+load = { control = "CONTROL", history = HISTORY }
+time = TIME
+"#;
+
+struct Parts {
+    surface: &'static str,
+    body: &'static str,
+    control: &'static str,
+    history: &'static str,
+    time: &'static str,
+    more: &'static str,
+}
+
+const PARTS: Parts = Parts {
+    surface: r#"{ kind = "sphere", radius = "1 cm" }"#,
+    body: r#"{ poisson = 0.5, material = { model = "elastic", shear = "1 MPa" } }"#,
+    control: "load",
+    history: r#"{ kind = "step", value = "10 mN" }"#,
+    time: r#"{ end = "1 min", steps = 10 }"#,
+    more: "",
+};
+
+fn case_in(dir: &Path, parts: Parts) -> Case {
+    let text = FRAME
+        .replace("SURFACE", parts.surface)
+        .replace("BODY", parts.body)
+        .replace("CONTROL", parts.control)
+        .replace("HISTORY", parts.history)
+        .replace("TIME", parts.time);
+    Case::parse(&format!("{text}{}", parts.more), dir, &[]).unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+fn case(parts: Parts) -> Case {
+    case_in(Path::new("."), parts)
+}
+
+fn shape(surface: &'static str) -> (Shape, [f64; 2]) {
+    match &case(Parts { surface, ..PARTS }).surfaces[..] {
+        [Surface::Part(Part::Shape { shape, center })] => (*shape, *center),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn shapes() {
+    let origin = [0.0, 0.0];
+    assert_eq!(shape(r#"{ kind = "sphere", radius = "1 cm" }"#), (Shape::Sphere { radius: 1e-2 }, origin));
+    assert_eq!(
+        shape(r#"{ kind = "sphere", radius = "inf", center = ["1 um", -2e-6] }"#),
+        (Shape::Sphere { radius: f64::INFINITY }, [1e-6, -2e-6])
+    );
+    assert_eq!(shape(r#"{ kind = "sphere", radius = inf }"#).0, Shape::Sphere { radius: f64::INFINITY });
+    assert_eq!(
+        shape(r#"{ kind = "ellipsoid", radius_x = "1 mm", radius_y = "inf" }"#).0,
+        Shape::Ellipsoid { radius_x: 1e-3, radius_y: f64::INFINITY }
+    );
+    assert_eq!(shape(r#"{ kind = "cone", slope = "5 %" }"#).0, Shape::Cone { slope: 0.05 });
+    assert_eq!(
+        shape(r#"{ kind = "flat-punch", radius = "0.2 mm" }"#).0,
+        Shape::FlatPunch(Punch::Circle { radius: 0.2e-3 })
+    );
+    assert_eq!(
+        shape(r#"{ kind = "flat-punch", size = ["0.2 mm", 0.1e-3] }"#).0,
+        Shape::FlatPunch(Punch::Rectangle { size: [0.2e-3, 0.1e-3] })
+    );
+    assert_eq!(
+        shape(r#"{ kind = "wave", amplitude = "30 nm", wavelength = ["1 mm", "inf"] }"#).0,
+        Shape::Wave { amplitude: 30e-9, wavelength: [1e-3, f64::INFINITY] }
+    );
+}
+
+#[test]
+fn roughness() {
+    let surface = r#"{ kind = "self-affine", hurst = 1, rms_height = "1 um", longest = "1 mm", shortest = "0.2 mm", seed = 7 }"#;
+    let case = case(Parts { surface, ..PARTS });
+    let [Surface::Part(Part::SelfAffine(rough))] = &case.surfaces[..] else { panic!() };
+    assert_eq!((rough.hurst, rough.roughness, rough.seed), (1.0, Roughness::RmsHeight(1e-6), 7));
+    assert_eq!((rough.longest, rough.roll_off, rough.shortest), (1e-3, 1e-3, 0.2e-3)); // roll_off = longest
+}
+
+#[test]
+fn measured_surfaces_are_levelled_and_must_fit() {
+    let dir = tempfile::tempdir().unwrap();
+    // A tilted plane with one peak, in um; x runs along a line.
+    let text: String = (0..20)
+        .map(|j| {
+            (0..40).map(|i| format!("{} ", if (i, j) == (10, 5) { 100 } else { i })).collect::<String>()
+                + "\n"
+        })
+        .collect();
+    std::fs::write(dir.path().join("peak.txt"), text).unwrap();
+    let surface = r#"{ kind = "file", path = "peak.txt", size = ["2 mm", "1 mm"], height_unit = "um" }"#;
+    let gap = case_in(dir.path(), Parts { surface, ..PARTS }).gap().unwrap();
+    assert_eq!((gap.dim(), gap[[10, 5]]), ((40, 20), 0.0)); // the peak touches first
+    let around = [gap[[0, 0]], gap[[39, 0]], gap[[0, 19]], gap[[39, 19]]];
+    // Levelled: the corners lie 90 um below the peak, up to the tilt that the peak itself gives the plane.
+    assert!(around.iter().all(|h| (h / 90e-6 - 1.0).abs() < 0.01), "{around:?}");
+
+    let raw = r#"{ kind = "file", path = "peak.txt", size = ["2 mm", "1 mm"], height_unit = "um", level = "none", invert = true }"#;
+    let gap = case_in(dir.path(), Parts { surface: raw, ..PARTS }).gap().unwrap();
+    // Upside down the pit is deepest and x = 0 is highest.
+    assert_eq!(gap[[0, 0]], 0.0);
+    assert!((gap[[10, 5]] - 100e-6).abs() < 1e-18 && (gap[[39, 3]] - 39e-6).abs() < 1e-18); // rounding
+
+    for (surface, words) in [
+        (r#"{ kind = "file", path = "peak.txt", size = ["2 mm", "1 mm"] }"#, "height_unit"),
+        (r#"{ kind = "file", path = "peak.txt", height_unit = "um" }"#, "size"),
+        (
+            r#"{ kind = "file", path = "peak.txt", size = ["1 mm", "1 mm"], height_unit = "um" }"#,
+            "domain.size",
+        ),
+    ] {
+        let errors = case_in(dir.path(), Parts { surface, ..PARTS }).simulation().unwrap_err();
+        assert_eq!(errors.errors[0].key, "surface[0].path");
+        assert!(errors.to_string().contains(words), "{errors}");
+    }
+    std::fs::write(dir.path().join("small.txt"), "1 2\n3 4\n").unwrap();
+    let surface = r#"{ kind = "file", path = "small.txt", size = ["2 mm", "1 mm"], height_unit = "um" }"#;
+    let errors = case_in(dir.path(), Parts { surface, ..PARTS }).gap().unwrap_err();
+    assert!(errors.to_string().contains("2 x 2 points, but the domain has 40 x 20 cells"), "{errors}");
+}
+
+/// (C(0), C(3 s), C(infinity)) of an incompressible body, where C = J/4 = 3 D/4.
+fn creep(material: &str) -> [f64; 3] {
+    let body = format!("{{ poisson = 0.5, material = {material} }}");
+    let creep = case(Parts { body: body.leak(), ..PARTS }).creep;
+    [creep.value(0.0), creep.value(3.0), creep.long_time()]
+}
+
+#[test]
+fn materials() {
+    let close = |found: [f64; 3], wanted: [f64; 3]| {
+        for (f, w) in found.iter().zip(wanted) {
+            // rounding, and the root finding of the Prony conversion
+            assert!(*f == w || (f / w - 1.0).abs() < 1e-12, "{found:?} {wanted:?}");
+        }
+    };
+    let inf = f64::INFINITY;
+    let grown = |rate: f64| 1.0 - (-3.0 * rate).exp();
+    close(creep(r#"{ model = "elastic", shear = "1 MPa" }"#), [0.25e-6; 3]);
+    close(creep(r#"{ model = "elastic", young = "3 MPa" }"#), [0.25e-6; 3]);
+    close(
+        creep(r#"{ model = "maxwell", shear = "1 MPa", relaxation_time = "2 s" }"#),
+        [0.25e-6, 0.25e-6 * 2.5, inf],
+    );
+    let zener = r#"{ model = "zener", shear = "1 MPa", shear_kelvin = "2 MPa", retardation_time = "2 s" }"#;
+    close(creep(zener), [0.25e-6, 0.25e-6 + 0.125e-6 * grown(0.5), 0.375e-6]);
+    let burgers = r#"{ model = "burgers", young = "3 MPa", relaxation_time = "6 s", young_kelvin = "6 MPa", retardation_time = "2 s" }"#;
+    close(creep(burgers), [0.25e-6, 0.25e-6 * 1.5 + 0.125e-6 * grown(0.5), inf]);
+    let series = r#"{ model = "creep", compliance = "shear", instantaneous = "1 1/MPa", terms = [{ compliance = "0.5 1/MPa", time = "2 s" }], fluidity = "0.1 1/(MPa s)" }"#;
+    close(creep(series), [0.25e-6, 0.25e-6 + 0.125e-6 * grown(0.5) + 0.075e-6, inf]);
+    // Zener: relaxation 2/3 + 1/3 exp(-t / (4/3 s)) MPa has the creep above.
+    let absolute = r#"{ model = "prony", modulus = "shear", equilibrium = 0.6666666666666666e6, terms = [{ modulus = 0.3333333333333333e6, time = 1.3333333333333333 }] }"#;
+    let relative = r#"{ model = "prony", modulus = "shear", instantaneous = "1 MPa", terms = [{ fraction = 0.3333333333333333, time = 1.3333333333333333 }] }"#;
+    close(creep(absolute), creep(zener));
+    close(creep(relative), creep(zener));
+    let [at_once, ..] = creep(r#"{ model = "prony", modulus = "young", equilibrium = "3 MPa", terms = [] }"#);
+    assert!((at_once / 0.25e-6 - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn pairs_of_bodies() {
+    let body = r#"
+        { name = "soft", poisson = 0.5, hardness = "3 MPa", material = { model = "elastic", shear = "1 MPa" } },
+        { bulk_modulus = "1 GPa", hardness = "2 MPa", material = { model = "elastic", young = "1 GPa" } }"#;
+    let case = case(Parts { body, ..PARTS });
+    assert_eq!(case.hardness, 2e6); // the softer one yields
+    assert_eq!(case.bodies[1].name, "body 2");
+    assert_eq!(case.bodies[1].lateral, Lateral::BulkModulus(1e9));
+    // nu = 1/2 - E/(6 B) = 1/3, C = (1 - 1/9) / 1 GPa
+    let wanted = 0.25e-6 + 8.0 / 9.0 * 1e-9;
+    assert!((case.creep.value(0.0) / wanted - 1.0).abs() < 1e-12);
+    assert_eq!(super::values::case(PARTS).hardness, f64::INFINITY);
+}
+
+fn history(control: &'static str, history: &'static str) -> History {
+    case(Parts { control, history, ..PARTS }).loading.history
+}
+
+#[test]
+fn histories() {
+    assert_eq!(history("pressure", r#"{ kind = "step", value = "2 kPa" }"#), History::Step { value: 2e3 });
+    assert_eq!(
+        history("approach", r#"{ kind = "ramp", value = "-1 um", duration = "1 ms" }"#),
+        History::Ramp { value: -1e-6, duration: 1e-3 }
+    );
+    assert_eq!(
+        history("load", r#"{ kind = "triangle", peak = 1, rise = "1 s", fall = 2 }"#),
+        History::Triangle { peak: 1.0, rise: 1.0, fall: 2.0 }
+    );
+    assert_eq!(
+        history("load", r#"{ kind = "trapezoid", peak = 1, rise = 1, hold = 0, fall = 2 }"#),
+        History::Trapezoid { peak: 1.0, rise: 1.0, hold: 0.0, fall: 2.0 }
+    );
+    assert_eq!(
+        history("load", r#"{ kind = "sine", mean = 1, amplitude = 1, frequency = "2 kHz" }"#),
+        History::Sine { mean: 1.0, amplitude: 1.0, frequency: 2e3 }
+    );
+    assert_eq!(
+        history("load", r#"{ kind = "table", points = [[0, 0], ["1 min", "1 N"], ["1 min", "0 N"]] }"#),
+        History::Table { points: vec![(0.0, 0.0), (60.0, 1.0), (60.0, 0.0)] }
+    );
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("h.csv"), "time [min], load [mN]\n0, 0\n1, 5\n").unwrap();
+    let parts = Parts { history: r#"{ kind = "file", path = "h.csv" }"#, ..PARTS };
+    let case = case_in(dir.path(), parts);
+    assert_eq!(case.loading.control, Control::Load);
+    assert_eq!(case.loading.history, History::Table { points: vec![(0.0, 0.0), (60.0, 5e-3)] });
+}
+
+#[test]
+fn times_schemes_and_solver() {
+    let plain = case(PARTS);
+    assert_eq!(plain.times, TimeGrid::Uniform { end: 60.0, steps: 10 });
+    assert_eq!((plain.scheme, plain.boundary), (Scheme::Linear, Boundary::Periodic));
+    assert_eq!((plain.solver.method, plain.solver.tolerance), (Method::ProjectedCg, 1e-6));
+    assert_eq!(plain.output.rows, Rows::Every(1)); // 10 steps: about ten fields
+    assert_eq!(plain.output.path, Path::new("result.zarr"));
+    assert_eq!(plain.output.fields.iter().copied().collect::<Vec<_>>(), [Field::Pressure, Field::Gap]);
+
+    let listed = case(Parts { time: r#"{ times = ["1 s", 5], scheme = "constant" }"#, ..PARTS });
+    assert_eq!((listed.times, listed.scheme), (TimeGrid::List(vec![1.0, 5.0]), Scheme::Constant));
+    let log = r#"{ end = 100, steps = 5, spacing = "log", first = "10 ms", scheme = "direct" }"#;
+    let log = case(Parts { time: log, ..PARTS });
+    assert_eq!(log.times, TimeGrid::Logarithmic { end: 100.0, steps: 5, first: 0.01 });
+    assert_eq!(log.scheme, Scheme::Direct);
+    // A tenth of the shortest retardation time, and a uniform step where that is shorter.
+    let body =
+        r#"{ poisson = 0.5, material = { model = "kelvin-voigt", shear = 1e6, retardation_time = "2 s" } }"#;
+    let first = |time| {
+        case(Parts { body, time, history: r#"{ kind = "ramp", value = 1, duration = 1 }"#, ..PARTS }).times
+    };
+    let log = |steps| TimeGrid::Logarithmic { end: 100.0, steps, first: if steps == 5 { 0.2 } else { 0.1 } };
+    assert_eq!(first(r#"{ end = 100, steps = 5, spacing = "log" }"#), log(5));
+    assert_eq!(first(r#"{ end = 100, steps = 1000, spacing = "log" }"#), log(1000));
+
+    let more = r#"
+solver = { method = "polonsky-keer", tolerance = 1e-8, max_iterations = 77, precision = "double", plasticity = "cap" }
+output = { path = "a/b.zarr", fields = ["contact", "contact"], times = ["0 s", "7 s", "12 s"], checkpoint = false }
+"#;
+    let case = case(Parts { more, ..PARTS });
+    assert_eq!(
+        (case.solver.method, case.solver.tolerance, case.solver.max_iterations),
+        (Method::PolonskyKeer, 1e-8, 77)
+    );
+    assert_eq!((case.output.path.as_path(), case.output.checkpoint), (Path::new("a/b.zarr"), false));
+    assert_eq!(case.output.fields.len(), 1);
+    let instants: Vec<f64> = case.simulation().unwrap().instants().iter().map(|i| i.time).collect();
+    assert!(instants.contains(&7.0) && instants.contains(&12.0) && instants.contains(&6.0));
+    let stored =
+        instants.iter().enumerate().filter(|(n, t)| case.output.rows.holds(*n, instants.len() - 1, **t));
+    assert_eq!(stored.map(|(_, t)| *t).collect::<Vec<_>>(), [0.0, 7.0, 12.0, 60.0]);
+    assert_eq!((case.describe().rows, case.describe().stored_rows), (12, 4)); // 10 steps, 0+, 7 s
+}
+
+#[test]
+fn the_result_lies_beside_the_user_under_the_case_s_name() {
+    let dir = tempfile::tempdir().unwrap();
+    let path = dir.path().join("run.v2.toml");
+    std::fs::write(&path, asperity_io::case::templates::Template::find("hertz").unwrap().text).unwrap();
+    assert_eq!(Case::read(&path, &[]).unwrap().output.path, Path::new("run.v2.zarr"));
+}
+
+#[test]
+fn a_punch_bears_only_under_its_face() {
+    let parts = Parts {
+        surface: r#"{ kind = "flat-punch", size = ["0.2 mm", "0.2 mm"] }"#,
+        body: r#"{ poisson = 0.5, hardness = "1 MPa", material = { model = "elastic", shear = "1 MPa" } }"#,
+        history: r#"{ kind = "step", value = "0.1 N" }"#, // 0.04 mm^2 bear 0.04 N, the domain 2 N
+        ..PARTS
+    };
+    let errors = case(parts).simulation().unwrap_err();
+    assert_eq!(errors.errors[0].key, "load.history");
+    assert!(errors.to_string().contains("hardness times the area that can touch"), "{errors}");
+}

@@ -1,5 +1,6 @@
 //! The files of asperity: case files in, measured topographies in, results out.
 
 pub mod case;
+pub mod session;
 pub mod store;
 pub mod topography;

@@ -59,11 +59,11 @@ pub struct NotConverged {
     pub method: &'static str,
     /// Iterations done.
     pub iterations: usize,
-    /// KKT residual of the best state (see `contact`).
+    /// KKT residual of the state reached (see `contact`).
     pub residual: f64,
     /// Tolerance asked for.
     pub tolerance: f64,
-    /// Certified relative energy-norm error of the best state.
+    /// Certified relative energy-norm error of the state reached.
     pub certificate: f64,
     /// Time of the step, where the solve belongs to a march \[s\].
     pub time: Option<f64>,

@@ -33,7 +33,7 @@ impl Grid {
     ///
     /// # Errors
     /// [`Error::Invalid`] where a count is 0, a size is not positive and finite, the cells are
-    /// more than 2^31, or a cell is longer than 1e6 times its width.
+    /// more than 2^31, or a cell is longer than 1000 times its width.
     pub fn new(cells: [usize; 2], size: [f64; 2]) -> Result<Self> {
         for (count, axis) in cells.iter().zip(["x", "y"]) {
             if *count == 0 {
@@ -53,11 +53,11 @@ impl Grid {
         }
         let grid = Grid { cells, size };
         let [dx, dy] = grid.spacing();
-        if !(dx / dy < 1e6 && dy / dx < 1e6) {
+        if !(dx / dy < 1e3 && dy / dx < 1e3) {
             return Err(Error::invalid(
                 "cell",
                 format!("{dx:e} m x {dy:e} m"),
-                "no longer than 1e6 times its width",
+                "no longer than 1000 times its width",
             ));
         }
         Ok(grid)

@@ -160,7 +160,7 @@ impl History {
             History::Triangle { peak, rise, fall } => trapezoid(t, *peak, *rise, 0.0, *fall),
             History::Trapezoid { peak, rise, hold, fall } => trapezoid(t, *peak, *rise, *hold, *fall),
             History::Sine { mean, amplitude, frequency } => {
-                mean + amplitude * (std::f64::consts::TAU * frequency * t).sin()
+                mean + amplitude * libm::sin(std::f64::consts::TAU * frequency * t)
             }
             History::Table { points } => interpolate(points, t, side),
         }

@@ -168,7 +168,10 @@ impl Violation {
             let least = balance.empty.0.min(balance.touching.0);
             match problem.prescribed {
                 Prescribed::Load(_) => pg - least * pressure,
-                Prescribed::Approach(w) => (pg - least * pressure) + 2.0 * pressure * (w - least).max(0.0),
+                Prescribed::Approach(w) => {
+                    let rise = 2.0 * (w - least).max(0.0) + (least - w).max(0.0);
+                    (pg - least * pressure) + pressure * rise
+                }
             }
         };
         let energy = problem.compliance * pu;

@@ -1,0 +1,114 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{Parser, Subcommand};
+use clap_complete::Shell;
+
+/// Contact of rough, linear viscoelastic bodies: pressure, gap, contact area and approach over time,
+/// from a case file.
+#[derive(Debug, Parser)]
+#[command(name = "asperity", version, propagate_version = true, arg_required_else_help = true)]
+pub struct Args {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Run a case; the result is a Zarr directory
+    Run(Run),
+    /// Check a case and say what will be solved, the memory and the time that it takes
+    Check(Check),
+    /// Write a commented starter case
+    New(New),
+    /// Compare the solver with exact solutions and print the table of errors
+    Verify(Verify),
+    /// Print the JSON Schema of the case file
+    Schema,
+    /// Print the completions for a shell
+    Completions {
+        /// bash, elvish, fish, powershell or zsh
+        shell: Shell,
+    },
+}
+
+#[derive(Debug, clap::Args)]
+pub struct Run {
+    /// The case file (TOML)
+    pub case: PathBuf,
+    /// Where the result goes [default: output.path of the case, or the case's name with .zarr]
+    #[arg(short, long, value_name = "PATH")]
+    pub output: Option<PathBuf>,
+    /// Go on with the run of this case that was interrupted or killed
+    #[arg(long, conflicts_with = "force")]
+    pub resume: bool,
+    /// Replace a result that is there already
+    #[arg(long)]
+    pub force: bool,
+    #[command(flatten)]
+    pub common: Common,
+    /// Print one JSON object at the end
+    #[arg(long)]
+    pub json: bool,
+    /// Say nothing but errors and the result
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct Check {
+    /// The case file (TOML)
+    pub case: PathBuf,
+    #[command(flatten)]
+    pub common: Common,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct Common {
+    /// Threads to use [default: one per core]; the numbers are the same for any
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Set a key of the case, e.g. --set domain.cells='[256, 256]' --set body.0.hardness='200 MPa'
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct New {
+    /// The starter case; without it they are listed
+    pub template: Option<String>,
+    /// The file to write [default: TEMPLATE.toml]
+    pub path: Option<PathBuf>,
+    /// Replace a file that is there already
+    #[arg(long)]
+    pub force: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct Verify {
+    /// Run only these cases
+    pub cases: Vec<String>,
+    /// Print a JSON list of {case, quantity, error, tolerance, ok}
+    #[arg(long, conflicts_with = "markdown")]
+    pub json: bool,
+    /// Print the table as Markdown
+    #[arg(long)]
+    pub markdown: bool,
+    /// Threads to use [default: one per core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        super::Args::command().debug_assert();
+    }
+}

@@ -1,0 +1,118 @@
+//! `asperity check`: what a case will do, without doing it.
+
+use std::time::Instant;
+
+use asperity::operator::half_space;
+use asperity::{Grid, Scheme};
+use asperity_io::case::{Case, Description};
+use serde_json::json;
+
+use crate::args::Check;
+use crate::failure::Failure;
+use crate::words::{bytes, duration, quantity};
+
+/// Convolutions per row of a typical rough contact (docs/performance.md).
+const CONVOLUTIONS_PER_ROW: f64 = 14.0;
+/// Time of an iteration over that of its convolution.
+const ITERATION: f64 = 2.5;
+/// Cells along a side on which a convolution is timed.
+const TIMED: usize = 512;
+
+/// Validates the case, builds its gap, and says what will be solved.
+pub fn run(args: &Check) -> Result<(), Failure> {
+    super::use_threads(args.common.threads)?;
+    let case = Case::read(&args.case, &args.common.set)?;
+    // The files are read and the gap is built: what `run` would refuse is refused here.
+    case.simulation()?;
+    let description = case.describe();
+    let estimate = seconds(&case, &description);
+    if args.json {
+        let mut object = serde_json::to_value(&description).unwrap_or_default();
+        object["estimated_s"] = json!(estimate);
+        return crate::print(&format!("{object}\n"));
+    }
+    crate::print(&tell(&case, &description, estimate))
+}
+
+/// Rows times convolutions times what one takes here, timed on a small grid and scaled as N log N.
+fn seconds(case: &Case, description: &Description) -> Option<f64> {
+    let cells = case.grid.cells().map(|n| n.min(TIMED));
+    let grid = Grid::new(cells, case.grid.size()).ok()?;
+    let mut operator = half_space(grid, case.boundary);
+    let pressure = vec![1.0; grid.len()];
+    let mut displacement = vec![0.0; grid.len()];
+    operator.apply_into(&pressure, &mut displacement);
+    let start = Instant::now();
+    for _ in 0..3 {
+        operator.apply_into(&pressure, &mut displacement);
+    }
+    let timed = start.elapsed().as_secs_f64() / 3.0;
+    let cost = |n: f64| n * n.max(2.0).log2();
+    let convolution = timed * cost(case.grid.len() as f64) / cost(grid.len() as f64);
+    let rows = description.rows as f64;
+    let past = match case.scheme {
+        // One sweep over a field, about a fifth of a convolution, per past row.
+        Scheme::Direct => 0.1 * rows * rows * convolution,
+        _ => 0.0,
+    };
+    Some(rows * CONVOLUTIONS_PER_ROW * ITERATION * convolution + past)
+}
+
+fn tell(case: &Case, d: &Description, estimate: Option<f64>) -> String {
+    let title = d.title.as_deref().unwrap_or(&case.name);
+    let [nx, ny] = d.cells;
+    let mut text = format!("{title}\n");
+    let mut line = |name: &str, value: String| text += &format!("  {name:<11}{value}\n");
+    line(
+        "domain",
+        format!(
+            "{nx} x {ny} cells of {} x {}, {} x {}, {}",
+            quantity(d.spacing[0], "m", 1),
+            quantity(d.spacing[1], "m", 1),
+            quantity(d.size[0], "m", 1),
+            quantity(d.size[1], "m", 1),
+            d.boundary
+        ),
+    );
+    line("gap", d.surfaces.join(" + "));
+    let modulus = match d.instantaneous_modulus {
+        Some(e) if d.retardation_times.is_empty() && d.relaxed_modulus > 0.0 => {
+            format!("contact modulus {}", quantity(e, "Pa", 1))
+        }
+        Some(e) => {
+            format!(
+                "contact modulus {} at once, {} at last",
+                quantity(e, "Pa", 1),
+                quantity(d.relaxed_modulus, "Pa", 1)
+            )
+        }
+        None => format!("contact modulus {} at last, rigid at once", quantity(d.relaxed_modulus, "Pa", 1)),
+    };
+    line("bodies", format!("{}; {modulus}", d.bodies.join(", ")));
+    if !d.retardation_times.is_empty() {
+        let times: Vec<_> = d.retardation_times.iter().map(|t| quantity(*t, "s", 1)).collect();
+        line("creep", format!("retardation times {}", times.join(", ")));
+    }
+    if let Some(hardness) = d.hardness {
+        line("hardness", quantity(hardness, "Pa", 1));
+    }
+    line("time", format!("{} rows to {}, {} scheme", d.rows, quantity(d.end, "s", 1), d.scheme));
+    line(
+        "output",
+        format!(
+            "{} at {} rows, up to {}, in {}",
+            if d.fields.is_empty() { "no fields".to_owned() } else { d.fields.join(", ") },
+            d.stored_rows,
+            bytes(d.result_bytes as f64),
+            case.output.path.display()
+        ),
+    );
+    line("memory", format!("about {}", bytes(d.memory_bytes as f64)));
+    if let Some(estimate) = estimate {
+        line(
+            "run time",
+            format!("roughly {} on {} threads", duration(estimate), rayon::current_num_threads()),
+        );
+    }
+    text
+}

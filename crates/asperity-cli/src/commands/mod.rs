@@ -1,0 +1,19 @@
+//! One file per command.
+
+pub mod check;
+pub mod completions;
+pub mod new;
+pub mod run;
+pub mod schema;
+pub mod verify;
+
+use crate::failure::Failure;
+
+/// Sets the number of threads of the whole command.
+fn use_threads(threads: Option<u16>) -> Result<(), Failure> {
+    let Some(threads) = threads else { return Ok(()) };
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(usize::from(threads))
+        .build_global()
+        .map_err(|error| Failure::input(format!("cannot start {threads} threads: {error}")))
+}

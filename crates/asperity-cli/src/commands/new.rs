@@ -1,0 +1,39 @@
+//! `asperity new`: a starter case.
+
+use std::fs::OpenOptions;
+use std::io::{ErrorKind, Write};
+use std::path::PathBuf;
+
+use asperity_io::case::templates::{TEMPLATES, Template};
+
+use crate::args::New;
+use crate::failure::Failure;
+
+/// Writes the starter case, or lists them.
+pub fn run(args: &New) -> Result<(), Failure> {
+    let Some(name) = &args.template else {
+        let width = TEMPLATES.iter().map(|t| t.name.len()).max().unwrap_or(0);
+        let list: String = TEMPLATES.iter().map(|t| format!("{:width$}  {}\n", t.name, t.title())).collect();
+        return crate::print(&list);
+    };
+    let Some(template) = Template::find(name) else {
+        let names: Vec<_> = TEMPLATES.iter().map(|t| t.name).collect();
+        return Err(Failure::input(format!(
+            "there is no starter case \"{name}\"; choose one of {}",
+            names.join(", ")
+        )));
+    };
+    let path = args.path.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.toml")));
+    let file = OpenOptions::new().write(true).create(true).truncate(true).create_new(!args.force).open(&path);
+    let written = file.and_then(|mut file| file.write_all(template.text.as_bytes()));
+    written.map_err(|error| {
+        Failure::input(match error.kind() {
+            ErrorKind::AlreadyExists => {
+                format!("{} is there already; name another file or give --force", path.display())
+            }
+            _ => format!("cannot write {}: {error}", path.display()),
+        })
+    })?;
+    eprintln!("wrote {}; run it with: asperity run {}", path.display(), path.display());
+    Ok(())
+}

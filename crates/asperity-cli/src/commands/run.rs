@@ -1,0 +1,152 @@
+//! `asperity run`.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use asperity::march::Row;
+use asperity_io::case::Case;
+use asperity_io::session::{RunError, RunOptions, Summary, run as run_case};
+use asperity_io::store::Status;
+use serde_json::{Value, json};
+
+use crate::args::Run;
+use crate::failure::Failure;
+use crate::progress::Teller;
+use crate::words::{bytes, duration, quantity};
+
+/// Runs the case, tells the progress on stderr and a summary on stdout.
+pub fn run(args: &Run) -> Result<(), Failure> {
+    super::use_threads(args.common.threads)?;
+    let case = Case::read(&args.case, &args.common.set)?;
+    let options = RunOptions {
+        output: args.output.clone(),
+        force: args.force,
+        resume: args.resume,
+        interrupt: on_interrupt(),
+    };
+    let mut teller = Teller::new(args.quiet);
+    let done = run_case(&case, &options, |progress| teller.tell(&progress));
+    teller.end();
+    match done {
+        Ok(summary) => {
+            tell(args, &summary, None)?;
+            if summary.status != Status::Interrupted {
+                return Ok(());
+            }
+            let (rows, result) = (summary.rows, summary.result.display());
+            Err(Failure::Interrupted(format!("{rows} rows are in {result}; go on with --resume")))
+        }
+        Err(RunError::Case(errors)) => Err(Failure::Case(errors)),
+        Err(error @ RunError::Output(_)) => Err(Failure::input(error.to_string())),
+        Err(error) => {
+            let message = match &error {
+                RunError::Solve { best: Some(best), .. } => format!("{error}\n{}", best_state(best)),
+                _ => error.to_string(),
+            };
+            if let RunError::Solve { summary, .. } | RunError::Storage { summary, .. } = &error {
+                tell(args, summary, Some(&error))?;
+            }
+            Err(Failure::Solve(message))
+        }
+    }
+}
+
+/// A flag that Ctrl-C raises; the second Ctrl-C ends the process at once.
+fn on_interrupt() -> Arc<AtomicBool> {
+    let flag = Arc::new(AtomicBool::new(false));
+    let raised = flag.clone();
+    // Without a handler Ctrl-C still ends the process, and the result stays readable.
+    let _ = ctrlc::set_handler(move || {
+        if raised.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+    });
+    flag
+}
+
+fn best_state(best: &Row) -> String {
+    format!(
+        "  best state at t = {}: load {}, approach {}, contact {:.4} %, largest pressure {}",
+        quantity(best.time, "s", 1),
+        quantity(best.load, "N", 1),
+        quantity(best.approach, "m", 1),
+        100.0 * best.contact_fraction,
+        quantity(best.max_pressure, "Pa", 1),
+    )
+}
+
+fn tell(args: &Run, summary: &Summary, error: Option<&RunError>) -> Result<(), Failure> {
+    if args.json {
+        return crate::print(&format!("{}\n", json_object(summary, error)));
+    }
+    if summary.status != Status::Complete {
+        return Ok(());
+    }
+    let mut text = String::new();
+    let mut line = |name: &str, value: String| text += &format!("{name:<13}{value}\n");
+    if let Some(last) = &summary.last {
+        line("time", quantity(last.time, "s", 1));
+        line("load", quantity(last.load, "N", 1));
+        line("approach", quantity(last.approach, "m", 1));
+        line(
+            "contact area",
+            format!(
+                "{} ({:.3} % of the domain; corrected for its perimeter {})",
+                quantity(last.contact_area, "m²", 2),
+                100.0 * last.contact_fraction,
+                quantity(last.contact_area_corrected, "m²", 2),
+            ),
+        );
+        if last.capped_area > 0.0 {
+            line("at hardness", quantity(last.capped_area, "m²", 2));
+        }
+        line(
+            "pressure",
+            format!(
+                "mean {}, largest {}",
+                quantity(last.mean_pressure, "Pa", 1),
+                quantity(last.max_pressure, "Pa", 1)
+            ),
+        );
+    }
+    let memory = summary.peak_memory_bytes.map(|b| format!(", {}", bytes(b as f64))).unwrap_or_default();
+    line(
+        "work",
+        format!(
+            "{} rows, {} iterations, {} convolutions in {}{memory}",
+            summary.rows,
+            summary.iterations,
+            summary.convolutions,
+            duration(summary.wall_s)
+        ),
+    );
+    line("result", summary.result.display().to_string());
+    crate::print(&text)
+}
+
+fn json_object(summary: &Summary, error: Option<&RunError>) -> Value {
+    let mut object = json!({
+        "status": summary.status.as_str(),
+        "steps": summary.rows,
+        "wall_s": summary.wall_s,
+        "convolutions": summary.convolutions,
+        "iterations": summary.iterations,
+        "peak_memory_bytes": summary.peak_memory_bytes,
+        "result": summary.result,
+    });
+    if let Some(error) = error {
+        object["error"] = json!(error.to_string());
+    }
+    if let Some(RunError::Solve { best: Some(best), .. }) = error {
+        object["best"] = json!({
+            "time": best.time,
+            "load": best.load,
+            "approach": best.approach,
+            "contact_area": best.contact_area,
+            "max_pressure": best.max_pressure,
+            "residual": best.residual,
+            "certificate": best.certificate,
+        });
+    }
+    object
+}

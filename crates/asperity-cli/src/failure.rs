@@ -1,0 +1,104 @@
+//! What ends a command early, how it is told, and its exit code.
+
+use asperity_io::case::{CaseError, CaseErrors};
+use miette::{Diagnostic, GraphicalReportHandler, LabeledSpan, NamedSource, SourceCode};
+
+/// Why a command did not do what was asked.
+#[derive(Debug)]
+pub enum Failure {
+    /// The case file is wrong.
+    Case(CaseErrors),
+    /// Any other input is wrong.
+    Input(String),
+    /// The solve failed.
+    Solve(String),
+    /// Somebody pressed Ctrl-C; the message says how to go on.
+    Interrupted(String),
+}
+
+impl Failure {
+    /// Wrong input, in one sentence.
+    pub fn input(message: impl Into<String>) -> Self {
+        Failure::Input(message.into())
+    }
+
+    /// 1 the solve failed, 2 the input is wrong, 130 interrupted.
+    pub fn code(&self) -> u8 {
+        match self {
+            Failure::Solve(_) => 1,
+            Failure::Case(_) | Failure::Input(_) => 2,
+            Failure::Interrupted(_) => 130,
+        }
+    }
+
+    /// Tells it on stderr.
+    pub fn tell(&self) {
+        match self {
+            Failure::Case(errors) => tell_case(errors),
+            Failure::Input(message) | Failure::Solve(message) => eprintln!("error: {message}"),
+            Failure::Interrupted(message) => eprintln!("interrupted: {message}"),
+        }
+    }
+}
+
+impl From<CaseErrors> for Failure {
+    fn from(errors: CaseErrors) -> Self {
+        Failure::Case(errors)
+    }
+}
+
+/// Each fault with the lines of the case that it is in.
+fn tell_case(errors: &CaseErrors) {
+    let handler = GraphicalReportHandler::new().with_width(terminal_width()).with_links(false);
+    for error in &errors.errors {
+        let fault = Fault { error, source: NamedSource::new(&errors.name, errors.source.clone()) };
+        let mut text = String::new();
+        let drawn = error.span.is_some() && handler.render_report(&mut text, &fault).is_ok();
+        if drawn {
+            eprint!("{text}");
+        } else {
+            eprintln!("error: {}: {error}", errors.name);
+        }
+    }
+}
+
+fn terminal_width() -> usize {
+    std::env::var("COLUMNS").ok().and_then(|c| c.parse().ok()).unwrap_or(100)
+}
+
+/// A case error as the renderer takes it.
+#[derive(Debug)]
+struct Fault<'a> {
+    error: &'a CaseError,
+    source: NamedSource<String>,
+}
+
+impl std::fmt::Display for Fault<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.error.line {
+            Some(line) => write!(f, "line {line}: {}", self.error.message),
+            None => write!(f, "{}", self.error.message),
+        }
+    }
+}
+
+impl std::error::Error for Fault<'_> {}
+
+impl Diagnostic for Fault<'_> {
+    fn help<'b>(&'b self) -> Option<Box<dyn std::fmt::Display + 'b>> {
+        self.error.help.as_ref().map(|help| Box::new(help) as Box<dyn std::fmt::Display>)
+    }
+
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        Some(&self.source)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let span = self.error.span.clone()?;
+        let label = match self.error.expected.as_str() {
+            "" => "here".to_owned(),
+            expected => format!("expected {expected}"),
+        };
+        Some(Box::new(std::iter::once(LabeledSpan::new(Some(label), span.start, span.len()))))
+    }
+}

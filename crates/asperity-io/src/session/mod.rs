@@ -1,0 +1,299 @@
+//! A run: a case, its march and its result, step by step.
+//!
+//! The command and the Python package run cases through here, so that the same case gives the same
+//! numbers wherever it is started.
+
+mod memory;
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use asperity::march::{March, Row, Step};
+use asperity::{Error, Simulation};
+use ndarray::Array2;
+use serde_json::{Map, Value, json};
+use thiserror::Error;
+
+use crate::case::{self, Case, CaseErrors};
+use crate::store::{Field, FieldKind, Header, Outcome, Status, StoreError, Work, Writer};
+
+pub use memory::peak_memory_bytes;
+
+/// How a case is run.
+#[derive(Clone, Debug, Default)]
+pub struct RunOptions {
+    /// Where the result goes; default: what the case says.
+    pub output: Option<PathBuf>,
+    /// Replace a result that is there.
+    pub force: bool,
+    /// Go on with the interrupted or killed run whose result is there.
+    pub resume: bool,
+    /// Stops the run, within one iteration, when it becomes true.
+    pub interrupt: Arc<AtomicBool>,
+}
+
+/// How far a run has come, after each step.
+#[derive(Clone, Copy, Debug)]
+pub struct Progress<'a> {
+    /// The row just stored.
+    pub row: &'a Row,
+    /// Rows stored.
+    pub done: usize,
+    /// Rows that a resumed run found stored.
+    pub resumed: usize,
+    /// Rows of the full run.
+    pub total: usize,
+}
+
+/// What a run did.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Summary {
+    /// Complete, interrupted or failed.
+    pub status: Status,
+    /// Rows stored.
+    pub rows: usize,
+    /// Iterations of all rows.
+    pub iterations: u64,
+    /// Convolutions of all rows.
+    pub convolutions: u64,
+    /// Time on the clock, over all sessions of a resumed run \[s\].
+    pub wall_s: f64,
+    /// Largest memory of the process, where the system tells.
+    pub peak_memory_bytes: Option<u64>,
+    /// The result.
+    pub result: PathBuf,
+    /// The last row stored.
+    pub last: Option<Row>,
+}
+
+/// Why a run did not complete.
+#[derive(Debug, Error)]
+pub enum RunError {
+    /// The case is wrong; nothing was written.
+    #[error(transparent)]
+    Case(#[from] CaseErrors),
+    /// The result cannot be started; nothing was changed.
+    #[error(transparent)]
+    Output(StoreError),
+    /// The result cannot be continued; the steps before are stored.
+    #[error("{source}; the {rows} rows before are stored", rows = summary.rows)]
+    Storage {
+        /// What failed.
+        source: StoreError,
+        /// What was done.
+        summary: Box<Summary>,
+    },
+    /// A step was not solved; the rows before are stored.
+    #[error("{source}")]
+    Solve {
+        /// What failed.
+        source: Error,
+        /// What was done.
+        summary: Box<Summary>,
+        /// Numbers of the best state of the step that failed.
+        best: Option<Box<Row>>,
+    },
+}
+
+/// Runs a case to its end, an error, or an interruption (which is a [`Summary`] of that status).
+///
+/// # Errors
+/// [`RunError`], each with what was done.
+pub fn run(
+    case: &Case,
+    options: &RunOptions,
+    mut observe: impl FnMut(Progress) + Send,
+) -> Result<Summary, RunError> {
+    // Inside the pool: a sweep called from a worker starts sooner.
+    rayon::scope(|_| run_inside(case, options, &mut observe))
+}
+
+fn run_inside(
+    case: &Case,
+    options: &RunOptions,
+    observe: &mut (dyn FnMut(Progress) + Send),
+) -> Result<Summary, RunError> {
+    let simulation = case.simulation()?;
+    let header = header(case, &simulation);
+    let path = options.output.clone().unwrap_or_else(|| case.output.path.clone());
+    let (mut writer, checkpoint) = if options.resume {
+        Writer::resume(&path, &header, simulation.gap.view()).map_err(RunError::Output)?
+    } else {
+        let writer = Writer::create(&path, &header, simulation.gap.view(), options.force);
+        (writer.map_err(RunError::Output)?, None)
+    };
+    let march = match &checkpoint {
+        Some(checkpoint) => March::resume(simulation, checkpoint),
+        None => March::new(simulation),
+    };
+    let mut march = match march {
+        Ok(march) => march,
+        Err(source) => return Err(fail(writer, source, None, &path, None)),
+    };
+    march.interrupt_with(options.interrupt.clone());
+    let (total, resumed) = (march.len(), march.done());
+    let mut maps = Maps::new(case, &march);
+    let mut last = None;
+    loop {
+        let row = match march.advance() {
+            Ok(None) => break,
+            Ok(Some(step)) => {
+                let row = step.row();
+                let fields = maps.of(&step, total);
+                if let Err(source) = writer.append(&row, &fields) {
+                    return Err(stop_storing(writer, source, &path, last));
+                }
+                row
+            }
+            Err(Error::Interrupted) => {
+                // The step under way is lost: a resumed run repeats what came after the last checkpoint.
+                return end(writer, Outcome::new(Status::Interrupted), &path, last);
+            }
+            Err(source) => {
+                let best = march.last().map(|step| Box::new(step.row()));
+                return Err(fail(writer, source, best, &path, last));
+            }
+        };
+        last = Some(row);
+        if case.output.checkpoint && march.done() < total && writer.checkpoint_due() {
+            if let Err(source) = writer.checkpoint(&march.checkpoint()) {
+                return Err(stop_storing(writer, source, &path, last));
+            }
+        }
+        observe(Progress { row: &row, done: march.done(), resumed, total });
+    }
+    end(writer, Outcome::new(Status::Complete), &path, last)
+}
+
+/// The fields of the rows that keep them, in memory of their own.
+struct Maps<'a> {
+    case: &'a Case,
+    gap: Array2<f64>,
+    displacement: Array2<f64>,
+    contact: Array2<u8>,
+}
+
+impl<'a> Maps<'a> {
+    fn new(case: &'a Case, march: &March) -> Self {
+        let shape = march.simulation().grid.shape();
+        let keeps = |field| case.output.fields.contains(&field);
+        let map = |kept: bool| Array2::zeros(if kept { shape } else { (0, 0) });
+        Maps {
+            case,
+            gap: map(keeps(case::Field::Gap)),
+            displacement: map(keeps(case::Field::Displacement)),
+            contact: Array2::zeros(if keeps(case::Field::Contact) { shape } else { (0, 0) }),
+        }
+    }
+
+    /// All fields of the case where this row keeps them, none otherwise.
+    fn of<'b>(&'b mut self, step: &Step<'b>, total: usize) -> Vec<Field<'b>> {
+        let output = &self.case.output;
+        if !output.rows.holds(step.index(), total - 1, step.instant().time) {
+            return vec![];
+        }
+        let keeps = |field| output.fields.contains(&field);
+        let mut fields = vec![];
+        if keeps(case::Field::Pressure) {
+            fields.push(Field::Pressure(step.pressure()));
+        }
+        if keeps(case::Field::Gap) {
+            step.gap_into(&mut self.gap);
+            fields.push(Field::Gap(self.gap.view()));
+        }
+        if keeps(case::Field::Displacement) {
+            step.displacement_into(&mut self.displacement);
+            fields.push(Field::Displacement(self.displacement.view()));
+        }
+        if keeps(case::Field::Contact) {
+            step.contact_into(&mut self.contact);
+            fields.push(Field::Contact(self.contact.view()));
+        }
+        fields
+    }
+}
+
+/// What the result says of the run before it starts.
+fn header(case: &Case, simulation: &Simulation) -> Header {
+    let field = |field: &case::Field| match field {
+        case::Field::Pressure => FieldKind::Pressure,
+        case::Field::Gap => FieldKind::Gap,
+        case::Field::Displacement => FieldKind::Displacement,
+        case::Field::Contact => FieldKind::Contact,
+    };
+    Header {
+        title: case.title.clone().unwrap_or_default(),
+        case_text: case.source.clone(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        grid: simulation.grid,
+        fields: case.output.fields.iter().map(field).collect(),
+        rows_expected: Some(simulation.instants().len()),
+        setup: setup(case),
+    }
+}
+
+/// The case in numbers, SI.
+fn setup(case: &Case) -> Map<String, Value> {
+    let description = serde_json::to_value(case.describe()).unwrap_or_default();
+    let mut setup = match description {
+        Value::Object(map) => map,
+        _ => Map::new(),
+    };
+    let terms: Vec<_> = case.creep.terms.iter().map(|t| json!([t.compliance, t.retardation_time])).collect();
+    setup.insert(
+        "contact_creep_compliance".into(),
+        json!({
+            "instantaneous": case.creep.instantaneous,
+            "terms": terms,
+            "fluidity": case.creep.fluidity,
+        }),
+    );
+    setup.insert("solver_tolerance".into(), json!(case.solver.tolerance));
+    setup
+}
+
+/// Ends a run whose step was not solved.
+fn fail(writer: Writer, source: Error, best: Option<Box<Row>>, path: &Path, last: Option<Row>) -> RunError {
+    let outcome = Outcome { message: Some(source.to_string()), ..Outcome::new(Status::Failed) };
+    match end(writer, outcome, path, last) {
+        Ok(summary) => RunError::Solve { source, summary: Box::new(summary), best },
+        Err(error) => error,
+    }
+}
+
+/// Ends a run whose step could not be stored; that this cannot be stored either is no news.
+fn stop_storing(writer: Writer, source: StoreError, path: &Path, last: Option<Row>) -> RunError {
+    let outcome = Outcome { message: Some(source.to_string()), ..Outcome::new(Status::Failed) };
+    let summary = match end(writer, outcome, path, last) {
+        Ok(summary) => Box::new(summary),
+        Err(RunError::Storage { summary, .. }) => summary,
+        Err(error) => return error,
+    };
+    RunError::Storage { source, summary }
+}
+
+/// Ends the result.
+fn end(writer: Writer, outcome: Outcome, path: &Path, last: Option<Row>) -> Result<Summary, RunError> {
+    let (rows, before) = (writer.len(), writer.work().clone());
+    let outcome = Outcome {
+        peak_memory_bytes: peak_memory_bytes(),
+        threads: Some(rayon::current_num_threads()),
+        ..outcome
+    };
+    let status = outcome.status;
+    let summary = |status, work: Work| Summary {
+        status,
+        rows,
+        iterations: work.iterations,
+        convolutions: work.convolutions,
+        wall_s: work.wall_s,
+        peak_memory_bytes: work.peak_memory_bytes,
+        result: path.to_owned(),
+        last,
+    };
+    match writer.finish(&outcome) {
+        Ok(work) => Ok(summary(status, work)),
+        Err(source) => Err(RunError::Storage { source, summary: Box::new(summary(Status::Failed, before)) }),
+    }
+}

@@ -1,0 +1,282 @@
+//! Reduced time: a temperature that changes during the run stretches the material's clock.
+//!
+//! With the shift factor a_T the material ages by d xi = dt / a_T(T(t)) (L. W. Morland & E. H. Lee,
+//! Trans. Soc. Rheology 4 (1960) 233): the creep function acts over xi(t) - xi(s) instead of t - s, so
+//! that a march in steps of xi instead of t is exact.
+
+use crate::error::{Error, Result};
+use crate::material::Shift;
+use crate::material::quadrature::integrate;
+
+/// The reduced time xi(t) = int_0^t ds / a_T(T(s)) of a temperature history.
+///
+/// ```
+/// use asperity::material::{ReducedTime, Shift};
+/// // 100 s at the reference temperature, then 20 K warmer.
+/// let shift = Shift::Wlf { c1: 8.86, c2: 101.6, reference: 300.0 };
+/// let clock = ReducedTime::new(shift.clone(), &[(0.0, 300.0), (100.0, 300.0), (100.0, 320.0)])?;
+/// assert!((clock.value(100.0) - 100.0).abs() < 1e-11);
+/// let faster = 1.0 / shift.factor(320.0)?;
+/// assert!((clock.value(150.0) / (100.0 + 50.0 * faster) - 1.0).abs() < 1e-13);
+/// # Ok::<(), asperity::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReducedTime {
+    shift: Shift,
+    /// Pieces of linear temperature, in order, the first from t = 0.
+    pieces: Vec<Piece>,
+}
+
+/// From (start, from) the temperature goes linearly to `to` at `end`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Piece {
+    start: f64,
+    end: f64,
+    from: f64,
+    to: f64,
+    /// xi at its start.
+    reduced: f64,
+    /// How far xi goes during all of it.
+    length: f64,
+}
+
+impl ReducedTime {
+    /// The clock of a material with `shift` under the temperatures (time \[s\], temperature \[K\]), linear
+    /// in between and held after the last; the first is at t = 0; equal times are a jump.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] naming the point: no points, times not in order or more than twice the same, a
+    /// temperature at which the shift is not defined, or a reduced time beyond the range of doubles.
+    pub fn new(shift: Shift, temperatures: &[(f64, f64)]) -> Result<Self> {
+        validate(temperatures)?;
+        for (n, (_, temperature)) in temperatures.iter().enumerate() {
+            shift.ln_factor(*temperature).map_err(|error| match error {
+                Error::Invalid { value, expected, .. } => {
+                    Error::Invalid { what: format!("temperature of point {}", n + 1), value, expected }
+                }
+                other => other,
+            })?;
+        }
+        let mut clock = ReducedTime { shift, pieces: vec![] };
+        let mut reduced = 0.0;
+        let Some(last) = temperatures.last() else { return Ok(clock) };
+        let held = [*last, (f64::INFINITY, last.1)];
+        for pair in temperatures.windows(2).chain([held.as_slice()]) {
+            let ((start, from), (end, to)) = (pair[0], pair[1]);
+            for mut piece in clock.split_at_knots(Piece { start, end, from, to, reduced: 0.0, length: 0.0 }) {
+                piece.reduced = reduced;
+                if piece.end.is_finite() {
+                    piece.length = clock.within(&piece, piece.start, piece.end);
+                    reduced += piece.length;
+                }
+                clock.pieces.push(piece);
+            }
+        }
+        if !reduced.is_finite() {
+            return Err(Error::invalid(
+                "reduced time of the temperature history",
+                reduced,
+                "finite: check the temperatures and the constants of the shift",
+            ));
+        }
+        Ok(clock)
+    }
+
+    /// xi(t) \[s\]; 0 for t < 0.
+    pub fn value(&self, t: f64) -> f64 {
+        if t <= 0.0 {
+            return 0.0;
+        }
+        let piece = &self.pieces[self.index(t)];
+        piece.reduced + self.within(piece, piece.start, t)
+    }
+
+    /// xi(t1) - xi(t0) for t0 <= t1, without cancellation for short steps at late times.
+    pub fn elapsed(&self, t0: f64, t1: f64) -> f64 {
+        let (t0, t1) = (t0.max(0.0), t1.max(0.0));
+        let (first, last) = (self.index(t0), self.index(t1));
+        if first >= last {
+            return self.within(&self.pieces[first], t0, t1);
+        }
+        let (begin, end) = (&self.pieces[first], &self.pieces[last]);
+        let between: f64 = self.pieces[first + 1..last].iter().map(|p| p.length).sum();
+        self.within(begin, t0, begin.end) + between + self.within(end, end.start, t1)
+    }
+
+    /// Temperature at t \[K\]; at a jump the value after it.
+    pub fn temperature(&self, t: f64) -> f64 {
+        let t = t.max(0.0);
+        self.pieces[self.index(t)].temperature(t)
+    }
+
+    /// Times in (0, end) where the temperature bends or jumps: steps of a march should end there.
+    pub fn breaks(&self, end: f64) -> Vec<f64> {
+        let mut times: Vec<f64> =
+            self.pieces.iter().map(|p| p.start).filter(|t| *t > 0.0 && *t < end).collect();
+        times.dedup();
+        times
+    }
+
+    /// The last piece that starts at t or before.
+    fn index(&self, t: f64) -> usize {
+        self.pieces.partition_point(|p| p.start <= t).max(1) - 1
+    }
+
+    /// Integral of 1/a_T over part of a piece: halved until the integrand is tame enough for one Gauss
+    /// rule to be exact to rounding (1/a_T within a factor e, and far from the law's singularity).
+    fn within(&self, piece: &Piece, t0: f64, t1: f64) -> f64 {
+        if t1 <= t0 {
+            return 0.0;
+        }
+        let (from, to) = (piece.temperature(t0), piece.temperature(t1));
+        let rate = |temperature: f64| (-self.shift.ln_factor_unchecked(temperature)).exp();
+        if from == to {
+            return (t1 - t0) * rate(from);
+        }
+        let change = self.shift.ln_factor_unchecked(to) - self.shift.ln_factor_unchecked(from);
+        let singular = match self.shift {
+            Shift::Wlf { c2, reference, .. } => reference - c2,
+            _ => 0.0,
+        };
+        let ratio = (to - singular) / (from - singular);
+        let middle = 0.5 * (t0 + t1);
+        if (change.abs() <= 1.0 && (0.5..=2.0).contains(&ratio)) || middle <= t0 || middle >= t1 {
+            return integrate(t0, t1, |t| rate(piece.temperature(t)));
+        }
+        self.within(piece, t0, middle) + self.within(piece, middle, t1)
+    }
+
+    /// A table of shift factors bends at its temperatures: pieces between them.
+    fn split_at_knots(&self, piece: Piece) -> Vec<Piece> {
+        let Shift::Table { points } = &self.shift else { return vec![piece] };
+        let inside = |t: &f64| *t > piece.start && *t < piece.end;
+        let crossing = |knot: f64| {
+            piece.start + (piece.end - piece.start) * (knot - piece.from) / (piece.to - piece.from)
+        };
+        let mut times = vec![piece.start, piece.end];
+        if piece.end.is_finite() && piece.from != piece.to {
+            times.extend(points.iter().map(|p| crossing(p.0)).filter(inside));
+        }
+        times.sort_by(f64::total_cmp);
+        let part = |pair: &[f64]| Piece {
+            start: pair[0],
+            end: pair[1],
+            from: piece.temperature(pair[0]),
+            to: piece.temperature(pair[1]),
+            ..piece
+        };
+        times.windows(2).map(part).collect()
+    }
+}
+
+impl Piece {
+    fn temperature(&self, t: f64) -> f64 {
+        if self.end.is_infinite() || self.from == self.to {
+            return self.from;
+        }
+        let share = ((t - self.start) / (self.end - self.start)).clamp(0.0, 1.0);
+        // Between the two ends, whatever the rounding: the shift is defined there.
+        (self.from + share * (self.to - self.from)).clamp(self.from.min(self.to), self.from.max(self.to))
+    }
+}
+
+fn validate(temperatures: &[(f64, f64)]) -> Result<()> {
+    let Some(first) = temperatures.first() else {
+        return Err(Error::invalid("temperature history", "empty", "one point at least"));
+    };
+    if first.0 != 0.0 {
+        return Err(Error::invalid("first time of the temperature history", first.0, "0 s"));
+    }
+    let name = |n: usize| format!("time of point {} of the temperature history", n + 1);
+    for (n, (t, _)) in temperatures.iter().enumerate() {
+        if !t.is_finite() {
+            return Err(Error::invalid(name(n), t, "finite"));
+        }
+    }
+    for (n, pair) in temperatures.windows(2).enumerate() {
+        if pair[1].0 < pair[0].0 {
+            let expected = format!("not less than the time before it, {} s", pair[0].0);
+            return Err(Error::invalid(name(n + 1), format!("{} s", pair[1].0), expected));
+        }
+    }
+    for (n, triple) in temperatures.windows(3).enumerate() {
+        if triple[0].0 == triple[2].0 {
+            let expected = "given at most twice (a jump has one temperature before and one after)";
+            return Err(Error::invalid(name(n + 2), format!("{} s", triple[2].0), expected));
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wlf() -> Shift {
+        Shift::Wlf { c1: 8.86, c2: 101.6, reference: 300.0 }
+    }
+
+    #[test]
+    fn ramps_meet_their_integrals() {
+        // Integrals of 1/a_T with 40 digits.
+        let arrhenius = Shift::Arrhenius { activation_energy: 1e5, reference: 300.0 };
+        let steep = Shift::Wlf { c1: 17.44, c2: 101.6, reference: 300.0 };
+        for (shift, from, to, end, exact) in [
+            (arrhenius, 300.0, 360.0, 100.0, 13_526.418_090_843_95),
+            (wlf(), 260.0, 320.0, 100.0, 306.497_751_514_502_16),
+            // From 0.6 K above the pole, over thousands of decades.
+            (steep, 199.0, 399.0, 50.0, 911_604_395.708_942_5),
+        ] {
+            let clock = ReducedTime::new(shift, &[(0.0, from), (end, to)]).unwrap();
+            // Rounding of exponents up to 7 in the bulk of the integral.
+            assert!((clock.value(end) / exact - 1.0).abs() < 1e-14, "{}", clock.value(end) / exact - 1.0);
+        }
+    }
+
+    #[test]
+    fn a_table_has_a_closed_form_between_its_bends() {
+        let table = Shift::Table { points: vec![(300.0, 0.0), (310.0, -3.0), (320.0, -4.0)] };
+        let clock = ReducedTime::new(table, &[(0.0, 300.0), (20.0, 320.0)]).unwrap();
+        // int exp(0.3 t) over 10 s, then exp(3) int exp(0.1 t) over 10 s.
+        let exact = 3f64.exp_m1() / 0.3 + 3f64.exp() * 1f64.exp_m1() / 0.1;
+        assert!((clock.value(20.0) / exact - 1.0).abs() < 1e-14);
+        assert_eq!(clock.breaks(100.0), vec![10.0, 20.0]);
+    }
+
+    #[test]
+    fn steps_add_up_and_short_late_ones_keep_their_digits() {
+        let points = [(0.0, 290.0), (10.0, 330.0), (10.0, 300.0), (40.0, 310.0), (1e6, 305.0)];
+        let clock = ReducedTime::new(wlf(), &points).unwrap();
+        let times = [0.0, 3.0, 10.0, 11.0, 39.0, 45.0, 1e5, 2e6];
+        let sum: f64 = times.windows(2).map(|pair| clock.elapsed(pair[0], pair[1])).sum();
+        assert!((sum / clock.value(2e6) - 1.0).abs() < 1e-14);
+        assert_eq!(clock.elapsed(3.0, 3.0), 0.0);
+        // A microsecond after 1.5e6 s at 305 K; the subtraction of two times has lost 4 digits already.
+        let (t0, t1) = (1.5e6, 1.5e6 + 1e-6);
+        let exact = (t1 - t0) / wlf().factor(305.0).unwrap();
+        assert!((clock.elapsed(t0, t1) / exact - 1.0).abs() < 1e-14);
+        assert_eq!((clock.temperature(10.0), clock.temperature(5.0)), (300.0, 310.0));
+        assert_eq!((clock.value(-1.0), clock.temperature(1e9)), (0.0, 305.0));
+    }
+
+    #[test]
+    fn at_the_reference_temperature_the_clock_is_right() {
+        let clock = ReducedTime::new(wlf(), &[(0.0, 300.0)]).unwrap();
+        assert_eq!(clock.value(123.456), 123.456);
+    }
+
+    #[test]
+    fn bad_histories_are_named() {
+        let says = |points: &[(f64, f64)], words: &str| {
+            let error = ReducedTime::new(wlf(), points).unwrap_err().to_string();
+            assert!(error.contains(words), "{error}");
+        };
+        says(&[], "temperature history is empty");
+        says(&[(1.0, 300.0)], "first time");
+        says(&[(0.0, 300.0), (2.0, 300.0), (1.0, 300.0)], "time of point 3");
+        says(&[(0.0, 300.0), (1.0, 300.0), (1.0, 301.0), (1.0, 302.0)], "time of point 4");
+        says(&[(0.0, 300.0), (f64::NAN, 300.0)], "time of point 2");
+        says(&[(0.0, 300.0), (1.0, 25.0)], "temperature of point 2 is 25 K");
+        says(&[(0.0, f64::INFINITY)], "temperature of point 1");
+    }
+}

@@ -55,7 +55,7 @@ impl Creep {
             return 0.0;
         }
         let retarded: f64 =
-            self.terms.iter().map(|c| -c.compliance * (-t / c.retardation_time).exp_m1()).sum();
+            self.terms.iter().map(|c| -c.compliance * libm::expm1(-t / c.retardation_time)).sum();
         self.instantaneous + retarded + self.fluidity * t
     }
 
@@ -67,7 +67,7 @@ impl Creep {
         let retarded: f64 = self
             .terms
             .iter()
-            .map(|c| c.compliance / c.retardation_time * (-t / c.retardation_time).exp())
+            .map(|c| c.compliance / c.retardation_time * libm::exp(-t / c.retardation_time))
             .sum();
         retarded + self.fluidity
     }

@@ -5,6 +5,17 @@
 //! such a function together with the measure in which its moduli are meant (Young's or shear
 //! modulus); a [`Body`] closes it with Poisson's ratio or the bulk modulus and yields the contact
 //! creep compliance C(t), all that the contact needs to know.
+//!
+//! Where such a function comes from:
+//! - named models: the constructors of [`Material`];
+//! - a Prony table, in moduli or relative to the instantaneous or the relaxed modulus: those of
+//!   [`Relaxation`];
+//! - fractional models, as Prony sums to a stated error: [`Fractional`];
+//! - measured curves: [`fit_relaxation`], [`fit_creep`], [`fit_dma`]; or [`CreepTable`] as it is;
+//! - curves at several temperatures: [`master_curve`], with a [`Shift`] that is given or
+//!   [estimated](estimate_shift).
+//!
+//! A temperature that changes during the run is a [`ReducedTime`].
 
 mod body;
 mod convert;
@@ -24,6 +35,7 @@ mod relaxation;
 mod series;
 mod shift;
 mod spectrum;
+mod table;
 
 pub use body::{Body, Lateral, pair_creep, pair_hardness};
 pub use creep::{Creep, CreepTerm};
@@ -34,3 +46,4 @@ pub use models::{Material, Modulus};
 pub use reduced_time::ReducedTime;
 pub use relaxation::{Relaxation, RelaxationTerm};
 pub use shift::{GAS_CONSTANT, Shift, ShiftFit, fit_arrhenius, fit_wlf};
+pub use table::CreepTable;

@@ -57,6 +57,15 @@ impl ReducedTime {
                 other => other,
             })?;
         }
+        if let Some((n, (_, t))) =
+            temperatures.iter().enumerate().find(|(_, p)| shift.ln_factor_unchecked(p.1) < -690.0)
+        {
+            return Err(Error::invalid(
+                format!("temperature of point {}", n + 1),
+                format!("{t} K"),
+                "one at which the shift factor is above 1e-300: check the constants of the shift",
+            ));
+        }
         let mut clock = ReducedTime { shift, pieces: vec![] };
         let mut reduced = 0.0;
         let Some(last) = temperatures.last() else { return Ok(clock) };
@@ -122,18 +131,29 @@ impl ReducedTime {
         self.pieces.partition_point(|p| p.start <= t).max(1) - 1
     }
 
-    /// Integral of 1/a_T over part of a piece: halved until the integrand is tame enough for one Gauss
-    /// rule to be exact to rounding (1/a_T within a factor e, and far from the law's singularity).
+    /// Integral of 1/a_T over part of a piece.
     fn within(&self, piece: &Piece, t0: f64, t1: f64) -> f64 {
         if t1 <= t0 {
             return 0.0;
         }
-        let (from, to) = (piece.temperature(t0), piece.temperature(t1));
-        let rate = |temperature: f64| (-self.shift.ln_factor_unchecked(temperature)).exp();
-        if from == to {
-            return (t1 - t0) * rate(from);
+        let ln_rate = |t: f64| -self.shift.ln_factor_unchecked(piece.temperature(t));
+        let fastest = ln_rate(t0).max(ln_rate(t1));
+        if piece.temperature(t0) == piece.temperature(t1) {
+            return (t1 - t0) * fastest.exp();
         }
-        let change = self.shift.ln_factor_unchecked(to) - self.shift.ln_factor_unchecked(from);
+        // What goes exp(60) times slower than the fastest adds nothing to the last digit.
+        self.halve(piece, t0, t1, fastest - 60.0)
+    }
+
+    /// Halves until the integrand is tame enough for one Gauss rule to be exact to rounding: 1/a_T within
+    /// a factor e, and far from the law's singularity. Parts all below `negligible` are left out.
+    fn halve(&self, piece: &Piece, t0: f64, t1: f64, negligible: f64) -> f64 {
+        let (from, to) = (piece.temperature(t0), piece.temperature(t1));
+        let ln_rate = |temperature: f64| -self.shift.ln_factor_unchecked(temperature);
+        if ln_rate(from).max(ln_rate(to)) < negligible {
+            return 0.0;
+        }
+        let change = ln_rate(to) - ln_rate(from);
         let singular = match self.shift {
             Shift::Wlf { c2, reference, .. } => reference - c2,
             _ => 0.0,
@@ -141,9 +161,9 @@ impl ReducedTime {
         let ratio = (to - singular) / (from - singular);
         let middle = 0.5 * (t0 + t1);
         if (change.abs() <= 1.0 && (0.5..=2.0).contains(&ratio)) || middle <= t0 || middle >= t1 {
-            return integrate(t0, t1, |t| rate(piece.temperature(t)));
+            return integrate(t0, t1, |t| ln_rate(piece.temperature(t)).exp());
         }
-        self.within(piece, t0, middle) + self.within(piece, middle, t1)
+        self.halve(piece, t0, middle, negligible) + self.halve(piece, middle, t1, negligible)
     }
 
     /// A table of shift factors bends at its temperatures: pieces between them.

@@ -117,7 +117,8 @@ impl Relaxation {
         if t < 0.0 {
             return 0.0;
         }
-        self.equilibrium + self.terms.iter().map(|e| e.modulus * (-t / e.relaxation_time).exp()).sum::<f64>()
+        self.equilibrium
+            + self.terms.iter().map(|e| e.modulus * libm::exp(-t / e.relaxation_time)).sum::<f64>()
     }
 
     /// E(0) = E_inf + sum E_i \[Pa\]; `f64::INFINITY` with a viscosity.

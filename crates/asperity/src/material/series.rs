@@ -55,7 +55,7 @@ pub(super) fn debye(x: f64) -> (f64, f64) {
 /// x - 1 + exp(-x), for x >= 0, to full relative accuracy.
 pub(super) fn exponential_remainder(x: f64) -> f64 {
     if x > 0.5 {
-        return x + (-x).exp_m1();
+        return x + libm::expm1(-x);
     }
     // x^2/2! - x^3/3! + ...: at x = 1/2 the 14th term is below 1e-17 of the first.
     let mut sum = 0.0;

@@ -1,0 +1,203 @@
+//! Fits of synthetic data: the curve comes back, and what is no material is refused.
+
+use super::*;
+use crate::material::series::tests::random;
+
+fn logspace(first: f64, last: f64, count: usize) -> Vec<f64> {
+    let step = (last / first).log10() / (count - 1) as f64;
+    (0..count).map(|k| first * 10f64.powf(step * k as f64)).collect()
+}
+
+/// Normal deviates by Box & Muller.
+fn normal(seed: u64) -> impl FnMut() -> f64 {
+    let mut random = random(seed);
+    move || (-2.0 * (1.0 - random()).ln()).sqrt() * (std::f64::consts::TAU * random()).cos()
+}
+
+/// 13 terms, one per decade, with uneven weights.
+fn thirteen() -> Relaxation {
+    let weights = [3.0, 8.0, 20.0, 60.0, 90.0, 40.0, 25.0, 10.0, 6.0, 3.0, 1.5, 0.8, 0.3];
+    let terms: Vec<_> =
+        weights.iter().enumerate().map(|(k, w)| (1e6 * w, 2.3 * 10f64.powi(k as i32 - 7))).collect();
+    Relaxation::absolute(0.5e6, &terms).unwrap()
+}
+
+#[test]
+fn thirteen_noisy_terms_are_recovered_to_the_noise() {
+    let (truth, mut normal) = (thirteen(), normal(11));
+    let times = logspace(1e-7, 1e6, 400);
+    let moduli: Vec<f64> = times.iter().map(|t| truth.value(*t) * (1.0 + 0.02 * normal())).collect();
+    let fit = fit_relaxation(&times, &moduli, &FitOptions::default()).unwrap();
+    // The scatter of the scatter of 400 points: 1/sqrt(800), and twice that of a median.
+    assert!((fit.noise / 0.02 - 1.0).abs() < 0.2, "{}", fit.noise);
+    // What remains is the noise, less what 26 parameters take up.
+    assert!((fit.misfit.rms / 0.02 - 1.0).abs() < 0.1, "{:?}", fit.misfit);
+    // About 14 points per parameter pair: the curve is known to 0.02 sqrt(26/400), 3 sigma of it.
+    let error = times.iter().map(|t| (fit.function.value(*t) / truth.value(*t) - 1.0).abs());
+    let error = error.fold(0.0, f64::max);
+    assert!(error < 0.015, "{error}");
+    assert!(fit.function.terms.len() <= 14, "{}", fit.function.terms.len());
+}
+
+#[test]
+fn exact_data_give_the_material_back() {
+    let (truth, options) = (thirteen(), FitOptions::default());
+    let times = logspace(1e-7, 1e6, 200);
+    let moduli: Vec<f64> = times.iter().map(|t| truth.value(*t)).collect();
+    let compliances: Vec<f64> = times.iter().map(|t| truth.to_creep().unwrap().value(*t)).collect();
+    let omega = logspace(1e-6, 1e7, 200);
+    let (storage, loss): (Vec<_>, Vec<_>) = omega.iter().map(|w| truth.complex(*w)).unzip();
+    let fits = [
+        fit_relaxation(&times, &moduli, &options).unwrap().function,
+        fit_creep(&times, &compliances, &options).unwrap().function.to_relaxation().unwrap(),
+        fit_dma(&omega, &storage, &loss, &options).unwrap().function,
+    ];
+    for fit in fits {
+        assert_eq!(fit.terms.len(), 13);
+        for (fitted, term) in fit.terms.iter().zip(&truth.terms) {
+            // Levenberg-Marquardt stops at residuals of 1e-7 at most; terms a decade apart are
+            // known some hundred times less well than the curve.
+            assert!((fitted.modulus / term.modulus - 1.0).abs() < 1e-4, "{fitted:?} {term:?}");
+            assert!((fitted.relaxation_time / term.relaxation_time - 1.0).abs() < 1e-4, "{fitted:?}");
+        }
+    }
+}
+
+#[test]
+fn storage_and_loss_of_a_fit_obey_kramers_and_kronig() {
+    // E'(w) - E'(0) = (2/pi) w^2 P int_0^inf [E''(u)/u] / (w^2 - u^2) du, with noisy data in and the
+    // fit's E'' integrated; u = w exp(y), the pole taken out by symmetry in y.
+    let (truth, mut normal) = (thirteen(), normal(2));
+    let omega = logspace(1e-6, 1e7, 120);
+    let (storage, loss): (Vec<_>, Vec<_>) = omega
+        .iter()
+        .map(|w| truth.complex(*w))
+        .map(|(e1, e2)| (e1 * (1.0 + 0.01 * normal()), e2 * (1.0 + 0.01 * normal())))
+        .unzip();
+    let fit = fit_dma(&omega, &storage, &loss, &FitOptions::default()).unwrap().function;
+    for w in [1e-3, 1.0, 1e4] {
+        let step = 0.05;
+        let integral: f64 = (0..800)
+            .map(|k| step * (f64::from(k) + 0.5))
+            .map(|y: f64| {
+                let (above, below) = (fit.complex(w * y.exp()).1, fit.complex(w * (-y).exp()).1);
+                // 1/(1 - e^2y) above and 1/(1 - e^-2y) = 1 - 1/(1 - e^2y) below.
+                let kernel = -1.0 / (2.0 * y).exp_m1();
+                above * kernel + below * (1.0 - kernel)
+            })
+            .sum();
+        let storage = fit.equilibrium + 2.0 / std::f64::consts::PI * step * integral;
+        // Midpoint rule of a smooth integrand with strip pi/2 around y = 0.
+        assert!((storage / fit.complex(w).0 - 1.0).abs() < 1e-6, "{w}");
+    }
+}
+
+#[test]
+fn an_elastic_curve_has_no_terms() {
+    let times = logspace(1.0, 1e3, 30);
+    let fit = fit_relaxation(&times, &[5e6; 30], &FitOptions::default()).unwrap();
+    assert!(fit.function.terms.is_empty() && (fit.function.equilibrium / 5e6 - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn a_creep_test_from_zero_has_no_instantaneous_compliance() {
+    let kelvin_voigt =
+        Creep { terms: vec![CreepTerm { compliance: 1e-6, retardation_time: 2.0 }], ..Creep::default() };
+    let times: Vec<f64> = (0..40).map(|k| 0.25 * f64::from(k)).collect();
+    let values: Vec<f64> = times.iter().map(|t| kelvin_voigt.value(*t)).collect();
+    let fit = fit_creep(&times, &values, &FitOptions::default()).unwrap();
+    assert_eq!(fit.function.instantaneous, 0.0);
+    assert!(fit.misfit.max < 1e-6, "{:?}", fit.misfit);
+}
+
+#[test]
+fn long_times_follow_the_option() {
+    let times = logspace(1e-2, 1e2, 50);
+    let moduli: Vec<f64> = times.iter().map(|t| 1e6 * (0.1 + (-t).exp())).collect();
+    let fluid = FitOptions { long_time: LongTime::Fluid, ..FitOptions::default() };
+    assert_eq!(fit_relaxation(&times, &moduli, &fluid).unwrap().function.equilibrium, 0.0);
+    let compliances: Vec<f64> = times.iter().map(|t| 1e-6 * (1.0 + t)).collect();
+    let solid = FitOptions { long_time: LongTime::Solid, ..FitOptions::default() };
+    let fit = fit_creep(&times, &compliances, &solid).unwrap();
+    assert!(fit.function.fluidity == 0.0 && fit.misfit.max < 0.05, "{:?}", fit.misfit);
+}
+
+#[test]
+fn evenly_sampled_records_of_any_length_are_fitted() {
+    let pmma = Relaxation::absolute(1973e6, &[(254.776e6, 8.93), (263.6628e6, 117.96)]).unwrap();
+    let mut normal = normal(4);
+    let times: Vec<f64> = (1..200_000).map(|k| 0.005 * f64::from(k)).collect();
+    let moduli: Vec<f64> = times.iter().map(|t| pmma.value(*t) * (1.0 + 0.01 * normal())).collect();
+    let fit = fit_relaxation(&times, &moduli, &FitOptions::default()).unwrap();
+    assert!((fit.misfit.rms / 0.01 - 1.0).abs() < 0.02, "{:?}", fit.misfit);
+    for t in [0.1, 1.0, 10.0, 100.0, 1000.0] {
+        // 0.01/sqrt(points per decade), and the sampling starts with one point per 5 ms.
+        let error = (fit.function.value(t) / pmma.value(t) - 1.0).abs();
+        assert!(error < 2e-3, "{t} {error}");
+    }
+}
+
+#[test]
+fn what_no_passive_material_can_do_is_refused_with_its_place() {
+    let options = FitOptions::default();
+    let refused = |result: Result<()>, words: &[&str]| {
+        let error = result.unwrap_err().to_string();
+        for word in words {
+            assert!(error.contains(word), "{error}");
+        }
+    };
+    let times = logspace(1e-2, 1e2, 41);
+    let relaxing: Vec<f64> = times.iter().map(|t| 1e6 * (1.0 + (-t).exp())).collect();
+    let fit = |moduli: &[f64]| fit_relaxation(&times, moduli, &options).map(|_| ());
+    let mut growing = relaxing.clone();
+    growing[30] *= 1.5;
+    refused(fit(&growing), &["relaxation modulus of point 31 (time 1e1 s)", "does not rise"]);
+    let mut negative = relaxing.clone();
+    negative[7] = -1.0;
+    refused(fit(&negative), &["relaxation modulus of point 8", "-1e0 Pa"]);
+    negative[7] = f64::NAN;
+    refused(fit(&negative), &["relaxation modulus of point 8", "NaN"]);
+    refused(fit(&relaxing[1..]), &["number of values", "41"]);
+    // A drop that is faster than any relaxation: from 2 to 1 within a tenth of a decade.
+    let dropping: Vec<f64> = times.iter().map(|t| if *t < 1.0 { 2e6 } else { 1e6 }).collect();
+    refused(fit(&dropping), &["passive material", "%"]);
+    // Creep that falls.
+    let falling: Vec<f64> = times.iter().map(|t| 1e-6 * (2.0 - t / 100.0)).collect();
+    refused(fit_creep(&times, &falling, &options).map(|_| ()), &["creep compliance", "does not fall"]);
+    // Storage that falls with frequency, loss that is negative, and a pair that breaks Kramers-Kronig.
+    let solid = Relaxation::absolute(1e6, &[(1e6, 1.0)]).unwrap();
+    let (storage, loss): (Vec<_>, Vec<_>) = times.iter().map(|w| solid.complex(*w)).unzip();
+    let dma = |s: &[f64], l: &[f64]| fit_dma(&times, s, l, &options).map(|_| ());
+    let reversed: Vec<f64> = storage.iter().rev().copied().collect();
+    refused(dma(&reversed, &loss), &["storage modulus of point", "does not fall"]);
+    let mut negative = loss.clone();
+    negative[3] = -1.0;
+    refused(dma(&storage, &negative), &["loss modulus of point 4"]);
+    let tripled: Vec<f64> = loss.iter().map(|l| 3.0 * l).collect();
+    refused(dma(&storage, &tripled), &["modulus of point", "passive material"]);
+    assert!(dma(&storage, &loss).is_ok());
+}
+
+#[test]
+fn a_run_beyond_the_data_is_told_so() {
+    let times = logspace(1.0, 100.0, 20);
+    let moduli: Vec<f64> = times.iter().map(|t| 1e6 * (1.0 + (-t / 9.0).exp())).collect();
+    let fit = fit_relaxation(&times, &moduli, &FitOptions::default()).unwrap();
+    assert_eq!(fit.beyond(1.0, 100.0), None);
+    let words = fit.beyond(0.1, 1e3).unwrap();
+    assert!(words.contains("1e-1 s to 1e3 s") && words.contains("1e0 s to 1e2 s"), "{words}");
+}
+
+#[test]
+fn bad_options_are_named() {
+    let bad = |options: FitOptions, words: &str| {
+        let error = fit_relaxation(&[1.0, 2.0], &[2.0, 1.0], &options).unwrap_err().to_string();
+        assert!(error.contains(words), "{error}");
+    };
+    let default = FitOptions::default();
+    bad(FitOptions { per_decade: 0.0, ..default }, "times per decade");
+    bad(FitOptions { per_decade: f64::NAN, ..default }, "times per decade");
+    bad(FitOptions { margin: -1.0, ..default }, "margin");
+    bad(FitOptions { margin: 100.0, ..default }, "margin");
+    bad(FitOptions { limit: 0.0, ..default }, "misfit");
+}

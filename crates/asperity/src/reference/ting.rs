@@ -15,7 +15,7 @@
 //! ```
 //!
 //! The integrals are evaluated by parts, so that only smooth functions are integrated, to about twelve
-//! digits. Histories that load again while the contact has not opened need `Mdr`.
+//! digits. Histories that load again while the contact has not opened need [`Mdr`](super::Mdr).
 
 use std::f64::consts::PI;
 

@@ -1,0 +1,118 @@
+//! Marching a row of springs through a load or approach history.
+
+use super::{Mdr, MdrProfile, MdrState, MdrTarget};
+use crate::error::{Error, Result};
+use crate::load::{Control, Loading};
+use crate::material::Relaxation;
+
+/// How finely the row of springs and the time are divided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MdrOptions {
+    /// Springs between the axis and the largest contact expected. Default 1000.
+    pub springs: usize,
+    /// Steps between two of the times asked for. Default 20. After a break of the history they grow
+    /// quadratically.
+    pub substeps: usize,
+}
+
+impl Default for MdrOptions {
+    fn default() -> Self {
+        MdrOptions { springs: 1000, substeps: 20 }
+    }
+}
+
+impl Mdr {
+    /// Rows at t = 0+, at every time asked for and at every break of the history before the last; a jump
+    /// gives two rows, before and after it.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where the loading is invalid, controls the mean pressure (a single contact has
+    /// no area to average over), asks for a negative load, or the times are not increasing and positive;
+    /// as [`step`](Self::step) otherwise.
+    pub fn march(
+        profile: MdrProfile,
+        relaxation: &Relaxation,
+        loading: &Loading,
+        times: &[f64],
+        options: MdrOptions,
+    ) -> Result<Vec<MdrState>> {
+        loading.history.validate()?;
+        let end = check_times(times)?;
+        let reach = Self::estimate(profile, relaxation, loading, end)?;
+        let mut row = Mdr::new(profile, relaxation, reach, options.springs)?;
+        let history = &loading.history;
+        let target = |value: f64| match loading.control {
+            Control::Approach => MdrTarget::Approach(value),
+            Control::Load | Control::Pressure => MdrTarget::Load(value),
+        };
+        let breaks = history.breaks(end);
+        let mut stops: Vec<f64> = times.iter().chain(&breaks).copied().filter(|t| *t > 0.0).collect();
+        stops.sort_by(f64::total_cmp);
+        stops.dedup();
+        let mut states = vec![row.step(0.0, target(history.after(0.0)))?];
+        let mut start = 0.0;
+        for stop in stops {
+            // Rates are unbounded just after a break: steps that grow.
+            let graded = start == 0.0 || breaks.contains(&start);
+            let substeps = options.substeps.max(1);
+            for n in 1..=substeps {
+                let share = n as f64 / substeps as f64;
+                let next = start + (stop - start) * if graded { share * share } else { share };
+                let value = if n == substeps { history.before(stop) } else { history.after(next) };
+                let state = row.step_to(if n == substeps { stop } else { next }, target(value))?;
+                if n == substeps {
+                    states.push(state);
+                }
+            }
+            if history.after(stop) != history.before(stop) {
+                states.push(row.step(0.0, target(history.after(stop)))?);
+            }
+            start = stop;
+        }
+        Ok(states)
+    }
+
+    /// An upper bound of the contact radius: the largest load held from the start, or the largest
+    /// approach.
+    fn estimate(profile: MdrProfile, relaxation: &Relaxation, loading: &Loading, end: f64) -> Result<f64> {
+        profile.validate()?;
+        relaxation.validate()?;
+        let [lowest, highest] = loading.history.range(end);
+        let reach = match loading.control {
+            Control::Pressure => {
+                return Err(Error::invalid("control", "the mean pressure", "the load or the approach"));
+            }
+            Control::Approach => profile.reach(highest.max(0.0)),
+            Control::Load => {
+                if lowest < 0.0 {
+                    return Err(Error::invalid(
+                        "smallest load of the history",
+                        format!("{lowest} N"),
+                        "0 N or more",
+                    ));
+                }
+                profile.elastic_radius(highest, relaxation.to_creep()?.value(end))
+            }
+        };
+        // Nothing ever touches: any length will do.
+        Ok(if reach > 0.0 { 1.01 * reach } else { 1.0 })
+    }
+}
+
+fn check_times(times: &[f64]) -> Result<f64> {
+    let mut last = 0.0;
+    for (n, t) in times.iter().enumerate() {
+        if !(t.is_finite() && *t > last) {
+            return Err(Error::invalid(
+                format!("time {} of the list", n + 1),
+                format!("{t} s"),
+                format!("finite and greater than {last} s"),
+            ));
+        }
+        last = *t;
+    }
+    if times.is_empty() {
+        return Err(Error::invalid("list of times", "empty", "one time at least"));
+    }
+    Ok(last)
+}

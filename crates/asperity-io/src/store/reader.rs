@@ -5,12 +5,13 @@ use std::path::{Path, PathBuf};
 
 use asperity::march::Row;
 use ndarray::Array2;
+use serde_json::{Map, Value};
 
 use super::chunks::Chunks;
 use super::column;
 use super::document::Document;
 use super::error::{Result, StoreError, corrupt};
-use super::header::{Header, Status, Work};
+use super::header::{self, Header, Status, Work};
 use super::layout::{ArraySpec, Entry, FieldKind, SCALARS};
 
 /// A result as it is at the instant of opening; a run that goes on is seen by opening it again.
@@ -69,6 +70,13 @@ impl Reader {
     /// How far the run has come, as it says itself.
     pub fn status(&self) -> Status {
         self.document.progress.status
+    }
+
+    /// The attributes of the group, as in the file: `title`, `case`, `version`, `status`, `work_...`.
+    pub fn attributes(&self) -> Map<String, Value> {
+        let mut attributes = header::attributes(self.header());
+        header::put_progress(&mut attributes, &self.document.progress);
+        attributes
     }
 
     /// The work that it took.
@@ -211,18 +219,22 @@ impl Reader {
     }
 
     fn field_chunks(&self, kind: FieldKind, at: At) -> Result<(Chunks, u64)> {
-        let kept = &self.header().fields;
-        if !kept.contains(&kind) {
-            let names: Vec<_> = kept.iter().map(|kind| kind.name()).collect();
-            let available = if names.is_empty() {
-                "no fields".to_owned()
-            } else {
-                format!("the fields {}", names.join(", "))
-            };
-            return Err(self.missing(format!("field `{kind}`"), available));
+        if !self.header().fields.contains(&kind) {
+            return Err(self.no_field(kind));
         }
         let index = self.index(at)? as u64;
         Ok((Chunks::new(&self.root, &self.spec(kind.name())?)?, index))
+    }
+
+    /// The error of a field that was not kept.
+    pub(crate) fn no_field(&self, kind: FieldKind) -> StoreError {
+        let names: Vec<_> = self.header().fields.iter().map(|kind| kind.name()).collect();
+        let available = if names.is_empty() {
+            "no fields".to_owned()
+        } else {
+            format!("the fields {}", names.join(", "))
+        };
+        self.missing(format!("field `{kind}`"), available)
     }
 
     fn spec(&self, name: &str) -> Result<ArraySpec> {
@@ -230,7 +242,7 @@ impl Reader {
         spec.ok_or_else(|| self.missing(format!("array `{name}`"), "the arrays of a result".into()))
     }
 
-    fn missing(&self, what: String, available: String) -> StoreError {
+    pub(crate) fn missing(&self, what: String, available: String) -> StoreError {
         StoreError::Missing { path: self.root.clone(), what, available }
     }
 }

@@ -243,7 +243,7 @@ fn any_damage_is_answered() {
         prop::collection::vec(any::<u8>(), 0..9),
         any::<bool>(),
     );
-    let config = ProptestConfig { cases: 100, failure_persistence: None, ..ProptestConfig::default() };
+    let config = ProptestConfig { cases: 50, failure_persistence: None, ..ProptestConfig::default() };
     let mut runner = proptest::test_runner::TestRunner::new_with_rng(
         config,
         TestRng::deterministic_rng(RngAlgorithm::ChaCha),

@@ -1,0 +1,149 @@
+//! What is exported: the result as a list of variables over named dimensions, the fields one map at a time.
+
+use ndarray::Array2;
+use serde_json::Value;
+
+use super::error::Result;
+use crate::store::{At, FieldKind, Reader, SCALARS};
+
+/// A result as variables over dimensions.
+pub(super) struct Contents<'a> {
+    reader: &'a Reader,
+    /// Numbers of the stored instants that are exported.
+    pub(super) instants: Vec<usize>,
+    pub(super) dimensions: Vec<(&'static str, usize)>,
+    pub(super) attributes: Vec<(String, Attribute)>,
+    pub(super) variables: Vec<Variable>,
+}
+
+/// A variable over its dimensions.
+pub(super) struct Variable {
+    pub(super) name: &'static str,
+    pub(super) units: &'static str,
+    pub(super) long_name: &'static str,
+    /// Indices in [`Contents::dimensions`].
+    pub(super) dimensions: Vec<usize>,
+    pub(super) data: Data,
+}
+
+/// The numbers of a variable.
+pub(super) enum Data {
+    Reals(Vec<f64>),
+    Counts(Vec<i64>),
+    /// x by y, read when it is written.
+    InitialGap,
+    /// One map x by y per instant, read when it is written.
+    Field(FieldKind),
+}
+
+/// A map as it is stored.
+pub(super) enum Map {
+    Real(Array2<f64>),
+    Byte(Array2<u8>),
+}
+
+/// An attribute of the result.
+pub(super) enum Attribute {
+    Text(String),
+    Reals(Vec<f64>),
+    Counts(Vec<i64>),
+}
+
+pub(super) const TIME: usize = 0;
+pub(super) const FIELD_TIME: usize = 1;
+pub(super) const X: usize = 2;
+pub(super) const Y: usize = 3;
+
+impl<'a> Contents<'a> {
+    /// Everything in `reader`, with these fields at these instants.
+    pub(super) fn new(reader: &'a Reader, fields: &[FieldKind], instants: Vec<usize>) -> Result<Self> {
+        let grid = &reader.header().grid;
+        let [nx, ny] = grid.cells();
+        let rows = reader.rows()?;
+        let dimensions = vec![("time", rows.len()), ("field_time", instants.len()), ("x", nx), ("y", ny)];
+        let mut variables = Vec::new();
+        let mut add = |name, units, long_name, dimensions: &[usize], data| {
+            variables.push(Variable { name, units, long_name, dimensions: dimensions.to_vec(), data });
+        };
+        for scalar in &SCALARS {
+            let series = reader.series(scalar.name)?;
+            let data = match scalar.name {
+                "iterations" => Data::Counts(rows.iter().map(|row| count(row.iterations)).collect()),
+                "convolutions" => Data::Counts(rows.iter().map(|row| count(row.convolutions)).collect()),
+                _ => Data::Reals(series),
+            };
+            add(scalar.name, scalar.units, scalar.long_name, &[TIME], data);
+        }
+        let times = instants.iter().map(|index| reader.field_times()[*index]).collect();
+        add("field_time", "s", "time of the fields", &[FIELD_TIME], Data::Reals(times));
+        let steps = instants.iter().map(|index| count(reader.field_steps()[*index])).collect();
+        add("field_step", "1", "row of the fields", &[FIELD_TIME], Data::Counts(steps));
+        let x = (0..nx).map(|i| grid.x(i)).collect();
+        let y = (0..ny).map(|j| grid.y(j)).collect();
+        add("x", "m", "x, centres of the cells", &[X], Data::Reals(x));
+        add("y", "m", "y, centres of the cells", &[Y], Data::Reals(y));
+        add("initial_gap", "m", "undeformed gap", &[X, Y], Data::InitialGap);
+        for kind in fields {
+            let over = [FIELD_TIME, X, Y];
+            add(kind.name(), kind.units(), kind.long_name(), &over, Data::Field(*kind));
+        }
+        let attributes =
+            reader.attributes().into_iter().filter_map(|(key, value)| Some((key, attribute(&value)?)));
+        Ok(Contents { attributes: attributes.collect(), reader, instants, dimensions, variables })
+    }
+
+    /// The variable's map; for a field, that of the `n`th exported instant.
+    pub(super) fn map(&self, data: &Data, n: usize) -> Result<Option<Map>> {
+        Ok(match data {
+            Data::Reals(_) | Data::Counts(_) => None,
+            Data::InitialGap => Some(Map::Real(self.reader.initial_gap()?)),
+            Data::Field(kind) => {
+                let at = At::Index(self.instants.get(n).copied().unwrap_or(usize::MAX));
+                Some(match kind {
+                    FieldKind::Contact => Map::Byte(self.reader.contact(at)?),
+                    kind => Map::Real(self.reader.field(*kind, at)?),
+                })
+            }
+        })
+    }
+
+    /// Number of maps of a variable; 0 where it has none.
+    pub(super) fn maps(&self, data: &Data) -> usize {
+        match data {
+            Data::Reals(_) | Data::Counts(_) => 0,
+            Data::InitialGap => 1,
+            Data::Field(_) => self.instants.len(),
+        }
+    }
+
+    pub(super) fn reader(&self) -> &Reader {
+        self.reader
+    }
+}
+
+impl Variable {
+    /// Lengths along its dimensions.
+    pub(super) fn shape(&self, contents: &Contents<'_>) -> Vec<usize> {
+        self.dimensions.iter().map(|d| contents.dimensions[*d].1).collect()
+    }
+}
+
+fn count(n: usize) -> i64 {
+    i64::try_from(n).unwrap_or(i64::MAX)
+}
+
+fn attribute(value: &Value) -> Option<Attribute> {
+    let reals = |values: &[Value]| values.iter().map(Value::as_f64).collect::<Option<Vec<_>>>();
+    let counts = |values: &[Value]| values.iter().map(Value::as_i64).collect::<Option<Vec<_>>>();
+    Some(match value {
+        Value::String(text) => Attribute::Text(text.clone()),
+        Value::Number(_) => {
+            let one = std::slice::from_ref(value);
+            counts(one).map(Attribute::Counts).or_else(|| reals(one).map(Attribute::Reals))?
+        }
+        Value::Array(values) => {
+            counts(values).map(Attribute::Counts).or_else(|| reals(values).map(Attribute::Reals))?
+        }
+        _ => return None,
+    })
+}

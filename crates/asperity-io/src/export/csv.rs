@@ -1,0 +1,84 @@
+//! Comma-separated values (RFC 4180), for spreadsheets.
+//!
+//! One row per step under a line of names with units. Chosen fields go to files beside it, as matrices: the
+//! first line holds y, the first column x, in metres.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use super::contents::{Contents, Data, Map, TIME};
+use super::error::{Result, WriteError};
+use super::output::{self, Output};
+
+pub(super) fn export(contents: &Contents<'_>, path: &Path, force: bool) -> Result<Vec<PathBuf>> {
+    // Said before anything is written.
+    let maps: Vec<_> = contents
+        .variables
+        .iter()
+        .filter(|variable| matches!(variable.data, Data::Field(_)))
+        .flat_map(|variable| (0..contents.instants.len()).map(move |n| (variable, n)))
+        .map(|(variable, n)| {
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            let name = format!("{stem}_{}_{:04}.csv", variable.name, contents.instants[n]);
+            (variable, n, path.with_file_name(name))
+        })
+        .collect();
+    maps.iter().try_for_each(|(.., path)| output::check(path, force))?;
+    let mut made = output::file(path, force, |file| series(contents, file))?;
+    for (variable, n, path) in &maps {
+        made.extend(output::file(path, force, |file| match contents.map(&variable.data, *n)? {
+            Some(Map::Real(map)) => matrix(contents, file, |i, j| number(map[(i, j)])),
+            Some(Map::Byte(map)) => matrix(contents, file, |i, j| map[(i, j)].to_string()),
+            None => Ok(()),
+        })?);
+    }
+    Ok(made)
+}
+
+fn series(contents: &Contents<'_>, file: &mut Output) -> Result<(), WriteError> {
+    let columns: Vec<_> = contents.variables.iter().filter(|v| v.dimensions == [TIME]).collect();
+    let names = columns.iter().map(|v| match v.units {
+        "1" => v.name.to_owned(),
+        units => format!("{} [{units}]", v.name),
+    });
+    line(file, names)?;
+    for row in 0..contents.dimensions[TIME].1 {
+        line(
+            file,
+            columns.iter().map(|column| match &column.data {
+                Data::Reals(reals) => number(reals[row]),
+                Data::Counts(counts) => counts[row].to_string(),
+                _ => String::new(),
+            }),
+        )?;
+    }
+    Ok(())
+}
+
+fn matrix(
+    contents: &Contents<'_>,
+    file: &mut Output,
+    cell: impl Fn(usize, usize) -> String,
+) -> Result<(), WriteError> {
+    let grid = &contents.reader().header().grid;
+    let [nx, ny] = grid.cells();
+    let corner = std::iter::once("x [m] / y [m]".to_owned());
+    line(file, corner.chain((0..ny).map(|j| number(grid.y(j)))))?;
+    for i in 0..nx {
+        line(file, std::iter::once(number(grid.x(i))).chain((0..ny).map(|j| cell(i, j))))?;
+    }
+    Ok(())
+}
+
+fn line(file: &mut Output, cells: impl Iterator<Item = String>) -> Result<(), WriteError> {
+    for (n, cell) in cells.enumerate() {
+        let comma = if n > 0 { "," } else { "" };
+        write!(file, "{comma}{cell}")?;
+    }
+    Ok(file.write_all(b"\r\n")?)
+}
+
+/// The shortest text that reads back to the same bits.
+fn number(x: f64) -> String {
+    if x == 0.0 || (1e-3..1e7).contains(&x.abs()) { format!("{x}") } else { format!("{x:e}") }
+}

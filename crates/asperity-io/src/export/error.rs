@@ -1,0 +1,87 @@
+//! What can go wrong with an export.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use crate::store::StoreError;
+
+/// The error of an export.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum ExportError {
+    /// The output is there already and may not be replaced.
+    #[error("{} exists already; choose another output or replace it with --force", .path.display())]
+    Exists {
+        /// The output asked for.
+        path: PathBuf,
+    },
+    /// The output is there and is not what this export writes, so that it is never removed.
+    #[error("{} {found}; it is left alone: choose another output or move it away", .path.display())]
+    Foreign {
+        /// The output asked for.
+        path: PathBuf,
+        /// What was found there, as the rest of a sentence.
+        found: String,
+    },
+    /// The operating system refused to write.
+    #[error("cannot {action} {}: {source}", .path.display())]
+    Io {
+        /// The file or directory.
+        path: PathBuf,
+        /// What was tried, as a verb.
+        action: &'static str,
+        /// The system's answer.
+        source: io::Error,
+    },
+    /// The format cannot hold the result.
+    #[error("{format} cannot hold {what}; {hint}")]
+    Limit {
+        /// The format.
+        format: &'static str,
+        /// What is too large.
+        what: String,
+        /// What to do.
+        hint: &'static str,
+    },
+    /// The result cannot be read, or does not hold what was asked for.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+}
+
+/// Result of an export.
+pub type Result<T, E = ExportError> = std::result::Result<T, E>;
+
+/// What a writer of one format says; the caller adds the path.
+pub(super) enum WriteError {
+    Io(io::Error),
+    Other(ExportError),
+}
+
+impl From<io::Error> for WriteError {
+    fn from(error: io::Error) -> Self {
+        WriteError::Io(error)
+    }
+}
+
+impl From<StoreError> for WriteError {
+    fn from(error: StoreError) -> Self {
+        WriteError::Other(error.into())
+    }
+}
+
+impl From<ExportError> for WriteError {
+    fn from(error: ExportError) -> Self {
+        WriteError::Other(error)
+    }
+}
+
+impl WriteError {
+    pub(super) fn at(self, path: &Path) -> ExportError {
+        match self {
+            WriteError::Io(source) => ExportError::Io { path: path.to_owned(), action: "write", source },
+            WriteError::Other(error) => error,
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! Results in the formats of other programs.
+//!
+//! | format | opened by | holds |
+//! |---|---|---|
+//! | [`Format::NetCdf`] | xarray, ncview, scipy | everything; classic NetCDF with 64-bit offsets |
+//! | [`Format::Hdf5`] | h5py, MATLAB, xarray | everything, with dimension scales |
+//! | [`Format::Npz`] | numpy | everything; attributes as JSON text |
+//! | [`Format::Vtk`] | ParaView | fields over time: a `.pvd` file and a directory of `.vti` files |
+//! | [`Format::Csv`] | spreadsheets | the per-step numbers; chosen fields as matrices |
+//!
+//! Numbers keep their bits (CSV: the shortest text that reads back to them). Fields go through memory one map
+//! at a time. A file appears whole or not at all.
+
+mod contents;
+mod csv;
+mod error;
+mod hdf5;
+mod netcdf;
+mod npz;
+mod output;
+mod vtk;
+
+use std::path::{Path, PathBuf};
+
+pub use error::{ExportError, Result};
+
+use crate::store::{At, FieldKind, Reader, StoreError};
+use contents::Contents;
+
+/// A format of an export.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Format {
+    /// Classic NetCDF with 64-bit offsets, or the 64-bit data form where a map exceeds 4 GiB.
+    NetCdf,
+    /// HDF5.
+    Hdf5,
+    /// Numpy's zip of arrays.
+    Npz,
+    /// VTK image data with a ParaView collection.
+    Vtk,
+    /// Comma-separated values.
+    Csv,
+}
+
+/// What of a result is exported.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Options {
+    /// Fields; `None` for those that the result holds (CSV: for none).
+    pub fields: Option<Vec<FieldKind>>,
+    /// Instants of the fields; `None` for all.
+    pub instants: Option<Vec<At>>,
+    /// Whether an output that exists is replaced.
+    pub force: bool,
+}
+
+impl Format {
+    /// Every format.
+    pub const ALL: [Format; 5] = [Format::NetCdf, Format::Hdf5, Format::Npz, Format::Vtk, Format::Csv];
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Format::NetCdf => "netcdf",
+            Format::Hdf5 => "hdf5",
+            Format::Npz => "npz",
+            Format::Vtk => "vtk",
+            Format::Csv => "csv",
+        }
+    }
+
+    /// The format of that name.
+    pub fn from_name(name: &str) -> Option<Format> {
+        Format::ALL.into_iter().find(|format| format.name() == name)
+    }
+
+    /// The usual ending of its files.
+    pub fn extension(self) -> &'static str {
+        match self {
+            Format::NetCdf => "nc",
+            Format::Hdf5 => "h5",
+            Format::Npz => "npz",
+            Format::Vtk => "pvd",
+            Format::Csv => "csv",
+        }
+    }
+}
+
+/// Exports a result to `path`; returns the files and directories made.
+///
+/// VTK makes the collection `path` and a directory beside it, named as `path` without its ending, for
+/// `pressure_0000.vti` and so on. CSV with chosen fields makes a file beside `path` for each map.
+///
+/// # Errors
+/// [`ExportError::Store`] where the result is damaged or holds no such field or instant;
+/// [`ExportError::Exists`] and [`ExportError::Foreign`] where the output is there already;
+/// [`ExportError::Limit`] where the format cannot hold the result; [`ExportError::Io`] where the system
+/// refuses.
+///
+/// ```no_run
+/// use asperity_io::{export::{Format, Options, export}, store::Reader};
+///
+/// let reader = Reader::open("rough_pmma.zarr".as_ref())?;
+/// export(&reader, Format::NetCdf, "rough_pmma.nc".as_ref(), &Options::default())?;
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn export(reader: &Reader, format: Format, path: &Path, options: &Options) -> Result<Vec<PathBuf>> {
+    if reader.is_empty() {
+        return Err(reader.missing("steps".into(), "none yet".into()).into());
+    }
+    let kept = &reader.header().fields;
+    let mut fields = match &options.fields {
+        Some(fields) => fields.clone(),
+        None if format == Format::Csv => Vec::new(),
+        None => kept.clone(),
+    };
+    if let Some(absent) = fields.iter().find(|kind| !kept.contains(kind)) {
+        return Err(reader.no_field(*absent).into());
+    }
+    fields.sort_by_key(|kind| FieldKind::ALL.iter().position(|k| k == kind));
+    fields.dedup();
+    let mut instants: Vec<usize> = match &options.instants {
+        Some(instants) => instants.iter().map(|at| reader.index(*at)).collect::<Result<_, StoreError>>()?,
+        None => (0..reader.field_times().len()).collect(),
+    };
+    instants.sort_unstable();
+    instants.dedup();
+    let contents = Contents::new(reader, &fields, instants)?;
+    let force = options.force;
+    match format {
+        Format::NetCdf => output::file(path, force, |file| netcdf::write(&contents, file)),
+        Format::Hdf5 => output::file(path, force, |file| hdf5::write(&contents, file)),
+        Format::Npz => output::file(path, force, |file| npz::write(&contents, file)),
+        Format::Vtk => vtk::export(&contents, path, force),
+        Format::Csv => csv::export(&contents, path, force),
+    }
+}

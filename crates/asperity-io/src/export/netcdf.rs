@@ -1,0 +1,268 @@
+//! Classic NetCDF: a header, the fixed variables, then one record per instant of the fields; big-endian.
+//!
+//! Written in the form of 64-bit offsets (CDF-2), which every reader knows; where one map of a variable
+//! exceeds 4 GiB, in that of 64-bit data (CDF-5). Specification: "The NetCDF Classic Format
+//! Specification", docs.unidata.ucar.edu/netcdf-c, file format specifications.
+
+use std::io::Write;
+
+use super::contents::{Attribute, Contents, Data, FIELD_TIME, Map, Variable};
+use super::error::WriteError;
+use super::output::Output;
+
+/// Types of the classic format.
+#[derive(Clone, Copy, PartialEq)]
+enum Type {
+    Byte = 1,
+    Char = 2,
+    Int = 4,
+    Double = 6,
+}
+
+impl Type {
+    fn size(self) -> u64 {
+        match self {
+            Type::Byte | Type::Char => 1,
+            Type::Int => 4,
+            Type::Double => 8,
+        }
+    }
+}
+
+const DIMENSION: u32 = 0x0a;
+const VARIABLE: u32 = 0x0b;
+const ATTRIBUTE: u32 = 0x0c;
+/// Largest slab of CDF-2.
+const LARGEST: u64 = (1 << 32) - 4;
+
+/// A variable with its type and the bytes of one slab: the whole of it, or one record.
+struct Slab<'a> {
+    variable: &'a Variable,
+    kind: Type,
+    record: bool,
+    bytes: u64,
+}
+
+pub(super) fn write(contents: &Contents<'_>, file: &mut Output) -> Result<(), WriteError> {
+    let slabs: Vec<Slab<'_>> = contents.variables.iter().map(|v| slab(contents, v)).collect();
+    let wide = slabs.iter().any(|slab| slab.bytes > LARGEST);
+    write_slabs(contents, &slabs, wide, file)
+}
+
+fn write_slabs(
+    contents: &Contents<'_>,
+    slabs: &[Slab<'_>],
+    wide: bool,
+    file: &mut impl Write,
+) -> Result<(), WriteError> {
+    // The header's length does not depend on the offsets in it.
+    let zeros = vec![0; slabs.len()];
+    let mut end = header(contents, slabs, wide, &zeros).len() as u64;
+    let mut begins = zeros;
+    for record in [false, true] {
+        for (slab, begin) in slabs.iter().zip(&mut begins).filter(|(slab, _)| slab.record == record) {
+            *begin = end;
+            end += padded(slab.bytes);
+        }
+    }
+    file.write_all(&header(contents, slabs, wide, &begins))?;
+    for slab in slabs.iter().filter(|slab| !slab.record) {
+        write_slab(contents, slab, 0, file)?;
+    }
+    for n in 0..contents.instants.len() {
+        for slab in slabs.iter().filter(|slab| slab.record) {
+            write_slab(contents, slab, n, file)?;
+        }
+    }
+    Ok(())
+}
+
+fn slab<'a>(contents: &Contents<'_>, variable: &'a Variable) -> Slab<'a> {
+    let kind = match &variable.data {
+        Data::Reals(_) | Data::InitialGap => Type::Double,
+        Data::Field(crate::store::FieldKind::Contact) => Type::Byte,
+        Data::Field(_) => Type::Double,
+        // Counts beyond 2^31 are exact as doubles up to 2^53.
+        Data::Counts(counts) if counts.iter().all(|n| i32::try_from(*n).is_ok()) => Type::Int,
+        Data::Counts(_) => Type::Double,
+    };
+    let record = variable.dimensions.first() == Some(&FIELD_TIME);
+    let lengths = variable.shape(contents).into_iter().skip(usize::from(record));
+    let bytes = lengths.fold(kind.size(), |bytes, n| bytes.saturating_mul(n as u64));
+    Slab { variable, kind, record, bytes }
+}
+
+fn padded(bytes: u64) -> u64 {
+    bytes.div_ceil(4) * 4
+}
+
+fn write_slab(
+    contents: &Contents<'_>,
+    slab: &Slab<'_>,
+    n: usize,
+    file: &mut impl Write,
+) -> Result<(), WriteError> {
+    let part = |length: usize| if slab.record { n..n + 1 } else { 0..length };
+    match &slab.variable.data {
+        Data::Reals(reals) => {
+            for x in &reals[part(reals.len())] {
+                file.write_all(&x.to_be_bytes())?;
+            }
+        }
+        Data::Counts(counts) => {
+            for count in &counts[part(counts.len())] {
+                match (slab.kind, i32::try_from(*count)) {
+                    (Type::Int, Ok(count)) => file.write_all(&count.to_be_bytes())?,
+                    _ => file.write_all(&(*count as f64).to_be_bytes())?,
+                }
+            }
+        }
+        data => match contents.map(data, n)? {
+            Some(Map::Real(map)) => {
+                for x in &map {
+                    file.write_all(&x.to_be_bytes())?;
+                }
+            }
+            Some(Map::Byte(map)) => {
+                for cell in &map {
+                    file.write_all(&[*cell])?;
+                }
+            }
+            None => {}
+        },
+    }
+    let padding = (padded(slab.bytes) - slab.bytes) as usize;
+    Ok(file.write_all(&[0; 4][..padding])?)
+}
+
+fn header(contents: &Contents<'_>, slabs: &[Slab<'_>], wide: bool, begins: &[u64]) -> Vec<u8> {
+    let mut header = Header { bytes: vec![b'C', b'D', b'F', if wide { 5 } else { 2 }], wide };
+    header.size(contents.instants.len() as u64);
+    header.list(DIMENSION, contents.dimensions.len());
+    for (index, (name, length)) in contents.dimensions.iter().enumerate() {
+        header.text(name);
+        header.size(if index == FIELD_TIME { 0 } else { *length as u64 }); // 0: along the records
+    }
+    header.list(ATTRIBUTE, contents.attributes.len());
+    for (name, attribute) in &contents.attributes {
+        header.attribute(name, attribute);
+    }
+    header.list(VARIABLE, slabs.len());
+    for (slab, begin) in slabs.iter().zip(begins) {
+        let variable = slab.variable;
+        header.text(variable.name);
+        header.size(variable.dimensions.len() as u64);
+        variable.dimensions.iter().for_each(|d| header.size(*d as u64));
+        header.list(ATTRIBUTE, 2);
+        header.attribute("units", &Attribute::Text(variable.units.into()));
+        header.attribute("long_name", &Attribute::Text(variable.long_name.into()));
+        header.tag(slab.kind as u32);
+        header.size(padded(slab.bytes));
+        header.bytes.extend(begin.to_be_bytes());
+    }
+    header.bytes
+}
+
+struct Header {
+    bytes: Vec<u8>,
+    wide: bool,
+}
+
+impl Header {
+    fn tag(&mut self, tag: u32) {
+        self.bytes.extend(tag.to_be_bytes());
+    }
+
+    /// A count or length: 32 bits, 64 in the wide form.
+    fn size(&mut self, size: u64) {
+        if self.wide {
+            self.bytes.extend(size.to_be_bytes());
+        } else {
+            self.tag(u32::try_from(size).unwrap_or(u32::MAX));
+        }
+    }
+
+    fn list(&mut self, tag: u32, length: usize) {
+        self.tag(if length == 0 { 0 } else { tag });
+        self.size(length as u64);
+    }
+
+    fn text(&mut self, text: &str) {
+        self.size(text.len() as u64);
+        self.padded(text.as_bytes());
+    }
+
+    fn padded(&mut self, bytes: &[u8]) {
+        self.bytes.extend(bytes);
+        self.bytes.resize(self.bytes.len().next_multiple_of(4), 0);
+    }
+
+    fn attribute(&mut self, name: &str, attribute: &Attribute) {
+        self.text(name);
+        let doubles =
+            |values: &mut dyn Iterator<Item = f64>| values.flat_map(f64::to_be_bytes).collect::<Vec<u8>>();
+        let (kind, length, bytes) = match attribute {
+            Attribute::Text(text) => (Type::Char, text.len(), text.as_bytes().to_vec()),
+            Attribute::Reals(reals) => (Type::Double, reals.len(), doubles(&mut reals.iter().copied())),
+            Attribute::Counts(counts) => {
+                let ints: Option<Vec<i32>> = counts.iter().map(|n| i32::try_from(*n).ok()).collect();
+                match ints {
+                    Some(ints) => {
+                        (Type::Int, ints.len(), ints.into_iter().flat_map(i32::to_be_bytes).collect())
+                    }
+                    None => (Type::Double, counts.len(), doubles(&mut counts.iter().map(|n| *n as f64))),
+                }
+            }
+        };
+        self.tag(kind as u32);
+        self.size(length as u64);
+        self.padded(&bytes);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::{At, Field, FieldKind, Header as ResultHeader, Reader, Row, Writer};
+    use ndarray::{Array2, Axis};
+    use netcdf_reader::NcFile;
+
+    /// Maps beyond 4 GiB would take hours to test with; their form does not depend on the size.
+    #[test]
+    fn the_wide_form_holds_the_same_numbers() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("result.zarr");
+        let grid = asperity::Grid::new([5, 3], [1.0, 1.0]).unwrap();
+        let header = ResultHeader {
+            title: "t".into(),
+            case_text: "c".into(),
+            version: "0".into(),
+            grid,
+            fields: vec![FieldKind::Pressure, FieldKind::Contact],
+            rows_expected: None,
+            setup: Default::default(),
+        };
+        let mut writer = Writer::create(&path, &header, Array2::zeros((5, 3)).view(), false).unwrap();
+        for step in 0..3 {
+            let pressure = Array2::from_shape_fn((5, 3), |(i, j)| (step * 15 + i * 3 + j) as f64 / 3.0);
+            let contact = Array2::from_elem((5, 3), step as u8);
+            let fields = [Field::Pressure(pressure.view()), Field::Contact(contact.view())];
+            writer.append(&Row { time: step as f64, ..Row::default() }, &fields).unwrap();
+        }
+        let reader = Reader::open(&path).unwrap();
+        let contents = Contents::new(&reader, &header.fields, vec![0, 1, 2]).ok().unwrap();
+        let slabs: Vec<Slab<'_>> = contents.variables.iter().map(|v| slab(&contents, v)).collect();
+        let mut bytes = Vec::new();
+        assert!(write_slabs(&contents, &slabs, true, &mut bytes).is_ok());
+        assert_eq!(&bytes[..4], b"CDF\x05");
+        let file = NcFile::from_bytes(&bytes).unwrap();
+        let pressure = file.read_variable::<f64>("pressure").unwrap();
+        let contact = file.read_variable_as_f64("contact").unwrap();
+        for n in 0..3 {
+            let at = At::Index(n);
+            let map = |array: &ndarray::ArrayD<f64>| array.index_axis(Axis(0), n).to_owned();
+            assert_eq!(map(&pressure), reader.field(FieldKind::Pressure, at).unwrap().into_dyn());
+            assert_eq!(map(&contact), reader.field(FieldKind::Contact, at).unwrap().into_dyn());
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! Where an export goes: beside its path first, then renamed, so that it is whole or absent.
+
+use std::fs::{self, File};
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use super::error::{ExportError, Result, WriteError};
+
+/// The file that an export writes: buffered, and able to go back.
+pub(super) type Output = BufWriter<File>;
+
+/// Lets `write` fill the file that then appears at `path`.
+pub(super) fn file(
+    path: &Path,
+    force: bool,
+    write: impl FnOnce(&mut Output) -> Result<(), WriteError>,
+) -> Result<Vec<PathBuf>> {
+    check(path, force)?;
+    let partial = partial(path)?;
+    let file = File::create_new(&partial).map_err(|error| WriteError::Io(error).at(path))?;
+    let mut output = BufWriter::with_capacity(1 << 18, file);
+    let written =
+        write(&mut output).and_then(|()| Ok(output.flush()?)).and_then(|()| Ok(fs::rename(&partial, path)?));
+    written.map_err(|error| {
+        let _ = fs::remove_file(&partial);
+        error.at(path)
+    })?;
+    Ok(vec![path.to_owned()])
+}
+
+/// Whether a file may be made at `path`.
+pub(super) fn check(path: &Path, force: bool) -> Result<()> {
+    match fs::symlink_metadata(path) {
+        Err(_) => Ok(()),
+        Ok(found) if found.is_dir() => {
+            Err(ExportError::Foreign { path: path.to_owned(), found: "is a directory".into() })
+        }
+        Ok(_) if force => Ok(()),
+        Ok(_) => Err(ExportError::Exists { path: path.to_owned() }),
+    }
+}
+
+/// A name beside `path` for what is not finished.
+pub(super) fn partial(path: &Path) -> Result<PathBuf> {
+    let Some(name) = path.file_name() else {
+        let source = std::io::Error::from(std::io::ErrorKind::InvalidFilename);
+        return Err(ExportError::Io { path: path.to_owned(), action: "write", source });
+    };
+    let mut hidden = std::ffi::OsString::from(".");
+    hidden.push(name);
+    hidden.push(format!(".partial-{}", std::process::id()));
+    Ok(path.with_file_name(hidden))
+}

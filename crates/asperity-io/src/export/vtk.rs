@@ -1,0 +1,158 @@
+//! VTK image data for ParaView: a `.vti` file per instant, and a `.pvd` collection that gives their times.
+//!
+//! Fields are cell data, x fastest, little-endian, appended raw. What is not finite (the gap where a punch
+//! cannot touch) becomes NaN, which ParaView leaves out of its colour range. Where two instants have
+//! the same time (before and after a jump), the earlier is given the next smaller number: ParaView
+//! takes files of equal time for parts of one state.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use super::contents::{Contents, Data, Map, Variable};
+use super::error::{ExportError, Result, WriteError};
+use super::output::{self, Output};
+
+pub(super) fn export(contents: &Contents<'_>, path: &Path, force: bool) -> Result<Vec<PathBuf>> {
+    let directory = path.with_extension("");
+    if directory == path {
+        let what = "a collection whose name has no ending, as its directory needs that name".to_owned();
+        return Err(ExportError::Limit { format: "VTK", what, hint: "name it NAME.pvd" });
+    }
+    output::check(path, force)?;
+    check_directory(&directory, force)?;
+    let partial = output::partial(&directory)?;
+    let made = fs::create_dir(&partial).map_err(|error| WriteError::Io(error).at(&directory));
+    let written = made.and_then(|()| {
+        let fields: Vec<&Variable> =
+            contents.variables.iter().filter(|v| matches!(v.data, Data::Field(_))).collect();
+        for n in 0..contents.instants.len() {
+            image(contents, &partial.join(state_name(n)), &fields, n)?;
+        }
+        let gap: Vec<&Variable> =
+            contents.variables.iter().filter(|v| matches!(v.data, Data::InitialGap)).collect();
+        image(contents, &partial.join("initial_gap.vti"), &gap, 0)?;
+        if directory.exists() {
+            fs::remove_dir_all(&directory).map_err(|error| WriteError::Io(error).at(&directory))?;
+        }
+        fs::rename(&partial, &directory).map_err(|error| WriteError::Io(error).at(&directory))
+    });
+    if let Err(error) = written {
+        let _ = fs::remove_dir_all(&partial);
+        return Err(error);
+    }
+    let name = directory.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    output::file(path, force, |file| collection(contents, &name, file))?;
+    Ok(vec![path.to_owned(), directory])
+}
+
+fn state_name(n: usize) -> String {
+    format!("state_{n:04}.vti")
+}
+
+/// Whether the directory of the images may be made: absent, or with force one that holds nothing else.
+fn check_directory(directory: &Path, force: bool) -> Result<()> {
+    let Ok(found) = fs::symlink_metadata(directory) else { return Ok(()) };
+    let foreign =
+        |found: &str| Err(ExportError::Foreign { path: directory.to_owned(), found: found.to_owned() });
+    if !found.is_dir() {
+        return foreign("is not a directory");
+    }
+    if !force {
+        return Err(ExportError::Exists { path: directory.to_owned() });
+    }
+    let entries = fs::read_dir(directory).map_err(|error| WriteError::Io(error).at(directory))?;
+    for entry in entries {
+        let name = entry.map_err(|error| WriteError::Io(error).at(directory))?.file_name();
+        let ours = name.to_str().is_some_and(|name| {
+            name == "initial_gap.vti" || name.starts_with("state_") && name.ends_with(".vti")
+        });
+        if !ours {
+            return foreign(&format!("holds other files ({})", name.display()));
+        }
+    }
+    Ok(())
+}
+
+fn collection(contents: &Contents<'_>, directory: &str, file: &mut Output) -> Result<(), WriteError> {
+    writeln!(file, r#"<?xml version="1.0"?>"#)?;
+    writeln!(file, r#"<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">"#)?;
+    writeln!(file, "  <Collection>")?;
+    let mut times: Vec<f64> =
+        contents.instants.iter().map(|index| contents.reader().field_times()[*index]).collect();
+    for n in (1..times.len()).rev() {
+        if times[n - 1] == times[n] {
+            times[n - 1] = times[n].next_down();
+        }
+    }
+    for (n, time) in times.iter().enumerate() {
+        let name = escape(&format!("{directory}/{}", state_name(n)));
+        writeln!(file, r#"    <DataSet timestep="{time:e}" part="0" file="{name}"/>"#)?;
+    }
+    Ok(writeln!(file, "  </Collection>\n</VTKFile>")?)
+}
+
+fn image(contents: &Contents<'_>, path: &Path, variables: &[&Variable], n: usize) -> Result<()> {
+    let grid = &contents.reader().header().grid;
+    let write = |file: &mut Output| {
+        let [nx, ny] = grid.cells();
+        let [dx, dy] = grid.spacing();
+        let cells = (nx * ny) as u64;
+        writeln!(file, r#"<?xml version="1.0"?>"#)?;
+        writeln!(
+            file,
+            r#"<VTKFile type="ImageData" version="1.0" byte_order="LittleEndian" header_type="UInt64">"#
+        )?;
+        let extent = format!("0 {nx} 0 {ny} 0 0");
+        writeln!(
+            file,
+            r#"  <ImageData WholeExtent="{extent}" Origin="0 0 0" Spacing="{dx:e} {dy:e} {dx:e}">"#
+        )?;
+        writeln!(file, r#"    <Piece Extent="{extent}">"#)?;
+        writeln!(file, "      <CellData>")?;
+        let mut offset = 0;
+        for variable in variables {
+            let (kind, size) = match variable.data {
+                Data::Field(crate::store::FieldKind::Contact) => ("UInt8", 1),
+                _ => ("Float64", 8),
+            };
+            let (name, units) = (variable.name, variable.units);
+            writeln!(
+                file,
+                r#"        <DataArray type="{kind}" Name="{name}" format="appended" offset="{offset}">"#
+            )?;
+            writeln!(
+                file,
+                r#"          <InformationKey name="UNITS_LABEL" location="vtkDataArray">{units}</InformationKey>"#
+            )?;
+            writeln!(file, "        </DataArray>")?;
+            offset += 8 + size * cells;
+        }
+        writeln!(file, "      </CellData>\n    </Piece>\n  </ImageData>")?;
+        write!(file, "  <AppendedData encoding=\"raw\">\n_")?;
+        for variable in variables {
+            match contents.map(&variable.data, n)? {
+                Some(Map::Real(map)) => {
+                    file.write_all(&(8 * cells).to_le_bytes())?;
+                    for x in map.t() {
+                        let x = if x.is_finite() { *x } else { f64::NAN };
+                        file.write_all(&x.to_le_bytes())?;
+                    }
+                }
+                Some(Map::Byte(map)) => {
+                    file.write_all(&cells.to_le_bytes())?;
+                    for cell in map.t() {
+                        file.write_all(&[*cell])?;
+                    }
+                }
+                None => {}
+            }
+        }
+        Ok(write!(file, "\n  </AppendedData>\n</VTKFile>\n")?)
+    };
+    output::file(path, false, write).map(|_| ())
+}
+
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
+}

@@ -121,7 +121,7 @@ impl Block<'_> {
         let (kind, invalid) = match width {
             1 => (Kind::U8, f64::INFINITY),
             2 => (Kind::I16, 32766.0),
-            4 => (Kind::F32, 1e38),
+            4 => (Kind::F32, f64::from(1e38_f32)),
             other => {
                 return Err(Problem::malformed(format!("bytes per number of {what}"), other, "1, 2 or 4"));
             }

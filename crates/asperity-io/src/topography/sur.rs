@@ -249,7 +249,8 @@ impl<'a> Object<'a> {
             (None, label) => Unit::Other(label.to_owned()),
         };
         let channel = Some(names[index].clone()).filter(|n| !n.is_empty());
-        Ok(Measured { heights, unit, lateral, channel, channels: names, metadata: self.metadata })
+        let channels = if channel.is_some() { names } else { Vec::new() };
+        Ok(Measured { heights, unit, lateral, channel, channels, metadata: self.metadata })
     }
 }
 

@@ -1,0 +1,24 @@
+//! What every fuzz target of a topography reader checks.
+
+use asperity_io::topography::{Format, ReadOptions, detect, read_bytes};
+
+/// Reads `data` as this format: it must be answered, and a topography must not be larger than the file allows.
+pub fn read(format: Format, data: &[u8]) {
+    let _ = detect(data);
+    let options = ReadOptions {
+        size: Some([1.0, 1.0]),
+        height_unit: Some(1.0),
+        format: Some(format),
+        ..ReadOptions::default()
+    };
+    if let Ok(surface) = read_bytes(data, &options) {
+        assert!(surface.heights.iter().all(|h| !h.is_infinite()));
+        // Packed formats may swell 256 times beyond 64 MiB (see `unpack`); points of a list span up to 16 each.
+        let most = (64 << 20) + 256 * data.len();
+        assert!(!surface.heights.is_empty() && surface.heights.len() <= most);
+    }
+    // Nothing given: size and unit come from the file or are asked for.
+    if let Ok(surface) = read_bytes(data, &ReadOptions { format: Some(format), ..ReadOptions::default() }) {
+        assert!(surface.size.iter().all(|length| length.is_finite() && *length > 0.0));
+    }
+}

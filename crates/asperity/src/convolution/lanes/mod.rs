@@ -1,0 +1,167 @@
+//! The lane-batched back end: a vector holds the same element of several rows, or columns.
+//!
+//! Most fast Fourier transforms vectorise inside of one signal and pay with shuffles. A convolution
+//! of a field has hundreds of signals of the same length, so here every lane of a vector belongs to
+//! another one, and each runs the scalar algorithm undisturbed:
+//!
+//! 1. `rows`: a block of rows is transposed into lanes, transformed along y as packed real signals,
+//!    and transposed into blocks of columns (`work`);
+//! 2. columns (`engine`): every block is transformed along x, multiplied by the real spectrum and
+//!    transformed back while it is in the cache;
+//! 3. `rows` again, backwards.
+//!
+//! The transforms (`transform`) leave the spectrum in digit-reversed order, where the multiplier waits
+//! for it. Zero padding is never stored: the first pass of a transform takes the second half of its
+//! input as zero, the last one back computes the first half only.
+//!
+//! Every lane does the same IEEE 754 operations in the same order on all processors, fused
+//! multiply-adds included, and no sum depends on how work is shared out: results are bit-identical
+//! for all instruction sets, vector lengths and numbers of threads.
+//!
+//! # Memory
+//! For cells nx ny and lengths \[mx, my\] in scalars of s bytes: the half spectrum, nx (my + 2) s; the
+//! multiplier, 5/8 mx (my/2 + 1) s; per thread two blocks of lanes, of some 3 mx numbers each. On
+//! a free domain of N x N cells (lengths 2 N) that is 26 bytes per cell in f64 and 13 in f32; on a
+//! periodic one 10.5 and 5.25.
+//!
+//! This room is the only one with `unsafe`: the intrinsics, which need their processor; scalars seen
+//! as vectors and back; and the transposition, where threads write to rows of their own in a shared
+//! array.
+#![allow(unsafe_code)]
+
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
+mod butterfly;
+mod complex;
+mod engine;
+mod factors;
+mod lane;
+mod portable;
+mod roots;
+mod rows;
+#[cfg(test)]
+mod tests;
+mod transform;
+mod work;
+mod wrap;
+
+use ndarray::ArrayView2;
+
+use engine::{Convolve, Engine};
+use factors::{Factors, factors};
+pub use lane::Real;
+use wrap::wrapped_spectrum;
+
+/// The instructions that a plan is made of. All give the same bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Instructions {
+    /// Vectors of 512 bits (AVX-512F).
+    Avx512,
+    /// Vectors of 256 bits with fused multiply-add (AVX2, FMA).
+    Avx2,
+    /// What the compiler makes of plain Rust: NEON on aarch64. Slow on x86-64 without FMA.
+    Portable,
+}
+
+impl Instructions {
+    /// Those that this processor has, fastest first.
+    pub fn available() -> Vec<Self> {
+        let mut found = Vec::new();
+        #[cfg(target_arch = "x86_64")]
+        if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+            if is_x86_feature_detected!("avx512f") {
+                found.push(Instructions::Avx512);
+            }
+            found.push(Instructions::Avx2);
+        }
+        found.push(Instructions::Portable);
+        found
+    }
+}
+
+/// A planned convolution of real fields with a real, even spectrum, in `f64` or `f32`.
+///
+/// ```
+/// use asperity::convolution::{even_spectrum, lanes::Lanes};
+///
+/// // A kernel that only shifts nothing: K = 1 at distance 0. Its spectrum is 1.
+/// let lengths = [Lanes::<f64>::good_length(2 * 30 - 1), Lanes::<f64>::good_length(2 * 20 - 1)];
+/// let spectrum = ndarray::Array2::ones((lengths[0] / 2 + 1, lengths[1] / 2 + 1));
+/// let mut convolution = Lanes::<f64>::new([30, 20], lengths, spectrum.view());
+/// let input: Vec<f64> = (0..600).map(f64::from).collect();
+/// let mut output = vec![0.0; 600];
+/// convolution.apply_into(&input, &mut output);
+/// assert!(input.iter().zip(&output).all(|(p, u)| (p - u).abs() < 1e-12));
+/// ```
+pub struct Lanes<T> {
+    engine: Box<dyn Convolve<T>>,
+}
+
+impl<T: Real> Lanes<T> {
+    /// A length of at least `minimum` that this engine transforms fast, for padding with zeros.
+    pub fn good_length(minimum: usize) -> usize {
+        factors::good_length(minimum)
+    }
+
+    /// Plans a convolution of `cells` = \[nx, ny\], cyclic on `lengths` = \[mx, my\] cells.
+    ///
+    /// `spectrum` has the shape (mx/2 + 1, my/2 + 1): the real multiplier S(kx, ky), even in kx and
+    /// ky, for transforms without normalisation. The fastest lengths are [`Self::good_length`] and,
+    /// for periodic domains, mx = 4 * 2^a 3^b 5^c with my = 8 * 2^a 3^b 5^c; any others are wrapped
+    /// into a padded convolution, at some three times the work of a periodic one.
+    ///
+    /// # Panics
+    /// Where a length is less than its cells, a count is 0, or the spectrum has another shape.
+    pub fn new(cells: [usize; 2], lengths: [usize; 2], spectrum: ArrayView2<f64>) -> Self {
+        Self::on(Instructions::available()[0], cells, lengths, spectrum)
+    }
+
+    /// As [`Self::new`], on chosen instructions.
+    ///
+    /// # Panics
+    /// Also where the processor does not have them.
+    pub fn on(
+        instructions: Instructions,
+        cells: [usize; 2],
+        lengths: [usize; 2],
+        spectrum: ArrayView2<f64>,
+    ) -> Self {
+        assert!(Instructions::available().contains(&instructions), "{instructions:?} is not available");
+        assert!(cells[0] > 0 && cells[1] > 0 && lengths[0] >= cells[0] && lengths[1] >= cells[1]);
+        assert_eq!(spectrum.dim(), (lengths[0] / 2 + 1, lengths[1] / 2 + 1));
+        let along_y = if lengths[1].is_multiple_of(2) { factors(lengths[1] / 2) } else { None };
+        if let (Some(x), Some(y)) = (factors(lengths[0]), along_y) {
+            return Lanes { engine: plan(instructions, cells, lengths, [&x, &y], spectrum) };
+        }
+        let longer = cells.map(|n| Self::good_length(2 * n - 1));
+        let wrapped = wrapped_spectrum(cells, lengths, longer, spectrum);
+        Self::on(instructions, cells, longer, wrapped.view())
+    }
+
+    /// `output` = S * `input`; both C-order, nx ny cells.
+    ///
+    /// # Panics
+    /// Where a length is not nx ny.
+    pub fn apply_into(&mut self, input: &[T], output: &mut [T]) {
+        self.engine.apply_into(input, output);
+    }
+}
+
+/// The engine in the lanes of an instruction set that is available.
+fn plan<T: Real>(
+    instructions: Instructions,
+    cells: [usize; 2],
+    lengths: [usize; 2],
+    factors: [&Factors; 2],
+    spectrum: ArrayView2<f64>,
+) -> Box<dyn Convolve<T>> {
+    match instructions {
+        #[cfg(target_arch = "x86_64")]
+        Instructions::Avx512 => Box::new(Engine::<T::Avx512>::new(cells, lengths, factors, spectrum)),
+        #[cfg(target_arch = "x86_64")]
+        Instructions::Avx2 => Box::new(Engine::<T::Avx2>::new(cells, lengths, factors, spectrum)),
+        _ => Box::new(Engine::<T::Portable>::new(cells, lengths, factors, spectrum)),
+    }
+}

@@ -1,0 +1,218 @@
+//! The pass over rows: real signals along y to and from their half spectra.
+//!
+//! A row of my real numbers is taken as my/2 complex ones, z(j) = x(2j) + i x(2j + 1). With H = my/2
+//! and Z its transform, the spectrum of the row is, for k = 0..H,
+//!
+//! 2 X(k) = E + O, 2 X(H - k) = (E - O)*, E = Z(k) + Z*(H - k), O = -i w^k \[Z(k) - Z*(H - k)\],
+//!
+//! w = exp(-2 pi i / my) and * the complex conjugate. Both come from the same two numbers, so the
+//! columns are stored as such pairs, k = 0..=H/2: half of a block's lanes hold k, the others H - k.
+
+use super::complex::{Complex, Root, scalars, scalars_mut, transpose};
+use super::lane::{Kernel, Lane, MAX_LANES, Real};
+use super::roots::root;
+use super::transform::Transform;
+use super::work::Tiles;
+
+/// A planned pass over rows.
+pub struct Rows<T> {
+    /// Numbers in a row, ny.
+    cells: usize,
+    transform: Transform<T>,
+    /// For k = 0..=H/2.
+    pairs: Vec<Pair<T>>,
+}
+
+/// The frequencies k and H - k.
+struct Pair<T> {
+    /// Where Z(k) lies in the digit-reversed spectrum.
+    position: usize,
+    /// Where Z(H - k) lies.
+    mirror: usize,
+    /// -i w^k.
+    root: Root<T>,
+}
+
+/// The buffers of the pass.
+pub struct RowScratch<V> {
+    /// The packed rows.
+    signal: Vec<Complex<V>>,
+    /// Their transform.
+    spectrum: Vec<Complex<V>>,
+}
+
+impl<T: Real> Rows<T> {
+    /// Rows of `cells` numbers, transformed with 2 H = twice the transform's length.
+    pub fn new(cells: usize, transform: Transform<T>) -> Self {
+        let half = transform.length();
+        let positions = transform.positions();
+        let pairs = (0..=half / 2)
+            .map(|k| Pair {
+                position: positions[k],
+                mirror: positions[(half - k) % half],
+                root: root(k + half / 2, 2 * half),
+            })
+            .collect();
+        Rows { cells, transform, pairs }
+    }
+
+    /// ny.
+    pub fn cells(&self) -> usize {
+        self.cells
+    }
+
+    /// How many blocks of columns there are for that many lanes.
+    pub fn column_blocks(&self, lanes: usize) -> usize {
+        self.pairs.len().div_ceil(lanes / 2)
+    }
+
+    /// The frequency of a column, by block and lane; `None` where the lane is not used.
+    pub fn frequency(&self, block: usize, lane: usize, lanes: usize) -> Option<usize> {
+        let k = block * (lanes / 2) + lane % (lanes / 2);
+        let mirrored = lane >= lanes / 2;
+        (k < self.pairs.len()).then_some(if mirrored { self.transform.length() - k } else { k })
+    }
+
+    pub fn scratch<V: Lane<Scalar = T>>(&self) -> RowScratch<V> {
+        let packed = self.cells.div_ceil(V::LANES) * (V::LANES / 2);
+        RowScratch {
+            signal: vec![Complex::zero(); packed.max(self.transform.signal_length())],
+            spectrum: vec![Complex::zero(); self.transform.length()],
+        }
+    }
+
+    /// signal\[j\] = x(2j) + i x(2j + 1), zero beyond ny, row n of `rows` in lane n.
+    #[inline(always)]
+    fn pack<V: Lane<Scalar = T>>(&self, rows: &[T], signal: &mut [Complex<V>]) {
+        let (ny, lanes) = (self.cells, V::LANES);
+        let full = rows.len() == lanes * ny;
+        for (start, numbers) in (0..ny).step_by(lanes).zip(signal.chunks_exact_mut(lanes / 2)) {
+            let tile = scalars_mut(numbers);
+            if full && start + lanes <= ny {
+                V::transpose(&rows[start..], ny, tile, lanes);
+            } else {
+                let end = (start + lanes).min(ny);
+                tile.fill(T::default());
+                for (lane, row) in rows.chunks_exact(ny).enumerate() {
+                    for (j, x) in row[start..end].iter().enumerate() {
+                        tile[j * lanes + lane] = *x;
+                    }
+                }
+            }
+        }
+        let packed = ny.div_ceil(lanes) * (lanes / 2);
+        signal[packed..].fill(Complex::zero());
+    }
+
+    /// The way back of [`Rows::pack`].
+    #[inline(always)]
+    fn unpack<V: Lane<Scalar = T>>(&self, signal: &[Complex<V>], rows: &mut [T]) {
+        let (ny, lanes) = (self.cells, V::LANES);
+        let full = rows.len() == lanes * ny;
+        for (start, numbers) in (0..ny).step_by(lanes).zip(signal.chunks_exact(lanes / 2)) {
+            let tile = scalars(numbers);
+            if full && start + lanes <= ny {
+                V::transpose(tile, lanes, &mut rows[start..], ny);
+            } else {
+                let end = (start + lanes).min(ny);
+                for (lane, row) in rows.chunks_exact_mut(ny).enumerate() {
+                    for (j, x) in row[start..end].iter_mut().enumerate() {
+                        *x = tile[j * lanes + lane];
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl<T: Real> Pair<T> {
+    /// 2 X(k) and 2 X(H - k), from Z.
+    #[inline(always)]
+    fn spectra<V: Lane<Scalar = T>>(&self, z: &[Complex<V>]) -> (Complex<V>, Complex<V>) {
+        let (z, m) = (z[self.position], z[self.mirror]);
+        let even = z.plus_conjugate(m);
+        let odd = z.minus_conjugate(m).rotated(self.root);
+        (even + odd, even.conjugate_minus(odd))
+    }
+
+    /// 2 Z(k) and 2 Z(H - k), from X, into Z, real and imaginary parts exchanged.
+    #[inline(always)]
+    fn store<V: Lane<Scalar = T>>(&self, x: Complex<V>, m: Complex<V>, z: &mut [Complex<V>]) {
+        let even = x.plus_conjugate(m);
+        let odd = x.minus_conjugate(m).rotated_back(self.root);
+        z[self.mirror] = even.conjugate_minus(odd).swapped();
+        z[self.position] = (even + odd).swapped();
+    }
+}
+
+/// One block of rows, forward: `rows` into their `tiles` of the column blocks.
+pub struct ForwardRows<'a, V: Lane> {
+    pub plan: &'a Rows<V::Scalar>,
+    pub rows: &'a [V::Scalar],
+    pub tiles: Tiles<'a, V>,
+    pub scratch: &'a mut RowScratch<V>,
+}
+
+impl<V: Lane> Kernel for ForwardRows<'_, V> {
+    #[inline(always)]
+    fn run(mut self) {
+        let RowScratch { signal, spectrum } = self.scratch;
+        self.plan.pack(self.rows, signal);
+        self.plan.transform.forward(signal, spectrum);
+        let half = V::LANES / 2;
+        let mut columns = [Complex::<V>::zero(); MAX_LANES];
+        for (block, pairs) in self.plan.pairs.chunks(half).enumerate() {
+            for (lane, pair) in pairs.iter().enumerate() {
+                (columns[lane], columns[half + lane]) = pair.spectra(spectrum);
+            }
+            columns[pairs.len()..half].fill(Complex::zero());
+            columns[half + pairs.len()..].fill(Complex::zero());
+            let tile = self.tiles.tile(block);
+            if tile.len() == V::LANES {
+                transpose(&columns, tile);
+            } else {
+                let mut rows = [Complex::<V>::zero(); MAX_LANES];
+                transpose(&columns, &mut rows);
+                tile.copy_from_slice(&rows[..tile.len()]);
+            }
+        }
+    }
+}
+
+/// One block of rows, back: `rows` from their tiles of the column blocks.
+pub struct InverseRows<'a, V: Lane> {
+    pub plan: &'a Rows<V::Scalar>,
+    /// All column blocks, `stride` apart.
+    pub work: &'a [Complex<V>],
+    pub stride: usize,
+    /// The first row of the block.
+    pub start: usize,
+    pub rows: &'a mut [V::Scalar],
+    pub scratch: &'a mut RowScratch<V>,
+}
+
+impl<V: Lane> Kernel for InverseRows<'_, V> {
+    #[inline(always)]
+    fn run(self) {
+        let RowScratch { signal, spectrum } = self.scratch;
+        let half = V::LANES / 2;
+        let count = self.rows.len() / self.plan.cells;
+        let mut columns = [Complex::<V>::zero(); MAX_LANES];
+        let blocks = self.work.chunks_exact(self.stride);
+        for (pairs, block) in self.plan.pairs.chunks(half).zip(blocks) {
+            let tile = &block[self.start..self.start + count];
+            if count == V::LANES {
+                transpose(tile, &mut columns);
+            } else {
+                let mut rows = [Complex::<V>::zero(); MAX_LANES];
+                rows[..count].copy_from_slice(tile);
+                transpose(&rows, &mut columns);
+            }
+            for (lane, pair) in pairs.iter().enumerate() {
+                pair.store(columns[lane], columns[half + lane], spectrum);
+            }
+        }
+        self.plan.transform.inverse(spectrum, signal);
+        self.plan.unpack(signal, self.rows);
+    }
+}

@@ -1,0 +1,215 @@
+//! The engine against a plain two-dimensional transform, and against itself on other instructions.
+
+use ndarray::Array2;
+use proptest::prelude::*;
+use rustfft::FftPlanner;
+use rustfft::num_complex::Complex;
+
+use super::engine::{Convolve, Engine};
+use super::factors::factors;
+use super::portable::Portable;
+use super::*;
+
+/// Domains and lengths: padded, periodic, wrapped, rectangles, one cell, more lanes than cells.
+const SHAPES: [([usize; 2], [usize; 2]); 20] = [
+    ([1, 1], [1, 1]),
+    ([1, 1], [16, 16]),
+    ([1, 40], [16, 80]),
+    ([37, 1], [80, 16]),
+    ([2, 3], [16, 16]),
+    ([8, 8], [16, 16]),
+    ([9, 13], [32, 48]),
+    ([16, 16], [16, 16]),
+    ([16, 8], [16, 16]),
+    ([12, 24], [12, 24]),
+    ([20, 40], [20, 40]),
+    ([17, 33], [20, 40]),
+    ([15, 21], [15, 21]),
+    ([7, 10], [9, 11]),
+    ([33, 31], [80, 64]),
+    ([64, 64], [128, 128]),
+    ([61, 50], [144, 240]),
+    ([72, 100], [180, 200]),
+    ([90, 120], [180, 240]),
+    ([100, 200], [100, 200]),
+];
+
+/// A fixed, rough field: the fractional part of multiples of the golden ratio, minus a half.
+fn field(cells: [usize; 2]) -> Vec<f64> {
+    (1..=cells[0] * cells[1]).map(|n| (n as f64 * 0.618_033_988_749_895).fract() - 0.5).collect()
+}
+
+/// A positive spectrum that falls with the frequency and differs along the axes.
+fn spectrum([mx, my]: [usize; 2]) -> Array2<f64> {
+    Array2::from_shape_fn((mx / 2 + 1, my / 2 + 1), |(i, j)| {
+        1.0 / (0.3 + i as f64 / mx as f64 + 2.0 * j as f64 / my as f64)
+    })
+}
+
+/// The oracle: rustfft along both axes of the whole padded array.
+fn plain(cells: [usize; 2], lengths: [usize; 2], spectrum: &Array2<f64>, input: &[f64]) -> Vec<f64> {
+    let [mx, my] = lengths;
+    let mut planner = FftPlanner::new();
+    let mut array = Array2::<Complex<f64>>::zeros((mx, my));
+    for (n, x) in input.iter().enumerate() {
+        array[(n / cells[1], n % cells[1])].re = *x;
+    }
+    let mut along_both = |array: &mut Array2<Complex<f64>>, direction| {
+        for axis in [1, 0] {
+            let fft = planner.plan_fft(lengths[axis], direction);
+            for mut lane in array.lanes_mut(ndarray::Axis(axis)) {
+                let mut signal = lane.to_vec();
+                fft.process(&mut signal);
+                lane.iter_mut().zip(signal).for_each(|(z, s)| *z = s);
+            }
+        }
+    };
+    along_both(&mut array, rustfft::FftDirection::Forward);
+    for ((kx, ky), z) in array.indexed_iter_mut() {
+        *z *= spectrum[(kx.min(mx - kx), ky.min(my - ky))] / (mx * my) as f64;
+    }
+    along_both(&mut array, rustfft::FftDirection::Inverse);
+    (0..input.len()).map(|n| array[(n / cells[1], n % cells[1])].re).collect()
+}
+
+/// The largest difference, relative to the largest value.
+fn error(found: &[f64], expected: &[f64]) -> f64 {
+    let largest = expected.iter().fold(0.0_f64, |m, e| m.max(e.abs()));
+    found.iter().zip(expected).fold(0.0_f64, |m, (f, e)| m.max((f - e).abs())) / largest
+}
+
+fn on_threads<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> R {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(work)
+}
+
+fn apply<T: Real>(mut convolution: Lanes<T>, input: &[T]) -> Vec<T> {
+    let mut output = vec![T::nearest(f64::NAN); input.len()];
+    convolution.apply_into(input, &mut output);
+    output
+}
+
+#[test]
+fn equals_the_plain_transform_on_any_shape() {
+    for (cells, lengths) in SHAPES {
+        let (input, spectrum) = (field(cells), spectrum(lengths));
+        let exact = plain(cells, lengths, &spectrum, &input);
+        for instructions in Instructions::available() {
+            let found = apply(Lanes::on(instructions, cells, lengths, spectrum.view()), &input);
+            let error = error(&found, &exact);
+            // Rounding of a transform: a few 2^-53 per pass, some ten passes in all.
+            assert!(error < 4e-15, "{instructions:?} {cells:?} {lengths:?}: {error:e}");
+            let single: Vec<f32> = input.iter().map(|x| *x as f32).collect();
+            let found = apply(Lanes::on(instructions, cells, lengths, spectrum.view()), &single);
+            let found: Vec<f64> = found.into_iter().map(f64::from).collect();
+            let error = self::error(&found, &exact);
+            // The same with 2^-24.
+            assert!(error < 2e-6, "{instructions:?} {cells:?} {lengths:?} in f32: {error:e}");
+        }
+    }
+}
+
+/// The bits of a convolution on every instruction set and number of threads, all of which must agree.
+fn assert_same_bits<T: Real>(cells: [usize; 2], lengths: [usize; 2], bits: impl Fn(T) -> u64 + Sync) {
+    let (input, spectrum) = (field(cells), spectrum(lengths));
+    let input: Vec<T> = input.into_iter().map(T::nearest).collect();
+    let run = |instructions, threads| -> Vec<u64> {
+        on_threads(threads, || {
+            let convolution = Lanes::on(instructions, cells, lengths, spectrum.view());
+            apply(convolution, &input).into_iter().map(&bits).collect()
+        })
+    };
+    let portable = run(Instructions::Portable, 1);
+    for instructions in Instructions::available() {
+        for threads in [1, 2, 3] {
+            assert!(
+                run(instructions, threads) == portable,
+                "{instructions:?} on {threads} threads, {cells:?} of {lengths:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn has_the_same_bits_on_all_instructions_and_threads() {
+    for (cells, lengths) in SHAPES {
+        assert_same_bits::<f64>(cells, lengths, f64::to_bits);
+        assert_same_bits::<f32>(cells, lengths, |x| u64::from(x.to_bits()));
+    }
+}
+
+#[test]
+fn has_the_same_bits_for_any_number_of_lanes() {
+    fn run<const N: usize>(cells: [usize; 2], lengths: [usize; 2]) -> Vec<u64> {
+        let (x, y) = (factors(lengths[0]).unwrap(), factors(lengths[1] / 2).unwrap());
+        let spectrum = spectrum(lengths);
+        let mut engine = Engine::<Portable<f64, N>>::new(cells, lengths, [&x, &y], spectrum.view());
+        let mut output = vec![0.0; cells[0] * cells[1]];
+        engine.apply_into(&field(cells), &mut output);
+        output.into_iter().map(f64::to_bits).collect()
+    }
+    for (cells, lengths) in [([33, 31], [80, 64]), ([20, 40], [20, 40])] {
+        let two = run::<2>(cells, lengths);
+        assert_eq!(run::<4>(cells, lengths), two);
+        assert_eq!(run::<16>(cells, lengths), two);
+    }
+}
+
+#[test]
+fn a_plan_can_be_used_again_and_on_more_threads_than_it_was_made_for() {
+    let (cells, lengths) = ([61, 50], [144, 240]);
+    let spectrum = spectrum(lengths);
+    let mut convolution = on_threads(1, || Lanes::<f64>::new(cells, lengths, spectrum.view()));
+    let other: Vec<f64> = field(cells).iter().map(|x| 1.0 / x).collect();
+    let mut output = vec![0.0; other.len()];
+    convolution.apply_into(&other, &mut output);
+    let again = on_threads(3, || {
+        let mut output = vec![0.0; other.len()];
+        convolution.apply_into(&field(cells), &mut output);
+        output
+    });
+    assert_eq!(again, apply(Lanes::new(cells, lengths, spectrum.view()), &field(cells)));
+}
+
+#[test]
+fn zero_gives_zero_and_one_cell_its_response() {
+    let (cells, lengths) = ([24, 40], [48, 80]);
+    let spectrum = spectrum(lengths);
+    let zero = vec![0.0; 24 * 40];
+    assert_eq!(apply(Lanes::<f64>::new(cells, lengths, spectrum.view()), &zero), zero);
+    // A unit in a corner shows the kernel, which is the transform of the spectrum.
+    let mut unit = zero;
+    unit[0] = 1.0;
+    let response = apply(Lanes::<f64>::new(cells, lengths, spectrum.view()), &unit);
+    let kernel = crate::convolution::even_spectrum(&spectrum, lengths) / (48.0 * 80.0);
+    let exact: Vec<f64> = kernel.slice(ndarray::s![..24, ..40]).iter().copied().collect();
+    assert!(error(&response, &exact) < 4e-15);
+}
+
+proptest! {
+    // Each case is a few thousand cells, so some hundred stay within seconds.
+    #![proptest_config(ProptestConfig::with_cases(96))]
+
+    #[test]
+    fn equals_the_plain_transform_on_random_shapes(
+        nx in 1_usize..90,
+        ny in 1_usize..90,
+        extra_x in 0_usize..100,
+        extra_y in 0_usize..100,
+        good in any::<bool>(),
+        values in proptest::collection::vec(-1.0..1.0, 8100),
+    ) {
+        let cells = [nx, ny];
+        let lengths = if good {
+            cells.map(|n| Lanes::<f64>::good_length(2 * n - 1))
+        } else {
+            [nx + extra_x, ny + extra_y]
+        };
+        let spectrum = spectrum(lengths);
+        let input = &values[..nx * ny];
+        let exact = plain(cells, lengths, &spectrum, input);
+        let found = apply(Lanes::new(cells, lengths, spectrum.view()), input);
+        let error = error(&found, &exact);
+        // As above; a wrapped kernel adds the rounding of two more transforms.
+        prop_assert!(error < 1e-14, "{cells:?} {lengths:?}: {error:e}");
+    }
+}

@@ -1,0 +1,65 @@
+//! The half spectrum between the passes: complex numbers in blocks of LANES columns, each block the
+//! nx rows of its columns one after the other.
+//!
+//! The pass over columns takes one block after the other; a block of rows writes a tile, its rows,
+//! into every block of columns.
+
+use std::marker::PhantomData;
+
+use super::complex::Complex;
+
+/// Bytes between the end of a block and the start of the next: with a power of two of rows the tiles
+/// of one block of rows would otherwise fall into the same sets of the cache.
+const PADDING: usize = 1088;
+
+/// From block to block, in complex numbers.
+pub fn block_stride<V>(rows: usize) -> usize {
+    rows + PADDING.div_ceil(size_of::<Complex<V>>())
+}
+
+/// The tiles of all blocks of rows, to be written by several threads.
+pub struct SharedTiles<'a, V> {
+    start: *mut Complex<V>,
+    length: usize,
+    stride: usize,
+    work: PhantomData<&'a mut [Complex<V>]>,
+}
+
+// SAFETY: what is shared is the right to call `of_rows`, whose caller keeps the rows apart.
+unsafe impl<V: Send> Sync for SharedTiles<'_, V> {}
+
+/// The tiles of one block of rows, one in every block of columns.
+pub struct Tiles<'a, V> {
+    start: *mut Complex<V>,
+    length: usize,
+    stride: usize,
+    first: usize,
+    count: usize,
+    work: PhantomData<&'a mut [Complex<V>]>,
+}
+
+impl<'a, V> SharedTiles<'a, V> {
+    pub fn new(work: &'a mut [Complex<V>], stride: usize) -> Self {
+        SharedTiles { start: work.as_mut_ptr(), length: work.len(), stride, work: PhantomData }
+    }
+
+    /// The tiles of rows `first`..`first + count`.
+    ///
+    /// # Safety
+    /// No row may belong to two values that are alive at the same time.
+    pub unsafe fn of_rows(&self, first: usize, count: usize) -> Tiles<'a, V> {
+        assert!(first + count <= self.stride);
+        Tiles { start: self.start, length: self.length, stride: self.stride, first, count, work: PhantomData }
+    }
+}
+
+impl<V> Tiles<'_, V> {
+    /// The rows of a block of columns.
+    #[inline(always)]
+    pub fn tile(&mut self, block: usize) -> &mut [Complex<V>] {
+        let offset = block * self.stride + self.first;
+        assert!(offset + self.count <= self.length);
+        // SAFETY: inside of the borrowed work array; these rows are this value's alone.
+        unsafe { std::slice::from_raw_parts_mut(self.start.add(offset), self.count) }
+    }
+}

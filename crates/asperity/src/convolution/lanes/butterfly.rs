@@ -158,7 +158,7 @@ mod tests {
 
     use super::*;
 
-    type Number = Complex<Portable<f64, 2>>;
+    type Number = Complex<Portable<f64, 4>>;
 
     fn number(re: f64, im: f64) -> Number {
         Complex { re: Portable::splat(re), im: Portable::splat(im) }
@@ -166,7 +166,7 @@ mod tests {
 
     fn parts(z: &Number) -> (f64, f64) {
         let scalars = super::super::complex::scalars(std::slice::from_ref(z));
-        (scalars[0], scalars[2])
+        (scalars[0], scalars[4])
     }
 
     fn sample<const R: usize>() -> [Number; R] {

@@ -4,9 +4,9 @@ use std::ops::{Add, Sub};
 
 use super::lane::Lane;
 
-/// re + i im, in every lane.
+/// re + i im, in every lane. Whole cache lines.
 #[derive(Clone, Copy)]
-#[repr(C)]
+#[repr(C, align(64))]
 pub struct Complex<V> {
     pub re: V,
     pub im: V,
@@ -127,6 +127,7 @@ impl<V: Lane> Complex<V> {
 /// The scalars of `numbers`: all lanes of one real part, all lanes of its imaginary part, and so on.
 #[inline(always)]
 pub fn scalars<V: Lane>(numbers: &[Complex<V>]) -> &[V::Scalar] {
+    const { assert!(size_of::<Complex<V>>() == 2 * V::LANES * size_of::<V::Scalar>(), "padded") };
     // SAFETY: a Complex is two V one after the other, and a V has the layout of LANES scalars.
     unsafe { std::slice::from_raw_parts(numbers.as_ptr().cast(), 2 * V::LANES * numbers.len()) }
 }
@@ -134,6 +135,7 @@ pub fn scalars<V: Lane>(numbers: &[Complex<V>]) -> &[V::Scalar] {
 /// As [`scalars`], to write.
 #[inline(always)]
 pub fn scalars_mut<V: Lane>(numbers: &mut [Complex<V>]) -> &mut [V::Scalar] {
+    const { assert!(size_of::<Complex<V>>() == 2 * V::LANES * size_of::<V::Scalar>(), "padded") };
     // SAFETY: as in `scalars`; any bit pattern of V is valid; the borrow is exclusive.
     unsafe { std::slice::from_raw_parts_mut(numbers.as_mut_ptr().cast(), 2 * V::LANES * numbers.len()) }
 }

@@ -8,9 +8,10 @@ use rayon::prelude::*;
 use super::complex::Complex;
 use super::factors::Factors;
 use super::lane::{Kernel, Lane, Real};
-use super::rows::{ForwardRows, InverseRows, RowScratch, Rows};
+use super::prefetch::Ahead;
+use super::rows::{ForwardRows, InverseRows, Rows};
 use super::transform::Transform;
-use super::work::{SharedTiles, block_stride};
+use super::work::{Scratch, SharedTiles, block_stride};
 
 /// A planned convolution in lanes of one kind.
 pub struct Engine<V: Lane> {
@@ -27,18 +28,6 @@ pub struct Engine<V: Lane> {
     scratch: Vec<Mutex<Scratch<V>>>,
 }
 
-/// The buffers of one thread.
-struct Scratch<V> {
-    row: RowScratch<V>,
-    column: ColumnScratch<V>,
-}
-
-struct ColumnScratch<V> {
-    /// What the work array lacks of the transform's signal.
-    margin: Vec<Complex<V>>,
-    transform: Vec<Complex<V>>,
-}
-
 impl<V: Lane> Engine<V> {
     /// See [`super::Lanes::new`]; the factors are those of mx and my/2.
     pub fn new(
@@ -49,20 +38,16 @@ impl<V: Lane> Engine<V> {
     ) -> Self {
         let [nx, ny] = cells;
         let [mx, my] = lengths;
-        let row_plan = Rows::new(ny, Transform::new(along_y, 2 * ny <= my));
+        let row_plan = Rows::new(ny, Transform::new(along_y, 2 * ny <= my), V::LANES);
         let column_plan = Transform::new(along_x, 2 * nx <= mx);
-        let blocks = row_plan.column_blocks(V::LANES);
+        let spectrum = blocked_spectrum(lengths, &row_plan, &column_plan, spectrum);
+        let blocks = spectrum.len() / column_plan.mirrored_length();
         let stride = block_stride::<V>(nx);
-        let scratch = || Scratch {
-            row: row_plan.scratch(),
-            column: ColumnScratch {
-                margin: vec![Complex::zero(); column_plan.signal_length()],
-                transform: vec![Complex::zero(); mx],
-            },
-        };
+        let [packed, half] = row_plan.scratch(V::LANES);
+        let scratch = || Scratch::new(packed.max(column_plan.signal_length()), half.max(mx));
         Engine {
             rows: nx,
-            spectrum: blocked_spectrum(lengths, &row_plan, &column_plan, spectrum),
+            spectrum,
             work: vec![Complex::zero(); blocks * stride],
             stride,
             scratch: (0..rayon::current_num_threads()).map(|_| Mutex::new(scratch())).collect(),
@@ -87,13 +72,12 @@ fn blocked_spectrum<V: Lane>(
     for (kx, position) in column_plan.positions().into_iter().enumerate() {
         frequencies[position] = kx.min(mx - kx);
     }
-    let mut blocked = vec![V::splat(V::Scalar::default()); row_plan.column_blocks(V::LANES) * stored];
-    blocked.par_chunks_mut(stored).enumerate().for_each(|(block, blocked)| {
+    let columns = row_plan.frequencies(V::LANES);
+    let mut blocked = vec![V::splat(V::Scalar::default()); columns.len() / V::LANES * stored];
+    blocked.par_chunks_mut(stored).zip(columns.par_chunks(V::LANES)).for_each(|(blocked, columns)| {
         for (lanes, kx) in blocked.iter_mut().zip(&frequencies) {
-            for (lane, s) in lanes.scalars_mut().iter_mut().enumerate() {
-                if let Some(ky) = row_plan.frequency(block, lane, V::LANES) {
-                    *s = V::Scalar::nearest(spectrum[(*kx, ky)] * scale);
-                }
+            for (s, ky) in lanes.scalars_mut().iter_mut().zip(columns) {
+                *s = V::Scalar::nearest(spectrum[(*kx, *ky)] * scale);
             }
         }
     });
@@ -104,15 +88,21 @@ fn blocked_spectrum<V: Lane>(
 struct Columns<'a, V: Lane> {
     plan: &'a Transform<V::Scalar>,
     columns: &'a mut [Complex<V>],
+    stride: usize,
     spectrum: &'a [V],
-    scratch: &'a mut ColumnScratch<V>,
+    scratch: &'a mut Scratch<V>,
 }
 
 impl<V: Lane> Kernel for Columns<'_, V> {
     #[inline(always)]
     fn run(self) {
-        let ColumnScratch { margin, transform } = self.scratch;
-        self.plan.convolve(self.columns, margin, transform, self.spectrum);
+        let (margin, transform) = self.scratch.buffers(self.plan.signal_length(), self.plan.length());
+        // A vector on the stack aligns it, and with it whatever the butterflies spill.
+        std::hint::black_box(&Complex::<V>::zero());
+        // The block that follows is likely the next of this thread.
+        let following = self.columns.as_ptr().wrapping_add(self.stride);
+        let mut ahead = Ahead::of(following, self.columns.len(), self.plan.steps());
+        self.plan.convolve(self.columns, margin, transform, self.spectrum, &mut ahead);
     }
 }
 
@@ -134,7 +124,7 @@ impl<V: Lane> Convolve<V::Scalar> for Engine<V> {
             // SAFETY: every block of rows is visited once, and blocks have no row in common.
             let tiles = unsafe { tiles.of_rows(n * V::LANES, rows.len() / ny) };
             with(scratch, |scratch| {
-                V::vectorize(ForwardRows { plan: &self.row_plan, rows, tiles, scratch: &mut scratch.row });
+                V::vectorize(ForwardRows { plan: &self.row_plan, rows, tiles, scratch });
             });
         });
 
@@ -142,8 +132,7 @@ impl<V: Lane> Convolve<V::Scalar> for Engine<V> {
         self.work.par_chunks_mut(stride).zip(spectrum).for_each(|(columns, spectrum)| {
             let columns = &mut columns[..nx];
             with(scratch, |scratch| {
-                let scratch = &mut scratch.column;
-                V::vectorize(Columns { plan: &self.column_plan, columns, spectrum, scratch });
+                V::vectorize(Columns { plan: &self.column_plan, columns, stride, spectrum, scratch });
             });
         });
 
@@ -155,7 +144,7 @@ impl<V: Lane> Convolve<V::Scalar> for Engine<V> {
                     stride,
                     start: n * V::LANES,
                     rows,
-                    scratch: &mut scratch.row,
+                    scratch,
                 });
             });
         });

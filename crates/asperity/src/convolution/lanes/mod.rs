@@ -38,7 +38,9 @@ mod complex;
 mod engine;
 mod factors;
 mod lane;
+mod parts;
 mod portable;
+mod prefetch;
 mod roots;
 mod rows;
 #[cfg(test)]

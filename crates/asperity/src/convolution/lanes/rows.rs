@@ -7,24 +7,30 @@
 //!
 //! w = exp(-2 pi i / my) and * the complex conjugate. Both come from the same two numbers, so the
 //! columns are stored as such pairs, k = 0..=H/2: half of a block's lanes hold k, the others H - k.
+//! The last pair is repeated until it fills its block.
 
 use super::complex::{Complex, Root, scalars, scalars_mut, transpose};
 use super::lane::{Kernel, Lane, MAX_LANES, Real};
+use super::prefetch::{For, prefetch};
 use super::roots::root;
 use super::transform::Transform;
-use super::work::Tiles;
+use super::work::{Scratch, Tiles};
+
+/// Tiles are asked for so many blocks before they are needed.
+const AHEAD: usize = 4;
 
 /// A planned pass over rows.
 pub struct Rows<T> {
     /// Numbers in a row, ny.
     cells: usize,
     transform: Transform<T>,
-    /// For k = 0..=H/2.
+    /// For k = 0..=H/2, and the last again and again.
     pairs: Vec<Pair<T>>,
 }
 
 /// The frequencies k and H - k.
 struct Pair<T> {
+    k: usize,
     /// Where Z(k) lies in the digit-reversed spectrum.
     position: usize,
     /// Where Z(H - k) lies.
@@ -33,21 +39,16 @@ struct Pair<T> {
     root: Root<T>,
 }
 
-/// The buffers of the pass.
-pub struct RowScratch<V> {
-    /// The packed rows.
-    signal: Vec<Complex<V>>,
-    /// Their transform.
-    spectrum: Vec<Complex<V>>,
-}
-
 impl<T: Real> Rows<T> {
-    /// Rows of `cells` numbers, transformed with 2 H = twice the transform's length.
-    pub fn new(cells: usize, transform: Transform<T>) -> Self {
+    /// Rows of `cells` numbers, transformed with 2 H = twice the transform's length, for vectors of
+    /// that many lanes.
+    pub fn new(cells: usize, transform: Transform<T>, lanes: usize) -> Self {
         let half = transform.length();
         let positions = transform.positions();
-        let pairs = (0..=half / 2)
+        let pairs = (0..(half / 2 + 1).next_multiple_of(lanes / 2))
+            .map(|k| k.min(half / 2))
             .map(|k| Pair {
+                k,
                 position: positions[k],
                 mirror: positions[(half - k) % half],
                 root: root(k + half / 2, 2 * half),
@@ -61,24 +62,19 @@ impl<T: Real> Rows<T> {
         self.cells
     }
 
-    /// How many blocks of columns there are for that many lanes.
-    pub fn column_blocks(&self, lanes: usize) -> usize {
-        self.pairs.len().div_ceil(lanes / 2)
+    /// The frequencies of the columns, lane by lane, block by block.
+    pub fn frequencies(&self, lanes: usize) -> Vec<usize> {
+        let half = self.transform.length();
+        let block = |pairs: &[Pair<T>]| -> Vec<usize> {
+            pairs.iter().map(|pair| pair.k).chain(pairs.iter().map(|pair| half - pair.k)).collect()
+        };
+        self.pairs.chunks_exact(lanes / 2).flat_map(block).collect()
     }
 
-    /// The frequency of a column, by block and lane; `None` where the lane is not used.
-    pub fn frequency(&self, block: usize, lane: usize, lanes: usize) -> Option<usize> {
-        let k = block * (lanes / 2) + lane % (lanes / 2);
-        let mirrored = lane >= lanes / 2;
-        (k < self.pairs.len()).then_some(if mirrored { self.transform.length() - k } else { k })
-    }
-
-    pub fn scratch<V: Lane<Scalar = T>>(&self) -> RowScratch<V> {
-        let packed = self.cells.div_ceil(V::LANES) * (V::LANES / 2);
-        RowScratch {
-            signal: vec![Complex::zero(); packed.max(self.transform.signal_length())],
-            spectrum: vec![Complex::zero(); self.transform.length()],
-        }
+    /// Lengths of the buffers: the packed rows and their transform.
+    pub fn scratch(&self, lanes: usize) -> [usize; 2] {
+        let packed = self.cells.div_ceil(lanes) * (lanes / 2);
+        [packed.max(self.transform.signal_length()), self.transform.length()]
     }
 
     /// signal\[j\] = x(2j) + i x(2j + 1), zero beyond ny, row n of `rows` in lane n.
@@ -150,23 +146,23 @@ pub struct ForwardRows<'a, V: Lane> {
     pub plan: &'a Rows<V::Scalar>,
     pub rows: &'a [V::Scalar],
     pub tiles: Tiles<'a, V>,
-    pub scratch: &'a mut RowScratch<V>,
+    pub scratch: &'a mut Scratch<V>,
 }
 
 impl<V: Lane> Kernel for ForwardRows<'_, V> {
     #[inline(always)]
     fn run(mut self) {
-        let RowScratch { signal, spectrum } = self.scratch;
+        let [signal, spectrum] = self.plan.scratch(V::LANES);
+        let (signal, spectrum) = self.scratch.buffers(signal, spectrum);
         self.plan.pack(self.rows, signal);
         self.plan.transform.forward(signal, spectrum);
         let half = V::LANES / 2;
         let mut columns = [Complex::<V>::zero(); MAX_LANES];
-        for (block, pairs) in self.plan.pairs.chunks(half).enumerate() {
-            for (lane, pair) in pairs.iter().enumerate() {
-                (columns[lane], columns[half + lane]) = pair.spectra(spectrum);
+        for (block, pairs) in self.plan.pairs.chunks_exact(half).enumerate() {
+            for lane in 0..half {
+                (columns[lane], columns[half + lane]) = pairs[lane].spectra(spectrum);
             }
-            columns[pairs.len()..half].fill(Complex::zero());
-            columns[half + pairs.len()..].fill(Complex::zero());
+            self.tiles.prefetch(block + AHEAD);
             let tile = self.tiles.tile(block);
             if tile.len() == V::LANES {
                 transpose(&columns, tile);
@@ -188,19 +184,21 @@ pub struct InverseRows<'a, V: Lane> {
     /// The first row of the block.
     pub start: usize,
     pub rows: &'a mut [V::Scalar],
-    pub scratch: &'a mut RowScratch<V>,
+    pub scratch: &'a mut Scratch<V>,
 }
 
 impl<V: Lane> Kernel for InverseRows<'_, V> {
     #[inline(always)]
     fn run(self) {
-        let RowScratch { signal, spectrum } = self.scratch;
+        let [signal, spectrum] = self.plan.scratch(V::LANES);
+        let (signal, spectrum) = self.scratch.buffers(signal, spectrum);
         let half = V::LANES / 2;
         let count = self.rows.len() / self.plan.cells;
         let mut columns = [Complex::<V>::zero(); MAX_LANES];
         let blocks = self.work.chunks_exact(self.stride);
-        for (pairs, block) in self.plan.pairs.chunks(half).zip(blocks) {
+        for (pairs, block) in self.plan.pairs.chunks_exact(half).zip(blocks) {
             let tile = &block[self.start..self.start + count];
+            prefetch(For::Reading, tile.as_ptr().wrapping_add(AHEAD * self.stride), count);
             if count == V::LANES {
                 transpose(tile, &mut columns);
             } else {
@@ -208,8 +206,8 @@ impl<V: Lane> Kernel for InverseRows<'_, V> {
                 rows[..count].copy_from_slice(tile);
                 transpose(&rows, &mut columns);
             }
-            for (lane, pair) in pairs.iter().enumerate() {
-                pair.store(columns[lane], columns[half + lane], spectrum);
+            for lane in 0..half {
+                pairs[lane].store(columns[lane], columns[half + lane], spectrum);
             }
         }
         self.plan.transform.inverse(spectrum, signal);

@@ -13,6 +13,8 @@ use super::butterfly::{Butterfly, HalfOf, OfHalf, Whole};
 use super::complex::{Complex, Root};
 use super::factors::Factors;
 use super::lane::{Lane, Real};
+use super::parts::Parts;
+use super::prefetch::{Ahead, For, prefetch};
 use super::roots::root;
 
 /// One pass: blocks of `span` numbers, each split into `radix` parts.
@@ -86,12 +88,23 @@ impl<T: Real> Transform<T> {
         (self.first.radix / 2 + 1) * (self.length / self.first.radix)
     }
 
+    /// The span of the blocks that are finished at once.
+    #[inline(always)]
+    fn deepest(&self) -> usize {
+        self.inner.last().map_or(self.leaf, |stage| stage.span)
+    }
+
+    /// How often [`Transform::convolve`] advances what it is given to ask for.
+    pub fn steps(&self) -> usize {
+        self.length / self.deepest()
+    }
+
     /// buffer = the spectrum of `signal` (`signal_length` numbers), digit-reversed.
     #[inline(always)]
-    pub fn forward<V: Lane<Scalar = T>>(&self, signal: &[Complex<V>], buffer: &mut [Complex<V>]) {
-        self.open(signal, &[], buffer);
+    pub fn forward<V: Lane<Scalar = T>>(&self, signal: &mut [Complex<V>], buffer: &mut [Complex<V>]) {
+        self.open(signal, &mut [], buffer);
         for part in buffer.chunks_exact_mut(self.length / self.first.radix) {
-            self.descend::<V, true, false>(part, &Plain);
+            self.descend::<V, true, false>(part, &Plain, &mut Ahead::nothing());
         }
     }
 
@@ -100,7 +113,7 @@ impl<T: Real> Transform<T> {
     #[inline(always)]
     pub fn inverse<V: Lane<Scalar = T>>(&self, buffer: &mut [Complex<V>], signal: &mut [Complex<V>]) {
         for part in buffer.chunks_exact_mut(self.length / self.first.radix) {
-            self.descend::<V, false, true>(part, &Plain);
+            self.descend::<V, false, true>(part, &Plain, &mut Ahead::nothing());
         }
         self.close(buffer, signal, &mut []);
     }
@@ -108,7 +121,8 @@ impl<T: Real> Transform<T> {
     /// signal = m times the inverse of (spectrum times transform of signal), in place.
     ///
     /// `signal` may be shorter than `signal_length`; `margin` has that length and takes what is
-    /// missing; `spectrum` is real, even, digit-reversed, of `mirrored_length`.
+    /// missing; `spectrum` is real, even, digit-reversed, of `mirrored_length`; `ahead` is advanced
+    /// meanwhile.
     #[inline(always)]
     pub fn convolve<V: Lane<Scalar = T>>(
         &self,
@@ -116,6 +130,7 @@ impl<T: Real> Transform<T> {
         margin: &mut [Complex<V>],
         buffer: &mut [Complex<V>],
         spectrum: &[V],
+        ahead: &mut Ahead<Complex<V>>,
     ) {
         let radix = self.first.radix;
         let part_length = self.length / radix;
@@ -130,9 +145,9 @@ impl<T: Real> Transform<T> {
             let stored = r.min(radix - r);
             let spectrum = &spectrum[stored * part_length..][..part_length];
             if stored == r {
-                self.descend::<V, true, true>(part, &Product(spectrum));
+                self.descend::<V, true, true>(part, &Product(spectrum), ahead);
             } else {
-                self.descend::<V, true, true>(part, &MirroredProduct(spectrum));
+                self.descend::<V, true, true>(part, &MirroredProduct(spectrum), ahead);
             }
         }
         self.close(buffer, signal, margin);
@@ -146,17 +161,33 @@ impl<T: Real> Transform<T> {
     #[inline(always)]
     fn open<V: Lane<Scalar = T>>(
         &self,
-        signal: &[Complex<V>],
-        margin: &[Complex<V>],
+        signal: &mut [Complex<V>],
+        margin: &mut [Complex<V>],
         buffer: &mut [Complex<V>],
     ) {
         let length = self.length / self.first.radix;
         let roots = &self.first.roots;
         match (self.first.radix, self.half) {
-            (8, true) => first_pass::<V, OfHalf<8>, 4, 8>(parts(signal, margin, length), buffer, roots),
-            (8, false) => first_pass::<V, Whole<8>, 8, 8>(parts(signal, margin, length), buffer, roots),
-            (_, true) => first_pass::<V, OfHalf<4>, 2, 4>(parts(signal, margin, length), buffer, roots),
-            (_, false) => first_pass::<V, Whole<4>, 4, 4>(parts(signal, margin, length), buffer, roots),
+            (8, true) => first_pass::<V, OfHalf<8>, 4, 8>(
+                Parts::of_signal(signal, margin, length),
+                Parts::of(buffer),
+                roots,
+            ),
+            (8, false) => first_pass::<V, Whole<8>, 8, 8>(
+                Parts::of_signal(signal, margin, length),
+                Parts::of(buffer),
+                roots,
+            ),
+            (_, true) => first_pass::<V, OfHalf<4>, 2, 4>(
+                Parts::of_signal(signal, margin, length),
+                Parts::of(buffer),
+                roots,
+            ),
+            (_, false) => first_pass::<V, Whole<4>, 4, 4>(
+                Parts::of_signal(signal, margin, length),
+                Parts::of(buffer),
+                roots,
+            ),
         }
     }
 
@@ -164,17 +195,33 @@ impl<T: Real> Transform<T> {
     #[inline(always)]
     fn close<V: Lane<Scalar = T>>(
         &self,
-        buffer: &[Complex<V>],
+        buffer: &mut [Complex<V>],
         signal: &mut [Complex<V>],
         margin: &mut [Complex<V>],
     ) {
         let length = self.length / self.first.radix;
         let roots = &self.first.roots;
         match (self.first.radix, self.half) {
-            (8, true) => last_pass::<V, HalfOf<8>, 4, 8>(buffer, parts_mut(signal, margin, length), roots),
-            (8, false) => last_pass::<V, Whole<8>, 8, 8>(buffer, parts_mut(signal, margin, length), roots),
-            (_, true) => last_pass::<V, HalfOf<4>, 2, 4>(buffer, parts_mut(signal, margin, length), roots),
-            (_, false) => last_pass::<V, Whole<4>, 4, 4>(buffer, parts_mut(signal, margin, length), roots),
+            (8, true) => last_pass::<V, HalfOf<8>, 4, 8>(
+                Parts::of(buffer),
+                Parts::of_signal(signal, margin, length),
+                roots,
+            ),
+            (8, false) => last_pass::<V, Whole<8>, 8, 8>(
+                Parts::of(buffer),
+                Parts::of_signal(signal, margin, length),
+                roots,
+            ),
+            (_, true) => last_pass::<V, HalfOf<4>, 2, 4>(
+                Parts::of(buffer),
+                Parts::of_signal(signal, margin, length),
+                roots,
+            ),
+            (_, false) => last_pass::<V, Whole<4>, 4, 4>(
+                Parts::of(buffer),
+                Parts::of_signal(signal, margin, length),
+                roots,
+            ),
         }
     }
 
@@ -188,11 +235,13 @@ impl<T: Real> Transform<T> {
         &self,
         part: &mut [Complex<V>],
         leaf: &impl Leaf<V>,
+        ahead: &mut Ahead<Complex<V>>,
     ) {
-        let deepest = self.inner.last().map_or(self.leaf, |stage| stage.span);
+        let deepest = self.deepest();
         let mut start = 0;
         while start < part.len() {
             let end = start + deepest;
+            ahead.advance();
             if DOWN {
                 for stage in self.inner.iter().filter(|stage| start.is_multiple_of(stage.span)) {
                     decimate_in_frequency(stage, &mut part[start..start + stage.span]);
@@ -217,87 +266,39 @@ impl<T: Real> Transform<T> {
     }
 }
 
-/// The first P parts of a signal: from itself where it is long enough, else from the margin.
-#[inline(always)]
-fn parts<'a, V, const P: usize>(
-    signal: &'a [Complex<V>],
-    margin: &'a [Complex<V>],
-    length: usize,
-) -> [&'a [Complex<V>]; P] {
-    std::array::from_fn(|q| {
-        let (start, end) = (q * length, (q + 1) * length);
-        if end <= signal.len() { &signal[start..end] } else { &margin[start..end] }
-    })
-}
-
-/// As [`parts`], to write.
-#[inline(always)]
-fn parts_mut<'a, V, const P: usize>(
-    mut signal: &'a mut [Complex<V>],
-    margin: &'a mut [Complex<V>],
-    length: usize,
-) -> [&'a mut [Complex<V>]; P] {
-    let stored = (signal.len() / length).min(P);
-    let mut margin = margin.get_mut(stored * length..).unwrap_or_default();
-    std::array::from_fn(|q| {
-        let source = if q < stored { &mut signal } else { &mut margin };
-        let (part, rest) = std::mem::take(source).split_at_mut(length);
-        *source = rest;
-        part
-    })
-}
-
-/// R equal parts of a block.
-#[inline(always)]
-fn split<V, const R: usize>(mut block: &mut [Complex<V>]) -> [&mut [Complex<V>]; R] {
-    let length = block.len() / R;
-    std::array::from_fn(|_| {
-        let (part, rest) = std::mem::take(&mut block).split_at_mut(length);
-        block = rest;
-        part
-    })
-}
-
 /// y(r) = exp(-2 pi i j r / m) times the DFT of x(j + q t) over q.
 #[inline(always)]
 fn first_pass<V: Lane, B: Butterfly<V, P, R>, const P: usize, const R: usize>(
-    signal: [&[Complex<V>]; P],
-    buffer: &mut [Complex<V>],
+    signal: Parts<V, P>,
+    mut buffer: Parts<V, R>,
     roots: &[Root<V::Scalar>],
 ) {
-    let length = buffer.len() / R;
-    let parts = split::<V, R>(buffer);
-    for (j, w) in (0..length).zip(roots.chunks_exact(R - 1)) {
-        let mut x = [Complex::zero(); P];
-        for q in 0..P {
-            x[q] = signal[q][j];
-        }
-        let y = B::transform(x);
-        parts[0][j] = y[0];
+    for (j, w) in (0..signal.length()).zip(roots.chunks_exact(R - 1)) {
+        let mut y = B::transform(signal.load(j));
         for r in 1..R {
-            parts[r][j] = y[r].rotated(w[r - 1]);
+            y[r] = y[r].rotated(w[r - 1]);
         }
+        buffer.store(j, y);
     }
 }
 
 /// The way back of [`first_pass`], on exchanged parts; exchanges them for good.
 #[inline(always)]
 fn last_pass<V: Lane, B: Butterfly<V, R, P>, const P: usize, const R: usize>(
-    buffer: &[Complex<V>],
-    signal: [&mut [Complex<V>]; P],
+    buffer: Parts<V, R>,
+    mut signal: Parts<V, P>,
     roots: &[Root<V::Scalar>],
 ) {
-    let length = buffer.len() / R;
-    let parts = parts::<V, R>(buffer, &[], length);
-    for (j, w) in (0..length).zip(roots.chunks_exact(R - 1)) {
-        let mut x = [parts[0][j]; R];
+    for (j, w) in (0..signal.length()).zip(roots.chunks_exact(R - 1)) {
+        let mut x = buffer.load(j);
         for r in 1..R {
-            x[r] = parts[r][j].rotated(w[r - 1]);
+            x[r] = x[r].rotated(w[r - 1]);
         }
-        let y = B::transform(x);
+        let mut y = B::transform(x);
         for q in 0..P {
-            signal[q][j] = y[q].swapped();
+            y[q] = y[q].swapped();
         }
+        signal.store(j, y);
     }
 }
 
@@ -328,18 +329,13 @@ fn radix_down<V: Lane, const R: usize>(block: &mut [Complex<V>], roots: &[Root<V
 where
     Whole<R>: Butterfly<V, R, R>,
 {
-    let length = block.len() / R;
-    let parts = split::<V, R>(block);
-    for (j, w) in (0..length).zip(roots.chunks_exact(R - 1)) {
-        let mut x = [parts[0][j]; R];
-        for q in 1..R {
-            x[q] = parts[q][j];
-        }
-        let y = Whole::<R>::transform(x);
-        parts[0][j] = y[0];
+    let mut parts = Parts::<V, R>::of(block);
+    for (j, w) in (0..parts.length()).zip(roots.chunks_exact(R - 1)) {
+        let mut y = Whole::<R>::transform(parts.load(j));
         for r in 1..R {
-            parts[r][j] = y[r].rotated(w[r - 1]);
+            y[r] = y[r].rotated(w[r - 1]);
         }
+        parts.store(j, y);
     }
 }
 
@@ -348,17 +344,13 @@ fn radix_up<V: Lane, const R: usize>(block: &mut [Complex<V>], roots: &[Root<V::
 where
     Whole<R>: Butterfly<V, R, R>,
 {
-    let length = block.len() / R;
-    let parts = split::<V, R>(block);
-    for (j, w) in (0..length).zip(roots.chunks_exact(R - 1)) {
-        let mut x = [parts[0][j]; R];
+    let mut parts = Parts::<V, R>::of(block);
+    for (j, w) in (0..parts.length()).zip(roots.chunks_exact(R - 1)) {
+        let mut x = parts.load(j);
         for r in 1..R {
-            x[r] = parts[r][j].rotated(w[r - 1]);
+            x[r] = x[r].rotated(w[r - 1]);
         }
-        let y = Whole::<R>::transform(x);
-        for q in 0..R {
-            parts[q][j] = y[q];
-        }
+        parts.store(j, Whole::<R>::transform(x));
     }
 }
 
@@ -395,6 +387,9 @@ impl<V: Lane> Leaf<V> for Plain {
     }
 }
 
+/// The spectrum is asked for so many bytes before it is needed.
+const SPECTRUM_AHEAD: usize = 4096;
+
 /// Transform, times the spectrum, transform back on exchanged parts.
 struct Product<'a, V>(&'a [V]);
 
@@ -405,6 +400,7 @@ impl<V: Lane> Leaf<V> for Product<'_, V> {
         Whole<R>: Butterfly<V, R, R>,
     {
         let spectrum = &self.0[at..at + R];
+        prefetch(For::Reading, spectrum.as_ptr().wrapping_byte_add(SPECTRUM_AHEAD), R);
         let mut y = Whole::<R>::transform(x);
         for k in 0..R {
             y[k] = y[k].times(spectrum[k]).swapped();

@@ -1,20 +1,46 @@
-//! The half spectrum between the passes: complex numbers in blocks of LANES columns, each block the
-//! nx rows of its columns one after the other.
+//! The memory that the passes share.
 //!
-//! The pass over columns takes one block after the other; a block of rows writes a tile, its rows,
+//! The half spectrum between them: complex numbers in blocks of LANES columns, each block the
+//! nx rows of its columns one after the other. The pass over columns takes one block after the other; a block of rows writes a tile, its rows,
 //! into every block of columns.
 
 use std::marker::PhantomData;
 
 use super::complex::Complex;
+use super::lane::Lane;
+use super::prefetch::{For, prefetch};
 
-/// Bytes between the end of a block and the start of the next: with a power of two of rows the tiles
-/// of one block of rows would otherwise fall into the same sets of the cache.
-const PADDING: usize = 1088;
+/// Bytes that keep what is used together apart modulo the page of 4096 bytes. Powers of two would
+/// otherwise put it into the same sets of the cache, where it displaces itself, and a load would wait
+/// for a store of which it knows the last twelve bits of the address only.
+const STAGGER: usize = 1088;
 
 /// From block to block, in complex numbers.
 pub fn block_stride<V>(rows: usize) -> usize {
-    rows + PADDING.div_ceil(size_of::<Complex<V>>())
+    rows + STAGGER.div_ceil(size_of::<Complex<V>>())
+}
+
+/// The buffers of one thread.
+pub struct Scratch<V> {
+    numbers: Vec<Complex<V>>,
+    /// Where the second buffer starts.
+    second: usize,
+}
+
+impl<V: Lane> Scratch<V> {
+    /// A buffer for a signal and one for its transform.
+    pub fn new(signal: usize, transform: usize) -> Self {
+        let size = size_of::<Complex<V>>();
+        let second = ((signal * size).next_multiple_of(4096) + STAGGER).div_ceil(size);
+        Scratch { numbers: vec![Complex::zero(); second + transform], second }
+    }
+
+    /// The two, in these lengths.
+    #[inline(always)]
+    pub fn buffers(&mut self, signal: usize, transform: usize) -> (&mut [Complex<V>], &mut [Complex<V>]) {
+        let (first, second) = self.numbers.split_at_mut(self.second);
+        (&mut first[..signal], &mut second[..transform])
+    }
 }
 
 /// The tiles of all blocks of rows, to be written by several threads.
@@ -61,5 +87,12 @@ impl<V> Tiles<'_, V> {
         assert!(offset + self.count <= self.length);
         // SAFETY: inside of the borrowed work array; these rows are this value's alone.
         unsafe { std::slice::from_raw_parts_mut(self.start.add(offset), self.count) }
+    }
+
+    /// Asks for a tile that will be written soon.
+    #[inline(always)]
+    pub fn prefetch(&self, block: usize) {
+        let offset = block * self.stride + self.first;
+        prefetch(For::Writing, self.start.wrapping_add(offset), self.count);
     }
 }

@@ -1,7 +1,6 @@
 //! Contact of rough, linear viscoelastic bodies.
 
 pub mod contact;
-pub mod convolution;
 pub mod error;
 mod field;
 pub mod grid;
@@ -14,6 +13,8 @@ pub mod reference;
 pub mod surface;
 pub mod time;
 pub mod verification;
+
+pub use asperity_convolution as convolution;
 
 pub use contact::{ContactState, Method, Outcome, Prescribed, Problem, Solver, SolverOptions};
 pub use error::{Error, NotConverged, Result};

@@ -180,7 +180,7 @@ fn zero_gives_zero_and_one_cell_its_response() {
     let mut unit = zero;
     unit[0] = 1.0;
     let response = apply(Lanes::<f64>::new(cells, lengths, spectrum.view()), &unit);
-    let kernel = crate::convolution::even_spectrum(&spectrum, lengths) / (48.0 * 80.0);
+    let kernel = crate::even_spectrum(&spectrum, lengths) / (48.0 * 80.0);
     let exact: Vec<f64> = kernel.slice(ndarray::s![..24, ..40]).iter().copied().collect();
     assert!(error(&response, &exact) < 4e-15);
 }

@@ -86,7 +86,7 @@ impl Instructions {
 /// A planned convolution of real fields with a real, even spectrum, in `f64` or `f32`.
 ///
 /// ```
-/// use asperity::convolution::{even_spectrum, lanes::Lanes};
+/// use asperity_convolution::{even_spectrum, lanes::Lanes};
 ///
 /// // A kernel that only shifts nothing: K = 1 at distance 0. Its spectrum is 1.
 /// let lengths = [Lanes::<f64>::good_length(2 * 30 - 1), Lanes::<f64>::good_length(2 * 20 - 1)];

@@ -1,12 +1,12 @@
 //! One convolution: the lane-batched engine on every instruction set, against the rustfft form.
 //!
-//! `cargo bench -p asperity --bench convolution -- [SECONDS] [N ...]`: alternates the forms, so that a
+//! `cargo bench -p asperity-convolution --bench convolution -- [SECONDS] [N ...]`: alternates the forms, so that a
 //! busy machine slows all of them, and prints the least and the median time of each [ms].
 
 use std::time::Instant;
 
-use asperity::convolution::lanes::{Instructions, Lanes};
-use asperity::convolution::{Convolution, even_spectrum};
+use asperity_convolution::lanes::{Instructions, Lanes};
+use asperity_convolution::{Convolution, even_spectrum};
 use ndarray::Array2;
 
 type Form = (String, Box<dyn FnMut() -> f64 + Send>, Vec<f64>);
@@ -26,7 +26,7 @@ fn main() {
         let input: Vec<f64> = (0..n * n).map(|i| (i * 7919 % 1013) as f64 / 1013.0).collect();
         let single: Vec<f32> = input.iter().map(|x| *x as f32).collect();
         let mut exact = vec![0.0; n * n];
-        let mut form = Convolution::new([n, n], lengths, spectrum.view());
+        let mut form = Convolution::on_rustfft([n, n], lengths, spectrum.view());
         form.apply_into(&input, &mut exact);
         let scale = exact.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         for threads in [1, 2] {
@@ -34,7 +34,7 @@ fn main() {
             let mut forms: Vec<Form> = Vec::new();
             pool.install(|| {
                 let (input, single, exact) = (input.clone(), single.clone(), exact.clone());
-                let mut form = Convolution::new([n, n], lengths, spectrum.view());
+                let mut form = Convolution::on_rustfft([n, n], lengths, spectrum.view());
                 let (i, mut out) = (input.clone(), vec![0.0; n * n]);
                 forms.push((
                     "rustfft f64".into(),

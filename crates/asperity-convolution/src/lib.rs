@@ -14,9 +14,23 @@ mod spectrum;
 
 use ndarray::ArrayView2;
 
+use lanes::Lanes;
 pub use spectrum::even_spectrum;
 
 /// A planned convolution. Bit-identical for any number of threads; `apply_into` allocates nothing.
+///
+/// ```
+/// use asperity_convolution::{Convolution, even_spectrum};
+///
+/// // K = 1 at distance 0, 1/2 at distance 1 along x, else 0; fields of 3 x 1 cells.
+/// let lengths = [Convolution::good_length(5), Convolution::good_length(1)];
+/// let mut kernel = ndarray::Array2::zeros((lengths[0] / 2 + 1, lengths[1] / 2 + 1));
+/// (kernel[(0, 0)], kernel[(1, 0)]) = (1.0, 0.5);
+/// let spectrum = even_spectrum(&kernel, lengths);
+/// let mut u = [0.0; 3];
+/// Convolution::new([3, 1], lengths, spectrum.view()).apply_into(&[0.0, 2.0, 0.0], &mut u);
+/// assert!((u[0] - 1.0).abs() < 1e-15 && (u[1] - 2.0).abs() < 1e-15);
+/// ```
 pub struct Convolution {
     engine: Box<dyn Engine>,
 }
@@ -27,35 +41,37 @@ trait Engine: Send {
     fn apply_into(&mut self, input: &[f64], output: &mut [f64]);
 }
 
+impl Engine for Lanes<f64> {
+    fn apply_into(&mut self, input: &[f64], output: &mut [f64]) {
+        Lanes::apply_into(self, input, output);
+    }
+}
+
 impl Convolution {
-    /// Plans a convolution of `cells` = \[nx, ny\] with transforms of `lengths` = \[mx, my\].
+    /// Plans a convolution of `cells` = \[nx, ny\] with transforms of `lengths` = \[mx, my\], on the
+    /// lane-batched engine ([`lanes`]): the same bits on every processor.
     ///
     /// `spectrum` has the shape (mx/2 + 1, my/2 + 1): the real multiplier S(kx, ky), even in kx and ky.
     ///
     /// # Panics
     /// Where the shapes contradict each other: they come from the operators of this crate.
     pub fn new(cells: [usize; 2], lengths: [usize; 2], spectrum: ArrayView2<f64>) -> Self {
+        Convolution { engine: Box::new(Lanes::new(cells, lengths, spectrum)) }
+    }
+
+    /// The same on rustfft, slower and another rounding: the oracle and yardstick of the engine.
+    ///
+    /// # Panics
+    /// As [`Self::new`].
+    pub fn on_rustfft(cells: [usize; 2], lengths: [usize; 2], spectrum: ArrayView2<f64>) -> Self {
         assert!(lengths[0] >= cells[0] && lengths[1] >= cells[1]);
         assert_eq!(spectrum.dim(), (lengths[0] / 2 + 1, lengths[1] / 2 + 1));
         Convolution { engine: Box::new(pruned::Pruned::new(cells, lengths, spectrum)) }
     }
 
-    /// A length of at least `minimum` that transforms fast: the least 2^a 3^b 5^c.
+    /// A length of at least `minimum` that transforms fast.
     pub fn good_length(minimum: usize) -> usize {
-        let mut best = minimum.max(1).next_power_of_two();
-        let mut five = 1;
-        while five < best {
-            let mut three = five;
-            while three < best {
-                let length = three * minimum.div_ceil(three).max(1).next_power_of_two();
-                if length >= minimum && length < best {
-                    best = length;
-                }
-                three *= 3;
-            }
-            five *= 5;
-        }
-        best
+        Lanes::<f64>::good_length(minimum)
     }
 
     /// `output` = S * `input`; both C-order, nx ny cells.
@@ -102,12 +118,14 @@ mod tests {
             });
             let input: Vec<f64> = (0..cells[0] * cells[1]).map(|n| ((n * 37 % 11) as f64) - 4.0).collect();
             let spectrum = even_spectrum(&kernel, lengths);
-            let mut output = vec![0.0; input.len()];
-            Convolution::new(cells, lengths, spectrum.view()).apply_into(&input, &mut output);
             let exact = direct(cells, lengths, &kernel, &input);
-            for (u, e) in output.iter().zip(&exact) {
-                // sums of ~100 terms of size 5: a few roundings of that size
-                assert!((u - e).abs() < 1e-13, "{cells:?} {lengths:?}: {u} against {e}");
+            for plan in [Convolution::new, Convolution::on_rustfft] {
+                let mut output = vec![0.0; input.len()];
+                plan(cells, lengths, spectrum.view()).apply_into(&input, &mut output);
+                for (u, e) in output.iter().zip(&exact) {
+                    // sums of ~100 terms of size 5: a few roundings of that size
+                    assert!((u - e).abs() < 1e-13, "{cells:?} {lengths:?}: {u} against {e}");
+                }
             }
         }
     }
@@ -131,11 +149,11 @@ mod tests {
     }
 
     #[test]
-    fn good_lengths_are_smooth_and_least() {
-        for (minimum, length) in
-            [(1, 1), (7, 8), (17, 18), (127, 128), (129, 135), (2047, 2048), (2049, 2160)]
-        {
-            assert_eq!(Convolution::good_length(minimum), length, "for {minimum}");
+    fn good_lengths_are_no_shorter_and_little_longer() {
+        for minimum in 1..3000 {
+            let length = Convolution::good_length(minimum);
+            // 2^k {1, 3, 5}: the next such number is at most a third away; the least length is 16.
+            assert!(length >= minimum && length <= (4 * minimum / 3).max(16), "{minimum}: {length}");
         }
     }
 }

@@ -44,6 +44,20 @@ impl<V: Lane> Butterfly<V, 2, 2> for Whole<2> {
     }
 }
 
+impl<V: Lane> Butterfly<V, 1, 2> for OfHalf<2> {
+    #[inline(always)]
+    fn transform([a]: [Complex<V>; 1]) -> [Complex<V>; 2] {
+        [a, a]
+    }
+}
+
+impl<V: Lane> Butterfly<V, 2, 1> for HalfOf<2> {
+    #[inline(always)]
+    fn transform([a, b]: [Complex<V>; 2]) -> [Complex<V>; 1] {
+        [a + b]
+    }
+}
+
 impl<V: Lane> Butterfly<V, 3, 3> for Whole<3> {
     #[inline(always)]
     fn transform([a, b, c]: [Complex<V>; 3]) -> [Complex<V>; 3] {
@@ -201,6 +215,8 @@ mod tests {
 
     #[test]
     fn pruned_butterflies_are_the_defining_sum() {
+        assert_transform(&sample::<1>(), &OfHalf::<2>::transform(sample()), 2);
+        assert_transform(&sample::<2>(), &HalfOf::<2>::transform(sample()), 2);
         assert_transform(&sample::<2>(), &OfHalf::<4>::transform(sample()), 4);
         assert_transform(&sample::<4>(), &OfHalf::<8>::transform(sample()), 8);
         assert_transform(&sample::<4>(), &HalfOf::<4>::transform(sample()), 4);

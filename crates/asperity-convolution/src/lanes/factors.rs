@@ -3,7 +3,7 @@
 /// A length as a product of radices: m = first * inner * leaf.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Factors {
-    /// The radix of the pass that meets the zero padding: 8, or 4.
+    /// The radix of the pass that meets the zero padding: 8, 4, 2, 5 or 3, the first that divides.
     pub first: usize,
     /// The passes after it, longest blocks first: 3, 4, 5, 8.
     pub inner: Vec<usize>,
@@ -11,14 +11,9 @@ pub struct Factors {
     pub leaf: usize,
 }
 
-/// The radices of a length; `None` where the length is not 4 * 2^a 3^b 5^c.
+/// The radices of a length; `None` where the length is not 2^a 3^b 5^c, or is 1.
 pub fn factors(length: usize) -> Option<Factors> {
-    let first = match length {
-        0 => return None,
-        m if m.is_multiple_of(8) => 8,
-        m if m.is_multiple_of(4) => 4,
-        _ => return None,
-    };
+    let first = [8, 4, 2, 5, 3].into_iter().find(|radix| length > 0 && length.is_multiple_of(*radix))?;
     let mut rest = length / first;
     let mut powers = |prime: usize| {
         let mut power = 0;
@@ -84,7 +79,7 @@ mod tests {
                         rest /= p;
                     }
                 });
-                rest == 1 && m % 4 == 0
+                rest == 1 && m > 1
             };
             let found = factors(m);
             assert_eq!(found.is_some(), smooth, "{m}");

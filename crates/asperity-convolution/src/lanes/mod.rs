@@ -38,11 +38,13 @@ mod complex;
 mod engine;
 mod factors;
 mod lane;
+mod leaf;
 mod parts;
 mod portable;
 mod prefetch;
 mod roots;
 mod rows;
+mod stage;
 #[cfg(test)]
 mod tests;
 mod transform;
@@ -111,8 +113,8 @@ impl<T: Real> Lanes<T> {
     ///
     /// `spectrum` has the shape (mx/2 + 1, my/2 + 1): the real multiplier S(kx, ky), even in kx and
     /// ky, for transforms without normalisation. The fastest lengths are [`Self::good_length`] and,
-    /// for periodic domains, mx = 4 * 2^a 3^b 5^c with my = 8 * 2^a 3^b 5^c; any others are wrapped
-    /// into a padded convolution, at some three times the work of a periodic one.
+    /// for periodic domains, 2^a 3^b 5^c with my even; any others are wrapped into a padded
+    /// convolution, at some three times the work of a periodic one.
     ///
     /// # Panics
     /// Where a length is less than its cells, a count is 0, or the spectrum has another shape.

@@ -51,7 +51,7 @@ impl<T: Real> Rows<T> {
                 k,
                 position: positions[k],
                 mirror: positions[(half - k) % half],
-                root: root(k + half / 2, 2 * half),
+                root: root(2 * k + half, 4 * half),
             })
             .collect();
         Rows { cells, transform, pairs }

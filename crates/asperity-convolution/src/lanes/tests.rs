@@ -11,7 +11,7 @@ use super::portable::Portable;
 use super::*;
 
 /// Domains and lengths: padded, periodic, wrapped, rectangles, one cell, more lanes than cells.
-const SHAPES: [([usize; 2], [usize; 2]); 20] = [
+const SHAPES: [([usize; 2], [usize; 2]); 25] = [
     ([1, 1], [1, 1]),
     ([1, 1], [16, 16]),
     ([1, 40], [16, 80]),
@@ -32,6 +32,11 @@ const SHAPES: [([usize; 2], [usize; 2]); 20] = [
     ([72, 100], [180, 200]),
     ([90, 120], [180, 240]),
     ([100, 200], [100, 200]),
+    ([50, 100], [50, 100]),
+    ([27, 30], [27, 30]),
+    ([25, 36], [75, 90]),
+    ([5, 4], [10, 12]),
+    ([3, 2], [3, 2]),
 ];
 
 /// A fixed, rough field: the fractional part of multiples of the golden ratio, minus a half.
@@ -74,7 +79,7 @@ fn plain(cells: [usize; 2], lengths: [usize; 2], spectrum: &Array2<f64>, input: 
 
 /// The largest difference, relative to the largest value.
 fn error(found: &[f64], expected: &[f64]) -> f64 {
-    let largest = expected.iter().fold(0.0_f64, |m, e| m.max(e.abs()));
+    let largest = expected.iter().fold(f64::MIN_POSITIVE, |m, e| m.max(e.abs()));
     found.iter().zip(expected).fold(0.0_f64, |m, (f, e)| m.max((f - e).abs())) / largest
 }
 

@@ -9,28 +9,12 @@
 //!
 //! The inverse transform is the forward one of the number with real and imaginary part exchanged.
 
-use super::butterfly::{Butterfly, HalfOf, OfHalf, Whole};
-use super::complex::{Complex, Root};
+use super::complex::Complex;
 use super::factors::Factors;
 use super::lane::{Lane, Real};
-use super::parts::Parts;
-use super::prefetch::{Ahead, For, prefetch};
-use super::roots::root;
-
-/// One pass: blocks of `span` numbers, each split into `radix` parts.
-pub struct Stage<T> {
-    radix: usize,
-    span: usize,
-    /// exp(-2 pi i j r / span), r = 1..radix, for every j of a part.
-    roots: Vec<Root<T>>,
-}
-
-impl<T: Real> Stage<T> {
-    fn new(radix: usize, span: usize) -> Self {
-        let roots = (0..span / radix).flat_map(|j| (1..radix).map(move |r| root(j * r, span))).collect();
-        Stage { radix, span, roots }
-    }
-}
+use super::leaf::{Leaf, MirroredProduct, Plain, Product, run_leaves};
+use super::prefetch::Ahead;
+use super::stage::Stage;
 
 /// A planned transform of `length` complex numbers.
 pub struct Transform<T> {
@@ -51,6 +35,7 @@ impl<T: Real> Transform<T> {
             inner.push(Stage::new(radix, span));
             span /= radix;
         }
+        let half = half && factors.first.is_multiple_of(2);
         Transform { length, half, first: Stage::new(factors.first, length), inner, leaf: factors.leaf }
     }
 
@@ -85,7 +70,7 @@ impl<T: Real> Transform<T> {
     /// How many of the first pass's parts of the spectrum must be stored of a real, even one: the
     /// others, r > R/2, are the parts R - r read backwards.
     pub fn mirrored_length(&self) -> usize {
-        (self.first.radix / 2 + 1) * (self.length / self.first.radix)
+        (self.first.radix / 2 + 1) * (self.first.part())
     }
 
     /// The span of the blocks that are finished at once.
@@ -102,8 +87,8 @@ impl<T: Real> Transform<T> {
     /// buffer = the spectrum of `signal` (`signal_length` numbers), digit-reversed.
     #[inline(always)]
     pub fn forward<V: Lane<Scalar = T>>(&self, signal: &mut [Complex<V>], buffer: &mut [Complex<V>]) {
-        self.open(signal, &mut [], buffer);
-        for part in buffer.chunks_exact_mut(self.length / self.first.radix) {
+        self.first.open(self.half, signal, &mut [], buffer);
+        for part in buffer.chunks_exact_mut(self.first.part()) {
             self.descend::<V, true, false>(part, &Plain, &mut Ahead::nothing());
         }
     }
@@ -112,10 +97,10 @@ impl<T: Real> Transform<T> {
     /// imaginary parts the caller has exchanged.
     #[inline(always)]
     pub fn inverse<V: Lane<Scalar = T>>(&self, buffer: &mut [Complex<V>], signal: &mut [Complex<V>]) {
-        for part in buffer.chunks_exact_mut(self.length / self.first.radix) {
+        for part in buffer.chunks_exact_mut(self.first.part()) {
             self.descend::<V, false, true>(part, &Plain, &mut Ahead::nothing());
         }
-        self.close(buffer, signal, &mut []);
+        self.first.close(self.half, signal, &mut [], buffer);
     }
 
     /// signal = m times the inverse of (spectrum times transform of signal), in place.
@@ -133,14 +118,14 @@ impl<T: Real> Transform<T> {
         ahead: &mut Ahead<Complex<V>>,
     ) {
         let radix = self.first.radix;
-        let part_length = self.length / radix;
+        let part_length = self.first.part();
         let whole = signal.len() / part_length * part_length;
         if whole < self.signal_length() {
             let rest = signal.len() - whole;
             margin[whole..][..rest].copy_from_slice(&signal[whole..]);
             margin[whole + rest..].fill(Complex::zero());
         }
-        self.open(signal, margin, buffer);
+        self.first.open(self.half, signal, margin, buffer);
         for (r, part) in buffer.chunks_exact_mut(part_length).enumerate() {
             let stored = r.min(radix - r);
             let spectrum = &spectrum[stored * part_length..][..part_length];
@@ -150,78 +135,10 @@ impl<T: Real> Transform<T> {
                 self.descend::<V, true, true>(part, &MirroredProduct(spectrum), ahead);
             }
         }
-        self.close(buffer, signal, margin);
+        self.first.close(self.half, signal, margin, buffer);
         if whole < signal.len() {
             let rest = signal.len() - whole;
             signal[whole..].copy_from_slice(&margin[whole..][..rest]);
-        }
-    }
-
-    /// The first pass: from the signal (its missing parts in the margin) into the buffer.
-    #[inline(always)]
-    fn open<V: Lane<Scalar = T>>(
-        &self,
-        signal: &mut [Complex<V>],
-        margin: &mut [Complex<V>],
-        buffer: &mut [Complex<V>],
-    ) {
-        let length = self.length / self.first.radix;
-        let roots = &self.first.roots;
-        match (self.first.radix, self.half) {
-            (8, true) => first_pass::<V, OfHalf<8>, 4, 8>(
-                Parts::of_signal(signal, margin, length),
-                Parts::of(buffer),
-                roots,
-            ),
-            (8, false) => first_pass::<V, Whole<8>, 8, 8>(
-                Parts::of_signal(signal, margin, length),
-                Parts::of(buffer),
-                roots,
-            ),
-            (_, true) => first_pass::<V, OfHalf<4>, 2, 4>(
-                Parts::of_signal(signal, margin, length),
-                Parts::of(buffer),
-                roots,
-            ),
-            (_, false) => first_pass::<V, Whole<4>, 4, 4>(
-                Parts::of_signal(signal, margin, length),
-                Parts::of(buffer),
-                roots,
-            ),
-        }
-    }
-
-    /// The last pass: from the buffer into the signal (its missing parts into the margin).
-    #[inline(always)]
-    fn close<V: Lane<Scalar = T>>(
-        &self,
-        buffer: &mut [Complex<V>],
-        signal: &mut [Complex<V>],
-        margin: &mut [Complex<V>],
-    ) {
-        let length = self.length / self.first.radix;
-        let roots = &self.first.roots;
-        match (self.first.radix, self.half) {
-            (8, true) => last_pass::<V, HalfOf<8>, 4, 8>(
-                Parts::of(buffer),
-                Parts::of_signal(signal, margin, length),
-                roots,
-            ),
-            (8, false) => last_pass::<V, Whole<8>, 8, 8>(
-                Parts::of(buffer),
-                Parts::of_signal(signal, margin, length),
-                roots,
-            ),
-            (_, true) => last_pass::<V, HalfOf<4>, 2, 4>(
-                Parts::of(buffer),
-                Parts::of_signal(signal, margin, length),
-                roots,
-            ),
-            (_, false) => last_pass::<V, Whole<4>, 4, 4>(
-                Parts::of(buffer),
-                Parts::of_signal(signal, margin, length),
-                roots,
-            ),
         }
     }
 
@@ -244,7 +161,7 @@ impl<T: Real> Transform<T> {
             ahead.advance();
             if DOWN {
                 for stage in self.inner.iter().filter(|stage| start.is_multiple_of(stage.span)) {
-                    decimate_in_frequency(stage, &mut part[start..start + stage.span]);
+                    stage.decimate_in_frequency(&mut part[start..start + stage.span]);
                 }
             }
             let leaves = &mut part[start..end];
@@ -258,172 +175,10 @@ impl<T: Real> Transform<T> {
             }
             if UP {
                 for stage in self.inner.iter().rev().filter(|stage| end.is_multiple_of(stage.span)) {
-                    decimate_in_time(stage, &mut part[end - stage.span..end]);
+                    stage.decimate_in_time(&mut part[end - stage.span..end]);
                 }
             }
             start = end;
         }
-    }
-}
-
-/// y(r) = exp(-2 pi i j r / m) times the DFT of x(j + q t) over q.
-#[inline(always)]
-fn first_pass<V: Lane, B: Butterfly<V, P, R>, const P: usize, const R: usize>(
-    signal: Parts<V, P>,
-    mut buffer: Parts<V, R>,
-    roots: &[Root<V::Scalar>],
-) {
-    for (j, w) in (0..signal.length()).zip(roots.chunks_exact(R - 1)) {
-        let mut y = B::transform(signal.load(j));
-        for r in 1..R {
-            y[r] = y[r].rotated(w[r - 1]);
-        }
-        buffer.store(j, y);
-    }
-}
-
-/// The way back of [`first_pass`], on exchanged parts; exchanges them for good.
-#[inline(always)]
-fn last_pass<V: Lane, B: Butterfly<V, R, P>, const P: usize, const R: usize>(
-    buffer: Parts<V, R>,
-    mut signal: Parts<V, P>,
-    roots: &[Root<V::Scalar>],
-) {
-    for (j, w) in (0..signal.length()).zip(roots.chunks_exact(R - 1)) {
-        let mut x = buffer.load(j);
-        for r in 1..R {
-            x[r] = x[r].rotated(w[r - 1]);
-        }
-        let mut y = B::transform(x);
-        for q in 0..P {
-            y[q] = y[q].swapped();
-        }
-        signal.store(j, y);
-    }
-}
-
-/// One stage down, in place.
-#[inline(always)]
-fn decimate_in_frequency<V: Lane>(stage: &Stage<V::Scalar>, block: &mut [Complex<V>]) {
-    match stage.radix {
-        8 => radix_down::<V, 8>(block, &stage.roots),
-        5 => radix_down::<V, 5>(block, &stage.roots),
-        4 => radix_down::<V, 4>(block, &stage.roots),
-        _ => radix_down::<V, 3>(block, &stage.roots),
-    }
-}
-
-/// One stage up, in place.
-#[inline(always)]
-fn decimate_in_time<V: Lane>(stage: &Stage<V::Scalar>, block: &mut [Complex<V>]) {
-    match stage.radix {
-        8 => radix_up::<V, 8>(block, &stage.roots),
-        5 => radix_up::<V, 5>(block, &stage.roots),
-        4 => radix_up::<V, 4>(block, &stage.roots),
-        _ => radix_up::<V, 3>(block, &stage.roots),
-    }
-}
-
-#[inline(always)]
-fn radix_down<V: Lane, const R: usize>(block: &mut [Complex<V>], roots: &[Root<V::Scalar>])
-where
-    Whole<R>: Butterfly<V, R, R>,
-{
-    let mut parts = Parts::<V, R>::of(block);
-    for (j, w) in (0..parts.length()).zip(roots.chunks_exact(R - 1)) {
-        let mut y = Whole::<R>::transform(parts.load(j));
-        for r in 1..R {
-            y[r] = y[r].rotated(w[r - 1]);
-        }
-        parts.store(j, y);
-    }
-}
-
-#[inline(always)]
-fn radix_up<V: Lane, const R: usize>(block: &mut [Complex<V>], roots: &[Root<V::Scalar>])
-where
-    Whole<R>: Butterfly<V, R, R>,
-{
-    let mut parts = Parts::<V, R>::of(block);
-    for (j, w) in (0..parts.length()).zip(roots.chunks_exact(R - 1)) {
-        let mut x = parts.load(j);
-        for r in 1..R {
-            x[r] = x[r].rotated(w[r - 1]);
-        }
-        parts.store(j, Whole::<R>::transform(x));
-    }
-}
-
-/// The leaves of a block, which starts at position `start` of its part.
-#[inline(always)]
-fn run_leaves<V: Lane, const R: usize>(block: &mut [Complex<V>], start: usize, leaf: &impl Leaf<V>)
-where
-    Whole<R>: Butterfly<V, R, R>,
-{
-    let (leaves, _) = block.as_chunks_mut::<R>();
-    for (n, numbers) in leaves.iter_mut().enumerate() {
-        *numbers = leaf.at(*numbers, start + n * R);
-    }
-}
-
-/// What happens at the leaves, where R numbers and their transform are in registers.
-trait Leaf<V: Lane> {
-    /// With the R numbers x from position `at` of a part on.
-    fn at<const R: usize>(&self, x: [Complex<V>; R], at: usize) -> [Complex<V>; R]
-    where
-        Whole<R>: Butterfly<V, R, R>;
-}
-
-/// The transform alone.
-struct Plain;
-
-impl<V: Lane> Leaf<V> for Plain {
-    #[inline(always)]
-    fn at<const R: usize>(&self, x: [Complex<V>; R], _: usize) -> [Complex<V>; R]
-    where
-        Whole<R>: Butterfly<V, R, R>,
-    {
-        Whole::<R>::transform(x)
-    }
-}
-
-/// The spectrum is asked for so many bytes before it is needed.
-const SPECTRUM_AHEAD: usize = 4096;
-
-/// Transform, times the spectrum, transform back on exchanged parts.
-struct Product<'a, V>(&'a [V]);
-
-impl<V: Lane> Leaf<V> for Product<'_, V> {
-    #[inline(always)]
-    fn at<const R: usize>(&self, x: [Complex<V>; R], at: usize) -> [Complex<V>; R]
-    where
-        Whole<R>: Butterfly<V, R, R>,
-    {
-        let spectrum = &self.0[at..at + R];
-        prefetch(For::Reading, spectrum.as_ptr().wrapping_byte_add(SPECTRUM_AHEAD), R);
-        let mut y = Whole::<R>::transform(x);
-        for k in 0..R {
-            y[k] = y[k].times(spectrum[k]).swapped();
-        }
-        Whole::<R>::transform(y)
-    }
-}
-
-/// The same with the spectrum read backwards.
-struct MirroredProduct<'a, V>(&'a [V]);
-
-impl<V: Lane> Leaf<V> for MirroredProduct<'_, V> {
-    #[inline(always)]
-    fn at<const R: usize>(&self, x: [Complex<V>; R], at: usize) -> [Complex<V>; R]
-    where
-        Whole<R>: Butterfly<V, R, R>,
-    {
-        let end = self.0.len() - at;
-        let spectrum = &self.0[end - R..end];
-        let mut y = Whole::<R>::transform(x);
-        for k in 0..R {
-            y[k] = y[k].times(spectrum[R - 1 - k]).swapped();
-        }
-        Whole::<R>::transform(y)
     }
 }

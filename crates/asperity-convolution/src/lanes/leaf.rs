@@ -1,0 +1,81 @@
+//! The leaves of a transform: R numbers whose transform is taken in registers, and where the spectrum
+//! meets its multiplier.
+
+use super::butterfly::{Butterfly, Whole};
+use super::complex::Complex;
+use super::lane::Lane;
+use super::prefetch::{For, prefetch};
+
+/// The leaves of a block, which starts at position `start` of its part.
+#[inline(always)]
+pub fn run_leaves<V: Lane, const R: usize>(block: &mut [Complex<V>], start: usize, leaf: &impl Leaf<V>)
+where
+    Whole<R>: Butterfly<V, R, R>,
+{
+    let (leaves, _) = block.as_chunks_mut::<R>();
+    for (n, numbers) in leaves.iter_mut().enumerate() {
+        *numbers = leaf.at(*numbers, start + n * R);
+    }
+}
+
+/// What happens at the leaves, where R numbers and their transform are in registers.
+pub trait Leaf<V: Lane> {
+    /// With the R numbers x from position `at` of a part on.
+    fn at<const R: usize>(&self, x: [Complex<V>; R], at: usize) -> [Complex<V>; R]
+    where
+        Whole<R>: Butterfly<V, R, R>;
+}
+
+/// The transform alone.
+pub struct Plain;
+
+impl<V: Lane> Leaf<V> for Plain {
+    #[inline(always)]
+    fn at<const R: usize>(&self, x: [Complex<V>; R], _: usize) -> [Complex<V>; R]
+    where
+        Whole<R>: Butterfly<V, R, R>,
+    {
+        Whole::<R>::transform(x)
+    }
+}
+
+/// The spectrum is asked for so many bytes before it is needed.
+const SPECTRUM_AHEAD: usize = 4096;
+
+/// Transform, times the spectrum, transform back on exchanged parts.
+pub struct Product<'a, V>(pub &'a [V]);
+
+impl<V: Lane> Leaf<V> for Product<'_, V> {
+    #[inline(always)]
+    fn at<const R: usize>(&self, x: [Complex<V>; R], at: usize) -> [Complex<V>; R]
+    where
+        Whole<R>: Butterfly<V, R, R>,
+    {
+        let spectrum = &self.0[at..at + R];
+        prefetch(For::Reading, spectrum.as_ptr().wrapping_byte_add(SPECTRUM_AHEAD), R);
+        let mut y = Whole::<R>::transform(x);
+        for k in 0..R {
+            y[k] = y[k].times(spectrum[k]).swapped();
+        }
+        Whole::<R>::transform(y)
+    }
+}
+
+/// The same with the spectrum read backwards.
+pub struct MirroredProduct<'a, V>(pub &'a [V]);
+
+impl<V: Lane> Leaf<V> for MirroredProduct<'_, V> {
+    #[inline(always)]
+    fn at<const R: usize>(&self, x: [Complex<V>; R], at: usize) -> [Complex<V>; R]
+    where
+        Whole<R>: Butterfly<V, R, R>,
+    {
+        let end = self.0.len() - at;
+        let spectrum = &self.0[end - R..end];
+        let mut y = Whole::<R>::transform(x);
+        for k in 0..R {
+            y[k] = y[k].times(spectrum[R - 1 - k]).swapped();
+        }
+        Whole::<R>::transform(y)
+    }
+}

@@ -1,15 +1,16 @@
 //! Filling undefined points of a measured surface.
 //!
 //! - harmonic: the membrane through the defined points, Laplace's equation z_xx + z_yy = 0 on the
-//!   undefined ones (five-point difference, zero slope across the edge of the map), by conjugate
-//!   gradients from a coarse-to-fine start; no new peak or pit appears.
+//!   undefined ones (five-point difference, zero slope across the edge of the map); no new peak or pit
+//!   appears.
 //! - nearest: the height of the nearest defined point (exact Euclidean distance; P. F. Felzenszwalb
 //!   and D. P. Huttenlocher, Theory of Computing 8 (2012) 415).
 
 use ndarray::{Array2, ArrayView2};
 
+use super::membrane::Membrane;
 use super::spectrum::check_shape;
-use crate::error::{Error, NotConverged, Result};
+use crate::error::{Error, Result};
 use crate::grid::Grid;
 
 /// How undefined points are filled.
@@ -127,16 +128,6 @@ fn nearest(grid: &Grid, heights: ArrayView2<f64>) -> Array2<f64> {
     filled
 }
 
-/// The undefined points as unknowns of sum over neighbours of w (z - z_n) = 0.
-struct Membrane {
-    /// Per unknown: its cell, and its up to four neighbours as (unknown, weight).
-    cells: Vec<(usize, usize)>,
-    neighbours: Vec<[(usize, f64); 4]>,
-    diagonal: Vec<f64>,
-    /// Weighted sum of the defined neighbours.
-    right: Vec<f64>,
-}
-
 fn harmonic(grid: &Grid, heights: ArrayView2<f64>) -> Result<Array2<f64>> {
     // Heights about their mean in units of their range: the tolerance is then a share of it.
     let (low, high) = heights
@@ -151,9 +142,9 @@ fn harmonic(grid: &Grid, heights: ArrayView2<f64>) -> Result<Array2<f64>> {
     }
     let start = coarse_to_fine(heights);
     let membrane = Membrane::new(grid, heights.mapv(|z| (z - low) / range).view());
-    let mut z: Vec<f64> = membrane.cells.iter().map(|at| (start[*at] - low) / range).collect();
+    let mut z: Vec<f64> = membrane.cells().iter().map(|at| (start[*at] - low) / range).collect();
     membrane.solve(&mut z)?;
-    for (at, z) in membrane.cells.iter().zip(&z) {
+    for (at, z) in membrane.cells().iter().zip(&z) {
         // The maximum principle: a membrane stays between its supports.
         filled[*at] = (low + range * z).clamp(low, high);
     }
@@ -177,100 +168,6 @@ fn coarse_to_fine(heights: ArrayView2<f64>) -> Array2<f64> {
         z if z.is_finite() => z,
         _ => coarse[[i / 2, j / 2]],
     })
-}
-
-impl Membrane {
-    fn new(grid: &Grid, heights: ArrayView2<f64>) -> Self {
-        let (nx, ny) = heights.dim();
-        let [dx, dy] = grid.spacing();
-        let (along_x, along_y) = (dy / dx, dx / dy);
-        let mut unknown = Array2::from_elem((nx, ny), NONE);
-        let cells: Vec<_> =
-            heights.indexed_iter().filter(|(_, z)| !z.is_finite()).map(|(at, _)| at).collect();
-        for (k, at) in cells.iter().enumerate() {
-            unknown[*at] = k;
-        }
-        let count = cells.len();
-        let mut membrane = Membrane {
-            cells,
-            neighbours: vec![[(NONE, 0.0); 4]; count],
-            diagonal: vec![0.0; count],
-            right: vec![0.0; count],
-        };
-        for k in 0..count {
-            let (i, j) = membrane.cells[k];
-            let around = [
-                (i.checked_sub(1), Some(j), along_x),
-                (Some(i + 1), Some(j), along_x),
-                (Some(i), j.checked_sub(1), along_y),
-                (Some(i), Some(j + 1), along_y),
-            ];
-            for (slot, (i, j, weight)) in around.into_iter().enumerate() {
-                let (Some(i), Some(j)) = (i, j) else { continue };
-                let Some(z) = heights.get((i, j)) else { continue };
-                membrane.diagonal[k] += weight;
-                if z.is_finite() {
-                    membrane.right[k] += weight * z;
-                } else {
-                    membrane.neighbours[k][slot] = (unknown[[i, j]], weight);
-                }
-            }
-        }
-        membrane
-    }
-
-    fn apply(&self, z: &[f64], out: &mut [f64]) {
-        for (k, out) in out.iter_mut().enumerate() {
-            let pulled: f64 =
-                self.neighbours[k].iter().filter(|(n, _)| *n != NONE).map(|(n, w)| w * z[*n]).sum();
-            *out = self.diagonal[k] * z[k] - pulled;
-        }
-    }
-
-    /// Conjugate gradients with the diagonal as preconditioner (Hestenes & Stiefel 1952), from `z`.
-    fn solve(&self, z: &mut [f64]) -> Result<()> {
-        // Share of the range by which a point may miss the mean of its neighbours.
-        const TOLERANCE: f64 = 1e-12;
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let n = z.len();
-        // Exact arithmetic ends after n iterations; rounding may need a few more.
-        let most = 10 * n + 100;
-        let mut out = vec![0.0; n];
-        self.apply(z, &mut out);
-        let mut residual: Vec<f64> = self.right.iter().zip(&out).map(|(b, a)| b - a).collect();
-        let mut scaled: Vec<f64> = residual.iter().zip(&self.diagonal).map(|(r, d)| r / d).collect();
-        let mut direction = scaled.clone();
-        let mut product = dot(&residual, &scaled);
-        for _ in 0..most {
-            let worst = scaled.iter().fold(0.0f64, |m, r| m.max(r.abs()));
-            if worst <= TOLERANCE {
-                return Ok(());
-            }
-            self.apply(&direction, &mut out);
-            let step = product / dot(&direction, &out);
-            for k in 0..n {
-                z[k] += step * direction[k];
-                residual[k] -= step * out[k];
-                scaled[k] = residual[k] / self.diagonal[k];
-            }
-            let next = dot(&residual, &scaled);
-            let beta = next / product;
-            product = next;
-            for k in 0..n {
-                direction[k] = scaled[k] + beta * direction[k];
-            }
-        }
-        let residual = scaled.iter().fold(0.0f64, |m, r| m.max(r.abs()));
-        Err(NotConverged {
-            method: "harmonic fill",
-            iterations: most,
-            residual,
-            tolerance: TOLERANCE,
-            certificate: f64::INFINITY,
-            time: None,
-        }
-        .into())
-    }
 }
 
 #[cfg(test)]

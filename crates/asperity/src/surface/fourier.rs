@@ -14,6 +14,8 @@
 
 use std::f64::consts::{PI, TAU};
 
+use ndarray::parallel::prelude::*;
+use ndarray::{Array2, Axis};
 use rustfft::num_complex::Complex64;
 
 /// Above this prime factor the chirp is cheaper than the direct sum.
@@ -90,6 +92,32 @@ impl Transform {
                     *x = w.conj() * c * scale;
                 }
             }
+        }
+    }
+}
+
+/// Two-dimensional transforms of one shape.
+pub(super) struct Plane {
+    along_x: Transform,
+    along_y: Transform,
+}
+
+impl Plane {
+    pub(super) fn new((nx, ny): (usize, usize)) -> Self {
+        Plane { along_x: Transform::new(nx), along_y: Transform::new(ny) }
+    }
+
+    /// Transforms `data` in place, with exp(+i), not normalised.
+    pub(super) fn apply(&self, data: &mut Array2<Complex64>) {
+        for (axis, plan) in [(Axis(0), &self.along_y), (Axis(1), &self.along_x)] {
+            data.axis_iter_mut(axis).into_par_iter().for_each_init(
+                || (vec![Complex64::ZERO; plan.n], vec![Complex64::ZERO; plan.scratch_len()]),
+                |(work, scratch), mut lane| {
+                    work.iter_mut().zip(&lane).for_each(|(a, b)| *a = *b);
+                    plan.apply(work, scratch);
+                    lane.iter_mut().zip(work.iter()).for_each(|(a, b)| *a = *b);
+                },
+            );
         }
     }
 }

@@ -12,19 +12,15 @@
 //! Topogr.: Metrol. Prop. 5 (2017) 013001, section 3). The sum is scaled so that this surface, not the
 //! ensemble, has the rms gradient or rms height asked for.
 //!
-//! The amplitude of a wave depends on the seed and on (kx, ky) alone. So the same seed on a finer
+//! The random number of a wave depends on the seed and on (kx, ky) alone. So the same seed on a finer
 //! grid samples the same surface, a smaller `shortest` adds waves and keeps the long ones in
 //! proportion, and every machine and thread count gives the same bits.
 
 use std::f64::consts::TAU;
 
 use ndarray::Array2;
-use ndarray::parallel::prelude::*;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
-use rustfft::num_complex::Complex64;
 
-use super::fourier::Transform;
+use super::waves::{SAME, Waves};
 use crate::error::{Error, Result, positive};
 use crate::grid::Grid;
 
@@ -55,10 +51,32 @@ pub struct SelfAffine {
     pub seed: u64,
 }
 
-/// Wavelengths that agree to this share are the same: 0.1 mm / 1024 is no exact binary number.
-const SAME: f64 = 1e-9;
-
 impl SelfAffine {
+    /// Side of the square domain of the Contact Mechanics Challenge \[m\].
+    pub const CHALLENGE_SIZE: f64 = 1e-4;
+
+    /// The roughness of the Contact Mechanics Challenge (M. H. Mueser et al., Tribol. Lett. 65 (2017) 118):
+    /// 0.1 mm x 0.1 mm, Hurst exponent 0.8, roll-off at 20 um, cut-off at 0.1 um, rms gradient 1; the
+    /// same statistics, not the same random numbers. It needs 2000 cells a side; for a coarser grid raise
+    /// `shortest`, which then holds the gradient of 1 at longer waves.
+    ///
+    /// ```
+    /// use asperity::surface::{Roughness, SelfAffine};
+    /// let surface = SelfAffine::contact_mechanics_challenge(1);
+    /// assert_eq!((surface.hurst, surface.longest, surface.roll_off), (0.8, 1e-4, 2e-5));
+    /// assert_eq!(surface.roughness, Roughness::RmsGradient(1.0));
+    /// ```
+    pub fn contact_mechanics_challenge(seed: u64) -> Self {
+        SelfAffine {
+            hurst: 0.8,
+            roughness: Roughness::RmsGradient(1.0),
+            longest: Self::CHALLENGE_SIZE,
+            shortest: 1e-7,
+            roll_off: 2e-5,
+            seed,
+        }
+    }
+
     /// Heights at the cell centres \[m\], shape (nx, ny), mean zero.
     ///
     /// Waves that stand exactly on the grid's Nyquist frequency along an axis are left out: a grid
@@ -87,9 +105,18 @@ impl SelfAffine {
     /// the wavelengths are out of order or do not fit the grid, or no wave of the domain falls between
     /// them.
     pub fn heights(&self, grid: &Grid) -> Result<Array2<f64>> {
+        self.heights_where(grid, |qx, qy| (qx * qx + qy * qy).sqrt())
+    }
+
+    /// The same with the spectrum taken at `seen(qx, qy)` >= |q| instead of at |q|.
+    pub(super) fn heights_where(
+        &self,
+        grid: &Grid,
+        seen: impl Fn(f64, f64) -> f64 + Sync,
+    ) -> Result<Array2<f64>> {
         self.validate(grid)?;
         let waves = Waves::new(grid, TAU / self.shortest);
-        let amplitude = |q: f64| self.spectrum(q).sqrt();
+        let amplitude = |qx: f64, qy: f64| self.spectrum(seen(qx, qy)).sqrt();
         let (mut columns, moments) = waves.amplitudes(self.seed, amplitude);
         if moments.height <= 0.0 {
             return Err(Error::invalid(
@@ -169,125 +196,6 @@ impl SelfAffine {
     }
 }
 
-/// The plane waves of a domain with |q| up to a largest, one half plane of them: ky > 0, and ky = 0
-/// with kx > 0. The others are their conjugates.
-struct Waves {
-    cells: [usize; 2],
-    /// 2 pi / L along x and y.
-    fundamental: [f64; 2],
-    largest: f64,
-}
-
-/// Mean of z^2 and of |grad z|^2 before scaling.
-#[derive(Clone, Copy)]
-struct Moments {
-    height: f64,
-    gradient: f64,
-}
-
-impl Waves {
-    fn new(grid: &Grid, largest: f64) -> Self {
-        let fundamental = grid.size().map(|length| TAU / length);
-        Waves { cells: grid.cells(), fundamental, largest: largest * (1.0 + SAME) }
-    }
-
-    /// Largest index along an axis: below Nyquist and within the band.
-    fn reach(&self, axis: usize, largest: f64) -> usize {
-        let nyquist = (self.cells[axis] - 1) / 2;
-        nyquist.min((largest / self.fundamental[axis]) as usize)
-    }
-
-    /// Column ky holds A_k at index kx (negative ones from the end), with the phase that moves the
-    /// samples from the corners to the centres of the cells.
-    fn amplitudes(&self, seed: u64, amplitude: impl Fn(f64) -> f64 + Sync) -> (Vec<Vec<Complex64>>, Moments) {
-        let (columns, moments): (Vec<_>, Vec<_>) = (0..=self.reach(1, self.largest))
-            .into_par_iter()
-            .map(|ky| self.column(seed, ky, &amplitude))
-            .unzip();
-        let zero = Moments { height: 0.0, gradient: 0.0 };
-        let total = moments.iter().fold(zero, |sum, m| Moments {
-            height: sum.height + m.height,
-            gradient: sum.gradient + m.gradient,
-        });
-        (columns, total)
-    }
-
-    fn column(
-        &self,
-        seed: u64,
-        ky: usize,
-        amplitude: &(impl Fn(f64) -> f64 + Sync),
-    ) -> (Vec<Complex64>, Moments) {
-        let [nx, ny] = self.cells;
-        let mut column = vec![Complex64::ZERO; nx];
-        let mut moments = Moments { height: 0.0, gradient: 0.0 };
-        let mut random = generator(seed, ky as u64);
-        let qy = self.fundamental[1] * ky as f64;
-        let room = (self.largest * self.largest - qy * qy).max(0.0).sqrt();
-        let reach = self.reach(0, room) as i64;
-        // 0, 1, -1, 2, -2, ...: a wave's place in the stream does not depend on how many follow.
-        for kx in (0..=reach).flat_map(|k| [k, -k]).skip(1) {
-            let normal = complex_normal(&mut random);
-            if ky == 0 && kx <= 0 {
-                continue;
-            }
-            let qx = self.fundamental[0] * kx as f64;
-            let q2 = qx * qx + qy * qy;
-            let a = normal * amplitude(q2.sqrt());
-            // This wave and its conjugate.
-            moments.height += 2.0 * a.norm_sqr();
-            moments.gradient += 2.0 * q2 * a.norm_sqr();
-            let half_a_cell = 0.5 * TAU * (kx as f64 / nx as f64 + ky as f64 / ny as f64);
-            let (sin, cos) = libm::sincos(half_a_cell);
-            column[kx.rem_euclid(nx as i64) as usize] = a * Complex64::new(cos, sin);
-        }
-        (column, moments)
-    }
-
-    /// scale * (sum of the waves and their conjugates) at the cell centres.
-    fn sum(&self, columns: &mut [Vec<Complex64>], scale: f64) -> Array2<f64> {
-        let [nx, ny] = self.cells;
-        let along_x = Transform::new(nx);
-        columns.par_iter_mut().for_each_init(
-            || vec![Complex64::ZERO; along_x.scratch_len()],
-            |scratch, column| along_x.apply(column, scratch),
-        );
-        let along_y = Transform::new(ny);
-        let mut heights = Array2::zeros((nx, ny));
-        heights.outer_iter_mut().into_par_iter().enumerate().for_each_init(
-            || (vec![Complex64::ZERO; ny], vec![Complex64::ZERO; along_y.scratch_len()]),
-            |(row, scratch), (i, mut out)| {
-                row.fill(Complex64::ZERO);
-                for (ky, column) in columns.iter().enumerate() {
-                    row[ky] = column[i];
-                }
-                along_y.apply(row, scratch);
-                for (z, w) in out.iter_mut().zip(row.iter()) {
-                    *z = 2.0 * scale * w.re; // a wave plus its conjugate
-                }
-            },
-        );
-        heights
-    }
-}
-
-/// One stream of random numbers per ky.
-fn generator(seed: u64, stream: u64) -> ChaCha8Rng {
-    let mut key = [0; 32];
-    key[..8].copy_from_slice(&seed.to_le_bytes());
-    let mut random = ChaCha8Rng::from_seed(key);
-    random.set_stream(stream);
-    random
-}
-
-/// A complex number with independent normal parts (Box & Muller 1958).
-fn complex_normal(random: &mut ChaCha8Rng) -> Complex64 {
-    const ULP: f64 = 1.0 / (1u64 << 53) as f64;
-    let radius = (-2.0 * libm::log(((random.next_u64() >> 11) + 1) as f64 * ULP)).sqrt();
-    let (sin, cos) = libm::sincos(TAU * ((random.next_u64() >> 11) as f64 * ULP));
-    Complex64::new(radius * cos, radius * sin)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -346,7 +254,7 @@ mod tests {
             let (mut power, mut count) = (0.0, 0);
             for seed in 0..200 {
                 let s = SelfAffine { seed, ..surface() };
-                let (columns, _) = waves.amplitudes(seed, |q| s.spectrum(q).sqrt());
+                let (columns, _) = waves.amplitudes(seed, |qx, qy| s.spectrum(qx.hypot(qy)).sqrt());
                 for (ky, column) in columns.iter().enumerate() {
                     for (i, a) in column.iter().enumerate() {
                         let kx = if i < 32 { i as i64 } else { i as i64 - 64 };
@@ -367,7 +275,7 @@ mod tests {
             assert!((ring(k) - 1.0).abs() < 0.08, "ring {k}: {}", ring(k));
         }
         let heights = surface().heights(&grid).unwrap();
-        assert_eq!(waves.reach(1, waves.largest), 10); // nothing beyond 1 mm / 0.1 mm
+        assert_eq!(waves.reach(1, TAU / 1e-4 * (1.0 + SAME)), 10); // nothing beyond 1 mm / 0.1 mm
         assert_eq!(heights.dim(), (64, 64));
     }
 

@@ -1,0 +1,162 @@
+//! High-, low- and band-pass filters by wavelength.
+//!
+//! The surface is taken as periodic; level or window a measured one first. Sharp edges keep or drop a
+//! wave; Gaussian ones weigh its amplitude with the areal Gaussian filter of ISO 16610-61, which
+//! passes half of it at the cut-off wavelength L:
+//!
+//! ```text
+//! low-pass  2^(-(L/l)^2)          high-pass  1 - 2^(-(L/l)^2)
+//! ```
+
+use std::f64::consts::TAU;
+use std::fmt;
+
+use super::super::spectrum;
+use super::Surface;
+use crate::error::{Error, Result, positive};
+
+/// How a filter ends its band.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum Edge {
+    /// Waves inside are kept whole, others dropped.
+    #[default]
+    Sharp,
+    /// Gaussian, half the amplitude at the cut-off (ISO 16610-61).
+    Gaussian,
+}
+
+/// The wavelengths that are kept.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Band {
+    /// Longest wavelength \[m\]; `None` keeps all long waves and the mean.
+    pub longest: Option<f64>,
+    /// Shortest wavelength \[m\]; `None` keeps all short waves.
+    pub shortest: Option<f64>,
+    /// How the band ends.
+    pub edge: Edge,
+}
+
+impl fmt::Display for Band {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let edge = match self.edge {
+            Edge::Sharp => "sharp",
+            Edge::Gaussian => "Gaussian",
+        };
+        match (self.longest, self.shortest) {
+            (None, None) => write!(f, "keep all wavelengths"),
+            (Some(longest), None) => write!(f, "keep wavelengths up to {longest:e} m ({edge})"),
+            (None, Some(shortest)) => write!(f, "keep wavelengths from {shortest:e} m on ({edge})"),
+            (Some(longest), Some(shortest)) => {
+                write!(f, "keep wavelengths from {shortest:e} m to {longest:e} m ({edge})")
+            }
+        }
+    }
+}
+
+impl Band {
+    /// Share of the amplitude of a wave that is kept.
+    fn share(&self, q: f64) -> f64 {
+        let low_pass = |cut_off: f64| match self.edge {
+            Edge::Sharp => f64::from(u8::from(q * cut_off <= TAU * (1.0 + 1e-9))),
+            Edge::Gaussian => (-(q * cut_off / TAU).powi(2)).exp2(),
+        };
+        // A sharp band holds both of its ends.
+        let high_pass = |cut_off: f64| match self.edge {
+            Edge::Sharp => f64::from(u8::from(q * cut_off >= TAU * (1.0 - 1e-9))),
+            Edge::Gaussian => 1.0 - low_pass(cut_off),
+        };
+        self.longest.map_or(1.0, high_pass) * self.shortest.map_or(1.0, low_pass)
+    }
+}
+
+/// The waves of the surface within the band.
+///
+/// ```
+/// use asperity::{Grid, surface::{Surface, process::{Band, Edge, filter}}};
+/// let grid = Grid::new([64, 1], [1e-3, 1e-3])?;
+/// let wave = |n: f64, i: usize| (std::f64::consts::TAU * n * (i as f64 + 0.5) / 64.0).cos();
+/// let heights = ndarray::Array2::from_shape_fn((64, 1), |(i, _)| wave(2.0, i) + wave(20.0, i));
+/// let band = Band { longest: None, shortest: Some(1e-4), edge: Edge::Sharp };
+/// let smooth = filter(&Surface::new(grid, heights)?, band)?;
+/// assert!((smooth.heights()[[5, 0]] - wave(2.0, 5)).abs() < 1e-14);
+/// # Ok::<(), asperity::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::Invalid`] where a height is undefined, or a wavelength is not positive or the longest is
+/// below the shortest.
+pub fn filter(surface: &Surface, band: Band) -> Result<Surface> {
+    for (name, cut_off) in [("longest wavelength", band.longest), ("shortest wavelength", band.shortest)] {
+        if let Some(cut_off) = cut_off {
+            positive(name, cut_off, "m")?;
+        }
+    }
+    if let (Some(longest), Some(shortest)) = (band.longest, band.shortest)
+        && longest < shortest
+    {
+        return Err(Error::invalid(
+            "longest wavelength",
+            format!("{longest:e} m"),
+            format!("at least the shortest, {shortest:e} m"),
+        ));
+    }
+    let grid = *surface.grid();
+    let mut amplitudes = spectrum::transform(&grid, surface.heights())?;
+    amplitudes.indexed_iter_mut().for_each(|(at, a)| {
+        let [qx, qy] = spectrum::wave_vector(&grid, at);
+        *a *= band.share((qx * qx + qy * qy).sqrt());
+    });
+    Surface::new(grid, spectrum::inverse(&grid, amplitudes))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::Grid;
+    use ndarray::Array2;
+
+    fn surface() -> Surface {
+        let grid = Grid::new([30, 21], [3.0, 2.1]).unwrap();
+        let heights = Array2::from_shape_fn((30, 21), |(i, j)| ((i * 7 + j * j * 3) % 17) as f64 - 5.0);
+        Surface::new(grid, heights).unwrap()
+    }
+
+    #[test]
+    fn the_bands_add_up_to_the_surface() {
+        for edge in [Edge::Sharp, Edge::Gaussian] {
+            // 0.5123 is no wavelength of the grid, so that a sharp band counts none twice.
+            let low = filter(&surface(), Band { longest: None, shortest: Some(0.5123), edge }).unwrap();
+            let high = filter(&surface(), Band { longest: Some(0.5123), shortest: None, edge }).unwrap();
+            let sum = &low.heights() + &high.heights();
+            assert!(sum.iter().zip(surface().heights()).all(|(a, b)| (a - b).abs() < 1e-13));
+        }
+    }
+
+    #[test]
+    fn a_gaussian_edge_passes_half_at_the_cut_off() {
+        let grid = Grid::new([32, 32], [1.0, 1.0]).unwrap();
+        let wave = Array2::from_shape_fn((32, 32), |(i, _)| (TAU * 4.0 * grid.x(i)).cos());
+        let band = Band { longest: None, shortest: Some(0.25), edge: Edge::Gaussian };
+        let half = filter(&Surface::new(grid, wave.clone()).unwrap(), band).unwrap();
+        assert!(half.heights().iter().zip(&wave).all(|(a, b)| (a - 0.5 * b).abs() < 1e-14));
+    }
+
+    #[test]
+    fn a_high_pass_takes_the_mean_away_and_sharp_bands_are_projections() {
+        let band = Band { longest: Some(1.0), shortest: Some(0.3), edge: Edge::Sharp };
+        let once = filter(&surface(), band).unwrap();
+        assert!(once.heights().mean().unwrap().abs() < 1e-14);
+        let twice = filter(&once, band).unwrap();
+        assert!(once.heights().iter().zip(twice.heights()).all(|(a, b)| (a - b).abs() < 1e-13));
+    }
+
+    #[test]
+    fn absurd_bands_are_named() {
+        let bad = |longest, shortest| {
+            filter(&surface(), Band { longest, shortest, edge: Edge::Sharp }).unwrap_err().to_string()
+        };
+        assert!(bad(Some(0.0), None).contains("longest"));
+        assert!(bad(None, Some(f64::NAN)).contains("shortest"));
+        assert!(bad(Some(1.0), Some(2.0)).contains("at least the shortest"));
+    }
+}

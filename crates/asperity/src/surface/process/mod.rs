@@ -1,0 +1,159 @@
+//! Preparing measured surfaces: pure functions from a [`Surface`] to another one, and [`Operation`], the
+//! same as a list that can be written down, so that a result says what was done to its surface.
+//!
+//! Undefined points (NaN) pass through what works point by point; what needs every point (filters,
+//! resampling by waves) says so.
+
+mod crop;
+mod filter;
+mod orient;
+mod outliers;
+mod resample;
+mod window;
+
+pub use crop::{crop, defined_extent};
+pub use filter::{Band, Edge, filter};
+pub use orient::{Axis, flip, invert, rotate};
+pub use outliers::{Outliers, remove_outliers};
+pub use resample::{Resampling, resample};
+pub use window::{Window, window};
+
+use std::fmt;
+
+use super::{Fill, Level, Surface, fill, level};
+use crate::error::Result;
+
+/// One step of the preparation of a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Operation {
+    /// [`level()`]: subtract the least-squares form.
+    Level(Level),
+    /// [`fill()`]: fill undefined points, at most this share of them.
+    Fill {
+        /// How.
+        method: Fill,
+        /// Largest share of undefined points that is accepted, 0 to 1.
+        largest_share: f64,
+    },
+    /// [`crop()`]: keep a rectangle of cells.
+    Crop {
+        /// First cell kept along x and y.
+        from: [usize; 2],
+        /// Cells kept along x and y.
+        cells: [usize; 2],
+    },
+    /// [`resample()`]: other cells over the same size.
+    Resample {
+        /// Cells along x and y.
+        cells: [usize; 2],
+        /// How.
+        method: Resampling,
+    },
+    /// [`filter()`]: keep a band of wavelengths.
+    Filter(Band),
+    /// [`flip`]: mirror along an axis.
+    Flip(Axis),
+    /// [`rotate`]: quarter turns from x towards y.
+    Rotate {
+        /// Number of quarter turns.
+        quarter_turns: i32,
+    },
+    /// [`invert`]: change the sign of the heights.
+    Invert,
+    /// [`window()`]: fade to zero at the edges.
+    Window(Window),
+    /// [`remove_outliers`]: make spikes undefined.
+    RemoveOutliers(Outliers),
+}
+
+impl Operation {
+    /// The surface after this step.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`](crate::Error::Invalid) as the function that does it.
+    pub fn apply(&self, surface: &Surface) -> Result<Surface> {
+        let grid = *surface.grid();
+        match *self {
+            Operation::Level(form) => Surface::new(grid, level(surface.heights(), form)?),
+            Operation::Fill { method, largest_share } => {
+                Surface::new(grid, fill(&grid, surface.heights(), method, largest_share)?)
+            }
+            Operation::Crop { from, cells } => crop(surface, from, cells),
+            Operation::Resample { cells, method } => resample(surface, cells, method),
+            Operation::Filter(band) => filter(surface, band),
+            Operation::Flip(axis) => Ok(flip(surface, axis)),
+            Operation::Rotate { quarter_turns } => rotate(surface, quarter_turns),
+            Operation::Invert => Ok(invert(surface)),
+            Operation::Window(shape) => window(surface, shape),
+            Operation::RemoveOutliers(outliers) => remove_outliers(surface, outliers),
+        }
+    }
+}
+
+/// The surface after all steps in order.
+///
+/// ```
+/// use asperity::{Grid, surface::{Fill, Level, Operation, Surface, process}};
+/// let heights = ndarray::array![[0.0, 1.0, 2.0], [1.0, f64::NAN, 3.0], [2.0, 3.0, 4.0]];
+/// let surface = Surface::new(Grid::new([3, 3], [1.0, 1.0])?, heights)?;
+/// let steps = [
+///     Operation::Fill { method: Fill::Harmonic, largest_share: 0.2 },
+///     Operation::Level(Level::Plane),
+/// ];
+/// let flat = process::apply(&surface, &steps)?;
+/// assert!(flat.heights().iter().all(|z| z.abs() < 1e-11));
+/// assert_eq!(steps[0].to_string(), "fill undefined points (harmonic, at most 20 %)");
+/// # Ok::<(), asperity::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::Invalid`](crate::Error::Invalid) of the first step that fails.
+pub fn apply(surface: &Surface, steps: &[Operation]) -> Result<Surface> {
+    steps.iter().try_fold(surface.clone(), |surface, step| step.apply(&surface))
+}
+
+impl fmt::Display for Operation {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Operation::Level(form) => {
+                let form = match form {
+                    Level::None => "nothing",
+                    Level::Mean => "the mean",
+                    Level::Plane => "the plane",
+                    Level::Quadratic => "the quadratic",
+                };
+                write!(f, "subtract {form} (least squares)")
+            }
+            Operation::Fill { method, largest_share } => {
+                let method = match method {
+                    Fill::Error => "none allowed",
+                    Fill::Harmonic => "harmonic",
+                    Fill::Nearest => "nearest",
+                };
+                write!(f, "fill undefined points ({method}, at most {} %)", 100.0 * largest_share)
+            }
+            Operation::Crop { from, cells } => {
+                write!(f, "crop to {} x {} cells from ({}, {})", cells[0], cells[1], from[0], from[1])
+            }
+            Operation::Resample { cells, method } => {
+                let method = match method {
+                    Resampling::BandLimited => "band-limited",
+                    Resampling::Bilinear => "bilinear",
+                };
+                write!(f, "resample to {} x {} cells ({method})", cells[0], cells[1])
+            }
+            Operation::Filter(band) => write!(f, "{band}"),
+            Operation::Flip(axis) => write!(f, "flip along {axis}"),
+            Operation::Rotate { quarter_turns } => write!(f, "rotate by {quarter_turns} quarter turns"),
+            Operation::Invert => write!(f, "invert"),
+            Operation::Window(shape) => write!(f, "{shape}"),
+            Operation::RemoveOutliers(outliers) => {
+                write!(
+                    f,
+                    "remove outliers (beyond {} deviations from the median over {} cells around)",
+                    outliers.threshold, outliers.radius
+                )
+            }
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! Spikes of optical instruments: points far from the median of their neighbourhood.
+//!
+//! With m the median of the defined heights of the (2 radius + 1)^2 cells around a point, d = z - m, and
+//! sigma = 1.4826 median |d| (the standard deviation of a normal d; P. J. Rousseeuw and C. Croux, J. Am.
+//! Stat. Assoc. 88 (1993) 1273), a point with |d| > threshold sigma becomes undefined. At an edge the
+//! neighbourhood is one-sided, so that a tilt counts there: level the surface first.
+
+use ndarray::parallel::prelude::*;
+use ndarray::{Array2, ArrayView2, s};
+
+use super::Surface;
+use crate::error::{Error, Result, positive};
+
+/// What counts as an outlier.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outliers {
+    /// Robust standard deviations from the local median. Default 6.
+    pub threshold: f64,
+    /// Cells of the neighbourhood to each side, 1 to 10. Default 2.
+    pub radius: usize,
+}
+
+impl Default for Outliers {
+    fn default() -> Self {
+        Outliers { threshold: 6.0, radius: 2 }
+    }
+}
+
+/// The surface with its outliers undefined; fill them next.
+///
+/// # Errors
+/// [`Error::Invalid`] where the threshold is not positive or the radius not between 1 and 10.
+pub fn remove_outliers(surface: &Surface, outliers: Outliers) -> Result<Surface> {
+    positive("threshold of the outliers", outliers.threshold, "(standard deviations)")?;
+    if !(1..=10).contains(&outliers.radius) {
+        return Err(Error::invalid(
+            "radius of the outliers' neighbourhood",
+            outliers.radius,
+            "between 1 and 10 cells",
+        ));
+    }
+    let deviations = deviations(surface.heights(), outliers.radius);
+    let mut sizes: Vec<f64> = deviations.iter().filter(|d| !d.is_nan()).map(|d| d.abs()).collect();
+    if sizes.is_empty() {
+        return Ok(surface.clone());
+    }
+    let robust = 1.4826 * median(&mut sizes);
+    // Heights in coarse steps: most deviations are zero. The mean deviation of a normal d is
+    // sqrt(2/pi) sigma.
+    let mean = sizes.iter().sum::<f64>() / sizes.len() as f64;
+    let sigma = if robust > 0.0 { robust } else { 1.2533 * mean };
+    let mut cleaned = surface.clone();
+    cleaned.heights.zip_mut_with(&deviations, |z, d| {
+        if d.abs() > outliers.threshold * sigma {
+            *z = f64::NAN;
+        }
+    });
+    Ok(cleaned)
+}
+
+/// Heights less the median around them.
+fn deviations(heights: ArrayView2<f64>, radius: usize) -> Array2<f64> {
+    let (nx, ny) = heights.dim();
+    let mut deviations = Array2::zeros((nx, ny));
+    deviations.outer_iter_mut().into_par_iter().enumerate().for_each_init(
+        || Vec::with_capacity((2 * radius + 1).pow(2)),
+        |around, (i, mut row)| {
+            let rows = i.saturating_sub(radius)..(i + radius + 1).min(nx);
+            for (j, d) in row.iter_mut().enumerate() {
+                let columns = j.saturating_sub(radius)..(j + radius + 1).min(ny);
+                let near = heights.slice(s![rows.clone(), columns]);
+                around.clear();
+                around.extend(near.iter().copied().filter(|z| !z.is_nan()));
+                let z = heights[[i, j]];
+                *d = if z.is_nan() { z } else { z - median(around) };
+            }
+        },
+    );
+    deviations
+}
+
+/// The median (the upper one of an even number); reorders the values, of which there is one at least.
+fn median(values: &mut [f64]) -> f64 {
+    let middle = values.len() / 2;
+    *values.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grid::Grid;
+
+    /// A long wave with fine roughness of amplitude 0.01.
+    fn wave() -> Array2<f64> {
+        Array2::from_shape_fn((40, 30), |(i, j)| {
+            0.05 * (0.1 * i as f64).sin()
+                + 0.001 * j as f64
+                + 0.01 * (((i * 13 + j * 7) % 11) as f64 / 5.0 - 1.0)
+        })
+    }
+
+    #[test]
+    fn spikes_go_and_the_surface_stays() {
+        let mut spiked = wave();
+        for at in [(3, 4), (20, 29), (39, 0)] {
+            spiked[at] += 5.0;
+        }
+        spiked[[10, 10]] = f64::NAN;
+        let grid = Grid::new([40, 30], [1.0, 1.0]).unwrap();
+        let cleaned = remove_outliers(&Surface::new(grid, spiked).unwrap(), Outliers::default()).unwrap();
+        assert_eq!(cleaned.undefined(), 4);
+        for at in [(3, 4), (20, 29), (39, 0), (10, 10)] {
+            assert!(cleaned.heights()[at].is_nan());
+        }
+    }
+
+    #[test]
+    fn a_step_is_no_outlier_and_a_lone_spike_on_a_plane_is() {
+        let grid = Grid::new([20, 20], [1.0, 1.0]).unwrap();
+        let step = Array2::from_shape_fn((20, 20), |(i, _)| if i < 10 { 0.0 } else { 1.0 });
+        let surface = Surface::new(grid, step).unwrap();
+        assert_eq!(remove_outliers(&surface, Outliers::default()).unwrap(), surface);
+        let mut flat = Array2::zeros((20, 20));
+        flat[[7, 7]] = 1.0;
+        let cleaned = remove_outliers(&Surface::new(grid, flat).unwrap(), Outliers::default()).unwrap();
+        assert_eq!(cleaned.undefined(), 1);
+    }
+
+    #[test]
+    fn numbers_outside_their_domain_are_named() {
+        let grid = Grid::new([2, 2], [1.0, 1.0]).unwrap();
+        let nothing = Surface::new(grid, Array2::from_elem((2, 2), f64::NAN)).unwrap();
+        assert_eq!(remove_outliers(&nothing, Outliers::default()).unwrap().undefined(), 4);
+        for outliers in [Outliers { threshold: 0.0, radius: 2 }, Outliers { threshold: 3.0, radius: 0 }] {
+            assert!(remove_outliers(&nothing, outliers).is_err());
+        }
+    }
+}

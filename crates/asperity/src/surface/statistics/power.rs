@@ -1,0 +1,220 @@
+//! The power spectrum and its moments.
+//!
+//! With the amplitudes A_q of z(x) = sum A_q exp(i q.x) the (two-dimensional) power spectral density is
+//!
+//! ```text
+//! C(q) = Lx Ly |A_q|^2   [m^4],      <z^2> = int C(q) d^2q / (2 pi)^2
+//! ```
+//!
+//! (T. D. B. Jacobs, T. Junge and L. Pastewka, Surf. Topogr.: Metrol. Prop. 5 (2017) 013001, eqs 3 and 6:
+//! "C^2D"), and its radial average the mean over the waves of a ring ("C^iso"). The spectral moments are
+//! those of a profile through an isotropic surface (P. R. Nayak, J. Lubr. Technol. 93 (1971) 398):
+//!
+//! ```text
+//! m0 = <z^2>,   m2 = <|grad z|^2> / 2,   m4 = (3/8) <(laplace z)^2>,   alpha = m0 m4 / m2^2
+//! ```
+//!
+//! The surface is taken as periodic; level and window a measured one first.
+
+use std::f64::consts::TAU;
+
+use ndarray::ArrayView2;
+
+use super::super::Surface;
+use super::super::spectrum::{count, transform, wave_vector};
+use crate::error::{Error, Result};
+use crate::grid::Grid;
+
+/// The rings over which a spectrum is averaged.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Rings {
+    /// Rings as wide as the larger of 2 pi / Lx and 2 pi / Ly.
+    Linear,
+    /// This many to a decade of wave numbers, 1 to 1000.
+    PerDecade(u32),
+}
+
+/// Radially averaged power spectrum; only rings that lie whole inside the grid's Nyquist limit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RadialSpectrum {
+    /// Mean wave number of the waves of each ring that holds one \[1/m\].
+    pub wave_number: Vec<f64>,
+    /// Mean of C over the ring \[m^4\].
+    pub power: Vec<f64>,
+    /// Number of waves in the ring.
+    pub waves: Vec<usize>,
+}
+
+impl RadialSpectrum {
+    /// Of a surface whose points are all defined.
+    ///
+    /// ```
+    /// use asperity::{Grid, surface::{Surface, statistics::{RadialSpectrum, Rings}}};
+    /// let grid = Grid::new([16, 16], [1.0, 1.0])?;
+    /// let wave = |(i, _): (usize, usize)| (std::f64::consts::TAU * 3.0 * grid.x(i)).cos();
+    /// let surface = Surface::new(grid, ndarray::Array2::from_shape_fn((16, 16), wave))?;
+    /// let spectrum = RadialSpectrum::of(&surface, Rings::Linear)?;
+    /// // |A|^2 = 1/4 at +-3, among the waves of the third ring.
+    /// assert!((spectrum.power[2] * spectrum.waves[2] as f64 - 0.5).abs() < 1e-14);
+    /// # Ok::<(), asperity::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where a point is undefined or the rings are not between 1 and 1000 to a decade.
+    pub fn of(surface: &Surface, rings: Rings) -> Result<Self> {
+        if let Rings::PerDecade(n) = rings
+            && !(1..=1000).contains(&n)
+        {
+            return Err(Error::invalid("number of rings to a decade", n, "between 1 and 1000"));
+        }
+        let grid = *surface.grid();
+        let ([nx, ny], [lx, ly]) = (grid.cells(), grid.size());
+        let amplitudes = transform(&grid, surface.heights())?;
+        let width = (TAU / lx).max(TAU / ly);
+        let smallest = (TAU / lx).min(TAU / ly);
+        let nyquist = (TAU * nx as f64 / (2.0 * lx)).min(TAU * ny as f64 / (2.0 * ly));
+        // Which ring a wave number falls in; rings of a decade start at the domain's longest wave.
+        let ring = |q: f64| match rings {
+            Rings::Linear => (q / width).round() as usize,
+            Rings::PerDecade(n) => ((q / smallest * (1.0 + 1e-9)).log10() * f64::from(n)) as usize,
+        };
+        let last = ring(nyquist);
+        let mut sums = vec![(0.0, 0.0, 0usize); last + 1];
+        for ((i, j), a) in amplitudes.indexed_iter() {
+            let [qx, qy] = wave_vector(&grid, (i, j));
+            let q = (qx * qx + qy * qy).sqrt();
+            if q > 0.0 && q <= nyquist * (1.0 + 1e-9) {
+                let times = count(&grid, j);
+                let sum = &mut sums[ring(q).min(last)];
+                *sum = (sum.0 + times * q, sum.1 + times * a.norm_sqr(), sum.2 + times as usize);
+            }
+        }
+        let mut spectrum = RadialSpectrum { wave_number: vec![], power: vec![], waves: vec![] };
+        // The linear ring around 0 is no ring.
+        for (q, power, waves) in sums.into_iter().filter(|s| s.2 > 0) {
+            spectrum.wave_number.push(q / waves as f64);
+            spectrum.power.push(grid.area() * power / waves as f64);
+            spectrum.waves.push(waves);
+        }
+        Ok(spectrum)
+    }
+}
+
+/// Moments of the spectrum of a profile through an isotropic surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpectralMoments {
+    /// m0, mean square height \[m^2\].
+    pub m0: f64,
+    /// m2, mean square slope of a profile.
+    pub m2: f64,
+    /// m4, mean square curvature of a profile \[1/m^2\].
+    pub m4: f64,
+}
+
+impl SpectralMoments {
+    /// Of a surface whose points are all defined. Waves on the Nyquist frequency of an axis have no
+    /// slope along it.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where a point is undefined.
+    pub fn of(surface: &Surface) -> Result<Self> {
+        let sums = even_moments(surface.grid(), surface.heights())?;
+        Ok(SpectralMoments { m0: sums[0], m2: 0.5 * sums[1], m4: 0.375 * sums[2] })
+    }
+
+    /// Nayak's bandwidth parameter m0 m4 / m2^2, at least 1.5.
+    pub fn bandwidth(&self) -> f64 {
+        self.m0 * self.m4 / (self.m2 * self.m2)
+    }
+}
+
+/// Root mean square of |grad z| of the periodic surface through the heights, by its Fourier series:
+/// sum of |q|^2 |A_q|^2. Waves on the Nyquist frequency of an axis have no derivative along it.
+///
+/// # Errors
+/// [`Error::Invalid`] where a height is undefined or the shape is not the grid's.
+pub fn rms_gradient(grid: &Grid, heights: ArrayView2<f64>) -> Result<f64> {
+    Ok(even_moments(grid, heights)?[1].sqrt())
+}
+
+/// Sums of |A|^2, |q|^2 |A|^2 and |q|^4 |A|^2, without the mean.
+fn even_moments(grid: &Grid, heights: ArrayView2<f64>) -> Result<[f64; 3]> {
+    let amplitudes = transform(grid, heights)?;
+    let [nx, ny] = grid.cells();
+    let mut sums = [0.0; 3];
+    for ((i, j), a) in amplitudes.indexed_iter().skip(1) {
+        let [qx, qy] = wave_vector(grid, (i, j));
+        let [qx, qy] = [if 2 * i == nx { 0.0 } else { qx }, if 2 * j == ny { 0.0 } else { qy }];
+        let (q2, power) = (qx * qx + qy * qy, count(grid, j) * a.norm_sqr());
+        [power, q2 * power, q2 * q2 * power].iter().zip(&mut sums).for_each(|(p, s)| *s += p);
+    }
+    Ok(sums)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::{Roughness, SelfAffine, statistics::rms_height};
+    use ndarray::Array2;
+
+    fn rough() -> Surface {
+        let grid = Grid::new([60, 45], [1e-3, 0.9e-3]).unwrap();
+        let surface = SelfAffine {
+            hurst: 0.7,
+            roughness: Roughness::RmsHeight(1e-6),
+            longest: 9e-4,
+            shortest: 6e-5,
+            roll_off: 9e-4,
+            seed: 2,
+        };
+        Surface::new(grid, surface.heights(&grid).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn the_rms_gradient_of_a_wave_is_amplitude_times_wave_number_over_root_two() {
+        for cells in [[8, 6], [9, 7], [16, 1]] {
+            let grid = Grid::new(cells, [2.0, 3.0]).unwrap();
+            let wave = |(i, _)| 0.1 * (TAU * grid.x(i)).sin(); // two waves along x
+            let heights = Array2::from_shape_fn(grid.shape(), wave);
+            let got = rms_gradient(&grid, heights.view()).unwrap();
+            assert!((got - 0.1 * TAU / 2.0f64.sqrt()).abs() < 1e-14, "{got}"); // rounding
+        }
+    }
+
+    #[test]
+    fn the_rings_hold_the_mean_square_height() {
+        // int C d^2q / (2 pi)^2: each wave stands for (2 pi)^2 / (Lx Ly).
+        let surface = rough();
+        for rings in [Rings::Linear, Rings::PerDecade(10)] {
+            let spectrum = RadialSpectrum::of(&surface, rings).unwrap();
+            let sum: f64 = spectrum.power.iter().zip(&spectrum.waves).map(|(c, n)| c * *n as f64).sum();
+            let variance = rms_height(surface.heights()).unwrap().powi(2);
+            assert!((sum / surface.grid().area() / variance - 1.0).abs() < 1e-12);
+            assert!(spectrum.wave_number.windows(2).all(|w| w[0] < w[1]));
+        }
+    }
+
+    #[test]
+    fn moments_of_two_crossed_waves_are_closed_forms() {
+        // A (cos qx + cos qy): <z^2> = A^2, <|grad|^2> = q^2 A^2, <(laplace)^2> = q^4 A^2.
+        let grid = Grid::new([24, 24], [1.0, 1.0]).unwrap();
+        let q = 3.0 * TAU;
+        let heights = Array2::from_shape_fn((24, 24), |(i, j)| {
+            0.2 * ((q * grid.x(i)).cos() + (q * grid.y(j)).cos()) + 7.0
+        });
+        let m = SpectralMoments::of(&Surface::new(grid, heights).unwrap()).unwrap();
+        let close = |a: f64, b: f64| (a / b - 1.0).abs() < 1e-12;
+        assert!(close(m.m0, 0.04) && close(m.m2, 0.02 * q * q) && close(m.m4, 0.015 * q.powi(4)));
+        assert!(close(m.bandwidth(), 1.5)); // one wave number alone
+    }
+
+    #[test]
+    fn undefined_points_and_absurd_rings_are_refused() {
+        let mut heights = rough().into_heights();
+        heights[[3, 3]] = f64::NAN;
+        let holed = Surface::new(*rough().grid(), heights).unwrap();
+        assert!(RadialSpectrum::of(&holed, Rings::Linear).unwrap_err().to_string().contains("1 of 2700"));
+        assert!(SpectralMoments::of(&holed).is_err());
+        assert!(RadialSpectrum::of(&rough(), Rings::PerDecade(0)).is_err());
+    }
+}

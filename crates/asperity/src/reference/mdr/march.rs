@@ -21,6 +21,9 @@ impl Default for MdrOptions {
     }
 }
 
+/// Share of the last time, or of the value, below which two instants or values are one.
+const SAME: f64 = 1e-12;
+
 impl Mdr {
     /// Rows at t = 0+, at every time asked for and at every break of the history before the last; a jump
     /// gives two rows, before and after it.
@@ -46,9 +49,11 @@ impl Mdr {
             Control::Load | Control::Pressure => MdrTarget::Load(value),
         };
         let breaks = history.breaks(end);
-        let mut stops: Vec<f64> = times.iter().chain(&breaks).copied().filter(|t| *t > 0.0).collect();
+        // Times that are a break but for rounding are the break.
+        let is_break = |t: f64| breaks.iter().any(|b| (t - b).abs() <= SAME * end);
+        let mut stops: Vec<f64> = times.iter().copied().filter(|t| !is_break(*t)).collect();
+        stops.extend(&breaks);
         stops.sort_by(f64::total_cmp);
-        stops.dedup();
         let mut states = vec![row.step(0.0, target(history.after(0.0)))?];
         let mut start = 0.0;
         for stop in stops {
@@ -64,8 +69,9 @@ impl Mdr {
                     states.push(state);
                 }
             }
-            if history.after(stop) != history.before(stop) {
-                states.push(row.step(0.0, target(history.after(stop)))?);
+            let (before, after) = (history.before(stop), history.after(stop));
+            if stop < end && (after - before).abs() > SAME * before.abs().max(after.abs()) {
+                states.push(row.step(0.0, target(after))?);
             }
             start = stop;
         }

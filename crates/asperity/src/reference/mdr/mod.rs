@@ -312,7 +312,8 @@ impl Mdr {
             let lean = self.profile.lean(x0, x1);
             (x1 - x0) * ((1.0 - lean) * q0 + lean * q1)
         };
-        2.0 * self.cells().map(cell).sum::<f64>()
+        // A sum of no cells is -0.
+        0.0 + 2.0 * self.cells().map(cell).sum::<f64>()
     }
 
     /// Pressure at the distance r from the axis \[Pa\]; infinite on the axis of a cone.

@@ -1,0 +1,98 @@
+//! The march on a grid against the row of springs: loading, unloading, opening, loading again, jumps.
+
+use asperity::march::{March, Row, Simulation};
+use asperity::material::Relaxation;
+use asperity::reference::{Mdr, MdrOptions, MdrProfile, MdrState};
+use asperity::surface::{Part, Shape, undeformed_gap};
+use asperity::{Control, Grid, History, Loading, TimeGrid};
+
+/// E*(t) = 2 + 2 exp(-t/0.5) + exp(-t/2).
+fn relaxation() -> Relaxation {
+    Relaxation::absolute(2.0, &[(2.0, 0.5), (1.0, 2.0)]).unwrap()
+}
+
+fn both(
+    shape: Shape,
+    size: f64,
+    profile: MdrProfile,
+    loading: Loading,
+    end: f64,
+    steps: usize,
+) -> Vec<(Row, MdrState)> {
+    let grid = Grid::new([64, 64], [size, size]).unwrap();
+    let gap = undeformed_gap(&grid, &[Part::Shape { shape, center: [0.0, 0.0] }]).unwrap();
+    let simulation = Simulation {
+        creep: relaxation().to_creep().unwrap(),
+        loading: loading.clone(),
+        times: TimeGrid::Uniform { end, steps },
+        ..Simulation::new(grid, gap)
+    };
+    let times: Vec<f64> = (1..=steps).map(|n| end * n as f64 / steps as f64).collect();
+    let springs = Mdr::march(profile, &relaxation(), &loading, &times, MdrOptions::default()).unwrap();
+    let mut march = March::new(simulation).unwrap();
+    let mut rows = vec![];
+    while let Some(step) = march.advance().unwrap() {
+        rows.push(step.row());
+    }
+    assert_eq!(rows.len(), springs.len());
+    for (row, state) in rows.iter().zip(&springs) {
+        assert!((row.time - state.time).abs() < 1e-9, "{} {}", row.time, state.time);
+    }
+    rows.into_iter().zip(springs).collect()
+}
+
+#[test]
+fn a_sphere_that_is_loaded_unloaded_opened_and_loaded_again() {
+    // The load: up, down to a tenth, up, a jump down, held, to zero (open), held there, up again.
+    let points = vec![
+        (0.0, 0.0),
+        (1.0, 1.0),
+        (1.6, 0.1),
+        (2.4, 1.2),
+        (2.4, 0.5),
+        (3.0, 0.5),
+        (3.5, 0.0),
+        (3.8, 0.0),
+        (4.6, 0.9),
+    ];
+    let loading = Loading { control: Control::Load, history: History::Table { points } };
+    let profile = MdrProfile::Sphere { radius: 1.0 };
+    let pairs = both(Shape::Sphere { radius: 1.0 }, 1.8, profile, loading, 4.6, 230);
+    let largest = pairs.iter().map(|(row, _)| row.approach).fold(0.0, f64::max);
+    for (row, state) in &pairs {
+        // 25 cells to the radius: (dx/a)^2 = 1.6e-3, the steps of 0.02 less. At first touch
+        // and last contact a handful of cells carry the load.
+        assert!((row.approach - state.approach).abs() < 2e-3 * largest, "{row:?}\n{state:?}");
+        let radius = (row.contact_area_corrected / std::f64::consts::PI).sqrt();
+        if state.contact_radius > 0.3 {
+            assert!((radius / state.contact_radius - 1.0).abs() < 0.03, "{row:?}\n{state:?}"); // a cell in 25
+        }
+    }
+    // The body is open for a while, and the second contact is not the first.
+    assert!(pairs.iter().any(|(row, _)| row.time > 3.4 && row.contact_area == 0.0));
+}
+
+#[test]
+fn a_cone_whose_approach_comes_and_goes() {
+    let points = vec![
+        (0.0, 0.05),
+        (0.8, 0.1),
+        (0.8, 0.07),
+        (1.2, 0.02),
+        (1.5, 0.09),
+        (2.5, 0.09),
+        (3.0, -0.02),
+        (3.4, 0.08),
+    ];
+    let loading = Loading { control: Control::Approach, history: History::Table { points } };
+    let profile = MdrProfile::Cone { slope: 0.1 };
+    let pairs = both(Shape::Cone { slope: 0.1 }, 1.6, profile, loading, 3.4, 170);
+    let largest = pairs.iter().map(|(row, _)| row.load).fold(0.0, f64::max);
+    // The tip of a cone is a cell wide: the grid's cone is blunt by about dx slope / 2, and the load an
+    // order of dx/a = 1/25 too small for the same approach from first touch. Held against the shape of
+    // the whole history.
+    for (row, state) in &pairs {
+        assert!((row.load - state.load).abs() < 0.04 * largest, "{row:?}\n{state:?}");
+    }
+    assert!(pairs.iter().any(|(row, state)| row.load == 0.0 && state.load == 0.0));
+}

@@ -46,7 +46,7 @@ pub struct MasterCurve {
 /// let shift = Shift::Wlf { c1: 8.86, c2: 101.6, reference: 300.0 };
 /// let cold = Isotherm { temperature: 290.0, x: vec![1.0, 10.0], curves: vec![vec![3e9, 2e9]] };
 /// let master = master_curve(&[cold], Abscissa::Time, &shift)?;
-/// // Ten kelvin colder is 9.4 times slower, so its second is a tenth of a second at 300 K.
+/// // Ten kelvin colder is 9.3 times slower, so its second is a tenth of a second at 300 K.
 /// assert!((master.x[0] * shift.factor(290.0)? - 1.0).abs() < 1e-14);
 /// # Ok::<(), asperity::Error>(())
 /// ```

@@ -4,6 +4,7 @@ use asperity::material::*;
 use proptest::collection::vec;
 use proptest::num::f64::ANY;
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 
 /// Numbers of ordinary and of any size.
 fn number() -> impl Strategy<Value = f64> {
@@ -37,7 +38,13 @@ fn pmma_creeps_as_the_reference_says() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+    // A fixed seed: the same cases in every run.
+    #![proptest_config(ProptestConfig {
+        cases: 300,
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(1),
+        ..ProptestConfig::default()
+    })]
 
     #[test]
     fn any_prony_table_converts_or_is_refused(

@@ -75,7 +75,13 @@ impl ReducedTime {
             for mut piece in clock.split_at_knots(Piece { start, end, from, to, reduced: 0.0, length: 0.0 }) {
                 piece.reduced = reduced;
                 if piece.end.is_finite() {
-                    piece.length = clock.within(&piece, piece.start, piece.end);
+                    piece.length = clock.within(&piece, piece.start, piece.end).ok_or_else(|| {
+                        Error::invalid(
+                            "temperature history",
+                            format!("{from} K to {to} K from {start:e} s to {end:e} s"),
+                            "within reach of the shift: check the temperatures and its constants",
+                        )
+                    })?;
                     reduced += piece.length;
                 }
                 clock.pieces.push(piece);
@@ -97,7 +103,7 @@ impl ReducedTime {
             return 0.0;
         }
         let piece = &self.pieces[self.index(t)];
-        piece.reduced + self.within(piece, piece.start, t)
+        piece.reduced + self.part(piece, piece.start, t)
     }
 
     /// xi(t1) - xi(t0) for t0 <= t1, without cancellation for short steps at late times.
@@ -105,11 +111,11 @@ impl ReducedTime {
         let (t0, t1) = (t0.max(0.0), t1.max(0.0));
         let (first, last) = (self.index(t0), self.index(t1));
         if first >= last {
-            return self.within(&self.pieces[first], t0, t1);
+            return self.part(&self.pieces[first], t0, t1);
         }
         let (begin, end) = (&self.pieces[first], &self.pieces[last]);
         let between: f64 = self.pieces[first + 1..last].iter().map(|p| p.length).sum();
-        self.within(begin, t0, begin.end) + between + self.within(end, end.start, t1)
+        self.part(begin, t0, begin.end) + between + self.part(end, end.start, t1)
     }
 
     /// Temperature at t \[K\]; at a jump the value after it.
@@ -126,44 +132,60 @@ impl ReducedTime {
         times
     }
 
+    /// Integral over part of a piece, which is no steeper than the whole.
+    fn part(&self, piece: &Piece, t0: f64, t1: f64) -> f64 {
+        self.within(piece, t0, t1).unwrap_or(piece.length)
+    }
+
     /// The last piece that starts at t or before.
     fn index(&self, t: f64) -> usize {
         self.pieces.partition_point(|p| p.start <= t).max(1) - 1
     }
 
-    /// Integral of 1/a_T over part of a piece.
-    fn within(&self, piece: &Piece, t0: f64, t1: f64) -> f64 {
+    /// Integral of 1/a_T over part of a piece; `None` where its temperatures are too steep for numbers.
+    fn within(&self, piece: &Piece, t0: f64, t1: f64) -> Option<f64> {
         if t1 <= t0 {
-            return 0.0;
+            return Some(0.0);
         }
         let ln_rate = |t: f64| -self.shift.ln_factor_unchecked(piece.temperature(t));
         let fastest = ln_rate(t0).max(ln_rate(t1));
         if piece.temperature(t0) == piece.temperature(t1) {
-            return (t1 - t0) * fastest.exp();
+            return Some((t1 - t0) * fastest.exp());
         }
         // What goes exp(60) times slower than the fastest adds nothing to the last digit.
-        self.halve(piece, t0, t1, fastest - 60.0)
+        let mut budget = 10_000;
+        self.halve(piece, [t0, t1], fastest - 60.0, 100, &mut budget)
     }
 
     /// Halves until the integrand is tame enough for one Gauss rule to be exact to rounding: 1/a_T within
-    /// a factor e, and far from the law's singularity. Parts all below `negligible` are left out.
-    fn halve(&self, piece: &Piece, t0: f64, t1: f64, negligible: f64) -> f64 {
+    /// a factor e, and far from the law's singularity. Parts all below `negligible` are left out. Some
+    /// hundred parts do for any material; `depth` and `budget` bound what absurd constants can ask for.
+    fn halve(
+        &self,
+        piece: &Piece,
+        [t0, t1]: [f64; 2],
+        negligible: f64,
+        depth: u32,
+        budget: &mut u32,
+    ) -> Option<f64> {
         let (from, to) = (piece.temperature(t0), piece.temperature(t1));
         let ln_rate = |temperature: f64| -self.shift.ln_factor_unchecked(temperature);
         if ln_rate(from).max(ln_rate(to)) < negligible {
-            return 0.0;
+            return Some(0.0);
         }
+        *budget = budget.checked_sub(1)?;
         let change = ln_rate(to) - ln_rate(from);
         let singular = match self.shift {
             Shift::Wlf { c2, reference, .. } => reference - c2,
             _ => 0.0,
         };
         let ratio = (to - singular) / (from - singular);
-        let middle = 0.5 * (t0 + t1);
-        if (change.abs() <= 1.0 && (0.5..=2.0).contains(&ratio)) || middle <= t0 || middle >= t1 {
-            return integrate(t0, t1, |t| ln_rate(piece.temperature(t)).exp());
+        if change.abs() <= 1.0 && (0.5..=2.0).contains(&ratio) {
+            return Some(integrate(t0, t1, |t| ln_rate(piece.temperature(t)).exp()));
         }
-        self.halve(piece, t0, middle, negligible) + self.halve(piece, middle, t1, negligible)
+        let (middle, depth) = (0.5 * (t0 + t1), depth.checked_sub(1)?);
+        let first = self.halve(piece, [t0, middle], negligible, depth, budget)?;
+        Some(first + self.halve(piece, [middle, t1], negligible, depth, budget)?)
     }
 
     /// A table of shift factors bends at its temperatures: pieces between them.

@@ -4,10 +4,11 @@
 //! where the depth image is: binary32 in metres, lines padded to a multiple of 8 bytes. Undefined points have the
 //! tagged value (3e15) or more. (AL3D File Format Specification, version 1.0, 2005.)
 
+use super::Problem;
 use super::cursor::Cursor;
 use super::finish::{Lateral, Measured, Unit};
-use super::sample::{Kind, Order, decode};
-use super::{Problem, grid};
+use super::grid::Layout;
+use super::sample::{Kind, Order};
 
 const SIGNATURE: &[u8] = b"AliconaImaging\0\r\n";
 
@@ -28,7 +29,6 @@ pub(super) fn read_al3d(bytes: &[u8]) -> Result<Measured, Problem> {
     let comment = cursor.text(256, "the comment")?;
 
     let [nx, ny] = [number::<u64>(&tags, "Cols")?, number(&tags, "Rows")?];
-    let points = grid::points(nx, ny)?;
     let pixel = [number::<f64>(&tags, "PixelSizeXMeter")?, number(&tags, "PixelSizeYMeter")?];
     let offset: u64 = number(&tags, "DepthImageOffset")?;
     if offset == 0 {
@@ -36,34 +36,22 @@ pub(super) fn read_al3d(bytes: &[u8]) -> Result<Measured, Problem> {
         return Err(Problem::NoHeights { format: super::Format::Al3d, detail });
     }
     let image = Cursor::at(bytes, offset, Order::Little, "the depth image")?.rest();
-    let stride = (nx * 4).next_multiple_of(8);
-    let mut values = if stride == nx * 4 {
-        decode(image, Kind::F32, Order::Little, points, "the depth image")?
-    } else {
-        // The padding of the last line may be missing.
-        let needed = stride * (ny - 1) + nx * 4;
-        if (image.len() as u64) < needed {
-            return Err(Problem::truncated("the depth image", needed, image.len() as u64));
-        }
-        let mut values = Vec::with_capacity(points);
-        for line in image.chunks(stride as usize).take(ny as usize) {
-            values.extend(decode(line, Kind::F32, Order::Little, nx as usize, "a line of the depth image")?);
-        }
-        values
-    };
     // The tag is written with fewer digits than the binary32 values have.
     let invalid: f64 = number(&tags, "InvalidPixelValue").unwrap_or(f64::NAN);
-    if invalid.is_finite() {
-        let tolerance = 1.5e-7 * invalid.abs();
-        let undefined = |v: f64| (v - invalid).abs() <= tolerance || (invalid > 0.0 && v > invalid);
-        values.iter_mut().filter(|v| undefined(**v)).for_each(|v| *v = f64::NAN);
-    }
+    let tolerance = 1.5e-7 * invalid.abs();
+    let height = |v: f64| {
+        let undefined = (v - invalid).abs() <= tolerance || (invalid > 0.0 && v > invalid);
+        if undefined { f64::NAN } else { v }
+    };
+    let stride = nx.saturating_mul(4).checked_next_multiple_of(8).unwrap_or(u64::MAX);
+    let layout = Layout { points: [nx, ny], kind: Kind::F32, order: Order::Little, stride };
+    let heights = layout.map(image, "the depth image", height)?;
     let mut metadata: Vec<_> = tags.into_iter().filter(|(key, _)| key != "TagCount").collect();
     if !comment.is_empty() {
         metadata.push(("Comment".to_owned(), comment));
     }
     Ok(Measured {
-        heights: grid::from_lines(nx as usize, ny as usize, &values),
+        heights,
         unit: Unit::Metres(1.0),
         lateral: Lateral::Metres([nx as f64 * pixel[0].abs(), ny as f64 * pixel[1].abs()]),
         channel: None,

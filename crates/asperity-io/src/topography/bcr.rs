@@ -4,11 +4,12 @@
 //! 16-bit integers times `bit2nm` (bcrstm) or binary32 (bcrf), in `zunit`, which is nm where it is not given, as
 //! `xunit` and `yunit` are. The greatest number of the type marks an undefined point.
 
+use super::Problem;
 use super::cursor::text;
 use super::finish::{Lateral, Measured, Unit};
-use super::sample::{Kind, Order, decode};
+use super::grid::Layout;
+use super::sample::{Kind, Order};
 use super::unit::{LoneA, metres};
-use super::{Problem, grid};
 
 const START: &str = "fileformat = bcr";
 const LEAST_HEADER: usize = 2048;
@@ -68,16 +69,12 @@ pub(super) fn read_bcr(bytes: &[u8]) -> Result<Measured, Problem> {
     };
     let order = if entries.get("intelmode").is_some_and(|i| i == "0") { Order::Big } else { Order::Little };
     let [nx, ny] = [entries.whole("xpixels")?, entries.whole("ypixels")?];
-    let count = grid::points(nx, ny)?;
-    let mut values = decode(data, kind, order, count, "the points of the BCR file")?;
-    values.iter_mut().filter(|v| **v >= undefined).for_each(|v| *v = f64::NAN);
     let scale = match (kind, entries.get("bit2nm")) {
         (Kind::I16, Some(_)) => entries.number("bit2nm")?,
         _ => 1.0,
     };
-    let (nx, ny) = (nx as usize, ny as usize);
-    let mut heights = grid::from_lines(nx, ny, &values);
-    heights.par_mapv_inplace(|v| v * scale);
+    let height = |v: f64| if v >= undefined { f64::NAN } else { v * scale };
+    let heights = Layout::dense([nx, ny], kind, order).map(data, "the points of the BCR file", height)?;
 
     let label = |key: &str| entries.get(key).unwrap_or("nm");
     let unit_of = |key: &str| metres(label(key), LoneA::Angstrom);

@@ -2,7 +2,7 @@
 
 use ndarray::Array2;
 
-use super::{Format, Problem, ReadOptions, Topography};
+use super::{Format, Problem, ReadOptions, Topography, grid};
 
 /// What a reader found.
 #[derive(Debug)]
@@ -87,10 +87,12 @@ pub(super) fn finish(
         }
     }
     // Infinite heights can only come from scaling absurd numbers: undefined, like every other value that is none.
-    heights.par_mapv_inplace(|h| {
-        let metres = h * height_unit;
-        if metres.is_finite() { metres } else { f64::NAN }
-    });
+    let clean = |h: f64| if h.is_finite() { h } else { f64::NAN };
+    if height_unit != 1.0 {
+        grid::replace(&mut heights, |h| clean(h * height_unit));
+    } else if heights.iter().any(|h| h.is_infinite()) {
+        grid::replace(&mut heights, clean);
+    }
     Ok(Topography { format, heights, size, channel, channels, metadata })
 }
 

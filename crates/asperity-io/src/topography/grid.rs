@@ -4,9 +4,16 @@ use ndarray::Array2;
 use rayon::prelude::*;
 
 use super::Problem;
+use super::sample::{Kind, Order, with_decoder};
 
 /// Most points of a topography, as of a grid.
 pub(super) const MOST_POINTS: usize = 1 << 31;
+
+/// Columns and lines of the tiles in which a map is transposed: a tile of binary64 fits the innermost cache.
+const TILE: usize = 32;
+
+/// Maps with fewer points are not worth the threads.
+pub(super) const FEW: usize = 1 << 15;
 
 /// Number of points nx ny, refused where it is 0 or absurd.
 pub(super) fn points(nx: u64, ny: u64) -> Result<usize, Problem> {
@@ -20,26 +27,101 @@ pub(super) fn points(nx: u64, ny: u64) -> Result<usize, Problem> {
     }
 }
 
-/// Values given line by line (x runs fastest) as an array with axis 0 = x.
-///
-/// # Panics
-/// Never: `values` has nx ny elements where the caller checked it; else the missing ones are NaN.
-pub(super) fn from_lines(nx: usize, ny: usize, values: &[f64]) -> Array2<f64> {
-    debug_assert_eq!(values.len(), nx * ny);
-    let mut columns = vec![f64::NAN; nx * ny];
-    // Bands of x, blocks of y: each line of the file is read in runs and each cache line written once.
-    const BAND: usize = 16;
-    columns.par_chunks_mut(BAND * ny.max(1)).enumerate().for_each(|(band, out)| {
-        let first = band * BAND;
-        let width = out.len() / ny;
-        for (y, line) in values.chunks_exact(nx).enumerate() {
-            for (i, value) in line[first..first + width].iter().enumerate() {
-                out[i * ny + y] = *value;
+/// How a file of binary numbers holds a map.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Layout {
+    /// Points along x and y.
+    pub points: [u64; 2],
+    /// Type of the numbers.
+    pub kind: Kind,
+    /// Order of their bytes.
+    pub order: Order,
+    /// Bytes from the start of a line to that of the next.
+    pub stride: u64,
+}
+
+impl Layout {
+    /// Lines (x runs fastest) without padding between them.
+    pub(super) fn dense(points: [u64; 2], kind: Kind, order: Order) -> Self {
+        Layout { points, kind, order, stride: points[0].saturating_mul(kind.width() as u64) }
+    }
+
+    /// The map with axis 0 = x, each number replaced by `value` of it. The padding of the last line may be missing.
+    ///
+    /// # Errors
+    /// An absurd number of points, or [`Problem::Truncated`]; nothing is allocated then.
+    pub(super) fn map(
+        self,
+        bytes: &[u8],
+        what: &str,
+        value: impl Fn(f64) -> f64 + Sync,
+    ) -> Result<Array2<f64>, Problem> {
+        let [nx, ny] = self.points;
+        points(nx, ny)?;
+        let line = nx.saturating_mul(self.kind.width() as u64);
+        let needed = self.stride.saturating_mul(ny - 1).saturating_add(line);
+        if self.stride < line || (bytes.len() as u64) < needed {
+            return Err(Problem::truncated(what, needed.max(line), bytes.len() as u64));
+        }
+        // In range: checked against the length of `bytes`.
+        let (nx, ny, stride) = (nx as usize, ny as usize, self.stride as usize);
+        Ok(with_decoder!(self.kind, self.order, |WIDTH, decode| {
+            transposed(nx, ny, |y, columns, out| {
+                let line = &bytes[y * stride..][columns.start * WIDTH..columns.end * WIDTH];
+                for (number, out) in line.as_chunks::<WIDTH>().0.iter().zip(out) {
+                    *out = value(decode(*number));
+                }
+            })
+        }))
+    }
+}
+
+/// Values given line by line (x runs fastest) as an array with axis 0 = x, each replaced by `value` of it.
+pub(super) fn from_lines(nx: usize, lines: &[&[f64]], value: impl Fn(f64) -> f64 + Sync) -> Array2<f64> {
+    transposed(nx, lines.len(), |y, columns, out| {
+        for (number, out) in lines[y][columns].iter().zip(out) {
+            *out = value(*number);
+        }
+    })
+}
+
+/// Replaces every value.
+pub(super) fn replace(map: &mut Array2<f64>, value: impl Fn(f64) -> f64 + Sync + Send) {
+    if map.len() < FEW { map.mapv_inplace(value) } else { map.par_mapv_inplace(value) }
+}
+
+/// The map whose line y, between two columns, is what `line` writes.
+fn transposed(
+    nx: usize,
+    ny: usize,
+    line: impl Fn(usize, std::ops::Range<usize>, &mut [f64]) + Sync,
+) -> Array2<f64> {
+    let mut map = vec![0.0; nx * ny];
+    let fill = |(band, out): (usize, &mut [f64])| {
+        let columns = band * TILE..band * TILE + out.len() / ny;
+        // One column more than the tile has keeps its columns out of one cache set.
+        let mut tile = [0.0; TILE * (TILE + 1)];
+        for first in (0..ny).step_by(TILE) {
+            let last = (first + TILE).min(ny);
+            for y in first..last {
+                let start = (y - first) * (TILE + 1);
+                line(y, columns.clone(), &mut tile[start..start + columns.len()]);
+            }
+            for (x, column) in out.chunks_exact_mut(ny).enumerate() {
+                for (y, out) in column[first..last].iter_mut().enumerate() {
+                    *out = tile[y * (TILE + 1) + x];
+                }
             }
         }
-    });
+    };
+    let band = TILE * ny.max(1);
+    if map.len() < FEW {
+        map.chunks_mut(band).enumerate().for_each(fill);
+    } else {
+        map.par_chunks_mut(band).enumerate().for_each(fill);
+    }
     // The lengths agree by construction.
-    Array2::from_shape_vec((nx, ny), columns).unwrap_or_default()
+    Array2::from_shape_vec((nx, ny), map).unwrap_or_default()
 }
 
 #[cfg(test)]
@@ -48,12 +130,40 @@ mod tests {
 
     #[test]
     fn a_line_of_the_file_runs_along_axis_0() {
-        let (nx, ny) = (37, 21);
-        let values: Vec<f64> = (0..nx * ny).map(|k| k as f64).collect();
-        let heights = from_lines(nx, ny, &values);
-        for ((x, y), h) in heights.indexed_iter() {
-            assert_eq!(*h, (y * nx + x) as f64);
+        // Neither a multiple of a tile nor square.
+        for (nx, ny) in [(1, 1), (70, 33), (5, 129), (32, 64)] {
+            let values: Vec<f64> = (0..nx * ny).map(|k| k as f64).collect();
+            let heights = from_lines(nx, &values.chunks(nx).collect::<Vec<_>>(), |v| v + 1.0);
+            assert_eq!(heights.dim(), (nx, ny));
+            for ((x, y), h) in heights.indexed_iter() {
+                assert_eq!(*h, (y * nx + x) as f64 + 1.0);
+            }
         }
+    }
+
+    #[test]
+    fn padded_lines_of_every_order_are_read() {
+        // Lines of three 16-bit numbers, padded to 8 bytes except the last.
+        let numbers = |to: fn(i16) -> [u8; 2]| {
+            let mut bytes = Vec::new();
+            for y in 0..40 {
+                (0..3).for_each(|x| bytes.extend(to(10 * y + x)));
+                bytes.extend([9, 9]);
+            }
+            bytes.truncate(bytes.len() - 2);
+            bytes
+        };
+        for (order, bytes) in
+            [(Order::Little, numbers(i16::to_le_bytes)), (Order::Big, numbers(i16::to_be_bytes))]
+        {
+            let layout = Layout { points: [3, 40], kind: Kind::I16, order, stride: 8 };
+            let map = layout.map(&bytes, "the map", |v| -v).unwrap();
+            assert!(map.indexed_iter().all(|((x, y), v)| *v == -((10 * y + x) as f64)));
+            let error = layout.map(&bytes[1..], "the map", |v| v).unwrap_err();
+            assert!(matches!(error, Problem::Truncated { needed: 318, available: 317, .. }), "{error}");
+        }
+        let absurd = Layout::dense([u64::MAX, 1], Kind::F64, Order::Big);
+        assert!(absurd.map(&[], "the map", |v| v).is_err());
     }
 
     #[test]

@@ -8,11 +8,14 @@
 
 use std::collections::BTreeMap;
 
+use ndarray::Array2;
+
 use super::cursor::{Cursor, text};
 use super::finish::{Lateral, Measured, Unit, choose};
-use super::sample::{Kind, Order, decode};
+use super::grid::Layout;
+use super::sample::{Kind, Order};
 use super::unit::{LoneA, metres};
-use super::{Format, Problem, grid};
+use super::{Format, Problem};
 
 const SIGNATURE: &[u8] = b"GWYP";
 /// Objects lie in objects: Gwyddion nests some five deep.
@@ -50,18 +53,18 @@ pub(super) fn read_gwy(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
     let index = choose(Format::Gwy, &names, channel)?;
     let (n, data) = fields[index];
 
-    let (nx, ny, mut values) = data.values()?;
+    let mut heights = data.map()?;
     if let Some(mask) = field(n, "mask") {
-        let (mask_x, mask_y, mask) = mask.values()?;
-        if (mask_x, mask_y) != (nx, ny) {
-            let expected = format!("{nx} x {ny} as the heights are");
-            return Err(Problem::malformed("the mask", format!("{mask_x} x {mask_y}"), expected));
+        let mask = mask.map()?;
+        if mask.dim() != heights.dim() {
+            let expected = format!("{:?} as that of the heights", heights.dim());
+            return Err(Problem::malformed("the shape of the mask", format!("{:?}", mask.dim()), expected));
         }
-        for (value, masked) in values.iter_mut().zip(mask) {
-            if masked > 0.5 {
-                *value = f64::NAN;
+        heights.zip_mut_with(&mask, |h, masked| {
+            if *masked > 0.5 {
+                *h = f64::NAN;
             }
-        }
+        });
     }
     let length = |key: &str| match data.get(key) {
         Some(Value::Double(length)) if length.is_finite() && *length != 0.0 => Some(length.abs()),
@@ -85,7 +88,7 @@ pub(super) fn read_gwy(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
         _ => Vec::new(),
     };
     Ok(Measured {
-        heights: grid::from_lines(nx, ny, &values),
+        heights,
         unit: data.unit("si_unit_z"),
         lateral,
         channel: Some(names[index].clone()),
@@ -155,19 +158,17 @@ impl<'a> Object<'a> {
         }
     }
 
-    /// nx, ny and the values of a data field, line by line.
-    fn values(&self) -> Result<(usize, usize, Vec<f64>), Problem> {
+    /// The values of a data field.
+    fn map(&self) -> Result<Array2<f64>, Problem> {
         let resolution = |key: &str| match self.get(key) {
             Some(Value::Int(n)) => Ok(u64::try_from(*n).unwrap_or(0)),
             _ => Err(Problem::malformed(format!("{key:?} of the data field"), "missing", "present")),
         };
-        let (nx, ny) = (resolution("xres")?, resolution("yres")?);
-        let points = grid::points(nx, ny)?;
+        let points = [resolution("xres")?, resolution("yres")?];
         let Some(Value::Doubles(bytes)) = self.get("data") else {
             return Err(Problem::malformed("\"data\" of the data field", "missing", "an array of doubles"));
         };
-        let values = decode(bytes, Kind::F64, Order::Little, points, "the data field")?;
-        Ok((nx as usize, ny as usize, values))
+        Layout::dense(points, Kind::F64, Order::Little).map(bytes, "the data field", |v| v)
     }
 }
 

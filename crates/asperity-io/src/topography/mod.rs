@@ -132,7 +132,7 @@ fn parse(bytes: &[u8], options: &ReadOptions) -> Result<Topography, Problem> {
     };
     let channel = options.channel.as_deref();
     let (format, measured) = match format {
-        Format::Text | Format::Csv => (format, text::read_matrix(bytes, channel)?),
+        Format::Text | Format::Csv => (format, text::read_matrix(bytes, channel, options.format.is_some())?),
         Format::Xyz => (format, text::read_xyz(bytes, channel)?),
         Format::Npy => (format, npy::read_npy(bytes)?),
         Format::Npz => (format, npy::read_npz(bytes, channel)?),

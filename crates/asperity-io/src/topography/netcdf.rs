@@ -50,7 +50,7 @@ pub(super) fn read_netcdf(bytes: &[u8], channel: Option<&str>) -> Result<(Format
     }
     let mut heights = two_dimensional(file.read_variable_unpacked_masked(name), name)?;
     let fill = |h: f64| (h / DEFAULT_FILL - 1.0).abs() < 1e-6;
-    heights.par_mapv_inplace(|h| if fill(h) { f64::NAN } else { h });
+    grid::replace(&mut heights, |h| if fill(h) { f64::NAN } else { h });
     if let Ok(mask) = file.variable(&sibling(name, "mask"))
         && mask.shape() == shape
     {
@@ -86,6 +86,14 @@ pub(super) fn read_netcdf(bytes: &[u8], channel: Option<&str>) -> Result<(Format
 }
 
 fn broken(what: &str, error: impl std::fmt::Display) -> Problem {
+    let error = error.to_string();
+    // The library names filters and features that it does not know.
+    if error.contains("unsupported") {
+        return Problem::unsupported(
+            format!("{what} ({error})"),
+            "save it without filters or with gzip alone",
+        );
+    }
     Problem::malformed(what, error, "whole, undamaged NetCDF or HDF5")
 }
 

@@ -8,10 +8,11 @@
 use ndarray::Array2;
 
 use super::finish::{Lateral, Measured, Unit, choose};
+use super::grid::{self, Layout};
 use super::sample::{Kind, Order, decode};
 use super::unit::{LoneA, metres};
 use super::unpack::Archive;
-use super::{Format, Problem, grid};
+use super::{Format, Problem};
 
 const SIGNATURE: &[u8] = b"\x93NUMPY";
 
@@ -163,14 +164,18 @@ impl<'a> Npy<'a> {
         Some((kind, order))
     }
 
-    /// The numbers in the order of the file.
-    fn values(&self) -> Result<Vec<f64>, Problem> {
-        let (kind, order) = self.kind().ok_or_else(|| {
+    fn real(&self) -> Result<(Kind, Order), Problem> {
+        self.kind().ok_or_else(|| {
             Problem::unsupported(
                 format!("an NPY file of numbers of type {:?}", self.descr),
                 "save real numbers (float64, float32, integers)",
             )
-        })?;
+        })
+    }
+
+    /// The numbers in the order of the file.
+    fn values(&self) -> Result<Vec<f64>, Problem> {
+        let (kind, order) = self.real()?;
         let count = self.shape.iter().try_fold(1u64, |n, m| n.checked_mul(*m)).unwrap_or(u64::MAX);
         let count = grid::points(count, 1)?;
         decode(self.data, kind, order, count, "the NPY array")
@@ -182,13 +187,12 @@ impl<'a> Npy<'a> {
             return Err(Problem::NoHeights { format, detail });
         };
         grid::points(nx, ny)?;
-        let (nx, ny) = (nx as usize, ny as usize);
-        let values = self.values()?;
         // In Fortran order x runs fastest.
         if self.fortran_order {
-            return Ok(grid::from_lines(nx, ny, &values));
+            let (kind, order) = self.real()?;
+            return Layout::dense([nx, ny], kind, order).map(self.data, "the NPY array", |v| v);
         }
-        Array2::from_shape_vec((nx, ny), values)
+        Array2::from_shape_vec((nx as usize, ny as usize), self.values()?)
             .map_err(|e| Problem::malformed("the NPY array", e, "nx times ny numbers"))
     }
 

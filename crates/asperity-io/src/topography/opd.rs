@@ -52,7 +52,7 @@ pub(super) fn read_opd(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
     const NM: f64 = 1e-9;
     const MM: f64 = 1e-3;
     let mut heights = arrays[index].array()?;
-    heights.par_mapv_inplace(|v| v * (wavelength / mult));
+    grid::replace(&mut heights, |v| v * (wavelength / mult));
     let (nx, ny) = heights.dim();
     let lateral = match number("Pixel_size") {
         Some(pixel) => Lateral::Metres([nx as f64 * pixel * MM, ny as f64 * pixel * aspect * MM]),

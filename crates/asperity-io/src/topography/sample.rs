@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::Problem;
+use super::grid::FEW;
 
 /// Type of a binary number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,6 +40,44 @@ impl Kind {
     }
 }
 
+/// Evaluates an expression with the width of a kind of number as the constant `$width` and the function from its
+/// bytes to f64 as `$decode`.
+macro_rules! with_decoder {
+    ($kind:expr, $order:expr, |$width:ident, $decode:ident| $body:expr) => {{
+        use $crate::topography::sample::{Kind, Order, half};
+        macro_rules! arm {
+            ($bytes:literal, $number:expr) => {{
+                const $width: usize = $bytes;
+                let $decode = $number;
+                $body
+            }};
+        }
+        match ($kind, $order) {
+            (Kind::U8, _) => arm!(1, |[b]: [u8; 1]| f64::from(b)),
+            (Kind::I8, _) => arm!(1, |[b]: [u8; 1]| f64::from(b as i8)),
+            (Kind::U16, Order::Little) => arm!(2, |b| f64::from(u16::from_le_bytes(b))),
+            (Kind::U16, Order::Big) => arm!(2, |b| f64::from(u16::from_be_bytes(b))),
+            (Kind::I16, Order::Little) => arm!(2, |b| f64::from(i16::from_le_bytes(b))),
+            (Kind::I16, Order::Big) => arm!(2, |b| f64::from(i16::from_be_bytes(b))),
+            (Kind::F16, Order::Little) => arm!(2, |b| half(u16::from_le_bytes(b))),
+            (Kind::F16, Order::Big) => arm!(2, |b| half(u16::from_be_bytes(b))),
+            (Kind::U32, Order::Little) => arm!(4, |b| f64::from(u32::from_le_bytes(b))),
+            (Kind::U32, Order::Big) => arm!(4, |b| f64::from(u32::from_be_bytes(b))),
+            (Kind::I32, Order::Little) => arm!(4, |b| f64::from(i32::from_le_bytes(b))),
+            (Kind::I32, Order::Big) => arm!(4, |b| f64::from(i32::from_be_bytes(b))),
+            (Kind::F32, Order::Little) => arm!(4, |b| f64::from(f32::from_le_bytes(b))),
+            (Kind::F32, Order::Big) => arm!(4, |b| f64::from(f32::from_be_bytes(b))),
+            (Kind::U64, Order::Little) => arm!(8, |b| u64::from_le_bytes(b) as f64),
+            (Kind::U64, Order::Big) => arm!(8, |b| u64::from_be_bytes(b) as f64),
+            (Kind::I64, Order::Little) => arm!(8, |b| i64::from_le_bytes(b) as f64),
+            (Kind::I64, Order::Big) => arm!(8, |b| i64::from_be_bytes(b) as f64),
+            (Kind::F64, Order::Little) => arm!(8, f64::from_le_bytes),
+            (Kind::F64, Order::Big) => arm!(8, f64::from_be_bytes),
+        }
+    }};
+}
+pub(super) use with_decoder;
+
 /// The first `count` numbers of `bytes`.
 ///
 /// # Errors
@@ -50,45 +89,24 @@ pub(super) fn decode(
     count: usize,
     what: &str,
 ) -> Result<Vec<f64>, Problem> {
-    let needed = count as u64 * kind.width() as u64;
+    let needed = (count as u64).saturating_mul(kind.width() as u64);
     let available = bytes.len() as u64;
     if available < needed {
         return Err(Problem::truncated(what, needed, available));
     }
     let bytes = &bytes[..needed as usize];
-    macro_rules! numbers {
-        ($number:ty, $width:literal) => {
-            match order {
-                Order::Little => convert::<$width>(bytes, |b| <$number>::from_le_bytes(b) as f64),
-                Order::Big => convert::<$width>(bytes, |b| <$number>::from_be_bytes(b) as f64),
-            }
-        };
-    }
-    Ok(match kind {
-        Kind::U8 => convert::<1>(bytes, |[b]| f64::from(b)),
-        Kind::I8 => convert::<1>(bytes, |[b]| f64::from(b as i8)),
-        Kind::U16 => numbers!(u16, 2),
-        Kind::I16 => numbers!(i16, 2),
-        Kind::U32 => numbers!(u32, 4),
-        Kind::I32 => numbers!(i32, 4),
-        Kind::U64 => numbers!(u64, 8),
-        Kind::I64 => numbers!(i64, 8),
-        Kind::F16 => match order {
-            Order::Little => convert::<2>(bytes, |b| half(u16::from_le_bytes(b))),
-            Order::Big => convert::<2>(bytes, |b| half(u16::from_be_bytes(b))),
-        },
-        Kind::F32 => numbers!(f32, 4),
-        Kind::F64 => numbers!(f64, 8),
-    })
-}
-
-fn convert<const WIDTH: usize>(bytes: &[u8], number: impl Fn([u8; WIDTH]) -> f64 + Sync) -> Vec<f64> {
-    let (numbers, _) = bytes.as_chunks::<WIDTH>();
-    numbers.par_iter().with_min_len(1 << 14).map(|b| number(*b)).collect()
+    Ok(with_decoder!(kind, order, |WIDTH, number| {
+        let numbers = bytes.as_chunks::<WIDTH>().0;
+        if count < FEW {
+            numbers.iter().map(|b| number(*b)).collect()
+        } else {
+            numbers.par_iter().with_min_len(FEW).map(|b| number(*b)).collect()
+        }
+    }))
 }
 
 /// IEEE 754 binary16: sign, 5 bits of exponent (bias 15), 10 bits of fraction.
-fn half(bits: u16) -> f64 {
+pub(super) fn half(bits: u16) -> f64 {
     let sign = if bits >> 15 == 1 { -1.0 } else { 1.0 };
     let fraction = f64::from(bits & 0x3ff);
     sign * match bits >> 10 & 0x1f {

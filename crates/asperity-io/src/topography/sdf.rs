@@ -5,25 +5,19 @@
 //! unit, the type of the numbers; then the profiles one after the other. Undefined points are BAD in text and the
 //! least number of a signed type (the greatest of an unsigned one, which early files use) in binary.
 
+use ndarray::Array2;
+
+use super::Problem;
 use super::cursor::{Cursor, text};
 use super::finish::{Lateral, Measured, Unit};
-use super::sample::{Kind, Order, decode};
+use super::grid::{self, Layout};
+use super::sample::{Kind, Order};
 use super::text::numbers;
-use super::{Problem, grid};
 
 /// Whether the bytes are an SDF file.
 pub(super) fn is_sdf(bytes: &[u8]) -> bool {
     matches!(bytes.trim_ascii_start().first_chunk(), Some(b"aISO-1.0" | b"aISO-2.0"))
         || matches!(bytes.first_chunk(), Some(b"bISO-1.0" | b"bISO-2.0"))
-}
-
-/// What a header of either kind says.
-struct Header {
-    points: u64,
-    profiles: u64,
-    scale: [f64; 3],
-    kind: Kind,
-    metadata: Vec<(String, String)>,
 }
 
 /// Reads the surface.
@@ -71,13 +65,12 @@ fn read_binary(bytes: &[u8]) -> Result<Measured, Problem> {
     let _resolution = c.f64(H)?;
     let [compression, data_type, _check] = [c.u8(H)?, c.u8(H)?, c.u8(H)?];
     refuse_compression(u64::from(compression))?;
-    let header = Header { points, profiles, scale, kind: kind(u64::from(data_type))?, metadata };
-    let count = grid::points(points, profiles)?;
-    let mut values = decode(c.rest(), header.kind, Order::Little, count, "the points of the SDF file")?;
-    if let Some(undefined) = undefined(header.kind) {
-        values.iter_mut().filter(|v| **v == undefined).for_each(|v| *v = f64::NAN);
-    }
-    header.measured(&values)
+    let kind = kind(u64::from(data_type))?;
+    let (undefined, dz) = (undefined(kind).unwrap_or(f64::NAN), scale[2]);
+    let height = |v: f64| if v == undefined { f64::NAN } else { v * dz };
+    let layout = Layout::dense([points, profiles], kind, Order::Little);
+    let heights = layout.map(c.rest(), "the points of the SDF file", height)?;
+    Ok(measured(heights, scale, metadata))
 }
 
 fn read_text(bytes: &[u8]) -> Result<Measured, Problem> {
@@ -106,14 +99,23 @@ fn read_text(bytes: &[u8]) -> Result<Measured, Problem> {
     }
     let (points, profiles) = (whole("NumPoints")?, whole("NumProfiles")?);
     let scale = [number("Xscale")?, number("Yscale")?, number("Zscale")?];
-    let kind = kind(whole("DataType")?)?;
+    // Text says nothing that depends on the type of the numbers, but a wrong one means another format.
+    kind(whole("DataType")?)?;
     let count = grid::points(points, profiles)?;
     let values = numbers(data, line)?;
     if values.len() != count {
         let expected = format!("{points} x {profiles} as the header says (the file may be truncated)");
         return Err(Problem::malformed("the number of points", values.len(), expected));
     }
-    Header { points, profiles, scale, kind, metadata }.measured(&values)
+    let lines: Vec<&[f64]> = values.chunks_exact(points as usize).collect();
+    let heights = grid::from_lines(points as usize, &lines, |v| v * scale[2]);
+    Ok(measured(heights, scale, metadata))
+}
+
+fn measured(heights: Array2<f64>, [dx, dy, _]: [f64; 3], metadata: Vec<(String, String)>) -> Measured {
+    let (nx, ny) = heights.dim();
+    let lateral = Lateral::Metres([nx as f64 * dx, ny as f64 * dy]);
+    Measured { heights, unit: Unit::Metres(1.0), lateral, channel: None, channels: Vec::new(), metadata }
 }
 
 /// Header and numbers, which lines of one asterisk end, and the line where the numbers start. The trailer after
@@ -141,21 +143,4 @@ fn refuse_compression(code: u64) -> Result<(), Problem> {
         format!("compression {code} of an SDF file, for which ISO 25178-71 defines no method"),
         "export the file without compression",
     ))
-}
-
-impl Header {
-    fn measured(self, values: &[f64]) -> Result<Measured, Problem> {
-        let (nx, ny) = (self.points as usize, self.profiles as usize);
-        let [dx, dy, dz] = self.scale;
-        let mut heights = grid::from_lines(nx, ny, values);
-        heights.par_mapv_inplace(|v| v * dz);
-        Ok(Measured {
-            heights,
-            unit: Unit::Metres(1.0),
-            lateral: Lateral::Metres([nx as f64 * dx, ny as f64 * dy]),
-            channel: None,
-            channels: Vec::new(),
-            metadata: self.metadata,
-        })
-    }
 }

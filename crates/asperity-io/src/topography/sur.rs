@@ -13,10 +13,11 @@ use ndarray::Axis;
 
 use super::cursor::Cursor;
 use super::finish::{Lateral, Measured, Unit, choose};
-use super::sample::{Kind, Order, decode};
+use super::grid::{self, Layout};
+use super::sample::{Kind, Order};
 use super::unit::{LoneA, metres};
 use super::unpack::{most_unpacked, read_bounded};
-use super::{Format, Problem, grid};
+use super::{Format, Problem};
 
 /// Whether the bytes are a SUR file.
 pub(super) fn is_sur(bytes: &[u8]) -> bool {
@@ -196,8 +197,6 @@ impl<'a> Object<'a> {
     }
 
     fn measured(mut self, names: Vec<String>, index: usize) -> Result<Measured, Problem> {
-        let (nx, ny) = (self.points as usize, self.lines as usize);
-        let count = grid::points(u64::from(self.points), u64::from(self.lines))?;
         if self.values_per_point > 1 {
             let what = format!("a SUR object with {} values per point", self.values_per_point);
             return Err(Problem::unsupported(what, "export the surface alone from MountainsMap"));
@@ -215,27 +214,23 @@ impl<'a> Object<'a> {
                 unpacked.as_slice()
             }
         };
-        let mut values = decode(bytes, kind, Order::Little, count, "the points of the SUR object")?;
-        if self.special_points {
-            let undefined = f64::from(self.least) - 2.0;
-            values.iter_mut().filter(|v| **v == undefined).for_each(|v| *v = f64::NAN);
-        }
-        let mut heights = grid::from_lines(nx, ny, &values);
-        // 1: heights inverted; 2: and mirrored left-right; 3: and upside down.
-        match self.inversion {
-            2 => heights.invert_axis(Axis(0)),
-            3 => heights.invert_axis(Axis(1)),
-            _ => {}
-        }
-        let sign = if matches!(self.inversion, 1..=3) { -1.0 } else { 1.0 };
         let [dx, dy, dz] = self.spacing.map(f64::from);
         let offset = f64::from(self.offset);
         if offset != 0.0 {
             self.metadata.push(("z offset".to_owned(), format!("{offset} {}", self.unit[2])));
         }
         let offset = if self.absolute { offset } else { 0.0 };
-        let mut heights = heights.as_standard_layout().into_owned();
-        heights.par_mapv_inplace(|v| sign * v * dz + offset);
+        // 1: heights inverted; 2: and mirrored left-right; 3: and upside down.
+        let sign = if matches!(self.inversion, 1..=3) { -1.0 } else { 1.0 };
+        let undefined = if self.special_points { f64::from(self.least) - 2.0 } else { f64::NAN };
+        let height = |v: f64| if v == undefined { f64::NAN } else { sign * v * dz + offset };
+        let layout = Layout::dense([self.points.into(), self.lines.into()], kind, Order::Little);
+        let mut heights = layout.map(bytes, "the points of the SUR object", height)?;
+        if let 2 | 3 = self.inversion {
+            heights.invert_axis(Axis(usize::from(self.inversion == 3)));
+            heights = heights.as_standard_layout().into_owned();
+        }
+        let (nx, ny) = heights.dim();
 
         let [ux, uy, uz] = self.unit.each_ref().map(|u| metres(u, LoneA::Angstrom));
         let lateral = match (ux, uy) {

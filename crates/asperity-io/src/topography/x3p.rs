@@ -7,13 +7,15 @@
 
 use std::collections::HashMap;
 
+use ndarray::Array2;
 use quick_xml::Reader;
 use quick_xml::events::Event;
 
 use super::finish::{Lateral, Measured, Unit, choose};
-use super::sample::{Kind, Order, decode};
+use super::grid::{self, Layout};
+use super::sample::{Kind, Order};
 use super::unpack::Archive;
-use super::{Format, Problem, grid};
+use super::{Format, Problem};
 
 /// Elements nest five deep in the standard's schema.
 const DEEPEST: usize = 32;
@@ -39,17 +41,18 @@ pub(super) fn read_x3p(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
 
     let increment = main.number_or("Record1/Axes/CZ/Increment", 1.0)?;
     let offset = main.number_or("Record1/Axes/CZ/Offset", 0.0)?;
-    let values = match main.get("Record3/DataLink/PointDataLink") {
-        Some(link) => main.linked(&mut archive, link, all, range)?,
-        None if main.data.len() == all => main.data[range].to_vec(),
+    let height = |v: f64| v * increment + offset;
+    let heights = match main.get("Record3/DataLink/PointDataLink") {
+        Some(link) => main.linked(&mut archive, link, [nx, ny], all, range, height)?,
+        None if main.data.len() == all => {
+            let lines: Vec<&[f64]> = main.data[range].chunks_exact(nx as usize).collect();
+            grid::from_lines(nx as usize, &lines, height)
+        }
         None => {
             let expected = format!("{nx} x {ny} x {layers} as MatrixDimension says");
             return Err(Problem::malformed("the number of points in DataList", main.data.len(), expected));
         }
     };
-    let (nx, ny) = (nx as usize, ny as usize);
-    let mut heights = grid::from_lines(nx, ny, &values);
-    heights.par_mapv_inplace(|v| v * increment + offset);
     let [dx, dy] = [main.number("Record1/Axes/CX/Increment")?, main.number("Record1/Axes/CY/Increment")?];
     let channel = (layers > 1).then(|| names[layer].clone());
     Ok(Measured {
@@ -154,14 +157,16 @@ impl Main {
         Ok(())
     }
 
-    /// The points of one layer from a member of the archive; `all` is their number in all layers.
+    /// The heights of one layer from a member of the archive; `all` is the number of points in all layers.
     fn linked(
         &self,
         archive: &mut Archive,
         link: &str,
+        [nx, ny]: [u64; 2],
         all: usize,
         range: std::ops::Range<usize>,
-    ) -> Result<Vec<f64>, Problem> {
+        height: impl Fn(f64) -> f64 + Sync,
+    ) -> Result<Array2<f64>, Problem> {
         let kind = match self.get("Record1/Axes/CZ/DataType") {
             Some("I") => Kind::I16,
             Some("L") => Kind::I32,
@@ -182,7 +187,7 @@ impl Main {
             return Err(Problem::truncated(format!("the points in {link:?}"), needed, content.len() as u64));
         }
         let bytes = &content[range.start * kind.width()..range.end * kind.width()];
-        let mut values = decode(bytes, kind, Order::Little, range.len(), "the points")?;
+        let mut heights = Layout::dense([nx, ny], kind, Order::Little).map(bytes, "the points", height)?;
         if let Some(link) = self.get("Record3/DataLink/ValidPointsLink") {
             let mask = archive.member(link)?;
             let needed = all.div_ceil(8);
@@ -194,13 +199,14 @@ impl Main {
                 ));
             }
             // One bit per point, the least significant first; 1 = valid.
-            for (value, point) in values.iter_mut().zip(range) {
+            for ((x, y), height) in heights.indexed_iter_mut() {
+                let point = range.start + y * nx as usize + x;
                 if mask[point / 8] >> (point % 8) & 1 == 0 {
-                    *value = f64::NAN;
+                    *height = f64::NAN;
                 }
             }
         }
-        Ok(values)
+        Ok(heights)
     }
 
     /// Record2: instrument, dates, comment.

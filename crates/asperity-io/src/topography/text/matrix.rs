@@ -6,7 +6,10 @@ use crate::topography::finish::{Measured, Unit, choose};
 use crate::topography::{Format, Problem, grid};
 
 /// Reads the channel asked for; each block of numbers is one, those of no length are left out where others are.
-pub(crate) fn read_matrix(bytes: &[u8], channel: Option<&str>) -> Result<Measured, Problem> {
+///
+/// Two columns are a profile (position, height) rather than an area, unless the header or the caller (`insists`)
+/// says that they are a matrix.
+pub(crate) fn read_matrix(bytes: &[u8], channel: Option<&str>, insists: bool) -> Result<Measured, Problem> {
     let bytes = decode(bytes)?;
     let text = Text::split(&bytes)?;
     let unit = |block: &&Block| block.header.scales([1, 1]).2;
@@ -24,9 +27,10 @@ pub(crate) fn read_matrix(bytes: &[u8], channel: Option<&str>) -> Result<Measure
     let block = blocks[index];
 
     let table = table(text.dialect, block)?;
-    let (nx, ny) = (table.columns, table.lines);
-    if nx < 2 || ny < 2 {
-        let detail = format!("{ny} lines of {nx} values, a profile and not an area");
+    let (nx, ny) = (table.columns, table.len());
+    if nx < 2 || ny < 2 || (nx == 2 && !insists && !block.header.says_matrix()) {
+        let hint = if nx == 2 { "; give the format `asc` if it is a matrix of two columns" } else { "" };
+        let detail = format!("{ny} lines of {nx} values are a profile and not an area{hint}");
         return Err(Problem::NoHeights { format: Format::Text, detail });
     }
     grid::points(nx as u64, ny as u64)?;
@@ -38,11 +42,8 @@ pub(crate) fn read_matrix(bytes: &[u8], channel: Option<&str>) -> Result<Measure
             return Err(Problem::malformed(format!("the number of points along {axis}"), found, expected));
         }
     }
-    let mut heights = grid::from_lines(nx, ny, &table.values);
     let (channel, lateral, unit, scale) = block.header.scales([nx, ny]);
-    if scale != 1.0 {
-        heights.par_mapv_inplace(|h| h * scale);
-    }
+    let heights = grid::from_lines(nx, &table.lines().collect::<Vec<_>>(), |number| number * scale);
     let channels = if channel.is_some() || names.len() > 1 { names } else { Vec::new() };
     Ok(Measured { heights, unit, lateral, channel, channels, metadata: block.header.metadata.clone() })
 }

@@ -7,11 +7,22 @@ use super::dialect::{Dialect, Separator, is_undefined};
 use super::{Block, encoding};
 use crate::topography::Problem;
 
-/// The numbers of a block line by line.
+/// The numbers of a block in runs of whole lines.
 pub(super) struct Table {
     pub(super) columns: usize,
-    pub(super) lines: usize,
-    pub(super) values: Vec<f64>,
+    runs: Vec<Vec<f64>>,
+}
+
+impl Table {
+    /// The lines.
+    pub(super) fn lines(&self) -> impl Iterator<Item = &[f64]> {
+        self.runs.iter().flat_map(|run| run.chunks_exact(self.columns.max(1)))
+    }
+
+    /// Number of the lines.
+    pub(super) fn len(&self) -> usize {
+        self.runs.iter().map(Vec::len).sum::<usize>() / self.columns.max(1)
+    }
 }
 
 /// Number of values on the lines of a block, from its first lines.
@@ -32,14 +43,13 @@ pub(super) fn columns(dialect: Dialect, data: &[u8]) -> usize {
 /// Parses the block: lines of equally many numbers.
 pub(super) fn table(dialect: Dialect, block: &Block) -> Result<Table, Problem> {
     let columns = columns(dialect, block.data);
-    let values = parse(dialect, Some(columns), block.data, block.line)?;
-    Ok(Table { columns, lines: values.len() / columns.max(1), values })
+    Ok(Table { columns, runs: parse(dialect, Some(columns), block.data, block.line)? })
 }
 
 /// The numbers of lines of any length, parted by blanks, from this line of the file on.
 pub(crate) fn numbers(data: &[u8], first_line: usize) -> Result<Vec<f64>, Problem> {
     let dialect = Dialect { separator: Separator::Blank, decimal_comma: false };
-    parse(dialect, None, data, first_line)
+    Ok(parse(dialect, None, data, first_line)?.concat())
 }
 
 fn parse(
@@ -47,24 +57,18 @@ fn parse(
     columns: Option<usize>,
     data: &[u8],
     first_line: usize,
-) -> Result<Vec<f64>, Problem> {
-    let parsed: Vec<_> =
-        runs(data).into_par_iter().map(|run| (run, parse_run(dialect, columns, run))).collect();
-    let length = parsed.iter().map(|(_, p)| p.as_ref().map_or(0, Vec::len)).sum::<usize>();
-    let mut values = Vec::new();
-    let mut line = first_line;
-    for (run, parsed) in parsed {
-        match parsed {
-            Ok(run_values) if run_values.len() == length => values = run_values,
-            Ok(run_values) => {
-                values.reserve_exact(length - values.len());
-                values.extend_from_slice(&run_values);
-            }
-            Err(fault) => return Err(fault.problem(line, run)),
-        }
-        line += memchr_iter(b'\n', run).count();
-    }
-    Ok(values)
+) -> Result<Vec<Vec<f64>>, Problem> {
+    let runs = runs(data);
+    let parsed: Vec<_> = match runs.as_slice() {
+        [run] => vec![parse_run(dialect, columns, run)],
+        runs => runs.par_iter().map(|run| parse_run(dialect, columns, run)).collect(),
+    };
+    let lines = |runs: &[&[u8]]| runs.iter().map(|run| memchr_iter(b'\n', run).count()).sum::<usize>();
+    let located = parsed
+        .into_iter()
+        .enumerate()
+        .map(|(i, run)| run.map_err(|fault| fault.problem(first_line + lines(&runs[..i]), runs[i])));
+    located.collect()
 }
 
 /// The block cut at line ends into runs that keep the threads busy.
@@ -231,13 +235,15 @@ mod tests {
     #[test]
     fn numbers_of_every_spelling_are_read() {
         let table = parse("1 -2.5e-003\t+.5\r\n\n 1.5D2  nan 3.\n").unwrap();
-        assert_eq!((table.columns, table.lines), (3, 2));
-        assert_eq!(table.values[..4], [1.0, -2.5e-3, 0.5, 150.0]);
-        assert!(table.values[4].is_nan() && table.values[5] == 3.0);
+        let values = table.runs.concat();
+        assert_eq!((table.columns, table.len()), (3, 2));
+        assert_eq!(values[..4], [1.0, -2.5e-3, 0.5, 150.0]);
+        assert!(values[4].is_nan() && values[5] == 3.0);
         let table = parse("1,5;;-,25;\n2;3;4;\n").unwrap();
-        assert_eq!((table.columns, table.lines), (3, 2));
-        assert_eq!((table.values[0], table.values[2]), (1.5, -0.25));
-        assert!(table.values[1].is_nan());
+        let values = table.runs.concat();
+        assert_eq!((table.columns, table.len()), (3, 2));
+        assert_eq!((values[0], values[2]), (1.5, -0.25));
+        assert!(values[1].is_nan());
     }
 
     #[test]
@@ -257,7 +263,8 @@ mod tests {
             .collect();
         assert!(text.len() > 3 << 20);
         let table = parse(&text).unwrap();
-        assert!(table.values.iter().enumerate().all(|(k, v)| *v == k as f64));
-        assert_eq!((table.columns, table.lines), (nx, ny));
+        assert!(table.runs.len() > 2);
+        assert!(table.lines().flatten().enumerate().all(|(k, v)| *v == k as f64));
+        assert_eq!((table.columns, table.len()), (nx, ny));
     }
 }

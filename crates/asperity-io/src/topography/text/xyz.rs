@@ -91,7 +91,7 @@ impl Axis {
     }
 
     fn of(table: &Table, column: usize, name: &str) -> Result<Self, Problem> {
-        let mut sorted: Vec<f64> = table.values.iter().skip(column).step_by(table.columns).copied().collect();
+        let mut sorted: Vec<f64> = table.lines().map(|point| point[column]).collect();
         if sorted.iter().any(|v| v.is_nan()) {
             return Err(Problem::malformed(format!("a {name} coordinate"), "undefined", "a number"));
         }
@@ -148,12 +148,12 @@ fn gridded(
     first_line: usize,
 ) -> Result<Array2<f64>, Problem> {
     let cells = grid::points(x_axis.points as u64, y_axis.points as u64)?;
-    if cells > MOST_CELLS_PER_POINT * table.lines {
+    if cells > MOST_CELLS_PER_POINT * table.len() {
         return Err(irregular("x and y"));
     }
     let mut heights = Array2::from_elem((x_axis.points, y_axis.points), f64::NAN);
     let mut seen = Array2::from_elem((x_axis.points, y_axis.points), false);
-    for (line, point) in table.values.chunks_exact(table.columns).enumerate() {
+    for (line, point) in table.lines().enumerate() {
         let cell = [x_axis.index(point[x]), y_axis.index(point[y])];
         if let (Some(height), Some(seen)) = (heights.get_mut(cell), seen.get_mut(cell)) {
             if std::mem::replace(seen, true) {

@@ -19,7 +19,8 @@ pub(super) fn encode(topography: &Topography) -> Result<Vec<u8>, Problem> {
     let checksums = format!("{} *main.xml\n", checksum(xml.as_bytes()));
     let mut zip = ZipWriter::new(Cursor::new(Vec::with_capacity(data.len() + 4096)));
     let failed = |e: zip::result::ZipError| Problem::Io(std::io::Error::other(e));
-    let packed = SimpleFileOptions::default();
+    // Little is gained by packing binary64 harder than this.
+    let packed = SimpleFileOptions::default().compression_level(Some(1));
     for (name, content) in
         [("main.xml", xml.as_bytes()), (DATA, &data), ("md5checksum.hex", checksums.as_bytes())]
     {

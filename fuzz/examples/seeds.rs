@@ -1,6 +1,6 @@
-//! Writes valid files of every format into the corpora of the fuzz targets: `cargo run --bin seeds` in `fuzz/`.
+//! Writes valid files of every format into the corpora of the fuzz targets: `cargo run --example seeds` in `fuzz/`.
 
-#[path = "../../../crates/asperity-io/tests/samples/mod.rs"]
+#[path = "../../crates/asperity-io/tests/samples/mod.rs"]
 mod samples;
 
 use std::path::Path;

@@ -23,7 +23,9 @@ pub(crate) struct Case {
 
 impl Case {
     pub(crate) fn new(cells: [usize; 2], fields: &[FieldKind]) -> Case {
-        let grid = Grid::new(cells, [1e-4 / 3.0, 0.1]).unwrap();
+        // Sides whose binary fractions do not end, cells that are not square.
+        let [nx, ny] = cells.map(|n| n as f64);
+        let grid = Grid::new(cells, [nx * 1e-7 / 3.0, ny * 0.7e-7]).unwrap();
         let mut setup = serde_json::Map::new();
         setup.insert("boundary".into(), "free".into());
         setup.insert("creep".into(), serde_json::json!({"instantaneous": 4.013744989e-10 / 3.0}));

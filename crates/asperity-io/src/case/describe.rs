@@ -97,7 +97,7 @@ fn name(surface: &Surface) -> String {
     match surface {
         Surface::File(file) => file.path.display().to_string(),
         Surface::Part(Part::Shape { shape, .. }) => shape.name().to_owned(),
-        Surface::Part(Part::SelfAffine(_)) => "self-affine".to_owned(),
+        Surface::Part(Part::SelfAffine(_) | Part::Synthesis(_)) => "self-affine".to_owned(),
         Surface::Part(Part::Heights { name, .. }) => name.clone(),
     }
 }

@@ -1,2 +1,149 @@
-//! To be written.
-fn main() {}
+//! Tasks of the project: `cargo xtask test | bench | figures | verification`.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, ExitCode};
+
+const HELP: &str = "\
+cargo xtask TASK
+
+  test          format, lints, all tests, documentation, Python's view of the results
+  bench         times the convolution and the paper's case, prints a table (a quiet machine, please)
+  figures       draws the pictures of the documentation
+  verification  writes docs/verification.md from `asperity verify`
+";
+
+/// What the Python side of the tests and figures imports.
+const PYTHON_PACKAGES: [&str; 5] = ["numpy", "xarray", "zarr", "h5py", "matplotlib"];
+
+type Done = Result<(), String>;
+
+fn main() -> ExitCode {
+    let task = std::env::args().nth(1);
+    let done = match task.as_deref() {
+        Some("test") => test(),
+        Some("bench") => bench(),
+        Some("figures") => figures(),
+        Some("verification") => verification(),
+        _ => {
+            print!("{HELP}");
+            return ExitCode::from(if task.is_none() { 0 } else { 2 });
+        }
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(message) => {
+            eprintln!("xtask: {message}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+fn run(command: &mut Command) -> Done {
+    eprintln!("xtask: {command:?}");
+    match command.current_dir(root()).status() {
+        Ok(status) if status.success() => Ok(()),
+        Ok(status) => Err(format!("{command:?} ended with {status}")),
+        Err(error) => Err(format!("{command:?}: {error}")),
+    }
+}
+
+fn cargo(arguments: &[&str]) -> Command {
+    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or("cargo".into()));
+    command.args(arguments);
+    command
+}
+
+fn test() -> Done {
+    run(&mut cargo(&["fmt", "--all", "--check"]))?;
+    run(&mut cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))?;
+    let mut tests = cargo(&["test", "--workspace"]);
+    match python() {
+        Ok(python) => {
+            tests.env("ASPERITY_PYTHON", python);
+        }
+        Err(message) => eprintln!("xtask: the checks in Python are skipped: {message}"),
+    }
+    run(cargo(&["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings"))?;
+    // Last, so that the runner's closing lines close the output.
+    run(&mut tests)
+}
+
+/// A Python with the packages that the checks need, in a virtual environment below target/.
+fn python() -> Result<PathBuf, String> {
+    let environment = root().join("target/python");
+    let folder = if cfg!(windows) { "Scripts" } else { "bin" };
+    let python = environment.join(folder).join("python");
+    let imports = format!("import {}", PYTHON_PACKAGES.join(", "));
+    let complete = Command::new(&python).args(["-c", &imports]).output().is_ok_and(|o| o.status.success());
+    if !complete {
+        run(Command::new("python3").args(["-m", "venv"]).arg(&environment))?;
+        run(Command::new(&python).args(["-m", "pip", "install", "--quiet"]).args(PYTHON_PACKAGES))?;
+    }
+    Ok(python)
+}
+
+fn bench() -> Done {
+    run(&mut cargo(&[
+        "bench",
+        "-p",
+        "asperity-convolution",
+        "--bench",
+        "convolution",
+        "--",
+        "20",
+        "256",
+        "1024",
+    ]))?;
+    run(&mut cargo(&["build", "--release", "-p", "asperity-cli"]))?;
+    let directory = root().join("target/bench");
+    std::fs::create_dir_all(&directory).map_err(|e| format!("{}: {e}", directory.display()))?;
+    for case in ["hertz", "rough-pmma"] {
+        run(Command::new(root().join("target/release/asperity"))
+            .args(["run", "--quiet", "--force", "-o"])
+            .arg(directory.join(format!("{case}.zarr")))
+            .arg(root().join(format!("examples/{case}.toml"))))?;
+    }
+    Ok(())
+}
+
+fn figures() -> Done {
+    run(&mut cargo(&["build", "--release", "-p", "asperity-cli"]))?;
+    let result = root().join("target/figures/rough-pmma.zarr");
+    std::fs::create_dir_all(root().join("target/figures")).map_err(|e| e.to_string())?;
+    run(Command::new(root().join("target/release/asperity"))
+        .args(["run", "--quiet", "--force", "examples/rough-pmma.toml", "-o"])
+        .arg(&result))?;
+    run(Command::new(python()?)
+        .arg("docs/images/rough_pmma.py")
+        .arg(&result)
+        .arg("docs/images/rough-pmma.png"))
+}
+
+const VERIFICATION: &str = "\
+# Verification
+
+Written by `cargo xtask verification` from `asperity verify`: every quantity is compared with a fact that
+does not come from the solver. An error is |found/expected - 1| unless the quantity says otherwise. A
+tolerance follows from the discretisation (approach and peak pressure converge as (dx/a)², an area is known to a
+part of its last ring of cells) or, for an invariant, from the solver's tolerance; never from the error
+found. The test `verification::tests::every_case_holds` asserts all of them; further tests compare with
+the slow truths (dense matrix, Gauss-Seidel, full hereditary sum, springs of the dimensionality reduction).
+
+";
+
+fn verification() -> Done {
+    run(&mut cargo(&["build", "--release", "-p", "asperity-cli"]))?;
+    let output = Command::new(root().join("target/release/asperity"))
+        .args(["verify", "--markdown"])
+        .output()
+        .map_err(|error| error.to_string())?;
+    if !output.status.success() {
+        return Err(String::from_utf8_lossy(&output.stderr).into_owned());
+    }
+    let text = format!("{VERIFICATION}{}", String::from_utf8_lossy(&output.stdout));
+    std::fs::write(root().join("docs/verification.md"), text).map_err(|error| error.to_string())
+}

@@ -28,6 +28,8 @@
 //! as vectors and back; and the transposition, where threads write to rows of their own in a shared
 //! array.
 #![allow(unsafe_code)]
+// Butterflies read like their sums: elements by number.
+#![allow(clippy::needless_range_loop)]
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;

@@ -156,10 +156,9 @@ fn run_inside(
             }
         };
         last = Some(row);
-        if case.output.checkpoint && march.done() < total && writer.checkpoint_due() {
-            if let Err(source) = writer.checkpoint(&march.checkpoint()) {
-                return Err(stop_storing(writer, source, &path, last));
-            }
+        let due = case.output.checkpoint && march.done() < total && writer.checkpoint_due();
+        if due && let Err(source) = writer.checkpoint(&march.checkpoint()) {
+            return Err(stop_storing(writer, source, &path, last));
         }
         observe(Progress { row: &row, done: march.done(), resumed, total });
     }

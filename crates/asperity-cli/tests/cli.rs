@@ -1,0 +1,328 @@
+//! The command as a user meets it: what it prints, writes and returns.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use asperity_io::store::{At, FieldKind, Reader, Status};
+use serde_json::Value;
+
+/// The repository's root.
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn example(name: &str) -> PathBuf {
+    root().join("examples").join(name)
+}
+
+fn asperity(directory: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_asperity")).args(arguments).current_dir(directory).output().unwrap()
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+/// A rough viscoelastic case with a cap, small enough for a test.
+const SMALL: &str = r#"
+title = "small"
+[domain]
+cells = [60, 48]
+size = ["1 mm", "1 mm"]
+[[surface]]
+kind = "sphere"
+radius = "5 mm"
+[[surface]]
+kind = "self-affine"
+hurst = 0.8
+rms_gradient = 0.05
+longest = "0.5 mm"
+shortest = "0.1 mm"
+seed = 4
+[[body]]
+name = "rubber"
+poisson = 0.5
+hardness = "2 MPa"
+material = { model = "zener", shear = "1 MPa", shear_kelvin = "2 MPa", retardation_time = "3 s" }
+[load]
+control = "load"
+history = { kind = "trapezoid", peak = "0.5 N", rise = "1 s", hold = "4 s", fall = "2 s" }
+[time]
+end = "8 s"
+steps = 16
+[output]
+path = "small.zarr"
+fields = ["pressure", "gap", "displacement", "contact"]
+every = 4
+checkpoint = true
+"#;
+
+fn small() -> (tempfile::TempDir, PathBuf) {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("small.toml"), SMALL).unwrap();
+    let path = directory.path().to_owned();
+    (directory, path)
+}
+
+/// Everything a result holds, to the bit (the time it took aside).
+fn content(path: &Path) -> (String, Vec<Vec<u64>>) {
+    let reader = Reader::open(path).unwrap();
+    let mut maps = vec![];
+    for index in 0..reader.field_times().len() {
+        for kind in [FieldKind::Pressure, FieldKind::Gap, FieldKind::Displacement] {
+            let map = reader.field(kind, At::Index(index)).unwrap();
+            maps.push(map.iter().map(|v| v.to_bits()).collect());
+        }
+    }
+    (format!("{:?}", reader.rows().unwrap()), maps)
+}
+
+#[test]
+fn a_run_prints_a_summary_and_leaves_a_result() {
+    let (_keep, dir) = small();
+    let output = asperity(&dir, &["run", "small.toml"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    for word in ["approach", "contact area", "convolutions", "small.zarr"] {
+        assert!(stdout(&output).contains(word), "{word} in {}", stdout(&output));
+    }
+    assert!(stderr(&output).contains("row 17/17"), "{}", stderr(&output));
+    let reader = Reader::open(&dir.join("small.zarr")).unwrap();
+    assert_eq!(reader.status(), Status::Complete);
+    let rows = reader.rows().unwrap();
+    assert_eq!((rows.len(), rows[0].time, rows[16].time), (17, 0.0, 8.0));
+    // At t = 4 s the load is whole and some cells are at the hardness; at 8 s all is open.
+    assert!((rows[8].load - 0.5).abs() < 1e-12 && rows[8].max_pressure == 2e6);
+    assert_eq!((rows[16].load, rows[16].contact_area), (0.0, 0.0));
+    assert!(rows.iter().all(|r| r.residual <= 1e-6 && r.certificate < 0.01));
+    assert_eq!(reader.field_times(), [0.0, 2.0, 4.0, 6.0, 8.0]);
+}
+
+#[test]
+fn json_output_is_one_object() {
+    let (_keep, dir) = small();
+    let output = asperity(&dir, &["run", "small.toml", "--json", "-o", "there.zarr", "--quiet"]);
+    assert!(output.status.success() && stderr(&output).is_empty(), "{}", stderr(&output));
+    let object: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(object["status"], "complete");
+    assert_eq!(object["steps"], 17);
+    assert_eq!(object["result"], "there.zarr");
+    for key in ["wall_s", "convolutions", "iterations"] {
+        assert!(object[key].as_f64().unwrap() > 0.0, "{key}");
+    }
+    assert!(object.as_object().unwrap().contains_key("peak_memory_bytes"));
+    assert!(dir.join("there.zarr").is_dir());
+    let check = asperity(&dir, &["check", "small.toml", "--json"]);
+    let object: Value = serde_json::from_str(&stdout(&check)).unwrap();
+    assert_eq!(object["rows"], 17);
+    assert!(object["memory_bytes"].as_f64().unwrap() > 60.0 * 48.0 * 100.0);
+}
+
+#[test]
+fn the_result_has_the_same_bits_for_any_number_of_threads() {
+    let (_keep, dir) = small();
+    for threads in ["1", "2", "3"] {
+        let path = format!("{threads}.zarr");
+        let output = asperity(&dir, &["run", "small.toml", "--threads", threads, "-o", &path, "-q"]);
+        assert!(output.status.success(), "{}", stderr(&output));
+    }
+    let one = content(&dir.join("1.zarr"));
+    assert_eq!(one, content(&dir.join("2.zarr")));
+    assert_eq!(one, content(&dir.join("3.zarr")));
+}
+
+#[test]
+fn results_are_not_overwritten_unless_told() {
+    let (_keep, dir) = small();
+    assert!(asperity(&dir, &["run", "small.toml", "-q"]).status.success());
+    let again = asperity(&dir, &["run", "small.toml", "-q"]);
+    assert_eq!(again.status.code(), Some(2));
+    assert!(stderr(&again).contains("--force"), "{}", stderr(&again));
+    assert!(asperity(&dir, &["run", "small.toml", "-q", "--force"]).status.success());
+    // A directory that is something else is left alone, even with --force.
+    std::fs::create_dir(dir.join("photos")).unwrap();
+    std::fs::write(dir.join("photos/me.jpg"), "x").unwrap();
+    let foreign = asperity(&dir, &["run", "small.toml", "-q", "--force", "-o", "photos"]);
+    assert_eq!(foreign.status.code(), Some(2));
+    assert!(dir.join("photos/me.jpg").exists());
+    // Nor is a place that does not exist made up.
+    let nowhere = asperity(&dir, &["run", "small.toml", "-q", "-o", "no/such/place.zarr"]);
+    assert_eq!(nowhere.status.code(), Some(2), "{}", stderr(&nowhere));
+    assert!(stderr(&nowhere).contains("no/such"), "{}", stderr(&nowhere));
+}
+
+#[test]
+fn wrong_input_is_told_with_key_line_and_value() {
+    let (_keep, dir) = small();
+    for (set, words) in [
+        ("body.0.hardness=2 mm", vec!["body[0].hardness", "2 mm"]),
+        ("domain.cels=3", vec!["cels", "cells"]),
+        ("load.history.peak=-1 N", vec!["load.history", "-1"]),
+        ("load.history.peak=5 kN", vec!["2"]),
+        ("domain.cells=[0, 4]", vec!["domain.cells", "0"]),
+        ("domain.cells=[900000, 900000]", vec!["domain.cells"]),
+        ("body.0.poisson=0.7", vec!["poisson", "0.7"]),
+    ] {
+        let output = asperity(&dir, &["run", "small.toml", "--set", set]);
+        assert_eq!(output.status.code(), Some(2), "{set}: {}", stderr(&output));
+        let told = stderr(&output);
+        assert!(words.iter().all(|w| told.contains(w)), "{set}: {told}");
+        assert!(!told.contains("panicked"), "{told}");
+        assert!(!dir.join("small.zarr").exists(), "{set} left a result");
+    }
+    let missing = asperity(&dir, &["run", "nothing.toml"]);
+    assert_eq!(missing.status.code(), Some(2));
+    assert!(stderr(&missing).contains("nothing.toml"));
+    assert_eq!(asperity(&dir, &["run", "small.toml", "--threads", "0"]).status.code(), Some(2));
+}
+
+#[test]
+fn a_solve_that_does_not_converge_is_exit_code_1_with_its_numbers() {
+    let (_keep, dir) = small();
+    let output = asperity(&dir, &["run", "small.toml", "--set", "solver.max_iterations=2", "--json"]);
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert!(stderr(&output).contains("residual") && stderr(&output).contains("best state"));
+    let object: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(object["status"], "failed");
+    assert!(object["best"]["residual"].as_f64().unwrap() > 1e-6);
+    let reader = Reader::open(&dir.join("small.zarr")).unwrap();
+    assert_eq!(reader.status(), Status::Failed);
+}
+
+/// A run that takes some seconds.
+fn long(dir: &Path) -> Vec<String> {
+    let _ = dir;
+    let set = ["domain.cells=[256, 256]", "time.steps=60", "output.every=1"];
+    let mut arguments = vec!["run".to_owned(), "small.toml".to_owned()];
+    arguments.extend(set.iter().flat_map(|s| ["--set".to_owned(), (*s).to_owned()]));
+    arguments
+}
+
+/// Starts a long run and waits for some rows of it.
+fn started(dir: &Path, rows: usize) -> std::process::Child {
+    let child = Command::new(env!("CARGO_BIN_EXE_asperity"))
+        .args(long(dir))
+        .current_dir(dir)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let start = Instant::now();
+    while Reader::open(&dir.join("small.zarr")).map_or(0, |r| r.len()) < rows {
+        assert!(start.elapsed() < Duration::from_secs(100), "no rows appear");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    child
+}
+
+#[test]
+fn a_killed_run_is_readable_and_resumes_to_the_same_bits() {
+    let (_keep, dir) = small();
+    let mut child = started(&dir, 5);
+    child.kill().unwrap(); // SIGKILL
+    child.wait().unwrap();
+    let rows = Reader::open(&dir.join("small.zarr")).unwrap().len();
+    assert!((5..61).contains(&rows), "{rows} rows");
+    let mut arguments = long(&dir);
+    arguments.push("--resume".into());
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let resumed = asperity(&dir, &arguments);
+    assert!(resumed.status.success(), "{}", stderr(&resumed));
+    let mut whole: Vec<&str> = arguments[..arguments.len() - 1].to_vec();
+    whole.extend(["-o", "whole.zarr"]);
+    assert!(asperity(&dir, &whole).status.success());
+    assert_eq!(content(&dir.join("small.zarr")), content(&dir.join("whole.zarr")));
+    // Nothing is left to resume; another case does not resume it either.
+    assert_eq!(asperity(&dir, &arguments).status.code(), Some(2));
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_ends_with_130_and_goes_on() {
+    let (_keep, dir) = small();
+    let child = started(&dir, 3);
+    let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(kill.success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
+    assert!(stderr(&output).contains("--resume"), "{}", stderr(&output));
+    assert_eq!(Reader::open(&dir.join("small.zarr")).unwrap().status(), Status::Interrupted);
+    let mut arguments = long(&dir);
+    arguments.push("--resume".into());
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let resumed = asperity(&dir, &arguments);
+    assert!(resumed.status.success(), "{}", stderr(&resumed));
+    assert_eq!(Reader::open(&dir.join("small.zarr")).unwrap().len(), 61);
+}
+
+#[test]
+fn every_starter_case_is_written_and_checks() {
+    let dir = tempfile::tempdir().unwrap();
+    let list = stdout(&asperity(dir.path(), &["new"]));
+    assert!(list.lines().count() >= 5, "{list}");
+    for name in list.lines().filter_map(|line| line.split_whitespace().next()) {
+        assert!(asperity(dir.path(), &["new", name]).status.success());
+        let file = format!("{name}.toml");
+        let check = asperity(dir.path(), &["check", &file, "--set", "domain.cells=[256, 256]"]);
+        assert!(check.status.success(), "{name}: {}", stderr(&check));
+        assert!(stdout(&check).contains("memory"));
+        assert_eq!(asperity(dir.path(), &["new", name]).status.code(), Some(2), "{name} was overwritten");
+    }
+    let unknown = asperity(dir.path(), &["new", "nonsense"]);
+    assert_eq!(unknown.status.code(), Some(2));
+    assert!(stderr(&unknown).contains("hertz"));
+}
+
+#[test]
+fn every_example_runs_on_a_coarse_grid() {
+    let dir = tempfile::tempdir().unwrap();
+    let mut count = 0;
+    for entry in std::fs::read_dir(root().join("examples")).unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_none_or(|e| e != "toml") {
+            continue;
+        }
+        count += 1;
+        // Long enough waves for the coarse grid, where the case has roughness.
+        let text = std::fs::read_to_string(&path).unwrap();
+        let mut arguments = vec!["run", path.to_str().unwrap(), "-q", "--force", "-o", "out.zarr"];
+        arguments.extend(["--set", "domain.cells=[128, 128]"]);
+        if text.contains("shortest = \"0.8 um\"") {
+            arguments.extend(["--set", "surface.1.shortest=\"2 um\""]);
+        }
+        let output = asperity(dir.path(), &arguments);
+        assert!(output.status.success(), "{}: {}", path.display(), stderr(&output));
+    }
+    assert!(count >= 5);
+}
+
+#[test]
+fn schema_and_completions_are_printed() {
+    let dir = tempfile::tempdir().unwrap();
+    let schema: Value = serde_json::from_str(&stdout(&asperity(dir.path(), &["schema"]))).unwrap();
+    assert!(schema["properties"]["domain"].is_object());
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        assert!(stdout(&asperity(dir.path(), &["completions", shell])).contains("asperity"), "{shell}");
+    }
+}
+
+#[test]
+fn verify_prints_checks_that_hold() {
+    let dir = tempfile::tempdir().unwrap();
+    let output = asperity(dir.path(), &["verify", "hertz-sphere", "flat-punch-history", "--json"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let list: Vec<Value> = serde_json::from_str(&stdout(&output)).unwrap();
+    assert!(list.len() > 10);
+    assert!(list.iter().all(|check| check["ok"] == true
+        && check["error"].as_f64().unwrap() <= check["tolerance"].as_f64().unwrap()));
+    assert_eq!(asperity(dir.path(), &["verify", "nonsense"]).status.code(), Some(2));
+}
+
+#[test]
+fn the_case_of_the_readme_is_an_example() {
+    assert!(example("rough-pmma.toml").exists() && example("hertz.toml").exists());
+}

@@ -60,7 +60,7 @@ fn cargo(arguments: &[&str]) -> Command {
 fn test() -> Done {
     run(&mut cargo(&["fmt", "--all", "--check"]))?;
     run(&mut cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))?;
-    let mut tests = cargo(&["test", "--workspace"]);
+    let mut tests = cargo(&["test", "--workspace", "--no-fail-fast"]);
     match python() {
         Ok(python) => {
             tests.env("ASPERITY_PYTHON", python);

@@ -1,4 +1,25 @@
-//! Contact of rough, linear viscoelastic bodies.
+//! Contact of rough, linear viscoelastic bodies: pressure, gap, contact area and approach over time.
+//!
+//! Space and time separate: the displacement is u(x, t) = integral over s of C(t - s) d(Kp)(x, s), with the
+//! contact creep compliance C(t) of the pair and the unit half-space operator K. So a time step is one elastic
+//! contact with a scalar compliance and a shifted gap, and the code says that:
+//!
+//! ```text
+//! heights -> gap --------.
+//! Grid -> operator ------+-> March --advance()--> Step {pressure, gap, area, approach}
+//! material -> creep -----|
+//! load, times -----------'
+//! ```
+//!
+//! - [`surface`]: shapes, roughness, measured heights to the undeformed gap;
+//! - [`material`]: models, conversion between creep and relaxation, contact compliance of a pair;
+//! - [`load`], [`time`]: what is prescribed, and when the state is computed;
+//! - [`march`]: the simulation; [`contact`]: the elastic contact inside every step;
+//! - [`operator`], [`kernel`], [`convolution`]: u = Kp;
+//! - [`mod@reference`], [`verification`]: closed forms and the checks against them.
+//!
+//! The example of [`march::March`] is a whole simulation. Theory, conventions and verification are in `docs/` of
+//! the repository. This crate touches no file and prints nothing.
 
 pub mod contact;
 pub mod error;
@@ -22,3 +43,8 @@ pub use grid::{Boundary, Grid};
 pub use load::{Control, History, Loading};
 pub use march::{March, Scheme, Simulation};
 pub use time::TimeGrid;
+
+/// The example of the README, compiled and run by the tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

@@ -221,7 +221,7 @@ fn sizes() {
         3,
         &["9223372036854775807 x 9223372036854775807", "this machine has"],
     );
-    says("[32, 16]", "[10000000, 1]", "domain.cells", 3, &["no longer than 1e6 times its width"]);
+    says("[32, 16]", "[10000000, 1]", "domain.cells", 3, &["no longer than 1000 times its width"]);
     says("steps = 20", "steps = 1000000000000", "time.steps", 40, &["is 1000000000000", "10000000 at most"]);
     // 2400 x 1600 cells, 1e6 pressure fields: 61 TB
     let direct = GOOD

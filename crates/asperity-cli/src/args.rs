@@ -24,6 +24,11 @@ pub enum Command {
     New(New),
     /// Compare the solver with exact solutions and print the table of errors
     Verify(Verify),
+    /// Look at a measured surface, or write it in another format
+    #[command(subcommand)]
+    Surface(Surface),
+    /// Write a result for other programs: NetCDF, HDF5, npz, VTK, CSV
+    Export(Export),
     /// Print the JSON Schema of the case file
     Schema,
     /// Print the completions for a shell
@@ -101,6 +106,64 @@ pub struct Verify {
     /// Threads to use [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Surface {
+    /// Print format, size and statistics of the heights as stored
+    Info {
+        #[command(flatten)]
+        file: SurfaceFile,
+        /// Print one JSON object
+        #[arg(long)]
+        json: bool,
+    },
+    /// Write the surface as NPZ, GWY, X3P, SDF, NetCDF or text
+    Convert {
+        #[command(flatten)]
+        file: SurfaceFile,
+        /// The file to write; its ending tells the format
+        output: PathBuf,
+        /// The format, where the ending does not tell it: npz, gwy, x3p, sdf, nc, asc
+        #[arg(long)]
+        to: Option<String>,
+        /// Replace a file that is there already
+        #[arg(long)]
+        force: bool,
+    },
+}
+
+#[derive(Debug, clap::Args)]
+pub struct SurfaceFile {
+    /// The measured surface; its format is found from the content
+    pub file: PathBuf,
+    /// Physical size along x and y, where the file holds none: --size '1 mm,1 mm'
+    #[arg(long, value_name = "A,B")]
+    pub size: Option<String>,
+    /// Unit of the heights, where the file holds none: --height-unit um
+    #[arg(long, value_name = "U")]
+    pub height_unit: Option<String>,
+    /// Name or number (from 0) of the channel, where a file has several
+    #[arg(long)]
+    pub channel: Option<String>,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct Export {
+    /// The result (a Zarr directory)
+    pub result: PathBuf,
+    /// netcdf, hdf5, npz, vtk or csv
+    #[arg(long)]
+    pub to: String,
+    /// The file to write [default: the result's name with the ending of the format]
+    #[arg(short, long, value_name = "PATH")]
+    pub output: Option<PathBuf>,
+    /// Fields to export [default: all that the result holds; none for csv]
+    #[arg(long, value_delimiter = ',')]
+    pub fields: Option<Vec<String>>,
+    /// Replace an output that is there already
+    #[arg(long)]
+    pub force: bool,
 }
 
 #[cfg(test)]

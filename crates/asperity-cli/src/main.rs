@@ -29,6 +29,8 @@ fn main() -> ExitCode {
         Command::Check(check) => commands::check::run(&check),
         Command::New(new) => commands::new::run(&new),
         Command::Verify(verify) => commands::verify::run(&verify),
+        Command::Surface(surface) => commands::surface::run(&surface),
+        Command::Export(export) => commands::export::run(&export),
         Command::Schema => commands::schema::run(),
         Command::Completions { shell } => commands::completions::run(shell),
     };

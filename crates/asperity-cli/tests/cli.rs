@@ -329,3 +329,60 @@ fn verify_prints_checks_that_hold() {
 fn the_case_of_the_readme_is_an_example() {
     assert!(example("rough-pmma.toml").exists() && example("hertz.toml").exists());
 }
+
+#[test]
+fn a_surface_is_looked_at_and_converted() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::write(dir.path().join("heights.txt"), "1 2 3 4\n4 5 6 1\n7 8 nan 2\n2 1 0 3\n").unwrap();
+    // Size and unit are asked for by name.
+    let asked = asperity(dir.path(), &["surface", "info", "heights.txt"]);
+    assert_eq!(asked.status.code(), Some(2));
+    assert!(stderr(&asked).contains("--height-unit"), "{}", stderr(&asked));
+    let asked = asperity(dir.path(), &["surface", "info", "heights.txt", "--height-unit", "um"]);
+    assert_eq!(asked.status.code(), Some(2));
+    assert!(stderr(&asked).contains("--size"), "{}", stderr(&asked));
+    let given = ["--size", "3 mm,4 mm", "--height-unit", "um"];
+    let mut arguments = vec!["surface", "info", "heights.txt", "--json"];
+    arguments.extend(given);
+    let info = asperity(dir.path(), &arguments);
+    assert!(info.status.success(), "{}", stderr(&info));
+    let object: Value = serde_json::from_str(&stdout(&info)).unwrap();
+    assert_eq!(object["format"], "asc");
+    assert_eq!(object["shape"], serde_json::json!([4, 4]));
+    assert_eq!(object["size"], serde_json::json!([3e-3, 4e-3]));
+    assert_eq!((&object["undefined"], &object["h10"]), (&1.into(), &2e-6.into()));
+    assert_eq!((&object["min"], &object["max"]), (&0.0.into(), &8e-6.into()));
+    // mean 49/15, mean square 239/15, in um
+    let sq = (239.0 / 15.0 - (49.0 / 15.0f64).powi(2)).sqrt() * 1e-6;
+    assert!((object["sq"].as_f64().unwrap() / sq - 1.0).abs() < 1e-12);
+    let mut arguments = vec!["surface", "convert", "heights.txt", "heights.gwy"];
+    arguments.extend(given);
+    assert!(asperity(dir.path(), &arguments).status.success());
+    assert_eq!(asperity(dir.path(), &arguments).status.code(), Some(2), "overwritten");
+    let again = asperity(dir.path(), &["surface", "info", "heights.gwy", "--json"]);
+    let again: Value = serde_json::from_str(&stdout(&again)).unwrap();
+    assert_eq!((&again["format"], &again["h01"]), (&"gwy".into(), &4e-6.into()));
+}
+
+#[test]
+fn a_result_is_exported() {
+    let (_keep, dir) = small();
+    assert!(asperity(&dir, &["run", "small.toml", "-q"]).status.success());
+    for (format, file) in [
+        ("netcdf", "small.nc"),
+        ("hdf5", "small.h5"),
+        ("npz", "small.npz"),
+        ("csv", "small.csv"),
+        ("vtk", "small.pvd"),
+    ] {
+        let output = asperity(&dir, &["export", "small.zarr", "--to", format]);
+        assert!(output.status.success(), "{format}: {}", stderr(&output));
+        assert!(dir.join(file).exists() && stdout(&output).contains(file), "{}", stdout(&output));
+    }
+    let table = std::fs::read_to_string(dir.join("small.csv")).unwrap();
+    assert!(table.contains("approach") && table.lines().count() >= 18, "{table}");
+    let unknown = asperity(&dir, &["export", "small.zarr", "--to", "xlsx"]);
+    assert_eq!(unknown.status.code(), Some(2));
+    assert!(stderr(&unknown).contains("netcdf"));
+    assert_eq!(asperity(&dir, &["export", "nothing.zarr", "--to", "csv"]).status.code(), Some(2));
+}

@@ -2,9 +2,11 @@
 
 pub mod check;
 pub mod completions;
+pub mod export;
 pub mod new;
 pub mod run;
 pub mod schema;
+pub mod surface;
 pub mod verify;
 
 use crate::failure::Failure;

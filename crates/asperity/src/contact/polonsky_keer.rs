@@ -60,7 +60,8 @@ impl PolonskyKeer {
         // theta / G_old: zero after a change of the contact.
         let mut memory = 0.0;
         let (mut best, mut stall) = (f64::INFINITY, 0);
-        for iteration in 0.. {
+        let mut iteration = 0;
+        loop {
             let balance = Balance::of(problem, state);
             let w = balance.approach(problem.prescribed);
             state.approach = w;
@@ -113,8 +114,8 @@ impl PolonskyKeer {
                 });
                 memory = if product > 0.0 { 1.0 / product } else { 0.0 };
             }
+            iteration += 1;
         }
-        unreachable!("the loop above only returns")
     }
 
     /// r on D = {0 < p < H} (with `all`, on the cells to be released too), 0 elsewhere; returns G = <r, r>.

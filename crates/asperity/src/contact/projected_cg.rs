@@ -102,7 +102,8 @@ impl ProjectedCg {
         let mut best = f64::INFINITY;
         let mut stall = 0;
         let mut stuck = false;
-        for iteration in 0.. {
+        let mut iteration = 0;
+        loop {
             let balance = Balance::of(problem, state);
             let w = balance.approach(problem.prescribed);
             state.approach = w;
@@ -167,12 +168,12 @@ impl ProjectedCg {
                 }
             };
             self.advance(problem, state, t);
-            if (iteration + 1) % REFRESH == 0 {
+            iteration += 1;
+            if iteration % REFRESH == 0 {
                 operator.apply_into(&state.pressure, &mut state.unit_displacement);
                 convolutions += 1;
             }
         }
-        unreachable!("the loop above only returns")
     }
 
     /// The conjugate step on S; `None` where it does not descend.

@@ -7,6 +7,7 @@
 
 mod elastic;
 mod invariants;
+mod springs;
 mod viscoelastic;
 
 use crate::error::Result;
@@ -42,7 +43,7 @@ impl Check {
 pub type Case = (&'static str, fn() -> Result<Vec<Check>>);
 
 /// All cases, in the order of the documentation.
-pub const CASES: [Case; 15] = [
+pub const CASES: [Case; 17] = [
     ("hertz-sphere", elastic::hertz_sphere),
     ("hertz-ellipse", elastic::hertz_ellipse),
     ("cone", elastic::cone),
@@ -54,6 +55,8 @@ pub const CASES: [Case; 15] = [
     ("westergaard-creep", viscoelastic::westergaard_creep),
     ("held-approach", viscoelastic::held_approach),
     ("flat-punch-history", viscoelastic::flat_punch_history),
+    ("springs-sphere", springs::sphere_under_load),
+    ("springs-cone", springs::cone_under_approach),
     ("order-in-time", viscoelastic::order_in_time),
     ("one-elastic-solve", invariants::one_elastic_solve),
     ("long-time-limit", invariants::long_time_limit),

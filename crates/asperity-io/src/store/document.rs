@@ -1,6 +1,6 @@
 //! The document of the group (`zarr.json`): attributes and, consolidated, the metadata of every array.
 //!
-//! It is the one place that says how many rows and fields there are, and it is replaced by renaming:
+//! It is the one place that says how many rows and fields there are, and it is replaced as a whole:
 //! a reader sees a step as a whole or not at all, whenever the run is killed. The arrays' own
 //! documents repeat their part for readers that do not consolidate; they may lag behind, all by
 //! the same number of rows.
@@ -13,13 +13,13 @@ use serde_json::{Map, Value, json};
 use super::error::{Result, StoreError, corrupt, io};
 use super::header::{self, Header, Progress};
 use super::layout::{self, ArraySpec, LEVEL};
-use super::replace::replace;
+use super::replace::{Way, replace};
 
 const NAME: &str = "zarr.json";
-/// The other file of the pair (see [`super::replace`]); that of the group lies in an array's directory, where
-/// no reader of the hierarchy looks.
-const PARTNER: &str = "zarr.json.partner";
-const GROUP_PARTNER: &str = "time/group.json.partner";
+/// Where documents are written first; that of the group in an array's directory, where no reader of the
+/// hierarchy looks.
+const PARTIAL: &str = "zarr.json.partial";
+const GROUP_PARTIAL: &str = "time/group.json.partial";
 /// Documents larger than this are not read (a result's has tens of kilobytes and its case file).
 const LARGEST: u64 = 64 << 20;
 
@@ -53,7 +53,7 @@ impl Pages {
     }
 
     /// Replaces the group's document: from now on readers see `progress`.
-    pub(super) fn commit(&mut self, root: &Path, progress: &Progress) -> Result<()> {
+    pub(super) fn commit(&mut self, root: &Path, progress: &Progress, way: Way) -> Result<()> {
         if let Some(attributes) = self.group["attributes"].as_object_mut() {
             header::put_progress(attributes, progress);
         }
@@ -66,27 +66,19 @@ impl Pages {
                 }
             }
         }
-        replace(&root.join(NAME), &root.join(GROUP_PARTNER), self.group.to_string().as_bytes())
+        replace(&root.join(NAME), &root.join(GROUP_PARTIAL), self.group.to_string().as_bytes(), way)
     }
 
     /// Brings the arrays' own documents up to what was committed.
-    pub(super) fn write_arrays(&self, root: &Path) -> Result<()> {
+    pub(super) fn write_arrays(&self, root: &Path, way: Way) -> Result<()> {
         for (name, array) in self.group["consolidated_metadata"]["metadata"].as_object().into_iter().flatten()
         {
             let directory = root.join(name);
             fs::create_dir_all(&directory).map_err(io("make", &directory))?;
-            replace(&directory.join(NAME), &directory.join(PARTNER), array.to_string().as_bytes())?;
+            let text = array.to_string();
+            replace(&directory.join(NAME), &directory.join(PARTIAL), text.as_bytes(), way)?;
         }
         Ok(())
-    }
-
-    /// Removes the second files of the pairs; the next replacement makes them again.
-    pub(super) fn tidy(&self, root: &Path) {
-        // What cannot be removed does no harm: it is no part of the hierarchy.
-        let _ = fs::remove_file(root.join(GROUP_PARTNER));
-        for (name, _) in self.group["consolidated_metadata"]["metadata"].as_object().into_iter().flatten() {
-            let _ = fs::remove_file(root.join(name).join(PARTNER));
-        }
     }
 }
 
@@ -140,7 +132,7 @@ pub(super) fn write_bare_group(directory: &Path, long_name: &str) -> Result<()> 
     let document = json!({
         "zarr_format": 3, "node_type": "group", "attributes": {"long_name": long_name},
     });
-    replace(&directory.join(NAME), &directory.join(PARTNER), document.to_string().as_bytes())
+    replace(&directory.join(NAME), &directory.join(PARTIAL), document.to_string().as_bytes(), Way::Safe)
 }
 
 fn read_json(root: &Path) -> Result<(PathBuf, Value)> {

@@ -13,7 +13,7 @@
 //! work done. `checkpoint` holds the state from which a stopped run goes on.
 //!
 //! A step is visible once it is whole: rows and fields are written first, then the group's document,
-//! which counts them, is replaced by a rename. What a killed process leaves is the result up
+//! which counts them, is replaced as a whole. What a killed process leaves is the result up
 //! to the last step appended.
 //!
 //! ```

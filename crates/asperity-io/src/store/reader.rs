@@ -114,6 +114,10 @@ impl Reader {
             column::fill(&mut rows, scalar.entry, &numbers)
                 .ok_or_else(|| corrupt(&self.root.join(scalar.name), "a count in it is negative"))?;
         }
+        // What a loss of power did not let reach the disk reads as zeros.
+        if let Some(n) = rows.windows(2).position(|pair| pair[1].time < pair[0].time) {
+            return Err(corrupt(&self.root.join("time"), format_args!("time runs backwards after row {n}")));
+        }
         Ok(rows)
     }
 

@@ -10,6 +10,7 @@ use super::document::{Document, Pages};
 use super::error::{Result, StoreError};
 use super::header::{Header, Status};
 use super::reader::Reader;
+use super::replace::Way;
 use super::writer::{Writer, lock, remove};
 
 impl Writer {
@@ -59,8 +60,8 @@ impl Writer {
         kept.rows_expected = header.rows_expected;
         let document = Document { header: kept, progress };
         let mut pages = Pages::new(&document);
-        pages.commit(path, &document.progress)?;
-        pages.write_arrays(path)?;
+        pages.commit(path, &document.progress, Way::Safe)?;
+        pages.write_arrays(path, Way::Safe)?;
         // The map after the last one counted may have been half written.
         for kind in &document.header.fields {
             for map in maps..=stored_maps {

@@ -15,7 +15,10 @@ use super::document::{Document, Pages};
 use super::error::{Result, StoreError, input, io};
 use super::header::{Header, Progress, Status, Work};
 use super::layout::{Entry, FieldKind, SCALARS};
+use super::replace::Way;
 
+/// Steps that follow each other faster than this are committed the quick way (see [`super::replace`]).
+const QUICK: Duration = Duration::from_millis(20);
 /// The arrays' own documents are brought up to date when they have lagged this long.
 const LAG: Duration = Duration::from_secs(1);
 /// A checkpoint is due when the time since the last is this many times what its writing took.
@@ -91,6 +94,7 @@ pub struct Writer {
     last_time: f64,
     wall_before: f64,
     started: Instant,
+    committed: Instant,
     documents_written: Instant,
     documents_behind: bool,
     checkpoint: Option<(Instant, Duration)>,
@@ -130,8 +134,8 @@ impl Writer {
         let lock = create::publish(path, force, |root| {
             create::write_constants(root, &document, initial_gap)?;
             let mut pages = Pages::new(&document);
-            pages.write_arrays(root)?;
-            pages.commit(root, &document.progress)
+            pages.write_arrays(root, Way::Safe)?;
+            pages.commit(root, &document.progress, Way::Safe)
         })?;
         Writer::attach(path, document, lock, f64::NEG_INFINITY)
     }
@@ -159,6 +163,7 @@ impl Writer {
             last_time,
             wall_before: document.progress.work.wall_s,
             started: Instant::now(),
+            committed: Instant::now(),
             documents_written: Instant::now(),
             documents_behind: false,
             checkpoint: None,
@@ -228,12 +233,14 @@ impl Writer {
         progress.work.iterations += row.iterations as u64;
         progress.work.convolutions += row.convolutions as u64;
         progress.work.wall_s = self.wall();
-        self.pages.commit(&self.root, &progress)?;
+        let way = if self.committed.elapsed() < QUICK { Way::Quick } else { Way::Safe };
+        self.pages.commit(&self.root, &progress, way)?;
+        self.committed = Instant::now();
         self.progress = progress;
         self.last_time = row.time;
         self.documents_behind = true;
         if self.documents_written.elapsed() > LAG {
-            self.flush_documents()?;
+            self.flush_documents(Way::Quick)?;
         }
         Ok(())
     }
@@ -273,12 +280,11 @@ impl Writer {
         work.peak_memory_bytes = work.peak_memory_bytes.max(outcome.peak_memory_bytes);
         work.threads = outcome.threads.or(work.threads);
         work.wall_s = wall;
-        self.pages.commit(&self.root, &self.progress)?;
-        self.flush_documents()?;
+        self.pages.commit(&self.root, &self.progress, Way::Safe)?;
+        self.flush_documents(Way::Safe)?;
         if outcome.status == Status::Complete {
             checkpoint::remove(&self.root)?;
         }
-        self.pages.tidy(&self.root);
         Ok(self.progress.work.clone())
     }
 
@@ -304,8 +310,8 @@ impl Writer {
         Err(input("fields of the step", given, format!("those of the result: {expected}")))
     }
 
-    fn flush_documents(&mut self) -> Result<()> {
-        self.pages.write_arrays(&self.root)?;
+    fn flush_documents(&mut self, way: Way) -> Result<()> {
+        self.pages.write_arrays(&self.root, way)?;
         self.documents_written = Instant::now();
         self.documents_behind = false;
         Ok(())
@@ -316,7 +322,7 @@ impl Drop for Writer {
     fn drop(&mut self) {
         if self.documents_behind {
             // Nobody is left to tell; readers of the group's document miss nothing.
-            let _ = self.flush_documents();
+            let _ = self.flush_documents(Way::Quick);
         }
     }
 }

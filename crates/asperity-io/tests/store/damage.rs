@@ -143,6 +143,17 @@ fn a_lost_chunk_is_not_taken_for_data() {
 }
 
 #[test]
+fn rows_that_never_reached_the_disk_are_found() {
+    let (_directory, path) = place();
+    write(&path);
+    let mut time = fs::read(path.join("time/c/0")).unwrap();
+    time[16..32].fill(0);
+    fs::write(path.join("time/c/0"), time).unwrap();
+    let error = read_all(&path).unwrap_err();
+    assert!(error.to_string().contains("time runs backwards after row 1"), "{error}");
+}
+
+#[test]
 fn a_damaged_map_is_found_by_its_checksum() {
     let (_directory, path) = place();
     write(&path);

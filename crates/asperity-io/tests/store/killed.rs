@@ -81,14 +81,14 @@ fn what_an_interrupted_write_leaves_is_not_seen_and_is_overwritten() {
     let mut writer = Writer::create(&path, &case.header, case.gap.view(), false).unwrap();
     case.run(&mut writer, 0, 3);
     drop(writer);
-    // Row 3 written but not counted; a map begun; second files of the pairs cut short.
+    // Row 3 written but not counted; a map begun; documents cut short.
     let mut time = std::fs::read(path.join("time/c/0")).unwrap();
     time[24..32].copy_from_slice(&99.0f64.to_le_bytes());
     std::fs::write(path.join("time/c/0"), time).unwrap();
     std::fs::create_dir_all(path.join("pressure/c/2/0")).unwrap();
     std::fs::write(path.join("pressure/c/2/0/0"), b"\x1f\x8bhalf").unwrap();
-    std::fs::write(path.join("time/group.json.partner"), b"{\"zarr_for").unwrap();
-    std::fs::write(path.join("load/zarr.json.partner"), b"").unwrap();
+    std::fs::write(path.join("time/group.json.partial"), b"{\"zarr_for").unwrap();
+    std::fs::write(path.join("load/zarr.json.partial"), b"").unwrap();
 
     let reader = Reader::open(&path).unwrap();
     assert_eq!((reader.len(), reader.field_times().len()), (3, 2));

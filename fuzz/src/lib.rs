@@ -13,8 +13,8 @@ pub fn read(format: Format, data: &[u8]) {
     };
     if let Ok(surface) = read_bytes(data, &options) {
         assert!(surface.heights.iter().all(|h| !h.is_infinite()));
-        // Packed formats may swell 256 times beyond 64 MiB (see `unpack`); points of a list span up to 16 each.
-        let most = (64 << 20) + 256 * data.len();
+        // Packed formats may swell 64 times beyond 256 MiB (see `unpack`); points of a list span up to 8 each.
+        let most = (256 << 20) + 64 * data.len();
         assert!(!surface.heights.is_empty() && surface.heights.len() <= most);
     }
     // Nothing given: size and unit come from the file or are asked for.

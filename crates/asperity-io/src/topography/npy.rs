@@ -32,27 +32,27 @@ pub(super) fn read_npy(bytes: &[u8]) -> Result<Measured, Problem> {
 /// Reads the channel asked for of an NPZ file: each two-dimensional array is one.
 pub(super) fn read_npz(bytes: &[u8], channel: Option<&str>) -> Result<Measured, Problem> {
     let mut archive = Archive::open(bytes)?;
-    let (mut maps, mut size, mut unit) = (Vec::new(), None, None);
+    let (mut names, mut size, mut unit) = (Vec::new(), None, None);
     for member in archive.names() {
         let Some(name) = member.strip_suffix(".npy") else { continue };
-        let content = archive.member(&member)?;
-        let Ok(array) = Npy::parse(&content) else { continue };
+        // The header and all of a small array.
+        let start = archive.start(&member, 4096)?;
+        let Ok(array) = Npy::parse(&start) else { continue };
         match name {
             "size" if array.shape == [2] => {
                 size = array.values().ok().and_then(|v| <[f64; 2]>::try_from(v).ok());
             }
             "unit" if array.shape.is_empty() => unit = array.text(),
-            _ if array.shape.len() == 2 && array.kind().is_some() => maps.push((name.to_owned(), content)),
+            _ if array.shape.len() == 2 && array.kind().is_some() => names.push(name.to_owned()),
             _ => {}
         }
     }
-    let names: Vec<String> = maps.iter().map(|(name, _)| name.clone()).collect();
-    let default = names.iter().position(|n| n == "heights").unwrap_or(0);
-    let index = match channel {
-        None if !names.is_empty() => default,
+    let index = match names.iter().position(|n| n == "heights") {
+        Some(heights) if channel.is_none() => heights,
         _ => choose(Format::Npz, &names, channel)?,
     };
-    let array = Npy::parse(&maps[index].1)?;
+    let content = archive.member(&format!("{}.npy", names[index]))?;
+    let array = Npy::parse(&content)?;
     let unit = match unit {
         None => Unit::Unstated,
         Some(label) => metres(&label, LoneA::Angstrom).map_or(Unit::Other(label), Unit::Metres),

@@ -8,6 +8,8 @@
 //!
 //! Layout after the "Surface format" of Digital Surf as the readers of Gwyddion and RosettaSciIO know it.
 
+use std::io::Read;
+
 use flate2::read::ZlibDecoder;
 use ndarray::Axis;
 
@@ -210,7 +212,8 @@ impl<'a> Object<'a> {
         let bytes = match &self.data {
             Data::Plain(bytes) => *bytes,
             Data::Packed(streams) => {
-                unpacked = unpack(streams)?;
+                let points = grid::points(self.points.into(), self.lines.into())?;
+                unpacked = unpack(streams, points as u64 * kind.width() as u64)?;
                 unpacked.as_slice()
             }
         };
@@ -249,11 +252,23 @@ impl<'a> Object<'a> {
     }
 }
 
-fn unpack(streams: &[(&[u8], u32)]) -> Result<Vec<u8>, Problem> {
-    let mut bytes = Vec::new();
+/// The first `needed` bytes of the streams.
+fn unpack(streams: &[(&[u8], u32)], needed: u64) -> Result<Vec<u8>, Problem> {
+    const WHAT: &str = "the points of the SUR object";
+    let packed: usize = streams.iter().map(|(stream, _)| stream.len()).sum();
+    let most = most_unpacked(packed);
+    if needed > most {
+        let expected = "no more than 64 times their packed length";
+        return Err(Problem::malformed(format!("the length of {WHAT}"), format!("{needed} bytes"), expected));
+    }
+    let likely = needed.min(8 * packed as u64);
+    let mut bytes = Vec::with_capacity(likely as usize);
     for (stream, length) in streams {
-        let most = most_unpacked(stream.len()).min(u64::from(*length));
-        bytes.extend(read_bounded(ZlibDecoder::new(*stream), most, "the points of the SUR object")?);
+        let length = u64::from(*length);
+        bytes.extend(read_bounded(ZlibDecoder::new(*stream).take(length), most, likely.min(length), WHAT)?);
+        if bytes.len() as u64 >= needed {
+            break;
+        }
     }
     Ok(bytes)
 }

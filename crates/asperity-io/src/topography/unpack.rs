@@ -10,14 +10,20 @@ use super::{Format, Problem};
 /// Most bytes that `packed` bytes may unpack to.
 ///
 /// Deflate reaches 1032 : 1 on a file of equal bytes, measured heights hardly 20 : 1. The ratio bounds what a
-/// hostile file can ask for; the constant lets small synthetic maps of equal heights pass.
+/// hostile file can ask for; the constant lets maps of 4096 x 4096 equal heights pass.
 pub(super) fn most_unpacked(packed: usize) -> u64 {
-    (64 << 20) + 256 * packed as u64
+    (256 << 20) + 64 * packed as u64
 }
 
-/// Reads `source` to its end, but refuses more than `most` bytes.
-pub(super) fn read_bounded(source: impl Read, most: u64, what: &str) -> Result<Vec<u8>, Problem> {
-    let mut bytes = Vec::new();
+/// Reads `source` to its end, but refuses more than `most` bytes. `likely` is the length that the file states.
+pub(super) fn read_bounded(
+    source: impl Read,
+    most: u64,
+    likely: u64,
+    what: &str,
+) -> Result<Vec<u8>, Problem> {
+    // Not more than has some reason: the rest grows as the bytes come.
+    let mut bytes = Vec::with_capacity(usize::try_from(likely.min(most)).unwrap_or(0));
     source.take(most.saturating_add(1)).read_to_end(&mut bytes).map_err(|e| {
         Problem::malformed(format!("the packed stream of {what}"), e, "a whole, undamaged stream")
     })?;
@@ -25,7 +31,7 @@ pub(super) fn read_bounded(source: impl Read, most: u64, what: &str) -> Result<V
         return Err(Problem::malformed(
             format!("the unpacked length of {what}"),
             format!("more than {most} bytes"),
-            "no longer than the file says and 256 times its packed length; unpack it first if it is genuine",
+            "no longer than the file says and 64 times its packed length; unpack it first if it is genuine",
         ));
     }
     Ok(bytes)
@@ -41,7 +47,13 @@ pub(super) fn gunzip(bytes: &[u8]) -> Result<Option<Vec<u8>>, Problem> {
     if !is_gzip(bytes) {
         return Ok(None);
     }
-    read_bounded(MultiGzDecoder::new(bytes), most_unpacked(bytes.len()), "the gzip file").map(Some)
+    read_bounded(
+        MultiGzDecoder::new(bytes),
+        most_unpacked(bytes.len()),
+        4 * bytes.len() as u64,
+        "the gzip file",
+    )
+    .map(Some)
 }
 
 /// The first `most` unpacked bytes, as far as they can be unpacked.
@@ -55,6 +67,8 @@ pub(super) fn gunzip_prefix(bytes: &[u8], most: u64) -> Vec<u8> {
 /// A zip archive in memory.
 pub(super) struct Archive<'a> {
     zip: ZipArchive<Cursor<&'a [u8]>>,
+    /// Eight times the length of the archive.
+    length: u64,
     left: u64,
 }
 
@@ -63,7 +77,7 @@ impl<'a> Archive<'a> {
     pub(super) fn open(bytes: &'a [u8]) -> Result<Self, Problem> {
         let zip = ZipArchive::new(Cursor::new(bytes))
             .map_err(|e| Problem::malformed("the zip archive", e, "a whole, undamaged archive"))?;
-        Ok(Archive { zip, left: most_unpacked(bytes.len()) })
+        Ok(Archive { zip, length: 8 * bytes.len() as u64, left: most_unpacked(bytes.len()) })
     }
 
     /// Names of the members, sorted as in the archive.
@@ -73,12 +87,24 @@ impl<'a> Archive<'a> {
 
     /// Unpacks a member. All members together stay within the bound of the archive.
     pub(super) fn member(&mut self, name: &str) -> Result<Vec<u8>, Problem> {
-        let broken = |e| Problem::malformed(format!("member {name:?} of the zip archive"), e, "readable");
-        let file = self.zip.by_name(name).map_err(|e| broken(e.to_string()))?;
-        let bytes = read_bounded(file, self.left, &format!("member {name:?}"))?;
+        let file = self.zip.by_name(name).map_err(|e| broken(name, e))?;
+        let likely = file.size().min(file.compressed_size().saturating_mul(8)).min(self.length);
+        let bytes = read_bounded(file, self.left, likely, &format!("member {name:?}"))?;
         self.left -= bytes.len() as u64;
         Ok(bytes)
     }
+
+    /// The first bytes of a member.
+    pub(super) fn start(&mut self, name: &str, most: u64) -> Result<Vec<u8>, Problem> {
+        let mut bytes = Vec::new();
+        let file = self.zip.by_name(name).map_err(|e| broken(name, e))?;
+        file.take(most).read_to_end(&mut bytes).map_err(|e| broken(name, e))?;
+        Ok(bytes)
+    }
+}
+
+fn broken(name: &str, error: impl std::fmt::Display) -> Problem {
+    Problem::malformed(format!("member {name:?} of the zip archive"), error, "readable")
 }
 
 /// Which format a zip archive is.
@@ -88,5 +114,32 @@ pub(super) fn zip_format(bytes: &[u8]) -> Option<Format> {
         Some(Format::X3p)
     } else {
         names.iter().any(|n| n.ends_with(".npy")).then_some(Format::Npz)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stream_that_swells_is_cut_off() {
+        let endless = std::io::repeat(0);
+        let error = read_bounded(endless, 1000, 10, "the stream").unwrap_err().to_string();
+        assert!(error.contains("more than 1000 bytes"), "{error}");
+        assert_eq!(read_bounded(&b"abc"[..], 3, u64::MAX, "the stream").ok().as_deref(), Some(&b"abc"[..]));
+    }
+
+    #[test]
+    fn damage_of_a_packed_file_is_found() {
+        use std::io::Write;
+        let mut gzip = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());
+        gzip.write_all(&[7; 1000]).unwrap();
+        let mut packed = gzip.finish().unwrap();
+        assert_eq!(gunzip(&packed).ok().flatten().map(|b| b.len()), Some(1000));
+        // The last eight bytes are the checksum and the length.
+        let checksum = packed.len() - 6;
+        packed[checksum] ^= 1;
+        assert!(gunzip(&packed).is_err());
+        assert!(gunzip(&packed[..checksum]).is_err());
     }
 }

@@ -9,8 +9,8 @@ use super::labels::{Label, label};
 use crate::topography::finish::{Lateral, Unit};
 use crate::topography::unit::{LoneA, metres};
 
-/// Most header lines that are kept as metadata.
-const MOST_METADATA: usize = 200;
+/// Most comments of one header that are kept for the order of Gwyddion's lines.
+const MOST_UNEXPLAINED: usize = 200;
 
 /// A length as the file writes it.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,13 +39,12 @@ pub(super) struct Header {
     value_unit: Option<String>,
     /// Value per number of the file.
     scale: Option<f64>,
-    /// Names of the columns, from the last line before the numbers.
-    pub(super) columns: Vec<Column>,
+    /// The last two lines before the numbers: names of the columns, or names and units.
+    above: [String; 2],
     /// "label: value" comments that no known label explains, for the order of Gwyddion's lines.
     unexplained: Vec<(String, String)>,
     spip: bool,
     wyko: Option<Wyko>,
-    pub(super) metadata: Vec<(String, String)>,
 }
 
 /// Numbers in Wyko's header: heights in wavelengths, lengths in millimetres.
@@ -70,23 +69,20 @@ impl Header {
     /// Forgets what belongs to one block only.
     pub(super) fn next_block(&mut self) {
         self.unexplained.clear();
-        self.columns.clear();
+        self.above = Default::default();
     }
 
-    /// Takes in one header line.
-    pub(super) fn line(&mut self, line: &[u8]) {
+    /// Takes in one header line; gives it back as key and value for the metadata.
+    pub(super) fn line(&mut self, line: &[u8]) -> Option<(String, String)> {
         // Longer lines are no header of any program.
         let line = encoding::label(&line[..line.len().min(4096)]);
         let is_comment = line.trim_start().starts_with(['#', '%']);
         let text = line.trim().trim_start_matches(['#', '%', '/', ';', ' ', '\t']).trim();
         if text.is_empty() {
-            return;
+            return None;
         }
-        if self.metadata.len() < MOST_METADATA {
-            let (key, value) = split(text).unwrap_or(("", text));
-            self.metadata.push((key.to_owned(), value.to_owned()));
-        }
-        self.columns = columns(text, &self.columns);
+        self.above.swap(0, 1);
+        self.above[1] = text.to_owned();
         if let Some(flags) = text.strip_prefix("Wyko ASCII Data File Format") {
             // Three flags; the second is 1 where heights are in nanometres instead of wavelengths.
             let real_units = flags.split_whitespace().nth(1).is_some_and(|f| f != "0");
@@ -96,6 +92,14 @@ impl Header {
         } else if let Some((key, value)) = split(text) {
             self.entry(is_comment, key, value);
         }
+        let (key, value) = split(text).unwrap_or(("", text));
+        Some((key.to_owned(), value.to_owned()))
+    }
+
+    /// The columns named above the numbers.
+    pub(super) fn columns(&self) -> Vec<Column> {
+        let [names, last] = &self.above;
+        columns(last, &columns(names, &[]))
     }
 
     fn entry(&mut self, is_comment: bool, key: &str, value: &str) {
@@ -143,7 +147,7 @@ impl Header {
                 self.value_unit = unit.map(str::to_owned);
                 self.scale = number(value).map(|(factor, _)| factor);
             }
-            _ if is_comment && self.unexplained.len() < MOST_METADATA => {
+            _ if is_comment && self.unexplained.len() < MOST_UNEXPLAINED => {
                 self.unexplained.push((key.to_owned(), value.to_owned()));
             }
             _ => {}
@@ -242,7 +246,8 @@ impl Header {
 
     /// Units of the x, y and height columns of points, from column names or Gwyddion's XYZ header.
     pub(super) fn point_units(&self, [x, y, z]: [usize; 3]) -> ([Option<String>; 2], Unit) {
-        let of_column = |i: usize| self.columns.get(i).and_then(|c| c.unit.clone());
+        let columns = self.columns();
+        let of_column = |i: usize| columns.get(i).and_then(|c| c.unit.clone());
         let mut lateral =
             [of_column(x).or(self.lateral_unit[0].clone()), of_column(y).or(self.lateral_unit[1].clone())];
         let mut value = of_column(z).or(self.value_unit.clone());

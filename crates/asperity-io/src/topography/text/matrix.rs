@@ -45,5 +45,5 @@ pub(crate) fn read_matrix(bytes: &[u8], channel: Option<&str>, insists: bool) ->
     let (channel, lateral, unit, scale) = block.header.scales([nx, ny]);
     let heights = grid::from_lines(nx, &table.lines().collect::<Vec<_>>(), |number| number * scale);
     let channels = if channel.is_some() || names.len() > 1 { names } else { Vec::new() };
-    Ok(Measured { heights, unit, lateral, channel, channels, metadata: block.header.metadata.clone() })
+    Ok(Measured { heights, unit, lateral, channel, channels, metadata: text.metadata(block) })
 }

@@ -32,13 +32,23 @@ struct Block<'a> {
     data: &'a [u8],
     /// Line of the file where they start, from 1.
     line: usize,
+    /// How much of the metadata is said before or, for the last block, after them.
+    metadata: usize,
 }
 
 /// A text file taken apart.
 struct Text<'a> {
     dialect: Dialect,
     blocks: Vec<Block<'a>>,
+    /// Keys and values of the header lines, as far as they are kept.
+    metadata: Vec<(String, String)>,
 }
+
+/// Most header lines that are kept as metadata.
+const MOST_METADATA: usize = 200;
+/// Most lines without numbers, and most blocks: files with more are another kind of text.
+const MOST_HEADER_LINES: usize = 10_000;
+const MOST_BLOCKS: usize = 1000;
 
 /// Whether the bytes are text with a block of numbers, and which.
 pub(super) fn detect(bytes: &[u8]) -> Option<Format> {
@@ -49,10 +59,12 @@ pub(super) fn detect(bytes: &[u8]) -> Option<Format> {
         prefix = &prefix[..prefix.iter().rposition(|b| *b == b'\n').map_or(PREFIX, |end| end + 1)];
     }
     let text = encoding::utf8(prefix)?;
-    let text = Text::split(&text).ok()?;
+    // Text whose numbers cannot be told is still text: reading says why.
+    let Ok(text) = Text::split(&text) else { return Some(Format::Text) };
     let block = text.blocks.first()?;
     let columns = parse::columns(text.dialect, block.data);
-    let named = xyz::named_columns(&block.header.columns).is_some() && block.header.columns.len() == columns;
+    let names = block.header.columns();
+    let named = xyz::named_columns(&names).is_some() && names.len() == columns;
     Some(if (columns == 3 && !block.header.says_matrix()) || (columns > 3 && named) {
         Format::Xyz
     } else if matches!(text.dialect.separator, Separator::Byte(b',' | b';')) {
@@ -77,6 +89,10 @@ impl<'a> Text<'a> {
     fn split(bytes: &'a [u8]) -> Result<Self, Problem> {
         let mut blocks: Vec<Block> = Vec::new();
         let mut header = Header::default();
+        let (mut metadata, mut header_lines) = (Vec::new(), 0);
+        let another_text = |what: &str| {
+            Problem::malformed(what, "too large", "that of a matrix or a list of points with a header")
+        };
         // Byte range and first line of the block that is being collected.
         let mut open: Option<(usize, usize)> = None;
         let mut at = 0;
@@ -95,25 +111,42 @@ impl<'a> Text<'a> {
                 (Some(true), None) => open = Some((at, number)),
                 (Some(false), _) => {
                     if let Some((start, line)) = open.take() {
-                        blocks.push(Block { header: header.clone(), data: &bytes[start..at], line });
+                        if blocks.len() == MOST_BLOCKS {
+                            return Err(another_text("the number of blocks of numbers"));
+                        }
+                        let (data, metadata) = (&bytes[start..at], metadata.len());
+                        blocks.push(Block { header: header.clone(), data, line, metadata });
                         header.next_block();
                     }
-                    header.line(line);
+                    header_lines += 1;
+                    if header_lines > MOST_HEADER_LINES {
+                        return Err(another_text("the number of lines without numbers"));
+                    }
+                    let entry = header.line(line);
+                    metadata.extend(entry.filter(|_| metadata.len() < MOST_METADATA));
                 }
                 _ => {}
             }
             at = end;
         }
         match open {
-            Some((start, line)) => blocks.push(Block { header, data: &bytes[start..], line }),
+            Some((start, line)) => {
+                let (data, metadata) = (&bytes[start..], metadata.len());
+                blocks.push(Block { header, data, line, metadata });
+            }
             // What follows the last numbers is said about them.
             None => {
                 if let Some(last) = blocks.last_mut() {
-                    last.header = header;
+                    (last.header, last.metadata) = (header, metadata.len());
                 }
             }
         }
         let dialect = Dialect::of(blocks.iter().map(|b| b.data))?;
-        Ok(Text { dialect, blocks })
+        Ok(Text { dialect, blocks, metadata })
+    }
+
+    /// What the header says beside sizes and units.
+    fn metadata(&self, block: &Block) -> Vec<(String, String)> {
+        self.metadata[..block.metadata].to_vec()
     }
 }

@@ -228,7 +228,7 @@ mod tests {
     use crate::topography::text::header::Header;
 
     fn parse(text: &str) -> Result<Table, Problem> {
-        let block = Block { header: Header::default(), data: text.as_bytes(), line: 5 };
+        let block = Block { header: Header::default(), data: text.as_bytes(), line: 5, metadata: 0 };
         table(Dialect::of([block.data].into_iter())?, &block)
     }
 

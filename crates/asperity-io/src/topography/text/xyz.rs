@@ -14,7 +14,10 @@ use crate::topography::unit::{LoneA, metres};
 use crate::topography::{Format, Problem, grid};
 
 /// Most grid points per point of the file: a file that covers less is no grid.
-const MOST_CELLS_PER_POINT: usize = 16;
+const MOST_CELLS_PER_POINT: usize = 8;
+
+/// Three columns are taken for points.
+const HINT: &str = "give the format `asc` if this is a matrix of three columns";
 
 /// Positions of the x and y columns, where a row of names gives them.
 pub(super) fn named_columns(columns: &[Column]) -> Option<[usize; 2]> {
@@ -45,11 +48,12 @@ pub(crate) fn read_xyz(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
     if table.columns < 3 {
         return Err(none(format!("its lines have {} values, not x, y and a height", table.columns)));
     }
-    let named = named_columns(&header.columns).filter(|_| header.columns.len() == table.columns);
+    let columns = header.columns();
+    let named = named_columns(&columns).filter(|_| columns.len() == table.columns);
     let [x, y] = named.unwrap_or([0, 1]);
     let heights: Vec<usize> = (0..table.columns).filter(|c| *c != x && *c != y).collect();
     let names: Vec<String> = match named {
-        Some(_) => heights.iter().map(|c| header.columns[*c].name.clone()).collect(),
+        Some(_) => heights.iter().map(|c| columns[*c].name.clone()).collect(),
         None => heights.iter().map(|c| format!("column {}", c + 1)).collect(),
     };
     let z = heights[choose(Format::Xyz, &names, channel)?];
@@ -67,10 +71,10 @@ pub(crate) fn read_xyz(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
         _ => Lateral::Bare(size),
     };
     let (channel, channels) = match named {
-        Some(_) => (Some(header.columns[z].name.clone()), names),
+        Some(_) => (Some(columns[z].name.clone()), names),
         None => (header.channel.clone(), Vec::new()),
     };
-    Ok(Measured { heights: map, unit, lateral, channel, channels, metadata: header.metadata.clone() })
+    Ok(Measured { heights: map, unit, lateral, channel, channels, metadata: text.metadata(block) })
 }
 
 /// Equally spaced positions.
@@ -93,7 +97,8 @@ impl Axis {
     fn of(table: &Table, column: usize, name: &str) -> Result<Self, Problem> {
         let mut sorted: Vec<f64> = table.lines().map(|point| point[column]).collect();
         if sorted.iter().any(|v| v.is_nan()) {
-            return Err(Problem::malformed(format!("a {name} coordinate"), "undefined", "a number"));
+            let expected = format!("a number; {HINT}");
+            return Err(Problem::malformed(format!("a {name} coordinate"), "undefined", expected));
         }
         sorted.par_sort_unstable_by(f64::total_cmp);
         let (Some(first), Some(last)) = (sorted.first(), sorted.last()) else {
@@ -136,7 +141,7 @@ impl Axis {
 fn irregular(name: &str) -> Problem {
     Problem::unsupported(
         format!("a set of points whose {name} coordinates are not equally spaced"),
-        "resample it to a regular grid along x and y first, or give the format `asc` if it is a matrix of three columns",
+        format!("resample it to a regular grid along x and y first; {HINT}"),
     )
 }
 
@@ -160,7 +165,7 @@ fn gridded(
                 return Err(Problem::malformed(
                     format!("point {} of the list (from line {first_line})", line + 1),
                     format!("again at x = {}, y = {}", point[x], point[y]),
-                    "at a place of its own; give the format `asc` if this is a matrix of three columns",
+                    format!("at a place of its own; {HINT}"),
                 ));
             }
             *height = point[z];

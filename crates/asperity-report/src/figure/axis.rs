@@ -1,0 +1,271 @@
+//! Axes: from values to places, with ticks at round numbers.
+
+use super::unit::{Shown, shown, superscript};
+
+/// How values become places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// In proportion.
+    Linear,
+    /// By the logarithm; values that are not positive are left out.
+    Log,
+}
+
+/// What an axis shows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// The quantity, `time`.
+    pub label: String,
+    /// Its SI unit, see [`shown`](super::shown()); empty for a plain number.
+    pub unit: String,
+    /// How values become places.
+    pub scale: Scale,
+    /// Ends of the axis \[SI\]; `None` for those of the data.
+    pub range: Option<[f64; 2]>,
+}
+
+impl Axis {
+    /// A linear axis over the range of the data.
+    pub fn linear(label: impl Into<String>, unit: impl Into<String>) -> Axis {
+        Axis { label: label.into(), unit: unit.into(), scale: Scale::Linear, range: None }
+    }
+
+    /// A logarithmic axis over the range of the data.
+    pub fn log(label: impl Into<String>, unit: impl Into<String>) -> Axis {
+        Axis { scale: Scale::Log, ..Axis::linear(label, unit) }
+    }
+
+    /// The same axis between two ends \[SI\].
+    pub fn between(self, from: f64, to: f64) -> Axis {
+        Axis { range: Some([from, to]), ..self }
+    }
+}
+
+/// An axis laid out: values to points on paper, ticks, title.
+#[derive(Clone, Debug)]
+pub(super) struct Ruler {
+    scale: Scale,
+    /// Ends in values, after the scale.
+    ends: [f64; 2],
+    /// Ends in points on paper.
+    places: [f64; 2],
+    /// SI values and texts of the labelled ticks.
+    pub(super) ticks: Vec<(f64, String)>,
+    /// SI values of the ticks between.
+    pub(super) minor: Vec<f64>,
+    /// Label with unit.
+    pub(super) title: String,
+}
+
+impl Ruler {
+    /// Lays an axis over `data`, the least and the largest value that it must show, with room for
+    /// about `wanted` ticks. `margin` is the share of the range that stays free at each end.
+    pub(super) fn new(axis: &Axis, data: [f64; 2], margin: f64, wanted: f64) -> Ruler {
+        let log = axis.scale == Scale::Log;
+        let forward = |v: f64| if log { v.log10() } else { v };
+        let [mut low, mut high] = axis.range.unwrap_or(data).map(forward);
+        if !(low.is_finite() && high.is_finite()) {
+            (low, high) = (0.0, 1.0);
+        }
+        if high - low <= 1e-12 * high.abs().max(low.abs()) {
+            let room = if log { 0.5 } else { (0.1 * high.abs()).max(f64::MIN_POSITIVE) };
+            (low, high) = if high == 0.0 && !log { (0.0, 1.0) } else { (low - room, high + room) };
+        } else if axis.range.is_none() {
+            let room = margin * (high - low);
+            // An axis that starts at zero stays there.
+            low = if !log && low == 0.0 { 0.0 } else { low - room };
+            high = if !log && high == 0.0 { 0.0 } else { high + room };
+        }
+        let ends = [low, high];
+        let largest = if log { 10f64.powf(high) } else { low.abs().max(high.abs()) };
+        let mut unit = shown(&axis.unit, largest);
+        if axis.unit.is_empty() && !log {
+            let power = 3 * ((largest.log10() + 1e-9) / 3.0).floor() as i32;
+            if largest > 0.0 && (power <= -6 || power >= 6) {
+                unit = Shown { factor: 10f64.powi(-power), text: format!("10{}", superscript(power)) };
+            }
+        }
+        let (ticks, minor) =
+            if log { decades(ends, unit.factor, wanted) } else { steps(ends, unit.factor, wanted) };
+        let title = match unit.text.as_str() {
+            "" => axis.label.clone(),
+            text => format!("{} [{text}]", axis.label),
+        };
+        Ruler { scale: axis.scale, ends, places: [0.0, 1.0], ticks, minor, title }
+    }
+
+    /// The same ruler between two points on paper.
+    pub(super) fn placed(self, from: f64, to: f64) -> Ruler {
+        Ruler { places: [from, to], ..self }
+    }
+
+    /// Where a value lies on paper; `None` for one that the scale cannot show.
+    pub(super) fn place(&self, value: f64) -> Option<f64> {
+        let value = match self.scale {
+            Scale::Linear => value,
+            Scale::Log if value > 0.0 => value.log10(),
+            Scale::Log => return None,
+        };
+        let share = (value - self.ends[0]) / (self.ends[1] - self.ends[0]);
+        // Far outside is as good as a little outside, and keeps the numbers of the drawing small.
+        let share = share.clamp(-10.0, 11.0);
+        share.is_finite().then(|| self.places[0] + share * (self.places[1] - self.places[0]))
+    }
+}
+
+type Ticks = (Vec<(f64, String)>, Vec<f64>);
+
+/// Ticks at 1, 2 or 5 times a power of ten.
+fn steps(ends: [f64; 2], factor: f64, wanted: f64) -> Ticks {
+    let ends = ends.map(|v| v * factor);
+    let rough = (ends[1] - ends[0]) / wanted.max(1.0);
+    let power = rough.log10().floor();
+    let tens = 10f64.powf(power);
+    let (step, parts) = match rough / tens {
+        r if r <= 1.0 => (tens, 5),
+        r if r <= 2.0 => (2.0 * tens, 4),
+        r if r <= 5.0 => (5.0 * tens, 5),
+        _ => (10.0 * tens, 5),
+    };
+    let decimals = (-(step.log10() + 1e-9).floor()).max(0.0) as usize;
+    let inside = |v: f64| v >= ends[0] - 1e-9 * step && v <= ends[1] + 1e-9 * step;
+    let first = (ends[0] / step).floor() as i64;
+    let last = (ends[1] / step).ceil() as i64;
+    let mut ticks = Vec::new();
+    let mut minor = Vec::new();
+    for n in first..=last.min(first + 1000) {
+        let value = n as f64 * step;
+        if inside(value) {
+            ticks.push((value / factor, number(value, decimals)));
+        }
+        minor.extend(
+            (1..parts)
+                .map(|k| value + f64::from(k) * step / f64::from(parts))
+                .filter(|v| inside(*v))
+                .map(|v| v / factor),
+        );
+    }
+    (ticks, minor)
+}
+
+/// Ticks at powers of ten; over less than two decades also at 2 and 5 times them.
+fn decades(ends: [f64; 2], factor: f64, wanted: f64) -> Ticks {
+    let shift = factor.log10().round();
+    let ends = [ends[0] + shift, ends[1] + shift];
+    let inside = |v: f64| v >= ends[0] - 1e-9 && v <= ends[1] + 1e-9;
+    let span = ends[1] - ends[0];
+    let every = (span / wanted.max(1.0)).ceil().max(1.0) as i64;
+    let mut ticks = Vec::new();
+    let mut minor = Vec::new();
+    let first = ends[0].floor() as i64;
+    let last = (ends[1].ceil() as i64).min(first + 700);
+    for n in first..=last {
+        let decade = n as f64;
+        for (digit, ahead) in (1..10).map(|d| (d, f64::from(d).log10())) {
+            let place = decade + ahead;
+            if !inside(place) {
+                continue;
+            }
+            let value = 10f64.powf(place) / factor;
+            let labelled = match digit {
+                1 => n.rem_euclid(every) == 0,
+                2 | 5 => span < 2.0,
+                _ => false,
+            };
+            if labelled {
+                ticks.push((value, power(digit, n as i32)));
+            } else if every == 1 || digit == 1 {
+                minor.push(value);
+            }
+        }
+    }
+    if ticks.len() < 2 && span < 1.0 {
+        let linear = ends.map(|v| 10f64.powf(v));
+        let (ticks, minor) = steps(linear, 1.0, wanted);
+        let back = |v: f64| v / factor;
+        return (
+            ticks.into_iter().map(|(v, text)| (back(v), text)).filter(|(v, _)| *v > 0.0).collect(),
+            minor.into_iter().map(back).filter(|v| *v > 0.0).collect(),
+        );
+    }
+    (ticks, minor)
+}
+
+fn number(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(digits) if digits.chars().all(|c| c == '0' || c == '.') => digits.to_owned(),
+        Some(digits) => format!("−{digits}"),
+        None => text,
+    }
+}
+
+fn power(digit: i32, exponent: i32) -> String {
+    match exponent {
+        0..=2 => (f64::from(digit) * 10f64.powi(exponent)).to_string(),
+        -2..0 => number(f64::from(digit) * 10f64.powi(exponent), (-exponent) as usize),
+        _ if digit == 1 => format!("10{}", superscript(exponent)),
+        _ => format!("{digit}×10{}", superscript(exponent)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn texts(axis: &Axis, data: [f64; 2]) -> (String, Vec<String>) {
+        let ruler = Ruler::new(axis, data, 0.0, 5.0);
+        (ruler.title, ruler.ticks.into_iter().map(|(_, text)| text).collect())
+    }
+
+    #[test]
+    fn ticks_are_round_numbers_in_the_unit_shown() {
+        let (title, ticks) = texts(&Axis::linear("approach", "m"), [0.0, 3.2e-6]);
+        assert_eq!(title, "approach [µm]");
+        assert_eq!(ticks, ["0", "1", "2", "3"]);
+        let (_, ticks) = texts(&Axis::linear("height", "m"), [-2.4e-7, 2.6e-7]);
+        assert_eq!(ticks, ["−200", "−100", "0", "100", "200"]);
+        let (_, ticks) = texts(&Axis::linear("contact fraction", ""), [0.1, 0.14]);
+        assert_eq!(ticks, ["0.10", "0.11", "0.12", "0.13", "0.14"]);
+    }
+
+    #[test]
+    fn decades_are_labelled_and_thinned() {
+        let (title, ticks) = texts(&Axis::log("time", "s"), [1e-4, 1e3]);
+        assert_eq!(title, "time [s]");
+        assert_eq!(ticks, ["10⁻⁴", "0.01", "1", "100"]);
+        let (_, ticks) = texts(&Axis::log("modulus", "Pa"), [1e6, 3e9]);
+        assert_eq!(ticks, ["10⁻³", "0.01", "0.1", "1"]);
+        let (_, ticks) = texts(&Axis::log("modulus", "Pa"), [1.1e9, 1.9e9]);
+        assert_eq!(ticks, ["1.2", "1.4", "1.6", "1.8"]);
+    }
+
+    #[test]
+    fn a_plain_number_far_from_one_takes_its_power_of_ten_into_the_title() {
+        let (title, ticks) = texts(&Axis::linear("misfit", ""), [0.0, 4e-7]);
+        assert_eq!(title, "misfit [10⁻⁹]");
+        assert_eq!(ticks, ["0", "100", "200", "300", "400"]);
+    }
+
+    #[test]
+    fn ranges_without_width_or_numbers_still_make_an_axis() {
+        for data in
+            [[2.0, 2.0], [0.0, 0.0], [-3.0, -3.0], [f64::INFINITY, f64::NEG_INFINITY], [f64::NAN, 1.0]]
+        {
+            for axis in [Axis::linear("x", "m"), Axis::log("x", "m")] {
+                let ruler = Ruler::new(&axis, data, 0.05, 5.0).placed(0.0, 100.0);
+                assert!(!ruler.ticks.is_empty(), "{data:?} {axis:?}");
+                assert!(ruler.ticks.iter().all(|(v, _)| ruler.place(*v).is_some()));
+            }
+        }
+    }
+
+    #[test]
+    fn values_are_placed_in_proportion_and_by_logarithm() {
+        let linear = Ruler::new(&Axis::linear("x", ""), [0.0, 4.0], 0.0, 5.0).placed(10.0, 50.0);
+        assert_eq!(linear.place(1.0), Some(20.0));
+        let log = Ruler::new(&Axis::log("x", ""), [1.0, 100.0], 0.0, 5.0).placed(100.0, 0.0);
+        assert!((log.place(10.0).unwrap() - 50.0).abs() < 1e-12);
+        assert_eq!(log.place(0.0), None);
+    }
+}

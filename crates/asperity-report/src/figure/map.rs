@@ -1,0 +1,205 @@
+//! A panel of a map: values over the area in colours, with colour bar and scale bar.
+
+use ndarray::{Array2, ArrayView2};
+
+use super::axis::{Axis, Ruler};
+use super::colours::Colours;
+use super::curves::frame;
+use super::font;
+use super::raster::{self, BLANK};
+use super::svg::{Anchor, Drawing, INK};
+use super::unit::shown;
+use super::{Place, SMALL, TEXT};
+
+/// What the values of a map are.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Values {
+    /// Numbers of a quantity \[SI\]; NaN where it is undefined.
+    Quantity {
+        /// The quantity, `height`.
+        label: String,
+        /// Its SI unit, see [`shown`](super::shown()).
+        unit: String,
+        /// The colours.
+        colours: Colours,
+        /// Values at the ends of the colour bar; `None` for the least and the greatest.
+        range: Option<[f64; 2]>,
+    },
+    /// States 0, 1, 2 ..., each with its name and colour.
+    States(Vec<(String, [u8; 3])>),
+}
+
+/// A panel of a map.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Map {
+    /// A short title over the panel; may be empty.
+    pub title: String,
+    /// Values at the cell centres (axes x and y: x to the right, y upwards).
+    pub values: Array2<f64>,
+    /// What they are.
+    pub meaning: Values,
+    /// Lengths of the area along x and y \[m\].
+    pub size: [f64; 2],
+}
+
+impl Map {
+    /// A map of a quantity from its least to its greatest value.
+    pub fn new(
+        title: impl Into<String>,
+        [label, unit]: [&str; 2],
+        colours: Colours,
+        values: ArrayView2<f64>,
+        size: [f64; 2],
+    ) -> Map {
+        let meaning = Values::Quantity { label: label.into(), unit: unit.into(), colours, range: None };
+        Map { title: title.into(), values: raster::reduced(values), meaning, size }
+    }
+
+    /// A map of states.
+    pub fn states(
+        title: impl Into<String>,
+        names: Vec<(String, [u8; 3])>,
+        values: ArrayView2<f64>,
+        size: [f64; 2],
+    ) -> Map {
+        Map { title: title.into(), values: values.to_owned(), meaning: Values::States(names), size }
+    }
+
+    pub(super) fn draw(&self, drawing: &mut Drawing, place: &Place) {
+        let [x0, y0] = place.corner;
+        let [width, height] = place.size;
+        let bar = match &self.meaning {
+            Values::Quantity { label, unit, colours, range } => {
+                let ends = range.unwrap_or_else(|| colours.ends(extent(&self.values)));
+                let axis = Axis::linear(label.clone(), unit.clone()).between(ends[0], ends[1]);
+                Some((Ruler::new(&axis, ends, 0.0, (height - 2.0 * TEXT) / 32.0), ends, *colours))
+            }
+            Values::States(_) => None,
+        };
+        let bar_labels = bar.as_ref().map_or(0.0, |(ruler, ..)| {
+            ruler.ticks.iter().map(|(_, text)| font::width(text, SMALL)).fold(0.0, f64::max)
+        });
+        let legend = bar.as_ref().map_or(0.0, |_| 8.0 + 10.0 + 6.0 + bar_labels + TEXT + 6.0);
+        let foot = TEXT + SMALL + 12.0;
+        let head = if self.title.is_empty() { 8.0 } else { TEXT + 9.0 };
+
+        // Both axes in the same unit, and as long on paper as they are in truth.
+        let unit = shown("m", self.size[0].max(self.size[1]));
+        let axis = |name: &str, length: f64| {
+            let label = format!("{name} [{}]", unit.text);
+            Axis::linear(label, "").between(0.0, length * unit.factor)
+        };
+        let [across, up] = [axis("x", self.size[0]), axis("y", self.size[1])];
+        let room_y = height - foot - head;
+        let y = Ruler::new(&up, [0.0, 1.0], 0.0, room_y / 32.0);
+        let labels = y.ticks.iter().map(|(_, text)| font::width(text, SMALL)).fold(0.0, f64::max);
+        let margin = TEXT + labels + 13.0;
+        let room_x = width - margin - 8.0 - legend;
+        let points = (room_x / self.size[0]).min(room_y / self.size[1]);
+        // A strip keeps a visible breadth.
+        let [w, h] =
+            [(self.size[0] * points).max(12.0).min(room_x), (self.size[1] * points).max(12.0).min(room_y)];
+        let left = x0 + margin;
+        let (right, top) = (left + w, y0 + head + 0.5 * (room_y - h));
+        let bottom = top + h;
+        let x = Ruler::new(&across, [0.0, 1.0], 0.0, w / 42.0).placed(left, right);
+        let y = Ruler::new(&up, [0.0, 1.0], 0.0, h / 32.0).placed(bottom, top);
+
+        if !self.title.is_empty() {
+            drawing.text([left, top - 6.0], TEXT, Anchor::Start, "", &self.title);
+        }
+        frame(drawing, &x, &y, [left, top, right, bottom], [left - labels - 10.0, bottom + foot - 5.0]);
+        let picture = match (&self.meaning, &bar) {
+            (Values::States(states), _) => raster::states(&self.values, states),
+            (_, Some((_, ends, colours))) => raster::quantity(&self.values, *ends, *colours),
+            (_, None) => Vec::new(),
+        };
+        let smooth = self.values.dim().0 > w as usize;
+        drawing.image([left, top], [w, h], &picture, smooth);
+        let style = format!("fill=\"none\" stroke=\"{INK}\" stroke-width=\"0.8\"");
+        drawing.rect([left, top], [w, h], &style);
+        if h > 50.0 {
+            scale_bar(drawing, [left, bottom], w, self.size[0]);
+        }
+        if let Some((ruler, ends, colours)) = bar {
+            // Beside a strip the bar is longer than the map.
+            let more = 0.5 * (room_y.min(110.0) - h).max(0.0);
+            let (top, bottom) = (top - more, bottom + more);
+            colour_bar(
+                drawing,
+                &ruler.placed(bottom, top),
+                ends,
+                colours,
+                [right + 8.0, top, bottom],
+                bar_labels,
+            );
+        }
+        if let Values::States(states) = &self.meaning {
+            self.names(drawing, states, [left, top], w);
+        }
+    }
+
+    /// Names of the states with their colours and shares of the area, above the map at the right.
+    fn names(&self, drawing: &mut Drawing, states: &[(String, [u8; 3])], [left, top]: [f64; 2], width: f64) {
+        let mut right = left + width;
+        for (name, colour) in states.iter().rev() {
+            right -= font::width(name, SMALL);
+            drawing.text([right, top - 5.5], SMALL, Anchor::Start, "", name);
+            right -= 11.0;
+            let [r, g, b] = colour;
+            let style = format!("fill=\"rgb({r},{g},{b})\" stroke=\"{INK}\" stroke-width=\"0.4\"");
+            drawing.rect([right, top - 12.0], [7.5, 7.5], &style);
+            right -= 8.0;
+        }
+    }
+}
+
+/// A round length, in black on white in the lower left corner.
+fn scale_bar(drawing: &mut Drawing, [left, bottom]: [f64; 2], width: f64, length: f64) {
+    let rough = 0.27 * length;
+    let tens = 10f64.powf((rough.log10() + 1e-9).floor());
+    let round =
+        [5.0, 2.0, 1.0].into_iter().find(|digit| digit * tens <= rough * (1.0 + 1e-9)).unwrap_or(1.0) * tens;
+    let unit = shown("m", round);
+    let text = format!("{} {}", (round * unit.factor * 1e6).round() / 1e6, unit.text);
+    let bar = width * round / length;
+    let wide = bar.max(font::width(&text, SMALL)) + 10.0;
+    let (x, y) = (left + 5.0, bottom - 5.0);
+    drawing.rect([x, y - SMALL - 12.0], [wide, SMALL + 12.0], "fill=\"#fff\" fill-opacity=\"0.8\" rx=\"2\"");
+    drawing.rect([x + 0.5 * (wide - bar), y - 7.0], [bar, 3.0], &format!("fill=\"{INK}\""));
+    drawing.text([x + 0.5 * wide, y - 10.0], SMALL, Anchor::Middle, "", &text);
+}
+
+fn colour_bar(
+    drawing: &mut Drawing,
+    ruler: &Ruler,
+    ends: [f64; 2],
+    colours: Colours,
+    [left, top, bottom]: [f64; 3],
+    labels: f64,
+) {
+    let right = left + 10.0;
+    let column = Array2::from_shape_fn((1, 256), |(_, j)| ends[0] + (ends[1] - ends[0]) * j as f64 / 255.0);
+    drawing.image([left, top], [10.0, bottom - top], &raster::quantity(&column, ends, colours), true);
+    drawing.rect(
+        [left, top],
+        [10.0, bottom - top],
+        &format!("fill=\"none\" stroke=\"{INK}\" stroke-width=\"0.6\""),
+    );
+    for (value, text) in &ruler.ticks {
+        if let Some(at) = ruler.place(*value) {
+            drawing.line([right, at], [right + 3.0, at], INK, 0.7, "");
+            drawing.text([right + 5.0, at + 0.36 * SMALL], SMALL, Anchor::Start, "", text);
+        }
+    }
+    drawing.upward_text([right + 5.0 + labels + TEXT + 1.0, 0.5 * (top + bottom)], TEXT, &ruler.title);
+}
+
+/// Least and greatest of the finite values.
+fn extent(values: &Array2<f64>) -> [f64; 2] {
+    let finite = values.iter().copied().filter(|v| v.is_finite());
+    finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
+}
+
+/// The colour of undefined values, for captions.
+pub const UNDEFINED: [u8; 3] = BLANK;

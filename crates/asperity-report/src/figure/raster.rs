@@ -1,0 +1,97 @@
+//! Pictures of cells: a colour each, as PNG.
+
+use ndarray::{Array2, ArrayView2, s};
+
+use super::colours::Colours;
+
+/// Most cells of a side that a figure holds: a hand's breadth at 300 dots per inch.
+const FINEST: usize = 1024;
+/// The colour of a value that is not finite: a grey that no gradient has.
+pub(super) const BLANK: [u8; 3] = [200, 200, 200];
+
+/// Means over blocks, such that no side has more than [`FINEST`] cells. A block is undefined where no value
+/// of it is finite.
+pub(super) fn reduced(values: ArrayView2<f64>) -> Array2<f64> {
+    let (nx, ny) = values.dim();
+    let block = nx.max(ny).div_ceil(FINEST).max(1);
+    if block == 1 {
+        return values.to_owned();
+    }
+    Array2::from_shape_fn((nx.div_ceil(block), ny.div_ceil(block)), |(i, j)| {
+        let rows = i * block..((i + 1) * block).min(nx);
+        let columns = j * block..((j + 1) * block).min(ny);
+        let cells = values.slice(s![rows, columns]);
+        let (sum, count) =
+            cells.iter().filter(|v| v.is_finite()).fold((0.0, 0.0), |(sum, count), v| (sum + v, count + 1.0));
+        if count > 0.0 { sum / count } else { f64::NAN }
+    })
+}
+
+/// A quantity from `ends[0]` to `ends[1]` in colours.
+pub(super) fn quantity(values: &Array2<f64>, ends: [f64; 2], colours: Colours) -> Vec<u8> {
+    let share = |v: f64| (v - ends[0]) / (ends[1] - ends[0]);
+    png(values, |v| if v.is_finite() { colours.at(share(v)) } else { BLANK })
+}
+
+/// States in the colours of their numbers.
+pub(super) fn states(values: &Array2<f64>, states: &[(String, [u8; 3])]) -> Vec<u8> {
+    let colour =
+        |v: f64| states.get(v as usize).filter(|_| v.is_finite()).map_or(BLANK, |(_, colour)| *colour);
+    png(values, colour)
+}
+
+/// Axis 0 to the right, axis 1 upwards.
+fn png(values: &Array2<f64>, colour: impl Fn(f64) -> [u8; 3]) -> Vec<u8> {
+    let (nx, ny) = values.dim();
+    let pixels: Vec<u8> = (0..ny)
+        .rev()
+        .flat_map(|j| (0..nx).map(move |i| [i, j]))
+        .flat_map(|cell| colour(values[cell]))
+        .collect();
+    encode(&pixels, [nx, ny]).unwrap_or_default()
+}
+
+/// Fails only where a side is 0 or beyond 2^31: no figure has these.
+fn encode(pixels: &[u8], [width, height]: [usize; 2]) -> Result<Vec<u8>, png::EncodingError> {
+    let mut out = Vec::new();
+    let side = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+    let mut encoder = png::Encoder::new(&mut out, side(width), side(height));
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_compression(png::Compression::Balanced);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(pixels)?;
+    writer.finish()?;
+    Ok(out)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn decoded(data: &[u8]) -> (usize, Vec<[u8; 3]>) {
+        let mut reader = png::Decoder::new(std::io::Cursor::new(data)).read_info().unwrap();
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        let info = reader.next_frame(&mut pixels).unwrap();
+        (info.width as usize, pixels.chunks(3).map(|p| [p[0], p[1], p[2]]).collect())
+    }
+
+    #[test]
+    fn x_goes_right_and_y_goes_up() {
+        let names = [[1, 1, 1], [2, 2, 2], [3, 3, 3]].map(|c| (String::new(), c));
+        let values = ndarray::array![[0.0, 1.0], [2.0, f64::NAN], [7.0, 0.0]];
+        let (width, pixels) = decoded(&states(&values, &names));
+        assert_eq!(width, 3);
+        assert_eq!(pixels, [[2, 2, 2], BLANK, [1, 1, 1], [1, 1, 1], [3, 3, 3], BLANK]);
+    }
+
+    #[test]
+    fn large_maps_become_means_of_blocks() {
+        let mut values = Array2::from_shape_fn((2050, 7), |(i, j)| (i + j) as f64);
+        values[[0, 0]] = f64::NAN;
+        let small = reduced(values.view());
+        assert_eq!(small.dim(), (684, 3));
+        // Rows and columns 0..3 without the corner: the sum of i + j is 18 over 8 cells.
+        assert_eq!(small[[0, 0]], 18.0 / 8.0);
+        assert_eq!(small[[683, 2]], 2049.0 + 6.0);
+    }
+}

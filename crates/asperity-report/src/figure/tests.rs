@@ -1,0 +1,134 @@
+//! Facts of whole figures.
+
+use ndarray::Array2;
+use resvg::usvg::roxmltree::Document;
+
+use super::*;
+
+fn curve() -> Curves {
+    let x: Vec<f64> = (1..=100).map(|i| f64::from(i) * 1e-3).collect();
+    let y: Vec<f64> = x.iter().map(|x| 3e8 / (1.0 + x)).collect();
+    Curves::new("Relaxation <1 & 2>", Axis::log("time", "s"), Axis::linear("modulus", "Pa"))
+        .with(Series::new("data", Style::Points, x.clone(), y.clone()))
+        .with(Series::new("fit", Style::Line, x, y))
+}
+
+fn map() -> Map {
+    let values =
+        Array2::from_shape_fn((40, 30), |(i, j)| if i == j { f64::NAN } else { (i * j) as f64 * 1e-9 });
+    Map::new("Heights", ["height", "m"], Colours::Sequential, values.view(), [4e-5, 3e-5])
+}
+
+fn figure() -> Figure {
+    Figure::new("Two panels").with(curve()).with(map()).caption("Grey: undefined.")
+}
+
+#[test]
+fn a_figure_is_well_formed_and_says_its_units() {
+    let svg = figure().to_svg();
+    let document = Document::parse(&svg).unwrap();
+    let texts: Vec<_> =
+        document.descendants().filter(|n| n.has_tag_name("text")).filter_map(|n| n.text()).collect();
+    for text in [
+        "Two panels",
+        "Relaxation <1 & 2>",
+        "time [ms]",
+        "modulus [MPa]",
+        "data",
+        "fit",
+        "x [µm]",
+        "height [µm]",
+        "10 µm",
+    ] {
+        assert!(texts.contains(&text), "{text}: {texts:?}");
+    }
+    assert_eq!(document.descendants().filter(|n| n.has_tag_name("circle")).count(), 101);
+    assert_eq!(document.descendants().filter(|n| n.has_tag_name("image")).count(), 2);
+}
+
+#[test]
+fn the_same_figure_has_the_same_bytes() {
+    assert_eq!(figure().to_svg(), figure().to_svg());
+    assert_eq!(figure().to_png(100.0).unwrap(), figure().to_png(100.0).unwrap());
+}
+
+#[test]
+fn nothing_of_a_panel_leaves_the_paper() {
+    let svg = figure().to_svg();
+    let document = Document::parse(&svg).unwrap();
+    let [width, height] = figure().paper();
+    for node in document.descendants().filter(|n| n.has_tag_name("text")) {
+        let number = |name| node.attribute(name).unwrap().parse::<f64>().unwrap();
+        let (x, y, size) = (number("x"), number("y"), number("font-size"));
+        let long = font::width(node.text().unwrap(), size);
+        let upward = node.attribute("transform").is_some();
+        let (before, after) = match node.attribute("text-anchor") {
+            Some("start") => (0.0, long),
+            Some("end") => (long, 0.0),
+            _ => (0.5 * long, 0.5 * long),
+        };
+        let inside = if upward {
+            x - size >= 0.0 && x <= width && y - before >= 0.0 && y + after <= height
+        } else {
+            x - before >= 0.0 && x + after <= width && y - size >= 0.0 && y <= height
+        };
+        assert!(inside, "{:?} at {x}, {y}", node.text());
+    }
+}
+
+#[test]
+fn a_png_has_the_dots_that_its_paper_asks_for() {
+    let data = figure().to_png(150.0).unwrap();
+    let reader = png::Decoder::new(std::io::Cursor::new(&data)).read_info().unwrap();
+    let [width, height] = figure().paper();
+    let dots = |points: f64| (points * 150.0 / 72.0).round() as u32;
+    assert_eq!((reader.info().width, reader.info().height), (dots(width), dots(height)));
+    assert!(figure().to_png(f64::NAN).is_err());
+}
+
+#[test]
+fn empty_and_odd_data_still_draw() {
+    let odd = [vec![], vec![f64::NAN, 1.0], vec![f64::INFINITY, -1.0], vec![0.0, 0.0]];
+    for y in odd {
+        for style in [Style::Line, Style::Dashed, Style::Reference, Style::Points, Style::Bars] {
+            for axis in [Axis::linear("y", "m"), Axis::log("y", "m")] {
+                let x: Vec<f64> = (0..y.len()).map(|i| i as f64).collect();
+                let panel =
+                    Curves::new("", Axis::linear("x", "m"), axis).with(Series::new("", style, x, y.clone()));
+                let svg = Figure::new("").with(panel).to_svg();
+                assert!(
+                    Document::parse(&svg).is_ok() && !svg.contains("NaN") && !svg.contains("inf"),
+                    "{y:?}"
+                );
+            }
+        }
+    }
+    let flat = Array2::from_elem((3, 3), 2.0);
+    for colours in [Colours::Sequential, Colours::Diverging, Colours::Heat] {
+        let map = Map::new("", ["gap", "m"], colours, flat.view(), [1.0, 1e-3]);
+        assert!(Figure::new("").with(map).to_png(50.0).is_ok());
+    }
+    let undefined = Array2::from_elem((3, 3), f64::NAN);
+    let map = Map::new("", ["gap", "m"], Colours::Sequential, undefined.view(), [1.0, 1.0]);
+    assert!(Document::parse(&Figure::new("").with(map).to_svg()).is_ok());
+}
+
+#[test]
+fn a_figure_replaces_nothing_unless_told() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("figure.svg");
+    figure().write(&path, false).unwrap();
+    let first = std::fs::read(&path).unwrap();
+    assert!(matches!(curve_figure().write(&path, false), Err(FigureError::Exists { .. })));
+    assert_eq!(std::fs::read(&path).unwrap(), first);
+    curve_figure().write(&path, true).unwrap();
+    assert_ne!(std::fs::read(&path).unwrap(), first);
+    assert_eq!(std::fs::read_dir(directory.path()).unwrap().count(), 1);
+    assert!(matches!(figure().write(&directory.path().join("a.jpg"), true), Err(FigureError::Ending { .. })));
+    let nowhere = directory.path().join("none").join("a.png");
+    assert!(matches!(figure().write(&nowhere, true), Err(FigureError::Io { .. })));
+}
+
+fn curve_figure() -> Figure {
+    Figure::new("").with(curve())
+}

@@ -27,6 +27,10 @@ pub enum Command {
     /// Look at a measured surface, or write it in another format
     #[command(subcommand)]
     Surface(Surface),
+    /// Write a result as one HTML page: maps, curves, numbers; it needs no network
+    Report(Report),
+    /// Draw a figure of a result as PNG, SVG or PDF
+    Plot(Plot),
     /// Write a result for other programs: NetCDF, HDF5, npz, VTK, CSV
     Export(Export),
     /// Print the JSON Schema of the case file
@@ -146,6 +150,54 @@ pub struct SurfaceFile {
     /// Name or number (from 0) of the channel, where a file has several
     #[arg(long)]
     pub channel: Option<String>,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct Report {
+    /// The result (a Zarr directory)
+    pub result: PathBuf,
+    /// The page to write [default: the result's name with .html]
+    #[arg(short, long, value_name = "PATH")]
+    pub output: Option<PathBuf>,
+    /// Largest size of the maps in the page, in megabytes; larger ones are reduced to means over blocks of cells
+    #[arg(long, value_name = "MB", default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..=2000))]
+    pub megabytes: u32,
+    /// Largest number of instants whose maps are in the page
+    #[arg(long, value_name = "N", default_value_t = 24, value_parser = clap::value_parser!(u32).range(1..=10000))]
+    pub instants: u32,
+    /// Replace a page that is there already
+    #[arg(long)]
+    pub force: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct Plot {
+    /// The result (a Zarr directory)
+    pub result: PathBuf,
+    /// evolution, load-displacement, pressure, gap, displacement, contact, initial-gap, profile, histogram, spots
+    /// or work
+    pub what: String,
+    /// The file to write; its ending tells the form: png, svg or pdf [default: RESULT-WHAT.png]
+    #[arg(short, long, value_name = "PATH")]
+    pub output: Option<PathBuf>,
+    /// The instant of maps, profiles and distributions: the stored one that is nearest, e.g. '500 s' [default: last]
+    #[arg(long, value_name = "T")]
+    pub time: Option<String>,
+    /// Direction of the line of a profile
+    #[arg(long, value_name = "AXIS", default_value = "x", value_parser = ["x", "y"])]
+    pub along: String,
+    /// Where the line of a profile crosses the other axis, e.g. '20 um' [default: the middle]
+    #[arg(long, value_name = "PLACE")]
+    pub at: Option<String>,
+    /// Time on a logarithmic axis
+    #[arg(long)]
+    pub log_time: bool,
+    /// The title [default: that of the case]
+    #[arg(long)]
+    pub title: Option<String>,
+    /// Replace a file that is there already
+    #[arg(long)]
+    pub force: bool,
 }
 
 #[derive(Debug, clap::Args)]

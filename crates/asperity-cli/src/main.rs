@@ -30,6 +30,8 @@ fn main() -> ExitCode {
         Command::New(new) => commands::new::run(&new),
         Command::Verify(verify) => commands::verify::run(&verify),
         Command::Surface(surface) => commands::surface::run(&surface),
+        Command::Report(report) => commands::report::run(&report),
+        Command::Plot(plot) => commands::plot::run(&plot),
         Command::Export(export) => commands::export::run(&export),
         Command::Schema => commands::schema::run(),
         Command::Completions { shell } => commands::completions::run(shell),

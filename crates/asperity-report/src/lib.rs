@@ -1,5 +1,8 @@
 //! Pictures of asperity: numbers in, figures out. It computes no physics.
 //!
-//! [`figure`] draws panels of curves and maps with units, scale bars and colour bars, as SVG or PNG.
+//! [`page`] writes the report, one HTML file; [`result`] makes the figures of a result, by name; [`figure`] draws panels of curves and maps with units, scale bars and colour bars, as SVG or PNG.
 
 pub mod figure;
+mod file;
+pub mod page;
+pub mod result;

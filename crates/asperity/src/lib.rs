@@ -31,6 +31,7 @@ pub mod march;
 pub mod material;
 pub mod operator;
 pub mod reference;
+pub mod spots;
 pub mod surface;
 pub mod time;
 pub mod verification;

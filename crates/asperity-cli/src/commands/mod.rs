@@ -4,6 +4,8 @@ pub mod check;
 pub mod completions;
 pub mod export;
 pub mod new;
+pub mod plot;
+pub mod report;
 pub mod run;
 pub mod schema;
 pub mod surface;

@@ -105,7 +105,7 @@ impl Format {
 /// ```
 pub fn export(reader: &Reader, format: Format, path: &Path, options: &Options) -> Result<Vec<PathBuf>> {
     if reader.is_empty() {
-        return Err(reader.missing("steps".into(), "none yet".into()).into());
+        return Err(reader.no_rows().into());
     }
     let kept = &reader.header().fields;
     let mut fields = match &options.fields {

@@ -230,8 +230,13 @@ impl Reader {
         Ok((Chunks::new(&self.root, &self.spec(kind.name())?)?, index))
     }
 
+    /// The error of a result that has no row yet.
+    pub fn no_rows(&self) -> StoreError {
+        self.missing("steps".into(), "none yet".into())
+    }
+
     /// The error of a field that was not kept.
-    pub(crate) fn no_field(&self, kind: FieldKind) -> StoreError {
+    pub fn no_field(&self, kind: FieldKind) -> StoreError {
         let names: Vec<_> = self.header().fields.iter().map(|kind| kind.name()).collect();
         let available = if names.is_empty() {
             "no fields".to_owned()

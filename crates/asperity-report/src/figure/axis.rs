@@ -67,7 +67,7 @@ impl Ruler {
         if !(low.is_finite() && high.is_finite()) {
             (low, high) = (0.0, 1.0);
         }
-        if high - low <= 1e-12 * high.abs().max(low.abs()) {
+        if high - low <= 1e-9 * high.abs().max(low.abs()) {
             let room = if log { 0.5 } else { (0.1 * high.abs()).max(f64::MIN_POSITIVE) };
             (low, high) = if high == 0.0 && !log { (0.0, 1.0) } else { (low - room, high + room) };
         } else if axis.range.is_none() {

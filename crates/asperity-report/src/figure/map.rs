@@ -52,7 +52,7 @@ impl Map {
         size: [f64; 2],
     ) -> Map {
         let meaning = Values::Quantity { label: label.into(), unit: unit.into(), colours, range: None };
-        Map { title: title.into(), values: raster::reduced(values), meaning, size }
+        Map { title: title.into(), values: raster::means(values, raster::block(values)), meaning, size }
     }
 
     /// A map of states.
@@ -62,7 +62,12 @@ impl Map {
         values: ArrayView2<f64>,
         size: [f64; 2],
     ) -> Map {
-        Map { title: title.into(), values: values.to_owned(), meaning: Values::States(names), size }
+        Map {
+            title: title.into(),
+            values: raster::states(values, raster::block(values)),
+            meaning: Values::States(names),
+            size,
+        }
     }
 
     pub(super) fn draw(&self, drawing: &mut Drawing, place: &Place) {
@@ -110,7 +115,7 @@ impl Map {
         }
         frame(drawing, &x, &y, [left, top, right, bottom], [left - labels - 10.0, bottom + foot - 5.0]);
         let picture = match (&self.meaning, &bar) {
-            (Values::States(states), _) => raster::states(&self.values, states),
+            (Values::States(states), _) => raster::state_picture(&self.values, states),
             (_, Some((_, ends, colours))) => raster::quantity(&self.values, *ends, *colours),
             (_, None) => Vec::new(),
         };

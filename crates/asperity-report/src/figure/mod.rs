@@ -25,6 +25,7 @@ pub use axis::{Axis, Scale};
 pub use colours::Colours;
 pub use curves::{Curves, Series, Style};
 pub use map::{Map, UNDEFINED, Values};
+pub(crate) use raster::{means, states};
 pub use unit::{Shown, shown};
 pub use write::{FigureError, Form};
 

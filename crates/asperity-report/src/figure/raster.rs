@@ -9,21 +9,39 @@ const FINEST: usize = 1024;
 /// The colour of a value that is not finite: a grey that no gradient has.
 pub(super) const BLANK: [u8; 3] = [200, 200, 200];
 
-/// Means over blocks, such that no side has more than [`FINEST`] cells. A block is undefined where no value
-/// of it is finite.
-pub(super) fn reduced(values: ArrayView2<f64>) -> Array2<f64> {
+/// Cells of a side of the blocks that make a map fit for a figure.
+pub(super) fn block(values: ArrayView2<f64>) -> usize {
     let (nx, ny) = values.dim();
-    let block = nx.max(ny).div_ceil(FINEST).max(1);
-    if block == 1 {
+    nx.max(ny).div_ceil(FINEST).max(1)
+}
+
+/// Means over blocks of `block` by `block` cells; a block is undefined where no value of it is finite.
+pub(crate) fn means(values: ArrayView2<f64>, block: usize) -> Array2<f64> {
+    blocks(values, block, |cells| {
+        let finite = cells.iter().filter(|v| v.is_finite());
+        let (sum, count) = finite.fold((0.0, 0.0), |(sum, count), v| (sum + v, count + 1.0));
+        if count > 0.0 { sum / count } else { f64::NAN }
+    })
+}
+
+/// The commonest state of each block; of two as common the higher one.
+pub(crate) fn states(values: ArrayView2<f64>, block: usize) -> Array2<f64> {
+    blocks(values, block, |cells| {
+        let mut counts = [0usize; 8];
+        cells.iter().filter(|v| (0.0..8.0).contains(*v)).for_each(|v| counts[*v as usize] += 1);
+        (0..8).max_by_key(|state| counts[*state]).map_or(0.0, |state| state as f64)
+    })
+}
+
+fn blocks(values: ArrayView2<f64>, block: usize, one: impl Fn(ArrayView2<f64>) -> f64) -> Array2<f64> {
+    if block <= 1 {
         return values.to_owned();
     }
+    let (nx, ny) = values.dim();
     Array2::from_shape_fn((nx.div_ceil(block), ny.div_ceil(block)), |(i, j)| {
         let rows = i * block..((i + 1) * block).min(nx);
         let columns = j * block..((j + 1) * block).min(ny);
-        let cells = values.slice(s![rows, columns]);
-        let (sum, count) =
-            cells.iter().filter(|v| v.is_finite()).fold((0.0, 0.0), |(sum, count), v| (sum + v, count + 1.0));
-        if count > 0.0 { sum / count } else { f64::NAN }
+        one(values.slice(s![rows, columns]))
     })
 }
 
@@ -34,7 +52,7 @@ pub(super) fn quantity(values: &Array2<f64>, ends: [f64; 2], colours: Colours) -
 }
 
 /// States in the colours of their numbers.
-pub(super) fn states(values: &Array2<f64>, states: &[(String, [u8; 3])]) -> Vec<u8> {
+pub(super) fn state_picture(values: &Array2<f64>, states: &[(String, [u8; 3])]) -> Vec<u8> {
     let colour =
         |v: f64| states.get(v as usize).filter(|_| v.is_finite()).map_or(BLANK, |(_, colour)| *colour);
     png(values, colour)
@@ -79,7 +97,7 @@ mod tests {
     fn x_goes_right_and_y_goes_up() {
         let names = [[1, 1, 1], [2, 2, 2], [3, 3, 3]].map(|c| (String::new(), c));
         let values = ndarray::array![[0.0, 1.0], [2.0, f64::NAN], [7.0, 0.0]];
-        let (width, pixels) = decoded(&states(&values, &names));
+        let (width, pixels) = decoded(&state_picture(&values, &names));
         assert_eq!(width, 3);
         assert_eq!(pixels, [[2, 2, 2], BLANK, [1, 1, 1], [1, 1, 1], [3, 3, 3], BLANK]);
     }
@@ -88,10 +106,13 @@ mod tests {
     fn large_maps_become_means_of_blocks() {
         let mut values = Array2::from_shape_fn((2050, 7), |(i, j)| (i + j) as f64);
         values[[0, 0]] = f64::NAN;
-        let small = reduced(values.view());
+        let small = means(values.view(), block(values.view()));
         assert_eq!(small.dim(), (684, 3));
         // Rows and columns 0..3 without the corner: the sum of i + j is 18 over 8 cells.
         assert_eq!(small[[0, 0]], 18.0 / 8.0);
         assert_eq!(small[[683, 2]], 2049.0 + 6.0);
+        // Two of three rows of each block are in state 1.
+        let rows = Array2::from_shape_fn((2049, 6), |(i, _)| f64::from(u8::from(i % 3 > 0)));
+        assert!(states(rows.view(), 3).iter().all(|state| *state == 1.0));
     }
 }

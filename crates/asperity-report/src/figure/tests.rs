@@ -87,6 +87,19 @@ fn a_png_has_the_dots_that_its_paper_asks_for() {
 }
 
 #[test]
+fn a_pdf_is_a_page_of_the_figures_size_with_its_texts() {
+    let data = figure().to_pdf().unwrap();
+    assert!(data.starts_with(b"%PDF-"));
+    let text = String::from_utf8_lossy(&data);
+    let box_at = text.find("/MediaBox").unwrap();
+    let numbers: Vec<f64> =
+        text[box_at + 9..].split(['[', ']', ' ', '\n']).filter_map(|w| w.parse().ok()).take(4).collect();
+    let [width, height] = figure().paper();
+    assert!((numbers[2] - width).abs() < 0.01 && (numbers[3] - height).abs() < 0.01, "{numbers:?}");
+    assert!(text.contains("DejaVuSans"), "the typeface is in the file");
+}
+
+#[test]
 fn empty_and_odd_data_still_draw() {
     let odd = [vec![], vec![f64::NAN, 1.0], vec![f64::INFINITY, -1.0], vec![0.0, 0.0]];
     for y in odd {

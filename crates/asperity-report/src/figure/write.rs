@@ -3,6 +3,10 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use krilla::geom::Size;
+use krilla::metadata::Metadata;
+use krilla::page::PageSettings;
+use krilla_svg::{SurfaceExt, SvgSettings};
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree};
 
@@ -18,19 +22,21 @@ pub enum Form {
     Svg,
     /// Dots, 300 to an inch.
     Png,
+    /// Portable document, one page of the figure's size, with its typeface.
+    Pdf,
 }
 
 /// Why a figure cannot be written.
 #[derive(Debug, thiserror::Error)]
 pub enum FigureError {
     /// The ending of the path names no form that is known.
-    #[error("{}: the ending says what a figure is written as: use .svg or .png", path.display())]
+    #[error("{}: the ending says what a figure is written as: use .svg, .png or .pdf", path.display())]
     Ending {
         /// The path.
         path: PathBuf,
     },
     /// There is something at the path.
-    #[error("{} exists: choose another name, or allow it to be replaced", path.display())]
+    #[error("{} is there already; name another file or give --force", path.display())]
     Exists {
         /// The path.
         path: PathBuf,
@@ -52,11 +58,12 @@ impl Form {
     /// The form that the ending of a path asks for.
     ///
     /// # Errors
-    /// [`FigureError::Ending`] where it is neither `.svg` nor `.png`.
+    /// [`FigureError::Ending`] where it is none of `.svg`, `.png` and `.pdf`.
     pub fn of(path: &Path) -> Result<Form, FigureError> {
         match path.extension().map(|ending| ending.to_ascii_lowercase()) {
             Some(ending) if ending == "svg" => Ok(Form::Svg),
             Some(ending) if ending == "png" => Ok(Form::Png),
+            Some(ending) if ending == "pdf" => Ok(Form::Pdf),
             _ => Err(FigureError::Ending { path: path.to_owned() }),
         }
     }
@@ -72,23 +79,13 @@ impl Figure {
         let data = match Form::of(path)? {
             Form::Svg => self.to_svg().into_bytes(),
             Form::Png => self.to_png(300.0)?,
+            Form::Pdf => self.to_pdf()?,
         };
         let failed = |source: std::io::Error| match source.kind() {
             std::io::ErrorKind::AlreadyExists => FigureError::Exists { path: path.to_owned() },
             _ => FigureError::Io { path: path.to_owned(), source },
         };
-        let directory = match path.parent() {
-            Some(parent) if !parent.as_os_str().is_empty() => parent,
-            _ => Path::new("."),
-        };
-        let mut file = builder().tempfile_in(directory).map_err(failed)?;
-        file.write_all(&data).map_err(failed)?;
-        if force {
-            file.persist(path).map_err(|error| failed(error.error))?;
-        } else {
-            file.persist_noclobber(path).map_err(|error| failed(error.error))?;
-        }
-        Ok(())
+        crate::file::write(path, force, |file| file.write_all(&data)).map_err(failed)
     }
 
     /// The figure as PNG with `dots` to an inch.
@@ -99,27 +96,46 @@ impl Figure {
         if !(20.0..=2400.0).contains(&dots) {
             return Err(FigureError::Drawing(format!("{dots} dots per inch; expected 20 to 2400")));
         }
-        let options =
-            Options { fontdb: font::database(), font_family: "DejaVu Sans".into(), ..Options::default() };
-        let failed = |what: &dyn std::fmt::Display| FigureError::Drawing(what.to_string());
-        let tree = Tree::from_str(&self.to_svg(), &options).map_err(|error| failed(&error))?;
+        let tree = self.tree()?;
         let paper = self.paper();
         let scale = dots / POINTS;
         let [width, height] = paper.map(|length| (length * scale).round() as u32);
-        let mut dots = Pixmap::new(width, height).ok_or_else(|| failed(&"it has no area"))?;
+        let mut dots = Pixmap::new(width, height).ok_or_else(|| undrawn("it has no area"))?;
         // The tree measures in its own pixels; the paper in points.
         let size = tree.size();
         let transform = Transform::from_scale(width as f32 / size.width(), height as f32 / size.height());
         resvg::render(&tree, transform, &mut dots.as_mut());
-        dots.encode_png().map_err(|error| failed(&error))
+        dots.encode_png().map_err(undrawn)
+    }
+
+    /// The figure as a PDF of one page.
+    ///
+    /// # Errors
+    /// [`FigureError::Drawing`] where a text of the figure holds signs that cannot be drawn.
+    pub fn to_pdf(&self) -> Result<Vec<u8>, FigureError> {
+        let tree = self.tree()?;
+        let [width, height] = self.paper().map(|length| length as f32);
+        let size = Size::from_wh(width, height).ok_or_else(|| undrawn("it has no area"))?;
+        let mut document = krilla::Document::new();
+        document.set_metadata(Metadata::new().title(self.title.clone()).creator("asperity".into()));
+        let mut page = document.start_page_with(PageSettings::new(size));
+        let mut surface = page.surface();
+        surface
+            .draw_svg(&tree, size, SvgSettings::default())
+            .ok_or_else(|| undrawn("it cannot become a page"))?;
+        surface.finish();
+        page.finish();
+        document.finish().map_err(|error| undrawn(format!("{error:?}")))
+    }
+
+    /// The drawing as renderers take it.
+    fn tree(&self) -> Result<Tree, FigureError> {
+        let options =
+            Options { fontdb: font::database(), font_family: "DejaVu Sans".into(), ..Options::default() };
+        Tree::from_str(&self.to_svg(), &options).map_err(undrawn)
     }
 }
 
-/// New files get the permissions that the user's mask leaves, as other files do.
-fn builder() -> tempfile::Builder<'static, 'static> {
-    #[allow(unused_mut)]
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder
+fn undrawn(why: impl std::fmt::Display) -> FigureError {
+    FigureError::Drawing(why.to_string())
 }

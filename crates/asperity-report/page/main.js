@@ -1,0 +1,266 @@
+// The page: what stands where, and what moves what.
+
+const $ = (id) => document.getElementById(id);
+const press = (buttons, chosen) => buttons.forEach((b) => b.setAttribute("aria-pressed", String(b === chosen)));
+
+// Light and dark: as the system has it, until the button is used.
+const dark = window.matchMedia("(prefers-color-scheme: dark)");
+function theme(name) {
+  document.documentElement.dataset.theme = name;
+  charts.forEach((chart) => chart.render());
+  if (view.what) view.render();
+  if (heights.what) heights.render();
+}
+
+const view = new MapView($("map"), $("bar"));
+const heights = new MapView($("height"), $("height-bar"));
+const relief = new Relief($("relief"));
+const chosen = { field: null, instant: 0, along: "x", share: 0.5, log: false };
+const evolution = [];
+let profile = null;
+
+document.documentElement.dataset.theme = dark.matches ? "dark" : "light";
+dark.addEventListener("change", (event) => theme(event.matches ? "dark" : "light"));
+$("theme").addEventListener("click", () => theme(document.documentElement.dataset.theme === "dark" ? "light" : "dark"));
+
+function summary() {
+  $("title").textContent = state.title;
+  document.title = state.title;
+  $("status").textContent = state.status;
+  $("case").textContent = state.case;
+  $("footer").textContent = state.footer;
+  $("headline").replaceChildren(...state.headline.map(([name, value]) => make("div", {}, make("b", {}, value), make("span", {}, name))));
+  $("facts").replaceChildren(...state.facts.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]));
+}
+
+/** The panels over time: their series by name. */
+const PANELS = [
+  ["Contact area", "contact area", [["counted", "contact_area"], ["corrected", "contact_area_corrected"], ["at hardness", "capped_area"]]],
+  ["Approach", "approach", [["", "approach"]]],
+  ["Load", "load", [["", "load"]]],
+  ["Pressure", "pressure", [["mean", "mean_pressure"], ["largest", "max_pressure"]]],
+];
+
+function timePanels() {
+  const time = state.series.time;
+  const axis = { label: "time", unit: "s", log: chosen.log };
+  const specs = PANELS.map(([title, label, names]) => ({
+    title,
+    x: axis,
+    y: { label, unit: state.units[names[0][1]] },
+    series: names.filter(([, key]) => key !== "capped_area" || state.series[key].some((v) => v > 0)).map(([name, key]) => ({ name, x: time, y: state.series[key] })),
+  }));
+  if (!evolution.length) {
+    specs.forEach((spec) => evolution.push(new Chart($("evolution"), spec)));
+    loading = new Chart($("evolution"), loadingPath());
+  } else {
+    specs.forEach((spec, k) => evolution[k].set(spec));
+    loading.set(loadingPath());
+  }
+}
+let loading = null;
+const loadingPath = () => ({
+  title: "Load over approach",
+  free: true,
+  x: { label: "approach", unit: "m" },
+  y: { label: "load", unit: "N" },
+  series: [{ name: "", x: state.series.approach, y: state.series.load }],
+});
+
+function solverPanels() {
+  const row = state.series.time.map((_, n) => n);
+  const points = (name, key) => ({ name, x: row, y: state.series[key], points: true });
+  $("solver").replaceChildren();
+  new Chart($("solver"), { title: "Work of each row", x: { label: "row", unit: "" }, y: { label: "number", unit: "" }, series: [points("iterations", "iterations"), points("convolutions", "convolutions")] });
+  new Chart($("solver"), { title: "Error of each row", x: { label: "row", unit: "" }, y: { label: "relative error", unit: "", log: true }, series: [points("contact conditions (residual)", "residual"), points("pressure (certificate)", "certificate")] });
+}
+
+function materialPanels() {
+  const m = state.material;
+  $("material").hidden = !m;
+  if (!m) return;
+  const time = { label: "time", unit: "s", log: true };
+  new Chart($("curves"), { title: "Contact creep compliance C(t)", x: time, y: { label: "compliance", unit: "1/Pa" }, series: [{ name: "", x: m.time, y: m.creep }] });
+  if (m.relaxation) new Chart($("curves"), { title: "Contact relaxation modulus E*(t)", x: time, y: { label: "modulus", unit: "Pa", log: m.decades > 1 }, series: [{ name: "", x: m.time, y: m.relaxation }] });
+  const omega = { label: "angular frequency", unit: "rad/s", log: true };
+  new Chart($("curves"), { title: "Storage and loss modulus", x: omega, y: { label: "modulus", unit: "Pa", log: true }, series: [{ name: "storage", x: m.omega, y: m.storage }, { name: "loss", x: m.omega, y: m.loss, dashed: true }] });
+  new Chart($("curves"), { title: "Loss tangent", x: omega, y: { label: "tan δ", unit: "" }, series: [{ name: "", x: m.omega, y: m.tangent }] });
+}
+
+async function surfacePart() {
+  const s = state.surface;
+  $("surface").hidden = !s;
+  if (!s) return;
+  const map = await load("surface");
+  if (map) heights.show({ map, colours: "sequential", low: map.min, high: map.max, unit: "m", label: "height" });
+  $("height-note").textContent = s.note;
+  $("statistics").replaceChildren(...s.statistics.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]));
+  if (s.wave_number) new Chart($("spectrum"), { title: "Radially averaged power spectrum", x: { label: "wavenumber", unit: "1/m", log: true }, y: { label: "C(q)", unit: "m4", log: true }, series: [{ name: "", x: s.wave_number, y: s.power }] });
+}
+
+const field = () => state.fields.find((f) => f.name === chosen.field);
+
+async function showMap() {
+  const kind = field();
+  if (!kind || !state.instants.length) return;
+  const instant = state.instants[chosen.instant];
+  const map = await load(`${kind.name}-${chosen.instant}`);
+  if (!map || kind !== field() || instant !== state.instants[chosen.instant]) return;
+  const range = $("fixed").checked && kind.range ? kind.range : [map.min, map.max];
+  view.show({ map, colours: kind.colours, low: range[0], high: range[1], unit: kind.unit, label: kind.label }, { along: chosen.along, share: chosen.share });
+  const row = instant.row;
+  $("instant-words").textContent = `t = ${words(instant.time, "s")}, load ${words(state.series.load[row], "N")}, contact ${digits(100 * state.series.contact_fraction[row])} %`;
+  $("instant").setAttribute("aria-valuetext", `t = ${words(instant.time, "s")}`);
+  evolution.forEach((chart) => chart.mark(instant.time));
+  await showProfile(kind, map);
+  await showRelief(instant);
+}
+
+/** Values along the line. */
+function along(map) {
+  const count = chosen.along === "x" ? map.nx : map.ny, other = chosen.along === "x" ? map.ny : map.nx;
+  const at = Math.min(Math.floor(chosen.share * other), other - 1);
+  const length = state.grid.size[chosen.along === "x" ? 0 : 1];
+  const place = Array.from({ length: count }, (_, k) => ((k + 0.5) / count) * length);
+  const value = Array.from({ length: count }, (_, k) => map.values[chosen.along === "x" ? k * map.ny + at : at * map.ny + k]);
+  return [place, value, at, other];
+}
+
+async function showProfile(kind, map) {
+  const [x, y, at, other] = along(map);
+  const across = chosen.along === "x" ? "y" : "x";
+  const where = ((at + 0.5) / other) * state.grid.size[chosen.along === "x" ? 1 : 0];
+  const series = [{ name: kind.name === "gap" ? "now" : "", x, y }];
+  if (kind.name === "gap") {
+    const before = await load("initial");
+    if (before) {
+      const [x0, y0] = along(before);
+      series.push({ name: "undeformed", x: x0, y: y0, dashed: true });
+    }
+  }
+  const spec = { title: `${kind.title} at ${across} = ${words(where, "m")}`, x: { label: chosen.along, unit: "m" }, y: { label: kind.label, unit: kind.unit === "1" ? "" : kind.unit }, series };
+  if (profile) {
+    profile.box.querySelector("h3").textContent = spec.title;
+    profile.set(spec);
+  } else profile = new Chart($("profile"), spec);
+}
+
+/** Surface of the deformed body: down by u, where u = h - h0 + w. */
+async function showRelief(instant) {
+  const has = (name) => state.fields.some((f) => f.name === name);
+  const name = has("displacement") ? "displacement" : has("gap") ? "gap" : null;
+  $("relief-part").hidden = !name;
+  if (!name) return;
+  const map = await load(`${name}-${chosen.instant}`), before = name === "gap" ? await load("initial") : null;
+  const pressure = has("pressure") ? await load(`pressure-${chosen.instant}`) : null;
+  if (!map || (name === "gap" && !before)) return;
+  const approach = state.series.approach[instant.row];
+  const z = Float32Array.from(map.values, (v, n) => (before ? before.values[n] - v - approach : -v));
+  let low = Infinity, high = -Infinity;
+  for (const v of z) if (!isNaN(v)) [low, high] = [Math.min(low, v), Math.max(high, v)];
+  const shade = pressure && pressure.max > 0 ? Float32Array.from(pressure.values, (p) => p / pressure.max) : Float32Array.from(z, (v) => (high > low ? (v - low) / (high - low) : 0));
+  relief.show({ nx: map.nx, ny: map.ny, z, shade, colours: pressure && pressure.max > 0 ? "heat" : "sequential" });
+  $("relief-note").textContent = `Surface of the deformable half-space, heights from ${words(low, "m")} to ${words(high, "m")}, stretched upwards; coloured by ${pressure && pressure.max > 0 ? "pressure" : "height"}. Drag, or use the arrow keys, to turn it.`;
+}
+
+function mapsPart() {
+  $("maps").hidden = !state.fields.length || !state.instants.length;
+  if ($("maps").hidden) return;
+  const buttons = state.fields.map((kind) => {
+    const button = make("button", { type: "button", "aria-pressed": "false" }, kind.name);
+    button.addEventListener("click", () => {
+      chosen.field = kind.name;
+      press(buttons, button);
+      showMap();
+    });
+    return button;
+  });
+  $("fields").replaceChildren(...buttons);
+  chosen.field = state.fields[0].name;
+  press(buttons, buttons[0]);
+  $("map-note").textContent = state.note;
+  $("instant").max = state.instants.length - 1;
+  chosen.instant = state.instants.length - 1;
+  $("instant").value = chosen.instant;
+  $("instant").addEventListener("input", () => {
+    chosen.instant = Number($("instant").value);
+    showMap();
+  });
+  $("fixed").addEventListener("change", showMap);
+  const lines = [...document.querySelectorAll("[data-line]")];
+  lines.forEach((button) => button.addEventListener("click", () => {
+    chosen.along = button.dataset.line;
+    press(lines, button);
+    showMap();
+  }));
+  let timer = null;
+  const stop = () => {
+    clearInterval(timer);
+    timer = null;
+    $("play").setAttribute("aria-pressed", "false");
+    $("play").textContent = "▶ play";
+  };
+  $("play").addEventListener("click", () => {
+    if (timer) return stop();
+    if (chosen.instant === state.instants.length - 1) chosen.instant = -1;
+    $("play").setAttribute("aria-pressed", "true");
+    $("play").textContent = "❚❚ pause";
+    timer = setInterval(() => {
+      chosen.instant += 1;
+      $("instant").value = chosen.instant;
+      showMap();
+      if (chosen.instant >= state.instants.length - 1) stop();
+    }, 350);
+  });
+  const canvas = $("map");
+  const move = (event) => {
+    if (!view.what) return;
+    const { map, unit, label, colours } = view.what, [i, j] = view.cell(event), [lx, ly] = state.grid.size;
+    const value = map.values[i * map.ny + j];
+    const text = colours === "states" ? (isNaN(value) ? "undefined" : STATES[Math.round(value)][0]) : words(value, unit);
+    $("probe").textContent = `x = ${words(((i + 0.5) / map.nx) * lx, "m")}, y = ${words(((j + 0.5) / map.ny) * ly, "m")}: ${label} ${text}`;
+    if (event.buttons || event.type === "pointerdown") {
+      chosen.share = chosen.along === "x" ? (j + 0.5) / map.ny : (i + 0.5) / map.nx;
+      redraw();
+    }
+  };
+  canvas.addEventListener("pointermove", move);
+  canvas.addEventListener("pointerdown", (event) => { canvas.setPointerCapture(event.pointerId); move(event); });
+  canvas.addEventListener("keydown", (event) => {
+    const step = chosen.along === "x" ? { ArrowUp: 1, ArrowDown: -1 }[event.key] : { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+    if (!step || !view.what) return;
+    event.preventDefault();
+    const count = chosen.along === "x" ? view.what.map.ny : view.what.map.nx;
+    chosen.share = Math.min(Math.max(chosen.share + step / count, 0.5 / count), 1 - 0.5 / count);
+    redraw();
+  });
+  function redraw() {
+    view.show(view.what, { along: chosen.along, share: chosen.share });
+    showProfile(field(), view.what.map);
+  }
+  return showMap();
+}
+
+const axes = [...document.querySelectorAll("[data-time]")];
+axes.forEach((button) => button.addEventListener("click", () => {
+  chosen.log = button.dataset.time === "log";
+  press(axes, button);
+  timePanels();
+  if (state.instants.length) evolution.forEach((chart) => chart.mark(state.instants[chosen.instant].time));
+}));
+
+async function start() {
+  summary();
+  timePanels();
+  solverPanels();
+  materialPanels();
+  if (typeof DecompressionStream === "undefined") {
+    $("maps").replaceChildren(make("p", { class: "notice" }, "This browser is too old to unpack the maps (it lacks DecompressionStream); all others since 2023 can."));
+    $("surface").hidden = true;
+  } else {
+    await surfacePart();
+    await mapsPart();
+  }
+  document.documentElement.dataset.ready = "yes";
+}
+start();

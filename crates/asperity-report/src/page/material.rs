@@ -1,0 +1,68 @@
+//! Curves of the pair's material, from the creep function that the result holds.
+
+use std::f64::consts::TAU;
+
+use asperity::material::{Creep, CreepTerm};
+use asperity_io::store::Reader;
+use serde_json::{Value, json};
+
+/// Points to a decade of time.
+const FINE: i32 = 12;
+
+/// The contact creep function C(t) of the pair; `None` where the result does not say.
+fn creep(reader: &Reader) -> Option<Creep> {
+    let stored = reader.header().setup.get("contact_creep_compliance")?;
+    let number = |name: &str| stored.get(name).and_then(Value::as_f64);
+    let terms = stored.get("terms")?.as_array()?.iter().map(|term| {
+        let pair = term.as_array()?;
+        Some(CreepTerm { compliance: pair.first()?.as_f64()?, retardation_time: pair.get(1)?.as_f64()? })
+    });
+    let creep = Creep {
+        instantaneous: number("instantaneous")?,
+        terms: terms.collect::<Option<_>>()?,
+        fluidity: number("fluidity")?,
+    };
+    creep.validate().ok().map(|()| creep)
+}
+
+/// C(t), E*(t), E', E'' and tan delta, from a decade below the shortest time to one above the longest; `Null` for
+/// an elastic pair or where the result does not say.
+pub(super) fn curves(reader: &Reader) -> Value {
+    let Some(creep) = creep(reader) else { return Value::Null };
+    let mut times: Vec<f64> = creep.terms.iter().map(|term| term.retardation_time).collect();
+    if creep.fluidity > 0.0 && creep.instantaneous > 0.0 {
+        times.push(creep.instantaneous / creep.fluidity);
+    }
+    let ends = times.iter().fold([f64::INFINITY, 0.0], |[a, b]: [f64; 2], t| [a.min(*t), b.max(*t)]);
+    if times.is_empty() || ends[0] <= 0.0 {
+        return Value::Null;
+    }
+    let [first, last] = [(ends[0].log10() - 1.5).floor() as i32, (ends[1].log10() + 1.5).ceil() as i32];
+    let time: Vec<f64> =
+        (first * FINE..=last * FINE).map(|n| 10f64.powf(f64::from(n) / f64::from(FINE))).collect();
+    let omega: Vec<f64> = time.iter().rev().map(|t| TAU / t).collect();
+    // E'(w) + i E''(w) = 1 / (C'(w) - i C''(w))
+    let complex = omega.iter().map(|w| {
+        let (real, lost) = creep.complex(*w);
+        let square = real * real + lost * lost;
+        [real / square, lost / square, lost / real]
+    });
+    let complex: Vec<[f64; 3]> = complex.collect();
+    let column = |k: usize| complex.iter().map(|row| row[k]).collect::<Vec<f64>>();
+    let relaxation = creep.to_relaxation().ok();
+    let modulus = relaxation.map(|e| time.iter().map(|t| e.value(*t)).collect::<Vec<f64>>());
+    let decades = modulus.as_ref().map(|e| match (e.first(), e.last()) {
+        (Some(first), Some(last)) if *last > 0.0 => (first / last).log10(),
+        _ => 0.0,
+    });
+    json!({
+        "time": time,
+        "creep": time.iter().map(|t| creep.value(*t)).collect::<Vec<f64>>(),
+        "relaxation": modulus,
+        "decades": decades,
+        "omega": omega,
+        "storage": column(0),
+        "loss": column(1),
+        "tangent": column(2),
+    })
+}

@@ -1,0 +1,125 @@
+//! The report: one HTML file that holds a result's curves and maps and needs no network.
+//!
+//! Maps are stored as 16-bit numbers between their ends ([`blob`]), reduced to means over blocks of cells where
+//! the file would grow beyond [`Options::bytes`]; the page says so.
+
+mod blob;
+mod maps;
+mod material;
+mod state;
+mod surface;
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use asperity_io::store::{Reader, StoreError};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+
+const PAGE: &str = include_str!("../../page/page.html");
+const STYLE: &str = include_str!("../../page/style.css");
+const SCRIPT: [&str; 5] = [
+    include_str!("../../page/units.js"),
+    include_str!("../../page/chart.js"),
+    include_str!("../../page/maps.js"),
+    include_str!("../../page/relief.js"),
+    include_str!("../../page/main.js"),
+];
+
+/// How a report is made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// Largest size of the maps in the file \[byte\]; they are reduced until they fit. Default: 12 million.
+    pub bytes: usize,
+    /// Largest number of instants whose maps are in the file, spread evenly. Default: 24.
+    pub instants: usize,
+    /// Whether a file that is there is replaced.
+    pub force: bool,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options { bytes: 12_000_000, instants: 24, force: false }
+    }
+}
+
+/// Why a report cannot be made.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// The result is damaged or has no row yet.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// There is a file already.
+    #[error("{} is there already; name another file or give --force", .0.display())]
+    Exists(PathBuf),
+    /// The system refuses.
+    #[error("cannot write {}: {source}", path.display())]
+    Io {
+        /// The path.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+}
+
+/// Writes the report of a result to `path`. The file appears whole or not at all.
+///
+/// # Errors
+/// [`ReportError::Store`] where the result has no row yet or is damaged; [`ReportError::Exists`] where there is a
+/// file and `force` does not allow to replace it; [`ReportError::Io`] where the system refuses.
+pub fn write(reader: &Reader, path: &Path, options: &Options) -> Result<(), ReportError> {
+    if !options.force && path.exists() {
+        return Err(ReportError::Exists(path.to_owned()));
+    }
+    let page = page(reader, options)?;
+    crate::file::write(path, options.force, |file| file.write_all(page.as_bytes())).map_err(|source| {
+        match source.kind() {
+            std::io::ErrorKind::AlreadyExists => ReportError::Exists(path.to_owned()),
+            _ => ReportError::Io { path: path.to_owned(), source },
+        }
+    })
+}
+
+/// The report of a result as HTML.
+///
+/// # Errors
+/// [`StoreError`] where the result has no row yet or is damaged.
+pub fn page(reader: &Reader, options: &Options) -> Result<String, StoreError> {
+    let maps = maps::Maps::of(reader, options)?;
+    let state = state::state(reader, &maps)?;
+    let blobs: String = maps.blobs.iter().map(|(name, data)| element(name, data)).collect();
+    // A text inside of a script must not end it.
+    let state = state.to_string().replace('<', "\\u003c");
+    Ok(filled(&[
+        ("title", &escaped(&state::title(reader))),
+        ("style", STYLE),
+        ("state", &state),
+        ("blobs", &blobs),
+        ("script", &SCRIPT.concat()),
+    ]))
+}
+
+/// The page with its places filled, in one pass: what is filled in is not searched again.
+fn filled(parts: &[(&str, &str)]) -> String {
+    let mut page =
+        String::with_capacity(PAGE.len() + parts.iter().map(|(_, text)| text.len()).sum::<usize>());
+    let mut rest = PAGE;
+    while let Some((before, after)) = rest.split_once("{{") {
+        page.push_str(before);
+        let (name, after) = after.split_once("}}").unwrap_or((after, ""));
+        page.push_str(parts.iter().find(|(part, _)| *part == name).map_or("", |(_, text)| text));
+        rest = after;
+    }
+    page + rest
+}
+
+fn element(name: &str, data: &[u8]) -> String {
+    format!("<script type=\"application/base64\" id=\"blob-{name}\">{}</script>\n", STANDARD.encode(data))
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,185 @@
+//! What a page knows besides its maps.
+
+use asperity_io::store::{FieldKind, Reader, SCALARS, Status, StoreError};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use serde_json::{Map, Value, json};
+
+use super::maps::Maps;
+use super::material;
+use crate::figure::Colours;
+use crate::result::words;
+
+/// The result's title, or its file name.
+pub(super) fn title(reader: &Reader) -> String {
+    let title = &reader.header().title;
+    if !title.is_empty() {
+        return title.clone();
+    }
+    reader.path().file_stem().map_or_else(|| "result".into(), |name| name.to_string_lossy().into_owned())
+}
+
+pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
+    if reader.is_empty() {
+        return Err(reader.no_rows());
+    }
+    let mut series = Map::new();
+    let mut units = Map::new();
+    for scalar in SCALARS {
+        series.insert(scalar.name.into(), json!(reader.series(scalar.name)?));
+        units.insert(scalar.name.into(), json!(scalar.units));
+    }
+    let grid = &reader.header().grid;
+    let note = match maps.block {
+        1 => String::new(),
+        block => format!(
+            "Maps show means over {block} × {block} cells (of the contact state: the commonest) of {} × {}.",
+            grid.cells()[0],
+            grid.cells()[1]
+        ),
+    };
+    let instants = maps
+        .instants
+        .iter()
+        .map(|index| json!({"time": reader.field_times()[*index], "row": reader.field_steps()[*index]}));
+    Ok(json!({
+        "title": title(reader),
+        "status": status(reader),
+        "footer": format!("asperity {}; every number in SI units with prefixes.", reader.header().version),
+        "headline": headline(reader)?,
+        "facts": facts(reader)?,
+        "case": reader.header().case_text,
+        "grid": {"cells": grid.cells(), "size": grid.size()},
+        "series": series,
+        "units": units,
+        "fields": maps.fields.iter().map(field).collect::<Vec<_>>(),
+        "instants": instants.collect::<Vec<_>>(),
+        "note": note,
+        "colours": {
+            "sequential": lut(Colours::Sequential),
+            "diverging": lut(Colours::Diverging),
+            "heat": lut(Colours::Heat),
+        },
+        "surface": maps.surface,
+        "material": material::curves(reader),
+    }))
+}
+
+fn field((kind, range): &(FieldKind, Option<[f64; 2]>)) -> Value {
+    let (title, label, colours) = match kind {
+        FieldKind::Pressure => ("Pressure", "pressure", "heat"),
+        FieldKind::Gap => ("Gap", "gap", "sequential"),
+        FieldKind::Displacement => ("Displacement", "displacement", "sequential"),
+        FieldKind::Contact => ("Contact", "state", "states"),
+    };
+    json!({
+        "name": kind.name(), "title": title, "label": label, "unit": kind.units(), "colours": colours, "range": range,
+    })
+}
+
+/// 256 colours, three bytes each.
+fn lut(colours: Colours) -> String {
+    let bytes: Vec<u8> = (0..256).flat_map(|k| colours.at(f64::from(k) / 255.0)).collect();
+    STANDARD.encode(bytes)
+}
+
+fn status(reader: &Reader) -> String {
+    let rows = reader.len();
+    let of = reader.header().rows_expected.map_or(String::new(), |total| format!(" of {total}"));
+    let state = match reader.status() {
+        Status::Complete => return format!("complete, {rows} rows"),
+        Status::Running if reader.is_being_written() => "running",
+        Status::Running => "incomplete: its run was killed (go on with asperity run --resume)",
+        Status::Interrupted => "incomplete: its run was interrupted (go on with asperity run --resume)",
+        Status::Failed => "incomplete: its run failed",
+    };
+    let why = reader.work().message.as_ref().map_or(String::new(), |message| format!(": {message}"));
+    format!("{rows}{of} rows; {state}{why}")
+}
+
+/// The state at the end.
+fn headline(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
+    let rows = reader.rows()?;
+    let Some(last) = rows.last() else { return Ok(vec![]) };
+    let corrected = words(last.contact_area_corrected, "m2");
+    let mut lines = vec![
+        [format!("at time (last of {} rows)", rows.len()), words(last.time, "s")],
+        ["load".into(), words(last.load, "N")],
+        ["approach".into(), words(last.approach, "m")],
+        [format!("contact area, {} corrected", corrected), words(last.contact_area, "m2")],
+        ["of the nominal area".into(), format!("{:.2} %", 100.0 * last.contact_fraction)],
+        [
+            format!("largest pressure, mean {}", words(last.mean_pressure, "Pa")),
+            words(last.max_pressure, "Pa"),
+        ],
+    ];
+    if last.capped_area > 0.0 {
+        lines.push(["at the hardness".into(), words(last.capped_area, "m2")]);
+    }
+    Ok(lines)
+}
+
+/// The case and the work, in words.
+fn facts(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
+    let header = reader.header();
+    let setup = &header.setup;
+    let [nx, ny] = header.grid.cells();
+    let [lx, ly] = header.grid.size();
+    let mut lines =
+        vec![["Domain".to_owned(), format!("{nx} × {ny} cells, {} × {}", words(lx, "m"), words(ly, "m"))]];
+    let mut line =
+        |name: &str, value: Option<String>| lines.extend(value.map(|value| [name.to_owned(), value]));
+    let text = |key: &str| setup.get(key).and_then(Value::as_str);
+    let list = |key: &str| setup.get(key).and_then(Value::as_array).map(|list| list.iter());
+    let names = |key: &str| {
+        list(key)
+            .map(|list| list.filter_map(Value::as_str).collect::<Vec<_>>().join(", "))
+            .filter(|s| !s.is_empty())
+    };
+    let number = |key: &str, unit: &str| setup.get(key).and_then(Value::as_f64).map(|v| words(v, unit));
+    line(
+        "Boundary",
+        text("boundary").map(|word| match word {
+            "periodic" => "periodic half-space".to_owned(),
+            _ => "free half-space".to_owned(),
+        }),
+    );
+    line("Surfaces", names("surfaces"));
+    line("Deformable bodies", names("bodies"));
+    line("Contact modulus at once, 1/C(0)", number("instantaneous_modulus", "Pa"));
+    line("Contact modulus relaxed, 1/C(∞)", number("relaxed_modulus", "Pa"));
+    let times = list("retardation_times").map(|list| {
+        let times: Vec<f64> = list.filter_map(Value::as_f64).collect();
+        match times[..] {
+            [] => "none (elastic)".to_owned(),
+            [first, .., last] if times.len() > 4 => {
+                format!("{} from {} to {}", times.len(), words(first, "s"), words(last, "s"))
+            }
+            _ => times.iter().map(|t| words(*t, "s")).collect::<Vec<_>>().join(", "),
+        }
+    });
+    line("Retardation times", times);
+    line("Hardness", number("hardness", "Pa"));
+    line("Time", number("end", "s").map(|end| format!("0 to {end}")));
+    line("Scheme", text("scheme").map(str::to_owned));
+    line(
+        "Tolerance of the solver",
+        setup.get("solver_tolerance").and_then(Value::as_f64).map(|v| format!("{v:e}")),
+    );
+    let work = reader.work();
+    let per_row = work.convolutions as f64 / reader.len().max(1) as f64;
+    let threads = work.threads.map_or(String::new(), |n| format!(" on {n} threads"));
+    line(
+        "Work",
+        Some(format!(
+            "{} convolutions, {per_row:.1} per row; {} iterations; {}{threads}",
+            work.convolutions,
+            work.iterations,
+            words(work.wall_s, "s"),
+        )),
+    );
+    line("Peak memory", work.peak_memory_bytes.map(|bytes| format!("{:.1} MiB", bytes as f64 / 1048576.0)));
+    let worst = reader.series("certificate")?.into_iter().fold(0.0, f64::max);
+    line("Largest certified error of the pressure", Some(format!("{worst:.1e} (relative, energy norm)")));
+    Ok(lines)
+}

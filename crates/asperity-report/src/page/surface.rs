@@ -1,0 +1,61 @@
+//! The undeformed surface: heights without form, their spectrum and statistics.
+
+use asperity::Boundary;
+use asperity::surface::process::{Window, window};
+use asperity::surface::statistics::{HeightStatistics, RadialSpectrum, Rings, SlopeStatistics};
+use asperity::surface::{Level, Surface, level};
+use asperity_io::store::{Reader, StoreError};
+use ndarray::Array2;
+use serde_json::{Value, json};
+
+use crate::result::{boundary, words};
+
+/// Roughness below this share of the gap's range is rounding.
+const SMOOTH: f64 = 1e-9;
+
+/// Heights without their quadratic form, and what is said of them; `None` for smooth or mostly undefined surfaces.
+pub(super) fn surface(reader: &Reader) -> Result<Option<(Array2<f64>, Value)>, StoreError> {
+    // Heights of one rough surface against a plane: the gap upside down.
+    let gap = reader.initial_gap()?;
+    let Ok(heights) = level(gap.mapv(|h| -h).view(), Level::Quadratic) else { return Ok(None) };
+    let Ok(map) = Surface::new(reader.header().grid, heights.clone()) else { return Ok(None) };
+    let Ok(statistics) = HeightStatistics::of(&map) else { return Ok(None) };
+    let highest = gap.iter().copied().filter(|h| h.is_finite()).fold(0.0, f64::max);
+    if statistics.sq <= SMOOTH * highest {
+        return Ok(None);
+    }
+    let mut lines = vec![
+        ("Sq, rms height", words(statistics.sq, "m")),
+        ("Sa, mean height", words(statistics.sa, "m")),
+        ("Sz, height range", words(statistics.sz, "m")),
+        ("Ssk, skewness", words(statistics.ssk, "")),
+        ("Sku, kurtosis", words(statistics.sku, "")),
+    ];
+    if let Ok(slopes) = SlopeStatistics::of(&map) {
+        lines.push(("Sdq, rms slope", words(slopes.sdq, "")));
+        lines.push(("Sdr, area in excess", format!("{} %", words(100.0 * slopes.sdr, ""))));
+    }
+    let periodic = boundary(reader) == Boundary::Periodic;
+    let spectrum = match (map.undefined(), periodic) {
+        (0, true) => RadialSpectrum::of(&map, Rings::PerDecade(16)).ok(),
+        (0, false) => {
+            window(&map, Window::Hann).and_then(|map| RadialSpectrum::of(&map, Rings::PerDecade(16))).ok()
+        }
+        _ => None,
+    };
+    let note = format!(
+        "Heights: the undeformed gap upside down, less its best-fitting paraboloid.{}",
+        if spectrum.is_some() && !periodic {
+            " The spectrum is of the heights under a Hann window."
+        } else {
+            ""
+        }
+    );
+    let value = json!({
+        "note": note,
+        "statistics": lines,
+        "wave_number": spectrum.as_ref().map(|s| &s.wave_number),
+        "power": spectrum.as_ref().map(|s| &s.power),
+    });
+    Ok(Some((heights, value)))
+}

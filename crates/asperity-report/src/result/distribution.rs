@@ -1,0 +1,67 @@
+//! Distributions over the area: pressure, gap, sizes of contact spots.
+
+use asperity::spots::Spots;
+use asperity_io::store::{At, FieldKind, Reader, StoreError};
+
+use super::{boundary, caption, contact_states, words};
+use crate::figure::{Axis, Curves, Figure, Series, Style};
+
+const BINS: usize = 60;
+
+pub(super) fn histogram(reader: &Reader, at: At) -> Result<Figure, StoreError> {
+    let kept = &reader.header().fields;
+    let index = reader.index(at)?;
+    let mut figure = Figure::new("");
+    if kept.contains(&FieldKind::Pressure) {
+        let pressure = reader.field(FieldKind::Pressure, at)?;
+        let inside: Vec<f64> = pressure.iter().copied().filter(|p| *p > 0.0).collect();
+        figure = figure.with(density("Pressure in contact", ["pressure", "Pa"], &inside));
+    }
+    if kept.contains(&FieldKind::Gap) {
+        let gap = reader.field(FieldKind::Gap, at)?;
+        let states = contact_states(reader, at)?;
+        let open: Vec<f64> =
+            gap.iter().zip(&states).filter(|(h, s)| **s == 0 && h.is_finite()).map(|(h, _)| *h).collect();
+        figure = figure.with(density("Gap out of contact", ["gap", "m"], &open));
+    }
+    if figure.panels.is_empty() {
+        return Err(reader.no_field(FieldKind::Pressure));
+    }
+    Ok(figure.caption(format!("Probability densities. {}", caption(reader, index)?)))
+}
+
+/// The share of values per unit, over bins from the least (or zero) to the greatest.
+fn density(title: &str, [label, unit]: [&str; 2], values: &[f64]) -> Curves {
+    let low = values.iter().copied().fold(f64::INFINITY, f64::min).min(0.0);
+    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let width = (high - low) / BINS as f64;
+    let panel = Curves::new(title, Axis::linear(label, unit), Axis::linear("density", format!("1/{unit}")));
+    if width <= 0.0 || !width.is_finite() {
+        return panel;
+    }
+    let mut counts = [0usize; BINS];
+    values.iter().for_each(|v| counts[(((v - low) / width) as usize).min(BINS - 1)] += 1);
+    let middle = (0..BINS).map(|k| low + (k as f64 + 0.5) * width).collect::<Vec<_>>();
+    let share = counts.map(|count| count as f64 / (values.len() as f64 * width)).to_vec();
+    panel.with(Series::new("", Style::Bars, middle, share))
+}
+
+pub(super) fn spots(reader: &Reader, at: At) -> Result<Figure, StoreError> {
+    let states = contact_states(reader, at)?;
+    let spots = Spots::of(&reader.header().grid, boundary(reader), states.view(), |state| *state > 0);
+    // How many spots are at least as large: a straight line for a power law, with no bins to choose.
+    let number: Vec<f64> = (1..=spots.len()).map(|n| n as f64).collect();
+    let panel = Curves::new("", Axis::log("area of a spot", "m2"), Axis::log("spots at least as large", ""))
+        .with(Series::new("", Style::Points, spots.areas.clone(), number));
+    let largest = spots.areas.first().copied().unwrap_or(0.0);
+    let sizes = format!(
+        "{} spots, mean area {}, largest {}. {}",
+        spots.len(),
+        words(spots.mean_area(), "m2"),
+        words(largest, "m2"),
+        caption(reader, reader.index(at)?)?
+    );
+    let mut figure = Figure::new("").with(panel).caption(sizes);
+    figure.panel = [345.0, 260.0];
+    Ok(figure)
+}

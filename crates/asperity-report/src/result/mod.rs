@@ -1,0 +1,216 @@
+//! Figures of a result, by name.
+//!
+//! ```no_run
+//! use asperity_io::store::{At, Reader};
+//! use asperity_report::result::{Options, Plot, figure};
+//!
+//! let reader = Reader::open("rough_pmma.zarr".as_ref())?;
+//! let options = Options { at: At::Time(500.0), ..Options::default() };
+//! figure(&reader, Plot::Pressure, &options)?.write("pressure.png".as_ref(), false)?;
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod distribution;
+mod evolution;
+mod fields;
+mod profile;
+
+use asperity::Boundary;
+use asperity_io::store::{At, FieldKind, Reader, StoreError};
+use serde_json::Value;
+
+pub(crate) use fields::contact_states;
+
+use crate::figure::{Curves, Figure, Series, shown};
+
+/// A figure of a result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Plot {
+    /// Contact area, approach, load and pressures over time.
+    Evolution,
+    /// Load over approach.
+    LoadDisplacement,
+    /// Map of the pressure at an instant.
+    Pressure,
+    /// Map of the gap at an instant.
+    Gap,
+    /// Map of the displacement at an instant.
+    Displacement,
+    /// Map of the contact area at an instant.
+    Contact,
+    /// Map of the undeformed gap.
+    InitialGap,
+    /// Pressure and gap along a line at an instant.
+    Profile,
+    /// Distribution of the pressure and of the gap at an instant.
+    Histogram,
+    /// Sizes of the contact spots at an instant.
+    Spots,
+    /// Iterations, convolutions, residual and certificate of each step.
+    Work,
+}
+
+/// What a figure shows of a result.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// The instant of maps, profiles and distributions.
+    pub at: At,
+    /// The line of a profile.
+    pub line: Line,
+    /// Times on a logarithmic axis.
+    pub log_time: bool,
+    /// The title instead of the result's.
+    pub title: Option<String>,
+}
+
+/// A line through the area along an axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Line {
+    /// Along x, at this y \[m\]; `None` through the middle.
+    AlongX(Option<f64>),
+    /// Along y, at this x \[m\]; `None` through the middle.
+    AlongY(Option<f64>),
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options { at: At::Last, line: Line::AlongX(None), log_time: false, title: None }
+    }
+}
+
+/// Why a figure of a result cannot be made.
+#[derive(Debug, thiserror::Error)]
+pub enum PlotError {
+    /// The result does not hold what the figure shows, or is damaged.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// The line of a profile is outside of the area.
+    #[error("the line at {axis} = {at:e} m is outside of the area, which goes from 0 to {length:e} m")]
+    Outside {
+        /// x or y.
+        axis: char,
+        /// Where the line was asked for \[m\].
+        at: f64,
+        /// Length of the area along that axis \[m\].
+        length: f64,
+    },
+}
+
+impl Plot {
+    /// Every plot.
+    pub const ALL: [Plot; 11] = [
+        Plot::Evolution,
+        Plot::LoadDisplacement,
+        Plot::Pressure,
+        Plot::Gap,
+        Plot::Displacement,
+        Plot::Contact,
+        Plot::InitialGap,
+        Plot::Profile,
+        Plot::Histogram,
+        Plot::Spots,
+        Plot::Work,
+    ];
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Plot::Evolution => "evolution",
+            Plot::LoadDisplacement => "load-displacement",
+            Plot::Pressure => "pressure",
+            Plot::Gap => "gap",
+            Plot::Displacement => "displacement",
+            Plot::Contact => "contact",
+            Plot::InitialGap => "initial-gap",
+            Plot::Profile => "profile",
+            Plot::Histogram => "histogram",
+            Plot::Spots => "spots",
+            Plot::Work => "work",
+        }
+    }
+
+    /// The plot of that name.
+    pub fn from_name(name: &str) -> Option<Plot> {
+        Plot::ALL.into_iter().find(|plot| plot.name() == name)
+    }
+}
+
+/// The figure of a result.
+///
+/// # Errors
+/// [`PlotError::Store`] where the result has no row yet, does not hold the field or the instant, or is damaged;
+/// [`PlotError::Outside`] where the line of a profile does not cross the area.
+pub fn figure(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, PlotError> {
+    let title = options.title.clone().unwrap_or_else(|| reader.header().title.clone());
+    let figure = match plot {
+        Plot::Evolution => evolution::evolution(reader, options)?,
+        Plot::LoadDisplacement => evolution::load_displacement(reader)?,
+        Plot::Work => evolution::work(reader)?,
+        Plot::Pressure => fields::map(reader, FieldKind::Pressure, options.at)?,
+        Plot::Gap => fields::map(reader, FieldKind::Gap, options.at)?,
+        Plot::Displacement => fields::map(reader, FieldKind::Displacement, options.at)?,
+        Plot::Contact => fields::contact(reader, options.at)?,
+        Plot::InitialGap => fields::initial_gap(reader)?,
+        Plot::Profile => profile::profile(reader, options)?,
+        Plot::Histogram => distribution::histogram(reader, options.at)?,
+        Plot::Spots => distribution::spots(reader, options.at)?,
+    };
+    Ok(Figure { title, ..figure })
+}
+
+/// The same panel with one more line that no legend names.
+fn nameless(curves: Curves, x: &[f64], y: Vec<f64>) -> Curves {
+    curves.with(Series::new("", crate::figure::Style::Line, x, y))
+}
+
+/// "t = 500 s, load 500 mN, approach 3.93 µm": the instant of a map, for captions.
+fn caption(reader: &Reader, index: usize) -> Result<String, StoreError> {
+    let time = reader.field_times()[index];
+    let row = reader.field_steps()[index];
+    let at = |name: &str| Ok::<_, StoreError>(reader.series(name)?.get(row).copied().unwrap_or(f64::NAN));
+    Ok(format!(
+        "t = {}: load {}, approach {}, contact area {} ({:.2} % of the nominal area).",
+        words(time, "s"),
+        words(at("load")?, "N"),
+        words(at("approach")?, "m"),
+        words(at("contact_area")?, "m2"),
+        100.0 * at("contact_fraction")?,
+    ))
+}
+
+/// A number with four digits and its unit.
+pub(crate) fn words(value: f64, unit: &str) -> String {
+    let shown = shown(unit, value.abs());
+    let number = value * shown.factor;
+    let digits =
+        if number == 0.0 { 0 } else { (3.0 - number.abs().log10().floor()).clamp(0.0, 12.0) as usize };
+    let text = format!("{number:.digits$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    let text =
+        if number.is_finite() && number.abs() >= 1e6 { format!("{number:.3e}") } else { text.to_owned() };
+    if shown.text.is_empty() { text } else { format!("{text} {}", shown.text) }
+}
+
+/// The boundary of the domain that the result was computed on.
+pub(crate) fn boundary(reader: &Reader) -> Boundary {
+    match reader.header().setup.get("boundary").and_then(Value::as_str) {
+        Some("periodic") => Boundary::Periodic,
+        _ => Boundary::Free,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::words;
+
+    #[test]
+    fn numbers_have_four_digits_and_a_prefix() {
+        assert_eq!(words(3.9312e-6, "m"), "3.931 µm");
+        assert_eq!(words(0.5, "N"), "500 mN");
+        assert_eq!(words(500.0, "s"), "500 s");
+        assert_eq!(words(5.0696e-9, "m2"), "5070 µm²");
+        assert_eq!(words(0.0, "m"), "0 m");
+        assert_eq!(words(f64::NAN, "m"), "NaN m");
+        assert_eq!(words(3e8, "s"), "3.000e8 s");
+    }
+}

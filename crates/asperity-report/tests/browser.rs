@@ -1,0 +1,163 @@
+//! The report in a browser: it draws without errors, its controls work, its values are those of the result.
+//! Skipped with a message where no Chromium or Chrome is installed.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use asperity_io::case::Case;
+use asperity_io::session::{RunOptions, run};
+use asperity_io::store::{At, FieldKind, Reader};
+use asperity_report::page::{Options, page};
+
+const CASE: &str = r#"
+title = "Rough </script><b>sphere"
+[domain]
+cells = [48, 32]
+size = ["0.15 mm", "0.1 mm"]
+[[surface]]
+kind = "sphere"
+radius = "1 mm"
+[[surface]]
+kind = "self-affine"
+hurst = 0.8
+rms_gradient = 0.05
+longest = "50 um"
+shortest = "8 um"
+seed = 1
+[[body]]
+poisson = 0.38
+hardness = "300 MPa"
+material = { model = "zener", shear = "1 GPa", shear_kelvin = "1 GPa", retardation_time = "10 s" }
+[load]
+control = "load"
+history = { kind = "step", value = "0.2 N" }
+[time]
+end = "50 s"
+steps = 10
+[output]
+fields = ["pressure", "gap"]
+every = 5
+"#;
+
+/// Catches what the page complains of; goes before the page's own script.
+const WATCH: &str = include_str!("browser/watch.html");
+
+/// Uses the page as a person would, and writes down what it shows.
+const USE: &str = include_str!("browser/use.html");
+
+fn browser() -> Option<PathBuf> {
+    let names = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome"];
+    let path = std::env::var_os("PATH")?;
+    std::env::split_paths(&path).flat_map(|dir| names.map(|name| dir.join(name))).find(|file| file.is_file())
+}
+
+fn result(directory: &Path) -> Reader {
+    let case = Case::parse(CASE, directory, &[]).unwrap();
+    let path = directory.join("result.zarr");
+    run(&case, &RunOptions { output: Some(path.clone()), ..RunOptions::default() }, |_| {}).unwrap();
+    Reader::open(&path).unwrap()
+}
+
+/// What a person sees who uses the page in a window of that size.
+fn seen(browser: &Path, directory: &Path, html: &str, size: &str) -> serde_json::Value {
+    let watched = html.replacen("<head>", &format!("<head>{WATCH}"), 1).replacen(
+        "</body>",
+        &format!("{USE}</body>"),
+        1,
+    );
+    let file = directory.join("report.html");
+    std::fs::write(&file, watched).unwrap();
+    let output = Command::new(browser)
+        .args([
+            "--headless=new",
+            "--no-sandbox",
+            "--disable-gpu",
+            "--timeout=60000",
+            "--virtual-time-budget=30000",
+        ])
+        .arg(format!("--window-size={size}"))
+        .arg(format!("--user-data-dir={}", directory.join("profile").display()))
+        .arg("--dump-dom")
+        .arg(format!("file://{}", file.display()))
+        .output()
+        .unwrap();
+    let text = String::from_utf8_lossy(&output.stdout);
+    let json = text.split_once("SEEN").and_then(|(_, rest)| rest.split_once("NEES"));
+    let (json, _) = json.unwrap_or_else(|| panic!("{text}\n{}", String::from_utf8_lossy(&output.stderr)));
+    let json = json.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&");
+    serde_json::from_str(&json).unwrap()
+}
+
+#[test]
+fn the_report_works_in_a_browser() {
+    let Some(browser) = browser() else {
+        eprintln!("skipped: no Chromium or Chrome on the path");
+        return;
+    };
+    let directory = tempfile::tempdir().unwrap();
+    let reader = result(directory.path());
+    let html = page(&reader, &Options::default()).unwrap();
+    assert!(html.len() < 1_000_000, "{}", html.len());
+    for size in ["1200,900", "390,844"] {
+        let seen = seen(&browser, directory.path(), &html, size);
+        let text = |key: &str| seen[key].as_str().unwrap_or_else(|| panic!("{key}: {seen}")).to_owned();
+        assert_eq!(seen["faults"], serde_json::json!([]), "{size}");
+        assert_eq!(text("title"), "Rough </script><b>sphere");
+        assert_eq!(text("status"), "complete, 11 rows");
+        assert_eq!(text("instants"), "2");
+        assert!(text("last").starts_with("t = 50 s, load 200 mN, contact "), "{seen}");
+        assert!(text("first").starts_with("t = 0 s, load 200 mN, contact "), "{seen}");
+        assert_eq!(seen["marks"], 4, "the instant is marked in the four charts over time");
+        // The pressure under the pointer is that of the result.
+        for (key, at) in [("probe", At::Last), ("probe0", At::Index(0))] {
+            let field = reader.field(FieldKind::Pressure, at).unwrap();
+            let largest = field.iter().copied().fold(0.0, f64::max);
+            let shown = text(key);
+            let number = shown.split("pressure ").nth(1).unwrap();
+            let (value, unit) = number.split_once(' ').unwrap_or((number, "Pa"));
+            let scale = match unit {
+                "Pa" => 1.0,
+                "kPa" => 1e3,
+                "MPa" => 1e6,
+                unit => panic!("{unit}"),
+            };
+            let value = value.parse::<f64>().unwrap() * scale;
+            // Four digits, and the steps of 16 bits.
+            let tolerance = 1e-3 * field[[24, 16]] + largest / 65534.0;
+            assert!((value - field[[24, 16]]).abs() <= tolerance, "{shown}: {}", field[[24, 16]]);
+        }
+        assert_eq!(text("profile"), "Pressure at y = 51.56 µm");
+        assert_eq!(text("moved"), "Pressure at y = 54.69 µm");
+        assert_eq!(text("turned"), "Pressure at x = 79.69 µm");
+        assert_eq!(text("played"), "2");
+        let rows = reader.rows().unwrap();
+        let last = rows.last().unwrap();
+        assert!(text("read").starts_with("time 50 s"), "{seen}");
+        let area = last.contact_area * 1e12;
+        assert!(text("read").contains(&format!("counted {}", area.round())), "{seen}: {area}");
+        for (n, least) in [(0, 10), (1, 10), (2, 20)] {
+            assert!(seen["colours"][n].as_u64() >= Some(least), "canvas {n}: {seen}");
+        }
+        assert!(seen["charts"].as_u64() >= Some(9), "{seen}");
+        assert_eq!(seen["wide"], true, "nothing is wider than a window of {size}");
+    }
+}
+
+#[test]
+fn maps_are_reduced_until_they_fit_and_the_page_says_so() {
+    let directory = tempfile::tempdir().unwrap();
+    let reader = result(directory.path());
+    let whole = page(&reader, &Options::default()).unwrap();
+    let small = page(&reader, &Options { bytes: 6_000, instants: 2, ..Options::default() }).unwrap();
+    assert!(!whole.contains("Maps show means"));
+    assert!(small.contains("Maps show means over"));
+    let maps = |page: &str| -> usize {
+        page.split("id=\"blob-")
+            .skip(1)
+            .filter_map(|part| part.split_once("</script>"))
+            .map(|(data, _)| data.len())
+            .sum()
+    };
+    assert!(maps(&small) < maps(&whole) / 2);
+    assert_eq!(small.matches("id=\"blob-pressure").count(), 2);
+}

@@ -1,0 +1,148 @@
+//! Contact spots: the connected patches of the contact area.
+//!
+//! Two cells belong to one spot where they share an edge and both touch; on a periodic domain the opposite
+//! borders share their edges. The labelling is the union-find of two rows at a time (C. Fiorio & J. Gustedt,
+//! Theor. Comput. Sci. 154 (1996) 165).
+
+use ndarray::ArrayView2;
+
+use crate::grid::{Boundary, Grid};
+
+/// The spots of one contact, largest first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spots {
+    /// Area of each spot \[m^2\].
+    pub areas: Vec<f64>,
+}
+
+impl Spots {
+    /// Spots of the cells where `touches` is true.
+    ///
+    /// ```
+    /// use asperity::{Boundary, Grid, spots::Spots};
+    /// let grid = Grid::new([3, 4], [3.0, 4.0])?;
+    /// let p = ndarray::array![[1.0, 0.0, 0.0, 2.0], [0.0, 0.0, 0.0, 0.0], [0.0, 3.0, 4.0, 0.0]];
+    /// let free = Spots::of(&grid, Boundary::Free, p.view(), |p| *p > 0.0);
+    /// assert_eq!(free.areas, [2.0, 1.0, 1.0]);
+    /// // The two corners touch each other across the border.
+    /// let periodic = Spots::of(&grid, Boundary::Periodic, p.view(), |p| *p > 0.0);
+    /// assert_eq!(periodic.areas, [2.0, 2.0]);
+    /// # Ok::<(), asperity::Error>(())
+    /// ```
+    ///
+    /// `cells` has the shape of the grid.
+    pub fn of<T>(
+        grid: &Grid,
+        boundary: Boundary,
+        cells: ArrayView2<T>,
+        touches: impl Fn(&T) -> bool,
+    ) -> Spots {
+        let (nx, ny) = cells.dim();
+        let at = |i: usize, j: usize| i * ny + j;
+        let on = |i: usize, j: usize| touches(&cells[[i, j]]);
+        let mut forest = Forest((0..nx * ny).collect());
+        for i in 0..nx {
+            for j in (0..ny).filter(|j| on(i, *j)) {
+                if i > 0 && on(i - 1, j) {
+                    forest.join(at(i - 1, j), at(i, j));
+                }
+                if j > 0 && on(i, j - 1) {
+                    forest.join(at(i, j - 1), at(i, j));
+                }
+            }
+        }
+        if boundary == Boundary::Periodic && nx > 0 && ny > 0 {
+            (0..ny)
+                .filter(|j| on(0, *j) && on(nx - 1, *j))
+                .for_each(|j| forest.join(at(0, j), at(nx - 1, j)));
+            (0..nx)
+                .filter(|i| on(*i, 0) && on(*i, ny - 1))
+                .for_each(|i| forest.join(at(i, 0), at(i, ny - 1)));
+        }
+        let mut counts = vec![0usize; nx * ny];
+        for i in 0..nx {
+            (0..ny).filter(|j| on(i, *j)).for_each(|j| counts[forest.root(at(i, j))] += 1);
+        }
+        let mut counts: Vec<usize> = counts.into_iter().filter(|count| *count > 0).collect();
+        counts.sort_unstable_by(|a, b| b.cmp(a));
+        Spots { areas: counts.into_iter().map(|count| count as f64 * grid.cell_area()).collect() }
+    }
+
+    /// Number of spots.
+    pub fn len(&self) -> usize {
+        self.areas.len()
+    }
+
+    /// Whether nothing touches.
+    pub fn is_empty(&self) -> bool {
+        self.areas.is_empty()
+    }
+
+    /// Mean area of a spot \[m^2\]; 0 where nothing touches.
+    pub fn mean_area(&self) -> f64 {
+        if self.areas.is_empty() { 0.0 } else { self.areas.iter().sum::<f64>() / self.areas.len() as f64 }
+    }
+}
+
+/// Cells that point to another of their spot; the least cell of a spot points to itself.
+struct Forest(Vec<usize>);
+
+impl Forest {
+    fn root(&mut self, mut cell: usize) -> usize {
+        while self.0[cell] != cell {
+            // Halve the path on the way.
+            self.0[cell] = self.0[self.0[cell]];
+            cell = self.0[cell];
+        }
+        cell
+    }
+
+    fn join(&mut self, a: usize, b: usize) {
+        let (a, b) = (self.root(a), self.root(b));
+        self.0[a.max(b)] = a.min(b);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn count(rows: &[&str], boundary: Boundary) -> Vec<f64> {
+        let (nx, ny) = (rows.len(), rows[0].len());
+        let grid = Grid::new([nx, ny], [nx as f64, ny as f64]).unwrap();
+        let cells = ndarray::Array2::from_shape_fn((nx, ny), |(i, j)| rows[i].as_bytes()[j]);
+        Spots::of(&grid, boundary, cells.view(), |c| *c == b'#').areas
+    }
+
+    #[test]
+    fn a_spiral_is_one_spot_and_corners_do_not_connect() {
+        let spiral = ["#######", "......#", "#####.#", "#...#.#", "#.###.#", "#.....#", "#######"];
+        assert_eq!(count(&spiral, Boundary::Free), [31.0]);
+        assert_eq!(count(&["#.#", ".#.", "#.#"], Boundary::Free), [1.0; 5]);
+        assert_eq!(count(&["...", "..."], Boundary::Free), [0.0; 0]);
+    }
+
+    #[test]
+    fn a_periodic_spot_may_wrap_in_both_directions() {
+        assert_eq!(count(&["#..#", "....", "#..#"], Boundary::Periodic), [4.0]);
+        assert_eq!(count(&["#..#", "....", "#..#"], Boundary::Free), [1.0; 4]);
+        // A comb whose teeth meet only across the border.
+        assert_eq!(count(&["#.#.", "#.#.", "####"], Boundary::Periodic), [8.0]);
+        assert_eq!(count(&["#.#.", "....", "#.#."], Boundary::Periodic), [2.0, 2.0]);
+    }
+
+    #[test]
+    fn areas_add_up_to_the_contact() {
+        // A fixed pattern of many spots.
+        let grid = Grid::new([50, 41], [5.0, 8.2]).unwrap();
+        let p = ndarray::Array2::from_shape_fn((50, 41), |(i, j)| (i * i * 7 + j * j * 13 + i * j) % 10);
+        for boundary in [Boundary::Free, Boundary::Periodic] {
+            let spots = Spots::of(&grid, boundary, p.view(), |p| *p < 4);
+            let cells = p.iter().filter(|p| **p < 4).count() as f64;
+            let sum: f64 = spots.areas.iter().sum();
+            assert!((sum / grid.cell_area() - cells).abs() < 1e-9);
+            assert!(spots.areas.windows(2).all(|pair| pair[0] >= pair[1]));
+            assert!((spots.mean_area() * spots.len() as f64 - sum).abs() < 1e-9);
+        }
+    }
+}

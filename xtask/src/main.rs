@@ -120,7 +120,22 @@ fn figures() -> Done {
     run(Command::new(python()?)
         .arg("docs/images/rough_pmma.py")
         .arg(&result)
-        .arg("docs/images/rough-pmma.png"))
+        .arg("docs/images/rough-pmma.png"))?;
+    // The paper's figures: maps as dots, curves as lines.
+    let directory = root().join("target/figures/paper");
+    for (form, numbers) in [("png", &[5, 6, 7][..]), ("svg", &[1, 2, 3, 4, 8])] {
+        run(Command::new(root().join("target/release/asperity"))
+            .args(["reproduce", "--force", "--form", form, "-o"])
+            .arg(&directory)
+            .args(numbers.iter().map(|n: &u8| n.to_string())))?;
+        for n in numbers {
+            let name = format!("figure-{n}.{form}");
+            let to = root().join("docs/images/paper").join(&name);
+            std::fs::copy(directory.join(&name), &to)
+                .map_err(|error| format!("{}: {error}", to.display()))?;
+        }
+    }
+    Ok(())
 }
 
 const VERIFICATION: &str = "\

@@ -27,12 +27,16 @@ pub enum Command {
     /// Look at a measured surface, or write it in another format
     #[command(subcommand)]
     Surface(Surface),
+    /// Print a summary of a result with a small map of the contact
+    Show(Show),
     /// Write a result as one HTML page: maps, curves, numbers; it needs no network
     Report(Report),
     /// Draw a figure of a result as PNG, SVG or PDF
     Plot(Plot),
-    /// Write a result for other programs: NetCDF, HDF5, npz, VTK, CSV
+    /// Write a result for other programs: NetCDF, HDF5, npz, VTK, CSV, PNG
     Export(Export),
+    /// Compute the figures of Spinu and Cerlinca (2017) again, each with an independent curve and the difference
+    Reproduce(Reproduce),
     /// Print the JSON Schema of the case file
     Schema,
     /// Print the completions for a shell
@@ -153,6 +157,18 @@ pub struct SurfaceFile {
 }
 
 #[derive(Debug, clap::Args)]
+pub struct Show {
+    /// The result (a Zarr directory)
+    pub result: PathBuf,
+    /// The instant of the map: the stored one that is nearest, e.g. '500 s' [default: last]
+    #[arg(long, value_name = "T")]
+    pub time: Option<String>,
+    /// Print one JSON object: status, rows, work and every number of the last row
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, clap::Args)]
 pub struct Report {
     /// The result (a Zarr directory)
     pub result: PathBuf,
@@ -201,10 +217,35 @@ pub struct Plot {
 }
 
 #[derive(Debug, clap::Args)]
+pub struct Reproduce {
+    /// Only these figures, 1 to 8
+    #[arg(value_parser = clap::value_parser!(u8).range(1..=8))]
+    pub figures: Vec<u8>,
+    /// The directory to make
+    #[arg(short, long, value_name = "DIR", default_value = "reproduction")]
+    pub output: PathBuf,
+    /// What the figures are written as: png, svg or pdf
+    #[arg(long, value_name = "FORM", default_value = "png", value_parser = ["png", "svg", "pdf"])]
+    pub form: String,
+    /// Cells along a side of every case [default: 256, and 1024 for the rough sphere, as in the paper]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(16..=8192))]
+    pub cells: Option<u32>,
+    /// Threads to use [default: one per core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Replace figures and results that are there already
+    #[arg(long)]
+    pub force: bool,
+    /// Print a JSON list of {figure, quantity, difference, of}
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, clap::Args)]
 pub struct Export {
     /// The result (a Zarr directory)
     pub result: PathBuf,
-    /// netcdf, hdf5, npz, vtk or csv
+    /// netcdf, hdf5, npz, vtk, csv or png (a directory of pictures)
     #[arg(long)]
     pub to: String,
     /// The file to write [default: the result's name with the ending of the format]

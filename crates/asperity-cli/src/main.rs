@@ -7,6 +7,7 @@ mod args;
 mod commands;
 mod failure;
 mod progress;
+mod terminal;
 mod words;
 
 use std::process::ExitCode;
@@ -30,9 +31,11 @@ fn main() -> ExitCode {
         Command::New(new) => commands::new::run(&new),
         Command::Verify(verify) => commands::verify::run(&verify),
         Command::Surface(surface) => commands::surface::run(&surface),
+        Command::Show(show) => commands::show::run(&show),
         Command::Report(report) => commands::report::run(&report),
         Command::Plot(plot) => commands::plot::run(&plot),
         Command::Export(export) => commands::export::run(&export),
+        Command::Reproduce(reproduce) => commands::reproduce::run(&reproduce),
         Command::Schema => commands::schema::run(),
         Command::Completions { shell } => commands::completions::run(shell),
     };

@@ -6,15 +6,18 @@ use std::time::{Duration, Instant};
 use asperity_io::session::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use crate::words;
+use crate::{terminal, words};
 
 /// Time between two plain lines.
 const PAUSE: Duration = Duration::from_secs(5);
 
+/// Letters of the line of the contact area.
+const SPARKS: usize = 16;
+
 /// Who tells the progress.
 pub enum Teller {
-    /// A live line.
-    Bar(ProgressBar),
+    /// A live line, and the contact area of the rows so far.
+    Bar(ProgressBar, Vec<f64>),
     /// Plain lines.
     Lines {
         /// Start of the run, and the last line told.
@@ -35,12 +38,12 @@ impl Teller {
             return Teller::Lines { started: Instant::now(), told: None };
         }
         let bar = ProgressBar::with_draw_target(Some(1), ProgressDrawTarget::stderr());
-        let template = "{bar:24.cyan/dim} {pos}/{len} rows  {msg}  {elapsed} ({eta} left)";
+        let template = "{bar:20.cyan/dim} {pos}/{len} rows  {msg}  {elapsed} ({eta} left)";
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style.progress_chars("━╸ "));
         }
         bar.enable_steady_tick(Duration::from_millis(250));
-        Teller::Bar(bar)
+        Teller::Bar(bar, Vec::new())
     }
 
     /// One row more.
@@ -53,14 +56,15 @@ impl Teller {
             row.iterations
         );
         match self {
-            Teller::Bar(bar) => {
+            Teller::Bar(bar, areas) => {
+                areas.push(row.contact_fraction);
                 if bar.position() == 0 {
                     bar.set_length(progress.total as u64);
                     bar.set_position(progress.resumed as u64);
                     bar.reset_eta();
                 }
                 bar.set_position(progress.done as u64);
-                bar.set_message(state);
+                bar.set_message(format!("area {}  {state}", terminal::sparkline(areas, SPARKS)));
             }
             Teller::Lines { started, told } => {
                 let due = told.is_none_or(|told| told.elapsed() > PAUSE);
@@ -79,7 +83,7 @@ impl Teller {
 
     /// Clears the line.
     pub fn end(&self) {
-        if let Teller::Bar(bar) = self {
+        if let Teller::Bar(bar, _) = self {
             bar.finish_and_clear();
         }
     }

@@ -1,4 +1,6 @@
-//! Numbers as a person reads them.
+//! Numbers as a person reads and writes them.
+
+use crate::failure::Failure;
 
 /// A quantity with the SI prefix that leaves one to three digits before the point.
 ///
@@ -51,6 +53,17 @@ pub fn duration(seconds: f64) -> String {
     } else {
         quantity(seconds, "s", 1)
     }
+}
+
+/// A quantity of the command line; `example` shows how the flag is used.
+pub fn read<Q: std::str::FromStr<Err: std::fmt::Display>>(
+    flag: &str,
+    text: &str,
+    example: &str,
+) -> Result<Q, Failure> {
+    let told =
+        |error| Failure::input(format!("{flag} is \"{text}\": {error}; write e.g. {flag} '{example}'"));
+    text.trim().parse().map_err(told)
 }
 
 #[cfg(test)]

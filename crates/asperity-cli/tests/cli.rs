@@ -386,3 +386,80 @@ fn a_result_is_exported() {
     assert!(stderr(&unknown).contains("netcdf"));
     assert_eq!(asperity(&dir, &["export", "nothing.zarr", "--to", "csv"]).status.code(), Some(2));
 }
+
+#[test]
+fn a_result_is_shown_plotted_and_reported() {
+    let (dir, _) = small();
+    assert!(asperity(dir.path(), &["run", "small.toml", "--quiet"]).status.success());
+
+    let shown = stdout(&asperity(dir.path(), &["show", "small.zarr"]));
+    for words in ["complete, 17 of 17 rows", "60 x 48 cells", "approach", "contact at t = 8.000 s", "└───"]
+    {
+        assert!(shown.contains(words), "{words}: {shown}");
+    }
+    let object: Value =
+        serde_json::from_str(&stdout(&asperity(dir.path(), &["show", "small.zarr", "--json"]))).unwrap();
+    let reader = Reader::open(&dir.path().join("small.zarr")).unwrap();
+    assert_eq!(object["last"]["approach"].as_f64(), reader.series("approach").unwrap().last().copied());
+
+    for (what, file) in [("evolution", "a.svg"), ("pressure", "b.png"), ("spots", "c.pdf")] {
+        let plot = asperity(dir.path(), &["plot", "small.zarr", what, "-o", file, "--time", "4 s"]);
+        assert!(plot.status.success(), "{}", stderr(&plot));
+        let starts: &[u8] = match &file[2..] {
+            "svg" => b"<svg",
+            "png" => b"\x89PNG",
+            _ => b"%PDF-",
+        };
+        assert!(std::fs::read(dir.path().join(file)).unwrap().starts_with(starts), "{file}");
+    }
+    let svg = std::fs::read_to_string(dir.path().join("a.svg")).unwrap();
+    assert!(svg.contains("contact area [") && svg.contains("time [s]"));
+
+    assert!(asperity(dir.path(), &["report", "small.zarr"]).status.success());
+    let page = std::fs::read_to_string(dir.path().join("small.html")).unwrap();
+    assert!(page.contains("id=\"blob-pressure-0\"") && page.trim_end().ends_with("</html>"));
+
+    assert!(
+        asperity(dir.path(), &["export", "small.zarr", "--to", "png", "--fields", "contact"])
+            .status
+            .success()
+    );
+    let pictures = std::fs::read_dir(dir.path().join("small.pictures")).unwrap().count();
+    assert_eq!(pictures, 1 + reader.field_times().len());
+}
+
+#[test]
+fn what_a_result_does_not_hold_is_told() {
+    let (dir, _) = small();
+    let fields = ["--set", "output.fields=[\"displacement\"]"];
+    assert!(
+        asperity(dir.path(), &[&["run", "small.toml", "--quiet"], &fields[..]].concat()).status.success()
+    );
+    let told = |arguments: &[&str], words: &[&str]| {
+        let output = asperity(dir.path(), arguments);
+        let text = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {text}");
+        words.iter().for_each(|word| assert!(text.contains(word), "{arguments:?}: {text}"));
+    };
+    told(&["plot", "small.zarr", "pressure"], &["pressure", "displacement"]);
+    told(&["plot", "small.zarr", "spots"], &["displacement"]);
+    told(&["plot", "small.zarr", "area"], &["no figure \"area\"", "evolution"]);
+    told(&["plot", "small.zarr", "evolution", "-o", "x.jpg"], &["x.jpg", ".svg, .png or .pdf"]);
+    told(&["plot", "small.zarr", "profile", "--at", "3 mm"], &["outside", "y ="]);
+    told(&["plot", "small.zarr", "profile", "--at", "3 s"], &["--at", "3 s"]);
+    told(&["plot", "nothing.zarr", "evolution"], &["nothing.zarr"]);
+    told(&["report", "small.toml"], &["small.toml"]);
+    told(&["show", "small.zarr", "--time", "soon"], &["--time", "soon"]);
+    // Nothing is replaced unless told, and nothing is left of what failed.
+    std::fs::write(dir.path().join("taken.png"), "mine").unwrap();
+    told(&["plot", "small.zarr", "evolution", "-o", "taken.png"], &["taken.png", "--force"]);
+    assert_eq!(std::fs::read_to_string(dir.path().join("taken.png")).unwrap(), "mine");
+    assert!(asperity(dir.path(), &["report", "small.zarr"]).status.success(), "curves alone make a report");
+    assert!(asperity(dir.path(), &["show", "small.zarr"]).status.success());
+    // A truncated array.
+    let array = dir.path().join("small.zarr/approach/c/0");
+    let bytes = std::fs::read(&array).unwrap();
+    std::fs::write(&array, &bytes[..bytes.len() / 2]).unwrap();
+    told(&["report", "small.zarr", "--force"], &["approach", "damaged"]);
+    told(&["plot", "small.zarr", "evolution"], &["approach", "damaged"]);
+}

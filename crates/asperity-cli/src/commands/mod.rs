@@ -6,8 +6,10 @@ pub mod export;
 pub mod new;
 pub mod plot;
 pub mod report;
+pub mod reproduce;
 pub mod run;
 pub mod schema;
+pub mod show;
 pub mod surface;
 pub mod verify;
 

@@ -7,6 +7,7 @@ use asperity_report::result::{Line, Options, Plot, figure};
 
 use crate::args;
 use crate::failure::Failure;
+use crate::words::read;
 
 /// Draws the figure and prints where it is.
 pub fn run(args: &args::Plot) -> Result<(), Failure> {
@@ -36,15 +37,4 @@ pub fn run(args: &args::Plot) -> Result<(), Failure> {
     let figure = figure(&reader, plot, &options).map_err(|error| told(&error))?;
     figure.write(&output, args.force).map_err(|error| told(&error))?;
     crate::print(&format!("{}\n", output.display()))
-}
-
-/// A quantity of the command line.
-fn read<Q: std::str::FromStr<Err: std::fmt::Display>>(
-    flag: &str,
-    text: &str,
-    example: &str,
-) -> Result<Q, Failure> {
-    let told =
-        |error| Failure::input(format!("{flag} is \"{text}\": {error}; write e.g. {flag} '{example}'"));
-    text.trim().parse().map_err(told)
 }

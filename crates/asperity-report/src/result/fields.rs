@@ -8,7 +8,7 @@ use super::caption;
 use crate::figure::{Colours, Figure, Map, Panel};
 
 /// Names and colours of the contact states.
-pub(crate) const CONTACT_STATES: [(&str, [u8; 3]); 3] =
+pub(super) const CONTACT_STATES: [(&str, [u8; 3]); 3] =
     [("open", [240, 240, 238]), ("contact", [0, 114, 178]), ("at hardness", [213, 94, 0])];
 
 pub(super) fn map(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, StoreError> {
@@ -45,7 +45,7 @@ fn single(map: Map, caption: String) -> Result<Figure, StoreError> {
 }
 
 /// The field that tells contact: the states where they were kept, else the pressure, else the gap.
-pub(crate) fn contact_kind(reader: &Reader) -> Option<FieldKind> {
+pub(super) fn contact_kind(reader: &Reader) -> Option<FieldKind> {
     let kept = &reader.header().fields;
     [FieldKind::Contact, FieldKind::Pressure, FieldKind::Gap].into_iter().find(|kind| kept.contains(kind))
 }

@@ -158,6 +158,18 @@ pub fn figure(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, 
     Ok(Figure { title, ..figure })
 }
 
+/// The contact states at a stored instant (0 open, 1 in contact, 2 at the hardness), from whatever field tells them;
+/// `None` where no stored field does, or no instant is stored.
+///
+/// # Errors
+/// [`StoreError`] where the result is damaged or has no such instant.
+pub fn contact(reader: &Reader, at: At) -> Result<Option<ndarray::Array2<u8>>, StoreError> {
+    if reader.field_times().is_empty() || fields::contact_kind(reader).is_none() {
+        return Ok(None);
+    }
+    contact_states(reader, at).map(Some)
+}
+
 /// The same panel with one more line that no legend names.
 fn nameless(curves: Curves, x: &[f64], y: Vec<f64>) -> Curves {
     curves.with(Series::new("", crate::figure::Style::Line, x, y))

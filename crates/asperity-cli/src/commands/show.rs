@@ -1,0 +1,129 @@
+//! `asperity show`: a result in the terminal.
+
+use asperity_io::case::quantity::Time;
+use asperity_io::store::{At, Reader, SCALARS, Status, StoreError};
+use asperity_report::result::contact;
+use serde_json::json;
+
+use crate::args::Show;
+use crate::failure::Failure;
+use crate::terminal::{shares, sparkline};
+use crate::words::{bytes, duration, quantity, read};
+
+/// Letters of the map and of the curves.
+const COLUMNS: usize = 56;
+const SPARKS: usize = 40;
+
+/// Prints the summary.
+pub fn run(args: &Show) -> Result<(), Failure> {
+    let at = match &args.time {
+        Some(text) => At::Time(read::<Time>("--time", text, "500 s")?.get()),
+        None => At::Last,
+    };
+    let reader = Reader::open(&args.result).map_err(|error| Failure::input(error.to_string()))?;
+    let text = if args.json { object(&reader) } else { text(&reader, at) };
+    crate::print(&text.map_err(|error| Failure::input(error.to_string()))?)
+}
+
+fn object(reader: &Reader) -> Result<String, StoreError> {
+    let work = reader.work();
+    let mut last = serde_json::Map::new();
+    for scalar in SCALARS {
+        last.insert(scalar.name.into(), json!(reader.series(scalar.name)?.last()));
+    }
+    let object = json!({
+        "title": reader.header().title,
+        "status": reader.status().as_str(),
+        "message": work.message,
+        "rows": reader.len(),
+        "rows_expected": reader.header().rows_expected,
+        "fields": reader.header().fields.iter().map(|kind| kind.name()).collect::<Vec<_>>(),
+        "field_times": reader.field_times(),
+        "wall_s": work.wall_s,
+        "convolutions": work.convolutions,
+        "iterations": work.iterations,
+        "last": last,
+    });
+    Ok(format!("{object}\n"))
+}
+
+fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
+    let header = reader.header();
+    let mut text = String::new();
+    if !header.title.is_empty() {
+        text += &format!("{}\n\n", header.title);
+    }
+    let mut line = |name: &str, value: String| text += &format!("{name:<13}{value}\n");
+    let of = header.rows_expected.map_or(String::new(), |total| format!(" of {total}"));
+    let state = match reader.status() {
+        Status::Complete => "complete",
+        Status::Running if reader.is_being_written() => "running now",
+        Status::Running => "killed before its end; go on with asperity run --resume",
+        Status::Interrupted => "interrupted; go on with asperity run --resume",
+        Status::Failed => "failed",
+    };
+    line("status", format!("{state}, {}{of} rows", reader.len()));
+    if let Some(message) = &reader.work().message {
+        line("", message.clone());
+    }
+    let [nx, ny] = header.grid.cells();
+    let [lx, ly] = header.grid.size();
+    line("domain", format!("{nx} x {ny} cells, {} x {}", quantity(lx, "m", 1), quantity(ly, "m", 1)));
+    let rows = reader.rows()?;
+    let Some(last) = rows.last() else { return Ok(text) };
+    // A curve over the rows, with its ends.
+    let curve = |value: fn(&asperity::march::Row) -> f64, words: &dyn Fn(f64) -> String| {
+        let values: Vec<f64> = rows.iter().map(value).collect();
+        let [low, high] =
+            values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(*v), b.max(*v)]);
+        let (low, high) = (words(low), words(high));
+        let ends = if low == high { "unchanged".to_owned() } else { format!("{low} to {high}") };
+        format!("{}  {ends}", sparkline(&values, SPARKS))
+    };
+    let percent = |share: f64| format!("{:.3} %", 100.0 * share);
+    line("time", quantity(last.time, "s", 1));
+    line(
+        "load",
+        format!("{:<14}{}", quantity(last.load, "N", 1), curve(|row| row.load, &|v| quantity(v, "N", 1))),
+    );
+    line(
+        "approach",
+        format!(
+            "{:<14}{}",
+            quantity(last.approach, "m", 1),
+            curve(|row| row.approach, &|v| quantity(v, "m", 1))
+        ),
+    );
+    line(
+        "contact",
+        format!("{:<14}{}", percent(last.contact_fraction), curve(|row| row.contact_fraction, &percent)),
+    );
+    line("area", quantity(last.contact_area, "m²", 2));
+    line("corrected", quantity(last.contact_area_corrected, "m²", 2));
+    if last.capped_area > 0.0 {
+        line("at hardness", quantity(last.capped_area, "m²", 2));
+    }
+    let pressure = [last.mean_pressure, last.max_pressure].map(|p| quantity(p, "Pa", 1));
+    line("pressure", format!("mean {}, largest {}", pressure[0], pressure[1]));
+    let worst = rows.iter().map(|row| row.certificate).fold(0.0, f64::max);
+    line("certificate", format!("{worst:.1e} at worst (relative error of the pressure)"));
+    let work = reader.work();
+    let memory = work.peak_memory_bytes.map_or(String::new(), |b| format!(", {}", bytes(b as f64)));
+    line(
+        "work",
+        format!(
+            "{} iterations, {} convolutions in {}{memory}",
+            work.iterations,
+            work.convolutions,
+            duration(work.wall_s)
+        ),
+    );
+    let kept: Vec<_> = header.fields.iter().map(|kind| kind.name()).collect();
+    line("fields", format!("{} at {} times", kept.join(", "), reader.field_times().len()));
+    if let Some(states) = contact(reader, at)? {
+        let time = reader.field_times()[reader.index(at)?];
+        text += &format!("\ncontact at t = {}\n", quantity(time, "s", 1));
+        text += &shares(states.mapv(|state| state > 0).view(), COLUMNS, ly / lx);
+    }
+    Ok(text)
+}

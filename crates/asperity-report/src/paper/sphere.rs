@@ -1,0 +1,182 @@
+//! Figures 1, 2 and 4: a smooth sphere.
+
+use std::f64::consts::PI;
+
+use asperity::History;
+use asperity::reference::{CappedHertz, HertzSphere, Ting};
+use asperity_io::store::{At, FieldKind, Reader};
+
+use super::{Difference, Options, Reproduction, Result};
+use crate::figure::{Axis, Curves, Figure, Series, Style};
+use crate::result::words;
+
+const FIGURE_1: &str = include_str!("../../../../examples/paper/fig1-zener-step.toml");
+const FIGURE_2: &str = include_str!("../../../../examples/paper/fig2-capped-sphere.toml");
+const FIGURE_4: &str = include_str!("../../../../examples/paper/fig4-pmma-triangle.toml");
+
+/// Pressure along x beside the middle, by the distance from it: (r, p).
+fn profile(reader: &Reader, at: At) -> Result<Vec<[f64; 2]>> {
+    let field = reader.field(FieldKind::Pressure, at)?;
+    let grid = &reader.header().grid;
+    let [nx, ny] = grid.cells();
+    let [dx, dy] = grid.spacing();
+    // The row of cells whose centres lie nearest to the middle.
+    let j = ny / 2;
+    let y = (j as f64 + 0.5) * dy - 0.5 * grid.size()[1];
+    let place = |i: usize| (i as f64 + 0.5) * dx - 0.5 * grid.size()[0];
+    Ok((nx / 2..nx).map(|i| [place(i).hypot(y), field[[i, j]]]).collect())
+}
+
+/// The paper's eq. 21, corrected: pressure at the time t after a step load on a Zener solid,
+/// p = (8 G / (pi R)) [q(t) - (G / eta_K) int_0^t exp(-(t - s)/tau_R) q(s) ds], q = sqrt(a^2 - r^2)+,
+/// a^3 = 3 R W Phi(t) / 8, tau_R = eta_K / (G + G_K), Phi = (1/G) + (1/G_K)(1 - exp(-t/tau)).
+fn equation_21(radius: f64, load: f64, shear: f64, kelvin: f64, time: f64, r: f64, t: f64) -> f64 {
+    let viscosity = kelvin * time;
+    let relaxation_time = viscosity / (shear + kelvin);
+    let phi = |s: f64| 0.5 / shear + 0.5 / kelvin * (1.0 - (-s / time).exp());
+    let q = |s: f64| {
+        let a = (3.0 * radius * load * phi(s) / 8.0).cbrt();
+        (a * a - r * r).max(0.0).sqrt()
+    };
+    // Midpoints of parts that grow from where the contact reaches r, where q rises as a root.
+    let reached = {
+        let share = (8.0 * r.powi(3) / (3.0 * radius * load) - 0.5 / shear) * 2.0 * kelvin;
+        if share <= 0.0 { 0.0 } else { -time * (1.0 - share).max(f64::MIN_POSITIVE).ln() }
+    };
+    const PARTS: u32 = 4000;
+    let place = |k: f64| reached + (t - reached) * (k / f64::from(PARTS)).powi(2);
+    let parts = if reached < t { 0..PARTS } else { 0..0 };
+    let past: f64 = parts
+        .map(|k| {
+            let (from, to) = (place(f64::from(k)), place(f64::from(k) + 1.0));
+            let s = 0.5 * (from + to);
+            (-(t - s) / relaxation_time).exp() * q(s) * (to - from)
+        })
+        .sum();
+    8.0 * shear / (PI * radius) * (q(t) - shear / viscosity * past)
+}
+
+/// Figure 1.
+pub(super) fn zener_step(options: &Options) -> Result<Reproduction> {
+    let (radius, load, shear, time) = (10e-3, 0.1, 2e6, 1.0);
+    let (_, reader) = options.run("fig1-zener-step", FIGURE_1, &[])?;
+    let first = HertzSphere::under_load(radius, 4.0 * shear, load)?;
+    let (a0, p0) = (first.contact_radius, first.peak_pressure);
+    let axis = Axis::linear("distance from the middle, in first contact radii", "");
+    let mut panel = Curves::new("", axis.between(0.0, 1.4), Axis::linear("pressure, in first peaks", ""));
+    let mut largest: f64 = 0.0;
+    let spacing = reader.header().grid.spacing()[0];
+    for (n, t) in reader.field_times().iter().enumerate() {
+        let computed = profile(&reader, At::Index(n))?;
+        let a = (3.0 * radius * load / (16.0 * shear) * (2.0 - (-t / time).exp())).cbrt();
+        for [r, p] in &computed {
+            // The cells at the border are in contact in part.
+            if (r - a).abs() > spacing {
+                let exact = equation_21(radius, load, shear, shear, time, *r, *t);
+                largest = largest.max((p - exact).abs() / p0);
+            }
+        }
+        let points: Vec<_> = computed.iter().step_by(3).filter(|[r, _]| *r < 1.4 * a0).collect();
+        panel = panel.with(Series::new(
+            format!("t = {}", words(*t, "s")),
+            Style::Points,
+            points.iter().map(|[r, _]| r / a0).collect::<Vec<_>>(),
+            points.iter().map(|[_, p]| p / p0).collect::<Vec<_>>(),
+        ));
+        let fine: Vec<f64> = (0..=140).map(|k| f64::from(k) * 0.01).collect();
+        let exact = fine.iter().map(|r| equation_21(radius, load, shear, shear, time, r * a0, *t) / p0);
+        let name = if n == 0 { "eq. 21, corrected" } else { "" };
+        let exact: Vec<f64> = exact.collect();
+        panel = panel.with(Series::new(name, Style::Reference, fine, exact));
+    }
+    let mut figure = Figure::new("").with(panel);
+    figure.panel = [345.0, 260.0];
+    let differences = vec![Difference::new(
+        "Largest difference of the pressure, a cell away from the border",
+        largest,
+        "the first peak",
+    )];
+    let more = "Retardation time 1 s, G = G_K. The paper does not name the times of its curves.";
+    Ok(Reproduction::new(1, "pressure on a Zener half-space, step load", figure, differences, more))
+}
+
+/// Figure 2.
+pub(super) fn capped(options: &Options) -> Result<Reproduction> {
+    let (radius, load) = (0.5e-3, 0.5);
+    let modulus = 2491.44e6 / (1.0 - 0.38 * 0.38);
+    let axis = Axis::linear("distance from the middle", "m").between(0.0, 60e-6);
+    let mut panel = Curves::new("", axis, Axis::linear("pressure", "Pa"));
+    let peak = HertzSphere::under_load(radius, modulus, load)?.peak_pressure;
+    let mut largest: f64 = 0.0;
+    for (n, limit) in [f64::INFINITY, 130e6, 110e6, 90e6, 70e6].into_iter().enumerate() {
+        let name = if limit.is_finite() { format!("{:.0}", limit / 1e6) } else { "none".into() };
+        let key = format!("body.0.hardness=\"{} Pa\"", if limit.is_finite() { limit } else { 1e12 });
+        let (_, reader) = options.run(&format!("fig2-capped-{name}"), FIGURE_2, &[key])?;
+        let computed = profile(&reader, At::Last)?;
+        let exact = CappedHertz::under_load(radius, modulus, limit.min(1e12), load)?;
+        let border = (exact.contact_area() / PI).sqrt();
+        let spacing = reader.header().grid.spacing()[0];
+        for [r, p] in &computed {
+            if (r - border).abs() > spacing {
+                largest = largest.max((p - exact.pressure(*r)).abs() / peak);
+            }
+        }
+        let title = if limit.is_finite() { format!("limit {name} MPa") } else { "no limit".into() };
+        let points: Vec<_> = computed.iter().step_by(3).collect();
+        panel = panel.with(Series::new(
+            title,
+            Style::Points,
+            points.iter().map(|[r, _]| *r).collect::<Vec<_>>(),
+            points.iter().map(|[_, p]| *p).collect::<Vec<_>>(),
+        ));
+        let fine: Vec<f64> = (0..=240).map(|k| f64::from(k) * 0.25e-6).collect();
+        let values: Vec<f64> = fine.iter().map(|r| exact.pressure(*r)).collect();
+        panel = panel.with(Series::new(
+            if n == 0 { "axisymmetric solution" } else { "" },
+            Style::Reference,
+            fine,
+            values,
+        ));
+    }
+    let mut figure = Figure::new("").with(panel);
+    figure.panel = [345.0, 260.0];
+    let differences = vec![Difference::new(
+        "Largest difference of the pressure, a cell away from the border",
+        largest,
+        "the Hertz peak",
+    )];
+    let more = "The paper does not name its limits.";
+    Ok(Reproduction::new(2, "pressure under a sphere, cut off", figure, differences, more))
+}
+
+/// Figure 4.
+pub(super) fn triangle(options: &Options) -> Result<Reproduction> {
+    let (case, reader) = options.run("fig4-pmma-triangle", FIGURE_4, &[])?;
+    let history = History::Triangle { peak: 5.0, rise: 30.0, fall: 30.0 };
+    let ting = Ting::new(1e-3, &case.creep, &history, 60.0)?;
+    let time = reader.series("time")?;
+    let [load, depth] = [reader.series("load")?, reader.series("approach")?];
+    let mut exact = Vec::with_capacity(time.len());
+    for t in &time {
+        // At the end the contact has opened: the depth just before.
+        exact.push(ting.at(t.min(60.0 * (1.0 - 1e-9)))?.approach);
+    }
+    let deepest = exact.iter().copied().fold(0.0, f64::max);
+    let last = time.len() - 1;
+    let apart = |n: usize| (depth[n] - exact[n]).abs() / deepest;
+    let largest = (0..last).map(apart).fold(0.0, f64::max);
+    let every: Vec<usize> = (0..=last).step_by(4).collect();
+    let panel = Curves::new("", Axis::linear("depth", "m"), Axis::linear("load", "N"))
+        .with(Series::new(
+            "computed",
+            Style::Points,
+            every.iter().map(|n| depth[*n]).collect::<Vec<_>>(),
+            every.iter().map(|n| load[*n]).collect::<Vec<_>>(),
+        ))
+        .with(Series::new("Ting (1966)", Style::Reference, exact, load));
+    let mut figure = Figure::new("").with(panel);
+    figure.panel = [345.0, 260.0];
+    let differences = vec![Difference::new("Largest difference of the depth", largest, "the largest depth")];
+    let more = "Sphere of 1 mm: the paper does not name its radius.";
+    Ok(Reproduction::new(4, "load over depth, triangular load on PMMA", figure, differences, more))
+}

@@ -1,0 +1,135 @@
+//! A result as a directory of pictures: the maps at every stored instant in the same colours, and the evolution.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use asperity_io::store::{At, FieldKind, Reader, StoreError};
+
+use crate::figure::{FigureError, Panel, Values};
+use crate::result::{Options, Plot, PlotError, figure};
+
+/// Why pictures cannot be written.
+#[derive(Debug, thiserror::Error)]
+pub enum PicturesError {
+    /// The result does not hold what was asked for, or is damaged.
+    #[error(transparent)]
+    Plot(#[from] PlotError),
+    /// A picture could not be written.
+    #[error(transparent)]
+    Figure(#[from] FigureError),
+    /// There is something at the path.
+    #[error("{} {found}; name another directory{}", path.display(), if *ours { " or give --force" } else { "" })]
+    Taken {
+        /// The path.
+        path: PathBuf,
+        /// What is there, as the rest of a sentence.
+        found: String,
+        /// Whether these are pictures of before, which may be replaced.
+        ours: bool,
+    },
+    /// The system refuses.
+    #[error("cannot write {}: {source}", path.display())]
+    Io {
+        /// The path.
+        path: PathBuf,
+        /// What the system says.
+        source: std::io::Error,
+    },
+}
+
+impl From<StoreError> for PicturesError {
+    fn from(error: StoreError) -> Self {
+        PicturesError::Plot(error.into())
+    }
+}
+
+/// Writes pictures of a result into a new directory: `evolution.png`, `pressure_0000.png` and so on. The directory
+/// appears whole or not at all; with `force` one that holds pictures only is replaced.
+///
+/// # Errors
+/// [`PicturesError`]; [`PicturesError::Taken`] where the directory is there already.
+pub fn pictures(
+    reader: &Reader,
+    fields: Option<&[FieldKind]>,
+    directory: &Path,
+    force: bool,
+) -> Result<(), PicturesError> {
+    check(directory, force)?;
+    let failed = |source| PicturesError::Io { path: directory.to_owned(), source };
+    let parent = match directory.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    };
+    let partial = tempfile::Builder::new().prefix(".pictures").tempdir_in(parent).map_err(failed)?;
+    let place = |name: String| partial.path().join(name);
+    figure(reader, Plot::Evolution, &Options::default())?.write(&place("evolution.png".into()), false)?;
+    for kind in fields.unwrap_or(&reader.header().fields) {
+        let plot = match kind {
+            FieldKind::Pressure => Plot::Pressure,
+            FieldKind::Gap => Plot::Gap,
+            FieldKind::Displacement => Plot::Displacement,
+            FieldKind::Contact => Plot::Contact,
+        };
+        let range = range(reader, *kind)?;
+        for n in 0..reader.field_times().len() {
+            let mut picture = figure(reader, plot, &Options { at: At::Index(n), ..Options::default() })?;
+            for panel in &mut picture.panels {
+                if let Panel::Map(map) = panel
+                    && let Values::Quantity { range: ends, .. } = &mut map.meaning
+                {
+                    *ends = range;
+                }
+            }
+            let name = place(format!("{}_{n:04}.png", kind.name()));
+            fs::write(name, picture.to_png(150.0)?).map_err(failed)?;
+        }
+    }
+    if directory.exists() {
+        fs::remove_dir_all(directory).map_err(failed)?;
+    }
+    let partial = partial.keep();
+    readable(&partial).and_then(|()| fs::rename(&partial, directory)).map_err(failed)
+}
+
+/// Ends of the colours at all instants: zero to the largest value of any, or the least where that is below.
+fn range(reader: &Reader, kind: FieldKind) -> Result<Option<[f64; 2]>, StoreError> {
+    let mut ends = [0.0, 0.0];
+    if kind == FieldKind::Contact {
+        return Ok(None);
+    }
+    for n in 0..reader.field_times().len() {
+        let field = reader.field(kind, At::Index(n))?;
+        let finite = field.iter().copied().filter(|v| v.is_finite());
+        ends = finite.fold(ends, |[low, high], v| [f64::min(low, v), f64::max(high, v)]);
+    }
+    Ok((ends[0] < ends[1]).then_some(ends))
+}
+
+fn check(directory: &Path, force: bool) -> Result<(), PicturesError> {
+    let Ok(found) = fs::symlink_metadata(directory) else { return Ok(()) };
+    let taken =
+        |found: &str, ours| PicturesError::Taken { path: directory.to_owned(), found: found.into(), ours };
+    if !found.is_dir() {
+        return Err(taken("is not a directory", false));
+    }
+    let failed = |source| PicturesError::Io { path: directory.to_owned(), source };
+    for entry in fs::read_dir(directory).map_err(failed)? {
+        let name = entry.map_err(failed)?.file_name();
+        if !name.to_str().is_some_and(|name| name.ends_with(".png")) {
+            return Err(taken(&format!("holds other files ({})", name.display()), false));
+        }
+    }
+    if force { Ok(()) } else { Err(taken("is there already", true)) }
+}
+
+/// A directory for everybody that the user's mask allows, as other directories are.
+#[cfg(unix)]
+fn readable(directory: &Path) -> std::io::Result<()> {
+    use std::os::unix::fs::PermissionsExt;
+    fs::set_permissions(directory, fs::Permissions::from_mode(0o755))
+}
+
+#[cfg(not(unix))]
+fn readable(_: &Path) -> std::io::Result<()> {
+    Ok(())
+}

@@ -8,6 +8,10 @@
 //! - piecewise constant (SC17's assumption; first order, L-stable): keep = E, old = 0,
 //!   new = C (1 - E); flow: keep = 1, old = 0, new = dt/eta.
 //!
+//! A body whose temperature changes lives in its reduced time xi: the same rules hold with the length of
+//! the step on its clock in place of dt, exact for U linear (or constant) in xi. Each branch belongs to a
+//! part of the creep function, and each part has its length.
+//!
 //! So c = C0 + sum new, g = sum (keep e + old U_n). The update of the last step and the history of the
 //! next are one sweep: each branch is read and written once per step.
 
@@ -26,15 +30,23 @@ pub(super) struct Memory {
     cells: usize,
     /// Branch fields, interleaved by blocks of cells: \[block\]\[branch\]\[cell\].
     strains: Vec<f64>,
-    /// The step whose end state is not yet in `strains`: its length and scheme.
-    pending: Option<(f64, Scheme)>,
+    /// Scheme of the step whose end state is not yet in `strains`, and its length on each clock.
+    pending: Option<Scheme>,
+    lengths: Vec<f64>,
     /// The rules of the pending step and, during a sweep, of the next.
     update: Vec<Rule>,
     next: Vec<Rule>,
 }
 
 #[derive(Clone, Copy)]
-enum Branch {
+struct Branch {
+    element: Element,
+    /// The part of the creep function that it belongs to, whose clock it keeps.
+    part: usize,
+}
+
+#[derive(Clone, Copy)]
+enum Element {
     Retarded { compliance: f64, time: f64 },
     Flow { fluidity: f64 },
 }
@@ -53,22 +65,28 @@ impl Rule {
 }
 
 impl Branch {
+    fn rule(self, lengths: &[f64], scheme: Scheme) -> Rule {
+        self.element.rule(lengths[self.part], scheme)
+    }
+}
+
+impl Element {
     fn rule(self, dt: f64, scheme: Scheme) -> Rule {
         match (self, scheme) {
-            (Branch::Retarded { compliance, time }, Scheme::Linear) => {
+            (Element::Retarded { compliance, time }, Scheme::Linear) => {
                 let x = dt / time;
                 let keep = libm::exp(-x);
                 let (phi, one_minus_phi) = mean_decay(x);
                 Rule { keep, old: compliance * (phi - keep), new: compliance * one_minus_phi }
             }
-            (Branch::Retarded { compliance, time }, _) => {
+            (Element::Retarded { compliance, time }, _) => {
                 let x = dt / time;
                 Rule { keep: libm::exp(-x), old: 0.0, new: -compliance * libm::expm1(-x) }
             }
-            (Branch::Flow { fluidity }, Scheme::Linear) => {
+            (Element::Flow { fluidity }, Scheme::Linear) => {
                 Rule { keep: 1.0, old: 0.5 * fluidity * dt, new: 0.5 * fluidity * dt }
             }
-            (Branch::Flow { fluidity }, _) => Rule { keep: 1.0, old: 0.0, new: fluidity * dt },
+            (Element::Flow { fluidity }, _) => Rule { keep: 1.0, old: 0.0, new: fluidity * dt },
         }
     }
 }
@@ -91,15 +109,21 @@ fn mean_decay(x: f64) -> (f64, f64) {
 }
 
 impl Memory {
-    pub(super) fn new(creep: &Creep, scheme: Scheme, cells: usize) -> Self {
-        let retarded = creep
-            .terms
-            .iter()
-            .map(|t| Branch::Retarded { compliance: t.compliance, time: t.retardation_time });
-        let flow = (creep.fluidity > 0.0).then_some(Branch::Flow { fluidity: creep.fluidity });
-        let branches: Vec<Branch> = retarded.chain(flow).collect();
+    /// The memory of the sum of `parts`, each on a clock of its own.
+    pub(super) fn new<'c>(parts: impl Iterator<Item = &'c Creep>, scheme: Scheme, cells: usize) -> Self {
+        let (mut instantaneous, mut branches, mut count) = (0.0, Vec::new(), 0);
+        for (part, creep) in parts.enumerate() {
+            let retarded = creep
+                .terms
+                .iter()
+                .map(|t| Element::Retarded { compliance: t.compliance, time: t.retardation_time });
+            let flow = (creep.fluidity > 0.0).then_some(Element::Flow { fluidity: creep.fluidity });
+            branches.extend(retarded.chain(flow).map(|element| Branch { element, part }));
+            instantaneous += creep.instantaneous;
+            count += 1;
+        }
         Memory {
-            instantaneous: creep.instantaneous,
+            instantaneous,
             scheme,
             cells,
             strains: vec![0.0; cells * branches.len()],
@@ -107,13 +131,14 @@ impl Memory {
             next: vec![Rule::IDENTITY; branches.len()],
             branches,
             pending: None,
+            lengths: vec![0.0; count],
         }
     }
 
-    /// The scheme that a step of length `dt` can take without ringing.
-    fn scheme_of(&self, dt: f64) -> Scheme {
+    /// The scheme that a step of these lengths can take without ringing.
+    fn scheme_of(&self, lengths: &[f64]) -> Scheme {
         if self.scheme == Scheme::Linear {
-            let retarded: f64 = self.branches.iter().map(|b| b.rule(dt, Scheme::Linear).new).sum();
+            let retarded: f64 = self.branches.iter().map(|b| b.rule(lengths, Scheme::Linear).new).sum();
             if self.instantaneous >= STIFFEST * retarded {
                 return Scheme::Linear;
             }
@@ -122,18 +147,18 @@ impl Memory {
     }
 
     /// Takes in the step before, with `unit` = U_n and `previous` = U_(n-1); writes
-    /// `gap` = `rigid` + g for a step of length `dt` and returns its compliance c.
+    /// `gap` = `rigid` + g for a step that is `lengths` long on the clocks, and returns its compliance c.
     pub(super) fn history(
         &mut self,
-        dt: f64,
+        lengths: &[f64],
         previous: &[f64],
         unit: &[f64],
         rigid: &[f64],
         gap: &mut [f64],
     ) -> f64 {
-        let scheme = self.scheme_of(dt);
+        let scheme = self.scheme_of(lengths);
         let branches = &self.branches;
-        self.next.iter_mut().zip(branches).for_each(|(rule, b)| *rule = b.rule(dt, scheme));
+        self.next.iter_mut().zip(branches).for_each(|(rule, b)| *rule = b.rule(lengths, scheme));
         let (update, next) = (&self.update, &self.next);
         let strains =
             Interleaved { cells: self.cells, branches: self.branches.len(), data: &mut self.strains };
@@ -154,7 +179,8 @@ impl Memory {
             }
         });
         std::mem::swap(&mut self.update, &mut self.next);
-        self.pending = Some((dt, scheme));
+        self.pending = Some(scheme);
+        self.lengths.copy_from_slice(lengths);
         self.instantaneous + self.update.iter().map(|r| r.new).sum::<f64>()
     }
 
@@ -174,7 +200,10 @@ impl Memory {
     /// Scalars and branch fields.
     pub(super) fn save(&self) -> (Vec<f64>, Vec<Vec<f64>>) {
         let scalars = match self.pending {
-            Some((dt, scheme)) => vec![dt, f64::from(u8::from(scheme == Scheme::Linear))],
+            Some(scheme) => {
+                let linear = f64::from(u8::from(scheme == Scheme::Linear));
+                self.lengths.iter().copied().chain([linear]).collect()
+            }
             None => vec![],
         };
         let mut fields = vec![Vec::with_capacity(self.cells); self.branches.len()];
@@ -197,11 +226,12 @@ impl Memory {
         }
         self.pending = match scalars {
             [] => None,
-            [dt, linear] => {
+            [lengths @ .., linear] if lengths.len() == self.lengths.len() => {
                 let scheme = if *linear == 1.0 { Scheme::Linear } else { Scheme::Constant };
                 let rules = self.update.iter_mut().zip(&self.branches);
-                rules.for_each(|(rule, b)| *rule = b.rule(*dt, scheme));
-                Some((*dt, scheme))
+                rules.for_each(|(rule, b)| *rule = b.rule(lengths, scheme));
+                self.lengths.copy_from_slice(lengths);
+                Some(scheme)
             }
             _ => return false,
         };
@@ -268,12 +298,12 @@ mod tests {
         // U(t) = t: u(t) = integral C = creep.integral(t), whatever the steps; several blocks of cells.
         let creep = zener(2.0);
         let n = 2 * BLOCK + 3;
-        let mut memory = Memory::new(&creep, Scheme::Linear, n);
+        let mut memory = Memory::new([&creep].into_iter(), Scheme::Linear, n);
         let rigid = vec![0.25; n];
         let (mut before, mut last, mut gap) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
         let mut t = 0.0;
         for dt in [0.1, 0.03, 2.0, 1e-7, 0.5] {
-            let c = memory.history(dt, &before, &last, &rigid, &mut gap);
+            let c = memory.history(&[dt], &before, &last, &rigid, &mut gap);
             t += dt;
             std::mem::swap(&mut before, &mut last);
             last.fill(t);
@@ -284,22 +314,22 @@ mod tests {
         }
         // A checkpoint on the way changes no bit.
         let (scalars, fields) = memory.save();
-        let mut copy = Memory::new(&creep, Scheme::Linear, n);
+        let mut copy = Memory::new([&creep].into_iter(), Scheme::Linear, n);
         assert!(copy.load(&scalars, &fields));
         let mut again = vec![0.0; n];
-        let c = memory.history(0.7, &before, &last, &rigid, &mut gap);
-        assert_eq!(c, copy.history(0.7, &before, &last, &rigid, &mut again));
+        let c = memory.history(&[0.7], &before, &last, &rigid, &mut gap);
+        assert_eq!(c, copy.history(&[0.7], &before, &last, &rigid, &mut again));
         assert_eq!(gap, again);
     }
 
     #[test]
     fn a_step_of_displacement_history_is_exact_in_the_constant_scheme() {
         let creep = zener(0.0);
-        let mut memory = Memory::new(&creep, Scheme::Constant, 1);
+        let mut memory = Memory::new([&creep].into_iter(), Scheme::Constant, 1);
         let (mut before, mut last, mut gap) = (vec![0.0], vec![0.0], vec![0.0]);
         let mut t = 0.0;
         for dt in [0.1, 0.03, 2.0, 0.5] {
-            let c = memory.history(dt, &before, &last, &[0.0], &mut gap);
+            let c = memory.history(&[dt], &before, &last, &[0.0], &mut gap);
             t += dt;
             std::mem::swap(&mut before, &mut last);
             last[0] = 1.0;
@@ -309,7 +339,34 @@ mod tests {
 
     #[test]
     fn a_soft_start_switches_to_the_constant_scheme() {
-        assert_eq!(Memory::new(&zener(0.0), Scheme::Linear, 1).scheme_of(0.1), Scheme::Constant);
-        assert_eq!(Memory::new(&zener(2.0), Scheme::Linear, 1).scheme_of(100.0), Scheme::Linear);
+        assert_eq!(
+            Memory::new([&zener(0.0)].into_iter(), Scheme::Linear, 1).scheme_of(&[0.1]),
+            Scheme::Constant
+        );
+        assert_eq!(
+            Memory::new([&zener(2.0)].into_iter(), Scheme::Linear, 1).scheme_of(&[100.0]),
+            Scheme::Linear
+        );
+    }
+
+    #[test]
+    fn every_part_keeps_its_own_clock() {
+        // Two bodies under U(t) = t, one clock fast, one slow: on each clock U runs as xi over its
+        // speed, so that u = sum of its integral over the speed.
+        let (first, second) = (zener(2.0), zener(0.5));
+        let speeds = [3.0, 0.5];
+        let mut memory = Memory::new([&first, &second].into_iter(), Scheme::Linear, 1);
+        let (mut before, mut last, mut gap) = (vec![0.0], vec![0.0], vec![0.0]);
+        let mut t = 0.0;
+        for dt in [0.1, 0.03, 2.0, 1e-7, 0.5] {
+            let c = memory.history(&speeds.map(|v| v * dt), &before, &last, &[0.0], &mut gap);
+            t += dt;
+            std::mem::swap(&mut before, &mut last);
+            last.fill(t);
+            let parts = [&first, &second].into_iter().zip(speeds);
+            let exact: f64 = parts.map(|(creep, v)| creep.integral(v * t) / v).sum();
+            // A few roundings of numbers up to 20.
+            assert!((c * t + gap[0] - exact).abs() < 1e-13, "t = {t}");
+        }
     }
 }

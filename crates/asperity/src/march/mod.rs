@@ -69,6 +69,8 @@ pub struct March {
     gap: Vec<f64>,
     /// c of the last step.
     compliance: f64,
+    /// Length of the step on the clock of each part of the creep function \[s\].
+    lengths: Vec<f64>,
     outcome: Outcome,
     interrupt: Option<Arc<AtomicBool>>,
 }
@@ -118,11 +120,12 @@ impl March {
         let solver = Solver::new(simulation.solver.method, &*operator);
         let n = simulation.grid.len();
         let past = match simulation.scheme {
-            Scheme::Direct => Past::Direct(Direct::new(&simulation.creep)),
-            scheme => Past::Memory(Memory::new(&simulation.creep, scheme, n)),
+            Scheme::Direct => Past::Direct(Direct::new(&simulation.creep, &simulation.thermal)),
+            scheme => Past::Memory(Memory::new(simulation.parts(), scheme, n)),
         };
         Ok(March {
             gap: simulation.gap.iter().copied().collect(),
+            lengths: vec![0.0; simulation.parts().count()],
             simulation,
             instants,
             operator,
@@ -174,11 +177,12 @@ impl March {
             return Ok(None);
         };
         self.current = Some(self.done);
+        self.measure_step(instant);
         let unit = &self.state.unit_displacement;
         let rigid = self.simulation.gap.as_slice().unwrap_or_default();
         self.compliance = match &mut self.past {
             Past::Memory(m) => {
-                m.history(instant.dt, &self.previous.unit_displacement, unit, rigid, &mut self.gap)
+                m.history(&self.lengths, &self.previous.unit_displacement, unit, rigid, &mut self.gap)
             }
             Past::Direct(d) => d.history(instant.time, instant.dt, unit, rigid, &mut self.gap),
         };
@@ -212,6 +216,17 @@ impl March {
         }
         self.done += 1;
         Ok(self.last())
+    }
+
+    /// How long the step is in laboratory time and on the clock of each body.
+    fn measure_step(&mut self, instant: Instant) {
+        let start = match self.done.checked_sub(1) {
+            Some(before) => self.instants[before].time,
+            None => instant.time,
+        };
+        let clocks = self.simulation.thermal.iter().map(|body| &body.clock);
+        let clocked = clocks.map(|clock| clock.elapsed(start, instant.time));
+        self.lengths.iter_mut().zip(std::iter::once(instant.dt).chain(clocked)).for_each(|(l, x)| *l = x);
     }
 
     /// The last row (after an error: the state that the failed solve reached); `None` before the first.

@@ -6,7 +6,7 @@ use crate::contact::SolverOptions;
 use crate::error::{Error, Result};
 use crate::grid::{Boundary, Grid};
 use crate::load::{Control, History, Loading};
-use crate::material::Creep;
+use crate::material::{Creep, ThermalCreep};
 use crate::time::{Instant, TimeGrid};
 
 /// How the hereditary integral is taken over a step.
@@ -31,8 +31,10 @@ pub struct Simulation {
     pub boundary: Boundary,
     /// Undeformed gap h0 \[m\], shape (nx, ny), least value 0; infinite where a cell cannot touch.
     pub gap: Array2<f64>,
-    /// Contact creep compliance C(t) of the pair \[1/Pa\].
+    /// Contact creep compliance C(t) of the pair \[1/Pa\]; without the bodies of `thermal`.
     pub creep: Creep,
+    /// Bodies whose temperature changes, each on its own clock; their compliance adds to `creep`.
+    pub thermal: Vec<ThermalCreep>,
     /// Cut-off of the pressure \[Pa\]; infinite for none.
     pub hardness: f64,
     /// What is prescribed.
@@ -55,6 +57,7 @@ impl Simulation {
             boundary: Boundary::Free,
             gap,
             creep: Creep::elastic(1.0),
+            thermal: vec![],
             hardness: f64::INFINITY,
             loading: Loading { control: Control::Load, history: History::Step { value: 0.0 } },
             times: TimeGrid::Uniform { end: 1.0, steps: 1 },
@@ -64,9 +67,21 @@ impl Simulation {
         }
     }
 
-    /// All rows: t = 0+, the steps, the breaks and jumps of the history.
+    /// All rows: t = 0+, the steps, the breaks and jumps of the history, and those of the temperature.
     pub fn instants(&self) -> Vec<Instant> {
-        self.times.instants(&self.loading.history, &self.include)
+        let mut include = self.include.clone();
+        include.extend(self.thermal.iter().flat_map(|body| body.clock.breaks(self.times.end())));
+        self.times.instants(&self.loading.history, &include)
+    }
+
+    /// The creep functions whose sum answers: that of laboratory time, then those of `thermal`.
+    pub(super) fn parts(&self) -> impl Iterator<Item = &Creep> {
+        std::iter::once(&self.creep).chain(self.thermal.iter().map(|body| &body.creep))
+    }
+
+    /// Instantaneous compliance C(0+) of the pair \[1/Pa\].
+    pub fn instantaneous(&self) -> f64 {
+        self.parts().map(|creep| creep.instantaneous).sum()
     }
 
     /// Memory that a march takes, in bytes per cell: fields of solver, march and history.
@@ -80,7 +95,7 @@ impl Simulation {
         let march = 7 * 8;
         let memory = match self.scheme {
             Scheme::Direct => self.instants().len(),
-            _ => self.creep.terms.len() + usize::from(self.creep.fluidity > 0.0),
+            _ => self.parts().map(|creep| creep.terms.len() + usize::from(creep.fluidity > 0.0)).sum(),
         };
         padded + solver + march + 8 * memory
     }
@@ -114,8 +129,8 @@ impl Simulation {
         if touchable == 0 {
             return Err(Error::invalid("gap", "infinite everywhere", "finite in one cell at least"));
         }
-        self.creep.validate()?;
-        if self.creep.value(f64::MAX.sqrt()) <= 0.0 {
+        self.parts().try_for_each(Creep::validate)?;
+        if self.parts().all(|creep| creep.value(f64::MAX.sqrt()) <= 0.0) {
             return Err(Error::invalid(
                 "contact creep compliance",
                 0,
@@ -155,7 +170,7 @@ impl Simulation {
 
     /// Without instantaneous compliance nothing follows a jump.
     fn validate_jumps(&self) -> Result<()> {
-        if self.creep.instantaneous > 0.0 {
+        if self.instantaneous() > 0.0 {
             return Ok(());
         }
         let mut last = 0.0;

@@ -126,6 +126,28 @@ impl Creep {
         }
     }
 
+    /// C(t/`factor`): the function at a temperature whose shift factor a_T is `factor`.
+    ///
+    /// ```
+    /// use asperity::material::{Creep, CreepTerm};
+    /// let terms = vec![CreepTerm { compliance: 1e-9, retardation_time: 2.0 }];
+    /// let creep = Creep { instantaneous: 1e-9, terms, fluidity: 1e-11 };
+    /// // Ten times slower.
+    /// assert!((creep.stretched(10.0).value(30.0) / creep.value(3.0) - 1.0).abs() < 1e-15);
+    /// ```
+    #[must_use]
+    pub fn stretched(&self, factor: f64) -> Creep {
+        Creep {
+            instantaneous: self.instantaneous,
+            terms: self
+                .terms
+                .iter()
+                .map(|c| CreepTerm { retardation_time: factor * c.retardation_time, ..*c })
+                .collect(),
+            fluidity: self.fluidity / factor,
+        }
+    }
+
     /// The same function with its terms in order, without zero terms, equal times merged (times
     /// closer than 1e-9 of themselves are equal: the change is below rounding).
     #[must_use]

@@ -15,7 +15,8 @@
 //! - curves at several temperatures: [`master_curve`], with a [`Shift`] that is given or
 //!   [estimated](estimate_shift).
 //!
-//! A temperature that changes during the run is a [`ReducedTime`].
+//! A temperature that changes during the run makes a [`ReducedTime`], the clock of a [`ThermalCreep`];
+//! one that does not stretches the times: [`Material::stretched`].
 
 mod body;
 mod convert;
@@ -36,6 +37,7 @@ mod series;
 mod shift;
 mod spectrum;
 mod table;
+mod thermal;
 
 pub use body::{Body, Lateral, pair_creep, pair_hardness};
 pub use creep::{Creep, CreepTerm};
@@ -47,3 +49,4 @@ pub use reduced_time::ReducedTime;
 pub use relaxation::{Relaxation, RelaxationTerm};
 pub use shift::{GAS_CONSTANT, Shift, ShiftFit, fit_arrhenius, fit_wlf};
 pub use table::CreepTable;
+pub use thermal::ThermalCreep;

@@ -123,6 +123,16 @@ impl Material {
         Ok(Material { measure, creep })
     }
 
+    /// The material at a temperature whose shift factor a_T is `factor`: all its times are as many times
+    /// as long.
+    ///
+    /// # Errors
+    /// `Invalid` where a time leaves the range of floating-point numbers.
+    pub fn stretched(&self, factor: f64) -> Result<Self> {
+        positive("shift factor", factor, "")?;
+        Self::generalised_kelvin(self.measure, self.creep.stretched(factor))
+    }
+
     /// Whether the moduli are Young's or shear moduli.
     pub fn measure(&self) -> Modulus {
         self.measure

@@ -8,6 +8,7 @@
 mod elastic;
 mod invariants;
 mod springs;
+mod temperature;
 mod viscoelastic;
 
 use crate::error::Result;
@@ -43,7 +44,7 @@ impl Check {
 pub type Case = (&'static str, fn() -> Result<Vec<Check>>);
 
 /// All cases, in the order of the documentation.
-pub const CASES: [Case; 17] = [
+pub const CASES: [Case; 19] = [
     ("hertz-sphere", elastic::hertz_sphere),
     ("hertz-ellipse", elastic::hertz_ellipse),
     ("cone", elastic::cone),
@@ -57,6 +58,8 @@ pub const CASES: [Case; 17] = [
     ("flat-punch-history", viscoelastic::flat_punch_history),
     ("springs-sphere", springs::sphere_under_load),
     ("springs-cone", springs::cone_under_approach),
+    ("temperature-step-load", temperature::temperature_step_load),
+    ("temperature-springs", temperature::temperature_springs),
     ("order-in-time", viscoelastic::order_in_time),
     ("one-elastic-solve", invariants::one_elastic_solve),
     ("long-time-limit", invariants::long_time_limit),

@@ -5,7 +5,7 @@
 //! blocks' sums pairwise up the same tree. The tree depends on the length alone, so the same field
 //! gives the same bits on one thread and on many; nothing is allocated.
 
-/// Cells in one block: a few arrays of it fit the second-level cache.
+/// Cells in one block, a multiple of eight: a few arrays of it fit the second-level cache.
 pub(crate) const BLOCK: usize = 8192;
 
 /// Arrays that are walked together: slices and tuples of slices of one length.
@@ -34,6 +34,42 @@ impl<T: Send> Cells for &mut [T] {
     }
 }
 
+/// Cells that some sweeps have: never the first of a tuple, which knows their number.
+impl<C: Cells> Cells for Option<C> {
+    fn cells(&self) -> usize {
+        self.as_ref().map_or(0, Cells::cells)
+    }
+    fn split(self, mid: usize) -> (Self, Self) {
+        self.map(|cells| cells.split(mid)).unzip()
+    }
+}
+
+/// A set of cells, eight in a byte (see [`asperity_convolution::eights`]).
+pub(crate) struct Set<'a>(pub &'a [u8]);
+
+/// A set of cells to be found.
+pub(crate) struct SetMut<'a>(pub &'a mut [u8]);
+
+impl Cells for Set<'_> {
+    fn cells(&self) -> usize {
+        8 * self.0.len()
+    }
+    fn split(self, mid: usize) -> (Self, Self) {
+        let (first, second) = self.0.split_at(mid / 8);
+        (Set(first), Set(second))
+    }
+}
+
+impl Cells for SetMut<'_> {
+    fn cells(&self) -> usize {
+        8 * self.0.len()
+    }
+    fn split(self, mid: usize) -> (Self, Self) {
+        let (first, second) = self.0.split_at_mut(mid / 8);
+        (SetMut(first), SetMut(second))
+    }
+}
+
 macro_rules! cells_of_tuple {
     ($($name:ident),+) => {
         impl<$($name: Cells),+> Cells for ($($name,)+) {
@@ -55,6 +91,7 @@ cells_of_tuple!(A, B, C, D);
 cells_of_tuple!(A, B, C, D, E);
 cells_of_tuple!(A, B, C, D, E, F);
 cells_of_tuple!(A, B, C, D, E, F, G);
+cells_of_tuple!(A, B, C, D, E, F, G, H);
 
 /// What a block yields and how two neighbours' yields become one.
 pub(crate) trait Merge: Send {

@@ -10,7 +10,9 @@
 // The closures of a sweep spell out the slices that they walk.
 #![allow(clippy::type_complexity)]
 
+mod direction;
 mod gauss_seidel;
+mod motion;
 mod polonsky_keer;
 mod projected_cg;
 mod residual;

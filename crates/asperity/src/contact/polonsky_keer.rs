@@ -8,7 +8,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use super::residual::{Balance, Violation};
+use super::residual::Rating;
 use super::shift::clip;
 use super::start::{make_feasible, set_load};
 use super::{ContactState, Outcome, Prescribed, Problem, SolverOptions, interrupted, not_converged};
@@ -20,12 +20,11 @@ use crate::operator::Operator;
 /// Iterations without a halving of the residual before a step along r on all cells that may move.
 const PATIENCE: usize = 20;
 
-/// The method's working memory: 33 bytes per cell.
+/// The method's working memory: 24 bytes per cell and a set of cells.
 pub struct PolonskyKeer {
     residual: Vec<f64>,
     direction: Vec<f64>,
     image: Vec<f64>,
-    trial: Vec<f64>,
     touchable: Vec<u8>,
 }
 
@@ -37,8 +36,7 @@ impl PolonskyKeer {
             residual: vec![0.0; n],
             direction: vec![0.0; n],
             image: vec![0.0; n],
-            trial: vec![0.0; n],
-            touchable: vec![0; n],
+            touchable: vec![0; n.div_ceil(8)],
         }
     }
 
@@ -53,7 +51,7 @@ impl PolonskyKeer {
     ) -> Result<Outcome> {
         let grid = *operator.grid();
         let fallback = 1.0 / (problem.compliance * operator.self_influence());
-        make_feasible(problem, grid.cell_area(), state, &mut self.touchable, &mut self.trial)?;
+        make_feasible(problem, grid.cell_area(), state, &mut self.touchable)?;
         operator.apply_into(&state.pressure, &mut state.unit_displacement);
         let mut convolutions = 1;
         self.direction.fill(0.0);
@@ -62,11 +60,10 @@ impl PolonskyKeer {
         let (mut best, mut stall) = (f64::INFINITY, 0);
         let mut iteration = 0;
         loop {
-            let balance = Balance::of(problem, state);
-            let w = balance.approach(problem.prescribed);
+            let w = Rating::of(problem, state, 0.0).approach(problem.prescribed);
             state.approach = w;
-            let violation = Violation::of(problem, state, w);
-            let rated = violation.rate(problem, &grid, &balance, w, options.tolerance);
+            let rating = Rating::of(problem, state, w);
+            let rated = rating.rate(problem, &grid, options.tolerance);
             let outcome = Outcome { iterations: iteration, convolutions, ..rated };
             if outcome.residual <= options.tolerance {
                 return Ok(outcome);
@@ -82,7 +79,7 @@ impl PolonskyKeer {
             if outcome.residual < 0.5 * best {
                 (best, stall) = (outcome.residual, 0);
             }
-            let all = balance.no_cell_is_free() || stall >= PATIENCE;
+            let all = rating.no_cell_is_free() || stall >= PATIENCE;
             if all {
                 stall = 0;
             }
@@ -98,7 +95,7 @@ impl PolonskyKeer {
                 if let Prescribed::Load(load) = problem.prescribed {
                     let target = load / grid.cell_area();
                     let p = &mut state.pressure;
-                    if set_load(p, &self.touchable, &mut self.trial, problem.hardness, target).is_none() {
+                    if set_load(p, &self.touchable, problem.hardness, target).is_none() {
                         return Err(not_converged("polonsky-keer", options, &outcome));
                     }
                 }

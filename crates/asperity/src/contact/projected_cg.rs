@@ -7,17 +7,26 @@
 //! exact minimisation is taken instead: by the spacer-step theorem (Luenberger & Ye, Linear and
 //! Nonlinear Programming, section 7.11) the method converges from any start.
 //!
-//! The preconditioner is the inverse symbol |q|/2 on the unpadded grid.
+//! The preconditioner is the inverse symbol |q|/2 on the unpadded grid. It and the direction are f32, in units of
+//! the largest violation: they decide where to go, never what is found there.
+//!
+//! An iteration is one convolution, one of the preconditioner, and five or six sweeps (`direction`, `shift`,
+//! `motion`), most of them over the groups of cells that hold one of S. The sweep that advances the state also rates it,
+//! for which it must know the approach w: the new w is foretold from the mean change of the gap over the
+//! cells that stay free, and the sweep's own mean mends it.
 
 use std::sync::atomic::AtomicBool;
 
-use super::residual::{Balance, Violation};
-use super::shift::{FREE, clip, shift_to_sum};
+use asperity_convolution::eights::Cell;
+use asperity_convolution::lanes::Lanes;
+
+use super::direction::{Ahead, Turn, centre, products, steepest, turn};
+use super::motion::{Layout, Motion, advance, curvature, lay_out};
+use super::residual::Rating;
+use super::shift::{Shift, Trial};
 use super::start::make_feasible;
 use super::{ContactState, Outcome, Prescribed, Problem, SolverOptions, interrupted, not_converged};
-use crate::convolution::Convolution;
 use crate::error::{Error, Result};
-use crate::field::{Merge, Min, smaller, strands, sweep};
 use crate::grid::Grid;
 use crate::operator::{Operator, approximate_inverse};
 
@@ -27,60 +36,96 @@ const PATIENCE: usize = 10;
 const REFRESH: usize = 50;
 /// A clipped step is taken whole where the exact minimum lies beyond this share of it.
 const WHOLE: f64 = 0.8;
+/// The share of the largest violation by which a foretold approach may be wrong.
+const FORETOLD: f64 = 0.02;
+/// The share of the largest violation below which the mean of the residual over S is left in it.
+const CENTRED: f64 = 1e-4;
 
-/// The method's working memory: about 41 bytes per cell and the preconditioner's plan.
-pub struct ProjectedCg {
-    inverse: Convolution,
-    /// Residual on S with its mean removed, now and one iteration ago.
-    residual: Vec<f64>,
-    previous: Vec<f64>,
+/// Scalars of the steps' convolutions.
+pub trait Scalar: Cell {
+    /// Whether U must be evaluated afresh, in f64, before a solution is accepted.
+    const ROUGH: bool;
+    /// u = K p
+    fn apply(operator: &mut dyn Operator, p: &[Self], u: &mut [Self]);
+}
+
+impl Scalar for f64 {
+    const ROUGH: bool = false;
+    fn apply(operator: &mut dyn Operator, p: &[f64], u: &mut [f64]) {
+        operator.apply_into(p, u);
+    }
+}
+
+/// The method's working memory: 16 bytes per cell, 16 for steps in f64 or 8 in f32, sets of one bit, and the
+/// preconditioner's plan.
+pub struct ProjectedCg<T = f64> {
+    inverse: Lanes<f32>,
+    /// Largest of the preconditioner's symbol \[1/m\], which `inverse` has as 1.
+    sharpest: f64,
+    /// Residual on S with its mean removed, in units of `unit`, now and one iteration ago.
+    residual: Vec<f32>,
+    previous: Vec<f32>,
+    /// Preconditioned residual.
+    image: Vec<f32>,
     /// Search direction d on S.
-    direction: Vec<f64>,
-    /// Trial point y, then step s.
-    step: Vec<f64>,
-    /// Preconditioned residual, then K s.
-    image: Vec<f64>,
-    /// Membership of S.
+    direction: Vec<f32>,
+    /// The step s and K s.
+    step: Vec<T>,
+    moved: Vec<T>,
+    /// S.
     working: Vec<u8>,
+    /// Cells that the full step leaves between the bounds.
+    inside: Vec<u8>,
 }
 
 /// What a conjugate step needs from the one before.
 struct Conjugacy {
     /// <z, r> of the last step; `None` restarts.
     product: Option<f64>,
+    /// Units of the last residual \[m\] and the last direction \[Pa\].
+    unit: f64,
+    pressure: f64,
     /// Step length a that the next trial uses.
     length: f64,
 }
 
-/// The step to take, in `self.step`.
+/// The step to take, laid out in `self.step`.
 struct Step {
-    /// <r, s>
-    slope: f64,
     kind: Kind,
+    /// a, in units of the direction, and the shift.
+    length: f64,
+    shift: Shift,
+    layout: Layout,
+    /// What `centre` took from the residual.
+    mean: f64,
 }
 
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
-    /// s = -a d, feasible up to `reach` times s.
-    Straight { reach: f64 },
+    /// s = -a d.
+    Straight,
     /// s leads to the projection of p - a d.
     Clipped,
     /// s leads to the projection of p - b r.
     Gradient,
 }
 
-impl ProjectedCg {
+impl<T: Scalar> ProjectedCg<T> {
     /// Plans the method for a grid.
     pub fn new(grid: &Grid) -> Self {
         let n = grid.len();
+        let (inverse, sharpest) = approximate_inverse(grid);
         ProjectedCg {
-            inverse: approximate_inverse(grid),
+            inverse,
+            sharpest,
             residual: vec![0.0; n],
             previous: vec![0.0; n],
-            direction: vec![0.0; n],
-            step: vec![0.0; n],
             image: vec![0.0; n],
-            working: vec![0; n],
+            direction: vec![0.0; n],
+            step: vec![T::default(); n],
+            moved: vec![T::default(); n],
+            working: vec![0; n.div_ceil(8)],
+            inside: vec![0; n.div_ceil(8)],
         }
     }
 
@@ -94,24 +139,37 @@ impl ProjectedCg {
         interrupt: Option<&AtomicBool>,
     ) -> Result<Outcome> {
         let grid = *operator.grid();
-        make_feasible(problem, grid.cell_area(), state, &mut self.working, &mut self.step)?;
+        make_feasible(problem, grid.cell_area(), state, &mut self.working)?;
         operator.apply_into(&state.pressure, &mut state.unit_displacement);
         let mut convolutions = 1;
         let mut gradient_length = 1.0 / (problem.compliance * operator.self_influence());
-        let mut conjugacy = Conjugacy { product: None, length: 1.0 };
-        let mut best = f64::INFINITY;
-        let mut stall = 0;
-        let mut stuck = false;
+        let mut conjugacy = Conjugacy { product: None, unit: 0.0, pressure: 0.0, length: 1.0 };
+        let (mut best, mut stall, mut stuck, mut fresh) = (f64::INFINITY, 0, false, true);
         let mut iteration = 0;
+        // Only to find the approach. No guess from the state: it would leave its rounding.
+        let mut unit = 0.0;
+        let mut rating = Rating::of(problem, state, 0.0);
         loop {
-            let balance = Balance::of(problem, state);
-            let w = balance.approach(problem.prescribed);
-            state.approach = w;
-            let violation = Violation::of(problem, state, w);
-            let rated = violation.rate(problem, &grid, &balance, w, options.tolerance);
+            let w = rating.approach(problem.prescribed);
+            if unit == 0.0 || (w - rating.w).abs() > FORETOLD * rating.violation() {
+                unit = if rating.violation() > 0.0 { rating.violation() } else { 1.0 };
+                let found = (&mut self.residual[..], &mut self.working[..]);
+                rating = advance::<T>(problem, state, None, w, unit, found);
+            }
+            state.approach = rating.approach(problem.prescribed);
+            let rated = rating.rate(problem, &grid, options.tolerance);
             let outcome = Outcome { iterations: iteration, convolutions, ..rated };
-            if outcome.residual <= options.tolerance {
-                return Ok(outcome);
+            if outcome.residual <= options.tolerance || stuck {
+                if T::ROUGH && !fresh {
+                    operator.apply_into(&state.pressure, &mut state.unit_displacement);
+                    convolutions += 1;
+                    (fresh, stuck, unit, conjugacy.product) = (true, false, 0.0, None);
+                    rating = Rating::of(problem, state, 0.0);
+                    continue;
+                }
+                if outcome.residual <= options.tolerance {
+                    return Ok(outcome);
+                }
             }
             if stuck || iteration == options.max_iterations {
                 return Err(not_converged("projected-cg", options, &outcome));
@@ -126,17 +184,21 @@ impl ProjectedCg {
                 stall += 1;
             }
 
-            let conjugate = if stall >= PATIENCE || violation.nothing_works() {
+            let sum = match problem.prescribed {
+                Prescribed::Load(load) => Some(load / grid.cell_area() - rating.pressure()),
+                Prescribed::Approach(_) => None,
+            };
+            let conjugate = if stall >= PATIENCE || rating.nothing_works() {
                 None
             } else {
-                self.conjugate_step(problem, state, w, &violation, &mut conjugacy)
+                self.conjugate_step(problem, state, sum, &rating, unit, &mut conjugacy)
             };
             let step = match conjugate {
                 Some(step) => step,
                 None => {
                     conjugacy.product = None;
                     stall = 0;
-                    match self.gradient_step(problem, state, w, gradient_length) {
+                    match self.gradient_step(problem, state, sum, &rating, unit, gradient_length) {
                         Some(step) => step,
                         None => {
                             // Nothing descends any more: rounding has the last word.
@@ -146,18 +208,20 @@ impl ProjectedCg {
                     }
                 }
             };
-            operator.apply_into(&self.step, &mut self.image);
+            T::apply(operator, &self.step, &mut self.moved);
             convolutions += 1;
-            let [curvature, length] = self.curvature();
+            let [curvature, length, change] = curvature(&self.step, &self.moved, &self.inside);
             let curvature = problem.compliance * curvature;
-            let exact = if curvature > 0.0 { -step.slope / curvature } else { 1.0 };
+            let slope = unit * step.layout.slope;
+            let exact = if curvature > 0.0 { -slope / curvature } else { 1.0 };
             let t = match step.kind {
-                Kind::Straight { reach } => {
+                Kind::Straight => {
                     conjugacy.length = (conjugacy.length * exact).clamp(0.05, 20.0);
-                    exact.min(reach)
+                    exact.min(step.layout.reach)
                 }
                 Kind::Clipped => {
-                    conjugacy.length *= exact.clamp(0.3, 1.5);
+                    // Half of what this step asks for, in logarithms: the next one is another.
+                    conjugacy.length *= exact.max(0.0).sqrt().clamp(0.3, 1.5);
                     if exact >= WHOLE { 1.0 } else { exact }
                 }
                 Kind::Gradient => {
@@ -167,11 +231,32 @@ impl ProjectedCg {
                     exact.min(1.0)
                 }
             };
-            self.advance(problem, state, t);
+            let [r, cells] = step.layout.inside;
+            let foretold = match problem.prescribed {
+                Prescribed::Load(_) if cells > 0.0 => {
+                    rating.w + unit * (r / cells + step.mean) + t * problem.compliance * change / cells
+                }
+                _ => rating.w,
+            };
+            let motion = Motion {
+                t,
+                length: step.length,
+                shift: step.shift,
+                direction: &self.direction,
+                image: &self.moved,
+            };
+            // Residuals are measured in the largest violation of the iteration before.
+            unit = rating.violation();
+            std::mem::swap(&mut self.residual, &mut self.previous);
+            let found = (&mut self.residual[..], &mut self.working[..]);
+            rating = advance(problem, state, Some(motion), foretold, unit, found);
+            fresh = false;
             iteration += 1;
             if iteration % REFRESH == 0 {
                 operator.apply_into(&state.pressure, &mut state.unit_displacement);
                 convolutions += 1;
+                (fresh, unit) = (true, 0.0);
+                rating = Rating::of(problem, state, rating.w);
             }
         }
     }
@@ -181,37 +266,48 @@ impl ProjectedCg {
         &mut self,
         problem: &Problem,
         state: &ContactState,
-        w: f64,
-        violation: &Violation,
+        sum: Option<f64>,
+        rating: &Rating,
+        unit: f64,
         conjugacy: &mut Conjugacy,
     ) -> Option<Step> {
-        let load = matches!(problem.prescribed, Prescribed::Load(_));
-        std::mem::swap(&mut self.residual, &mut self.previous);
-        self.restrict(problem, state, w, if load { violation.working_mean() } else { 0.0 });
+        let cells = rating.working_cells();
+        let mean_r = if sum.is_some() { rating.working_mean() / unit } else { 0.0 };
+        let centred = mean_r.abs() > CENTRED * rating.violation() / unit;
+        if centred {
+            centre(&mut self.residual, &self.working, mean_r);
+        }
         self.inverse.apply_into(&self.residual, &mut self.image);
+        let sums = products(&self.image, &self.residual, &self.previous, &self.direction, &self.working);
 
-        // <z - mean z, r> = <z, r>, since r has zero mean on S.
-        let [z, zr, z_old, r_old, d_old, cells] = self.products();
-        let mean_z = if load { z / cells } else { 0.0 };
-        let scale = 1.0 / problem.compliance;
-        let product = scale * zr;
+        // <z - mean z, r>, and the same with the residual before; each in its units.
+        let mean_z = if sum.is_some() { sums.z / cells } else { 0.0 };
+        let left = if centred { 0.0 } else { mean_r * cells };
+        let pressure = self.sharpest * unit / problem.compliance;
+        let product = pressure * unit * (sums.zr - mean_z * left);
         if product <= 0.0 || product.is_nan() {
             return None;
         }
+        let unlike = pressure * conjugacy.unit * (sums.z_old - mean_z * sums.r_old);
         let beta = match conjugacy.product {
-            Some(last) => ((product - scale * (z_old - mean_z * r_old)) / last).max(0.0),
+            Some(last) => ((product - unlike) / last).max(0.0) * conjugacy.pressure / pressure,
             None => 0.0,
         };
-        conjugacy.product = Some(product);
-        let mean_d = if load { beta * d_old / cells } else { 0.0 };
+        let length = conjugacy.length;
+        *conjugacy = Conjugacy { product: Some(product), unit, pressure, length };
 
-        let trial = self.turn(problem, state, Turn { scale, mean_z, beta, mean_d, length: conjugacy.length });
-        let kind = if trial.leaves() { Kind::Clipped } else { Kind::Straight { reach: trial.reach.0 } };
-        if load && kind == Kind::Clipped {
-            shift_to_sum(&mut self.step, &self.working, problem.hardness, trial.pressure)?;
-        }
-        let slope = self.step_from_trial(problem, state, w);
-        (slope < 0.0).then_some(Step { slope, kind })
+        let mean = mean_z + if sum.is_some() { beta * sums.d_old / cells } else { 0.0 };
+        let length = length * pressure;
+        let ahead = turn(
+            &mut self.direction,
+            &self.image,
+            &self.working,
+            &state.pressure,
+            problem.hardness,
+            Turn { mean, beta, length },
+        );
+        let kind = if ahead.outside > 0.0 { Kind::Clipped } else { Kind::Straight };
+        self.lay_out(problem, state, sum, ahead, kind, length, if centred { mean_r } else { 0.0 })
     }
 
     /// The projected-gradient step over all cells that can touch; `None` where it does not descend.
@@ -219,187 +315,42 @@ impl ProjectedCg {
         &mut self,
         problem: &Problem,
         state: &ContactState,
-        w: f64,
+        sum: Option<f64>,
+        rating: &Rating,
+        unit: f64,
         length: f64,
     ) -> Option<Step> {
-        let c = problem.compliance;
-        let pressure = sweep(
-            (
-                (&mut self.step[..], &mut self.working[..]),
-                &state.pressure[..],
-                &state.unit_displacement[..],
-                problem.gap,
-            ),
-            &|((y, working), p, u, h): ((&mut [f64], &mut [u8]), &[f64], &[f64], &[f64])| {
-                strands(p.len(), |i| {
-                    let can_touch = h[i] < f64::INFINITY;
-                    working[i] = if can_touch { FREE } else { 0 };
-                    y[i] = if can_touch { p[i] - length * (c * u[i] + h[i] - w) } else { 0.0 };
-                    [p[i]]
-                })
-            },
-        )[0];
-        if matches!(problem.prescribed, Prescribed::Load(_)) {
-            shift_to_sum(&mut self.step, &self.working, problem.hardness, pressure)?;
-        }
-        let slope = self.step_from_trial(problem, state, w);
-        (slope < 0.0).then_some(Step { slope, kind: Kind::Gradient })
+        let length = length * unit;
+        let fields = (&mut self.direction[..], &mut self.residual[..], &mut self.working[..]);
+        let ahead = steepest(problem, state, rating.w, unit, length, fields);
+        self.lay_out(problem, state, sum, ahead, Kind::Gradient, length, 0.0)
     }
 
-    /// residual = r - mean on S, 0 elsewhere; marks S.
-    fn restrict(&mut self, problem: &Problem, state: &ContactState, w: f64, mean: f64) {
-        let (c, hardness) = (problem.compliance, problem.hardness);
-        sweep(
-            (
-                (&mut self.residual[..], &mut self.working[..]),
-                &state.pressure[..],
-                &state.unit_displacement[..],
-                problem.gap,
-            ),
-            &|((residual, working), p, u, h): ((&mut [f64], &mut [u8]), &[f64], &[f64], &[f64])| {
-                let n = p.len();
-                let (residual, working, u, h) = (&mut residual[..n], &mut working[..n], &u[..n], &h[..n]);
-                for i in 0..n {
-                    let r = c * u[i] + h[i] - w;
-                    let works = if p[i] <= 0.0 { r < 0.0 } else { p[i] < hardness || r > 0.0 };
-                    working[i] = if works { FREE } else { 0 };
-                    residual[i] = if works { r - mean } else { 0.0 };
-                }
-            },
-        );
-    }
-
-    /// sum z, <z, r>, <z, r_old>, sum r_old, sum d_old and the number of cells, all over S.
-    fn products(&self) -> [f64; 6] {
-        sweep(
-            (&self.image[..], &self.residual[..], &self.previous[..], &self.direction[..], &self.working[..]),
-            &|(z, r, old, d, working): (&[f64], &[f64], &[f64], &[f64], &[u8])| {
-                let n = z.len();
-                let (r, old, d, working) = (&r[..n], &old[..n], &d[..n], &working[..n]);
-                strands(n, |i| {
-                    let on = f64::from(working[i]);
-                    let z = on * z[i];
-                    [z, z * r[i], z * old[i], on * old[i], on * d[i], on]
-                })
-            },
-        )
-    }
-
-    /// d = (z - mean z)/c + beta d - mean on S; trial point y = p - a d.
-    fn turn(&mut self, problem: &Problem, state: &ContactState, turn: Turn) -> Trial {
-        let hardness = problem.hardness;
-        sweep(
-            (
-                &mut self.direction[..],
-                &mut self.step[..],
-                &self.image[..],
-                &self.working[..],
-                &state.pressure[..],
-            ),
-            &|(d, y, z, working, p): (&mut [f64], &mut [f64], &[f64], &[u8], &[f64])| {
-                let n = d.len();
-                let (y, z, working, p) = (&mut y[..n], &z[..n], &working[..n], &p[..n]);
-                let mut reach = f64::INFINITY;
-                let [pressure, outside] = strands(n, |i| {
-                    let works = working[i] == FREE;
-                    let conjugate = turn.scale * (z[i] - turn.mean_z) + turn.beta * d[i] - turn.mean_d;
-                    d[i] = if works { conjugate } else { 0.0 };
-                    let s = -turn.length * d[i];
-                    y[i] = p[i] + s;
-                    // Reach: the largest multiple of s that stays feasible.
-                    let room = if s < 0.0 { p[i] } else { hardness - p[i] };
-                    let reached = if s != 0.0 { room / s.abs() } else { f64::INFINITY };
-                    reach = smaller(reached, reach);
-                    let outside = works && (y[i] < 0.0 || y[i] > hardness);
-                    [if works { p[i] } else { 0.0 }, f64::from(u8::from(outside))]
-                });
-                Trial { pressure, outside, reach: Min(reach) }
-            },
-        )
-    }
-
-    /// s = clip(y) - p on the working cells, 0 elsewhere; returns <r, s>.
-    fn step_from_trial(&mut self, problem: &Problem, state: &ContactState, w: f64) -> f64 {
-        let (c, hardness) = (problem.compliance, problem.hardness);
-        sweep(
-            (
-                (&mut self.step[..], &self.working[..]),
-                &state.pressure[..],
-                &state.unit_displacement[..],
-                problem.gap,
-            ),
-            &|((s, working), p, u, h): ((&mut [f64], &[u8]), &[f64], &[f64], &[f64])| {
-                let n = p.len();
-                let (s, working, u, h) = (&mut s[..n], &working[..n], &u[..n], &h[..n]);
-                strands(n, |i| {
-                    let on = working[i] == FREE;
-                    s[i] = if on { clip(s[i], hardness) - p[i] } else { 0.0 };
-                    [if on { (c * u[i] + h[i] - w) * s[i] } else { 0.0 }]
-                })
-            },
-        )[0]
-    }
-
-    /// <s, K s> and <s, s>.
-    fn curvature(&self) -> [f64; 2] {
-        sweep((&self.step[..], &self.image[..]), &|(s, k): (&[f64], &[f64])| {
-            let k = &k[..s.len()];
-            strands(s.len(), |i| [s[i] * k[i], s[i] * s[i]])
-        })
-    }
-
-    /// p += t s, U += t K s; a cell that lands within rounding of a bound is put on it.
-    fn advance(&self, problem: &Problem, state: &mut ContactState, t: f64) {
-        let hardness = problem.hardness;
-        let cap = hardness * (1.0 - 4.0 * f64::EPSILON);
-        sweep(
-            (&mut state.pressure[..], &mut state.unit_displacement[..], &self.step[..], &self.image[..]),
-            &|(p, u, s, k): (&mut [f64], &mut [f64], &[f64], &[f64])| {
-                let n = p.len();
-                let (u, s, k) = (&mut u[..n], &s[..n], &k[..n]);
-                for i in 0..n {
-                    let new = p[i] + t * s[i];
-                    let floor = 4.0 * f64::EPSILON * p[i];
-                    let new = if s[i] < 0.0 && new <= floor { 0.0 } else { new };
-                    p[i] = if new >= cap { hardness } else { new };
-                    u[i] += t * k[i];
-                }
-            },
-        );
-    }
-}
-
-/// How the direction turns.
-#[derive(Clone, Copy)]
-struct Turn {
-    scale: f64,
-    mean_z: f64,
-    beta: f64,
-    mean_d: f64,
-    length: f64,
-}
-
-/// What the trial point shows.
-struct Trial {
-    /// sum of p over S.
-    pressure: f64,
-    /// Working cells outside \[0, H\].
-    outside: f64,
-    reach: Min,
-}
-
-impl Trial {
-    fn leaves(&self) -> bool {
-        self.outside > 0.0
-    }
-}
-
-impl Merge for Trial {
-    fn merge(self, next: Self) -> Self {
-        Trial {
-            pressure: self.pressure + next.pressure,
-            outside: self.outside + next.outside,
-            reach: self.reach.merge(next.reach),
-        }
+    /// The step from the trial point, where it descends. `sum` is the sum of p that load control prescribes, less
+    /// the present one.
+    #[allow(clippy::too_many_arguments)] // they are the step's parts
+    fn lay_out(
+        &mut self,
+        problem: &Problem,
+        state: &ContactState,
+        sum: Option<f64>,
+        ahead: Ahead,
+        kind: Kind,
+        length: f64,
+        mean: f64,
+    ) -> Option<Step> {
+        let trial = Trial {
+            pressure: &state.pressure,
+            direction: Some(&self.direction),
+            set: &self.working,
+            length,
+            hardness: problem.hardness,
+        };
+        let shift = match sum {
+            Some(missing) => trial.shift_to_sum(ahead.pressure + missing, Some(ahead.clipped))?,
+            None => Shift::default(),
+        };
+        let layout = lay_out(&trial, shift, &self.residual, &mut self.step, &mut self.inside);
+        (layout.slope < 0.0).then_some(Step { kind, length, shift, layout, mean })
     }
 }

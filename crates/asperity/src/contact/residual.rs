@@ -2,68 +2,160 @@
 //! contact conditions, and the certificate.
 //!
 //! With r = g - w, g = cU + h, any feasible p satisfies (subtract the two variational inequalities)
-//! |p - p*|_K^2 <= Gamma = sum [ p r+ + (H - p) r- ]. Without a cut-off w is taken as the least g, so
-//! that r >= 0 and Gamma = sum p (g - min g). Under approach control w is given; the sum of p* that
-//! then multiplies the largest r- is replaced by that of p.
+//! |p - p*|_K^2 <= Gamma = sum [ p r+ + (H - p) r- ], for any w where the load is given. Without a cut-off
+//! w is taken as the least g, so that r >= 0 and Gamma = sum p (g - min g). Under approach control w is given; the
+//! sum of p* that then multiplies the largest r- is replaced by that of p.
+//!
+//! All of it comes from one sweep, taken with a guess of w: the mean of r over the free cells mends the guess.
+
+use asperity_convolution::eights::{Eight, Work, vectorize};
 
 use super::{ContactState, Outcome, Prescribed, Problem};
-use crate::field::{Max, Merge, Min, larger, smaller, strands, sweep};
+use crate::field::{Max, Merge, Min, sweep};
 use crate::grid::Grid;
 
-/// Sums of one sweep over p, U, h.
+/// What one sweep over p, U, h finds, with r = g - w for the guess w.
 #[derive(Clone, Copy)]
-pub(super) struct Balance {
-    /// sum of g and number of cells over D = {0 < p < H}; sum p, sum p U, sum p g.
-    sums: [f64; 5],
-    /// Largest g where p = H.
+pub(super) struct Rating {
+    /// The guess w \[m\].
+    pub w: f64,
+    sums: Sums,
+    /// Largest r where p = H.
     capped: Max,
-    /// Least g where p = 0.
+    /// Least r where p = 0.
     empty: Min,
-    /// Least g where p > 0.
+    /// Least r where p > 0.
     touching: Min,
     /// Largest p.
     peak: Max,
+    /// Largest violation of the contact conditions \[m\].
+    largest: Max,
 }
 
-impl Merge for Balance {
+#[derive(Clone, Copy)]
+struct Sums {
+    /// sum of r, and number of cells, over D = {0 < p < H}.
+    free: [f64; 2],
+    /// sum of r, and number of cells, over S = D + {p = 0, r < 0} + {p = H, r > 0}.
+    working: [f64; 2],
+    /// sum p, sum p U, sum p r.
+    pressure: [f64; 3],
+    /// Gamma for this w; infinite or NaN without a cut-off.
+    gamma: f64,
+}
+
+impl Merge for Rating {
     fn merge(self, next: Self) -> Self {
-        Balance {
-            sums: self.sums.merge(next.sums),
+        let sums = Sums {
+            free: self.sums.free.merge(next.sums.free),
+            working: self.sums.working.merge(next.sums.working),
+            pressure: self.sums.pressure.merge(next.sums.pressure),
+            gamma: self.sums.gamma + next.sums.gamma,
+        };
+        Rating {
+            w: self.w,
+            sums,
             capped: self.capped.merge(next.capped),
             empty: self.empty.merge(next.empty),
             touching: self.touching.merge(next.touching),
             peak: self.peak.merge(next.peak),
+            largest: self.largest.merge(next.largest),
         }
     }
 }
 
-impl Balance {
-    pub(super) fn of(problem: &Problem, state: &ContactState) -> Self {
-        let (c, hardness) = (problem.compliance, problem.hardness);
+/// The rating of a sweep on its way, one strand for each of eight cells.
+pub(super) struct Gauge<V> {
+    compliance: V,
+    hardness: V,
+    w: V,
+    guess: f64,
+    free: [V; 2],
+    working: [V; 2],
+    pressure: [V; 3],
+    gamma: V,
+    capped: V,
+    empty: V,
+    touching: V,
+    peak: V,
+    largest: V,
+}
+
+impl<V: Eight> Gauge<V> {
+    #[inline(always)]
+    pub(super) fn new(problem: &Problem, w: f64) -> Self {
+        let [zero, up, down] = [0.0, f64::INFINITY, f64::NEG_INFINITY].map(V::splat);
+        Gauge {
+            compliance: V::splat(problem.compliance),
+            hardness: V::splat(problem.hardness),
+            w: V::splat(w),
+            guess: w,
+            free: [zero; 2],
+            working: [zero; 2],
+            pressure: [zero; 3],
+            gamma: zero,
+            capped: down,
+            empty: up,
+            touching: up,
+            peak: down,
+            largest: zero,
+        }
+    }
+
+    /// Takes in eight cells; returns r and S.
+    #[inline(always)]
+    pub(super) fn meet(&mut self, p: V, u: V, h: V) -> (V, V::Mask) {
+        let zero = V::splat(0.0);
+        let r = self.compliance * u + h - self.w;
+        let touches = zero.less(p);
+        let below = p.less(self.hardness);
+        let free = touches & below;
+        // |r| counts unless the cell sits at the bound that r presses it against.
+        let works = free | (!touches & r.less(zero)) | (!below & zero.less(r));
+        let violation = r.abs().only(works);
+        self.free = [self.free[0] + r.only(free), self.free[1] + V::count(free)];
+        self.working = [self.working[0] + r.only(works), self.working[1] + V::count(works)];
+        let [sum, pu, pr] = self.pressure;
+        self.pressure = [sum + p, pu + p * u, pr + (p * r).only(touches)];
+        let distance = V::select(zero.less(r), p, self.hardness - p);
+        self.gamma = self.gamma + (distance * violation).only(works);
+        let [up, down] = [f64::INFINITY, f64::NEG_INFINITY].map(V::splat);
+        self.capped = V::select(below, down, r).larger(self.capped);
+        self.empty = V::select(touches, up, r).smaller(self.empty);
+        self.touching = V::select(touches, r, up).smaller(self.touching);
+        self.peak = p.larger(self.peak);
+        self.largest = violation.larger(self.largest);
+        (r, works)
+    }
+
+    #[inline(always)]
+    pub(super) fn rating(self) -> Rating {
+        Rating {
+            w: self.guess,
+            sums: Sums {
+                free: self.free.map(V::sum),
+                working: self.working.map(V::sum),
+                pressure: self.pressure.map(V::sum),
+                gamma: self.gamma.sum(),
+            },
+            capped: Max(self.capped.largest()),
+            empty: Min(self.empty.least()),
+            touching: Min(self.touching.least()),
+            peak: Max(self.peak.largest()),
+            largest: Max(self.largest.largest()),
+        }
+    }
+}
+
+impl Rating {
+    /// Rates a state with a guess of w.
+    pub(super) fn of(problem: &Problem, state: &ContactState, w: f64) -> Self {
         sweep((&state.pressure[..], &state.unit_displacement[..], problem.gap), &|(p, u, h): (
             &[f64],
             &[f64],
             &[f64],
         )| {
-            let n = p.len();
-            let (u, h) = (&u[..n], &h[..n]);
-            let mut extremes = [f64::NEG_INFINITY, f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY];
-            let sums = strands(n, |i| {
-                let g = c * u[i] + h[i];
-                let touches = p[i] > 0.0;
-                let free = touches && p[i] < hardness;
-                let [capped, empty, touching, peak] = extremes;
-                extremes = [
-                    if p[i] >= hardness { larger(g, capped) } else { capped },
-                    if touches { empty } else { smaller(g, empty) },
-                    if touches { smaller(g, touching) } else { touching },
-                    larger(p[i], peak),
-                ];
-                let pg = if touches { p[i] * g } else { 0.0 };
-                [if free { g } else { 0.0 }, f64::from(u8::from(free)), p[i], p[i] * u[i], pg]
-            });
-            let [capped, empty, touching, peak] = extremes;
-            Balance { sums, capped: Max(capped), empty: Min(empty), touching: Min(touching), peak: Max(peak) }
+            vectorize(Rate { problem, w, p, u, h })
         })
     }
 
@@ -73,109 +165,100 @@ impl Balance {
         let (above, below) = (self.capped.0, self.empty.0);
         match prescribed {
             Prescribed::Approach(w) => w,
-            Prescribed::Load(_) if self.sums[1] > 0.0 => self.sums[0] / self.sums[1],
-            Prescribed::Load(_) if below == f64::INFINITY => above,
-            Prescribed::Load(_) if above == f64::NEG_INFINITY => below,
-            Prescribed::Load(_) => 0.5 * (above + below),
+            Prescribed::Load(_) if !self.no_cell_is_free() => self.w + self.sums.free[0] / self.sums.free[1],
+            Prescribed::Load(_) if below == f64::INFINITY => self.w + above,
+            Prescribed::Load(_) if above == f64::NEG_INFINITY => self.w + below,
+            Prescribed::Load(_) => self.w + 0.5 * (above + below),
         }
     }
 
     /// True where D = {0 < p < H} is empty.
     pub(super) fn no_cell_is_free(&self) -> bool {
-        self.sums[1] == 0.0
-    }
-
-    /// The displacement that violations are measured by: (p'u)/(sum p), or the overlap before first contact.
-    fn displacement(&self, problem: &Problem, w: f64) -> f64 {
-        let mean = problem.compliance * self.sums[3] / self.sums[2];
-        if self.sums[2] > 0.0 { mean.max(0.0) } else { (w - self.empty.0).abs() }
-    }
-
-    /// What rounding alone makes of g: a violation below it means nothing.
-    fn rounding(&self, problem: &Problem, grid: &Grid, w: f64) -> f64 {
-        let [lx, ly] = grid.size();
-        let peak = if problem.hardness.is_finite() { self.peak.0.min(problem.hardness) } else { self.peak.0 };
-        16.0 * f64::EPSILON * (w.abs() + problem.compliance * peak.max(0.0) * lx.max(ly))
-    }
-}
-
-/// Violations of one state, and the working set of the next step.
-#[derive(Clone, Copy)]
-pub(super) struct Violation {
-    /// Largest violation \[m\].
-    largest: Max,
-    /// Gamma; sum of r and number of cells over S = D + {p = 0, r < 0} + {p = H, r > 0}.
-    sums: [f64; 3],
-}
-
-impl Merge for Violation {
-    fn merge(self, next: Self) -> Self {
-        Violation { largest: self.largest.merge(next.largest), sums: self.sums.merge(next.sums) }
-    }
-}
-
-impl Violation {
-    pub(super) fn of(problem: &Problem, state: &ContactState, w: f64) -> Self {
-        let (c, hardness) = (problem.compliance, problem.hardness);
-        sweep((&state.pressure[..], &state.unit_displacement[..], problem.gap), &|(p, u, h): (
-            &[f64],
-            &[f64],
-            &[f64],
-        )| {
-            let n = p.len();
-            let (u, h) = (&u[..n], &h[..n]);
-            let mut largest = 0.0;
-            let sums = strands(n, |i| {
-                let r = c * u[i] + h[i] - w;
-                let releases = p[i] >= hardness;
-                // |r| counts unless the cell sits at the bound that r presses it against.
-                let works = if p[i] <= 0.0 { r < 0.0 } else { !releases || r > 0.0 };
-                let violation = if works { r.abs() } else { 0.0 };
-                largest = larger(violation, largest);
-                let distance = if r > 0.0 { p[i] } else { hardness - p[i] };
-                let gamma = if works { distance * violation } else { 0.0 };
-                [gamma, if works { r } else { 0.0 }, f64::from(u8::from(works))]
-            });
-            Violation { largest: Max(largest), sums }
-        })
+        self.sums.free[1] == 0.0
     }
 
     /// Mean of r over the working set S; 0 where S is empty.
     pub(super) fn working_mean(&self) -> f64 {
-        if self.sums[2] > 0.0 { self.sums[1] / self.sums[2] } else { 0.0 }
+        if self.nothing_works() { 0.0 } else { self.sums.working[0] / self.sums.working[1] }
+    }
+
+    /// Cells in S.
+    pub(super) fn working_cells(&self) -> f64 {
+        self.sums.working[1]
     }
 
     /// True where no cell may change.
     pub(super) fn nothing_works(&self) -> bool {
-        self.sums[2] == 0.0
+        self.sums.working[1] == 0.0
     }
 
-    /// Residual and certificate of a state.
-    pub(super) fn rate(
-        &self,
-        problem: &Problem,
-        grid: &Grid,
-        balance: &Balance,
-        w: f64,
-        tolerance: f64,
-    ) -> Outcome {
-        let scale = balance.displacement(problem, w) + balance.rounding(problem, grid, w) / tolerance;
-        let residual = if self.largest.0 > 0.0 { self.largest.0 / scale } else { 0.0 };
-        let [_, _, pressure, pu, pg] = balance.sums;
+    /// Largest violation of the contact conditions with the guess of w \[m\].
+    pub(super) fn violation(&self) -> f64 {
+        self.largest.0
+    }
+
+    /// sum p \[Pa\]
+    pub(super) fn pressure(&self) -> f64 {
+        self.sums.pressure[0]
+    }
+
+    /// The displacement that violations are measured by: (p'u)/(sum p), or the overlap before first contact.
+    fn displacement(&self, problem: &Problem) -> f64 {
+        let [pressure, pu, _] = self.sums.pressure;
+        if pressure > 0.0 { (problem.compliance * pu / pressure).max(0.0) } else { self.empty.0.abs() }
+    }
+
+    /// What rounding alone makes of g: a violation below it means nothing.
+    fn rounding(&self, problem: &Problem, grid: &Grid) -> f64 {
+        let [lx, ly] = grid.size();
+        let peak = self.peak.0.clamp(0.0, problem.hardness);
+        16.0 * f64::EPSILON * (self.w.abs() + problem.compliance * peak * lx.max(ly))
+    }
+
+    /// Residual and certificate. The violation with the approach that the cells themselves give is at most that with
+    /// the guess and how far they lie apart.
+    pub(super) fn rate(&self, problem: &Problem, grid: &Grid, tolerance: f64) -> Outcome {
+        let apart = (self.approach(problem.prescribed) - self.w).abs();
+        let scale = self.displacement(problem) + self.rounding(problem, grid) / tolerance;
+        let violation = if self.largest.0 > 0.0 { self.largest.0 + apart } else { 0.0 };
+        let residual = if violation > 0.0 { violation / scale } else { 0.0 };
+        let [pressure, pu, pr] = self.sums.pressure;
         let gamma = if problem.hardness.is_finite() {
-            self.sums[0]
+            self.sums.gamma
         } else {
-            let least = balance.empty.0.min(balance.touching.0);
+            let least = self.empty.0.min(self.touching.0);
             match problem.prescribed {
-                Prescribed::Load(_) => pg - least * pressure,
-                Prescribed::Approach(w) => {
-                    let rise = 2.0 * (w - least).max(0.0) + (least - w).max(0.0);
-                    (pg - least * pressure) + pressure * rise
+                Prescribed::Load(_) => pr - least * pressure,
+                Prescribed::Approach(_) => {
+                    let rise = 2.0 * (-least).max(0.0) + least.max(0.0);
+                    (pr - least * pressure) + pressure * rise
                 }
             }
         };
         let energy = problem.compliance * pu;
         let certificate = if gamma > 0.0 && energy > 0.0 { (gamma / energy).sqrt() } else { 0.0 };
         Outcome { residual, certificate, ..Outcome::default() }
+    }
+}
+
+struct Rate<'a> {
+    problem: &'a Problem<'a>,
+    w: f64,
+    p: &'a [f64],
+    u: &'a [f64],
+    h: &'a [f64],
+}
+
+impl Work for Rate<'_> {
+    type Yield = Rating;
+
+    #[inline(always)]
+    fn run<V: Eight>(self) -> Rating {
+        let mut gauge = Gauge::<V>::new(self.problem, self.w);
+        for n in (0..self.p.len()).step_by(8) {
+            let h = V::load(self.h, n, f64::INFINITY);
+            gauge.meet(V::load(self.p, n, 0.0), V::load(self.u, n, 0.0), h);
+        }
+        gauge.rating()
     }
 }

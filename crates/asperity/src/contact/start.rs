@@ -1,76 +1,158 @@
 //! The pressure that a solve starts from: the caller's guess made feasible, or a cold start; and the
 //! rescaling of a pressure to its load.
 
-use super::shift::{FREE, clip, shift_to_sum};
+use asperity_convolution::eights::{Eight, Mask, Work, vectorize};
+
+use super::shift::{Mover, Shift, Trial};
 use super::{ContactState, Prescribed, Problem};
 use crate::error::{Error, Result};
-use crate::field::{strands, sweep};
+use crate::field::{Set, SetMut, sweep};
 
 /// Makes `state.pressure` feasible: zero where nothing can touch, within \[0, H\], with the load W.
 ///
-/// `free` and `y` are working memory; `free` comes back marking the cells that can touch.
+/// `touchable` comes back as the set of cells that can touch.
 pub(super) fn make_feasible(
     problem: &Problem,
     cell_area: f64,
     state: &mut ContactState,
-    free: &mut [u8],
-    y: &mut [f64],
+    touchable: &mut [u8],
 ) -> Result<()> {
     let hardness = problem.hardness;
-    let [sum, touchable] = sweep((&mut state.pressure[..], problem.gap, &mut free[..]), &|(p, h, free): (
-        &mut [f64],
-        &[f64],
-        &mut [u8],
-    )| {
-        strands(p.len(), |i| {
-            let can_touch = h[i] < f64::INFINITY;
-            free[i] = if can_touch { FREE } else { 0 };
-            p[i] = if can_touch { clip(p[i], hardness) } else { 0.0 };
-            [p[i], f64::from(free[i])]
-        })
-    });
+    let [sum, cells] =
+        sweep((&mut state.pressure[..], problem.gap, SetMut(touchable)), &|(p, h, SetMut(set)): (
+            &mut [f64],
+            &[f64],
+            SetMut,
+        )| {
+            vectorize(Clip { p, h, set, hardness })
+        });
     let Prescribed::Load(load) = problem.prescribed else {
         return Ok(());
     };
     let target = load / cell_area;
     if sum <= 0.0 {
-        let uniform = target / touchable;
-        state.pressure.iter_mut().zip(&*free).for_each(|(p, f)| *p = uniform * f64::from(*f));
+        let uniform = target / cells;
+        for (p, set) in state.pressure.chunks_mut(8).zip(touchable) {
+            p.iter_mut().enumerate().for_each(|(i, p)| *p = uniform * f64::from(*set >> i & 1));
+        }
         return Ok(());
     }
-    set_load(&mut state.pressure, free, y, hardness, target)
-        .ok_or(Error::Infeasible { load, max: hardness * cell_area * touchable })
+    set_load(&mut state.pressure, touchable, hardness, target)
+        .ok_or(Error::Infeasible { load, max: hardness * cell_area * cells })
 }
 
 /// Gives a pressure within \[0, H\] the sum `target`: by scaling the cells below H, which keeps open
-/// cells open; where those cannot carry it, by a shift of all `free` cells.
-pub(super) fn set_load(p: &mut [f64], free: &[u8], y: &mut [f64], hardness: f64, target: f64) -> Option<()> {
+/// cells open; where those cannot carry it, by a shift of all cells of `set`.
+pub(super) fn set_load(p: &mut [f64], set: &[u8], hardness: f64, target: f64) -> Option<()> {
     for _ in 0..50 {
-        let [below, capped] = sweep(&*p, &|p: &[f64]| {
-            strands(p.len(), |i| if p[i] < hardness { [p[i], 0.0] } else { [0.0, 1.0] })
-        });
+        let [below, capped] = sweep(&*p, &|p: &[f64]| vectorize(BelowAndCapped { p, hardness }));
         let rest = if capped > 0.0 { target - capped * hardness } else { target };
         if below <= 0.0 || rest <= 0.0 {
             break;
         }
         let factor = rest / below;
-        let [over] = sweep(&mut *p, &|p: &mut [f64]| {
-            strands(p.len(), |i| {
-                let scaled = if p[i] < hardness { p[i] * factor } else { p[i] };
-                p[i] = if scaled < hardness { scaled } else { hardness };
-                [f64::from(u8::from(scaled > hardness))]
-            })
-        });
+        let over = sweep(&mut *p, &|p: &mut [f64]| vectorize(Scale { p, factor, hardness }));
         if over == 0.0 {
             return Some(());
         }
     }
-    y.copy_from_slice(p);
-    shift_to_sum(y, free, hardness, target)?;
-    sweep((p, &*y, free), &|(p, y, free): (&mut [f64], &[f64], &[u8])| {
-        for i in 0..p.len() {
-            p[i] = if free[i] == FREE { clip(y[i], hardness) } else { 0.0 };
-        }
+    let trial = Trial { pressure: p, direction: None, set, length: 0.0, hardness };
+    let shift = trial.shift_to_sum(target, None)?;
+    sweep((p, Set(set)), &|(p, Set(set)): (&mut [f64], Set)| {
+        vectorize(Move { p, set, shift, hardness });
     });
     Some(())
+}
+
+/// p clipped, and zero where nothing can touch: the sum and the number of cells that can.
+struct Clip<'a> {
+    p: &'a mut [f64],
+    h: &'a [f64],
+    set: &'a mut [u8],
+    hardness: f64,
+}
+
+impl Work for Clip<'_> {
+    type Yield = [f64; 2];
+
+    #[inline(always)]
+    fn run<V: Eight>(self) -> [f64; 2] {
+        let (mut sum, mut cells) = (V::splat(0.0), V::splat(0.0));
+        for (n, set) in (0..).step_by(8).zip(self.set) {
+            let can_touch = V::load(self.h, n, f64::INFINITY).less(V::splat(f64::INFINITY));
+            let p = V::load(self.p, n, 0.0).clip(V::splat(self.hardness)).only(can_touch);
+            p.store(self.p, n);
+            *set = can_touch.bits();
+            sum = sum + p;
+            cells = cells + V::count(can_touch);
+        }
+        [sum.sum(), cells.sum()]
+    }
+}
+
+/// The sum below H, and the number of cells at it.
+struct BelowAndCapped<'a> {
+    p: &'a [f64],
+    hardness: f64,
+}
+
+impl Work for BelowAndCapped<'_> {
+    type Yield = [f64; 2];
+
+    #[inline(always)]
+    fn run<V: Eight>(self) -> [f64; 2] {
+        let (mut sum, mut cells) = (V::splat(0.0), V::splat(0.0));
+        for n in (0..self.p.len()).step_by(8) {
+            let p = V::load(self.p, n, 0.0);
+            let below = p.less(V::splat(self.hardness));
+            sum = sum + p.only(below);
+            cells = cells + V::count(!below);
+        }
+        [sum.sum(), cells.sum()]
+    }
+}
+
+/// Cells below H scaled, up to H; yields how many would have gone beyond.
+struct Scale<'a> {
+    p: &'a mut [f64],
+    factor: f64,
+    hardness: f64,
+}
+
+impl Work for Scale<'_> {
+    type Yield = f64;
+
+    #[inline(always)]
+    fn run<V: Eight>(self) -> f64 {
+        let mut over = V::splat(0.0);
+        let hardness = V::splat(self.hardness);
+        for n in (0..self.p.len()).step_by(8) {
+            let p = V::load(self.p, n, 0.0);
+            let scaled = V::select(p.less(hardness), p * V::splat(self.factor), p);
+            scaled.smaller(hardness).store(self.p, n);
+            over = over + V::count(hardness.less(scaled));
+        }
+        over.sum()
+    }
+}
+
+/// The cells of a set shifted, the others zero.
+struct Move<'a> {
+    p: &'a mut [f64],
+    set: &'a [u8],
+    shift: Shift,
+    hardness: f64,
+}
+
+impl Work for Move<'_> {
+    type Yield = ();
+
+    #[inline(always)]
+    fn run<V: Eight>(self) {
+        let mover = Mover::<V>::new(0.0, self.shift, self.hardness);
+        for (n, set) in (0..).step_by(8).zip(self.set) {
+            let p = mover.target(V::load(self.p, n, 0.0), V::splat(0.0));
+            p.only(V::Mask::from_bits(*set)).store(self.p, n);
+        }
+    }
 }

@@ -11,7 +11,7 @@ pub use dense::Dense;
 pub use free::Free;
 pub use periodic::Periodic;
 
-use crate::convolution::Convolution;
+use crate::convolution::lanes::Lanes;
 use crate::grid::{Boundary, Grid};
 use crate::kernel::inverse_kernel;
 
@@ -48,12 +48,15 @@ pub(crate) fn wave_spectrum(grid: &Grid, symbol: impl Fn(f64, f64) -> f64) -> nd
     })
 }
 
-/// The approximate inverse of K: the symbol |q|/2 on the unpadded grid, the mean like half the first wave.
+/// The approximate inverse of K, in f32, over its largest value, and that value \[1/m\]: the symbol |q|/2 on the
+/// unpadded grid, the mean like half the first wave.
 ///
 /// A quarter of a free convolution, and as good a preconditioner as the padded one.
-pub(crate) fn approximate_inverse(grid: &Grid) -> Convolution {
+pub(crate) fn approximate_inverse(grid: &Grid) -> (Lanes<f32>, f64) {
     let [lx, ly] = grid.size();
     let mean = 0.25 * std::f64::consts::TAU / lx.max(ly);
-    let spectrum = wave_spectrum(grid, |qx, qy| inverse_kernel(qx, qy, mean));
-    Convolution::new(grid.cells(), grid.cells(), spectrum.view())
+    let mut spectrum = wave_spectrum(grid, |qx, qy| inverse_kernel(qx, qy, mean));
+    let largest = spectrum.iter().fold(0.0_f64, |m, s| m.max(*s));
+    spectrum /= largest;
+    (Lanes::new(grid.cells(), grid.cells(), spectrum.view()), largest)
 }

@@ -1,0 +1,223 @@
+//! Sweeps of an iteration that move: the step s laid out for its convolution, its curvature <s, K s>, and the
+//! advance p += t s, U += t K s, which rates the new state and finds its working set on the way.
+//!
+//! The step is laid out only for the convolution, as f64 or as f32: the advance computes it again, in f64.
+
+use asperity_convolution::eights::{Cell, Eight, Mask, Work, vectorize};
+
+use super::residual::{Gauge, Rating};
+use super::shift::{Mover, Shift, Trial};
+use super::{ContactState, Problem};
+use crate::field::{Min, Set, SetMut, sweep};
+
+/// What laying out a step finds. "Inside" are the cells of the set that the full step leaves between the bounds: there
+/// the residual will vanish.
+#[derive(Clone, Copy)]
+pub(super) struct Layout {
+    /// <r, s>, in units of r.
+    pub slope: f64,
+    /// sum of r, and number of cells, inside.
+    pub inside: [f64; 2],
+    /// The largest multiple of s that stays within the bounds.
+    pub reach: f64,
+}
+
+/// s = q - p, q the trial point shifted and clipped; and the cells inside.
+pub(super) fn lay_out<T: Cell>(
+    trial: &Trial,
+    shift: Shift,
+    residual: &[f32],
+    step: &mut [T],
+    inside: &mut [u8],
+) -> Layout {
+    let (length, hardness) = (trial.length, trial.hardness);
+    let ([slope, sum, cells], Min(reach)) = sweep(
+        ((step, SetMut(inside)), trial.pressure, trial.direction, residual, Set(trial.set)),
+        &|((s, SetMut(inside)), p, d, r, Set(set)): (
+            (&mut [T], SetMut),
+            &[f64],
+            Option<&[f32]>,
+            &[f32],
+            Set,
+        )| {
+            vectorize(LayOut { s, inside, p, d: d.unwrap_or_default(), r, set, length, shift, hardness })
+        },
+    );
+    Layout { slope, inside: [sum, cells], reach }
+}
+
+struct LayOut<'a, T> {
+    s: &'a mut [T],
+    inside: &'a mut [u8],
+    p: &'a [f64],
+    d: &'a [f32],
+    r: &'a [f32],
+    set: &'a [u8],
+    length: f64,
+    shift: Shift,
+    hardness: f64,
+}
+
+impl<T: Cell> Work for LayOut<'_, T> {
+    type Yield = ([f64; 3], Min);
+
+    #[inline(always)]
+    fn run<V: Eight>(self) -> ([f64; 3], Min) {
+        let mover = Mover::<V>::new(self.length, self.shift, self.hardness);
+        let (zero, hardness) = (V::splat(0.0), V::splat(self.hardness));
+        let [mut slope, mut sum, mut cells] = [zero; 3];
+        let far = V::splat(f64::INFINITY);
+        let mut reach = far;
+        for ((n, set), inside) in (0..).step_by(8).zip(self.set).zip(self.inside) {
+            if *set == 0 {
+                zero.store(self.s, n);
+                *inside = 0;
+                continue;
+            }
+            let on = V::Mask::from_bits(*set);
+            let p = V::load(self.p, n, 0.0);
+            let r = V::load(self.r, n, 0.0);
+            let q = mover.target(p, V::load(self.d, n, 0.0));
+            let s = (q - p).only(on);
+            s.store(self.s, n);
+            slope = slope + r * s;
+            let stays = mover.inside(q) & on;
+            *inside = stays.bits();
+            sum = sum + r.only(stays);
+            cells = cells + V::count(stays);
+            let room = V::select(s.less(zero), p, hardness - p);
+            let moves = s.less(zero) | zero.less(s);
+            reach = V::select(moves, room / s.abs(), far).smaller(reach);
+        }
+        ([slope, sum, cells].map(V::sum), Min(reach.least()))
+    }
+}
+
+/// <s, K s>, <s, s> and the sum of K s inside.
+pub(super) fn curvature<T: Cell>(step: &[T], image: &[T], inside: &[u8]) -> [f64; 3] {
+    sweep((step, image, Set(inside)), &|(s, k, Set(inside)): (&[T], &[T], Set)| {
+        vectorize(Curvature { s, k, inside })
+    })
+}
+
+struct Curvature<'a, T> {
+    s: &'a [T],
+    k: &'a [T],
+    inside: &'a [u8],
+}
+
+impl<T: Cell> Work for Curvature<'_, T> {
+    type Yield = [f64; 3];
+
+    #[inline(always)]
+    fn run<V: Eight>(self) -> [f64; 3] {
+        let [mut sk, mut ss, mut sum] = [V::splat(0.0); 3];
+        for (n, inside) in (0..).step_by(8).zip(self.inside) {
+            let s = V::load(self.s, n, 0.0);
+            let k = V::load(self.k, n, 0.0);
+            sk = sk + s * k;
+            ss = ss + s * s;
+            sum = sum + k.only(V::Mask::from_bits(*inside));
+        }
+        [sk, ss, sum].map(V::sum)
+    }
+}
+
+/// t s, K s: how far to go along which step.
+pub(super) struct Motion<'a, T> {
+    pub t: f64,
+    /// a, lambda of the step.
+    pub length: f64,
+    pub shift: Shift,
+    pub direction: &'a [f32],
+    pub image: &'a [T],
+}
+
+/// p += t s, U += t K s where there is a `motion`; then rates the state with the guess `w`, writes r / `scale` on the
+/// working set S, 0 elsewhere, and S over the set of the step.
+///
+/// A cell that lands within rounding of a bound is put on it.
+pub(super) fn advance<T: Cell>(
+    problem: &Problem,
+    state: &mut ContactState,
+    motion: Option<Motion<T>>,
+    w: f64,
+    scale: f64,
+    (residual, set): (&mut [f32], &mut [u8]),
+) -> Rating {
+    let (t, length, shift) =
+        motion.as_ref().map_or((0.0, 0.0, Shift::default()), |m| (m.t, m.length, m.shift));
+    let fields = motion.map(|m| (m.direction, m.image));
+    sweep(
+        (
+            (&mut state.pressure[..], &mut state.unit_displacement[..], residual, SetMut(set)),
+            problem.gap,
+            fields,
+        ),
+        &|((p, u, r, SetMut(set)), h, motion): (
+            (&mut [f64], &mut [f64], &mut [f32], SetMut),
+            &[f64],
+            Option<(&[f32], &[T])>,
+        )| {
+            let motion = motion.map(|(direction, image)| Motion { t, length, shift, direction, image });
+            vectorize(Advance { problem, motion, w, scale, p, u, r, set, h })
+        },
+    )
+}
+
+struct Advance<'a, T> {
+    problem: &'a Problem<'a>,
+    motion: Option<Motion<'a, T>>,
+    w: f64,
+    scale: f64,
+    p: &'a mut [f64],
+    u: &'a mut [f64],
+    r: &'a mut [f32],
+    set: &'a mut [u8],
+    h: &'a [f64],
+}
+
+impl<T: Cell> Advance<'_, T> {
+    /// The new p and U of eight cells.
+    #[inline(always)]
+    fn moved<V: Eight>(&self, motion: &Motion<T>, mover: &Mover<V>, n: usize) -> (V, V) {
+        let hardness = self.problem.hardness;
+        let (zero, t, top) = (V::splat(0.0), V::splat(motion.t), V::splat(hardness));
+        let p = V::load(self.p, n, 0.0);
+        let on = V::Mask::from_bits(self.set[n / 8]);
+        let s = (mover.target(p, V::load(motion.direction, n, 0.0)) - p).only(on);
+        let new = p + t * s;
+        let floor = V::splat(4.0 * f64::EPSILON) * p;
+        let new = V::select(s.less(zero) & new.at_most(floor), zero, new);
+        let below = new.less(V::splat(hardness * (1.0 - 4.0 * f64::EPSILON)));
+        (V::select(below, new, top), V::load(self.u, n, 0.0) + t * V::load(motion.image, n, 0.0))
+    }
+}
+
+impl<T: Cell> Work for Advance<'_, T> {
+    type Yield = Rating;
+
+    #[inline(always)]
+    fn run<V: Eight>(self) -> Rating {
+        let mut gauge = Gauge::<V>::new(self.problem, self.w);
+        let per = V::splat(1.0 / self.scale);
+        let mover = self.motion.as_ref().map(|m| Mover::<V>::new(m.length, m.shift, self.problem.hardness));
+        for n in (0..self.p.len()).step_by(8) {
+            let (p, u) = match (&self.motion, &mover) {
+                (Some(motion), Some(mover)) => {
+                    let (p, u) = self.moved(motion, mover, n);
+                    if self.set[n / 8] != 0 {
+                        p.store(self.p, n);
+                    }
+                    u.store(self.u, n);
+                    (p, u)
+                }
+                _ => (V::load(self.p, n, 0.0), V::load(self.u, n, 0.0)),
+            };
+            let (r, works) = gauge.meet(p, u, V::load(self.h, n, f64::INFINITY));
+            (r * per).only(works).store(self.r, n);
+            self.set[n / 8] = works.bits();
+        }
+        gauge.rating()
+    }
+}

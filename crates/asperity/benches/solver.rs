@@ -58,6 +58,10 @@ fn main() {
             boundary,
             creep: Creep { instantaneous: 0.8556 * 4.013744989e-10, terms, fluidity: 0.0 },
             hardness: capped,
+            solver: asperity::SolverOptions {
+                precision: if precision { asperity::Precision::Mixed } else { asperity::Precision::Double },
+                ..Default::default()
+            },
             loading: Loading { control: Control::Load, history: History::Step { value: 0.5 } },
             times: TimeGrid::Uniform { end: 5.0 * steps as f64, steps },
             ..Simulation::new(grid, gap)

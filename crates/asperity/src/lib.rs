@@ -38,7 +38,7 @@ pub mod verification;
 
 pub use asperity_convolution as convolution;
 
-pub use contact::{ContactState, Method, Outcome, Prescribed, Problem, Solver, SolverOptions};
+pub use contact::{ContactState, Method, Outcome, Precision, Prescribed, Problem, Solver, SolverOptions};
 pub use error::{Error, NotConverged, Result};
 pub use grid::{Boundary, Grid};
 pub use load::{Control, History, Loading};

@@ -20,7 +20,6 @@ const NOT_AVAILABLE: &[(&str, &str)] = &[
     ("arrhenius", NOT_YET),
     ("stages", NOT_YET),
     ("adaptive", NOT_YET),
-    ("mixed", NOT_YET),
     ("accumulate", NOT_YET),
     ("array", "is for arrays that a Python program passes; in a case file use kind = \"file\""),
 ];

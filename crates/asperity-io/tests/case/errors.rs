@@ -403,7 +403,6 @@ fn what_this_version_lacks_is_refused_not_ignored() {
     }
     says("control = \"load\"", "control = \"load\"\nstages = []", "load.stages", 33, &[words]);
     says("steps = 20", "steps = 20\nspacing = \"adaptive\"", "time.spacing", 41, &["adaptive", words]);
-    says("1e-6", "1e-6\nprecision = \"mixed\"", "solver.precision", 44, &["mixed", words]);
     says("1e-6", "1e-6\nplasticity = \"accumulate\"", "solver.plasticity", 44, &["accumulate", words]);
     says("\"sphere\"", "\"array\"", "surface[0].kind", 7, &["Python"]);
 }

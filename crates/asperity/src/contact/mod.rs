@@ -22,7 +22,7 @@ mod state;
 
 pub use gauss_seidel::gauss_seidel;
 pub use polonsky_keer::PolonskyKeer;
-pub use projected_cg::ProjectedCg;
+pub use projected_cg::{ProjectedCg, Scalar};
 pub use state::ContactState;
 
 use std::sync::atomic::AtomicBool;
@@ -64,11 +64,26 @@ pub enum Method {
     PolonskyKeer,
 }
 
+/// Floating-point numbers of a solve. Either way the solution, its residual and its certificate are those of a
+/// convolution in f64.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum Precision {
+    /// Every convolution of a pressure in f64.
+    #[default]
+    Double,
+    /// The steps of an iteration are convolved in f32, at half the cost; what that leaves undone shows in a convolution
+    /// in f64 before a solution is accepted, and is solved for. The same tolerance holds; the digits beyond it
+    /// differ. For [`Method::ProjectedCg`].
+    Mixed,
+}
+
 /// When and how to stop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SolverOptions {
     /// The method; default [`Method::ProjectedCg`].
     pub method: Method,
+    /// Floating-point numbers; default [`Precision::Double`].
+    pub precision: Precision,
     /// Largest violation of the contact conditions, relative to the pressure-weighted mean
     /// displacement; default 1e-6.
     pub tolerance: f64,
@@ -78,7 +93,12 @@ pub struct SolverOptions {
 
 impl Default for SolverOptions {
     fn default() -> Self {
-        SolverOptions { method: Method::default(), tolerance: 1e-6, max_iterations: 5000 }
+        SolverOptions {
+            method: Method::default(),
+            precision: Precision::default(),
+            tolerance: 1e-6,
+            max_iterations: 5000,
+        }
     }
 }
 
@@ -86,10 +106,18 @@ impl SolverOptions {
     /// Checks the ranges.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the tolerance is not in \[1e-14, 0.1\] or no iteration is allowed.
+    /// [`Error::Invalid`] where the tolerance is not in \[1e-14, 0.1\], no iteration is allowed, or the method has
+    /// no mixed precision.
     pub fn validate(&self) -> Result<()> {
         if !(self.tolerance >= 1e-14 && self.tolerance <= 0.1) {
             return Err(Error::invalid("solver tolerance", self.tolerance, "between 1e-14 and 0.1"));
+        }
+        if (self.method, self.precision) == (Method::PolonskyKeer, Precision::Mixed) {
+            return Err(Error::invalid(
+                "solver precision",
+                "mixed",
+                "double with the method polonsky-keer (projected-cg has both)",
+            ));
         }
         if self.max_iterations == 0 {
             return Err(Error::invalid("largest number of iterations", 0, "at least 1"));
@@ -117,16 +145,27 @@ pub struct Outcome {
 pub enum Solver {
     /// Preconditioned projected conjugate gradients.
     ProjectedCg(Box<ProjectedCg>),
+    /// The same in mixed precision.
+    MixedProjectedCg(Box<ProjectedCg<f32>>),
     /// Polonsky & Keer.
     PolonskyKeer(Box<PolonskyKeer>),
 }
 
 impl Solver {
-    /// Plans a solver for the operator's grid.
+    /// Plans a solver in double precision for the operator's grid.
     pub fn new(method: Method, operator: &dyn Operator) -> Self {
-        match method {
-            Method::ProjectedCg => Solver::ProjectedCg(Box::new(ProjectedCg::new(operator.grid()))),
-            Method::PolonskyKeer => Solver::PolonskyKeer(Box::new(PolonskyKeer::new(operator.grid()))),
+        Solver::with_precision(method, Precision::Double, operator)
+    }
+
+    /// Plans a solver for the operator's grid. [`Method::PolonskyKeer`] knows double precision only.
+    pub fn with_precision(method: Method, precision: Precision, operator: &dyn Operator) -> Self {
+        let grid = operator.grid();
+        match (method, precision) {
+            (Method::ProjectedCg, Precision::Double) => Solver::ProjectedCg(Box::new(ProjectedCg::new(grid))),
+            (Method::ProjectedCg, Precision::Mixed) => {
+                Solver::MixedProjectedCg(Box::new(ProjectedCg::new(grid)))
+            }
+            (Method::PolonskyKeer, _) => Solver::PolonskyKeer(Box::new(PolonskyKeer::new(grid))),
         }
     }
 
@@ -149,6 +188,7 @@ impl Solver {
         }
         match self {
             Solver::ProjectedCg(s) => s.solve(operator, problem, options, state, interrupt),
+            Solver::MixedProjectedCg(s) => s.solve(operator, problem, options, state, interrupt),
             Solver::PolonskyKeer(s) => s.solve(operator, problem, options, state, interrupt),
         }
     }

@@ -1,7 +1,8 @@
 //! Sweeps of an iteration that move: the step s laid out for its convolution, its curvature <s, K s>, and the
 //! advance p += t s, U += t K s, which rates the new state and finds its working set on the way.
 //!
-//! The step is laid out only for the convolution, as f64 or as f32: the advance computes it again, in f64.
+//! The step is laid out only for the convolution, as f64 or as f32, in a unit of its own that keeps f32 far from its
+//! limits: the advance computes it again, in f64.
 
 use asperity_convolution::eights::{Cell, Eight, Mask, Work, vectorize};
 
@@ -16,13 +17,22 @@ use crate::field::{Min, Set, SetMut, sweep};
 pub(super) struct Layout {
     /// <r, s>, in units of r.
     pub slope: f64,
+    /// What the step that was laid out is a multiple of \[Pa\], a power of two.
+    pub unit: f64,
     /// sum of r, and number of cells, inside.
     pub inside: [f64; 2],
     /// The largest multiple of s that stays within the bounds.
     pub reach: f64,
 }
 
-/// s = q - p, q the trial point shifted and clipped; and the cells inside.
+/// The power of two below x: units that change no digit.
+fn power_of_two(x: f64) -> f64 {
+    const EXPONENT: u64 = 0x7ff << 52;
+    let power = f64::from_bits(x.to_bits() & EXPONENT);
+    if power.is_normal() { power } else { 1.0 }
+}
+
+/// s = q - p, q the trial point shifted and clipped, and the cells inside.
 pub(super) fn lay_out<T: Cell>(
     trial: &Trial,
     shift: Shift,
@@ -31,6 +41,7 @@ pub(super) fn lay_out<T: Cell>(
     inside: &mut [u8],
 ) -> Layout {
     let (length, hardness) = (trial.length, trial.hardness);
+    let unit = power_of_two(length);
     let ([slope, sum, cells], Min(reach)) = sweep(
         ((step, SetMut(inside)), trial.pressure, trial.direction, residual, Set(trial.set)),
         &|((s, SetMut(inside)), p, d, r, Set(set)): (
@@ -40,10 +51,11 @@ pub(super) fn lay_out<T: Cell>(
             &[f32],
             Set,
         )| {
-            vectorize(LayOut { s, inside, p, d: d.unwrap_or_default(), r, set, length, shift, hardness })
+            let d = d.unwrap_or_default();
+            vectorize(LayOut { s, inside, p, d, r, set, length, shift, hardness, per: 1.0 / unit })
         },
     );
-    Layout { slope, inside: [sum, cells], reach }
+    Layout { slope, unit, inside: [sum, cells], reach }
 }
 
 struct LayOut<'a, T> {
@@ -56,6 +68,7 @@ struct LayOut<'a, T> {
     length: f64,
     shift: Shift,
     hardness: f64,
+    per: f64,
 }
 
 impl<T: Cell> Work for LayOut<'_, T> {
@@ -64,7 +77,7 @@ impl<T: Cell> Work for LayOut<'_, T> {
     #[inline(always)]
     fn run<V: Eight>(self) -> ([f64; 3], Min) {
         let mover = Mover::<V>::new(self.length, self.shift, self.hardness);
-        let (zero, hardness) = (V::splat(0.0), V::splat(self.hardness));
+        let (zero, hardness, per) = (V::splat(0.0), V::splat(self.hardness), V::splat(self.per));
         let [mut slope, mut sum, mut cells] = [zero; 3];
         let far = V::splat(f64::INFINITY);
         let mut reach = far;
@@ -79,7 +92,7 @@ impl<T: Cell> Work for LayOut<'_, T> {
             let r = V::load(self.r, n, 0.0);
             let q = mover.target(p, V::load(self.d, n, 0.0));
             let s = (q - p).only(on);
-            s.store(self.s, n);
+            (s * per).store(self.s, n);
             slope = slope + r * s;
             let stays = mover.inside(q) & on;
             *inside = stays.bits();
@@ -93,7 +106,7 @@ impl<T: Cell> Work for LayOut<'_, T> {
     }
 }
 
-/// <s, K s>, <s, s> and the sum of K s inside.
+/// <s, K s>, <s, s> and the sum of K s inside, s in its unit.
 pub(super) fn curvature<T: Cell>(step: &[T], image: &[T], inside: &[u8]) -> [f64; 3] {
     sweep((step, image, Set(inside)), &|(s, k, Set(inside)): (&[T], &[T], Set)| {
         vectorize(Curvature { s, k, inside })
@@ -126,7 +139,9 @@ impl<T: Cell> Work for Curvature<'_, T> {
 /// t s, K s: how far to go along which step.
 pub(super) struct Motion<'a, T> {
     pub t: f64,
-    /// a, lambda of the step.
+    /// Unit of `image`.
+    pub unit: f64,
+    /// a and the shift of the step.
     pub length: f64,
     pub shift: Shift,
     pub direction: &'a [f32],
@@ -145,9 +160,9 @@ pub(super) fn advance<T: Cell>(
     scale: f64,
     (residual, set): (&mut [f32], &mut [u8]),
 ) -> Rating {
-    let (t, length, shift) =
-        motion.as_ref().map_or((0.0, 0.0, Shift::default()), |m| (m.t, m.length, m.shift));
-    let fields = motion.map(|m| (m.direction, m.image));
+    let (numbers, fields) =
+        motion.map(|m| ((m.t, m.unit, m.length, m.shift), (m.direction, m.image))).unzip();
+    let (t, unit, length, shift) = numbers.unwrap_or_default();
     sweep(
         (
             (&mut state.pressure[..], &mut state.unit_displacement[..], residual, SetMut(set)),
@@ -159,7 +174,7 @@ pub(super) fn advance<T: Cell>(
             &[f64],
             Option<(&[f32], &[T])>,
         )| {
-            let motion = motion.map(|(direction, image)| Motion { t, length, shift, direction, image });
+            let motion = motion.map(|(direction, image)| Motion { t, unit, length, shift, direction, image });
             vectorize(Advance { problem, motion, w, scale, p, u, r, set, h })
         },
     )
@@ -183,6 +198,7 @@ impl<T: Cell> Advance<'_, T> {
     fn moved<V: Eight>(&self, motion: &Motion<T>, mover: &Mover<V>, n: usize) -> (V, V) {
         let hardness = self.problem.hardness;
         let (zero, t, top) = (V::splat(0.0), V::splat(motion.t), V::splat(hardness));
+        let far = V::splat(motion.t * motion.unit);
         let p = V::load(self.p, n, 0.0);
         let on = V::Mask::from_bits(self.set[n / 8]);
         let s = (mover.target(p, V::load(motion.direction, n, 0.0)) - p).only(on);
@@ -190,7 +206,7 @@ impl<T: Cell> Advance<'_, T> {
         let floor = V::splat(4.0 * f64::EPSILON) * p;
         let new = V::select(s.less(zero) & new.at_most(floor), zero, new);
         let below = new.less(V::splat(hardness * (1.0 - 4.0 * f64::EPSILON)));
-        (V::select(below, new, top), V::load(self.u, n, 0.0) + t * V::load(motion.image, n, 0.0))
+        (V::select(below, new, top), V::load(self.u, n, 0.0) + far * V::load(motion.image, n, 0.0))
     }
 }
 

@@ -56,6 +56,14 @@ impl Scalar for f64 {
     }
 }
 
+/// Mixed precision: convolutions of steps in f32, where a step's error of 1e-7 is that of a small correction.
+impl Scalar for f32 {
+    const ROUGH: bool = true;
+    fn apply(operator: &mut dyn Operator, p: &[f32], u: &mut [f32]) {
+        operator.apply_single_into(p, u);
+    }
+}
+
 /// The method's working memory: 16 bytes per cell, 16 for steps in f64 or 8 in f32, sets of one bit, and the
 /// preconditioner's plan.
 pub struct ProjectedCg<T = f64> {
@@ -211,7 +219,8 @@ impl<T: Scalar> ProjectedCg<T> {
             T::apply(operator, &self.step, &mut self.moved);
             convolutions += 1;
             let [curvature, length, change] = curvature(&self.step, &self.moved, &self.inside);
-            let curvature = problem.compliance * curvature;
+            let size = step.layout.unit;
+            let (curvature, length) = (problem.compliance * size * size * curvature, size * size * length);
             let slope = unit * step.layout.slope;
             let exact = if curvature > 0.0 { -slope / curvature } else { 1.0 };
             let t = match step.kind {
@@ -234,12 +243,13 @@ impl<T: Scalar> ProjectedCg<T> {
             let [r, cells] = step.layout.inside;
             let foretold = match problem.prescribed {
                 Prescribed::Load(_) if cells > 0.0 => {
-                    rating.w + unit * (r / cells + step.mean) + t * problem.compliance * change / cells
+                    rating.w + unit * (r / cells + step.mean) + t * size * problem.compliance * change / cells
                 }
                 _ => rating.w,
             };
             let motion = Motion {
                 t,
+                unit: size,
                 length: step.length,
                 shift: step.shift,
                 direction: &self.direction,

@@ -117,7 +117,8 @@ impl March {
         simulation.validate()?;
         let instants = simulation.instants();
         let operator = half_space(simulation.grid, simulation.boundary);
-        let solver = Solver::new(simulation.solver.method, &*operator);
+        let options = &simulation.solver;
+        let solver = Solver::with_precision(options.method, options.precision, &*operator);
         let n = simulation.grid.len();
         let past = match simulation.scheme {
             Scheme::Direct => Past::Direct(Direct::new(&simulation.creep, &simulation.thermal)),

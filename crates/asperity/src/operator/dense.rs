@@ -61,6 +61,12 @@ impl Operator for Dense {
         }
     }
 
+    fn apply_single_into(&mut self, p: &[f32], u: &mut [f32]) {
+        for (u, row) in u.iter_mut().zip(self.matrix.outer_iter()) {
+            *u = row.iter().zip(p).map(|(k, p)| k * f64::from(*p)).sum::<f64>() as f32;
+        }
+    }
+
     fn self_influence(&self) -> f64 {
         self.matrix[(0, 0)]
     }
@@ -85,12 +91,23 @@ mod tests {
                 let p: Vec<f64> = (0..grid.len()).map(|n| ((n * 29 % 13) as f64) / 13.0).collect();
                 let mut fast = vec![0.0; p.len()];
                 let mut slow = vec![0.0; p.len()];
-                half_space(grid, boundary).apply_into(&p, &mut fast);
+                let mut operator = half_space(grid, boundary);
+                operator.apply_into(&p, &mut fast);
                 Dense::new(grid, boundary).apply_into(&p, &mut slow);
                 let scale = slow.iter().fold(size[0] * 1e-3, |m, u| u.abs().max(m));
                 for (f, s) in fast.iter().zip(&slow) {
                     // one rounding for each of the ~150 terms
                     assert!((f - s).abs() < 2e-14 * scale, "{boundary:?} {cells:?}: {f} against {s}");
+                }
+                let single: Vec<f32> = p.iter().map(|p| *p as f32).collect();
+                let mut rough = vec![0.0; p.len()];
+                operator.apply_single_into(&single, &mut rough);
+                for (r, s) in rough.iter().zip(&slow) {
+                    // some roundings of f32, 6e-8 each
+                    assert!(
+                        (f64::from(*r) - s).abs() < 1e-6 * scale,
+                        "{boundary:?} {cells:?}: {r} against {s}"
+                    );
                 }
             }
         }

@@ -4,7 +4,8 @@
 use ndarray::Array2;
 use ndarray::parallel::prelude::*;
 
-use super::Operator;
+use super::{Operator, Single};
+use crate::convolution::lanes::Lanes;
 use crate::convolution::{Convolution, even_spectrum};
 use crate::grid::{Boundary, Grid};
 use crate::kernel::love;
@@ -13,19 +14,26 @@ use crate::kernel::love;
 pub struct Free {
     grid: Grid,
     convolution: Convolution,
+    single: Single,
     self_influence: f64,
 }
 
 impl Free {
     /// Plans the operator; the influence coefficients are computed here.
     pub fn new(grid: Grid) -> Self {
-        let lengths = grid.cells().map(|n| Convolution::good_length(2 * n - 1));
+        let lengths = padded(&grid);
         let kernel = influence(&grid, lengths);
         let self_influence = kernel[(0, 0)];
         let spectrum = even_spectrum(&kernel, lengths);
         debug_assert!(spectrum.iter().all(|s| *s > 0.0), "the kernel is positive definite");
-        Free { grid, convolution: Convolution::new(grid.cells(), lengths, spectrum.view()), self_influence }
+        let convolution = Convolution::new(grid.cells(), lengths, spectrum.view());
+        Free { grid, convolution, single: Single::default(), self_influence }
     }
+}
+
+/// Lengths of the transforms.
+fn padded(grid: &Grid) -> [usize; 2] {
+    grid.cells().map(|n| Convolution::good_length(2 * n - 1))
 }
 
 /// K on the quadrant of the padded torus. Beyond the domain the true coefficients go on: no output
@@ -52,6 +60,15 @@ impl Operator for Free {
 
     fn apply_into(&mut self, p: &[f64], u: &mut [f64]) {
         self.convolution.apply_into(p, u);
+    }
+
+    fn apply_single_into(&mut self, p: &[f32], u: &mut [f32]) {
+        let grid = &self.grid;
+        let plan = || {
+            let lengths = padded(grid);
+            Lanes::new(grid.cells(), lengths, even_spectrum(&influence(grid, lengths), lengths).view())
+        };
+        self.single.apply_into(plan, p, u);
     }
 
     fn self_influence(&self) -> f64 {

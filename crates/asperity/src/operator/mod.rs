@@ -26,6 +26,9 @@ pub trait Operator: Send {
     /// u = K p; both C-order of nx ny cells.
     fn apply_into(&mut self, p: &[f64], u: &mut [f64]);
 
+    /// The same in f32, to about 1e-7 of the largest u.
+    fn apply_single_into(&mut self, p: &[f32], u: &mut [f32]);
+
     /// Displacement of a cell under its own unit pressure \[m\].
     fn self_influence(&self) -> f64;
 }
@@ -35,6 +38,16 @@ pub fn half_space(grid: Grid, boundary: Boundary) -> Box<dyn Operator> {
     match boundary {
         Boundary::Free => Box::new(Free::new(grid)),
         Boundary::Periodic => Box::new(Periodic::new(grid)),
+    }
+}
+
+/// A convolution in f32 beside the one in f64, planned when it is first wanted.
+#[derive(Default)]
+struct Single(Option<Lanes<f32>>);
+
+impl Single {
+    fn apply_into(&mut self, plan: impl FnOnce() -> Lanes<f32>, p: &[f32], u: &mut [f32]) {
+        self.0.get_or_insert_with(plan).apply_into(p, u);
     }
 }
 

@@ -1,8 +1,9 @@
 //! The periodic half-space: 2/|q| on the waves of the domain (Westergaard 1939; Stanley & Kato, J.
 //! Tribol. 119, 1997). The mean pressure displaces nothing: displacements have zero mean.
 
-use super::{Operator, wave_spectrum};
+use super::{Operator, Single, wave_spectrum};
 use crate::convolution::Convolution;
+use crate::convolution::lanes::Lanes;
 use crate::grid::{Boundary, Grid};
 use crate::kernel::wave_kernel;
 
@@ -10,6 +11,7 @@ use crate::kernel::wave_kernel;
 pub struct Periodic {
     grid: Grid,
     convolution: Convolution,
+    single: Single,
     self_influence: f64,
 }
 
@@ -22,7 +24,7 @@ impl Periodic {
         let mut response = vec![0.0; grid.len()];
         unit[0] = 1.0;
         convolution.apply_into(&unit, &mut response);
-        Periodic { grid, convolution, self_influence: response[0] }
+        Periodic { grid, convolution, single: Single::default(), self_influence: response[0] }
     }
 }
 
@@ -37,6 +39,12 @@ impl Operator for Periodic {
 
     fn apply_into(&mut self, p: &[f64], u: &mut [f64]) {
         self.convolution.apply_into(p, u);
+    }
+
+    fn apply_single_into(&mut self, p: &[f32], u: &mut [f32]) {
+        let grid = &self.grid;
+        let plan = || Lanes::new(grid.cells(), grid.cells(), wave_spectrum(grid, wave_kernel).view());
+        self.single.apply_into(plan, p, u);
     }
 
     fn self_influence(&self) -> f64 {

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use asperity::{Method, SolverOptions, TimeGrid};
+use asperity::{Method, Precision, SolverOptions, TimeGrid};
 
 use super::Checks;
 use super::time;
@@ -12,14 +12,18 @@ use crate::case::words::number;
 
 pub fn solver(solver: &raw::Solver) -> SolverOptions {
     let default = SolverOptions::default();
-    // One member each in this version; the match keeps this place in step with the format.
-    match (solver.precision, solver.plasticity) {
-        (raw::Precision::Double, raw::Plasticity::Cap) => {}
+    // One member in this version; the match keeps this place in step with the format.
+    match solver.plasticity {
+        raw::Plasticity::Cap => {}
     }
     SolverOptions {
         method: match solver.method {
             raw::Method::ProjectedCg => Method::ProjectedCg,
             raw::Method::PolonskyKeer => Method::PolonskyKeer,
+        },
+        precision: match solver.precision {
+            raw::Precision::Double => Precision::Double,
+            raw::Precision::Mixed => Precision::Mixed,
         },
         tolerance: solver.tolerance.map_or(default.tolerance, |tolerance| tolerance.get()),
         max_iterations: solver.max_iterations.map_or(default.max_iterations, |most| most.count()),

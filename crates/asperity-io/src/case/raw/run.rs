@@ -46,6 +46,9 @@ pub enum Precision {
     /// 64 bits.
     #[default]
     Double,
+    /// The steps of the iterations in 32 bits, their sum and every check in 64: the same tolerance in less time. With
+    /// "projected-cg".
+    Mixed,
 }
 
 /// What flattening leaves behind.

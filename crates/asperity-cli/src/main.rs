@@ -34,6 +34,7 @@ fn main() -> ExitCode {
         Command::Show(show) => commands::show::run(&show),
         Command::Report(report) => commands::report::run(&report),
         Command::Plot(plot) => commands::plot::run(&plot),
+        Command::Material(material) => commands::material::run(&material),
         Command::Export(export) => commands::export::run(&export),
         Command::Reproduce(reproduce) => commands::reproduce::run(&reproduce),
         Command::Schema => commands::schema::run(),

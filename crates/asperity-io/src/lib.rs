@@ -1,6 +1,7 @@
-//! The files of asperity: case files in, measured topographies in, results out.
+//! The files of asperity: case files in, measured topographies and curves in, results out.
 
 pub mod case;
+pub mod curve;
 pub mod export;
 pub mod session;
 pub mod store;

@@ -1,11 +1,14 @@
 //! Pictures of asperity: numbers in, figures out. It computes no physics.
 //!
-//! [`page`] writes the report, one HTML file; [`result`] makes the figures of a result, by name;
-//! [`pictures`] a directory of them;
-//! [`paper`] the figures of the paper that the method comes from; [`figure`] draws panels of curves and maps with units, scale bars and colour bars, as SVG or PNG.
+//! - [`figure`] draws panels of curves and maps with units, scale bars and colour bars, as SVG, PNG or PDF.
+//! - [`result`] makes the figures of a result, by name; [`pictures`] a directory of them.
+//! - [`page`] writes the report, one HTML file.
+//! - [`material`] shows materials and fits.
+//! - [`paper`] makes the figures of the paper that the method comes from.
 
 pub mod figure;
 mod file;
+pub mod material;
 pub mod page;
 pub mod paper;
 pub mod pictures;

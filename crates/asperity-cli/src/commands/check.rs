@@ -62,7 +62,7 @@ fn tell(case: &Case, d: &Description, estimate: Option<f64>) -> String {
     let title = d.title.as_deref().unwrap_or(&case.name);
     let [nx, ny] = d.cells;
     let mut text = format!("{title}\n");
-    let mut line = |name: &str, value: String| text += &format!("  {name:<11}{value}\n");
+    let mut line = |name: &str, value: String| text += &format!("  {name:<12}{value}\n");
     line(
         "domain",
         format!(
@@ -92,6 +92,21 @@ fn tell(case: &Case, d: &Description, estimate: Option<f64>) -> String {
     if !d.retardation_times.is_empty() {
         let times: Vec<_> = d.retardation_times.iter().map(|t| quantity(*t, "s", 1)).collect();
         line("creep", format!("retardation times {}", times.join(", ")));
+    }
+    for report in &d.materials {
+        for text in super::material::source(report) {
+            line("material", format!("{}: {text}", report.body));
+        }
+    }
+    if let Some([low, high]) = d.temperature {
+        let celsius = |kelvin: f64| format!("{:.2} °C", kelvin - 273.15);
+        line(
+            "temperature",
+            if low == high { celsius(low) } else { format!("{} to {}", celsius(low), celsius(high)) },
+        );
+    }
+    for warning in &d.warnings {
+        line("warning", warning.clone());
     }
     if let Some(hardness) = d.hardness {
         line("hardness", quantity(hardness, "Pa", 1));

@@ -18,6 +18,7 @@ use crate::words::{bytes, duration, quantity};
 pub fn run(args: &Run) -> Result<(), Failure> {
     super::use_threads(args.common.threads)?;
     let case = Case::read(&args.case, &args.common.set)?;
+    tell_materials(args, &case);
     let options = RunOptions {
         output: args.output.clone(),
         force: args.force,
@@ -48,6 +49,18 @@ pub fn run(args: &Run) -> Result<(), Failure> {
             }
             Err(Failure::Solve(message))
         }
+    }
+}
+
+/// What stands for measured and fractional materials and how well, and where the run goes beyond it.
+fn tell_materials(args: &Run, case: &Case) {
+    for report in case.materials.iter().filter(|_| !args.quiet) {
+        for line in super::material::source(report) {
+            eprintln!("{}: {line}", report.body);
+        }
+    }
+    for warning in &case.warnings {
+        eprintln!("warning: {warning}");
     }
 }
 

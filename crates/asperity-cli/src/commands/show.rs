@@ -5,7 +5,7 @@ use asperity_io::store::{At, Reader, SCALARS, Status, StoreError};
 use asperity_report::result::contact;
 use serde_json::json;
 
-use crate::args::Show;
+use crate::args::ShowResult;
 use crate::failure::Failure;
 use crate::terminal::{shares, sparkline};
 use crate::words::{bytes, duration, quantity, read};
@@ -15,7 +15,7 @@ const COLUMNS: usize = 56;
 const SPARKS: usize = 40;
 
 /// Prints the summary.
-pub fn run(args: &Show) -> Result<(), Failure> {
+pub fn run(args: &ShowResult) -> Result<(), Failure> {
     let at = match &args.time {
         Some(text) => At::Time(read::<Time>("--time", text, "500 s")?.get()),
         None => At::Last,

@@ -1,11 +1,45 @@
 //! What a case will do, in numbers: for `asperity check`.
 
+use asperity::material::Creep;
 use asperity::surface::Part;
 use asperity::{Boundary, Scheme};
 use serde::Serialize;
 
 use super::plan::Surface;
 use super::{Case, Rows};
+
+/// Where the material of a body comes from, and how well it is known.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct MaterialReport {
+    /// Name of the body.
+    pub body: String,
+    /// "zener", "dma", ...
+    pub model: &'static str,
+    /// Retarded terms of its creep function.
+    pub terms: usize,
+    /// Largest relative error of the Prony sum that stands for a fractional model, over `window`.
+    pub error: Option<f64>,
+    /// Largest relative distance between measured points and the fit.
+    pub max_misfit: Option<f64>,
+    /// Root of the mean square of these distances.
+    pub rms_misfit: Option<f64>,
+    /// Relative scatter of the measured points (standard deviation).
+    pub noise: Option<f64>,
+    /// First and last time that the error or the measurement covers, at the reference temperature \[s\].
+    pub window: Option<[f64; 2]>,
+    /// Measured points.
+    pub points: Option<usize>,
+    /// Temperatures at which they were measured \[K\].
+    pub temperatures: Vec<f64>,
+    /// The file that holds them, as the case names it.
+    pub file: Option<String>,
+    /// The law of the shift, where a measured material has one.
+    pub shift: Option<String>,
+    /// Shift factor a_T at the constant temperature of the body, where it has a shift.
+    pub shift_factor: Option<f64>,
+    /// What was assumed.
+    pub notes: Vec<String>,
+}
 
 /// What will be solved, and what it takes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -28,8 +62,14 @@ pub struct Description {
     pub instantaneous_modulus: Option<f64>,
     /// Contact modulus after all creep, 1/C(infinity) \[Pa\]; 0 for a fluid.
     pub relaxed_modulus: f64,
-    /// Retardation times of the pair \[s\].
+    /// Retardation times of the pair \[s\], of bodies whose temperature changes at their reference.
     pub retardation_times: Vec<f64>,
+    /// Where the materials come from.
+    pub materials: Vec<MaterialReport>,
+    /// What should be known before the numbers are believed.
+    pub warnings: Vec<String>,
+    /// Lowest and highest temperature of the run \[K\], where it has any.
+    pub temperature: Option<[f64; 2]>,
     /// Cut-off of the pressure \[Pa\].
     pub hardness: Option<f64>,
     /// Last instant \[s\].
@@ -52,6 +92,7 @@ impl Case {
     /// What the case will do.
     pub fn describe(&self) -> Description {
         let stored_rows = self.stored_rows();
+        let creep = self.reference_creep();
         let field_bytes: u64 = self.output.fields.iter().map(|field| field.bytes()).sum();
         Description {
             title: self.title.clone(),
@@ -64,9 +105,12 @@ impl Case {
             },
             surfaces: self.surfaces.iter().map(name).collect(),
             bodies: self.bodies.iter().map(|body| body.name.clone()).collect(),
-            instantaneous_modulus: (self.creep.instantaneous > 0.0).then(|| 1.0 / self.creep.instantaneous),
-            relaxed_modulus: 1.0 / self.creep.long_time(),
-            retardation_times: self.creep.terms.iter().map(|term| term.retardation_time).collect(),
+            instantaneous_modulus: (creep.instantaneous > 0.0).then(|| 1.0 / creep.instantaneous),
+            relaxed_modulus: 1.0 / creep.long_time(),
+            retardation_times: creep.terms.iter().map(|term| term.retardation_time).collect(),
+            materials: self.materials.clone(),
+            warnings: self.warnings.clone(),
+            temperature: self.temperature_range(),
             hardness: self.hardness.is_finite().then_some(self.hardness),
             end: self.times.end(),
             rows: self.rows,
@@ -81,6 +125,16 @@ impl Case {
             // initial_gap is always stored
             result_bytes: (self.grid.len() as u64).saturating_mul(8 + stored_rows as u64 * field_bytes),
         }
+    }
+
+    /// C of the pair, of bodies whose temperature changes at their reference temperature.
+    fn reference_creep(&self) -> Creep {
+        self.thermal.iter().fold(self.creep.clone(), |sum, body| sum.sum(&body.creep))
+    }
+
+    fn temperature_range(&self) -> Option<[f64; 2]> {
+        let points = self.temperatures.as_ref()?.iter().map(|point| point.1);
+        Some([points.clone().fold(f64::INFINITY, f64::min), points.fold(0.0, f64::max)])
     }
 
     fn stored_rows(&self) -> usize {

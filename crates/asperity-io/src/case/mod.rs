@@ -50,6 +50,7 @@ pub mod quantity;
 mod raw;
 mod read;
 mod schema;
+mod specimen;
 pub mod templates;
 mod text;
 mod words;
@@ -58,16 +59,17 @@ use std::io::Read;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use asperity::material::{Body, Creep};
+use asperity::material::{Body, Creep, ThermalCreep};
 use asperity::surface::undeformed_gap;
 use asperity::{Boundary, Error, Grid, Loading, Scheme, Simulation, SolverOptions, TimeGrid};
 use ndarray::Array2;
 
-pub use describe::Description;
+pub use describe::{Description, MaterialReport};
 pub use error::{CaseError, CaseErrors};
 pub use measured::Measured;
 pub use plan::{Field, Output, Rows, Surface};
 pub use schema::schema;
+pub use specimen::{Specimen, specimens};
 
 use overrides::Override;
 use text::Text;
@@ -92,8 +94,18 @@ pub struct Case {
     pub surfaces: Vec<Surface>,
     /// The deformable bodies, one or two.
     pub bodies: Vec<Body>,
-    /// Contact creep compliance C(t) of the pair \[1/Pa\].
+    /// Contact creep compliance C(t) of the pair \[1/Pa\]; without the bodies of `thermal`.
     pub creep: Creep,
+    /// Bodies whose temperature changes.
+    pub thermal: Vec<ThermalCreep>,
+    /// Temperature of the run, where it has one: (time \[s\], temperature \[K\]), straight in between.
+    pub temperatures: Option<Vec<(f64, f64)>>,
+    /// Where the materials come from, and how well they are known.
+    pub materials: Vec<MaterialReport>,
+    /// What should be known before the numbers are believed.
+    pub warnings: Vec<String>,
+    /// Files that hold numbers of the case (not surfaces), as it names them, and their MD5.
+    pub files: Vec<(String, String)>,
     /// Cut-off H of the pressure \[Pa\], the softer body's; infinite without.
     pub hardness: f64,
     /// What is prescribed over time.
@@ -193,6 +205,7 @@ impl Case {
         let simulation = Simulation {
             boundary: self.boundary,
             creep: self.creep.clone(),
+            thermal: self.thermal.clone(),
             hardness: self.hardness,
             loading: self.loading.clone(),
             times: self.times.clone(),

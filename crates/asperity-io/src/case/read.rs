@@ -9,12 +9,13 @@ use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue, ValueDeserializer};
 
 use super::error::CaseError;
-use super::raw::Document;
+use super::raw::{At, Document, Material};
 use super::text::{MOST_ERRORS, Text};
 use super::words;
 
 /// The keys of the root.
-pub const SECTIONS: &[&str] = &["title", "domain", "surface", "body", "load", "time", "solver", "output"];
+pub const SECTIONS: &[&str] =
+    &["title", "domain", "surface", "body", "load", "time", "temperature", "solver", "output"];
 
 /// The document, or the faults that its sections have.
 pub fn document(text: &Text<'_>) -> Result<Document, Vec<CaseError>> {
@@ -25,28 +26,50 @@ pub fn document(text: &Text<'_>) -> Result<Document, Vec<CaseError>> {
             reader.misspelt.extend(words::nearest(key.get_ref(), SECTIONS));
         }
     }
-    let title = reader.optional("title");
-    let domain = reader.required("domain", None);
-    let surface = reader.list("surface", Some(Tag { inside: None, key: "kind" }));
-    let body = reader.list("body", Some(Tag { inside: Some("material"), key: "model" }));
-    let load = reader.required("load", Some(Tag { inside: Some("history"), key: "kind" }));
-    let time = reader.required("time", None);
-    let solver = reader.optional("solver").unwrap_or_default();
-    let output = reader.optional("output").unwrap_or_default();
+    let title = reader.optional("title", &[]);
+    let domain = reader.required("domain", &[]);
+    let surface = reader.list("surface", &[Tag { inside: &[], key: "kind" }]);
+    let body = reader.list("body", MATERIAL);
+    let load = reader.required("load", HISTORY);
+    let time = reader.required("time", &[]);
+    let temperature = reader.optional("temperature", HISTORY);
+    let solver = reader.optional("solver", &[]).unwrap_or_default();
+    let output = reader.optional("output", &[]).unwrap_or_default();
     reader.errors.sort_by_key(|error| error.span.as_ref().map_or(usize::MAX, |span| span.start));
     match (reader.errors.is_empty(), domain, load, time) {
         (true, Some(domain), Some(load), Some(time)) => {
-            Ok(Document { title, domain, surface, body, load, time, solver, output })
+            Ok(Document { title, domain, surface, body, load, time, temperature, solver, output })
         }
         _ => Err(reader.errors),
     }
 }
 
-/// Where a section holds a tagged union: in itself, or in its table `inside`.
+/// Where a section holds a tagged union: in itself, or in the table at the path `inside`.
 #[derive(Clone, Copy)]
 struct Tag {
-    inside: Option<&'static str>,
+    inside: &'static [&'static str],
     key: &'static str,
+}
+
+/// The inner unions first: the outer ones move them.
+const MATERIAL: &[Tag] =
+    &[Tag { inside: &["material", "shift"], key: "model" }, Tag { inside: &["material"], key: "model" }];
+const HISTORY: &[Tag] = &[Tag { inside: &["history"], key: "kind" }];
+
+/// The material of a file that holds nothing else, `material = { ... }`, or the faults that it has.
+pub fn material(text: &Text<'_>) -> Result<At<Material>, Vec<CaseError>> {
+    let mut reader = Reader { text, errors: Vec::new(), misspelt: Vec::new() };
+    for key in text.root.keys().take(MOST_ERRORS) {
+        if key.get_ref() != "material" {
+            reader.errors.push(words::unknown_key(text, &key.span(), key.get_ref(), &["material"]));
+        }
+    }
+    const ALONE: &[Tag] = &[Tag { inside: &["shift"], key: "model" }, Tag { inside: &[], key: "model" }];
+    let material = reader.optional("material", ALONE);
+    match (reader.errors.is_empty(), material) {
+        (true, Some(material)) => Ok(material),
+        _ => Err(reader.errors),
+    }
 }
 
 struct Reader<'r, 't> {
@@ -57,9 +80,9 @@ struct Reader<'r, 't> {
 }
 
 impl<'t> Reader<'_, 't> {
-    fn required<T: DeserializeOwned>(&mut self, key: &'static str, tag: Option<Tag>) -> Option<T> {
+    fn required<T: DeserializeOwned>(&mut self, key: &'static str, tags: &[Tag]) -> Option<T> {
         match self.text.root.get(key) {
-            Some(value) => self.read(value, tag),
+            Some(value) => self.read(value, tags),
             None => {
                 self.missing(key);
                 None
@@ -73,11 +96,11 @@ impl<'t> Reader<'_, 't> {
         }
     }
 
-    fn optional<T: DeserializeOwned>(&mut self, key: &str) -> Option<T> {
-        self.text.root.get(key).and_then(|value| self.read(value, None))
+    fn optional<T: DeserializeOwned>(&mut self, key: &str, tags: &[Tag]) -> Option<T> {
+        self.text.root.get(key).and_then(|value| self.read(value, tags))
     }
 
-    fn list<T: DeserializeOwned>(&mut self, key: &'static str, tag: Option<Tag>) -> Vec<T> {
+    fn list<T: DeserializeOwned>(&mut self, key: &'static str, tags: &[Tag]) -> Vec<T> {
         let Some(value) = self.text.root.get(key) else {
             self.missing(key);
             return Vec::new();
@@ -96,18 +119,18 @@ impl<'t> Reader<'_, 't> {
             if self.errors.len() >= MOST_ERRORS {
                 break;
             }
-            sections.extend(self.read(element, tag));
+            sections.extend(self.read(element, tags));
         }
         sections
     }
 
-    fn read<T: DeserializeOwned>(&mut self, value: &Spanned<DeValue<'t>>, tag: Option<Tag>) -> Option<T> {
+    fn read<T: DeserializeOwned>(&mut self, value: &Spanned<DeValue<'t>>, tags: &[Tag]) -> Option<T> {
         let mut value = value.clone();
-        if let Some(tag) = tag
-            && let Err(error) = self.move_tag(&mut value, tag)
-        {
-            self.errors.push(*error);
-            return None;
+        for tag in tags {
+            if let Err(error) = self.move_tag(&mut value, *tag) {
+                self.errors.push(*error);
+                return None;
+            }
         }
         let span = value.span();
         match T::deserialize(ValueDeserializer::from(value)) {
@@ -120,16 +143,17 @@ impl<'t> Reader<'_, 't> {
     }
 
     fn move_tag(&self, value: &mut Spanned<DeValue<'t>>, tag: Tag) -> Result<(), Box<CaseError>> {
-        let Some(inside) = tag.inside else {
-            return self.outwards(value, tag.key);
-        };
-        let DeValue::Table(table) = value.get_mut() else {
-            return Ok(()); // serde says what the section is
-        };
-        match table.get_mut(inside) {
-            Some(union) => self.outwards(union, tag.key),
-            None => Ok(()), // serde says that it is missing
+        let mut union = value;
+        for name in tag.inside {
+            let DeValue::Table(table) = union.get_mut() else {
+                return Ok(()); // serde says what the section is
+            };
+            union = match table.get_mut(*name) {
+                Some(inner) => inner,
+                None => return Ok(()), // serde says that it is missing, where it must not
+            };
         }
+        self.outwards(union, tag.key)
     }
 
     /// `{ tag = name, ... }` becomes `{ name = { ... } }`.

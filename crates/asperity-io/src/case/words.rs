@@ -10,14 +10,6 @@ use super::text::{Text, join};
 
 /// Names that the format has, or will have, but this version does not know: they are refused, never ignored.
 const NOT_AVAILABLE: &[(&str, &str)] = &[
-    ("springpot", NOT_YET),
-    ("fractional-zener", NOT_YET),
-    ("fractional-maxwell", NOT_YET),
-    ("relaxation-table", NOT_YET),
-    ("creep-table", NOT_YET),
-    ("dma", NOT_YET),
-    ("wlf", NOT_YET),
-    ("arrhenius", NOT_YET),
     ("stages", NOT_YET),
     ("adaptive", NOT_YET),
     ("accumulate", NOT_YET),

@@ -10,6 +10,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use asperity::march::{March, Row, Step};
+use asperity::material::Creep;
 use asperity::{Error, Simulation};
 use ndarray::Array2;
 use serde_json::{Map, Value, json};
@@ -239,17 +240,24 @@ fn setup(case: &Case) -> Map<String, Value> {
         Value::Object(map) => map,
         _ => Map::new(),
     };
-    let terms: Vec<_> = case.creep.terms.iter().map(|t| json!([t.compliance, t.retardation_time])).collect();
-    setup.insert(
-        "contact_creep_compliance".into(),
-        json!({
-            "instantaneous": case.creep.instantaneous,
-            "terms": terms,
-            "fluidity": case.creep.fluidity,
-        }),
-    );
+    setup.insert("contact_creep_compliance".into(), creep(&case.creep));
+    if !case.thermal.is_empty() {
+        let parts: Vec<Value> = case.thermal.iter().map(|body| creep(&body.creep)).collect();
+        setup.insert("contact_creep_compliance_over_reduced_time".into(), json!(parts));
+    }
+    if !case.files.is_empty() {
+        let files: Map<String, Value> =
+            case.files.iter().map(|(path, digest)| (path.clone(), json!(digest))).collect();
+        setup.insert("md5_of_files".into(), json!(files));
+    }
     setup.insert("solver_tolerance".into(), json!(case.solver.tolerance));
     setup
+}
+
+/// A creep function in numbers, SI.
+fn creep(creep: &Creep) -> Value {
+    let terms: Vec<_> = creep.terms.iter().map(|t| json!([t.compliance, t.retardation_time])).collect();
+    json!({ "instantaneous": creep.instantaneous, "terms": terms, "fluidity": creep.fluidity })
 }
 
 /// Ends a run whose step was not solved.

@@ -49,6 +49,7 @@ pub use format::{Format, detect};
 pub use write::{to_bytes, write};
 
 use finish::finish;
+pub(crate) use text::{dialect, is_numbers, to_text};
 
 /// Heights over a rectangle, with what the file says about them.
 ///

@@ -398,9 +398,6 @@ fn materials() {
 #[test]
 fn what_this_version_lacks_is_refused_not_ignored() {
     let words = "not available in this version";
-    for model in ["springpot", "fractional-zener", "relaxation-table", "creep-table", "dma"] {
-        says("\"zener\"", &format!("\"{model}\""), "body[0].material.model", 20, &[model, words]);
-    }
     says("control = \"load\"", "control = \"load\"\nstages = []", "load.stages", 33, &[words]);
     says("steps = 20", "steps = 20\nspacing = \"adaptive\"", "time.spacing", 41, &["adaptive", words]);
     says("1e-6", "1e-6\nplasticity = \"accumulate\"", "solver.plasticity", 44, &["accumulate", words]);

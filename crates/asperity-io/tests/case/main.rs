@@ -3,4 +3,5 @@
 mod errors;
 mod examples;
 mod hostile;
+mod materials;
 mod values;

@@ -4,6 +4,8 @@ use crate::error::{Error, Result};
 
 /// More points than a curve needs.
 const MOST_POINTS: usize = 10_000_000;
+/// Fewer points than this do not tell their scatter.
+const FEW_POINTS: usize = 20;
 /// Widest range of times or frequencies.
 const MOST_DECADES: f64 = 60.0;
 
@@ -143,10 +145,12 @@ pub(super) fn thin(xs: &[f64], values: &[f64]) -> Vec<(f64, f64, f64)> {
 }
 
 /// Refuses a curve that goes the wrong way by more than its scatter explains: the distance of the two
-/// extremes of N normal deviates, and at least one per cent.
+/// extremes of N normal deviates, and at least one per cent. The scatter of a few points cannot be told from the
+/// bends of their curve: these may go wrong by a tenth at most.
 pub(super) fn check_trend(words: Words, trend: Trend, xs: &[f64], values: &[f64]) -> Result<()> {
     let extremes = 2.0 * (1.0 + (2.0 * (xs.len() as f64).ln()).sqrt());
-    let allowed = (extremes * noise(xs, values)).max(0.01);
+    let most = if xs.len() < FEW_POINTS { 0.1 } else { f64::INFINITY };
+    let allowed = (extremes * noise(xs, values)).clamp(0.01, most);
     let mut extreme = 0;
     for (n, value) in values.iter().enumerate() {
         let reference = values[extreme];
@@ -238,6 +242,14 @@ mod tests {
         assert_eq!(bins.iter().map(|b| b.2).sum::<f64>(), 49_999.0);
         // Means of a straight line lie on it, up to the rounding of 600 updates.
         assert!(bins.iter().all(|(x, value, _)| (value / x - 2.0).abs() < 1e-12));
+    }
+
+    #[test]
+    fn few_points_that_rise_are_refused_though_their_scatter_is_unknown() {
+        let xs = [0.1, 1.0, 10.0, 100.0, 1000.0];
+        assert!(check_trend(WORDS, Trend::Falls, &xs, &[3.0, 2.0, 1.5, 1.2, 1.1]).is_ok());
+        let error = check_trend(WORDS, Trend::Falls, &xs, &[3.0, 2.0, 1.5, 1.9, 1.1]).unwrap_err();
+        assert!(error.to_string().contains("point 4 (time 1e2 s)"), "{error}");
     }
 
     #[test]

@@ -35,11 +35,19 @@ pub struct FitOptions {
     pub long_time: LongTime,
     /// Largest systematic relative misfit before the data are refused, default 0.1.
     pub limit: f64,
+    /// Most terms, at least 1; by default as many as the data call for.
+    pub max_terms: usize,
 }
 
 impl Default for FitOptions {
     fn default() -> Self {
-        FitOptions { per_decade: 3.0, margin: 1.0, long_time: LongTime::Free, limit: 0.1 }
+        FitOptions {
+            per_decade: 3.0,
+            margin: 1.0,
+            long_time: LongTime::Free,
+            limit: 0.1,
+            max_terms: usize::MAX,
+        }
     }
 }
 
@@ -73,12 +81,19 @@ impl<F> Fit<F> {
         let [start, end] = self.window;
         // Rounding of 1/omega is no extrapolation.
         (first < start * (1.0 - 1e-9) || last > end * (1.0 + 1e-9)).then(|| {
+            let [first, last, start, end] = [first, last, start, end].map(short);
             format!(
-                "the run needs the material from {first:e} s to {last:e} s, but the data cover only \
-                 {start:e} s to {end:e} s; beyond them the fit is an extrapolation"
+                "the run needs the material from {first} s to {last} s, but the data cover only \
+                 {start} s to {end} s; beyond them the fit is an extrapolation"
             )
         })
     }
+}
+
+/// Four digits, without zeros at their end.
+fn short(value: f64) -> String {
+    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
+    format!("{rounded:e}")
 }
 
 /// Fits E(t) \[Pa\] at increasing times \[s\] (0 may be the first) of a relaxation test.
@@ -223,12 +238,15 @@ impl FitOptions {
         if self.margin > 5.0 {
             return Err(Error::invalid("margin of the fit", self.margin, "at most 5 decades"));
         }
+        if self.max_terms == 0 {
+            return Err(Error::invalid("most terms of the fit", 0, "1 at least"));
+        }
         positive("largest misfit of the fit", self.limit, "").map(|_| ())
     }
 
     /// Fits, and measures the misfit at every point of every curve.
     fn solve(&self, problem: &Problem, curves: &[Curve]) -> Result<(Spectrum, Misfit)> {
-        let spectrum = problem.fit(self.per_decade);
+        let spectrum = problem.fit(self.per_decade, self.max_terms);
         let mut misfit = Misfit { max: 0.0, rms: 0.0, worst: 0.0 };
         let (mut squares, mut count) = (0.0, 0);
         for curve in curves {

@@ -101,11 +101,16 @@ pub(super) struct Problem {
 }
 
 impl Problem {
-    /// The simplest spectrum that the rows call for, from a grid of `per_decade` times.
-    pub(super) fn fit(&self, per_decade: f64) -> Spectrum {
+    /// The simplest spectrum that the rows call for, from a grid of `per_decade` times; no more than
+    /// `most` terms, whatever the rows call for.
+    pub(super) fn fit(&self, per_decade: f64, most: usize) -> Spectrum {
         let mut best = refine::refine(self, self.weigh(&self.grid(per_decade)), 10);
         while let Some(simpler) = self.simpler(&best) {
             best = simpler;
+        }
+        while best.terms.len() > most {
+            let Some(fewer) = self.reductions(&best).into_iter().next() else { break };
+            best = refine::refine(self, fewer, 100);
         }
         let mut best = refine::refine(self, best, 60);
         // A constant or a flow of which the data show nothing would still rule all longer times.

@@ -1,210 +1,278 @@
-//! Bodies: materials, and what the pair of them is to the contact.
+//! Bodies: from samples of materials to what the pair of them is to the contact.
 
-use std::ops::Range;
-
-use asperity::material::{
-    Body, Creep, CreepTerm, Lateral, Material, Modulus, Relaxation, pair_creep, pair_hardness,
-};
+use asperity::material::{Body, Creep, Lateral, Material, ReducedTime, Shift, ThermalCreep, pair_hardness};
+use asperity::time::Instant;
 
 use super::Checks;
-use crate::case::quantity::Pressure;
-use crate::case::quantity::range::Positive;
+use super::material::{Model, Sample};
+use crate::case::describe::MaterialReport;
 use crate::case::raw::{self, At};
 
 /// The bodies, and what the pair of them is to the contact.
 pub struct Pair {
     pub bodies: Vec<Body>,
-    /// Contact creep compliance of the pair [1/Pa].
+    /// Contact creep compliance of the bodies of constant temperature [1/Pa].
     pub creep: Creep,
+    /// The bodies whose temperature changes.
+    pub thermal: Vec<ThermalCreep>,
     /// Hardness of the softer body [Pa]; infinite without.
     pub hardness: f64,
+    /// Where the materials come from.
+    pub reports: Vec<MaterialReport>,
+    /// Where the run goes beyond what is known of a material.
+    pub warnings: Vec<String>,
+    /// Rows of the run.
+    pub rows: usize,
 }
 
-/// The conversion between relaxation and creep finds as many roots as there are terms.
-const MOST_TERMS: usize = 1000;
+impl Pair {
+    /// C(0+) [1/Pa].
+    pub fn instantaneous(&self) -> f64 {
+        self.creep.instantaneous + self.thermal.iter().map(|body| body.creep.instantaneous).sum::<f64>()
+    }
 
-pub fn pair(checks: &mut Checks<'_, '_>, raw: &[At<raw::Body>]) -> Option<Pair> {
+    /// Fields that the memory keeps.
+    pub fn branches(&self) -> usize {
+        let parts = std::iter::once(&self.creep).chain(self.thermal.iter().map(|body| &body.creep));
+        parts.map(|creep| creep.terms.len() + usize::from(creep.fluidity > 0.0)).sum()
+    }
+}
+
+/// When and how warm the run is.
+pub struct Course<'a> {
+    /// Last instant [s]; `None` for a fault.
+    pub end: Option<f64>,
+    /// The rows of the run, with steps at further instants [s]; none for a fault.
+    pub instants: &'a dyn Fn(&[f64]) -> Vec<Instant>,
+    /// (time [s], temperature [K]) of the section [temperature].
+    pub temperatures: Option<&'a [(f64, f64)]>,
+}
+
+pub fn pair(
+    checks: &mut Checks<'_, '_>,
+    raw: &[At<raw::Body>],
+    samples: &[Option<Sample>],
+    course: &Course<'_>,
+) -> Option<Pair> {
     if let Some(third) = raw.get(2) {
         checks.wrong(&third.span, "one of at most two bodies", Some("a missing second body is rigid"));
         return None;
     }
-    let bodies: Vec<_> = raw.iter().enumerate().map(|(n, at)| body(checks, n, at)).collect();
-    let bodies = bodies.into_iter().collect::<Option<Vec<Body>>>()?;
-    for (body, at) in bodies.iter().zip(raw) {
-        checks.core(&at.span, body.contact_creep())?;
+    let samples: Vec<_> = raw.iter().zip(samples).collect();
+    let warmths: Vec<Option<Warmth>> = samples
+        .iter()
+        .map(|(at, sample)| checks.core(&at.value.material.span, warmth(sample.as_ref()?, course)))
+        .collect();
+    let clocks = warmths.iter().flatten().filter_map(Warmth::clock);
+    let end = course.end.unwrap_or(0.0);
+    let instants = (course.instants)(&clocks.flat_map(|clock| clock.breaks(end)).collect::<Vec<f64>>());
+    let made: Vec<_> = samples
+        .into_iter()
+        .zip(warmths)
+        .enumerate()
+        .map(|(n, ((at, sample), warmth))| body(checks, n, at, sample.as_ref(), warmth, &instants))
+        .collect();
+    let made = made.into_iter().collect::<Option<Vec<Made>>>()?;
+    let mut pair = Pair {
+        bodies: Vec::new(),
+        creep: Creep::default(),
+        thermal: Vec::new(),
+        hardness: f64::INFINITY,
+        reports: Vec::new(),
+        warnings: Vec::new(),
+        rows: instants.len(),
+    };
+    for made in made {
+        match made.clock {
+            Some(clock) => pair.thermal.push(ThermalCreep { creep: made.creep, clock }),
+            None => pair.creep = pair.creep.sum(&made.creep),
+        }
+        pair.bodies.push(made.body);
+        pair.warnings.extend(made.warning);
+        pair.reports.push(made.report);
     }
-    let creep = checks.core(&raw.first()?.span, pair_creep(&bodies))?;
-    let hardness = pair_hardness(&bodies);
-    Some(Pair { bodies, creep, hardness })
+    pair.hardness = pair_hardness(&pair.bodies);
+    Some(pair)
 }
 
-fn body(checks: &mut Checks<'_, '_>, n: usize, at: &At<raw::Body>) -> Option<Body> {
+/// One body, ready for the contact.
+struct Made {
+    body: Body,
+    creep: Creep,
+    clock: Option<ReducedTime>,
+    report: MaterialReport,
+    warning: Option<String>,
+}
+
+fn body(
+    checks: &mut Checks<'_, '_>,
+    n: usize,
+    at: &At<raw::Body>,
+    sample: Option<&Sample>,
+    warmth: Option<Warmth>,
+    instants: &[Instant],
+) -> Option<Made> {
     let raw = &at.value;
     let keys = [("poisson", raw.poisson.is_some()), ("bulk_modulus", raw.bulk_modulus.is_some())];
-    let lateral = checks.exactly_one(&at.span, &keys);
-    let material = material(checks, &raw.material);
-    lateral?;
-    Some(Body {
-        name: raw.name.clone().unwrap_or_else(|| format!("body {}", n + 1)),
-        material: material?,
-        lateral: match (raw.poisson, raw.bulk_modulus) {
-            (Some(ratio), _) => Lateral::Poisson(ratio.get()),
-            (_, Some(modulus)) => Lateral::BulkModulus(modulus.get()),
-            (None, None) => return None,
-        },
-        hardness: raw.hardness.map(|hardness| hardness.get()),
-    })
+    checks.exactly_one(&at.span, &keys)?;
+    let name = raw.name.clone().unwrap_or_else(|| format!("body {}", n + 1));
+    let lateral = match (raw.poisson, raw.bulk_modulus) {
+        (Some(ratio), _) => Lateral::Poisson(ratio.get()),
+        (_, Some(modulus)) => Lateral::BulkModulus(modulus.get()),
+        (None, None) => return None,
+    };
+    let (sample, warmth) = (sample?, warmth?);
+    let window = warmth.window(instants);
+    let (reference, report, warning) = reference(checks, &raw.material, sample, window)?;
+    let warning = warning.map(|warning| format!("{name}: {warning}"));
+    let factor = warmth.constant_factor();
+    let material = match factor {
+        Some(factor) if factor != 1.0 => checks.core(&raw.material.span, reference.stretched(factor))?,
+        _ => reference,
+    };
+    let clock = match warmth {
+        Warmth::Changing(clock) => Some(clock),
+        Warmth::Constant(_) => None,
+    };
+    let report = MaterialReport {
+        body: name.clone(),
+        shift_factor: factor.filter(|_| sample.shift.is_some()),
+        terms: material.creep().terms.len(),
+        ..report
+    };
+    let body = Body { name, material, lateral, hardness: raw.hardness.map(|hardness| hardness.get()) };
+    let creep = checks.core(&at.span, body.contact_creep())?;
+    Some(Made { body, creep, clock, report, warning })
 }
 
-fn material(checks: &mut Checks<'_, '_>, at: &At<raw::Material>) -> Option<Material> {
-    let span = &at.span;
-    let made = match &at.value {
-        raw::Material::Elastic(m) => {
-            let (measure, modulus) = modulus(checks, span, m.young, m.shear)?;
-            Material::elastic(measure, modulus)
-        }
-        raw::Material::Maxwell(m) => {
-            let (measure, modulus) = modulus(checks, span, m.young, m.shear)?;
-            Material::maxwell(measure, modulus, m.relaxation_time.get())
-        }
-        raw::Material::KelvinVoigt(m) => {
-            let (measure, modulus) = modulus(checks, span, m.young, m.shear)?;
-            Material::kelvin_voigt(measure, modulus, m.retardation_time.get())
-        }
-        raw::Material::Zener(m) => {
-            let (measure, modulus) = modulus(checks, span, m.young, m.shear)?;
-            let kelvin = kelvin_modulus(checks, span, measure, m.young_kelvin, m.shear_kelvin)?;
-            Material::zener(measure, modulus, kelvin, m.retardation_time.get())
-        }
-        raw::Material::Burgers(m) => {
-            let (measure, modulus) = modulus(checks, span, m.young, m.shear)?;
-            let kelvin = kelvin_modulus(checks, span, measure, m.young_kelvin, m.shear_kelvin)?;
-            let (relaxation, retardation) = (m.relaxation_time.get(), m.retardation_time.get());
-            Material::burgers(measure, modulus, relaxation, kelvin, retardation)
-        }
-        raw::Material::Prony(m) => {
-            let relaxation = relaxation(checks, span, m)?;
-            let relaxation = checks.core(span, relaxation)?;
-            Material::prony(measure(m.modulus), relaxation)
-        }
-        raw::Material::Creep(m) => {
-            few_terms(checks, span, m.terms.len())?;
-            let term = |term: &raw::CreepTerm| CreepTerm {
-                compliance: term.compliance.get(),
-                retardation_time: term.time.get(),
-            };
-            Material::generalised_kelvin(
-                measure(m.compliance),
-                Creep {
-                    instantaneous: m.instantaneous.get(),
-                    terms: m.terms.iter().map(term).collect(),
-                    fluidity: m.fluidity.map_or(0.0, |fluidity| fluidity.get()),
-                },
-            )
+/// A material by itself, and where it comes from.
+pub fn alone(
+    checks: &mut Checks<'_, '_>,
+    at: &At<raw::Material>,
+    sample: &Sample,
+    window: Option<[f64; 2]>,
+) -> Option<(Material, MaterialReport)> {
+    let course = Course { end: None, instants: &|_| Vec::new(), temperatures: None };
+    let factor = checks.core(&at.span, warmth(sample, &course))?.constant_factor().unwrap_or(1.0);
+    let around = match &sample.model {
+        Model::Fractional { time, .. } => Some([1e-4 * time, 1e4 * time]),
+        _ => None,
+    };
+    let window = window.map(|window| window.map(|t| t / factor)).or(around);
+    let (reference, report, _) = reference(checks, at, sample, window)?;
+    let material = checks.core(&at.span, reference.stretched(factor))?;
+    let terms = material.creep().terms.len();
+    let shift_factor = sample.shift.is_some().then_some(factor);
+    Some((material, MaterialReport { terms, shift_factor, ..report }))
+}
+
+/// How warm a body is.
+enum Warmth {
+    /// The shift factor of its constant temperature, 1 without a shift.
+    Constant(f64),
+    Changing(ReducedTime),
+}
+
+fn warmth(sample: &Sample, course: &Course<'_>) -> asperity::Result<Warmth> {
+    let Some(shift) = &sample.shift else { return Ok(Warmth::Constant(1.0)) };
+    let factor = |temperature: f64| -> asperity::Result<Warmth> {
+        let factor = shift.factor(temperature)?;
+        match factor.is_finite() && factor > 0.0 {
+            true => Ok(Warmth::Constant(factor)),
+            false => Err(asperity::Error::invalid(
+                format!("shift factor at {temperature} K"),
+                factor,
+                "within the range of floating-point numbers: check the constants of the shift",
+            )),
         }
     };
-    checks.core(span, made)
-}
-
-fn measure(measure: raw::Measure) -> Modulus {
-    match measure {
-        raw::Measure::Young => Modulus::Young,
-        raw::Measure::Shear => Modulus::Shear,
+    match (sample.temperature, course.temperatures) {
+        (Some(own), _) => factor(own),
+        (None, Some([first, rest @ ..])) if rest.iter().all(|point| point.1 == first.1) => factor(first.1),
+        (None, Some(points)) => Ok(Warmth::Changing(ReducedTime::new(shift.clone(), points)?)),
+        (None, None) => Ok(Warmth::Constant(1.0)),
     }
 }
 
-type Given = Option<Pressure<Positive>>;
-
-/// The one of `young` and `shear` that is given.
-fn modulus(
-    checks: &mut Checks<'_, '_>,
-    material: &Range<usize>,
-    young: Given,
-    shear: Given,
-) -> Option<(Modulus, f64)> {
-    checks.exactly_one(material, &[("young", young.is_some()), ("shear", shear.is_some())])?;
-    match (young, shear) {
-        (Some(modulus), _) => Some((Modulus::Young, modulus.get())),
-        (_, Some(modulus)) => Some((Modulus::Shear, modulus.get())),
-        (None, None) => None,
+impl Warmth {
+    fn clock(&self) -> Option<&ReducedTime> {
+        match self {
+            Warmth::Constant(_) => None,
+            Warmth::Changing(clock) => Some(clock),
+        }
     }
-}
 
-/// The Kelvin element's modulus, in the same measure as the first.
-fn kelvin_modulus(
-    checks: &mut Checks<'_, '_>,
-    material: &Range<usize>,
-    measure: Modulus,
-    young: Given,
-    shear: Given,
-) -> Option<f64> {
-    let (wanted, given, other) = match measure {
-        Modulus::Young => ("young_kelvin", young, shear),
-        Modulus::Shear => ("shear_kelvin", shear, young),
-    };
-    if let (Some(modulus), None) = (given, other) {
-        return Some(modulus.get());
+    fn constant_factor(&self) -> Option<f64> {
+        match self {
+            Warmth::Constant(factor) => Some(*factor),
+            Warmth::Changing(_) => None,
+        }
     }
-    let first = measure.name();
-    checks.push(|text| {
-        let path = text.path(material);
-        let message = format!(
-            "{path} gives its first modulus as {first}, so it needs `{wanted}` and no other modulus of the \
-             Kelvin element"
-        );
-        text.error(material, path, None, wanted, None, message)
-    });
-    None
-}
 
-fn relaxation(
-    checks: &mut Checks<'_, '_>,
-    material: &Range<usize>,
-    prony: &raw::Prony,
-) -> Option<asperity::Result<Relaxation>> {
-    let keys =
-        [("equilibrium", prony.equilibrium.is_some()), ("instantaneous", prony.instantaneous.is_some())];
-    let given = checks.exactly_one(material, &keys)?;
-    few_terms(checks, &prony.terms.span, prony.terms.value.len())?;
-    let (wanted, other) = match prony.equilibrium.is_some() {
-        true => ("modulus", "fraction"),
-        false => ("fraction", "modulus"),
-    };
-    let mut terms = Vec::with_capacity(prony.terms.value.len());
-    let mut complete = true;
-    for term in &prony.terms.value {
-        let (modulus, fraction) = (term.value.modulus.map(|m| m.get()), term.value.fraction.map(|f| f.get()));
-        let (value, stray) = if wanted == "modulus" { (modulus, fraction) } else { (fraction, modulus) };
-        match (value, stray) {
-            (Some(value), None) => terms.push((value, term.value.time.get())),
-            _ => {
-                complete = false;
-                checks.push(|text| {
-                    let path = text.path(&term.span);
-                    let message = format!(
-                        "{path} must have `{wanted}` and not `{other}`, because the material gives `{given}`"
-                    );
-                    text.error(&term.span, path, Some(text.value(&term.span)), wanted, None, message)
-                });
+    /// The shortest step and the end of the run, on the clock of the body [s].
+    fn window(&self, instants: &[Instant]) -> Option<[f64; 2]> {
+        let end = instants.last()?.time;
+        let steps = instants.iter().filter(|instant| instant.dt > 0.0);
+        let window = match self {
+            Warmth::Constant(factor) => {
+                [steps.map(|i| i.dt).fold(f64::INFINITY, f64::min) / factor, end / factor]
             }
-        }
-    }
-    if !complete {
-        return None;
-    }
-    match (prony.equilibrium, prony.instantaneous) {
-        (Some(equilibrium), _) => Some(Relaxation::absolute(equilibrium.get(), &terms)),
-        (_, Some(instantaneous)) => Some(Relaxation::from_instantaneous(instantaneous.get(), &terms)),
-        (None, None) => None,
+            Warmth::Changing(clock) => {
+                let lengths = steps.map(|i| clock.elapsed(i.time - i.dt, i.time));
+                [lengths.fold(f64::INFINITY, f64::min), clock.value(end)]
+            }
+        };
+        (window[0] > 0.0 && window[1].is_finite()).then_some(window)
     }
 }
 
-fn few_terms(checks: &mut Checks<'_, '_>, span: &Range<usize>, terms: usize) -> Option<()> {
-    if terms <= MOST_TERMS {
-        return Some(());
+/// The material at its reference temperature, where it comes from, and whether the run goes beyond what is known.
+fn reference(
+    checks: &mut Checks<'_, '_>,
+    at: &At<raw::Material>,
+    sample: &Sample,
+    window: Option<[f64; 2]>,
+) -> Option<(Material, MaterialReport, Option<String>)> {
+    let report = MaterialReport { model: sample.name, ..MaterialReport::default() };
+    match &sample.model {
+        Model::Known(material) => Some((material.clone(), report, None)),
+        Model::Fractional { measure, model, time, tolerance } => {
+            // Without the times of the run, which are wrong, only the model's own numbers can be checked.
+            let window = window.unwrap_or([1e-2 * time, 1e2 * time]);
+            let sum = checks.core(&at.span, model.to_prony(window, *tolerance))?;
+            let material = checks.core(&at.span, Material::generalised_kelvin(*measure, sum.creep))?;
+            Some((material, MaterialReport { error: Some(sum.error), window: Some(window), ..report }, None))
+        }
+        Model::Fitted { fitted, file } => {
+            let beyond = window.and_then(|[first, last]| fitted.beyond(first, last));
+            let clock = if sample.shift.is_some() { " (times at the reference temperature)" } else { "" };
+            let warning = beyond.map(|words| words + clock);
+            let report = MaterialReport {
+                max_misfit: Some(fitted.misfit.max),
+                rms_misfit: Some(fitted.misfit.rms),
+                noise: Some(fitted.noise),
+                window: Some(fitted.window),
+                points: Some(fitted.data.x.len()),
+                temperatures: fitted.temperatures.clone(),
+                file: Some(file.clone()),
+                shift: sample.shift.as_ref().map(law),
+                notes: fitted.notes.clone(),
+                ..report
+            };
+            Some((fitted.material.clone(), report, warning))
+        }
     }
-    let message = format!("the material has {terms} terms, but may have {MOST_TERMS}");
-    let help = "three terms per decade of time describe any measured material";
-    checks.fault(span, message, "fewer terms", Some(help));
-    None
+}
+
+/// The law in words.
+fn law(shift: &Shift) -> String {
+    match shift {
+        Shift::Wlf { c1, c2, reference } => {
+            format!("WLF, c1 = {c1:.4}, c2 = {c2:.4} K about {reference:.2} K")
+        }
+        Shift::Arrhenius { activation_energy, reference } => {
+            format!("Arrhenius, {:.4} kJ/mol about {reference:.2} K", 1e-3 * activation_energy)
+        }
+        Shift::Table { points } => format!("table of {} shift factors", points.len()),
+    }
 }

@@ -9,6 +9,8 @@
 use std::io::Read;
 use std::path::Path;
 
+use md5::{Digest, Md5};
+
 use crate::case::quantity::range::NonNegative;
 use crate::case::quantity::{Prescribed, QuantityError, Time};
 
@@ -16,14 +18,22 @@ use crate::case::quantity::{Prescribed, QuantityError, Time};
 const MOST_BYTES: u64 = 64 << 20;
 const MOST_POINTS: usize = super::time::MOST_STEPS;
 
-/// The points (time \[s\], value in SI) of the file.
+/// What a file holds.
+pub struct History {
+    /// (time \[s\], value in SI).
+    pub points: Vec<(f64, f64)>,
+    /// MD5 of the file: another file has another one.
+    pub digest: String,
+}
+
+/// The points of the file.
 ///
 /// # Errors
 /// A sentence with the number of the line.
 pub fn read(
     path: &Path,
     resolve: impl Fn(&Prescribed) -> Result<f64, QuantityError>,
-) -> Result<Vec<(f64, f64)>, String> {
+) -> Result<History, String> {
     let file = std::fs::File::open(path).map_err(|error| error.to_string())?;
     let mut bytes = Vec::new();
     file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(|error| error.to_string())?;
@@ -32,7 +42,8 @@ pub fn read(
     }
     let text = std::str::from_utf8(&bytes)
         .map_err(|error| format!("the file is not UTF-8 text (byte {})", error.valid_up_to()))?;
-    parse(text, resolve)
+    let digest = Md5::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+    Ok(History { points: parse(text, resolve)?, digest })
 }
 
 fn parse(

@@ -11,28 +11,40 @@ use crate::case::quantity::{Prescribed, QuantityError, dimension};
 use crate::case::raw::{self, At, Two};
 use crate::case::words::number;
 
-pub fn loading(
-    checks: &mut Checks<'_, '_>,
-    load: &raw::Load,
-    times: Option<&TimeGrid>,
-    grid: Option<&Grid>,
-    pair: Option<&Pair>,
-) -> Option<Loading> {
+/// What is prescribed, and where in the case its largest value stands.
+pub struct Prescription {
+    pub loading: Loading,
+    place: Range<usize>,
+    /// Path as written and MD5 of a file that holds the history.
+    pub file: Option<(String, String)>,
+}
+
+pub fn prescription(checks: &mut Checks<'_, '_>, load: &raw::Load) -> Option<Prescription> {
     let control = match load.control {
         raw::Control::Load => Control::Load,
         raw::Control::Pressure => Control::Pressure,
         raw::Control::Approach => Control::Approach,
     };
-    let (history, place) = history(checks, control, &load.history)?;
+    let mut file = None;
+    let (history, place) = history(checks, control, &load.history, &mut file)?;
     let history = checks.core(&load.history.span, history.validate().map(|()| history))?;
-    let loading = Loading { control, history };
-    if let (Some(times), Some(grid), Some(pair)) = (times, grid, pair) {
-        bearable(checks, &loading, &place, times.end(), grid, pair);
+    Some(Prescription { loading: Loading { control, history }, place, file })
+}
+
+/// Whether the bodies can follow what is prescribed.
+pub fn possible(
+    checks: &mut Checks<'_, '_>,
+    load: &raw::Load,
+    prescription: &Prescription,
+    times: &TimeGrid,
+    grid: Option<&Grid>,
+    pair: &Pair,
+) {
+    let Prescription { loading, place, .. } = prescription;
+    if let Some(grid) = grid {
+        bearable(checks, loading, place, times.end(), grid, pair);
     }
-    if let (Some(times), Some(pair)) = (times, pair) {
-        jumps(checks, &loading, &load.history.span, times.end(), pair);
-    }
-    Some(loading)
+    jumps(checks, loading, &load.history.span, times.end(), pair);
 }
 
 /// The history, and the place of its largest value.
@@ -40,6 +52,7 @@ fn history(
     checks: &mut Checks<'_, '_>,
     control: Control,
     at: &At<raw::History>,
+    read: &mut Option<(String, String)>,
 ) -> Option<(History, Range<usize>)> {
     let one = |checks: &mut Checks<'_, '_>, value: &At<Prescribed>| {
         checks.quantity(value, resolve(&value.value, control))
@@ -67,7 +80,10 @@ fn history(
         raw::History::File(file) => {
             let path = checks.file(&file.path)?;
             match history_file::read(&path, |value| resolve(value, control)) {
-                Ok(points) => (History::Table { points }, file.path.span.clone()),
+                Ok(history) => {
+                    *read = Some((file.path.value.clone(), history.digest));
+                    (History::Table { points: history.points }, file.path.span.clone())
+                }
                 Err(reason) => {
                     let message = format!("{}: {reason}", path.display());
                     checks.fault(&file.path.span, message, "a file of two columns, time and value", None);
@@ -183,7 +199,7 @@ fn bearable(
 
 /// Bodies that do not yield at once cannot follow a jump: no state exists right after it.
 fn jumps(checks: &mut Checks<'_, '_>, loading: &Loading, place: &Range<usize>, end: f64, pair: &Pair) {
-    if pair.creep.instantaneous > 0.0 {
+    if pair.instantaneous() > 0.0 {
         return;
     }
     let history = &loading.history;

@@ -2,24 +2,28 @@
 //! the objects of the solver.
 
 mod body;
+mod curve;
 mod domain;
 mod history_file;
 mod load;
+mod material;
 mod output;
 mod surface;
+mod temperature;
 mod time;
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use asperity::Scheme;
+use asperity::material::Material;
+use asperity::{Scheme, TimeGrid};
 
-use super::Case;
 use super::error::CaseError;
 use super::plan::Rows;
 use super::quantity::QuantityError;
-use super::raw::{At, Document};
+use super::raw::{self, At, Document};
 use super::text::{MOST_ERRORS, Text};
+use super::{Case, MaterialReport};
 
 /// The case that a document describes, or the faults found.
 ///
@@ -33,30 +37,46 @@ pub fn case(
     let mut checks = Checks { text, dir, errors: Vec::new() };
     let grid = domain::grid(&mut checks, &document.domain.value);
     let surfaces = surface::surfaces(&mut checks, &document.surface, grid.as_ref());
-    let pair = body::pair(&mut checks, &document.body);
-    let times = time::times(&mut checks, &document.time, pair.as_ref());
+    let samples: Vec<_> =
+        document.body.iter().map(|body| material::sample(&mut checks, &body.value.material)).collect();
+    let temperatures = temperature::temperatures(&mut checks, document.temperature.as_ref(), &samples);
+    let points = temperatures.iter().flatten().map(|t| t.points.as_slice()).next();
+    let shortest = |end: f64| material::shortest(&samples, points, end);
+    let times = time::times(&mut checks, &document.time, shortest);
     let load = &document.load.value;
-    let loading = load::loading(&mut checks, load, times.as_ref(), grid.as_ref(), pair.as_ref());
+    let prescription = load::prescription(&mut checks, load);
     let output = output::output(&mut checks, &document.output, times.as_ref(), output);
     let include = match output.as_ref().map(|output| &output.rows) {
         Some(Rows::At(times)) => times.clone(),
         _ => Vec::new(),
     };
-    let scheme = time::scheme(document.time.value.scheme);
-    let rows = match (&times, &loading) {
-        (Some(times), Some(loading)) => times.instants(&loading.history, &include).len(),
-        _ => 0,
+    let mut files: Vec<_> = samples.iter().flatten().filter_map(|sample| sample.file.clone()).collect();
+    files.extend(temperatures.iter().flatten().filter_map(|t| t.file.clone()));
+    files.extend(prescription.iter().filter_map(|p| p.file.clone()));
+    let instants = |breaks: &[f64]| match (&times, &prescription) {
+        (Some(times), Some(p)) => times.instants(&p.loading.history, &[include.as_slice(), breaks].concat()),
+        _ => Vec::new(),
     };
+    let course =
+        body::Course { end: times.as_ref().map(TimeGrid::end), instants: &instants, temperatures: points };
+    let pair = match temperatures {
+        Some(_) => body::pair(&mut checks, &document.body, &samples, &course),
+        None => None, // a fault
+    };
+    if let (Some(times), Some(prescription), Some(pair)) = (&times, &prescription, &pair) {
+        load::possible(&mut checks, load, prescription, times, grid.as_ref(), pair);
+    }
+    let scheme = time::scheme(document.time.value.scheme);
     let fields = match (scheme, &pair) {
-        (Scheme::Direct, _) => rows,
-        (_, Some(pair)) => pair.creep.terms.len() + usize::from(pair.creep.fluidity > 0.0),
         (_, None) => 0,
+        (Scheme::Direct, Some(pair)) => pair.rows,
+        (_, Some(pair)) => pair.branches(),
     };
     let memory = domain::memory(&mut checks, &document.domain.value, fields, scheme);
 
     checks.errors.sort_by_key(|error| error.span.as_ref().map_or(usize::MAX, |span| span.start));
-    match (checks.errors.is_empty(), grid, surfaces, pair, loading, times, output) {
-        (true, Some(grid), Some(surfaces), Some(pair), Some(loading), Some(times), Some(output)) => {
+    match (checks.errors.is_empty(), grid, surfaces, pair, prescription, times, output) {
+        (true, Some(grid), Some(surfaces), Some(pair), Some(prescription), Some(times), Some(output)) => {
             Ok(Case {
                 title: document.title.clone(),
                 name: String::new(),
@@ -66,18 +86,40 @@ pub fn case(
                 surfaces,
                 bodies: pair.bodies,
                 creep: pair.creep,
+                thermal: pair.thermal,
+                temperatures: points.map(<[_]>::to_vec),
+                materials: pair.reports,
+                warnings: pair.warnings,
+                files,
                 hardness: pair.hardness,
-                loading,
+                loading: prescription.loading,
                 times,
                 include,
                 scheme,
                 solver: output::solver(&document.solver),
                 output,
-                rows,
+                rows: pair.rows,
                 memory,
                 history: document.load.value.history.span.clone(),
             })
         }
+        _ => Err(checks.errors),
+    }
+}
+
+/// A material that stands alone, at its own temperature or its reference, or the faults found. Fractional models
+/// become Prony sums over `window` \[s\], or four decades on either side of their time.
+pub fn material_alone(
+    text: &Text<'_>,
+    raw: &At<raw::Material>,
+    dir: &Path,
+    window: Option<[f64; 2]>,
+) -> Result<(Material, MaterialReport), Vec<CaseError>> {
+    let mut checks = Checks { text, dir, errors: Vec::new() };
+    let made =
+        material::sample(&mut checks, raw).and_then(|sample| body::alone(&mut checks, raw, &sample, window));
+    match made {
+        Some(made) if checks.errors.is_empty() => Ok(made),
         _ => Err(checks.errors),
     }
 }

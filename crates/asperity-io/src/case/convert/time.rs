@@ -5,7 +5,6 @@ use std::ops::Range;
 use asperity::{Scheme, TimeGrid};
 
 use super::Checks;
-use super::body::Pair;
 use crate::case::quantity::Time as Duration;
 use crate::case::quantity::range::Positive;
 use crate::case::raw::{self, At, Spacing};
@@ -14,7 +13,11 @@ use crate::case::words;
 /// More steps than this are a slip of the pen (and more than a time grid takes).
 pub const MOST_STEPS: usize = 10_000_000;
 
-pub fn times(checks: &mut Checks<'_, '_>, time: &At<raw::Time>, pair: Option<&Pair>) -> Option<TimeGrid> {
+pub fn times(
+    checks: &mut Checks<'_, '_>,
+    time: &At<raw::Time>,
+    shortest: impl Fn(f64) -> f64,
+) -> Option<TimeGrid> {
     let raw = &time.value;
     if let Some(times) = &raw.times {
         let mut alone = true;
@@ -67,17 +70,12 @@ pub fn times(checks: &mut Checks<'_, '_>, time: &At<raw::Time>, pair: Option<&Pa
         Spacing::Log => {
             let first = match &raw.first {
                 Some(first) => before_end(checks, first, end, count)?,
-                None => first_instant(end, count, pair?),
+                // A tenth of the shortest time of the material, but not later than a uniform step.
+                None => (0.1 * shortest(end)).min(end / count as f64),
             };
             TimeGrid::Logarithmic { end, steps: count, first }
         }
     })
-}
-
-/// A tenth of the shortest retardation time, but not later than a uniform step.
-fn first_instant(end: f64, steps: usize, pair: &Pair) -> f64 {
-    let uniform = end / steps as f64;
-    pair.creep.terms.iter().map(|term| 0.1 * term.retardation_time).fold(uniform, f64::min)
 }
 
 fn before_end(

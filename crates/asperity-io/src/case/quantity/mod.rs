@@ -15,6 +15,7 @@
 mod decimal;
 pub mod range;
 mod serial;
+mod temperature;
 pub mod unit;
 
 use std::fmt;
@@ -24,6 +25,7 @@ use std::str::FromStr;
 use decimal::Decimal;
 use range::{Finite, Range};
 pub use serial::{Prescribed, Whole};
+pub use temperature::Temperature;
 use unit::{Powers, Unit};
 
 /// A physical dimension: its SI unit and the words of its error messages.
@@ -38,7 +40,7 @@ pub trait Dimension {
     const UNITS: &'static str;
     /// How it is written.
     const EXAMPLE: &'static str;
-    /// Powers of metre, kilogram and second.
+    /// Powers of metre, kilogram, second, kelvin and mole.
     const POWERS: Powers;
 }
 
@@ -63,21 +65,37 @@ pub mod dimension {
         };
     }
 
-    dimension!(Length, "a length", "m", "nm, um, mm, m", "0.5 mm", [1, 0, 0]);
-    dimension!(Pressure, "a pressure", "Pa", "Pa, kPa, MPa, GPa, N/mm^2", "300 MPa", [-1, 1, -2]);
-    dimension!(Time, "a time", "s", "us, ms, s, min, h, day", "8.93 s", [0, 0, 1]);
-    dimension!(Force, "a force", "N", "nN, uN, mN, N, kN", "0.5 N", [1, 1, -2]);
-    dimension!(Compliance, "a compliance", "1/Pa", "1/Pa, 1/MPa, 1/GPa", "1e-3 1/MPa", [1, -1, 2]);
-    dimension!(Frequency, "a frequency", "Hz", "Hz, kHz, 1/s, 1/min", "2 kHz", [0, 0, -1]);
-    dimension!(Fluidity, "a fluidity", "1/(Pa s)", "1/(Pa s), 1/(MPa s)", "1e-12 1/(Pa s)", [1, -1, 1]);
-    dimension!(Number, "a number", "", "none, or %", "0.38", [0, 0, 0]);
+    dimension!(Length, "a length", "m", "nm, um, mm, m", "0.5 mm", [1, 0, 0, 0, 0]);
+    dimension!(Pressure, "a pressure", "Pa", "Pa, kPa, MPa, GPa, N/mm^2", "300 MPa", [-1, 1, -2, 0, 0]);
+    dimension!(Time, "a time", "s", "us, ms, s, min, h, day", "8.93 s", [0, 0, 1, 0, 0]);
+    dimension!(Force, "a force", "N", "nN, uN, mN, N, kN", "0.5 N", [1, 1, -2, 0, 0]);
+    dimension!(Compliance, "a compliance", "1/Pa", "1/Pa, 1/MPa, 1/GPa", "1e-3 1/MPa", [1, -1, 2, 0, 0]);
+    dimension!(Frequency, "a frequency", "Hz", "Hz, kHz, 1/s, 1/min", "2 kHz", [0, 0, -1, 0, 0]);
+    dimension!(Fluidity, "a fluidity", "1/(Pa s)", "1/(Pa s), 1/(MPa s)", "1e-12 1/(Pa s)", [1, -1, 1, 0, 0]);
+    dimension!(
+        TemperatureDifference,
+        "a difference of temperatures",
+        "K",
+        "K, mK",
+        "51.6 K",
+        [0, 0, 0, 1, 0]
+    );
+    dimension!(
+        MolarEnergy,
+        "an energy per mole",
+        "J/mol",
+        "J/mol, kJ/mol, kcal/mol",
+        "120 kJ/mol",
+        [2, 1, -2, 0, -1]
+    );
+    dimension!(Number, "a number", "", "none, or %", "0.38", [0, 0, 0, 0, 0]);
 
     /// The name of the dimension with these powers, where it has one here.
     pub(super) fn name(powers: Powers) -> Option<&'static str> {
         macro_rules! find {
             ($($type:ident)*) => { $(if powers == $type::POWERS { return Some($type::NAME); })* };
         }
-        find!(Length Pressure Time Force Compliance Frequency Fluidity Number);
+        find!(Length Pressure Time Force Compliance Frequency Fluidity TemperatureDifference MolarEnergy Number);
         None
     }
 }
@@ -103,6 +121,10 @@ pub type Compliance<R = Finite> = Quantity<dimension::Compliance, R>;
 pub type Frequency<R = Finite> = Quantity<dimension::Frequency, R>;
 /// A fluidity, the inverse of a viscosity \[1/(Pa s)\].
 pub type Fluidity<R = Finite> = Quantity<dimension::Fluidity, R>;
+/// A difference of temperatures \[K\]; a temperature itself is a [`Temperature`].
+pub type TemperatureDifference<R = Finite> = Quantity<dimension::TemperatureDifference, R>;
+/// An energy per mole \[J/mol\].
+pub type MolarEnergy<R = Finite> = Quantity<dimension::MolarEnergy, R>;
 /// A pure number.
 pub type Number<R = Finite> = Quantity<dimension::Number, R>;
 
@@ -202,7 +224,7 @@ fn help<D: Dimension>(reason: &str) -> String {
 
 /// "length" of "a length".
 fn bare(name: &str) -> &str {
-    name.strip_prefix("a ").unwrap_or(name)
+    name.strip_prefix("a ").or(name.strip_prefix("an ")).unwrap_or(name)
 }
 
 #[cfg(test)]

@@ -76,3 +76,18 @@ range!(
     Tolerance, "from 1e-14 to 0.1", "Tolerance", Some("1e-6"), |v| (1e-14..=0.1).contains(&v),
     { "minimum": 1e-14, "maximum": 0.1 }
 );
+range!(
+    /// Order of a fractional derivative: greater than 0, at most 1.
+    Order, "greater than 0 and at most 1", "Order", Some("0.3"), |v| v > 0.0 && v <= 1.0,
+    { "exclusiveMinimum": 0, "maximum": 1 }
+);
+range!(
+    /// Number of times per decade.
+    Density, "from 0.5 to 20", "Density", Some("3"), |v| (0.5..=20.0).contains(&v),
+    { "minimum": 0.5, "maximum": 20 }
+);
+range!(
+    /// Decades beyond measured data.
+    Decades, "from 0 to 5", "Decades", Some("1"), |v| (0.0..=5.0).contains(&v),
+    { "minimum": 0, "maximum": 5 }
+);

@@ -1,14 +1,15 @@
 //! Unit expressions: `mm`, `N/mm^2`, `1/(Pa s)`, `kHz`, `MPa^-1`.
 //!
-//! A unit is 10^exponent * numerator / denominator times powers of metre, kilogram and second. The
+//! A unit is 10^exponent * numerator / denominator times powers of metre, kilogram, second, kelvin
+//! and mole. The
 //! power of ten is kept apart, so that a decimal text is scaled by moving its exponent: "0.3 mm" is the
 //! very number that `0.3e-3` is, to the last bit.
 
 use std::iter::Peekable;
 use std::str::Chars;
 
-/// Powers of metre, kilogram and second.
-pub type Powers = [i32; 3];
+/// Powers of metre, kilogram, second, kelvin and mole.
+pub type Powers = [i32; 5];
 
 /// The scale to SI and the dimension of a unit expression.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,31 +20,36 @@ pub struct Unit {
     pub numerator: f64,
     /// The same below the fraction line.
     pub denominator: f64,
-    /// Powers of metre, kilogram and second.
+    /// Powers of metre, kilogram, second, kelvin and mole.
     pub powers: Powers,
 }
 
-/// Symbols that take SI prefixes: name, power of ten, powers of metre, kilogram, second.
+/// Symbols that take SI prefixes: name, power of ten, powers of metre, kilogram, second, kelvin, mole.
 const PREFIXED: &[(&str, i32, Powers)] = &[
-    ("m", 0, [1, 0, 0]),
-    ("g", -3, [0, 1, 0]),
-    ("s", 0, [0, 0, 1]),
-    ("Hz", 0, [0, 0, -1]),
-    ("N", 0, [1, 1, -2]),
-    ("Pa", 0, [-1, 1, -2]),
-    ("bar", 5, [-1, 1, -2]),
+    ("m", 0, [1, 0, 0, 0, 0]),
+    ("g", -3, [0, 1, 0, 0, 0]),
+    ("s", 0, [0, 0, 1, 0, 0]),
+    ("Hz", 0, [0, 0, -1, 0, 0]),
+    ("N", 0, [1, 1, -2, 0, 0]),
+    ("Pa", 0, [-1, 1, -2, 0, 0]),
+    ("bar", 5, [-1, 1, -2, 0, 0]),
+    ("J", 0, [2, 1, -2, 0, 0]),
+    ("K", 0, [0, 0, 0, 1, 0]),
+    ("mol", 0, [0, 0, 0, 0, 1]),
 ];
 
 /// Symbols that stand alone: name, factor, power of ten, powers.
 const PLAIN: &[(&str, f64, i32, Powers)] = &[
-    ("min", 60.0, 0, [0, 0, 1]),
-    ("h", 3600.0, 0, [0, 0, 1]),
-    ("d", 86400.0, 0, [0, 0, 1]),
-    ("day", 86400.0, 0, [0, 0, 1]),
-    ("days", 86400.0, 0, [0, 0, 1]),
-    ("Å", 1.0, -10, [1, 0, 0]),
-    ("%", 1.0, -2, [0, 0, 0]),
-    ("1", 1.0, 0, [0, 0, 0]),
+    ("min", 60.0, 0, [0, 0, 1, 0, 0]),
+    ("h", 3600.0, 0, [0, 0, 1, 0, 0]),
+    ("d", 86400.0, 0, [0, 0, 1, 0, 0]),
+    ("day", 86400.0, 0, [0, 0, 1, 0, 0]),
+    ("days", 86400.0, 0, [0, 0, 1, 0, 0]),
+    ("Å", 1.0, -10, [1, 0, 0, 0, 0]),
+    ("cal", 4.184, 0, [2, 1, -2, 0, 0]),
+    ("kcal", 4.184, 3, [2, 1, -2, 0, 0]),
+    ("%", 1.0, -2, [0, 0, 0, 0, 0]),
+    ("1", 1.0, 0, [0, 0, 0, 0, 0]),
 ];
 
 const PREFIXES: &[(&str, i32)] = &[
@@ -70,7 +76,7 @@ const LARGEST_EXPONENT: i32 = 9;
 const MOST_FACTORS: usize = 16;
 
 impl Unit {
-    const ONE: Unit = Unit { exponent: 0, numerator: 1.0, denominator: 1.0, powers: [0; 3] };
+    const ONE: Unit = Unit { exponent: 0, numerator: 1.0, denominator: 1.0, powers: [0; 5] };
 
     /// The unit that `text` writes; empty text is 1.
     ///
@@ -235,17 +241,20 @@ mod tests {
 
     #[test]
     fn symbols_take_the_usual_prefixes() {
-        assert_eq!(scale("m"), (1.0, [1, 0, 0]));
-        assert_eq!(scale("mm"), (1e-3, [1, 0, 0]));
+        assert_eq!(scale("m"), (1.0, [1, 0, 0, 0, 0]));
+        assert_eq!(scale("mm"), (1e-3, [1, 0, 0, 0, 0]));
         assert_eq!(scale("um"), scale("µm"));
         assert_eq!(scale("µm"), scale("μm"));
-        assert_eq!(scale("ms"), (1e-3, [0, 0, 1]));
-        assert_eq!(scale("min"), (60.0, [0, 0, 1]));
-        assert_eq!(scale("MPa"), (1e6, [-1, 1, -2]));
-        assert_eq!(scale("mPa"), (1e-3, [-1, 1, -2]));
-        assert_eq!(scale("kg"), (1.0, [0, 1, 0]));
+        assert_eq!(scale("ms"), (1e-3, [0, 0, 1, 0, 0]));
+        assert_eq!(scale("min"), (60.0, [0, 0, 1, 0, 0]));
+        assert_eq!(scale("MPa"), (1e6, [-1, 1, -2, 0, 0]));
+        assert_eq!(scale("mPa"), (1e-3, [-1, 1, -2, 0, 0]));
+        assert_eq!(scale("kg"), (1.0, [0, 1, 0, 0, 0]));
         assert_eq!(scale("mbar"), scale("hPa"));
-        assert_eq!(scale("%"), (1e-2, [0, 0, 0]));
+        assert_eq!(scale("kJ/mol"), (1e3, [2, 1, -2, 0, -1]));
+        assert_eq!(scale("kcal/mol"), (4184.0, [2, 1, -2, 0, -1]));
+        assert_eq!(scale("mK"), (1e-3, [0, 0, 0, 1, 0]));
+        assert_eq!(scale("%"), (1e-2, [0, 0, 0, 0, 0]));
     }
 
     #[test]
@@ -256,12 +265,12 @@ mod tests {
             assert!((value / mpa.0 - 1.0).abs() < 1e-15, "{text}: {value}");
             assert_eq!(powers, mpa.1, "{text}");
         }
-        assert_eq!(scale("1/(Pa s)"), (1.0, [1, -1, 1]));
-        assert_eq!(scale("1/MPa").1, [1, -1, 2]);
+        assert_eq!(scale("1/(Pa s)"), (1.0, [1, -1, 1, 0, 0]));
+        assert_eq!(scale("1/MPa").1, [1, -1, 2, 0, 0]);
         assert_eq!(scale("/MPa"), scale("MPa^-1"));
         // left to right, as everywhere: (1/Pa) s
-        assert_eq!(scale("1/Pa s").1, [1, -1, 3]);
-        assert_eq!(scale(""), (1.0, [0, 0, 0]));
+        assert_eq!(scale("1/Pa s").1, [1, -1, 3, 0, 0]);
+        assert_eq!(scale(""), (1.0, [0, 0, 0, 0, 0]));
     }
 
     #[test]

@@ -150,8 +150,8 @@ pub struct Time {
     pub steps: Option<At<Whole<1>>>,
     /// How the steps are spread; "uniform" if not given.
     pub spacing: Option<At<Spacing>>,
-    /// First instant after 0 where the spacing is "log"; if not given, a tenth of the shortest retardation
-    /// time, but not later than a uniform step.
+    /// First instant after 0 where the spacing is "log"; if not given, a tenth of the shortest retardation time (of
+    /// fractional models and fitted curves: 1e-4 of the end), but not later than a uniform step.
     #[schemars(example = "0.1 s")]
     pub first: Option<At<Duration<Positive>>>,
     /// The instants after 0 one by one, in place of `end` and `steps`.

@@ -5,8 +5,10 @@
 
 mod body;
 mod load;
+mod material;
 mod run;
 mod surface;
+mod thermal;
 
 use std::borrow::Cow;
 use std::fmt;
@@ -17,10 +19,15 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, IgnoredAny, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
-pub use body::{Body, CreepTerm, Material, Measure, Prony};
+pub use body::Body;
 pub use load::{Control, History, Load, Scheme, Sine, Spacing, Table, Time};
+pub use material::{
+    Column, CreepTable, CreepTerm, Dma, Fit, FractionalZener, LongTime, Material, Measure, Prony,
+    RelaxationTable,
+};
 pub use run::{Field, Method, Output, Plasticity, Precision, Solver};
 pub use surface::{File, Fill, Level, SelfAffine, Surface};
+pub use thermal::{Shift, Temperature, TemperatureHistory};
 
 use super::quantity::range::Positive;
 use super::quantity::{Length, Whole};
@@ -44,6 +51,9 @@ pub struct Document {
     pub load: At<Load>,
     /// The instants of the solution.
     pub time: At<Time>,
+    /// The temperature of bodies whose material has a `shift`; they run at its reference if not given.
+    #[schemars(example = serde_json::json!({ "history": { "kind": "constant", "value": "60 °C" } }))]
+    pub temperature: Option<At<Temperature>>,
     /// How each step is solved.
     #[schemars(default)]
     pub solver: Solver,

@@ -50,6 +50,31 @@ const MOST_METADATA: usize = 200;
 const MOST_HEADER_LINES: usize = 10_000;
 const MOST_BLOCKS: usize = 1000;
 
+/// A text file of any code as text; `None` where it is binary.
+pub(crate) fn to_text(bytes: &[u8]) -> Option<String> {
+    encoding::utf8(bytes).map(|text| encoding::label(&text))
+}
+
+/// Whether a line holds numbers and marks of undefined points only.
+pub(crate) fn is_numbers(line: &str) -> bool {
+    dialect::is_numbers(line.as_bytes())
+}
+
+/// What separates the numbers of all lines (`None`: blanks), and whether commas are decimal marks.
+///
+/// # Errors
+/// Where the lines make sense in two ways, or in none.
+pub(crate) fn dialect<'a>(
+    lines: impl Iterator<Item = &'a str> + Clone,
+) -> Result<(Option<char>, bool), Problem> {
+    let dialect = Dialect::of(lines.map(str::as_bytes))?;
+    let separator = match dialect.separator {
+        Separator::Blank => None,
+        Separator::Byte(byte) => Some(char::from(byte)),
+    };
+    Ok((separator, dialect.decimal_comma))
+}
+
 /// Whether the bytes are text with a block of numbers, and which.
 pub(super) fn detect(bytes: &[u8]) -> Option<Format> {
     // Enough for any header; a line of numbers that is cut off at the end is left away.

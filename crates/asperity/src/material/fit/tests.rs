@@ -189,6 +189,21 @@ fn a_run_beyond_the_data_is_told_so() {
 }
 
 #[test]
+fn fewer_terms_than_the_data_call_for_cost_misfit() {
+    let truth = thirteen();
+    let times = logspace(1e-7, 1e6, 200);
+    let moduli: Vec<f64> = times.iter().map(|t| truth.value(*t)).collect();
+    let misfit = |max_terms: usize| {
+        let options = FitOptions { max_terms, limit: 1.0, ..FitOptions::default() };
+        let fit = fit_relaxation(&times, &moduli, &options).unwrap();
+        assert!(fit.function.terms.len() <= max_terms, "{}", fit.function.terms.len());
+        fit.misfit.rms
+    };
+    let [all, nine, five] = [20, 9, 5].map(misfit);
+    assert!(all < 1e-6 && all < nine && nine < five && five < 0.3, "{all} {nine} {five}");
+}
+
+#[test]
 fn bad_options_are_named() {
     let bad = |options: FitOptions, words: &str| {
         let error = fit_relaxation(&[1.0, 2.0], &[2.0, 1.0], &options).unwrap_err().to_string();
@@ -200,4 +215,5 @@ fn bad_options_are_named() {
     bad(FitOptions { margin: -1.0, ..default }, "margin");
     bad(FitOptions { margin: 100.0, ..default }, "margin");
     bad(FitOptions { limit: 0.0, ..default }, "misfit");
+    bad(FitOptions { max_terms: 0, ..default }, "most terms");
 }

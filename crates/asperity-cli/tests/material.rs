@@ -1,0 +1,208 @@
+//! `asperity material` as a user meets it.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use asperity_io::case::{Case, specimens};
+use serde_json::Value;
+
+fn examples() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples")
+}
+
+fn asperity(directory: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_asperity")).args(arguments).current_dir(directory).output().unwrap()
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).unwrap()
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).unwrap()
+}
+
+#[track_caller]
+fn json(output: &Output) -> Value {
+    assert!(output.status.success(), "{}", stderr(output));
+    serde_json::from_str(&stdout(output)).unwrap()
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect()
+}
+
+/// The value at a place of a table.
+fn at(table: &Value, places: &str, values: &str, place: f64) -> f64 {
+    let places = numbers(&table[places]);
+    let n = places.iter().position(|x| (x / place - 1.0).abs() < 1e-9).unwrap();
+    numbers(&table[values])[n]
+}
+
+#[test]
+fn pmma_creeps_as_in_the_third_figure_of_the_paper() {
+    let dir = tempfile::tempdir().unwrap();
+    let case = examples().join("pmma-indentation.toml");
+    let case = case.to_str().unwrap();
+    let shown = json(&asperity(dir.path(), &["material", "show", case, "--json"]));
+    let pmma = &shown[0];
+    // Exact conversion of the relaxation modulus 1973 + 254.776 exp(-t/8.93) + 263.6628 exp(-t/117.96) MPa:
+    // D0 + D1 (1 - exp(-t/9.936295903)) + D2 (1 - exp(-t/133.8704875)), ten digits given.
+    let creep = |t: f64| {
+        1e-6 * (4.013744989e-4
+            + 4.474062327e-5 * (1.0 - (-t / 9.936295903).exp())
+            + 6.072724980e-5 * (1.0 - (-t / 133.8704875).exp()))
+    };
+    for t in [0.1, 1.0, 10.0, 100.0, 1000.0] {
+        let found = at(pmma, "time", "creep_compliance", t);
+        assert!((found / creep(t) - 1.0).abs() < 1e-9, "{t}: {found}");
+        let relaxation = 1e6 * (1973.0 + 254.776 * (-t / 8.93).exp() + 263.6628 * (-t / 117.96).exp());
+        assert!((at(pmma, "time", "relaxation_modulus", t) / relaxation - 1.0).abs() < 1e-9);
+    }
+    // E'' at 1/tau_1: half of the first term and what is left of the second.
+    let loss = |w: f64| {
+        let term = |e: f64, tau: f64| e * w * tau / (1.0 + (w * tau).powi(2));
+        1e6 * (term(254.776, 8.93) + term(263.6628, 117.96))
+    };
+    assert!((at(pmma, "angular_frequency", "loss_modulus", 0.1) / loss(0.1) - 1.0).abs() < 1e-12);
+    let tan = at(pmma, "angular_frequency", "tan_delta", 0.1);
+    assert!((tan * at(pmma, "angular_frequency", "storage_modulus", 0.1) / loss(0.1) - 1.0).abs() < 1e-12);
+
+    let text = asperity(
+        dir.path(),
+        &["material", "show", case, "--from", "1 s", "--to", "100 s", "--plot", "p.svg"],
+    );
+    let text = stdout(&text);
+    assert!(text.contains("D(t) [1/Pa]") && text.contains("tan delta") && text.contains("prony"), "{text}");
+    let svg = std::fs::read_to_string(dir.path().join("p.svg")).unwrap();
+    assert!(svg.contains("tan delta") && svg.contains("creep"), "{svg}");
+}
+
+#[test]
+fn a_fit_becomes_a_block_that_a_case_takes() {
+    let dir = tempfile::tempdir().unwrap();
+    let data = examples().join("data/rubber-dma.csv");
+    let data = data.to_str().unwrap();
+    let wlf = ["--wlf", "8.86, 101.6 K, 20 °C"];
+    let fit = |more: &[&str]| {
+        let arguments = [&["material", "fit", data, "--modulus", "shear"], more].concat();
+        asperity(dir.path(), &arguments)
+    };
+    let output = fit(&[&wlf[..], &["-o", "fitted.toml", "--plot", "fit.png", "--json"]].concat());
+    let object = json(&output);
+    // 2 % of scatter, stated in the file; the largest of 208 normal deviates is below four of them.
+    let misfit = |kind: &str| object["misfit"][kind].as_f64().unwrap();
+    assert!((0.015..0.025).contains(&misfit("rms")) && misfit("max") < 0.09, "{object}");
+    assert_eq!((object["kind"].as_str(), object["points"].as_u64()), (Some("dma"), Some(104)));
+    assert!(dir.path().join("fit.png").exists());
+
+    // The block stands alone ...
+    let path = dir.path().join("fitted.toml");
+    let alone = specimens(&path, &[], None).unwrap_or_else(|errors| panic!("{errors}"));
+    let block = std::fs::read_to_string(&path).unwrap();
+    // ... and in a case, where it is the material that the data give there.
+    let rubber = std::fs::read_to_string(examples().join("rubber-dma.toml")).unwrap();
+    let start = rubber.find("material = {").unwrap();
+    let end = start + rubber[start..].find("} }").unwrap() + 3;
+    let pasted = format!("{}{block}{}", &rubber[..start], &rubber[end..]);
+    let read = |text: &str| Case::parse(text, &examples(), &[]).unwrap_or_else(|errors| panic!("{errors}"));
+    let (from_data, from_block) = (read(&rubber), read(&pasted));
+    let creep = |case: &Case| case.thermal[0].creep.clone();
+    for t in [1e-6, 1e-2, 10.0] {
+        // Shortest decimal numbers give the same doubles back; the conversion is exact to rounding.
+        assert!((creep(&from_block).value(t) / creep(&from_data).value(t) - 1.0).abs() < 1e-12);
+        let value = alone[0].material.creep().value(t);
+        assert!((value / from_data.bodies[0].material.creep().value(t) - 1.0).abs() < 1e-12);
+    }
+    std::fs::write(dir.path().join("case.toml"), &pasted).unwrap();
+    let check = asperity(dir.path(), &["check", "case.toml"]);
+    assert!(check.status.success(), "{}", stderr(&check));
+
+    // Nothing is overwritten unasked.
+    let again = fit(&[&wlf[..], &["-o", "fitted.toml"]].concat());
+    assert_eq!(again.status.code(), Some(2));
+    assert!(stderr(&again).contains("--force"), "{}", stderr(&again));
+    assert!(fit(&[&wlf[..], &["-o", "fitted.toml", "--force"]].concat()).status.success());
+
+    // The overlap of the sweeps tells the shift; the law behind the data is c1 = 8.86, c2 = 101.6 K.
+    let object = json(&fit(&["--estimate-shift", "20 °C", "--json"]));
+    let shift = asperity::material::Shift::Wlf {
+        c1: object["shift"]["c1"].as_f64().unwrap(),
+        c2: object["shift"]["c2"].as_f64().unwrap(),
+        reference: object["shift"]["reference"].as_f64().unwrap(),
+    };
+    let truth = asperity::material::Shift::Wlf { c1: 8.86, c2: 101.6, reference: 293.15 };
+    for kelvin in [253.15, 273.15, 313.15] {
+        // 2 % of scatter on slopes of 0.5 at most, over up to five pairs of sweeps.
+        let decades = (shift.ln_factor(kelvin).unwrap() - truth.ln_factor(kelvin).unwrap()) / 10f64.ln();
+        assert!(decades.abs() < 0.25, "{kelvin}: {decades}");
+    }
+    // Without -o the block is printed after the report.
+    let text = stdout(&fit(&[&wlf[..], &["--max-terms", "6", "--max-misfit", "0.9"]].concat()));
+    assert!(
+        text.contains("terms       6") && text.contains("material = {") && text.contains("wlf"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_fit_says_what_is_wrong() {
+    let dir = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(dir.path().join(name), text).unwrap();
+    write("plain.csv", "1, 3\n10, 2\n100, 1\n");
+    write("soft.csv", "t [s], E [MPa]\n1, 3\n10, x\n100, 1\n");
+    let rubber = examples().join("data/rubber-dma.csv");
+    let rubber = rubber.to_str().unwrap();
+    for (arguments, words) in [
+        (&["plain.csv"][..], &["--kind"][..]),
+        (&["soft.csv"], &["soft.csv, line 3", "\"x\" is not a finite number"]),
+        (&["none.csv"], &["none.csv", "cannot be read"]),
+        (&[rubber], &["8 temperatures", "shift"]),
+        (&[rubber, "--wlf", "8.86, 20 °C"], &["--wlf", "8.86, 101.6 K, 20 °C"]),
+        (&[rubber, "--wlf", "8.86, 101.6 °C, 20 °C"], &["c2 of --wlf", "difference of temperatures"]),
+        (&[rubber, "--estimate-shift", "20"], &["temperature"]),
+        (&["plain.csv", "--kind", "creep", "--column", "tim=1"], &["--column", "tim", "time, modulus"]),
+        (&["plain.csv", "--kind", "creep", "--unit", "time"], &["--unit", "QUANTITY="]),
+        (&["plain.csv", "--kind", "relaxation", "--window", "1 s"], &["--window"]),
+        (&["plain.csv", "--kind", "relaxation", "--max-terms", "0"], &["most terms"]),
+        (&["plain.csv", "--kind", "relaxation", "--plot", "p.gif"], &[".svg or .png"]),
+    ] {
+        let output = asperity(dir.path(), &[&["material", "fit"], arguments].concat());
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", stderr(&output));
+        for word in words {
+            assert!(stderr(&output).contains(word), "{arguments:?}: {}", stderr(&output));
+        }
+    }
+    // Without units the numbers are SI, and that is said.
+    let output = asperity(dir.path(), &["material", "fit", "plain.csv", "--kind", "relaxation"]);
+    assert!(stdout(&output).contains("names no unit and is taken in Pa"), "{}", stdout(&output));
+    let output = asperity(dir.path(), &["material", "show", "plain.csv"]);
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    let output = asperity(dir.path(), &["material", "show", rubber, "--from", "1 Pa"]);
+    assert!(stderr(&output).contains("--from"), "{}", stderr(&output));
+}
+
+#[test]
+fn check_and_run_tell_where_a_material_comes_from() {
+    let dir = tempfile::tempdir().unwrap();
+    let case = examples().join("rubber-dma.toml");
+    let case = case.to_str().unwrap();
+    let small = ["--set", "domain.cells=[32, 32]", "--set", "time.steps=11"];
+    let text = stdout(&asperity(dir.path(), &[&["check", case], &small[..]].concat()));
+    for word in
+        ["fit of data/rubber-dma.csv: 104 points", "misfit", "8 temperatures", "-25.00 °C to 20.00 °C"]
+    {
+        assert!(text.contains(word), "{word}: {text}");
+    }
+    let long = ["--set", "time.end=10000 s"];
+    let run = asperity(dir.path(), &[&["run", case, "-o", "r.zarr"], &small[..], &long[..]].concat());
+    assert!(run.status.success(), "{}", stderr(&run));
+    let said = stderr(&run);
+    assert!(said.contains("warning: rubber: the run needs") && said.contains("fit of data"), "{said}");
+    // The result says it too.
+    let group = std::fs::read_to_string(dir.path().join("r.zarr/zarr.json")).unwrap();
+    let group: Value = serde_json::from_str(&group).unwrap();
+    let setup: Value = serde_json::from_str(group["attributes"]["setup"].as_str().unwrap()).unwrap();
+    assert!(setup["materials"][0]["rms_misfit"].as_f64().unwrap() < 0.03, "{setup}");
+    assert!(setup["md5_of_files"]["data/rubber-dma.csv"].is_string() && setup["warnings"][0].is_string());
+}

@@ -1,0 +1,159 @@
+//! Materials that are fitted to measured curves.
+
+use std::collections::BTreeMap;
+
+use asperity::material::{FitOptions, LongTime, Modulus};
+
+use super::Checks;
+use super::material::measure;
+use crate::case::quantity::range::Positive;
+use crate::case::quantity::{Prescribed, QuantityError, dimension};
+use crate::case::raw::{self, At, Two};
+use crate::curve::{self, Columns, Curves, Fitted, Kind, Request, Role, ShiftRequest};
+
+/// A fit and its file.
+pub struct Fit {
+    pub fitted: Fitted,
+    pub file: String,
+    /// MD5 of the file.
+    pub digest: String,
+}
+
+type Choice<'a> = (Role, Option<&'a raw::Column>);
+type Unit<'a> = (Role, Option<&'a String>);
+
+pub fn relaxation(checks: &mut Checks<'_, '_>, m: &raw::RelaxationTable, shift: ShiftRequest) -> Option<Fit> {
+    let columns = m.columns.as_ref().map(|at| &at.value);
+    let units = m.units.as_ref().map(|at| &at.value);
+    let columns = said(
+        &[
+            (Role::Time, columns.and_then(|c| c.time.as_ref())),
+            (Role::Modulus, columns.and_then(|c| c.modulus.as_ref())),
+            (Role::Temperature, columns.and_then(|c| c.temperature.as_ref())),
+        ],
+        &[
+            (Role::Time, units.and_then(|u| u.time.as_ref())),
+            (Role::Modulus, units.and_then(|u| u.modulus.as_ref())),
+            (Role::Temperature, units.and_then(|u| u.temperature.as_ref())),
+        ],
+    );
+    fit(checks, Kind::Relaxation, measure(m.modulus), &m.path, &columns, m.fit.as_ref(), shift)
+}
+
+pub fn creep(checks: &mut Checks<'_, '_>, m: &raw::CreepTable, shift: ShiftRequest) -> Option<Fit> {
+    let columns = m.columns.as_ref().map(|at| &at.value);
+    let units = m.units.as_ref().map(|at| &at.value);
+    let columns = said(
+        &[
+            (Role::Time, columns.and_then(|c| c.time.as_ref())),
+            (Role::Compliance, columns.and_then(|c| c.compliance.as_ref())),
+            (Role::Temperature, columns.and_then(|c| c.temperature.as_ref())),
+        ],
+        &[
+            (Role::Time, units.and_then(|u| u.time.as_ref())),
+            (Role::Compliance, units.and_then(|u| u.compliance.as_ref())),
+            (Role::Temperature, units.and_then(|u| u.temperature.as_ref())),
+        ],
+    );
+    fit(checks, Kind::Creep, measure(m.compliance), &m.path, &columns, m.fit.as_ref(), shift)
+}
+
+pub fn dma(checks: &mut Checks<'_, '_>, m: &raw::Dma, shift: ShiftRequest) -> Option<Fit> {
+    let columns = m.columns.as_ref().map(|at| &at.value);
+    let units = m.units.as_ref().map(|at| &at.value);
+    if let (Some(at), Some(_), Some(_)) =
+        (&m.columns, columns.and_then(|c| c.loss.as_ref()), columns.and_then(|c| c.tan_delta.as_ref()))
+    {
+        let message = "has `loss` and `tan_delta`, but needs only one of them".to_owned();
+        checks.fault(&at.span, message, "one of the two", Some("leave one of them out"));
+        return None;
+    }
+    let columns = said(
+        &[
+            (Role::Frequency, columns.and_then(|c| c.frequency.as_ref())),
+            (Role::Storage, columns.and_then(|c| c.storage.as_ref())),
+            (Role::Loss, columns.and_then(|c| c.loss.as_ref())),
+            (Role::TanDelta, columns.and_then(|c| c.tan_delta.as_ref())),
+            (Role::Temperature, columns.and_then(|c| c.temperature.as_ref())),
+        ],
+        &[
+            (Role::Frequency, units.and_then(|u| u.frequency.as_ref())),
+            (Role::Storage, units.and_then(|u| u.storage.as_ref())),
+            (Role::Loss, units.and_then(|u| u.loss.as_ref())),
+            (Role::TanDelta, units.and_then(|u| u.tan_delta.as_ref())),
+            (Role::Temperature, units.and_then(|u| u.temperature.as_ref())),
+        ],
+    );
+    fit(checks, Kind::Dma, measure(m.modulus), &m.path, &columns, m.fit.as_ref(), shift)
+}
+
+fn said(columns: &[Choice<'_>], units: &[Unit<'_>]) -> Columns {
+    let column = |column: &raw::Column| match column {
+        raw::Column::Number(n) => curve::Column::Number(usize::try_from(*n).unwrap_or(usize::MAX)),
+        raw::Column::Header(header) => curve::Column::Name(header.clone()),
+    };
+    let columns = columns.iter().filter_map(|(role, choice)| Some((*role, column((*choice)?))));
+    let units = units.iter().filter_map(|(role, unit)| Some((*role, (*unit)?.clone())));
+    Columns { columns: columns.collect(), units: units.collect::<BTreeMap<_, _>>() }
+}
+
+fn fit(
+    checks: &mut Checks<'_, '_>,
+    kind: Kind,
+    measure: Modulus,
+    path: &At<String>,
+    columns: &Columns,
+    raw: Option<&At<raw::Fit>>,
+    shift: ShiftRequest,
+) -> Option<Fit> {
+    let file = checks.file(path)?;
+    let (options, window) = match raw {
+        Some(at) => (options(&at.value), window(checks, kind, &at.value)?),
+        None => (FitOptions::default(), None),
+    };
+    let request = Request { measure, shift, window, options };
+    let curves = Curves::read(&file, kind, columns);
+    let fitted = curves.and_then(|curves| Ok((request.fit(&curves)?, curves.digest)));
+    match fitted {
+        Ok((fitted, digest)) => Some(Fit { fitted, file: path.value.clone(), digest }),
+        Err(error) => {
+            let expected = format!("a text table of a {} measurement", kind.name());
+            checks.fault(&path.span, error.to_string(), &expected, None);
+            None
+        }
+    }
+}
+
+fn options(raw: &raw::Fit) -> FitOptions {
+    let default = FitOptions::default();
+    FitOptions {
+        per_decade: raw.per_decade.map_or(default.per_decade, |v| v.get()),
+        margin: raw.margin.map_or(default.margin, |v| v.get()),
+        limit: raw.max_misfit.map_or(default.limit, |v| v.get()),
+        max_terms: raw.max_terms.map_or(default.max_terms, |n| n.count()),
+        long_time: match raw.long_time {
+            raw::LongTime::Free => LongTime::Free,
+            raw::LongTime::Solid => LongTime::Solid,
+            raw::LongTime::Fluid => LongTime::Fluid,
+        },
+    }
+}
+
+/// The window in s or rad/s; the outer `None` is a fault.
+fn window(checks: &mut Checks<'_, '_>, kind: Kind, raw: &raw::Fit) -> Option<Option<[f64; 2]>> {
+    let Some(Two(first, last)) = &raw.window else { return Some(None) };
+    let abscissa = |value: &Prescribed| -> Result<f64, QuantityError> {
+        match (kind, value) {
+            (Kind::Dma, Prescribed::Number(hertz)) => curve::angular_frequency(&format!("{hertz} Hz")),
+            (Kind::Dma, Prescribed::Text(text)) => curve::angular_frequency(text),
+            (_, value) => value.resolve::<dimension::Time, Positive>().map(|time| time.get()),
+        }
+    };
+    let ends = [first, last].map(|at| checks.quantity(at, abscissa(&at.value)));
+    let [first_si, last_si] = [ends[0]?, ends[1]?];
+    if last_si <= first_si {
+        checks.wrong(&last.span, "greater than the first end of the window", None);
+        return None;
+    }
+    Some(Some([first_si, last_si]))
+}

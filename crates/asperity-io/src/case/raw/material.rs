@@ -1,0 +1,444 @@
+//! `material`: the models of a body.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::thermal::Shift;
+use super::{At, Two};
+use crate::case::quantity::range::{Decades, Density, NonNegative, Order, Positive, Share, Tolerance};
+use crate::case::quantity::{Compliance, Fluidity, Number, Prescribed, Pressure, Temperature, Time, Whole};
+
+/// A linear viscoelastic material. Springs and dashpots are given by moduli, either all as Young's (`young`)
+/// or all as shear moduli (`shear`); Poisson's ratio or the bulk modulus converts.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(tag = "model")]
+pub enum Material {
+    /// A spring.
+    Elastic(Elastic),
+    /// Spring and dashpot in series: a fluid.
+    Maxwell(Maxwell),
+    /// Spring and dashpot in parallel: no deformation at once.
+    KelvinVoigt(KelvinVoigt),
+    /// Standard linear solid: a spring in series with a Kelvin element.
+    Zener(Zener),
+    /// Maxwell and Kelvin elements in series.
+    Burgers(Burgers),
+    /// Relaxation modulus as Prony series (generalised Maxwell, Wiechert).
+    Prony(Prony),
+    /// Creep compliance as series (generalised Kelvin).
+    Creep(Creep),
+    /// A power law, between spring and dashpot: J = (t/time)^order / (modulus Gamma(1 + order)); as a Prony sum
+    /// over the times of the run.
+    Springpot(Springpot),
+    /// Spring and springpot in series; as a Prony sum over the times of the run.
+    FractionalMaxwell(FractionalMaxwell),
+    /// A spring in parallel with a fractional Maxwell element; as a Prony sum over the times of the run.
+    FractionalZener(FractionalZener),
+    /// A measured relaxation test from a text table, fitted by a Prony series.
+    RelaxationTable(RelaxationTable),
+    /// A measured creep test from a text table, fitted by a generalised Kelvin series.
+    CreepTable(CreepTable),
+    /// Storage and loss modulus over frequency (dynamic mechanical analysis) from a text table, at one temperature
+    /// or several, fitted by a Prony series.
+    Dma(Dma),
+}
+
+impl Material {
+    /// The keys of temperature, which all models with a time share.
+    pub fn thermal(&self) -> (Option<&At<Shift>>, Option<&At<Temperature>>) {
+        macro_rules! keys {
+            ($($model:ident)*) => {
+                match self {
+                    Material::Elastic(_) => (None, None),
+                    $(Material::$model(m) => (m.shift.as_ref(), m.temperature.as_ref()),)*
+                }
+            };
+        }
+        keys!(Maxwell KelvinVoigt Zener Burgers Prony Creep Springpot FractionalMaxwell FractionalZener
+              RelaxationTable CreepTable Dma)
+    }
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Elastic {
+    /// Young's modulus; this or `shear`.
+    #[schemars(example = "2.1 GPa")]
+    pub young: Option<Pressure<Positive>>,
+    /// Shear modulus; this or `young`.
+    #[schemars(example = "0.8 GPa")]
+    pub shear: Option<Pressure<Positive>>,
+}
+
+/// Models with times: their own keys, and those of temperature.
+macro_rules! models {
+    ($(
+        $model:ident {
+            $($(#[$attribute:meta])* $key:ident: $kind:ty,)*
+        }
+    )*) => {$(
+        #[derive(Debug, Deserialize, JsonSchema)]
+        #[serde(deny_unknown_fields)]
+        pub struct $model {
+            $($(#[$attribute])* pub $key: $kind,)*
+            /// How the times of the material depend on temperature; what is given holds at its reference.
+            #[schemars(example = serde_json::json!(
+                { "model": "wlf", "c1": 8.86, "c2": "101.6 K", "reference": "20 °C" }))]
+            pub shift: Option<At<Shift>>,
+            /// Temperature of this body during the run, where it is constant and its own; the section
+            /// [temperature] holds for all others.
+            #[schemars(example = "60 °C")]
+            pub temperature: Option<At<Temperature>>,
+        }
+    )*};
+}
+
+models! {
+    Maxwell {
+        /// Young's modulus of the spring; this or `shear`.
+        #[schemars(example = "2.1 GPa")]
+        young: Option<Pressure<Positive>>,
+        /// Shear modulus of the spring; this or `young`.
+        #[schemars(example = "0.8 GPa")]
+        shear: Option<Pressure<Positive>>,
+        /// Relaxation time: viscosity over modulus.
+        #[schemars(example = "10 s")]
+        relaxation_time: Time<Positive>,
+    }
+
+    KelvinVoigt {
+        /// Young's modulus of the spring; this or `shear`.
+        #[schemars(example = "2.1 GPa")]
+        young: Option<Pressure<Positive>>,
+        /// Shear modulus of the spring; this or `young`.
+        #[schemars(example = "0.8 GPa")]
+        shear: Option<Pressure<Positive>>,
+        /// Retardation time: viscosity over modulus.
+        #[schemars(example = "10 s")]
+        retardation_time: Time<Positive>,
+    }
+
+    Zener {
+        /// Young's modulus of the spring in series (the modulus at once); this or `shear`.
+        #[schemars(example = "2.1 GPa")]
+        young: Option<Pressure<Positive>>,
+        /// Young's modulus of the Kelvin element's spring; with `young`.
+        #[schemars(example = "2.1 GPa")]
+        young_kelvin: Option<Pressure<Positive>>,
+        /// Shear modulus of the spring in series (the modulus at once); this or `young`.
+        #[schemars(example = "0.8 GPa")]
+        shear: Option<Pressure<Positive>>,
+        /// Shear modulus of the Kelvin element's spring; with `shear`.
+        #[schemars(example = "0.8 GPa")]
+        shear_kelvin: Option<Pressure<Positive>>,
+        /// Retardation time of the Kelvin element.
+        #[schemars(example = "10 s")]
+        retardation_time: Time<Positive>,
+    }
+
+    Burgers {
+        /// Young's modulus of the Maxwell element's spring; this or `shear`.
+        #[schemars(example = "2.1 GPa")]
+        young: Option<Pressure<Positive>>,
+        /// Young's modulus of the Kelvin element's spring; with `young`.
+        #[schemars(example = "2.1 GPa")]
+        young_kelvin: Option<Pressure<Positive>>,
+        /// Shear modulus of the Maxwell element's spring; this or `young`.
+        #[schemars(example = "0.8 GPa")]
+        shear: Option<Pressure<Positive>>,
+        /// Shear modulus of the Kelvin element's spring; with `shear`.
+        #[schemars(example = "0.8 GPa")]
+        shear_kelvin: Option<Pressure<Positive>>,
+        /// Relaxation time of the Maxwell element.
+        #[schemars(example = "1000 s")]
+        relaxation_time: Time<Positive>,
+        /// Retardation time of the Kelvin element.
+        #[schemars(example = "10 s")]
+        retardation_time: Time<Positive>,
+    }
+
+    Prony {
+        /// What the moduli measure: uniaxial tension or shear.
+        modulus: Measure,
+        /// Modulus after all relaxation, with absolute terms (`modulus`, `time`; 0 for a fluid) or with terms
+        /// relative to it (`ratio`, `time`).
+        #[schemars(example = "1973 MPa")]
+        equilibrium: Option<Pressure<NonNegative>>,
+        /// Modulus at once, with terms relative to it (`fraction`, `time`): the g_i of finite-element codes.
+        #[schemars(example = "2491.44 MPa")]
+        instantaneous: Option<Pressure<Positive>>,
+        /// The relaxing terms.
+        #[schemars(example = serde_json::json!([{ "modulus": "254.776 MPa", "time": "8.93 s" }]))]
+        terms: At<Vec<At<PronyTerm>>>,
+    }
+
+    Creep {
+        /// What the compliances measure: uniaxial tension or shear.
+        compliance: Measure,
+        /// Compliance at once.
+        #[schemars(example = "4e-4 1/MPa")]
+        instantaneous: Compliance<NonNegative>,
+        /// The retarded terms.
+        #[schemars(example = serde_json::json!([{ "compliance": "4.47e-5 1/MPa", "time": "9.94 s" }]))]
+        #[serde(default)]
+        terms: Vec<CreepTerm>,
+        /// Steady flow: rate of compliance after all retardation; none if not given.
+        #[schemars(example = "1e-8 1/(MPa s)")]
+        fluidity: Option<Fluidity<NonNegative>>,
+    }
+
+    Springpot {
+        /// Young's modulus at `time`; this or `shear`.
+        #[schemars(example = "3 MPa")]
+        young: Option<Pressure<Positive>>,
+        /// Shear modulus at `time`; this or `young`.
+        #[schemars(example = "1 MPa")]
+        shear: Option<Pressure<Positive>>,
+        /// Time at which the compliance is 1/(modulus Gamma(1 + order)).
+        #[schemars(example = "1 s")]
+        time: Time<Positive>,
+        /// Order of the derivative: 0 would be a spring, 1 is a dashpot.
+        #[schemars(example = 0.3)]
+        order: Number<Order>,
+        /// Largest relative error of the Prony sum over the times of the run; 1e-3 if not given.
+        #[schemars(example = 1e-3)]
+        tolerance: Option<Number<Tolerance>>,
+    }
+
+    FractionalMaxwell {
+        /// Young's modulus of the spring; this or `shear`.
+        #[schemars(example = "3 MPa")]
+        young: Option<Pressure<Positive>>,
+        /// Shear modulus of the spring; this or `young`.
+        #[schemars(example = "1 MPa")]
+        shear: Option<Pressure<Positive>>,
+        /// Relaxation time.
+        #[schemars(example = "1 s")]
+        time: Time<Positive>,
+        /// Order of the derivative: 1 is a Maxwell element.
+        #[schemars(example = 0.3)]
+        order: Number<Order>,
+        /// Largest relative error of the Prony sum over the times of the run; 1e-3 if not given.
+        #[schemars(example = 1e-3)]
+        tolerance: Option<Number<Tolerance>>,
+    }
+
+    FractionalZener {
+        /// Young's modulus after all relaxation; this or `shear_equilibrium`.
+        #[schemars(example = "3 MPa")]
+        young_equilibrium: Option<Pressure<Positive>>,
+        /// Young's modulus at once; with `young_equilibrium`.
+        #[schemars(example = "3 GPa")]
+        young_instantaneous: Option<Pressure<Positive>>,
+        /// Shear modulus after all relaxation; this or `young_equilibrium`.
+        #[schemars(example = "1 MPa")]
+        shear_equilibrium: Option<Pressure<Positive>>,
+        /// Shear modulus at once; with `shear_equilibrium`.
+        #[schemars(example = "1 GPa")]
+        shear_instantaneous: Option<Pressure<Positive>>,
+        /// Relaxation time.
+        #[schemars(example = "1 ms")]
+        time: Time<Positive>,
+        /// Order of the derivative: 1 is a Zener solid.
+        #[schemars(example = 0.5)]
+        order: Number<Order>,
+        /// Largest relative error of the Prony sum over the times of the run; 1e-3 if not given.
+        #[schemars(example = 1e-3)]
+        tolerance: Option<Number<Tolerance>>,
+    }
+
+    RelaxationTable {
+        /// What the moduli measure: uniaxial tension or shear.
+        modulus: Measure,
+        /// The text table, relative to the case file: one point per line, columns for time and modulus. Separator
+        /// and decimal mark are found; units stand in the header, as in "time [s]; E [MPa]".
+        #[schemars(example = "relaxation.csv")]
+        path: At<String>,
+        /// Which column is what, by number from 1 or by header; found from the header if not given.
+        #[schemars(example = serde_json::json!({ "time": 1, "modulus": "E [MPa]" }))]
+        columns: Option<At<RelaxationColumns>>,
+        /// Units of the columns, where the header names none or wrong ones.
+        #[schemars(example = serde_json::json!({ "time": "min", "modulus": "MPa" }))]
+        units: Option<At<RelaxationUnits>>,
+        /// How the Prony series is fitted.
+        #[schemars(example = serde_json::json!({ "max_terms": 12 }))]
+        fit: Option<At<Fit>>,
+    }
+
+    CreepTable {
+        /// What the compliances measure: uniaxial tension or shear.
+        compliance: Measure,
+        /// The text table, relative to the case file: one point per line, columns for time and compliance.
+        /// Separator and decimal mark are found; units stand in the header, as in "time [s]; D [1/MPa]".
+        #[schemars(example = "creep.csv")]
+        path: At<String>,
+        /// Which column is what, by number from 1 or by header; found from the header if not given.
+        #[schemars(example = serde_json::json!({ "time": 1, "compliance": "D [1/MPa]" }))]
+        columns: Option<At<CreepColumns>>,
+        /// Units of the columns, where the header names none or wrong ones.
+        #[schemars(example = serde_json::json!({ "time": "min", "compliance": "1/MPa" }))]
+        units: Option<At<CreepUnits>>,
+        /// How the series is fitted.
+        #[schemars(example = serde_json::json!({ "max_terms": 12 }))]
+        fit: Option<At<Fit>>,
+    }
+
+    Dma {
+        /// What the moduli measure: uniaxial tension or shear.
+        modulus: Measure,
+        /// The text table, relative to the case file: one point per line, columns for frequency, storage modulus,
+        /// loss modulus or tan delta, and, where there are several temperatures, temperature. Separator and decimal
+        /// mark are found; units stand in the header, as in "f [Hz]; E' [MPa]; E'' [MPa]; T [°C]".
+        #[schemars(example = "dma.csv")]
+        path: At<String>,
+        /// Which column is what, by number from 1 or by header; found from the header if not given.
+        #[schemars(example = serde_json::json!({ "frequency": 1, "storage": 2, "loss": "E'' [MPa]" }))]
+        columns: Option<At<DmaColumns>>,
+        /// Units of the columns, where the header names none or wrong ones.
+        #[schemars(example = serde_json::json!({ "frequency": "rad/s", "storage": "MPa", "loss": "MPa" }))]
+        units: Option<At<DmaUnits>>,
+        /// How the Prony series is fitted.
+        #[schemars(example = serde_json::json!({ "max_terms": 20 }))]
+        fit: Option<At<Fit>>,
+    }
+}
+
+/// One relaxing term: its share of the modulus and its relaxation time.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct PronyTerm {
+    /// Modulus of the term, where `equilibrium` is given.
+    #[schemars(example = "254.776 MPa")]
+    pub modulus: Option<Pressure<Positive>>,
+    /// Share of the modulus at once, where `instantaneous` is given.
+    #[schemars(example = 0.25)]
+    pub fraction: Option<Number<Share>>,
+    /// Modulus of the term over that after all relaxation, where `equilibrium` is given and no moduli.
+    #[schemars(example = 2.5)]
+    pub ratio: Option<Number<Positive>>,
+    /// Relaxation time.
+    #[schemars(example = "8.93 s")]
+    pub time: Time<Positive>,
+}
+
+/// One retarded term: its compliance and its retardation time.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CreepTerm {
+    /// Compliance of the term.
+    #[schemars(example = "4.47e-5 1/MPa")]
+    pub compliance: Compliance<Positive>,
+    /// Retardation time.
+    #[schemars(example = "9.94 s")]
+    pub time: Time<Positive>,
+}
+
+/// The kind of deformation that a modulus or compliance belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Measure {
+    /// Uniaxial tension: Young's modulus.
+    Young,
+    /// Shear modulus.
+    Shear,
+}
+
+/// A column of a text table: its number, from 1, or its header with or without the unit.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+#[serde(expecting = "the number of a column, from 1, or its header in quotes")]
+pub enum Column {
+    /// From 1.
+    Number(u32),
+    /// With or without the unit.
+    Header(String),
+}
+
+/// Columns and units of the kinds of tables.
+macro_rules! tables {
+    ($($columns:ident $units:ident { $($(#[$attribute:meta])* $key:ident: $column:literal, $unit:literal;)* })*) => {$(
+        /// Which column is what, by number from 1 or by header.
+        #[derive(Clone, Debug, Deserialize, JsonSchema)]
+        #[serde(deny_unknown_fields)]
+        pub struct $columns {
+            $($(#[$attribute])* #[schemars(example = $column)] pub $key: Option<Column>,)*
+        }
+
+        /// Units of the columns.
+        #[derive(Clone, Debug, Deserialize, JsonSchema)]
+        #[serde(deny_unknown_fields)]
+        pub struct $units {
+            $($(#[$attribute])* #[schemars(example = &$unit)] pub $key: Option<String>,)*
+        }
+    )*};
+}
+
+tables! {
+    RelaxationColumns RelaxationUnits {
+        /// Time since the step of strain.
+        time: 1, "s";
+        /// Relaxation modulus.
+        modulus: 2, "MPa";
+        /// Temperature of the point, where the file holds several.
+        temperature: 3, "°C";
+    }
+    CreepColumns CreepUnits {
+        /// Time since the step of stress.
+        time: 1, "s";
+        /// Creep compliance.
+        compliance: 2, "1/MPa";
+        /// Temperature of the point, where the file holds several.
+        temperature: 3, "°C";
+    }
+    DmaColumns DmaUnits {
+        /// Frequency, in Hz or rad/s.
+        frequency: 1, "Hz";
+        /// Storage modulus.
+        storage: 2, "MPa";
+        /// Loss modulus; this or `tan_delta`.
+        loss: 3, "MPa";
+        /// Loss factor E''/E'; this or `loss`.
+        tan_delta: 3, "%";
+        /// Temperature of the point, where the file holds several.
+        temperature: 4, "°C";
+    }
+}
+
+/// How a series is fitted to a curve.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Fit {
+    /// Most terms; as many as the data call for if not given.
+    #[schemars(example = 12)]
+    pub max_terms: Option<Whole<1>>,
+    /// Times per decade that the fit begins with; 3 if not given.
+    #[schemars(example = 3)]
+    pub per_decade: Option<Number<Density>>,
+    /// Decades of times beyond the data on either side; 1 if not given.
+    #[schemars(example = 1)]
+    pub margin: Option<Number<Decades>>,
+    /// Largest relative misfit, over neighbouring points, before the data are refused; 0.1 if not given.
+    #[schemars(example = 0.1)]
+    pub max_misfit: Option<Number<Share>>,
+    /// What comes after the data; "free" if not given.
+    #[serde(default)]
+    pub long_time: LongTime,
+    /// The part of the curve that is fitted: two times or, of a dma, two frequencies (after the shift, where there
+    /// are several temperatures); all of it if not given.
+    #[schemars(example = ["0.1 s", "1000 s"])]
+    pub window: Option<Two<At<Prescribed>>>,
+}
+
+/// What comes after the data.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum LongTime {
+    /// Whatever fits best.
+    #[default]
+    Free,
+    /// No flow.
+    Solid,
+    /// No modulus is left.
+    Fluid,
+}

@@ -1,0 +1,130 @@
+//! `shift` of a material and `[temperature]` of the run.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::{At, Two};
+use crate::case::quantity::range::Positive;
+use crate::case::quantity::{MolarEnergy, Number, Temperature as Kelvin, TemperatureDifference, Time};
+
+/// How all times of a material scale with temperature: by the shift factor a_T, 1 at the reference.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(tag = "model")]
+pub enum Shift {
+    /// Williams, Landel, Ferry: log10 a_T = -c1 (T - reference)/(c2 + T - reference).
+    Wlf(Wlf),
+    /// ln a_T = (energy/R) (1/T - 1/reference).
+    Arrhenius(Arrhenius),
+    /// Shift factors at temperatures, straight lines of log10 a_T in between.
+    Table(ShiftTable),
+    /// From the overlap of the sweeps of a file that holds several temperatures.
+    Estimated(Estimated),
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Wlf {
+    /// c1, in decades (log10).
+    #[schemars(example = 8.86)]
+    pub c1: Number<Positive>,
+    /// c2, a difference of temperatures.
+    #[schemars(example = "101.6 K")]
+    pub c2: TemperatureDifference<Positive>,
+    /// Reference temperature, at which the material holds as it is given.
+    #[schemars(example = "20 °C")]
+    pub reference: Kelvin,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Arrhenius {
+    /// Activation energy.
+    #[schemars(example = "120 kJ/mol")]
+    pub energy: MolarEnergy<Positive>,
+    /// Reference temperature, at which the material holds as it is given.
+    #[schemars(example = "20 °C")]
+    pub reference: Kelvin,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ShiftTable {
+    /// Pairs [temperature, log10 a_T] in order of temperature; 0 where the material holds as it is given.
+    #[schemars(example = [("0 °C", 2.5), ("20 °C", 0.0), ("60 °C", -3.0)])]
+    #[schemars(length(min = 2))]
+    pub points: Vec<Two<Kelvin, Number>>,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Estimated {
+    /// Reference temperature, among those of the file.
+    #[schemars(example = "20 °C")]
+    pub reference: Kelvin,
+}
+
+/// The temperature of the bodies that have a `shift`.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Temperature {
+    /// Absolute temperature over time, the same for both bodies.
+    #[schemars(example = serde_json::json!({ "kind": "ramp", "from": "20 °C", "to": "60 °C", "duration": "100 s" }))]
+    pub history: At<TemperatureHistory>,
+}
+
+/// A temperature over time.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(tag = "kind")]
+pub enum TemperatureHistory {
+    /// The same at all times.
+    Constant(Constant),
+    /// From one temperature to another, then held.
+    Ramp(TemperatureRamp),
+    /// Straight lines between points; two points at one time are a jump; held after the last.
+    Table(TemperatureTable),
+    /// The points of a table from a file of two columns, time and temperature.
+    File(TemperatureFile),
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Constant {
+    /// The temperature.
+    #[schemars(example = "60 °C")]
+    pub value: At<Kelvin>,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TemperatureRamp {
+    /// Temperature at t = 0.
+    #[schemars(example = "20 °C")]
+    pub from: At<Kelvin>,
+    /// Temperature reached and held.
+    #[schemars(example = "60 °C")]
+    pub to: At<Kelvin>,
+    /// Time to reach it.
+    #[schemars(example = "100 s")]
+    pub duration: Time<Positive>,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TemperatureTable {
+    /// Pairs [time, temperature] in order of time, the first at 0; a time given twice is a jump.
+    #[schemars(example = [["0 s", "20 °C"], ["100 s", "60 °C"]])]
+    #[schemars(length(min = 1))]
+    pub points: At<Vec<At<Two<Time, At<Kelvin>>>>>,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TemperatureFile {
+    /// The file, relative to the case file: one line per point, time and temperature separated by comma,
+    /// semicolon or blanks, each with unit or in SI; `#` begins a comment, one header line may name the columns
+    /// with units, as in "time [s], T [°C]".
+    #[schemars(example = "temperature.csv")]
+    pub path: At<String>,
+}

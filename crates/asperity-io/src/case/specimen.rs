@@ -1,0 +1,72 @@
+//! Materials to look at: those of a case, or of a file that holds a `material = { ... }` and nothing else.
+
+use std::path::Path;
+
+use asperity::material::Material;
+
+use super::convert;
+use super::text::Text;
+use super::{Case, CaseErrors, MaterialReport, file_text, overridden, read};
+
+/// A material with its name and where it comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Specimen {
+    /// Name of the body, or of the file.
+    pub name: String,
+    /// The material as the run has it: at the temperature of the body where it is constant, else at the reference
+    /// temperature of its shift.
+    pub material: Material,
+    /// Where it comes from, and how well it is known.
+    pub report: MaterialReport,
+    /// What should be known before the numbers are believed.
+    pub warnings: Vec<String>,
+}
+
+/// The materials of a case file, or the one of a file that holds a `material` and nothing else. Fractional models
+/// are Prony sums over the times of the run; in a file of their own over `window` \[s\], or else eight decades about
+/// their time.
+///
+/// # Errors
+/// [`CaseErrors`] where the file cannot be read, or with what is wrong in it.
+pub fn specimens(
+    path: &Path,
+    overrides: &[String],
+    window: Option<[f64; 2]>,
+) -> Result<Vec<Specimen>, CaseErrors> {
+    let name = path.display().to_string();
+    let text = file_text(path).map_err(|(reason, help)| {
+        CaseErrors::without_place(&name, reason, "a case file, or a file with a material", Some(help))
+    })?;
+    let (source, _) = overridden(&name, text, overrides)?;
+    let alone = Text::parse(&source)
+        .is_ok_and(|text| text.root.get("material").is_some() && text.root.get("domain").is_none());
+    if !alone {
+        let case = Case::read(path, overrides)?;
+        let bodies = case.bodies.into_iter().zip(case.materials);
+        let mut specimens: Vec<Specimen> = bodies
+            .map(|(body, report)| Specimen {
+                name: body.name,
+                material: body.material,
+                report,
+                warnings: Vec::new(),
+            })
+            .collect();
+        if let Some(first) = specimens.first_mut() {
+            first.warnings = case.warnings;
+        }
+        return Ok(specimens);
+    }
+    let stem = path.file_stem().map_or("material".into(), |stem| stem.to_string_lossy().into_owned());
+    let dir = path.parent().unwrap_or(Path::new(""));
+    let made = Text::parse(&source).and_then(|text| {
+        let raw = read::material(&text)?;
+        convert::material_alone(&text, &raw, dir, window)
+    });
+    match made {
+        Ok((material, report)) => {
+            let report = MaterialReport { body: stem.clone(), ..report };
+            Ok(vec![Specimen { name: stem, material, report, warnings: Vec::new() }])
+        }
+        Err(errors) => Err(CaseErrors { name, source, errors }),
+    }
+}

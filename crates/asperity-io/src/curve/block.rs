@@ -1,0 +1,94 @@
+//! A fitted material as a block of a case file.
+
+use std::fmt::Write;
+
+use asperity::material::{Creep, Modulus, Relaxation, Shift};
+
+use super::{Curves, Fitted, Series};
+
+impl Fitted {
+    /// `material = { ... }` in full precision, to stand under a `[[body]]` of a case file or in a file of its own,
+    /// with remarks on where it comes from.
+    pub fn to_toml(&self, curves: &Curves) -> String {
+        let mut text = String::new();
+        let name = curves.path.file_name().map_or("data".into(), |name| name.to_string_lossy().into_owned());
+        let name: String = name.chars().map(|c| if c.is_control() { '?' } else { c }).collect();
+        let [first, last] = self.window;
+        let _ = writeln!(
+            text,
+            "# Fitted to {} points of {name} ({}): {} terms, misfit {:.2} % rms and {:.2} % at most;\n\
+             # the data cover times from {first:.3e} s to {last:.3e} s.",
+            self.data.x.len(),
+            curves.kind.name(),
+            self.terms(),
+            100.0 * self.misfit.rms,
+            100.0 * self.misfit.max,
+        );
+        let measure = match self.material.measure() {
+            Modulus::Young => "young",
+            Modulus::Shear => "shear",
+        };
+        match &self.series {
+            Series::Relaxation(relaxation) => prony(&mut text, measure, relaxation),
+            Series::Creep(function) => creep(&mut text, measure, function),
+        }
+        if let Some(shift) = &self.shift {
+            let _ = write!(text, ", shift = {}", law(shift));
+        }
+        text.push_str(" }\n");
+        text
+    }
+}
+
+fn prony(text: &mut String, measure: &str, relaxation: &Relaxation) {
+    let _ = write!(
+        text,
+        "material = {{ model = \"prony\", modulus = \"{measure}\", equilibrium = \"{:e} Pa\", terms = [",
+        relaxation.equilibrium
+    );
+    for term in &relaxation.terms {
+        let _ = write!(
+            text,
+            "\n  {{ modulus = \"{:e} Pa\", time = \"{:e} s\" }},",
+            term.modulus, term.relaxation_time
+        );
+    }
+    text.push_str("\n]");
+}
+
+fn creep(text: &mut String, measure: &str, creep: &Creep) {
+    let _ = write!(
+        text,
+        "material = {{ model = \"creep\", compliance = \"{measure}\", instantaneous = \"{:e} 1/Pa\", terms = [",
+        creep.instantaneous
+    );
+    for term in &creep.terms {
+        let _ = write!(
+            text,
+            "\n  {{ compliance = \"{:e} 1/Pa\", time = \"{:e} s\" }},",
+            term.compliance, term.retardation_time
+        );
+    }
+    text.push_str("\n]");
+    if creep.fluidity > 0.0 {
+        let _ = write!(text, ", fluidity = \"{:e} 1/(Pa s)\"", creep.fluidity);
+    }
+}
+
+fn law(shift: &Shift) -> String {
+    match shift {
+        Shift::Wlf { c1, c2, reference } => {
+            format!("{{ model = \"wlf\", c1 = {c1:?}, c2 = \"{c2:?} K\", reference = \"{reference:?} K\" }}")
+        }
+        Shift::Arrhenius { activation_energy, reference } => format!(
+            "{{ model = \"arrhenius\", energy = \"{activation_energy:?} J/mol\", reference = \"{reference:?} K\" }}"
+        ),
+        Shift::Table { points } => {
+            let points: Vec<String> = points
+                .iter()
+                .map(|(kelvin, ln)| format!("[\"{kelvin:?} K\", {:?}]", ln / std::f64::consts::LN_10))
+                .collect();
+            format!("{{ model = \"table\", points = [{}] }}", points.join(", "))
+        }
+    }
+}

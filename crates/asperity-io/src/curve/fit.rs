@@ -1,0 +1,287 @@
+//! From measured curves to a material: one temperature as it is, several through a master curve.
+
+use asperity::material::{
+    Abscissa, Creep, Fit, FitOptions, Isotherm, MasterCurve, Material, Misfit, Modulus, Relaxation, Shift,
+    estimate_shift, fit_arrhenius, fit_creep, fit_dma, fit_relaxation, fit_wlf, master_curve,
+};
+
+use super::error::{CurveError, Fault, fault};
+use super::{Curves, Kind, Sweep};
+
+/// How times depend on temperature.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum ShiftRequest {
+    /// Not known; the file holds one temperature.
+    #[default]
+    None,
+    /// As given; the result holds at its reference temperature.
+    Given(Shift),
+    /// From the overlap of the sweeps; the result holds at this temperature \[K\].
+    Estimate(f64),
+}
+
+/// How curves are fitted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Request {
+    /// What the moduli measure.
+    pub measure: Modulus,
+    /// How times depend on temperature.
+    pub shift: ShiftRequest,
+    /// The part of the (reduced) curve that is fitted: times \[s\] or angular frequencies \[rad/s\].
+    pub window: Option<[f64; 2]>,
+    /// Grid, margins, terms.
+    pub options: FitOptions,
+}
+
+impl Default for Request {
+    fn default() -> Self {
+        Request {
+            measure: Modulus::Young,
+            shift: ShiftRequest::None,
+            window: None,
+            options: FitOptions::default(),
+        }
+    }
+}
+
+/// The fitted function: creep data give a creep function, all others a relaxation function.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Series {
+    /// E(t) or G(t).
+    Relaxation(Relaxation),
+    /// D(t) or J(t).
+    Creep(Creep),
+}
+
+/// A material fitted to curves, and how well.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fitted {
+    /// The material, at the reference temperature of the shift.
+    pub material: Material,
+    /// The function that was fitted.
+    pub series: Series,
+    /// Distance between data and function.
+    pub misfit: Misfit,
+    /// Scatter of the data (standard deviation, relative).
+    pub noise: f64,
+    /// First and last (reduced) time that the data cover \[s\].
+    pub window: [f64; 2],
+    /// The points that were fitted: reduced abscissa and curves, in SI.
+    pub data: MasterCurve,
+    /// The shift, given or estimated.
+    pub shift: Option<Shift>,
+    /// Distance of the estimated law from the shift factors found [decades of a_T].
+    pub shift_rms: Option<f64>,
+    /// Temperatures of the sweeps \[K\], where the file holds them.
+    pub temperatures: Vec<f64>,
+    /// What was assumed.
+    pub notes: Vec<String>,
+}
+
+impl Fitted {
+    /// Number of terms of the fitted function.
+    pub fn terms(&self) -> usize {
+        match &self.series {
+            Series::Relaxation(relaxation) => relaxation.terms.len(),
+            Series::Creep(creep) => creep.terms.len(),
+        }
+    }
+
+    /// A sentence with the numbers where a run from `first` to `last` \[s\] leaves what was measured.
+    pub fn beyond(&self, first: f64, last: f64) -> Option<String> {
+        let fit = Fit { function: (), misfit: self.misfit, window: self.window, noise: self.noise };
+        fit.beyond(first, last)
+    }
+}
+
+/// A law replaces estimated shift factors where it meets them within this \[decades\].
+const LAW: f64 = 0.1;
+
+impl Request {
+    /// Fits the curves.
+    ///
+    /// # Errors
+    /// [`CurveError`], with the line where one point is to blame: several temperatures without a shift, points out
+    /// of order or twice, values that no passive material has, too few points in the window.
+    pub fn fit(&self, curves: &Curves) -> Result<Fitted, CurveError> {
+        self.fitted(curves).map_err(|fault| fault.of(&curves.path))
+    }
+
+    fn fitted(&self, curves: &Curves) -> Result<Fitted, Fault> {
+        let mut notes = curves.notes.clone();
+        let temperatures: Vec<f64> = curves.sweeps.iter().filter_map(|sweep| sweep.temperature).collect();
+        let (shift, shift_rms) = self.shift_of(curves, &mut notes)?;
+        let (data, lines) = master(curves, shift.as_ref())?;
+        let (data, lines) = self.inside(data, lines)?;
+        let located = |error: asperity::Error| {
+            let message = error.to_string();
+            match point(&message).and_then(|n| lines.get(n.checked_sub(1)?)) {
+                Some(line) => fault(message).at(*line),
+                None => fault(message),
+            }
+        };
+        let (options, none) = (&self.options, Vec::new());
+        let curve = |n: usize| data.curves.get(n).unwrap_or(&none).as_slice();
+        let (series, misfit, noise, window) = match curves.kind {
+            Kind::Creep => {
+                let fit = fit_creep(&data.x, curve(0), options).map_err(located)?;
+                (Series::Creep(fit.function), fit.misfit, fit.noise, fit.window)
+            }
+            Kind::Relaxation | Kind::Dma => {
+                let fit = match curves.kind {
+                    Kind::Dma => fit_dma(&data.x, curve(0), curve(1), options),
+                    _ => fit_relaxation(&data.x, curve(0), options),
+                };
+                let fit = fit.map_err(located)?;
+                (Series::Relaxation(fit.function), fit.misfit, fit.noise, fit.window)
+            }
+        };
+        let material = match &series {
+            Series::Relaxation(relaxation) => Material::prony(self.measure, relaxation.clone()),
+            Series::Creep(creep) => Material::generalised_kelvin(self.measure, creep.clone()),
+        };
+        let material = material.map_err(|error| fault(error.to_string()))?;
+        Ok(Fitted { material, series, misfit, noise, window, data, shift, shift_rms, temperatures, notes })
+    }
+
+    /// The shift of the material, and how far an estimated one is from its factors.
+    fn shift_of(
+        &self,
+        curves: &Curves,
+        notes: &mut Vec<String>,
+    ) -> Result<(Option<Shift>, Option<f64>), Fault> {
+        match &self.shift {
+            ShiftRequest::None if curves.sweeps.len() > 1 => {
+                let known: Vec<String> = curves.sweeps.iter().take(20).filter_map(celsius).collect();
+                Err(fault(format!(
+                    "the file holds {} temperatures ({}); say how times depend on temperature, as in shift = {{ \
+                     model = \"wlf\", c1 = 8.86, c2 = \"101.6 K\", reference = \"20 °C\" }}, or model = \
+                     \"estimated\"",
+                    curves.sweeps.len(),
+                    known.join(", ")
+                )))
+            }
+            ShiftRequest::None => Ok((None, None)),
+            ShiftRequest::Given(shift) => {
+                shift.validate().map_err(|error| fault(error.to_string()))?;
+                Ok((Some(shift.clone()), None))
+            }
+            ShiftRequest::Estimate(reference) => {
+                let (shift, rms) = estimated(curves, *reference, notes)?;
+                Ok((Some(shift), rms))
+            }
+        }
+    }
+
+    /// The points inside the window.
+    fn inside(&self, data: MasterCurve, lines: Vec<usize>) -> Result<(MasterCurve, Vec<usize>), Fault> {
+        let Some([first, last]) = self.window else { return Ok((data, lines)) };
+        // Ends as written fall on points as written, whatever the rounding of their units.
+        let inside = |x: &f64| *x >= first * (1.0 - 1e-9) && *x <= last * (1.0 + 1e-9);
+        let kept: Vec<usize> = (0..data.x.len()).filter(|n| inside(&data.x[*n])).collect();
+        if kept.len() < 2 {
+            let (least, most) = (data.x.first().unwrap_or(&0.0), data.x.last().unwrap_or(&0.0));
+            return Err(fault(format!(
+                "{} points lie in the window of the fit, {first:e} to {last:e} (in s, or rad/s of a dma); the data \
+                 run from {least:e} to {most:e}",
+                kept.len()
+            )));
+        }
+        let pick = |values: &Vec<f64>| kept.iter().map(|n| values[*n]).collect::<Vec<f64>>();
+        let lines = kept.iter().filter_map(|n| lines.get(*n).copied()).collect();
+        Ok((MasterCurve { x: pick(&data.x), curves: data.curves.iter().map(pick).collect() }, lines))
+    }
+}
+
+fn celsius(sweep: &Sweep) -> Option<String> {
+    sweep.temperature.map(|kelvin| format!("{:.1} °C", kelvin - 273.15))
+}
+
+/// The curve at the reference temperature, and the lines of its points where it is one sweep.
+fn master(curves: &Curves, shift: Option<&Shift>) -> Result<(MasterCurve, Vec<usize>), Fault> {
+    if let ([sweep], None) | ([sweep @ Sweep { temperature: None, .. }], _) =
+        (curves.sweeps.as_slice(), shift)
+    {
+        return Ok((MasterCurve { x: sweep.x.clone(), curves: sweep.curves.clone() }, sweep.lines.clone()));
+    }
+    let Some(shift) = shift else { return Err(fault("several temperatures need a shift")) };
+    let master = master_curve(&isotherms(curves), abscissa(curves.kind), shift);
+    let lines = match curves.sweeps.as_slice() {
+        [sweep] => sweep.lines.clone(),
+        _ => Vec::new(),
+    };
+    master.map(|master| (master, lines)).map_err(|error| at_isotherm(curves, &error))
+}
+
+/// A fault of the isotherms, with the line of the point that it names.
+fn at_isotherm(curves: &Curves, error: &asperity::Error) -> Fault {
+    let message = error.to_string();
+    let sweep = curves.sweeps.iter().find(|sweep| {
+        sweep.temperature.is_some_and(|kelvin| message.contains(&format!("isotherm at {kelvin} K")))
+    });
+    let line = sweep.and_then(|sweep| sweep.lines.get(point(&message)?.checked_sub(1)?));
+    match line {
+        Some(line) => fault(message).at(*line),
+        None => fault(message),
+    }
+}
+
+fn isotherms(curves: &Curves) -> Vec<Isotherm> {
+    let isotherm = |sweep: &Sweep| {
+        let temperature = sweep.temperature?;
+        Some(Isotherm { temperature, x: sweep.x.clone(), curves: sweep.curves.clone() })
+    };
+    curves.sweeps.iter().filter_map(isotherm).collect()
+}
+
+fn abscissa(kind: Kind) -> Abscissa {
+    match kind {
+        Kind::Dma => Abscissa::Frequency,
+        Kind::Relaxation | Kind::Creep => Abscissa::Time,
+    }
+}
+
+/// The shift about `reference` from the overlap of the sweeps: the WLF or the Arrhenius law where one meets the
+/// factors, else the factors themselves.
+fn estimated(
+    curves: &Curves,
+    reference: f64,
+    notes: &mut Vec<String>,
+) -> Result<(Shift, Option<f64>), Fault> {
+    let isotherms = isotherms(curves);
+    if isotherms.len() < 2 {
+        return Err(fault(
+            "a shift can be estimated from sweeps at two temperatures or more; name the column of the temperature, \
+             or give the shift",
+        ));
+    }
+    let distance = |isotherm: &Isotherm| (isotherm.temperature - reference).abs();
+    let nearest = isotherms.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let Some(anchor) = nearest.map(|isotherm| isotherm.temperature) else {
+        return Err(fault("there are no sweeps"));
+    };
+    let table = estimate_shift(&isotherms, abscissa(curves.kind), anchor)
+        .map_err(|error| at_isotherm(curves, &error))?;
+    let Shift::Table { points } = &table else { return Ok((table, None)) };
+    let laws = [fit_wlf(points, anchor), fit_arrhenius(points, anchor)];
+    let best = laws.into_iter().flatten().filter(|law| law.rms <= LAW).min_by(|a, b| a.rms.total_cmp(&b.rms));
+    let (shift, rms) = match best {
+        Some(law) => (law.shift, Some(law.rms)),
+        None => {
+            notes.push(format!(
+                "neither the WLF nor the Arrhenius law meets the shift factors within {LAW} decades; the factors \
+                 themselves are used, between the temperatures measured"
+            ));
+            (table, None)
+        }
+    };
+    let moved = shift.about(reference).map_err(|error| fault(error.to_string()))?;
+    Ok((moved, rms))
+}
+
+/// The number in "of point 31" or "point 31 of".
+fn point(message: &str) -> Option<usize> {
+    let (_, rest) = message.split_once("point ")?;
+    let digits: String = rest.chars().take_while(char::is_ascii_digit).collect();
+    digits.parse().ok()
+}

@@ -1,0 +1,284 @@
+//! A text table: names and units of its columns, and its cells with the lines that they stand on.
+//!
+//! ```text
+//! # any remarks
+//! f [Hz];  E' [MPa];  E'' [MPa]      one line of names with units, or a line of names and one of units
+//! 0,1;     12,5;      1,25           separator and decimal mark are found from the whole of the file
+//! ```
+
+use super::error::{Fault, fault};
+use crate::case::quantity::unit::Unit;
+use crate::topography::{dialect, is_numbers, to_text};
+
+/// Columns of a file and its rows of cells.
+#[derive(Debug)]
+pub(super) struct Table {
+    /// Name of each column, without its unit; empty where the file names none.
+    pub names: Vec<String>,
+    /// Header cell of each column as it is written.
+    pub headers: Vec<String>,
+    /// Unit of each column as it is written; empty where the file names none.
+    pub units: Vec<String>,
+    pub rows: Vec<Row>,
+    decimal_comma: bool,
+}
+
+/// The cells of one line.
+#[derive(Debug)]
+pub(super) struct Row {
+    /// Line of the file, from 1.
+    pub line: usize,
+    pub cells: Vec<String>,
+}
+
+/// Longer tables are no curves.
+const MOST_ROWS: usize = 2_000_000;
+const MOST_COLUMNS: usize = 1000;
+
+impl Table {
+    pub(super) fn parse(bytes: &[u8]) -> Result<Table, Fault> {
+        let text = to_text(bytes).ok_or_else(|| fault("the file is binary, not a text table"))?;
+        let lines: Vec<&str> = text.lines().map(str::trim).collect();
+        let numeric = lines.iter().copied().filter(|line| !is_comment(line) && is_numbers(line));
+        let (separator, decimal_comma) = match numeric.clone().next() {
+            Some(_) => dialect(numeric).map_err(|problem| fault(problem.to_string()))?,
+            // Columns of text beside the numbers.
+            None => guess(&lines),
+        };
+        let number = |cell: &str| parse_number(cell, decimal_comma).is_some();
+        let first = lines.iter().position(|line| {
+            !is_comment(line) && cells(line, separator).iter().filter(|cell| number(cell)).count() >= 2
+        });
+        let first = first.ok_or_else(|| {
+            fault("there is no line with two numbers; a curve is a text table with one point per line")
+        })?;
+        let mut cells_of_first = cells(lines[first], separator);
+        if cells_of_first.last().is_some_and(|cell| cell.is_empty()) {
+            cells_of_first.pop(); // a separator ends the line
+        }
+        let columns = cells_of_first.len();
+        if columns > MOST_COLUMNS {
+            return Err(fault(format!("the table has {columns} columns, but may have {MOST_COLUMNS}")));
+        }
+        let (headers, units) = header(&lines[..first], separator, columns);
+        let mut rows = Vec::new();
+        for (n, line) in lines.iter().enumerate().skip(first) {
+            if line.is_empty() || is_comment(line) {
+                continue;
+            }
+            let mut cells = cells(line, separator);
+            if cells.len() == columns + 1 && cells.last().is_some_and(|cell| cell.is_empty()) {
+                cells.pop(); // a separator ends the line
+            }
+            if cells.len() != columns {
+                let found = cells.len();
+                return Err(fault(format!("{found} cells, but {columns} on the lines before")).at(n + 1));
+            }
+            if rows.len() == MOST_ROWS {
+                return Err(fault(format!("there are more than {MOST_ROWS} points")).at(n + 1));
+            }
+            rows.push(Row { line: n + 1, cells: cells.into_iter().map(str::to_owned).collect() });
+        }
+        let names = headers.iter().map(|header| split_unit(header).0.to_owned()).collect();
+        let units = match units {
+            Some(units) => units,
+            None => headers.iter().map(|header| split_unit(header).1.to_owned()).collect(),
+        };
+        Ok(Table { names, headers, units, rows, decimal_comma })
+    }
+
+    /// Number of columns.
+    pub(super) fn columns(&self) -> usize {
+        self.rows.first().map_or(0, |row| row.cells.len())
+    }
+
+    /// The numbers of a column.
+    pub(super) fn numbers(&self, column: usize) -> Result<Vec<f64>, Fault> {
+        let parse = |row: &Row| {
+            let cell = row.cells.get(column).map_or("", String::as_str);
+            parse_number(cell, self.decimal_comma).ok_or_else(|| {
+                let shown: String = cell.chars().take(40).collect();
+                let why = match cell {
+                    "" => "the cell is empty".to_owned(),
+                    _ => format!("the cell {shown:?} is not a finite number"),
+                };
+                let help =
+                    "a unit belongs to the column: in the header, as in \"modulus [MPa]\", or in `units`";
+                fault(format!("{why} (column {}{}); {help}", column + 1, self.quoted(column))).at(row.line)
+            })
+        };
+        self.rows.iter().map(parse).collect()
+    }
+
+    /// `, "f [Hz]"`, or nothing where the column has no name.
+    pub(super) fn quoted(&self, column: usize) -> String {
+        match self.headers.get(column).map(String::as_str) {
+            None | Some("") => String::new(),
+            Some(header) => format!(", {header:?}"),
+        }
+    }
+
+    /// All columns, for messages: `1 "f [Hz]", 2 "E' [MPa]"`.
+    pub(super) fn listed(&self) -> String {
+        let name = |n: usize| match self.headers.get(n).map(String::as_str) {
+            None | Some("") => (n + 1).to_string(),
+            Some(header) => format!("{} {header:?}", n + 1),
+        };
+        let shown: Vec<String> = (0..self.columns().min(20)).map(name).collect();
+        shown.join(", ")
+    }
+}
+
+fn is_comment(line: &str) -> bool {
+    line.starts_with(['#', '%']) || line.starts_with("//")
+}
+
+/// A finite number, with the file's decimal mark.
+fn parse_number(cell: &str, decimal_comma: bool) -> Option<f64> {
+    let cell = cell.trim_matches('"');
+    let number = match decimal_comma && cell.contains(',') {
+        true => cell.replacen(',', ".", 1).parse(),
+        false => cell.parse(),
+    };
+    number.ok().filter(|value: &f64| value.is_finite())
+}
+
+/// Separator and decimal mark of a file whose lines hold text as well.
+fn guess(lines: &[&str]) -> (Option<char>, bool) {
+    let has = |c: char| lines.iter().filter(|line| line.contains(c)).count() * 2 > lines.len();
+    match (has(';'), has('\t'), has(',')) {
+        (true, _, comma) => (Some(';'), comma),
+        (_, true, comma) => (None, comma),
+        (_, _, true) => (Some(','), false),
+        _ => (None, false),
+    }
+}
+
+/// The cells of a line: at the separator, or at tabs where there are any, else at blanks.
+fn cells(line: &str, separator: Option<char>) -> Vec<&str> {
+    match separator {
+        Some(separator) => line.split(separator).map(str::trim).collect(),
+        None if line.contains('\t') => line.split('\t').map(str::trim).collect(),
+        None => line.split_whitespace().collect(),
+    }
+}
+
+/// The header cells of the columns, and the units where a line of their own names them.
+fn header(lines: &[&str], separator: Option<char>, columns: usize) -> (Vec<String>, Option<Vec<String>>) {
+    let fitting = lines.iter().rev().filter(|line| !line.is_empty()).take(2);
+    let mut found = fitting.map_while(|line| header_cells(line, separator, columns));
+    let none = || vec![String::new(); columns];
+    let Some(last) = found.next() else { return (none(), None) };
+    let only_units = last.iter().any(|cell| !cell.is_empty()) && last.iter().all(|cell| is_unit(cell));
+    match (only_units, found.next()) {
+        (true, Some(names)) => (names, Some(last.iter().map(|cell| bare_unit(cell).to_owned()).collect())),
+        (true, None) => (none(), Some(last.iter().map(|cell| bare_unit(cell).to_owned()).collect())),
+        (false, _) => (last, None),
+    }
+}
+
+/// The cells of a header line, where it has as many as there are columns. Names may hold blanks: where these part
+/// the columns, two of them do.
+fn header_cells(line: &str, separator: Option<char>, columns: usize) -> Option<Vec<String>> {
+    let line = line.trim_start_matches(['#', '%', '/']).trim();
+    let clean = |cells: Vec<&str>| -> Vec<String> {
+        cells.iter().map(|cell| cell.trim().trim_matches('"').trim().to_owned()).collect()
+    };
+    let mut plain = clean(cells(line, separator));
+    if plain.len() == columns + 1 && plain.last().is_some_and(String::is_empty) {
+        plain.pop();
+    }
+    if plain.len() == columns {
+        return Some(plain);
+    }
+    let spaced = clean(line.split("  ").filter(|cell| !cell.trim().is_empty()).collect());
+    (separator.is_none() && spaced.len() == columns).then_some(spaced)
+}
+
+/// "MPa" of "[MPa]" or "(MPa)".
+fn bare_unit(cell: &str) -> &str {
+    cell.trim_matches(['[', ']', '(', ')']).trim()
+}
+
+/// Whether a header cell is nothing but a unit (or says that there is none).
+fn is_unit(cell: &str) -> bool {
+    let unit = bare_unit(cell);
+    // One letter is rather a name: t, T, f.
+    matches!(unit, "" | "-" | "1" | "s" | "K" | "h" | "°C" | "degC" | "rad/s")
+        || (unit.chars().count() > 1 && Unit::parse(unit).is_ok())
+}
+
+/// Name and unit of "load [mN]", "load (mN)" or "load/mN".
+fn split_unit(header: &str) -> (&str, &str) {
+    for (open, close) in [('[', ']'), ('(', ')')] {
+        // The last bracket: "E(t) (MPa)".
+        if let Some((name, rest)) = header.rsplit_once(open)
+            && !name.trim().is_empty()
+            && let Some((unit, "")) = rest.rsplit_once(close).map(|(unit, after)| (unit, after.trim()))
+        {
+            return match unit.trim() {
+                // A function of something, not a quantity in a unit.
+                "t" | "w" | "f" | "T" | "ω" | "omega" | "delta" | "δ" => (header.trim(), ""),
+                unit => (name.trim(), unit),
+            };
+        }
+    }
+    match header.split_once('/') {
+        Some((name, unit)) if !name.trim().is_empty() => (name.trim(), bare_unit(unit.trim())),
+        _ => (header.trim(), ""),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn headers_separators_and_decimal_marks() {
+        for text in [
+            "t [s], E [MPa]\n0.5, 2\n1.5, 1\n",
+            "t [s];E [MPa]\n0,5;2\n1,5;1\n",
+            "t/s\tE/MPa\n0,5\t2,0\n1,5\t1,0\n",
+            "# made by hand\n# t (s)  E (MPa)\n0.5 2\n1.5 1\n",
+            "t,E\ns,MPa\n0.5,2\n\n# half way\n1.5,1\n",
+            "sample A\nt;E;\n[s];[MPa];\n0,5;2;\n1,5;1;\n",
+        ] {
+            let table = Table::parse(text.as_bytes()).unwrap();
+            assert_eq!(
+                (table.names.as_slice(), table.units.as_slice()),
+                (["t".to_owned(), "E".to_owned()].as_slice(), ["s".to_owned(), "MPa".to_owned()].as_slice()),
+                "{text}"
+            );
+            assert_eq!(table.numbers(0).unwrap(), [0.5, 1.5], "{text}");
+            assert_eq!(table.numbers(1).unwrap(), [2.0, 1.0], "{text}");
+        }
+        let table = Table::parse(b"0.5 2\n1.5 1\n").unwrap();
+        assert_eq!(table.names, ["", ""]);
+    }
+
+    #[test]
+    fn columns_of_text_stand_beside_the_numbers() {
+        let table = Table::parse(b"sample,f [Hz],tan(delta)\nA1,1,0.5\nA1,2,0.6\n").unwrap();
+        assert_eq!(table.names, ["sample", "f", "tan(delta)"]);
+        assert_eq!(table.units, ["", "Hz", ""]);
+        assert_eq!(table.numbers(2).unwrap(), [0.5, 0.6]);
+        assert_eq!(table.numbers(0).unwrap_err().line, Some(2));
+    }
+
+    #[test]
+    fn faults_have_their_line() {
+        let says = |text: &str, line: Option<usize>, words: &str| {
+            let found =
+                Table::parse(text.as_bytes()).and_then(|t| t.numbers(0).and(t.numbers(1))).unwrap_err();
+            assert!(found.line == line && found.message.contains(words), "{text:?}: {found:?}");
+        };
+        says("", None, "no line with two numbers");
+        says("t [s], E [MPa]\n", None, "no line with two numbers");
+        says("t,E\n1,2\n2,3,4\n", Some(3), "3 cells, but 2");
+        says("t,E\n1,2\n\n2,x\n", Some(4), "\"x\" is not a finite number (column 2, \"E\")");
+        says("t,E\n1,2\n2,10 kPa\n", Some(3), "a unit belongs to the column");
+        says("t;E\n1;2\n2;\n", Some(3), "empty");
+        says("t,E\n1,2\n2,nan\n", Some(3), "not a finite number");
+        says("\0\0\x01PNG", None, "binary");
+    }
+}

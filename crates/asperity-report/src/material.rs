@@ -1,0 +1,138 @@
+//! Materials: relaxation, creep, storage and loss over decades, and fits beside the points that they are made of.
+
+use asperity::material::{Creep, MasterCurve, Material, Modulus, Relaxation};
+use asperity_io::curve::{Curves as Measured, Fitted, Kind};
+
+use crate::figure::{Axis, Curves, Figure, Series, Style};
+
+/// Points of a curve per decade.
+const PER_DECADE: f64 = 20.0;
+/// Longest curve.
+const MOST: f64 = 4000.0;
+
+/// Relaxation modulus, creep compliance, storage and loss modulus, and tan delta of materials, over times from
+/// `window[0]` to `window[1]` \[s\] and the angular frequencies 1/t \[rad/s\].
+///
+/// ```
+/// use asperity::material::{Material, Modulus, Relaxation};
+/// use asperity_report::material::functions;
+/// let pmma = Relaxation::absolute(1973e6, &[(254.776e6, 8.93), (263.6628e6, 117.96)])?;
+/// let pmma = Material::prony(Modulus::Young, pmma)?;
+/// let figure = functions("PMMA", &[("PMMA", &pmma)], [0.1, 1000.0])?;
+/// assert_eq!(figure.panels.len(), 4);
+/// # Ok::<(), asperity::Error>(())
+/// ```
+///
+/// # Errors
+/// [`asperity::Error`] where a creep function has no relaxation function.
+pub fn functions(title: &str, materials: &[(&str, &Material)], window: [f64; 2]) -> asperity::Result<Figure> {
+    let times = decades(window);
+    let frequencies = decades([1.0 / window[1], 1.0 / window[0]]);
+    let young = materials.iter().all(|(_, material)| material.measure() == Modulus::Young);
+    let (modulus, compliance) = if young { ("E", "D") } else { ("modulus", "compliance") };
+    let time = || Axis::log("time", "s");
+    let frequency = || Axis::log("angular frequency", "rad/s");
+    let mut relaxing = Curves::new("Relaxation", time(), Axis::log(format!("relaxation {modulus}"), "Pa"));
+    let mut creeping = Curves::new("Creep", time(), Axis::log(format!("creep {compliance}"), "1/Pa"));
+    let mut dynamic = Curves::new("Storage and loss", frequency(), Axis::log("modulus", "Pa"));
+    let mut factor = Curves::new("Loss factor", frequency(), Axis::log("tan delta", ""));
+    for (name, material) in materials {
+        let relaxation = material.relaxation()?;
+        let of = |f: &dyn Fn(f64) -> f64, xs: &[f64]| xs.iter().map(|x| f(*x)).collect::<Vec<f64>>();
+        let line = |name: String, xs: &[f64], f: &dyn Fn(f64) -> f64| {
+            Series::new(name, Style::Line, xs.to_vec(), of(f, xs))
+        };
+        relaxing = relaxing.with(line((*name).into(), &times, &|t| relaxation.value(t)));
+        creeping = creeping.with(line((*name).into(), &times, &|t| material.creep().value(t)));
+        let storage = |w: f64| relaxation.complex(w).0;
+        let loss = |w: f64| relaxation.complex(w).1;
+        dynamic = dynamic.with(line(format!("{name}, storage"), &frequencies, &storage));
+        dynamic = dynamic.with(Series::new(
+            format!("{name}, loss"),
+            Style::Dashed,
+            frequencies.clone(),
+            of(&loss, &frequencies),
+        ));
+        factor = factor.with(line((*name).into(), &frequencies, &|w| loss(w) / storage(w)));
+    }
+    Ok(Figure::new(title).with(relaxing).with(creeping).with(dynamic).with(factor))
+}
+
+/// The measured points and the function fitted to them, and their relative distance.
+///
+/// # Errors
+/// [`asperity::Error`] where a creep function has no relaxation function.
+pub fn fit(title: &str, measured: &Measured, fitted: &Fitted) -> asperity::Result<Figure> {
+    let relaxation = fitted.material.relaxation()?;
+    let (x, curves): (Axis, Vec<(&str, &str, Function<'_>)>) = match measured.kind {
+        Kind::Relaxation => {
+            (Axis::log("time", "s"), vec![("relaxation modulus", "Pa", Function::Relaxation(&relaxation))])
+        }
+        Kind::Creep => (
+            Axis::log("time", "s"),
+            vec![("creep compliance", "1/Pa", Function::Creep(fitted.material.creep()))],
+        ),
+        Kind::Dma => (
+            Axis::log("angular frequency", "rad/s"),
+            vec![
+                ("storage", "Pa", Function::Storage(&relaxation)),
+                ("loss", "Pa", Function::Loss(&relaxation)),
+            ],
+        ),
+    };
+    let y = match curves.as_slice() {
+        [(name, unit, _)] => Axis::log(*name, *unit),
+        _ => Axis::log("modulus", "Pa"),
+    };
+    let MasterCurve { x: places, curves: values } = &fitted.data;
+    let positive = places.iter().copied().filter(|x| *x > 0.0);
+    let ends = [positive.clone().fold(f64::INFINITY, f64::min), positive.fold(0.0, f64::max)];
+    let fine = decades(ends);
+    let mut panel = Curves::new("Data and fit", x.clone(), y);
+    let mut distance = Curves::new("Distance", x, Axis::linear("fit / data - 1", ""));
+    for ((name, _, function), values) in curves.iter().zip(values) {
+        let at = |xs: &[f64]| xs.iter().map(|x| function.value(*x)).collect::<Vec<f64>>();
+        panel =
+            panel.with(Series::new(format!("{name}, data"), Style::Points, places.clone(), values.clone()));
+        panel = panel.with(Series::new(format!("{name}, fit"), Style::Line, fine.clone(), at(&fine)));
+        let apart: Vec<f64> = at(places).iter().zip(values).map(|(fit, data)| fit / data - 1.0).collect();
+        distance = distance.with(Series::new(*name, Style::Points, places.clone(), apart));
+    }
+    let caption = format!(
+        "{} terms; misfit {:.2} % rms, {:.2} % at most; scatter of the data {:.2} %.",
+        fitted.terms(),
+        100.0 * fitted.misfit.rms,
+        100.0 * fitted.misfit.max,
+        100.0 * fitted.noise
+    );
+    Ok(Figure::new(title).with(panel).with(distance).caption(caption))
+}
+
+/// What a kind of measurement shows of a material.
+enum Function<'a> {
+    Relaxation(&'a Relaxation),
+    Creep(&'a Creep),
+    Storage(&'a Relaxation),
+    Loss(&'a Relaxation),
+}
+
+impl Function<'_> {
+    fn value(&self, x: f64) -> f64 {
+        match self {
+            Function::Relaxation(relaxation) => relaxation.value(x),
+            Function::Creep(creep) => creep.value(x),
+            Function::Storage(relaxation) => relaxation.complex(x).0,
+            Function::Loss(relaxation) => relaxation.complex(x).1,
+        }
+    }
+}
+
+/// Places from one end to the other, evenly on a logarithmic scale.
+fn decades([first, last]: [f64; 2]) -> Vec<f64> {
+    let decades = (last / first).log10();
+    if !(decades.is_finite() && decades > 0.0) {
+        return vec![first, last];
+    }
+    let steps = (PER_DECADE * decades).ceil().clamp(1.0, MOST);
+    (0..=steps as usize).map(|k| first * 10f64.powf(decades * k as f64 / steps)).collect()
+}

@@ -31,6 +31,8 @@ pub enum Command {
     Show(ShowResult),
     /// Write a result as one HTML page: maps, curves, numbers; it needs no network
     Report(Report),
+    /// Look at a result in the browser, maps at full resolution; follows a run that goes on
+    View(View),
     /// Draw a figure of a result as PNG, SVG or PDF
     Plot(Plot),
     /// Show a material over time and frequency, or fit one to measured curves
@@ -309,6 +311,18 @@ pub struct Report {
     /// Replace a page that is there already
     #[arg(long)]
     pub force: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct View {
+    /// The result (a Zarr directory)
+    pub result: PathBuf,
+    /// The port; 0 takes a free one
+    #[arg(long, default_value_t = 0)]
+    pub port: u16,
+    /// The address to listen at: other machines can look at the result where it is not this machine's own
+    #[arg(long, default_value = "127.0.0.1", value_name = "ADDRESS")]
+    pub host: std::net::IpAddr,
 }
 
 #[derive(Debug, clap::Args)]

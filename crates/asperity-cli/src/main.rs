@@ -33,6 +33,7 @@ fn main() -> ExitCode {
         Command::Surface(surface) => commands::surface::run(&surface),
         Command::Show(show) => commands::show::run(&show),
         Command::Report(report) => commands::report::run(&report),
+        Command::View(view) => commands::view::run(&view),
         Command::Plot(plot) => commands::plot::run(&plot),
         Command::Material(material) => commands::material::run(&material),
         Command::Export(export) => commands::export::run(&export),

@@ -463,3 +463,49 @@ fn what_a_result_does_not_hold_is_told() {
     told(&["report", "small.zarr", "--force"], &["approach", "damaged"]);
     told(&["plot", "small.zarr", "evolution"], &["approach", "damaged"]);
 }
+
+#[test]
+fn a_result_is_served_to_this_machine_only() {
+    use std::io::{BufRead, BufReader, Read, Write};
+    let (dir, _) = small();
+    assert!(asperity(dir.path(), &["run", "small.toml", "--quiet"]).status.success());
+    let mut server = Command::new(env!("CARGO_BIN_EXE_asperity"))
+        .args(["view", "small.zarr"])
+        .current_dir(dir.path())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut url = String::new();
+    BufReader::new(server.stdout.take().unwrap()).read_line(&mut url).unwrap();
+    let address = url.trim().strip_prefix("http://").unwrap().trim_end_matches('/').to_owned();
+    assert!(address.starts_with("127.0.0.1:"), "{address}");
+    let ask = |path: &str, host: &str| {
+        let mut stream = std::net::TcpStream::connect(&address).unwrap();
+        write!(stream, "GET {path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n").unwrap();
+        let mut answer = Vec::new();
+        stream.read_to_end(&mut answer).unwrap();
+        let end = answer.windows(4).position(|w| w == b"\r\n\r\n").unwrap();
+        let status = String::from_utf8_lossy(&answer[9..12]).into_owned();
+        (status, answer[end + 4..].to_vec())
+    };
+    let (status, page) = ask("/", &address);
+    assert_eq!(status, "200");
+    assert!(String::from_utf8(page).unwrap().contains("\"live\":true"));
+    let (status, state) = ask("/state", "localhost");
+    let state: Value = serde_json::from_slice(&state).unwrap();
+    assert_eq!((status.as_str(), &state["running"]), ("200", &Value::Bool(false)));
+    let (status, map) = ask("/map/pressure-2", &address);
+    assert_eq!(status, "200");
+    let reader = Reader::open(&dir.path().join("small.zarr")).unwrap();
+    let field = reader.field(FieldKind::Pressure, At::Index(2)).unwrap();
+    let largest = field.iter().copied().fold(0.0, f64::max);
+    assert_eq!(map[8..16], largest.to_le_bytes(), "full resolution, its ends exact");
+    assert_eq!(map[16..24], [60, 0, 0, 0, 48, 0, 0, 0]);
+    for path in ["/map/pressure-99", "/map/../small.toml", "/etc/passwd", "/map/", "/map/pressure-x"] {
+        assert_eq!(ask(path, &address).0, "404", "{path}");
+    }
+    assert_eq!(ask("/", "example.org").0, "403");
+    server.kill().unwrap();
+    server.wait().unwrap();
+}

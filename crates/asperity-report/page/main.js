@@ -67,12 +67,13 @@ const loadingPath = () => ({
   series: [{ name: "", x: state.series.approach, y: state.series.load }],
 });
 
+const solver = [];
 function solverPanels() {
   const row = state.series.time.map((_, n) => n);
   const points = (name, key) => ({ name, x: row, y: state.series[key], points: true });
-  $("solver").replaceChildren();
-  new Chart($("solver"), { title: "Work of each row", x: { label: "row", unit: "" }, y: { label: "number", unit: "" }, series: [points("iterations", "iterations"), points("convolutions", "convolutions")] });
-  new Chart($("solver"), { title: "Error of each row", x: { label: "row", unit: "" }, y: { label: "relative error", unit: "", log: true }, series: [points("contact conditions (residual)", "residual"), points("pressure (certificate)", "certificate")] });
+  const specs = [{ title: "Work of each row", x: { label: "row", unit: "" }, y: { label: "number", unit: "" }, series: [points("iterations", "iterations"), points("convolutions", "convolutions")] },
+    { title: "Error of each row", x: { label: "row", unit: "" }, y: { label: "relative error", unit: "", log: true }, series: [points("contact conditions (residual)", "residual"), points("pressure (certificate)", "certificate")] }];
+  specs.forEach((spec, k) => (solver[k] ? solver[k].set(spec) : solver.push(new Chart($("solver"), spec))));
 }
 
 function materialPanels() {
@@ -179,6 +180,7 @@ function mapsPart() {
   chosen.field = state.fields[0].name;
   press(buttons, buttons[0]);
   $("map-note").textContent = state.note;
+  $("fixed").parentElement.hidden = !state.fields.some((kind) => kind.range);
   $("instant").max = state.instants.length - 1;
   chosen.instant = state.instants.length - 1;
   $("instant").value = chosen.instant;
@@ -262,5 +264,34 @@ async function start() {
     await mapsPart();
   }
   document.documentElement.dataset.ready = "yes";
+  if (state.running) setTimeout(follow, 2000);
+}
+
+/** A run that goes on: what is new every two seconds. */
+async function follow() {
+  let next;
+  try {
+    next = await (await fetch("state")).json();
+  } catch {
+    $("status").textContent = "no longer served: start asperity view again";
+    return;
+  }
+  const atEnd = chosen.instant >= state.instants.length - 1;
+  if (next.instants.length < state.instants.length) cache.clear();
+  const hadMaps = state.instants.length > 0;
+  for (const key of ["series", "status", "headline", "facts", "instants", "fields", "running"]) state[key] = next[key];
+  summary();
+  timePanels();
+  solverPanels();
+  if (!hadMaps && state.instants.length) await mapsPart();
+  else if (state.instants.length) {
+    $("instant").max = state.instants.length - 1;
+    if (atEnd) {
+      chosen.instant = state.instants.length - 1;
+      $("instant").value = chosen.instant;
+      await showMap();
+    }
+  }
+  if (state.running) setTimeout(follow, 2000);
 }
 start();

@@ -13,6 +13,7 @@ pub mod schema;
 pub mod show;
 pub mod surface;
 pub mod verify;
+pub mod view;
 
 use crate::failure::Failure;
 

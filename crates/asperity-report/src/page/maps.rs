@@ -43,6 +43,18 @@ impl Maps {
         }
     }
 
+    /// Those of a page that asks for its maps one by one, at all instants.
+    pub(super) fn live(reader: &Reader, with_surface: bool) -> Result<Maps, StoreError> {
+        let surface = if with_surface { super::surface::surface(reader)? } else { None };
+        Ok(Maps {
+            blobs: Vec::new(),
+            fields: kinds(reader).into_iter().map(|kind| (kind, None)).collect(),
+            instants: (0..reader.field_times().len()).collect(),
+            block: 1,
+            surface: surface.map_or(serde_json::Value::Null, |(_, words)| words),
+        })
+    }
+
     fn reduced(
         reader: &Reader,
         kinds: &[FieldKind],
@@ -74,7 +86,7 @@ impl Maps {
 }
 
 /// One map, reduced.
-fn one(reader: &Reader, kind: FieldKind, at: At, block: usize) -> Result<Array2<f64>, StoreError> {
+pub(super) fn one(reader: &Reader, kind: FieldKind, at: At, block: usize) -> Result<Array2<f64>, StoreError> {
     if kind == FieldKind::Contact {
         return Ok(states(contact_states(reader, at)?.mapv(f64::from).view(), block));
     }

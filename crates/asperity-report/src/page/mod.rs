@@ -4,10 +4,13 @@
 //! the file would grow beyond [`Options::bytes`]; the page says so.
 
 mod blob;
+mod live;
 mod maps;
 mod material;
 mod state;
 mod surface;
+
+pub use live::{Answer, Live};
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -88,15 +91,19 @@ pub fn page(reader: &Reader, options: &Options) -> Result<String, StoreError> {
     let maps = maps::Maps::of(reader, options)?;
     let state = state::state(reader, &maps)?;
     let blobs: String = maps.blobs.iter().map(|(name, data)| element(name, data)).collect();
-    // A text inside of a script must not end it.
-    let state = state.to_string().replace('<', "\\u003c");
-    Ok(filled(&[
+    Ok(filled_page(reader, &state, &blobs))
+}
+
+/// The page with its state and its maps.
+fn filled_page(reader: &Reader, state: &serde_json::Value, blobs: &str) -> String {
+    filled(&[
         ("title", &escaped(&state::title(reader))),
         ("style", STYLE),
-        ("state", &state),
-        ("blobs", &blobs),
+        // A text inside of a script must not end it.
+        ("state", &state.to_string().replace('<', "\\u003c")),
+        ("blobs", blobs),
         ("script", &SCRIPT.concat()),
-    ]))
+    ])
 }
 
 /// The page with its places filled, in one pass: what is filled in is not searched again.

@@ -34,6 +34,18 @@ pub fn run(args: &Check) -> Result<(), Failure> {
     crate::print(&tell(&case, &description, estimate))
 }
 
+/// The retardation times, or how many and from where to where.
+fn retardation(times: &[f64]) -> String {
+    const SHOWN: usize = 6;
+    let shown: Vec<String> = times.iter().map(|t| quantity(*t, "s", 1)).collect();
+    match shown.as_slice() {
+        [first, .., last] if shown.len() > SHOWN => {
+            format!("{} retardation times from {first} to {last}", shown.len())
+        }
+        _ => format!("retardation times {}", shown.join(", ")),
+    }
+}
+
 /// Rows times convolutions times what one takes here, timed on a small grid and scaled as N log N.
 fn seconds(case: &Case, description: &Description) -> Option<f64> {
     let cells = case.grid.cells().map(|n| n.min(TIMED));
@@ -90,8 +102,7 @@ fn tell(case: &Case, d: &Description, estimate: Option<f64>) -> String {
     };
     line("bodies", format!("{}; {modulus}", d.bodies.join(", ")));
     if !d.retardation_times.is_empty() {
-        let times: Vec<_> = d.retardation_times.iter().map(|t| quantity(*t, "s", 1)).collect();
-        line("creep", format!("retardation times {}", times.join(", ")));
+        line("creep", retardation(&d.retardation_times));
     }
     for report in &d.materials {
         for text in super::material::source(report) {

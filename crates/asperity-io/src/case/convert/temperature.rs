@@ -4,7 +4,7 @@ use asperity::material::Shift;
 
 use super::material::Sample;
 use super::{Checks, history_file};
-use crate::case::quantity::{Prescribed, Temperature};
+use crate::case::quantity::{Number, Prescribed, Temperature};
 use crate::case::raw::{self, At, TemperatureHistory, Two};
 use crate::case::words::number;
 use crate::curve::ShiftRequest;
@@ -18,7 +18,7 @@ pub fn shift(checks: &mut Checks<'_, '_>, at: &At<raw::Shift>) -> Option<ShiftRe
             Shift::Arrhenius { activation_energy: law.energy.get(), reference: law.reference.get() }
         }
         raw::Shift::Table(table) => {
-            let point = |Two(temperature, decades): &Two<Temperature, crate::case::quantity::Number>| {
+            let point = |Two(temperature, decades): &Two<Temperature, Number>| {
                 (temperature.get(), decades.get() * std::f64::consts::LN_10)
             };
             Shift::Table { points: table.points.iter().map(point).collect() }
@@ -69,7 +69,7 @@ fn history(checks: &mut Checks<'_, '_>, at: &At<TemperatureHistory>) -> Option<T
 
 fn table_points(
     checks: &mut Checks<'_, '_>,
-    at: &At<Vec<At<Two<crate::case::quantity::Time, At<Temperature>>>>>,
+    at: &At<Vec<At<raw::TemperaturePoint>>>,
 ) -> Option<Vec<(f64, f64)>> {
     let mut points: Vec<(f64, f64)> = Vec::with_capacity(at.value.len());
     let mut good = true;

@@ -27,7 +27,7 @@ pub use material::{
 };
 pub use run::{Field, Method, Output, Plasticity, Precision, Solver};
 pub use surface::{File, Fill, Level, SelfAffine, Surface};
-pub use thermal::{Shift, Temperature, TemperatureHistory};
+pub use thermal::{Shift, Temperature, TemperatureHistory, TemperaturePoint};
 
 use super::quantity::range::Positive;
 use super::quantity::{Length, Whole};

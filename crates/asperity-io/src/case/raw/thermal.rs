@@ -110,13 +110,16 @@ pub struct TemperatureRamp {
     pub duration: Time<Positive>,
 }
 
+/// Time and temperature.
+pub type TemperaturePoint = Two<Time, At<Kelvin>>;
+
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct TemperatureTable {
     /// Pairs [time, temperature] in order of time, the first at 0; a time given twice is a jump.
     #[schemars(example = [["0 s", "20 °C"], ["100 s", "60 °C"]])]
     #[schemars(length(min = 1))]
-    pub points: At<Vec<At<Two<Time, At<Kelvin>>>>>,
+    pub points: At<Vec<At<TemperaturePoint>>>,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]

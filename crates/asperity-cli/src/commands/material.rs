@@ -467,6 +467,7 @@ fn json_of(curves: &Curves, fitted: &Fitted) -> Value {
         "function": function,
         "misfit": { "max": fitted.misfit.max, "rms": fitted.misfit.rms, "worst": fitted.misfit.worst },
         "noise": fitted.noise,
+        "uncertainty": fitted.uncertainty,
         "notes": fitted.notes,
     })
 }

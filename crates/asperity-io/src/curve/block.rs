@@ -17,7 +17,7 @@ impl Fitted {
         let _ = writeln!(
             text,
             "# Fitted to {} points of {name} ({}): {} terms, misfit {:.2} % rms and {:.2} % at most;\n\
-             # the data cover times from {first:.3e} s to {last:.3e} s.",
+             # the data cover times from {first:.3e} s to {last:.3e} s. Behind each term: relative standard deviations.",
             self.data.x.len(),
             curves.kind.name(),
             self.terms(),
@@ -29,8 +29,8 @@ impl Fitted {
             Modulus::Shear => "shear",
         };
         match &self.series {
-            Series::Relaxation(relaxation) => prony(&mut text, measure, relaxation),
-            Series::Creep(function) => creep(&mut text, measure, function),
+            Series::Relaxation(relaxation) => prony(&mut text, measure, relaxation, &self.uncertainty),
+            Series::Creep(function) => creep(&mut text, measure, function, &self.uncertainty),
         }
         if let Some(shift) = &self.shift {
             let _ = write!(text, ", shift = {}", law(shift));
@@ -40,33 +40,47 @@ impl Fitted {
     }
 }
 
-fn prony(text: &mut String, measure: &str, relaxation: &Relaxation) {
+/// " # +- 3 %, +- 5 %" behind a term.
+fn known(uncertainty: Option<&[f64; 2]>) -> String {
+    let percent = |share: f64| match share.is_finite() {
+        true => format!("{:.1} %", 100.0 * share),
+        false => "unknown".to_owned(),
+    };
+    uncertainty
+        .map_or(String::new(), |[weight, time]| format!("  # +- {}, +- {}", percent(*weight), percent(*time)))
+}
+
+fn prony(text: &mut String, measure: &str, relaxation: &Relaxation, uncertainty: &[[f64; 2]]) {
     let _ = write!(
         text,
         "material = {{ model = \"prony\", modulus = \"{measure}\", equilibrium = \"{:e} Pa\", terms = [",
         relaxation.equilibrium
     );
-    for term in &relaxation.terms {
+    for (k, term) in relaxation.terms.iter().enumerate() {
         let _ = write!(
             text,
-            "\n  {{ modulus = \"{:e} Pa\", time = \"{:e} s\" }},",
-            term.modulus, term.relaxation_time
+            "\n  {{ modulus = \"{:e} Pa\", time = \"{:e} s\" }},{}",
+            term.modulus,
+            term.relaxation_time,
+            known(uncertainty.get(k))
         );
     }
     text.push_str("\n]");
 }
 
-fn creep(text: &mut String, measure: &str, creep: &Creep) {
+fn creep(text: &mut String, measure: &str, creep: &Creep, uncertainty: &[[f64; 2]]) {
     let _ = write!(
         text,
         "material = {{ model = \"creep\", compliance = \"{measure}\", instantaneous = \"{:e} 1/Pa\", terms = [",
         creep.instantaneous
     );
-    for term in &creep.terms {
+    for (k, term) in creep.terms.iter().enumerate() {
         let _ = write!(
             text,
-            "\n  {{ compliance = \"{:e} 1/Pa\", time = \"{:e} s\" }},",
-            term.compliance, term.retardation_time
+            "\n  {{ compliance = \"{:e} 1/Pa\", time = \"{:e} s\" }},{}",
+            term.compliance,
+            term.retardation_time,
+            known(uncertainty.get(k))
         );
     }
     text.push_str("\n]");

@@ -64,6 +64,8 @@ pub struct Fitted {
     pub misfit: Misfit,
     /// Scatter of the data (standard deviation, relative).
     pub noise: f64,
+    /// Relative standard deviations of modulus (or compliance) and time of each term.
+    pub uncertainty: Vec<[f64; 2]>,
     /// First and last (reduced) time that the data cover \[s\].
     pub window: [f64; 2],
     /// The points that were fitted: reduced abscissa and curves, in SI.
@@ -89,7 +91,8 @@ impl Fitted {
 
     /// A sentence with the numbers where a run from `first` to `last` \[s\] leaves what was measured.
     pub fn beyond(&self, first: f64, last: f64) -> Option<String> {
-        let fit = Fit { function: (), misfit: self.misfit, window: self.window, noise: self.noise };
+        let Fitted { misfit, window, noise, .. } = *self;
+        let fit = Fit { function: (), misfit, window, noise, uncertainty: Vec::new() };
         fit.beyond(first, last)
     }
 }
@@ -122,10 +125,10 @@ impl Request {
         };
         let (options, none) = (&self.options, Vec::new());
         let curve = |n: usize| data.curves.get(n).unwrap_or(&none).as_slice();
-        let (series, misfit, noise, window) = match curves.kind {
+        let (series, misfit, noise, window, uncertainty) = match curves.kind {
             Kind::Creep => {
                 let fit = fit_creep(&data.x, curve(0), options).map_err(located)?;
-                (Series::Creep(fit.function), fit.misfit, fit.noise, fit.window)
+                (Series::Creep(fit.function), fit.misfit, fit.noise, fit.window, fit.uncertainty)
             }
             Kind::Relaxation | Kind::Dma => {
                 let fit = match curves.kind {
@@ -133,7 +136,7 @@ impl Request {
                     _ => fit_relaxation(&data.x, curve(0), options),
                 };
                 let fit = fit.map_err(located)?;
-                (Series::Relaxation(fit.function), fit.misfit, fit.noise, fit.window)
+                (Series::Relaxation(fit.function), fit.misfit, fit.noise, fit.window, fit.uncertainty)
             }
         };
         let material = match &series {
@@ -141,7 +144,19 @@ impl Request {
             Series::Creep(creep) => Material::generalised_kelvin(self.measure, creep.clone()),
         };
         let material = material.map_err(|error| fault(error.to_string()))?;
-        Ok(Fitted { material, series, misfit, noise, window, data, shift, shift_rms, temperatures, notes })
+        Ok(Fitted {
+            material,
+            series,
+            misfit,
+            noise,
+            uncertainty,
+            window,
+            data,
+            shift,
+            shift_rms,
+            temperatures,
+            notes,
+        })
     }
 
     /// The shift of the material, and how far an estimated one is from its factors.

@@ -50,6 +50,16 @@ pub struct Body {
 impl Body {
     /// C(t) of this body against a rigid one \[1/Pa\].
     ///
+    /// ```
+    /// use asperity::material::{Body, Lateral, Material, Modulus};
+    /// // Bulk modulus 5 GPa: C(0) = (1/4) [1/G + 3/(3 B + G)], which is (1 - nu)/(2 G) of the same body.
+    /// let material = Material::zener(Modulus::Shear, 1e9, 1e9, 2.0)?;
+    /// let body = Body { name: "resin".into(), material, lateral: Lateral::BulkModulus(5e9), hardness: None };
+    /// let nu = (15e9 - 2e9) / (2.0 * 16e9);
+    /// assert!((body.contact_creep()?.instantaneous / ((1.0 - nu) / 2e9) - 1.0).abs() < 1e-15);
+    /// # Ok::<(), asperity::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// [`Error::Invalid`] where Poisson's ratio is outside (-1, 0.5], the bulk modulus or the hardness
     /// is not positive, or the bulk modulus is too small for the Young's moduli (9 B > E(0) is needed).
@@ -111,6 +121,18 @@ impl Body {
 }
 
 /// C(t) of the pair: C1 + C2; a missing second body is rigid.
+///
+/// ```
+/// use asperity::material::{Body, Lateral, Material, Modulus, pair_creep};
+/// let body = |modulus: f64, nu: f64| -> Result<Body, asperity::Error> {
+///     let material = Material::elastic(Modulus::Young, modulus)?;
+///     Ok(Body { name: "body".into(), material, lateral: Lateral::Poisson(nu), hardness: None })
+/// };
+/// // Steel on glass, 1/E* = (1 - 0.3^2)/210 GPa + (1 - 0.22^2)/70 GPa.
+/// let pair = pair_creep(&[body(210e9, 0.3)?, body(70e9, 0.22)?])?;
+/// assert!((1.0 / pair.value(0.0) / 55.7799e9 - 1.0).abs() < 1e-5);
+/// # Ok::<(), asperity::Error>(())
+/// ```
 ///
 /// # Errors
 /// As [`Body::contact_creep`]; [`Error::Invalid`] where there are no bodies or more than two.

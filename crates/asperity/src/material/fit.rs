@@ -9,6 +9,7 @@
 
 use crate::error::{Error, Result, non_negative, positive};
 use crate::material::data::{self, Trend, Words};
+use crate::material::refine;
 use crate::material::spectrum::{Kernel, Problem, Row, Spectrum};
 use crate::material::{Creep, CreepTerm, Relaxation, RelaxationTerm};
 
@@ -62,6 +63,10 @@ pub struct Fit<F> {
     pub window: [f64; 2],
     /// Relative scatter of the data, from the distances of neighbours (standard deviation).
     pub noise: f64,
+    /// Relative standard deviations of modulus (or compliance) and time of each term, in the order of the terms,
+    /// as the misfit leaves them uncertain: large where neighbouring terms can stand in for each other, although
+    /// the curve is known well. Infinite where the data show nothing of a term.
+    pub uncertainty: Vec<[f64; 2]>,
 }
 
 /// Relative distance between data and fit.
@@ -77,6 +82,14 @@ pub struct Misfit {
 
 impl<F> Fit<F> {
     /// A sentence with the numbers where a run from `first` to `last` \[s\] leaves the fitted window.
+    ///
+    /// ```
+    /// use asperity::material::{FitOptions, fit_relaxation};
+    /// let fit = fit_relaxation(&[1.0, 10.0, 100.0], &[3e6, 2e6, 1e6], &FitOptions::default())?;
+    /// assert_eq!(fit.beyond(1.0, 50.0), None);
+    /// assert!(fit.beyond(0.1, 50.0).unwrap().contains("from 1e-1 s to 5e1 s"));
+    /// # Ok::<(), asperity::Error>(())
+    /// ```
     pub fn beyond(&self, first: f64, last: f64) -> Option<String> {
         let [start, end] = self.window;
         // Rounding of 1/omega is no extrapolation.
@@ -133,9 +146,9 @@ pub fn fit_relaxation(times: &[f64], moduli: &[f64], options: &FitOptions) -> Re
         flow: false,
         range: [window[0] / fastest, window[1] * margin],
     };
-    let (spectrum, misfit) = options.solve(&problem, &[curve])?;
+    let Solved { spectrum, misfit, uncertainty } = options.solve(&problem, &[curve])?;
     let noise = data::noise(times, moduli);
-    Ok(Fit { function: relaxation(spectrum)?, misfit, window, noise })
+    Ok(Fit { function: relaxation(spectrum)?, misfit, window, noise, uncertainty })
 }
 
 /// Fits C(t) \[1/Pa\] at increasing times \[s\] of a creep test, whatever compliance it is (uniaxial or
@@ -171,8 +184,8 @@ pub fn fit_creep(times: &[f64], compliances: &[f64], options: &FitOptions) -> Re
         flow: options.long_time != LongTime::Solid,
         range: [window[0] / margin, window[1] * margin],
     };
-    let (spectrum, misfit) = options.solve(&problem, &[curve])?;
-    Ok(Fit { function: creep(spectrum)?, misfit, window, noise: data::noise(kept, values) })
+    let Solved { spectrum, misfit, uncertainty } = options.solve(&problem, &[curve])?;
+    Ok(Fit { function: creep(spectrum)?, misfit, window, noise: data::noise(kept, values), uncertainty })
 }
 
 /// Fits storage and loss modulus E', E'' \[Pa\] at increasing angular frequencies \[rad/s\] (2 pi f) of a
@@ -224,9 +237,9 @@ pub fn fit_dma(
         flow: false,
         range: [window[0] / margin, window[1] * margin],
     };
-    let (spectrum, misfit) = options.solve(&problem, &curves)?;
+    let Solved { spectrum, misfit, uncertainty } = options.solve(&problem, &curves)?;
     let noise = data::noise(omega, storage).max(data::noise(omega, loss));
-    Ok(Fit { function: relaxation(spectrum)?, misfit, window, noise })
+    Ok(Fit { function: relaxation(spectrum)?, misfit, window, noise, uncertainty })
 }
 
 impl FitOptions {
@@ -245,7 +258,7 @@ impl FitOptions {
     }
 
     /// Fits, and measures the misfit at every point of every curve.
-    fn solve(&self, problem: &Problem, curves: &[Curve]) -> Result<(Spectrum, Misfit)> {
+    fn solve(&self, problem: &Problem, curves: &[Curve]) -> Result<Solved> {
         let spectrum = problem.fit(self.per_decade, self.max_terms);
         let mut misfit = Misfit { max: 0.0, rms: 0.0, worst: 0.0 };
         let (mut squares, mut count) = (0.0, 0);
@@ -261,8 +274,16 @@ impl FitOptions {
             count += residuals.len();
         }
         misfit.rms = (squares / count as f64).sqrt();
-        Ok((spectrum, misfit))
+        let uncertainty = refine::uncertainty(problem, &spectrum);
+        Ok(Solved { spectrum, misfit, uncertainty })
     }
+}
+
+/// A spectrum, and how well it is known.
+struct Solved {
+    spectrum: Spectrum,
+    misfit: Misfit,
+    uncertainty: Vec<[f64; 2]>,
 }
 
 /// One measured curve.

@@ -79,6 +79,14 @@ pub struct Approximation {
 
 impl Fractional {
     /// J(t) \[1/Pa\], exactly; 0 for t < 0.
+    ///
+    /// ```
+    /// use asperity::material::Fractional;
+    /// // A fractional Maxwell element of order 1/2 at t = tau: (1 + 1/Gamma(3/2))/G, Gamma(3/2) = sqrt(pi)/2.
+    /// let element = Fractional::Maxwell { modulus: 2e6, time: 3.0, order: 0.5 };
+    /// let exact = (1.0 + 2.0 / std::f64::consts::PI.sqrt()) / 2e6;
+    /// assert!((element.creep(3.0) / exact - 1.0).abs() < 1e-13);
+    /// ```
     pub fn creep(&self, t: f64) -> f64 {
         if t < 0.0 {
             return 0.0;
@@ -95,6 +103,14 @@ impl Fractional {
     }
 
     /// G(t) \[Pa\] for t > 0, exactly (without the impulse at t = 0 of a springpot of order 1).
+    ///
+    /// ```
+    /// use asperity::material::Fractional;
+    /// // A fractional Zener solid of order 1/2 at t = tau: Ginf + (G0 - Ginf) e erfc(1).
+    /// let rubber = Fractional::Zener { equilibrium: 1e6, instantaneous: 1e9, time: 1e-3, order: 0.5 };
+    /// let exact = 1e6 + 999e6 * 0.427_583_576_155_807;
+    /// assert!((rubber.relaxation(1e-3) / exact - 1.0).abs() < 1e-12);
+    /// ```
     pub fn relaxation(&self, t: f64) -> f64 {
         match *self {
             Fractional::Springpot { order, .. } if order >= 1.0 => 0.0,
@@ -143,6 +159,18 @@ impl Fractional {
     ///
     /// Outside the window it becomes a spring at short times and, for springpot and Maxwell, a dashpot
     /// at long times: J(0) > 0, so that a jump of the load has a solution.
+    ///
+    /// ```
+    /// use asperity::material::Fractional;
+    /// let model = Fractional::Maxwell { modulus: 1e9, time: 1.0, order: 0.3 };
+    /// let sum = model.to_prony([1e-3, 1e3], 1e-3)?;
+    /// assert!(sum.error <= 1e-3 && sum.creep.terms.len() < 26);
+    /// // Storage and loss agree too, although only times were looked at.
+    /// let (storage, loss) = sum.creep.to_relaxation()?.complex(1.0);
+    /// let (exact_storage, exact_loss) = model.complex(1.0);
+    /// assert!((storage / exact_storage - 1.0).abs() < 3e-3 && (loss / exact_loss - 1.0).abs() < 3e-3);
+    /// # Ok::<(), asperity::Error>(())
+    /// ```
     ///
     /// # Errors
     /// [`Error::Invalid`] where an argument is out of its range, or where the tolerance is too tight.

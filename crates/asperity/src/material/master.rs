@@ -86,6 +86,18 @@ pub fn master_curve(isotherms: &[Isotherm], abscissa: Abscissa, shift: &Shift) -
 /// [`fit_wlf`](crate::material::fit_wlf) and [`fit_arrhenius`](crate::material::fit_arrhenius) turn the
 /// table into a law.
 ///
+/// ```
+/// use asperity::material::{Abscissa, Isotherm, estimate_shift};
+/// // Power-law relaxation t^-0.3, ten times as fast at the warmer temperature.
+/// let x: Vec<f64> = (0..13).map(|k| 10f64.powf(k as f64 / 4.0)).collect();
+/// let curve = |a: f64| vec![x.iter().map(|t| 1e6 / (1.0 + (t / a).powf(0.3))).collect()];
+/// let cold = Isotherm { temperature: 290.0, x: x.clone(), curves: curve(10.0) };
+/// let warm = Isotherm { temperature: 300.0, x: x.clone(), curves: curve(1.0) };
+/// let shift = estimate_shift(&[cold, warm], Abscissa::Time, 300.0)?;
+/// assert!((shift.factor(290.0)? / 10.0 - 1.0).abs() < 0.01); // chords over a quarter of a decade
+/// # Ok::<(), asperity::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::Invalid`] as [`master_curve`]; for fewer than two isotherms; where two neighbours share no
 /// values (measure at temperatures closer to each other), or hardly change where they do.

@@ -47,6 +47,13 @@ pub struct Material {
 impl Material {
     /// A spring: `modulus` \[Pa\] at all times.
     ///
+    /// ```
+    /// use asperity::material::{Material, Modulus};
+    /// let glass = Material::elastic(Modulus::Young, 70e9)?;
+    /// assert_eq!(glass.creep().value(1e3) * 70e9, 1.0);
+    /// # Ok::<(), asperity::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// `Invalid` where the modulus is not finite and positive.
     pub fn elastic(measure: Modulus, modulus: f64) -> Result<Self> {
@@ -55,6 +62,14 @@ impl Material {
     }
 
     /// Spring and dashpot in series: J = 1/G + t/(G `relaxation_time`).
+    ///
+    /// ```
+    /// use asperity::material::{Material, Modulus};
+    /// // G(t) = G exp(-t/tau): a share 1/e of the modulus is left after tau.
+    /// let melt = Material::maxwell(Modulus::Shear, 1e5, 20.0)?;
+    /// assert!((melt.relaxation()?.value(20.0) / 1e5 - (-1f64).exp()).abs() < 1e-15);
+    /// # Ok::<(), asperity::Error>(())
+    /// ```
     ///
     /// # Errors
     /// `Invalid` where an argument is not finite and positive.
@@ -68,6 +83,15 @@ impl Material {
     /// Spring and dashpot in parallel: J = (1 - exp(-t/`retardation_time`))/G. It does not yield at
     /// t = 0+, so a jump of the load has no solution there.
     ///
+    /// ```
+    /// use asperity::material::{Material, Modulus};
+    /// // E* = G + i omega eta, eta = G lambda.
+    /// let gel = Material::kelvin_voigt(Modulus::Shear, 2e3, 0.5)?;
+    /// let (storage, loss) = gel.relaxation()?.complex(3.0);
+    /// assert!((storage / 2e3 - 1.0).abs() < 1e-14 && (loss / 3e3 - 1.0).abs() < 1e-14);
+    /// # Ok::<(), asperity::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// `Invalid` where an argument is not finite and positive.
     pub fn kelvin_voigt(measure: Modulus, modulus: f64, retardation_time: f64) -> Result<Self> {
@@ -79,6 +103,15 @@ impl Material {
     /// The standard linear solid: spring `modulus` in series with a Kelvin-Voigt element of
     /// `modulus_kelvin`: J = 1/G + (1 - exp(-t/`retardation_time`))/G_K.
     ///
+    /// ```
+    /// use asperity::material::{Material, Modulus};
+    /// // The loss factor is largest, (G0 - Ginf) / (2 sqrt(G0 Ginf)), at omega = 1/sqrt(tau lambda).
+    /// let zener = Material::zener(Modulus::Shear, 6e6, 3e6, 9.0)?; // Ginf = 2 MPa, tau = 3 s
+    /// let (storage, loss) = zener.relaxation()?.complex(1.0 / 27f64.sqrt());
+    /// assert!((loss / storage - 4.0 / (2.0 * 12f64.sqrt())).abs() < 1e-14);
+    /// # Ok::<(), asperity::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// `Invalid` where an argument is not finite and positive.
     pub fn zener(measure: Modulus, modulus: f64, modulus_kelvin: f64, retardation_time: f64) -> Result<Self> {
@@ -89,6 +122,15 @@ impl Material {
 
     /// A Maxwell element (`modulus`, `relaxation_time`) in series with a Kelvin-Voigt element:
     /// J = 1/G + t/(G `relaxation_time`) + (1 - exp(-t/`retardation_time`))/G_K.
+    ///
+    /// ```
+    /// use asperity::material::{Material, Modulus};
+    /// // At long times it flows with the viscosity G tau of its dashpot.
+    /// let asphalt = Material::burgers(Modulus::Shear, 1e9, 100.0, 2e8, 5.0)?;
+    /// assert!((asphalt.creep().rate(1e3) * 1e11 - 1.0).abs() < 1e-12);
+    /// assert!((asphalt.relaxation()?.instantaneous() / 1e9 - 1.0).abs() < 1e-15);
+    /// # Ok::<(), asperity::Error>(())
+    /// ```
     ///
     /// # Errors
     /// `Invalid` where an argument is not finite and positive.
@@ -106,6 +148,15 @@ impl Material {
 
     /// Any relaxation function as a Prony series (generalised Maxwell, Wiechert).
     ///
+    /// ```
+    /// use asperity::material::{Material, Modulus, Relaxation};
+    /// // PMMA (uniaxial): the compliance after 100 s.
+    /// let pmma = Relaxation::absolute(1973e6, &[(254.776e6, 8.93), (263.6628e6, 117.96)])?;
+    /// let pmma = Material::prony(Modulus::Young, pmma)?;
+    /// assert!((pmma.creep().value(100.0) / 4.780684900e-10 - 1.0).abs() < 1e-9);
+    /// # Ok::<(), asperity::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// As [`Relaxation::validate`].
     pub fn prony(measure: Modulus, relaxation: Relaxation) -> Result<Self> {
@@ -113,6 +164,15 @@ impl Material {
     }
 
     /// Any creep function as a Prony series (generalised Kelvin).
+    ///
+    /// ```
+    /// use asperity::material::{Creep, CreepTerm, Material, Modulus};
+    /// let terms = vec![CreepTerm { compliance: 3e-9, retardation_time: 10.0 }];
+    /// let creep = Creep { instantaneous: 1e-9, terms, fluidity: 0.0 };
+    /// let material = Material::generalised_kelvin(Modulus::Shear, creep)?;
+    /// assert!((material.relaxation()?.equilibrium * 4e-9 - 1.0).abs() < 1e-15);
+    /// # Ok::<(), asperity::Error>(())
+    /// ```
     ///
     /// # Errors
     /// As [`Creep::validate`], or where the creep function is 0 at all times.

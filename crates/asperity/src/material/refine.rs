@@ -62,6 +62,13 @@ impl System {
 
     /// Solves (J'J + damping diag(J'J)) step = -J'r by Cholesky; parameters without effect stay.
     fn step(&self, damping: f64) -> Option<Vec<f64>> {
+        let negative: Vec<f64> = self.gradient.iter().map(|g| -g).collect();
+        let step = substitute(&self.factor(damping)?, negative);
+        step.iter().all(|s| s.is_finite()).then_some(step)
+    }
+
+    /// The Cholesky factor of J'J + damping diag(J'J).
+    fn factor(&self, damping: f64) -> Option<Vec<Vec<f64>>> {
         let n = self.gradient.len();
         let largest = (0..n).map(|i| self.normal[i][i]).fold(0.0, f64::max);
         let mut l = self.normal.clone();
@@ -87,17 +94,43 @@ impl System {
                 };
             }
         }
-        let mut step: Vec<f64> = self.gradient.iter().map(|g| -g).collect();
-        for i in 0..n {
-            let sum: f64 = l[i][..i].iter().zip(&step).map(|(a, b)| a * b).sum();
-            step[i] = (step[i] - sum) / l[i][i];
-        }
-        for i in (0..n).rev() {
-            let sum: f64 = (i + 1..n).map(|k| l[k][i] * step[k]).sum();
-            step[i] = (step[i] - sum) / l[i][i];
-        }
-        step.iter().all(|s| s.is_finite()).then_some(step)
+        Some(l)
     }
+}
+
+/// L L' x = b.
+fn substitute(l: &[Vec<f64>], mut x: Vec<f64>) -> Vec<f64> {
+    let n = x.len();
+    for i in 0..n {
+        let sum: f64 = l[i][..i].iter().zip(&x).map(|(a, b)| a * b).sum();
+        x[i] = (x[i] - sum) / l[i][i];
+    }
+    for i in (0..n).rev() {
+        let sum: f64 = (i + 1..n).map(|k| l[k][i] * x[k]).sum();
+        x[i] = (x[i] - sum) / l[i][i];
+    }
+    x
+}
+
+/// Relative standard deviations of weight and time of each term: the diagonal of s^2 (J'J)^-1 for the logarithms,
+/// with the variance s^2 of the residuals (of as many rows as are left by the parameters).
+pub(super) fn uncertainty(problem: &Problem, spectrum: &Spectrum) -> Vec<[f64; 2]> {
+    let system = System::of(problem, spectrum);
+    let used = (0..system.gradient.len()).filter(|i| system.normal[*i][*i] > 0.0).count();
+    let free = problem.rows.len().saturating_sub(used);
+    let unknown = vec![[f64::INFINITY; 2]; spectrum.terms.len()];
+    let (Some(l), true) = (system.factor(0.0), free > 0) else { return unknown };
+    let deviation = |i: usize| {
+        let mut unit = vec![0.0; system.gradient.len()];
+        unit[i] = 1.0;
+        let variance = system.squares / free as f64 * substitute(&l, unit)[i];
+        if system.normal[i][i] > 0.0 && variance.is_finite() {
+            variance.max(0.0).sqrt()
+        } else {
+            f64::INFINITY
+        }
+    };
+    (0..spectrum.terms.len()).map(|k| [deviation(2 + 2 * k), deviation(3 + 2 * k)]).collect()
 }
 
 /// One step on; no number changes by more than a factor e, and times stay in their range.

@@ -137,6 +137,11 @@ impl Relaxation {
     /// // A Maxwell element loses most at omega = 1/tau, where E' = E'' = E/2.
     /// let maxwell = Relaxation::absolute(0.0, &[(1e6, 4.0)])?;
     /// assert_eq!(maxwell.complex(0.25), (0.5e6, 0.5e6));
+    /// // Kramers and Kronig: E'(infinity) - E'(0) = (2/pi) int E''(omega) d ln omega.
+    /// let pmma = Relaxation::absolute(1973e6, &[(254.776e6, 8.93), (263.6628e6, 117.96)])?;
+    /// let loss: f64 = (0..800).map(|k| pmma.complex((-20.0 + 0.05 * k as f64).exp()).1 * 0.05).sum();
+    /// let relaxing = pmma.instantaneous() - pmma.equilibrium;
+    /// assert!((2.0 / std::f64::consts::PI * loss / relaxing - 1.0).abs() < 1e-6);
     /// # Ok::<(), asperity::Error>(())
     /// ```
     pub fn complex(&self, omega: f64) -> (f64, f64) {

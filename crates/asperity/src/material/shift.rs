@@ -108,6 +108,15 @@ impl Shift {
 
     /// The same law relative to another reference temperature \[K\]: a_T is 1 there.
     ///
+    /// ```
+    /// use asperity::material::Shift;
+    /// // Ferry: c1' = c1 c2 / (c2 + T' - T), c2' = c2 + T' - T.
+    /// let moved = Shift::universal(373.15).about(423.15)?;
+    /// let Shift::Wlf { c1, c2, .. } = moved else { unreachable!() };
+    /// assert!((c2 - 101.6).abs() < 1e-12 && (c1 - 8.8573).abs() < 1e-4);
+    /// # Ok::<(), asperity::Error>(())
+    /// ```
+    ///
     /// # Errors
     /// As [`Shift::ln_factor`].
     pub fn about(&self, temperature: f64) -> Result<Self> {
@@ -188,6 +197,17 @@ pub struct ShiftFit {
 
 /// The WLF equation through (temperature \[K\], ln a_T) points, with a_T = 1 at `reference` \[K\].
 ///
+/// ```
+/// use asperity::material::{Shift, fit_wlf};
+/// let law = Shift::universal(373.15);
+/// let points: Vec<(f64, f64)> =
+///     [373.15, 383.15, 393.15, 413.15].iter().map(|t| (*t, law.ln_factor(*t).unwrap())).collect();
+/// let fit = fit_wlf(&points, 373.15)?;
+/// let Shift::Wlf { c1, c2, .. } = fit.shift else { unreachable!() };
+/// assert!((c1 / 17.44 - 1.0).abs() < 1e-6 && (c2 / 51.6 - 1.0).abs() < 1e-6 && fit.rms < 1e-6);
+/// # Ok::<(), asperity::Error>(())
+/// ```
+///
 /// # Errors
 /// [`Error::Invalid`] where there are fewer than three points besides the reference, or where warmer is
 /// not faster.
@@ -212,6 +232,16 @@ pub fn fit_wlf(points: &[(f64, f64)], reference: f64) -> Result<ShiftFit> {
 }
 
 /// The Arrhenius law through (temperature \[K\], ln a_T) points, with a_T = 1 at `reference` \[K\].
+///
+/// ```
+/// use asperity::material::{GAS_CONSTANT, Shift, fit_arrhenius};
+/// // Twice as fast from 300 K to 310 K.
+/// let fit = fit_arrhenius(&[(300.0, 0.0), (310.0, -(2f64.ln()))], 300.0)?;
+/// let Shift::Arrhenius { activation_energy, .. } = fit.shift else { unreachable!() };
+/// let exact = GAS_CONSTANT * 2f64.ln() / (1.0 / 300.0 - 1.0 / 310.0);
+/// assert!((activation_energy / exact - 1.0).abs() < 1e-12); // 53.6 kJ/mol
+/// # Ok::<(), asperity::Error>(())
+/// ```
 ///
 /// # Errors
 /// [`Error::Invalid`] where there is no point besides the reference, or where warmer is not faster.

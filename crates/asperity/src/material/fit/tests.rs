@@ -189,6 +189,30 @@ fn a_run_beyond_the_data_is_told_so() {
 }
 
 #[test]
+fn the_uncertainty_of_a_term_is_its_scatter_over_many_experiments() {
+    // PMMA with 0.1 % of noise, 40 times: the terms scatter as the first fit says they do.
+    let pmma = Relaxation::absolute(1973e6, &[(254.776e6, 8.93), (263.6628e6, 117.96)]).unwrap();
+    let times = logspace(0.3, 3000.0, 80);
+    let mut normal = normal(7);
+    let (mut found, mut said) = (vec![], vec![]);
+    for _ in 0..40 {
+        let moduli: Vec<f64> = times.iter().map(|t| pmma.value(*t) * (1.0 + 1e-3 * normal())).collect();
+        let fit = fit_relaxation(&times, &moduli, &FitOptions::default()).unwrap();
+        if fit.function.terms.len() == 2 {
+            found.push(fit.function.terms[1].relaxation_time.ln());
+            said.push(fit.uncertainty[1][1]);
+        }
+    }
+    assert!(found.len() > 30, "{}", found.len());
+    let count = found.len() as f64;
+    let mean = found.iter().sum::<f64>() / count;
+    let scatter = (found.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (count - 1.0)).sqrt();
+    let said = said.iter().sum::<f64>() / count;
+    // A standard deviation from 30 samples is known to 13 %; three of them.
+    assert!((scatter / said).ln().abs() < 0.4, "{scatter} {said}");
+}
+
+#[test]
 fn fewer_terms_than_the_data_call_for_cost_misfit() {
     let truth = thirteen();
     let times = logspace(1e-7, 1e6, 200);

@@ -185,7 +185,7 @@ fn places(table: &Table, kind: Kind, said: &Columns) -> Result<BTreeMap<Role, us
     if places.keys().all(|role| *role == Role::Temperature) && said.columns.is_empty() {
         // No names: the columns in the order of the documentation.
         for (n, role) in required(&places).into_iter().enumerate() {
-            if n < table.columns() && !places.values().any(|place| *place == n) {
+            if n < table.columns && !places.values().any(|place| *place == n) {
                 places.insert(role, n);
             }
         }
@@ -221,7 +221,7 @@ fn find(table: &Table, role: Role, column: &Column) -> Result<usize, Fault> {
         fault(format!("{} is to be {what}, but the columns are {}", role.name(), table.listed()))
     };
     match column {
-        Column::Number(n) if *n >= 1 && *n <= table.columns() => Ok(n - 1),
+        Column::Number(n) if *n >= 1 && *n <= table.columns => Ok(n - 1),
         Column::Number(n) => Err(wrong(format!("column {n}"))),
         Column::Name(name) => {
             let wanted = name.trim();

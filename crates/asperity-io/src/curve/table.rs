@@ -6,6 +6,8 @@
 //! 0,1;     12,5;      1,25           separator and decimal mark are found from the whole of the file
 //! ```
 
+use std::ops::Range;
+
 use super::error::{Fault, fault};
 use crate::case::quantity::unit::Unit;
 use crate::topography::{dialect, is_numbers, to_text};
@@ -19,16 +21,21 @@ pub(super) struct Table {
     pub headers: Vec<String>,
     /// Unit of each column as it is written; empty where the file names none.
     pub units: Vec<String>,
+    /// Number of columns.
+    pub columns: usize,
     pub rows: Vec<Row>,
+    text: String,
+    separator: Option<char>,
     decimal_comma: bool,
 }
 
-/// The cells of one line.
+/// A line of numbers: its cells are cut out when they are asked for.
 #[derive(Debug)]
 pub(super) struct Row {
     /// Line of the file, from 1.
     pub line: usize,
-    pub cells: Vec<String>,
+    /// Bytes of the text.
+    span: Range<usize>,
 }
 
 /// Longer tables are no curves.
@@ -77,25 +84,24 @@ impl Table {
             if rows.len() == MOST_ROWS {
                 return Err(fault(format!("there are more than {MOST_ROWS} points")).at(n + 1));
             }
-            rows.push(Row { line: n + 1, cells: cells.into_iter().map(str::to_owned).collect() });
+            // Both are slices of one text.
+            let start = line.as_ptr() as usize - text.as_ptr() as usize;
+            rows.push(Row { line: n + 1, span: start..start + line.len() });
         }
         let names = headers.iter().map(|header| split_unit(header).0.to_owned()).collect();
         let units = match units {
             Some(units) => units,
             None => headers.iter().map(|header| split_unit(header).1.to_owned()).collect(),
         };
-        Ok(Table { names, headers, units, rows, decimal_comma })
-    }
-
-    /// Number of columns.
-    pub(super) fn columns(&self) -> usize {
-        self.rows.first().map_or(0, |row| row.cells.len())
+        drop(lines);
+        Ok(Table { names, headers, units, columns, rows, text, separator, decimal_comma })
     }
 
     /// The numbers of a column.
     pub(super) fn numbers(&self, column: usize) -> Result<Vec<f64>, Fault> {
         let parse = |row: &Row| {
-            let cell = row.cells.get(column).map_or("", String::as_str);
+            let line = self.text.get(row.span.clone()).unwrap_or_default();
+            let cell = cells(line, self.separator).get(column).copied().unwrap_or_default();
             parse_number(cell, self.decimal_comma).ok_or_else(|| {
                 let shown: String = cell.chars().take(40).collect();
                 let why = match cell {
@@ -124,7 +130,7 @@ impl Table {
             None | Some("") => (n + 1).to_string(),
             Some(header) => format!("{} {header:?}", n + 1),
         };
-        let shown: Vec<String> = (0..self.columns().min(20)).map(name).collect();
+        let shown: Vec<String> = (0..self.columns.min(20)).map(name).collect();
         shown.join(", ")
     }
 }

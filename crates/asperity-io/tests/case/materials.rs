@@ -505,6 +505,7 @@ fn faults_of_measured_curves_are_named_with_their_line() {
         ("names.csv", "a [s], b [MPa]\n1, 2\n2, 1\n3, 0.9\n"),
         ("hertz.csv", "f [1/s], E' [MPa], E'' [MPa]\n1, 2, 0.1\n2, 2.1, 0.1\n"),
         ("five.csv", &sweeps(&[0.0, 20.0, 40.0])),
+        ("sweep.csv", "f [Hz], E' [MPa], E'' [MPa]\n0.1, 1, 0.1\n10, 2, 0.1\n1, 1.5, 0.1\n100, 3, 0.1\n"),
         ("falling.csv", "t [s], D [1/MPa]\n1, 2\n10, 1\n100, 0.5\n"),
         ("sudden.csv", &curve("t [s], E [MPa]", |t| if t < 1.0 { 2.0 } else { 1.0 })),
         ("loss.csv", &curve("f [Hz], E' [MPa], E'' [MPa]", |_| 1.0).replace(", 1.000000000e0", ", 1, 3")),
@@ -549,6 +550,7 @@ fn faults_of_measured_curves_are_named_with_their_line() {
         at,
         &["which column holds the", "1 \"t [s]\", 2 \"E [MPa]\"", "columns = {"],
     );
+    says(dir, &dma("sweep.csv", ""), at, &["line 4", "angular frequency of point 3", "in order, none twice"]);
     says(dir, &dma("loss.csv", ""), at, &["passive material"]);
     says(dir, &dma("five.csv", ""), at, &["3 temperatures (0.0 °C, 20.0 °C, 40.0 °C)", "shift = {"]);
     says(

@@ -52,6 +52,9 @@ impl Default for FitOptions {
     }
 }
 
+/// Longest grid of times: its cost grows with the cube.
+const MOST_TIMES: f64 = 300.0;
+
 /// A function fitted to data, and how well.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fit<F> {
@@ -259,6 +262,14 @@ impl FitOptions {
 
     /// Fits, and measures the misfit at every point of every curve.
     fn solve(&self, problem: &Problem, curves: &[Curve]) -> Result<Solved> {
+        let count = (problem.range[1] / problem.range[0]).log10() * self.per_decade;
+        if count > MOST_TIMES {
+            return Err(Error::invalid(
+                "number of times of the fit",
+                format!("{count:.0}"),
+                format!("at most {MOST_TIMES}: fewer per decade, or data over fewer decades"),
+            ));
+        }
         let spectrum = problem.fit(self.per_decade, self.max_terms);
         let mut misfit = Misfit { max: 0.0, rms: 0.0, worst: 0.0 };
         let (mut squares, mut count) = (0.0, 0);

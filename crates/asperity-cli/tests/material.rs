@@ -102,8 +102,7 @@ fn a_fit_becomes_a_block_that_a_case_takes() {
     let block = std::fs::read_to_string(&path).unwrap();
     // ... and in a case, where it is the material that the data give there.
     let rubber = std::fs::read_to_string(examples().join("rubber-dma.toml")).unwrap();
-    let start = rubber.find("material = {").unwrap();
-    let end = start + rubber[start..].find("} }").unwrap() + 3;
+    let (start, end) = (rubber.find("[body.material]").unwrap(), rubber.find("[load]").unwrap());
     let pasted = format!("{}{block}{}", &rubber[..start], &rubber[end..]);
     let read = |text: &str| Case::parse(text, &examples(), &[]).unwrap_or_else(|errors| panic!("{errors}"));
     let (from_data, from_block) = (read(&rubber), read(&pasted));

@@ -17,8 +17,11 @@ kind = "sphere"
 radius = "10 mm"
 [[body]]
 poisson = 0.5
-material = { model = "relaxation-table", path = "test.csv", modulus = "young", shift = {
-  model = "arrhenius", energy = "120 kJ/mol", reference = "20 °C" } }
+[body.material]
+model = "relaxation-table"
+path = "test.csv"
+modulus = "young"
+shift = { model = "arrhenius", energy = "120 kJ/mol", reference = "20 °C" }
 [temperature]
 history = { kind = "file", path = "warm.csv" }
 [load]

@@ -25,7 +25,8 @@ templates!(
     "flat-punch",
     "capped-cycle",
     "periodic-rough",
-    "rough-pmma"
+    "rough-pmma",
+    "warming-rubber"
 );
 
 impl Template {

@@ -188,7 +188,7 @@ pub struct Show {
     /// Print a JSON list with one object per body
     #[arg(long)]
     pub json: bool,
-    /// Draw the functions: a path that ends in .svg or .png
+    /// Draw the functions: a path that ends in .svg, .png or .pdf
     #[arg(long, value_name = "PATH")]
     pub plot: Option<PathBuf>,
     /// Replace a picture that is there already
@@ -243,7 +243,7 @@ pub struct Fit {
     /// The file to write, with a `material = { ... }` for a case [default: printed]
     #[arg(short, long, value_name = "PATH")]
     pub output: Option<PathBuf>,
-    /// Draw data and fit: a path that ends in .svg or .png
+    /// Draw data and fit: a path that ends in .svg, .png or .pdf
     #[arg(long, value_name = "PATH")]
     pub plot: Option<PathBuf>,
     /// Print one JSON object

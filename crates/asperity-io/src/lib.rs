@@ -3,6 +3,7 @@
 pub mod case;
 pub mod curve;
 pub mod export;
+pub mod preparation;
 pub mod session;
 pub mod store;
 pub mod topography;

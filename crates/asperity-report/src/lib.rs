@@ -5,6 +5,7 @@
 //! - [`page`] writes the report, one HTML file.
 //! - [`material`] shows materials and fits.
 //! - [`paper`] makes the figures of the paper that the method comes from.
+//! - [`surface`] draws a surface with its statistics.
 
 pub mod figure;
 mod file;
@@ -13,3 +14,4 @@ pub mod page;
 pub mod paper;
 pub mod pictures;
 pub mod result;
+pub mod surface;

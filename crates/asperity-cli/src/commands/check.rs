@@ -87,6 +87,12 @@ fn tell(case: &Case, d: &Description, estimate: Option<f64>) -> String {
         ),
     );
     line("gap", d.surfaces.join(" + "));
+    for prepared in &d.preparation {
+        line("prepared", prepared.surface.clone());
+        for step in &prepared.steps {
+            line("", format!("- {step}"));
+        }
+    }
     let modulus = match d.instantaneous_modulus {
         Some(e) if d.retardation_times.is_empty() && d.relaxed_modulus > 0.0 => {
             format!("contact modulus {}", quantity(e, "Pa", 1))

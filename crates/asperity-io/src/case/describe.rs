@@ -56,6 +56,8 @@ pub struct Description {
     pub boundary: &'static str,
     /// The parts of the gap ("sphere", "self-affine", a file's path).
     pub surfaces: Vec<String>,
+    /// What was done to each measured surface; empty until the gap is built.
+    pub preparation: Vec<Preparation>,
     /// Names of the deformable bodies.
     pub bodies: Vec<String>,
     /// Contact modulus right after a load, 1/C(0) \[Pa\]; absent for bodies that do not yield at once.
@@ -88,6 +90,15 @@ pub struct Description {
     pub result_bytes: u64,
 }
 
+/// What was done to a measured surface.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Preparation {
+    /// The file.
+    pub surface: String,
+    /// One sentence per step, in the order in which they were done.
+    pub steps: Vec<String>,
+}
+
 impl Case {
     /// What the case will do.
     pub fn describe(&self) -> Description {
@@ -104,6 +115,7 @@ impl Case {
                 Boundary::Periodic => "periodic",
             },
             surfaces: self.surfaces.iter().map(name).collect(),
+            preparation: self.surfaces.iter().filter_map(preparation).collect(),
             bodies: self.bodies.iter().map(|body| body.name.clone()).collect(),
             instantaneous_modulus: (creep.instantaneous > 0.0).then(|| 1.0 / creep.instantaneous),
             relaxed_modulus: 1.0 / creep.long_time(),
@@ -145,6 +157,11 @@ impl Case {
         }
         .min(self.rows)
     }
+}
+
+fn preparation(surface: &Surface) -> Option<Preparation> {
+    let Surface::File(file) = surface else { return None };
+    Some(Preparation { surface: file.path.display().to_string(), steps: file.history()? })
 }
 
 fn name(surface: &Surface) -> String {

@@ -2,77 +2,118 @@
 
 use std::ops::Range;
 use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use asperity::Grid;
-use asperity::surface::{Fill, Level, Part, fill, level};
+use asperity::surface::{Part, Surface};
 
+use crate::preparation::{Prepared, Step, prepare};
 use crate::topography::{ReadOptions, read};
 
 /// A topography file of a case and what is done with it.
-#[derive(Clone, Debug, PartialEq)]
+///
+/// The file is read and prepared once; what comes of it is kept.
+#[derive(Clone, Debug)]
 pub struct Measured {
     /// The file.
     pub path: PathBuf,
     /// Place of the path in the case file's source.
     pub(super) span: Range<usize>,
-    /// Physical size \[m\], where the case gives one.
-    pub size: Option<[f64; 2]>,
-    /// Metres per unit of the heights, where the case gives one.
-    pub height_unit: Option<f64>,
-    /// What is taken off the heights.
-    pub level: Level,
-    /// What is done about undefined points.
-    pub fill: Fill,
-    /// Whether the heights change their sign.
-    pub invert: bool,
+    /// Channel, physical size and unit, where the case gives them.
+    pub options: ReadOptions,
+    /// What is done with the heights, in order.
+    pub steps: Vec<Step>,
+    prepared: Arc<Mutex<Option<Kept>>>,
+}
+
+/// The surface prepared for these cells of the domain (`None`: the domain takes those of the surface).
+#[derive(Debug)]
+struct Kept {
+    domain: Option<[usize; 2]>,
+    prepared: Arc<Prepared>,
+}
+
+impl PartialEq for Measured {
+    fn eq(&self, other: &Self) -> bool {
+        (&self.path, &self.options, &self.steps) == (&other.path, &other.options, &other.steps)
+    }
 }
 
 /// Size of the file against size of the domain: they agree to this share.
 const SAME: f64 = 1e-6;
-/// More of a surface than this is not filled: it would be invention, not measurement.
-const LARGEST_FILLED_SHARE: f64 = 0.25;
 
 impl Measured {
+    pub(super) fn new(path: PathBuf, span: Range<usize>, options: ReadOptions, steps: Vec<Step>) -> Self {
+        Measured { path, span, options, steps, prepared: Arc::default() }
+    }
+
+    /// The surface after its preparation; `domain` are the cells of the domain, `None` where it takes the surface's
+    /// (a step that resamples to the domain then does nothing).
+    ///
+    /// # Errors
+    /// A sentence: the file cannot be read, or a step fails.
+    pub fn prepared(&self, domain: Option<[usize; 2]>) -> Result<Arc<Prepared>, String> {
+        let mut kept = self.prepared.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(Kept { domain: of, prepared }) = &*kept
+            && (of.is_none() || *of == domain)
+        {
+            return Ok(prepared.clone());
+        }
+        let topography = read(&self.path, &self.options).map_err(|error| error.to_string())?;
+        let of_file = |error| format!("{}: {error}", self.path.display());
+        let (nx, ny) = topography.heights.dim();
+        let grid = Grid::new([nx, ny], topography.size).map_err(of_file)?;
+        let surface = Surface::new(grid, topography.heights).map_err(of_file)?;
+        // Where the domain takes the cells of this surface, they need not be changed.
+        let open = |step: &&Step| matches!(step, Step::Resample { cells: None, .. });
+        let steps: Vec<Step> = match domain {
+            Some(_) => self.steps.clone(),
+            None => self.steps.iter().filter(|step| !open(step)).cloned().collect(),
+        };
+        let prepared = Arc::new(prepare(surface, &steps, domain).map_err(of_file)?);
+        *kept = Some(Kept { domain, prepared: prepared.clone() });
+        Ok(prepared)
+    }
+
+    /// What was done to the surface, one sentence per step; `None` where it was not read yet.
+    pub fn history(&self) -> Option<Vec<String>> {
+        let kept = self.prepared.lock().unwrap_or_else(PoisonError::into_inner);
+        kept.as_ref().map(|kept| kept.prepared.history.clone())
+    }
+
     /// The heights as a part of the gap.
     ///
     /// # Errors
-    /// A sentence: the file cannot be read, or does not fit the grid.
+    /// A sentence: the file cannot be read, a step fails, or the surface does not fit the grid.
     pub fn part(&self, grid: &Grid) -> Result<Part, String> {
-        let options =
-            ReadOptions { size: self.size, height_unit: self.height_unit, ..ReadOptions::default() };
-        let topography = read(&self.path, &options).map_err(|error| error.to_string())?;
-        let (found, wanted) = (topography.heights.dim(), grid.shape());
-        if found != wanted {
+        let prepared = self.prepared(Some(grid.cells()))?;
+        let ([mx, my], [nx, ny]) = (prepared.surface.grid().cells(), grid.cells());
+        let name = self.path.display().to_string();
+        let (size, domain) = (prepared.surface.grid().size(), grid.size());
+        let agree = |axis: usize| (size[axis] - domain[axis]).abs() <= SAME * domain[axis];
+        if !(agree(0) && agree(1)) {
+            let smaller = (0..2).all(|axis| domain[axis] <= size[axis] * (1.0 + SAME));
+            let crop = match smaller {
+                true => format!(
+                    ", or keep a part of the surface: crop = {{ size = [{:e}, {:e}] }}",
+                    domain[0], domain[1]
+                ),
+                // Nobody knows what lies around a measured surface.
+                false => String::new(),
+            };
             return Err(format!(
-                "{} holds {} x {} points, but the domain has {} x {} cells; set domain.cells = [{}, {}]",
-                self.path.display(),
-                found.0,
-                found.1,
-                wanted.0,
-                wanted.1,
-                found.0,
-                found.1
+                "{name} measures {:e} m x {:e} m, but the domain {:e} m x {:e} m; leave domain.size out to take \
+                 the surface's{crop}",
+                size[0], size[1], domain[0], domain[1]
             ));
         }
-        let agree = |a: f64, b: f64| (a - b).abs() <= SAME * b;
-        let [size, domain] = [topography.size, grid.size()];
-        if !(agree(size[0], domain[0]) && agree(size[1], domain[1])) {
+        if [mx, my] != [nx, ny] {
             return Err(format!(
-                "{} measures {:e} m x {:e} m, but the domain {:e} m x {:e} m; set domain.size to the file's",
-                self.path.display(),
-                size[0],
-                size[1],
-                domain[0],
-                domain[1]
+                "{name} holds {mx} x {my} points, but the domain has {nx} x {ny} cells; leave domain.cells out to take \
+                 the surface's, set domain.cells = [{mx}, {my}], or add resample = \"bilinear\" (or \"band-limited\") \
+                 to this surface",
             ));
         }
-        // The form is fitted to what was measured, not to what fills the holes.
-        let of_file = |error| format!("{}: {error}", self.path.display());
-        let levelled = level(topography.heights.view(), self.level).map_err(of_file)?;
-        let mut heights = fill(grid, levelled.view(), self.fill, LARGEST_FILLED_SHARE).map_err(of_file)?;
-        if self.invert {
-            heights.mapv_inplace(|z| -z);
-        }
-        Ok(Part::Heights { name: self.path.display().to_string(), heights })
+        Ok(Part::Heights { name, heights: prepared.surface.heights().to_owned() })
     }
 }

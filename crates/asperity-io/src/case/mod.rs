@@ -42,6 +42,7 @@
 mod convert;
 mod describe;
 mod error;
+pub mod fragment;
 mod measured;
 mod memory;
 mod overrides;
@@ -64,7 +65,7 @@ use asperity::surface::undeformed_gap;
 use asperity::{Boundary, Error, Grid, Loading, Scheme, Simulation, SolverOptions, TimeGrid};
 use ndarray::Array2;
 
-pub use describe::{Description, MaterialReport};
+pub use describe::{Description, MaterialReport, Preparation};
 pub use error::{CaseError, CaseErrors};
 pub use measured::Measured;
 pub use plan::{Field, Output, Rows, Surface};

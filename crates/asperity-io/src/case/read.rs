@@ -9,7 +9,7 @@ use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue, ValueDeserializer};
 
 use super::error::CaseError;
-use super::raw::{At, Document, Material};
+use super::raw::{At, Document, Domain, Material, Surface};
 use super::text::{MOST_ERRORS, Text};
 use super::words;
 
@@ -40,6 +40,27 @@ pub fn document(text: &Text<'_>) -> Result<Document, Vec<CaseError>> {
         (true, Some(domain), Some(load), Some(time)) => {
             Ok(Document { title, domain, surface, body, load, time, temperature, solver, output })
         }
+        _ => Err(reader.errors),
+    }
+}
+
+/// What was read, or the faults found.
+type Read<T> = Result<T, Vec<CaseError>>;
+
+/// The surfaces of a document that may have nothing else.
+pub fn surfaces(text: &Text<'_>) -> Read<Vec<At<Surface>>> {
+    let mut reader = Reader { text, errors: Vec::new(), misspelt: Vec::new() };
+    let surfaces = reader.list("surface", &[Tag { inside: &[], key: "kind" }]);
+    if reader.errors.is_empty() { Ok(surfaces) } else { Err(reader.errors) }
+}
+
+/// The domain and the surfaces of a document that may have nothing else.
+pub fn roughness(text: &Text<'_>) -> Read<(At<Domain>, Vec<At<Surface>>)> {
+    let mut reader = Reader { text, errors: Vec::new(), misspelt: Vec::new() };
+    let domain = reader.required("domain", &[]);
+    let surfaces = reader.list("surface", &[Tag { inside: &[], key: "kind" }]);
+    match (domain, reader.errors.is_empty()) {
+        (Some(domain), true) => Ok((domain, surfaces)),
         _ => Err(reader.errors),
     }
 }
@@ -126,6 +147,10 @@ impl<'t> Reader<'_, 't> {
 
     fn read<T: DeserializeOwned>(&mut self, value: &Spanned<DeValue<'t>>, tags: &[Tag]) -> Option<T> {
         let mut value = value.clone();
+        if let Err(error) = self.move_steps(&mut value) {
+            self.errors.push(*error);
+            return None;
+        }
         for tag in tags {
             if let Err(error) = self.move_tag(&mut value, *tag) {
                 self.errors.push(*error);
@@ -154,6 +179,14 @@ impl<'t> Reader<'_, 't> {
             };
         }
         self.outwards(union, tag.key)
+    }
+
+    /// The steps of a measured surface are a list of tagged unions inside it.
+    fn move_steps(&self, value: &mut Spanned<DeValue<'t>>) -> Result<(), Box<CaseError>> {
+        let DeValue::Table(table) = value.get_mut() else { return Ok(()) };
+        let Some(process) = table.get_mut("process") else { return Ok(()) };
+        let DeValue::Array(steps) = process.get_mut() else { return Ok(()) }; // serde says what it is
+        steps.iter_mut().try_for_each(|step| self.outwards(step, "op"))
     }
 
     /// `{ tag = name, ... }` becomes `{ name = { ... } }`.

@@ -134,6 +134,9 @@ impl Problem {
 
 fn list(names: &[String]) -> String {
     const SHOWN: usize = 20;
+    if names.is_empty() {
+        return "one surface without a name; leave the channel out".to_owned();
+    }
     let mut text: Vec<String> =
         names.iter().take(SHOWN).enumerate().map(|(i, n)| format!("{i}: {n:?}")).collect();
     if names.len() > SHOWN {

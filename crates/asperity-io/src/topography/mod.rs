@@ -75,7 +75,45 @@ impl Topography {
     pub fn undefined(&self) -> usize {
         self.heights.iter().filter(|h| h.is_nan()).count()
     }
+
+    /// What was done to the heights since they were measured or made, where the file or [`record`](Self::record) says.
+    pub fn history(&self) -> impl Iterator<Item = &str> {
+        let entries = self.metadata.iter().filter(|(key, _)| key.eq_ignore_ascii_case(HISTORY));
+        entries
+            .flat_map(|(_, steps)| steps.split(BETWEEN_STEPS).map(str::trim).filter(|step| !step.is_empty()))
+    }
+
+    /// Notes steps in the history; [`write()`](fn@write) keeps it in the formats that can hold it (all but SDF).
+    ///
+    /// ```
+    /// use asperity_io::topography::{Format, ReadOptions, read_bytes, to_bytes};
+    ///
+    /// let file = b"# Width: 2 um\n# Height: 2 um\n# Value units: nm\n1 2\n4 5\n";
+    /// let mut surface = read_bytes(file, &ReadOptions::default())?;
+    /// surface.record(["invert".to_owned(), "flip along x".to_owned()]);
+    /// let again = read_bytes(&to_bytes(&surface, Format::Npz)?, &ReadOptions::default())?;
+    /// assert_eq!(again.history().collect::<Vec<_>>(), ["invert", "flip along x"]);
+    /// # Ok::<(), asperity_io::topography::TopographyError>(())
+    /// ```
+    pub fn record(&mut self, steps: impl IntoIterator<Item = String>) {
+        let all: Vec<String> = self.history().map(str::to_owned).chain(steps).collect();
+        self.metadata.retain(|(key, _)| !key.eq_ignore_ascii_case(HISTORY));
+        if !all.is_empty() {
+            self.metadata.push((HISTORY.to_owned(), all.join(BETWEEN_STEPS)));
+        }
+    }
+
+    /// The history as one line, where there is one.
+    fn history_line(&self) -> Option<String> {
+        // A line break would end the entry in a text file.
+        let steps: Vec<String> = self.history().map(|step| step.replace(['\n', '\r'], " ")).collect();
+        (!steps.is_empty()).then(|| steps.join(BETWEEN_STEPS))
+    }
 }
+
+/// Key of the history among the metadata.
+const HISTORY: &str = "History";
+const BETWEEN_STEPS: &str = "; ";
 
 /// What the caller knows and the file may not say.
 ///
@@ -147,5 +185,11 @@ fn parse(bytes: &[u8], options: &ReadOptions) -> Result<Topography, Problem> {
         // NetCDF-4 is HDF5; the content tells which.
         Format::NetCdf | Format::Hdf5 => netcdf::read_netcdf(bytes, channel)?,
     };
+    if let Some(wanted) = channel
+        && measured.channels.is_empty()
+        && wanted != "0"
+    {
+        return Err(Problem::NoChannel { wanted: wanted.into(), available: Vec::new() });
+    }
     finish(format, measured, options)
 }

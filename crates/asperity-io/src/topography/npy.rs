@@ -12,7 +12,7 @@ use super::grid::{self, Layout};
 use super::sample::{Kind, Order, decode};
 use super::unit::{LoneA, metres};
 use super::unpack::Archive;
-use super::{Format, Problem};
+use super::{Format, HISTORY, Problem};
 
 const SIGNATURE: &[u8] = b"\x93NUMPY";
 
@@ -32,17 +32,20 @@ pub(super) fn read_npy(bytes: &[u8]) -> Result<Measured, Problem> {
 /// Reads the channel asked for of an NPZ file: each two-dimensional array is one.
 pub(super) fn read_npz(bytes: &[u8], channel: Option<&str>) -> Result<Measured, Problem> {
     let mut archive = Archive::open(bytes)?;
-    let (mut names, mut size, mut unit) = (Vec::new(), None, None);
+    let (mut names, mut size, mut unit, mut metadata) = (Vec::new(), None, None, Vec::new());
     for member in archive.names() {
         let Some(name) = member.strip_suffix(".npy") else { continue };
         // The header and all of a small array.
-        let start = archive.start(&member, 4096)?;
+        let start = archive.start(&member, 1 << 16)?;
         let Ok(array) = Npy::parse(&start) else { continue };
         match name {
             "size" if array.shape == [2] => {
                 size = array.values().ok().and_then(|v| <[f64; 2]>::try_from(v).ok());
             }
             "unit" if array.shape.is_empty() => unit = array.text(),
+            "history" if array.shape.is_empty() => {
+                metadata.extend(array.text().map(|text| (HISTORY.to_owned(), text)));
+            }
             _ if array.shape.len() == 2 && array.kind().is_some() => names.push(name.to_owned()),
             _ => {}
         }
@@ -68,7 +71,7 @@ pub(super) fn read_npz(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
         lateral,
         channel: Some(names[index].clone()),
         channels: names,
-        metadata: Vec::new(),
+        metadata,
     })
 }
 

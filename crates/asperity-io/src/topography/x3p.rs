@@ -15,7 +15,7 @@ use super::finish::{Lateral, Measured, Unit, choose};
 use super::grid::{self, Layout};
 use super::sample::{Kind, Order};
 use super::unpack::Archive;
-use super::{Format, Problem};
+use super::{Format, HISTORY, Problem};
 
 /// Elements nest five deep in the standard's schema.
 const DEEPEST: usize = 32;
@@ -218,7 +218,19 @@ impl Main {
                 let value = elements.remove(&key)?;
                 Some((key.strip_prefix("Record2/")?.to_owned(), value))
             })
+            .flat_map(split_history)
             .collect()
+    }
+}
+
+/// The history of the heights, which the writer of this crate puts at the end of the comment.
+fn split_history((key, value): (String, String)) -> Vec<(String, String)> {
+    let mark = format!(" {HISTORY}: ");
+    match value.split_once(&mark) {
+        Some((comment, history)) if key == "Comment" => {
+            vec![(key, comment.to_owned()), (HISTORY.to_owned(), history.to_owned())]
+        }
+        _ => vec![(key, value)],
     }
 }
 

@@ -4,4 +4,5 @@ mod errors;
 mod examples;
 mod hostile;
 mod materials;
+mod measured;
 mod values;

@@ -127,10 +127,10 @@ fn measured_surfaces_are_levelled_and_must_fit() {
         assert_eq!(errors.errors[0].key, "surface[0].path");
         assert!(errors.to_string().contains(words), "{errors}");
     }
-    std::fs::write(dir.path().join("small.txt"), "1 2 3\n4 5 6\n7 8 9\n").unwrap();
+    std::fs::write(dir.path().join("small.txt"), "1 2 3 4\n5 6 7 8\n9 8 7 6\n").unwrap();
     let surface = r#"{ kind = "file", path = "small.txt", size = ["2 mm", "1 mm"], height_unit = "um" }"#;
     let errors = case_in(dir.path(), Parts { surface, ..PARTS }).gap().unwrap_err();
-    assert!(errors.to_string().contains("3 x 3 points, but the domain has 40 x 20 cells"), "{errors}");
+    assert!(errors.to_string().contains("4 x 3 points, but the domain has 40 x 20 cells"), "{errors}");
 }
 
 /// (C(0), C(3 s), C(infinity)) of an incompressible body, where C = J/4 = 3 D/4.

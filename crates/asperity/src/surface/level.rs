@@ -3,6 +3,7 @@
 //! A measured surface stands askew under the instrument. [`level`] subtracts the mean, plane or
 //! quadratic that fits its defined points best; undefined points stay undefined and do not count.
 
+use ndarray::parallel::prelude::*;
 use ndarray::{Array2, ArrayView2};
 
 use crate::error::{Error, Result};
@@ -37,49 +38,74 @@ pub enum Level {
 /// # Errors
 /// [`Error::Invalid`] where a form is to be removed and no height is defined.
 pub fn level(heights: ArrayView2<f64>, form: Level) -> Result<Array2<f64>> {
-    let mut flat = heights.mapv(|z| if z.is_finite() { z } else { f64::NAN });
-    let terms = match form {
+    let mut flat = heights.to_owned();
+    flat.par_mapv_inplace(|z| if z.is_finite() { z } else { f64::NAN });
+    let remove = match form {
         Level::None => return Ok(flat),
-        Level::Mean => 1,
-        Level::Plane => 3,
-        Level::Quadratic => 6,
+        Level::Mean => remove::<1>,
+        Level::Plane => remove::<3>,
+        Level::Quadratic => remove::<6>,
     };
     if flat.iter().all(|z| z.is_nan()) {
         return Err(Error::invalid("number of defined heights", 0, "1 at least, to level the surface"));
     }
     // Twice: the second pass removes what rounding left of a form much larger than the roughness.
-    for _ in 0..2 {
-        let form = fit(flat.view(), terms);
-        let shape = flat.dim();
-        flat.indexed_iter_mut().for_each(|(at, z)| {
-            *z -= form.iter().zip(basis(at, shape)).map(|(c, b)| c * b).sum::<f64>();
-        });
-    }
+    remove(&mut flat);
+    remove(&mut flat);
     Ok(flat)
+}
+
+/// Subtracts the least-squares form of the first T basis functions.
+fn remove<const T: usize>(flat: &mut Array2<f64>) {
+    let (form, shape) = (fit::<T>(flat.view()), flat.dim());
+    flat.outer_iter_mut().into_par_iter().enumerate().for_each(|(i, mut row)| {
+        for (j, z) in row.iter_mut().enumerate() {
+            let b = basis((i, j), shape);
+            *z -= (0..T).map(|t| form[t] * b[t]).sum::<f64>();
+        }
+    });
 }
 
 /// 1, x, y, x^2 - 1/3, x y, y^2 - 1/3 on \[-1, 1\] x \[-1, 1\]: nearly orthogonal, so that the normal
 /// equations stay well conditioned.
+#[inline(always)]
 fn basis((i, j): (usize, usize), (nx, ny): (usize, usize)) -> [f64; 6] {
     let centred = |i: usize, n: usize| (2 * i + 1) as f64 / n as f64 - 1.0;
     let (x, y) = (centred(i, nx), centred(j, ny));
     [1.0, x, y, x * x - 1.0 / 3.0, x * y, y * y - 1.0 / 3.0]
 }
 
-/// Coefficients of the first `terms` basis functions by the normal equations.
-fn fit(heights: ArrayView2<f64>, terms: usize) -> [f64; 6] {
+/// Coefficients of the first T basis functions by the normal equations.
+fn fit<const T: usize>(heights: ArrayView2<f64>) -> [f64; 6] {
+    // Rows apart, then added in their order: the same bits for any number of threads.
+    let rows: Vec<([[f64; 6]; 6], [f64; 6])> = heights
+        .outer_iter()
+        .into_par_iter()
+        .enumerate()
+        .map(|(i, row)| {
+            let mut matrix = [[0.0; 6]; 6];
+            let mut right = [0.0; 6];
+            for (j, z) in row.iter().enumerate().filter(|(_, z)| !z.is_nan()) {
+                let b = basis((i, j), heights.dim());
+                for r in 0..T {
+                    right[r] += b[r] * z;
+                    for c in 0..=r {
+                        matrix[r][c] += b[r] * b[c];
+                    }
+                }
+            }
+            (matrix, right)
+        })
+        .collect();
     let mut matrix = [[0.0; 6]; 6];
     let mut right = [0.0; 6];
-    for (at, z) in heights.indexed_iter().filter(|(_, z)| !z.is_nan()) {
-        let b = basis(at, heights.dim());
-        for r in 0..terms {
-            right[r] += b[r] * z;
-            for c in 0..=r {
-                matrix[r][c] += b[r] * b[c];
-            }
+    for (of_row, right_of_row) in &rows {
+        for r in 0..T {
+            right[r] += right_of_row[r];
+            (0..=r).for_each(|c| matrix[r][c] += of_row[r][c]);
         }
     }
-    solve(matrix, right, terms)
+    solve(matrix, right, T)
 }
 
 /// Cholesky's L L' x = r; a column that depends on the ones before it gets x = 0.

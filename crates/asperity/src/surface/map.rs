@@ -28,9 +28,11 @@ impl Surface {
     /// [`Error::Invalid`](crate::Error::Invalid) where the heights do not have the shape of the grid.
     pub fn new(grid: Grid, mut heights: Array2<f64>) -> Result<Self> {
         check_shape(&grid, heights.view())?;
-        heights.mapv_inplace(|z| if z.is_finite() { z } else { f64::NAN });
+        heights.par_mapv_inplace(|z| if z.is_finite() { z } else { f64::NAN });
         // C order, whatever came in.
-        let heights = heights.as_standard_layout().into_owned();
+        if !heights.is_standard_layout() {
+            heights = heights.as_standard_layout().into_owned();
+        }
         Ok(Surface { grid, heights })
     }
 

@@ -1,19 +1,75 @@
 //! The grid, and whether the machine can hold the problem.
 
+use std::ops::Range;
+
 use asperity::{Boundary, Grid, Scheme};
 
 use super::Checks;
+use crate::case::measured::Measured;
 use crate::case::memory;
-use crate::case::raw;
+use crate::case::raw::{self, At};
+use crate::case::words;
 
-pub fn grid(checks: &mut Checks<'_, '_>, domain: &raw::Domain) -> Option<Grid> {
-    let cells = domain.cells.value.map(|count| count.count());
-    let size = domain.size.map(|length| length.get());
+/// The grid and the place of its number of cells. What the domain does not say is that of the measured surface,
+/// where there is exactly one; `files` are the measured surfaces, `None` for one whose keys are wrong.
+pub fn grid(
+    checks: &mut Checks<'_, '_>,
+    domain: &At<raw::Domain>,
+    files: &[Option<&Measured>],
+) -> Option<Grid> {
+    let cells = domain.value.cells.as_ref().map(|at| at.value.map(|count| count.count()));
+    let size = domain.value.size.as_ref().map(|at| at.value.map(|length| length.get()));
+    let place = cells_place(domain);
     // A count that no machine can hold is refused by `memory`, with its numbers.
-    if memory::estimate(cells, 0) > memory::physical() {
+    if cells.is_some_and(|cells| memory::estimate(cells, 0) > memory::physical()) {
         return None;
     }
-    checks.core(&domain.cells.span, Grid::new(cells, size))
+    if let (Some(cells), Some(size)) = (cells, size) {
+        return checks.core(place, Grid::new(cells, size));
+    }
+    let missing: Vec<&str> =
+        [("cells", cells.is_none()), ("size", size.is_none())].iter().filter(|k| k.1).map(|k| k.0).collect();
+    match files {
+        [] => {
+            for key in missing {
+                checks.push(|text| words::missing_key(text, &domain.span, key));
+            }
+            None
+        }
+        [one] => {
+            let file = (*one)?;
+            match file.prepared(cells) {
+                Ok(prepared) => {
+                    let of_file = prepared.surface.grid();
+                    let (cells, size) = (cells.unwrap_or(of_file.cells()), size.unwrap_or(of_file.size()));
+                    checks.core(place, Grid::new(cells, size))
+                }
+                Err(reason) => {
+                    checks.fault(&file.span, reason, "", None);
+                    None
+                }
+            }
+        }
+        many => {
+            for key in missing {
+                checks.push(|text| {
+                    let mut error = words::missing_key(text, &domain.span, key);
+                    error.message = format!(
+                        "{}: there are {} measured surfaces, so which one gives it must be said",
+                        error.message,
+                        many.len()
+                    );
+                    error
+                });
+            }
+            None
+        }
+    }
+}
+
+/// Where the number of cells stands, or the domain that leaves it out.
+fn cells_place(domain: &At<raw::Domain>) -> &Range<usize> {
+    domain.value.cells.as_ref().map_or(&domain.span, |at| &at.span)
 }
 
 pub fn boundary(boundary: raw::Boundary) -> Boundary {
@@ -24,8 +80,15 @@ pub fn boundary(boundary: raw::Boundary) -> Boundary {
 }
 
 /// Bytes that the problem takes, whose bodies remember `fields` fields; more than the machine has are refused.
-pub fn memory(checks: &mut Checks<'_, '_>, domain: &raw::Domain, fields: usize, scheme: Scheme) -> u128 {
-    let cells = domain.cells.value.map(|count| count.count());
+pub fn memory(
+    checks: &mut Checks<'_, '_>,
+    domain: &At<raw::Domain>,
+    grid: Option<&Grid>,
+    fields: usize,
+    scheme: Scheme,
+) -> u128 {
+    let written = domain.value.cells.as_ref().map(|at| at.value.map(|count| count.count()));
+    let Some(cells) = written.or(grid.map(Grid::cells)) else { return 0 };
     let (needed, present) = (memory::estimate(cells, fields), memory::physical());
     if needed <= present {
         return needed;
@@ -45,6 +108,6 @@ pub fn memory(checks: &mut Checks<'_, '_>, domain: &raw::Domain, fields: usize, 
         Scheme::Direct => "take fewer cells or steps, or scheme = \"linear\"",
         _ => "take fewer cells",
     };
-    checks.fault(&domain.cells.span, message, "a problem that fits into memory", Some(help));
+    checks.fault(cells_place(domain), message, "a problem that fits into memory", Some(help));
     needed
 }

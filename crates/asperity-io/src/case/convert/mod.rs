@@ -3,12 +3,13 @@
 
 mod body;
 mod curve;
-mod domain;
+pub(super) mod domain;
 mod history_file;
 mod load;
 mod material;
 mod output;
-mod surface;
+pub(super) mod prepare;
+pub(super) mod surface;
 mod temperature;
 mod time;
 
@@ -35,8 +36,10 @@ pub fn case(
     output: PathBuf,
 ) -> Result<Case, Vec<CaseError>> {
     let mut checks = Checks { text, dir, errors: Vec::new() };
-    let grid = domain::grid(&mut checks, &document.domain.value);
-    let surfaces = surface::surfaces(&mut checks, &document.surface, grid.as_ref());
+    let measured = surface::files(&mut checks, &document.surface);
+    let of_grid: Vec<_> = measured.iter().flatten().map(Option::as_ref).collect();
+    let grid = domain::grid(&mut checks, &document.domain, &of_grid);
+    let surfaces = surface::surfaces(&mut checks, &document.surface, &measured, grid.as_ref());
     let samples: Vec<_> =
         document.body.iter().map(|body| material::sample(&mut checks, &body.value.material)).collect();
     let temperatures = temperature::temperatures(&mut checks, document.temperature.as_ref(), &samples);
@@ -72,7 +75,7 @@ pub fn case(
         (Scheme::Direct, Some(pair)) => pair.rows,
         (_, Some(pair)) => pair.branches(),
     };
-    let memory = domain::memory(&mut checks, &document.domain.value, fields, scheme);
+    let memory = domain::memory(&mut checks, &document.domain, grid.as_ref(), fields, scheme);
 
     checks.errors.sort_by_key(|error| error.span.as_ref().map_or(usize::MAX, |span| span.start));
     match (checks.errors.is_empty(), grid, surfaces, pair, prescription, times, output) {
@@ -125,10 +128,10 @@ pub fn material_alone(
 }
 
 /// The faults found so far, and the means to word the next one.
-struct Checks<'c, 't> {
-    text: &'c Text<'t>,
-    dir: &'c Path,
-    errors: Vec<CaseError>,
+pub(super) struct Checks<'c, 't> {
+    pub(super) text: &'c Text<'t>,
+    pub(super) dir: &'c Path,
+    pub(super) errors: Vec<CaseError>,
 }
 
 impl Checks<'_, '_> {

@@ -1,22 +1,44 @@
 //! The parts of the undeformed gap.
 
 use asperity::Grid;
-use asperity::surface::{Fill, Level, Part, Punch, Roughness, SelfAffine, Shape};
+use asperity::surface::{
+    HeightDistribution, Lay, Level, Part, Punch, Roughness, SelfAffine, Shape, Synthesis, level,
+};
 
-use super::Checks;
+use super::{Checks, prepare};
 use crate::case::measured::Measured;
 use crate::case::plan::Surface;
+use crate::case::quantity::range::Positive;
 use crate::case::quantity::unit::Unit;
 use crate::case::quantity::{Dimension, Length, dimension};
 use crate::case::raw::{self, At, Two};
+use crate::case::words;
+use crate::topography::{ReadOptions, read};
+
+/// The measured surfaces at their places among all of them; `Some(None)` where its keys are wrong.
+pub fn files(checks: &mut Checks<'_, '_>, surfaces: &[At<raw::Surface>]) -> Vec<Option<Option<Measured>>> {
+    let file = |surface: &At<raw::Surface>| match &surface.value {
+        raw::Surface::File(file) => Some(measured(checks, file)),
+        _ => None,
+    };
+    surfaces.iter().map(file).collect()
+}
 
 pub fn surfaces(
     checks: &mut Checks<'_, '_>,
     surfaces: &[At<raw::Surface>],
+    files: &[Option<Option<Measured>>],
     grid: Option<&Grid>,
 ) -> Option<Vec<Surface>> {
     // All of them are looked at, also after one that is wrong.
-    let parts: Vec<_> = surfaces.iter().map(|surface| part(checks, surface, grid)).collect();
+    let parts: Vec<_> = surfaces
+        .iter()
+        .zip(files)
+        .map(|(surface, file)| match file {
+            Some(file) => file.clone().map(Surface::File),
+            None => part(checks, surface, grid),
+        })
+        .collect();
     parts.into_iter().collect()
 }
 
@@ -43,74 +65,149 @@ fn part(checks: &mut Checks<'_, '_>, surface: &At<raw::Surface>, grid: Option<&G
             (Shape::Wave { amplitude: wave.amplitude.get(), wavelength }, wave.center)
         }
         raw::Surface::SelfAffine(roughness) => return self_affine(checks, roughness, grid),
-        raw::Surface::File(file) => return measured(checks, file),
+        raw::Surface::File(_) => return None, // see `files`
     };
     checks.core(&surface.span, shape.validate())?;
     let center = center.map_or([0.0, 0.0], |center: Two<Length>| center.map(|length| length.get()));
     Some(Surface::Part(Part::Shape { shape, center }))
 }
 
-fn self_affine(
+/// Synthetic roughness; checked against the grid where there is one.
+pub fn self_affine(
     checks: &mut Checks<'_, '_>,
     roughness: &At<raw::SelfAffine>,
     grid: Option<&Grid>,
 ) -> Option<Surface> {
     let raw = &roughness.value;
+    let preset = raw.preset.map(|raw::Preset::ContactMechanicsChallenge| {
+        SelfAffine::contact_mechanics_challenge(raw.seed.get())
+    });
     let keys = [("rms_gradient", raw.rms_gradient.is_some()), ("rms_height", raw.rms_height.is_some())];
-    checks.exactly_one(&roughness.span, &keys)?;
-    let longest = raw.longest.value.get();
-    let surface = SelfAffine {
-        hurst: raw.hurst.get(),
-        roughness: match (raw.rms_gradient, raw.rms_height) {
-            (Some(gradient), _) => Roughness::RmsGradient(gradient.get()),
-            (_, Some(height)) => Roughness::RmsHeight(height.get()),
-            (None, None) => return None,
-        },
+    let given = match (raw.rms_gradient, raw.rms_height, preset) {
+        (None, None, Some(preset)) => preset.roughness,
+        (gradient, height, _) => {
+            checks.exactly_one(&roughness.span, &keys)?;
+            match (gradient, height) {
+                (Some(gradient), _) => Roughness::RmsGradient(gradient.get()),
+                (_, Some(height)) => Roughness::RmsHeight(height.get()),
+                (None, None) => return None,
+            }
+        }
+    };
+    let mut needed = |key: &str, value: Option<f64>| {
+        if value.is_none() {
+            checks.push(|text| words::missing_key(text, &roughness.span, key));
+        }
+        value
+    };
+    let length = |at: &Option<At<Length<Positive>>>| at.as_ref().map(|at| at.value.get());
+    let hurst = needed("hurst", raw.hurst.map(|h| h.get()).or(preset.map(|p| p.hurst)));
+    let longest = needed("longest", length(&raw.longest).or(preset.map(|p| p.longest)));
+    let shortest = needed("shortest", length(&raw.shortest).or(preset.map(|p| p.shortest)));
+    let (hurst, longest, shortest) = (hurst?, longest?, shortest?);
+    // The preset's roll-off where the band still holds it.
+    let roll_off = preset.map_or(longest, |preset| preset.roll_off.clamp(shortest.min(longest), longest));
+    let spectrum = SelfAffine {
+        hurst,
+        roughness: given,
         longest,
-        shortest: raw.shortest.value.get(),
-        roll_off: raw.roll_off.as_ref().map_or(longest, |at| at.value.get()),
+        shortest,
+        roll_off: length(&raw.roll_off).unwrap_or(roll_off),
         seed: raw.seed.get(),
     };
     if let Some(grid) = grid {
-        let result = surface.validate(grid);
-        // The wavelength that is refused, where the message is about one.
+        let result = spectrum.validate(grid);
+        // The solver names the wavelength that does not fit.
         let place = match &result {
-            Err(asperity::Error::Invalid { what, .. }) if what.starts_with("shortest") => &raw.shortest.span,
-            Err(asperity::Error::Invalid { what, .. }) if what.starts_with("longest") => &raw.longest.span,
-            Err(asperity::Error::Invalid { what, .. }) if what.starts_with("roll-off") => {
-                raw.roll_off.as_ref().map_or(&roughness.span, |at| &at.span)
+            Err(asperity::Error::Invalid { what, .. }) if what.starts_with("longest") => raw.longest.as_ref(),
+            Err(asperity::Error::Invalid { what, .. }) if what.starts_with("shortest") => {
+                raw.shortest.as_ref()
             }
-            _ => &roughness.span,
-        };
+            Err(asperity::Error::Invalid { what, .. }) if what.starts_with("roll-off") => {
+                raw.roll_off.as_ref()
+            }
+            _ => None,
+        }
+        .map_or(&roughness.span, |at| &at.span);
         checks.core(place, result)?;
     }
-    Some(Surface::Part(Part::SelfAffine(surface)))
+    if raw.lay.is_none() && raw.distribution.is_none() {
+        return Some(Surface::Part(Part::SelfAffine(spectrum)));
+    }
+    let lay = raw.lay.as_ref().map(|at| Lay {
+        angle: at.value.angle.map_or(0.0, |angle| angle.get()),
+        ratio: at.value.ratio.get(),
+    });
+    let distribution = match &raw.distribution {
+        None => HeightDistribution::Gaussian,
+        Some(at) => distribution(checks, at)?,
+    };
+    let synthesis = Synthesis { spectrum, lay, distribution };
+    if let Err(error) = synthesis.validate() {
+        let of_lay = error.to_string().contains("lay");
+        let place = if of_lay { raw.lay.as_ref().map(|at| &at.span) } else { None };
+        let place = place.or(raw.distribution.as_ref().map(|at| &at.span)).unwrap_or(&roughness.span).clone();
+        checks.core::<()>(&place, Err(error))?;
+    }
+    Some(Surface::Part(Part::Synthesis(synthesis)))
 }
 
-fn measured(checks: &mut Checks<'_, '_>, file: &raw::File) -> Option<Surface> {
+fn distribution(checks: &mut Checks<'_, '_>, at: &At<raw::Distribution>) -> Option<HeightDistribution> {
+    let raw = &at.value;
+    match (&raw.path, raw.skewness, raw.kurtosis) {
+        (None, None, None) => {
+            let help = "skewness and kurtosis set it, or path names a measured surface that has it";
+            checks.fault(&at.span, "says nothing".into(), "skewness, kurtosis or path", Some(help));
+            None
+        }
+        (None, skewness, kurtosis) => Some(HeightDistribution::Moments {
+            skewness: skewness.map_or(0.0, |value| value.get()),
+            kurtosis: kurtosis.map_or(3.0, |value| value.get()),
+        }),
+        (Some(path), None, None) => {
+            let full = checks.file(path)?;
+            // Mean and rms come from the roughness: neither unit nor size matters.
+            let options =
+                ReadOptions { size: Some([1.0, 1.0]), height_unit: Some(1.0), ..ReadOptions::default() };
+            let told = |reason: String| (reason, "a surface with heights");
+            let heights =
+                read(&full, &options).map_err(|error| told(error.to_string())).and_then(|surface| {
+                    level(surface.heights.view(), Level::Plane).map_err(|error| told(error.to_string()))
+                });
+            match heights {
+                Ok(heights) => {
+                    let defined = heights.iter().copied().filter(|z| z.is_finite()).collect();
+                    Some(HeightDistribution::Samples(defined))
+                }
+                Err((reason, expected)) => {
+                    checks.fault(&path.span, reason, expected, None);
+                    None
+                }
+            }
+        }
+        (Some(_), ..) => {
+            let help = "leave path out, or skewness and kurtosis";
+            let message = "`path` stands beside skewness or kurtosis".into();
+            checks.fault(&at.span, message, "one of them", Some(help));
+            None
+        }
+    }
+}
+
+fn measured(checks: &mut Checks<'_, '_>, file: &raw::File) -> Option<Measured> {
     let path = checks.file(&file.path);
     let unit = match &file.height_unit {
-        None => None,
-        Some(unit) => Some(height_unit(checks, unit)?),
+        None => Some(None),
+        Some(unit) => height_unit(checks, unit).map(Some),
     };
-    Some(Surface::File(Measured {
-        path: path?,
-        span: file.path.span.clone(),
+    let steps = prepare::steps(checks, file);
+    let options = ReadOptions {
         size: file.size.map(|size| size.map(|length| length.get())),
-        height_unit: unit,
-        level: match file.level {
-            raw::Level::None => Level::None,
-            raw::Level::Mean => Level::Mean,
-            raw::Level::Plane => Level::Plane,
-            raw::Level::Quadratic => Level::Quadratic,
-        },
-        fill: match file.fill {
-            raw::Fill::Error => Fill::Error,
-            raw::Fill::Harmonic => Fill::Harmonic,
-            raw::Fill::Nearest => Fill::Nearest,
-        },
-        invert: file.invert,
-    }))
+        height_unit: unit?,
+        channel: file.channel.as_ref().map(|channel| channel.get().to_owned()),
+        format: None,
+    };
+    Some(Measured::new(path?, file.path.span.clone(), options, steps?))
 }
 
 /// Metres per unit.

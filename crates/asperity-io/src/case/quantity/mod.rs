@@ -12,6 +12,7 @@
 //! # Ok::<(), asperity_io::case::quantity::QuantityError>(())
 //! ```
 
+mod angle;
 mod decimal;
 pub mod range;
 mod serial;
@@ -22,9 +23,10 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::str::FromStr;
 
+pub use angle::Angle;
 use decimal::Decimal;
 use range::{Finite, Range};
-pub use serial::{Prescribed, Whole};
+pub use serial::{Label, Prescribed, Signed, Whole};
 pub use temperature::Temperature;
 use unit::{Powers, Unit};
 

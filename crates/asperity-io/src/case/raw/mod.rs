@@ -6,6 +6,7 @@
 mod body;
 mod load;
 mod material;
+pub mod prepare;
 mod run;
 mod surface;
 mod thermal;
@@ -26,7 +27,7 @@ pub use material::{
     RelaxationTable,
 };
 pub use run::{Field, Method, Output, Plasticity, Precision, Solver};
-pub use surface::{File, Fill, Level, SelfAffine, Surface};
+pub use surface::{Distribution, File, Preset, SelfAffine, Surface};
 pub use thermal::{Shift, Temperature, TemperatureHistory, TemperaturePoint};
 
 use super::quantity::range::Positive;
@@ -66,12 +67,13 @@ pub struct Document {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Domain {
-    /// Number of cells along x and y; any numbers, also not square and not powers of two.
+    /// Number of cells along x and y; any numbers, also not square and not powers of two. Those of the measured
+    /// surface if not given; needed where there is none.
     #[schemars(example = [1024, 1024])]
-    pub cells: At<Two<Whole<1>>>,
-    /// Length of the domain along x and y.
+    pub cells: Option<At<Two<Whole<1>>>>,
+    /// Length of the domain along x and y. That of the measured surface if not given; needed where there is none.
     #[schemars(example = ["0.1 mm", "0.1 mm"])]
-    pub size: Two<Length<Positive>>,
+    pub size: Option<At<Two<Length<Positive>>>>,
     /// What surrounds the domain; "free" if not given.
     #[serde(default)]
     pub boundary: Boundary,

@@ -3,9 +3,10 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use super::prepare::{Axis, Crop, Fill, Filter, Level, Operation, Outliers, Resample, Window};
 use super::{At, Two};
-use crate::case::quantity::range::{Hurst, Positive, PositiveOrInfinite};
-use crate::case::quantity::{Length, Number, Whole};
+use crate::case::quantity::range::{Hurst, Positive, PositiveOrInfinite, Share};
+use crate::case::quantity::{Angle, Label, Length, Number, Signed, Whole};
 
 /// One part of the undeformed gap; heights point out of their body, towards the other one.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -22,10 +23,10 @@ pub enum Surface {
     FlatPunch(At<FlatPunch>),
     /// A wave: the product of cosines along x and y.
     Wave(Wave),
-    /// Gaussian roughness with a self-affine power spectrum, the same on every machine for one seed.
-    SelfAffine(At<SelfAffine>),
-    /// A measured topography from a file (text matrix or NPY).
-    File(File),
+    /// Random roughness with a self-affine power spectrum, the same on every machine for one seed.
+    SelfAffine(Box<At<SelfAffine>>),
+    /// A measured topography from a file.
+    File(Box<File>),
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -95,77 +96,121 @@ pub struct Wave {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SelfAffine {
-    /// Hurst exponent: the spectrum falls as q^(-2 (1 + hurst)).
+    /// A known roughness by its name; its numbers are the defaults of the other keys.
+    pub preset: Option<Preset>,
+    /// Hurst exponent: the spectrum falls as q^(-2 (1 + hurst)). Needed without `preset`.
     #[schemars(example = 0.8)]
-    pub hurst: Number<Hurst>,
+    pub hurst: Option<Number<Hurst>>,
     /// Root mean square of the gradient; this or `rms_height`.
     #[schemars(example = 0.05)]
     pub rms_gradient: Option<Number<Positive>>,
     /// Root mean square of the height; this or `rms_gradient`.
     #[schemars(example = "0.2 um")]
     pub rms_height: Option<Length<Positive>>,
-    /// Longest wavelength of the roughness.
+    /// Longest wavelength of the roughness. Needed without `preset`.
     #[schemars(example = "50 um")]
-    pub longest: At<Length<Positive>>,
-    /// Shortest wavelength of the roughness; at least two cells.
+    pub longest: Option<At<Length<Positive>>>,
+    /// Shortest wavelength of the roughness; at least two cells. Needed without `preset`.
     #[schemars(example = "0.8 um")]
-    pub shortest: At<Length<Positive>>,
+    pub shortest: Option<At<Length<Positive>>>,
     /// Wavelength down to which the spectrum is flat; `longest` if not given.
     #[schemars(example = "50 um")]
     pub roll_off: Option<At<Length<Positive>>>,
+    /// The direction in which the surface was worked; the same in all directions if not given.
+    #[schemars(example = serde_json::json!({ "angle": "30 deg", "ratio": 4 }))]
+    pub lay: Option<At<Lay>>,
+    /// How the heights are distributed; Gaussian if not given.
+    #[schemars(example = serde_json::json!({ "skewness": -1, "kurtosis": 5 }))]
+    pub distribution: Option<At<Distribution>>,
     /// Number that picks the realisation.
     #[schemars(example = 1)]
     pub seed: Whole<0>,
 }
 
+/// A known roughness.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Preset {
+    /// The Contact Mechanics Challenge (Mueser et al. 2017), 0.1 mm x 0.1 mm: hurst = 0.8, rms_gradient = 1,
+    /// longest = "0.1 mm", roll_off = "20 um", shortest = "0.1 um" (which needs 2000 cells a side or more).
+    ContactMechanicsChallenge,
+}
+
+/// The direction in which a surface was worked: the wavelengths hold across it.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Lay {
+    /// Angle of the lay from the x axis towards the y axis; 0 if not given.
+    #[schemars(example = "30 deg")]
+    pub angle: Option<Angle>,
+    /// Length along the lay over length across it, 1 or more.
+    #[schemars(example = 4)]
+    pub ratio: Number<Positive>,
+}
+
+/// How the heights are distributed: `skewness` and `kurtosis`, or those of a measured surface in a file.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Distribution {
+    /// Skewness Ssk, negative for plateaus with valleys; 0 if not given.
+    #[schemars(example = -1)]
+    pub skewness: Option<Number>,
+    /// Kurtosis Sku; 3 (Gaussian) if not given, from about 1.9 + 1.6 skewness^2 on.
+    #[schemars(example = 5)]
+    pub kurtosis: Option<Number<Positive>>,
+    /// A topography file whose levelled heights are distributed as wanted; instead of the other two. Its unit does
+    /// not matter.
+    #[schemars(example = "measured.sur")]
+    pub path: Option<At<String>>,
+}
+
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct File {
-    /// The file, relative to the case file: a text matrix or a NPY array of heights, x along axis 0.
-    #[schemars(example = "roughness.npy")]
+    /// The file, relative to the case file: SUR, SDF, X3P, GWY, AL3D, OPD, BCR, NetCDF, HDF5, NPY, NPZ, XYZ, CSV or a
+    /// text matrix, found from the content.
+    #[schemars(example = "roughness.sur")]
     pub path: At<String>,
+    /// Channel by name or by number (from 0), where the file has several; the first if not given.
+    #[schemars(example = &"Topography")]
+    pub channel: Option<Label>,
     /// Physical size along x and y, where the file holds none.
     #[schemars(example = ["0.1 mm", "0.1 mm"])]
     pub size: Option<Two<Length<Positive>>>,
     /// Unit of the heights, where the file holds none.
     #[schemars(example = &"um")]
     pub height_unit: Option<At<String>>,
-    /// What is taken off the heights; "plane" if not given.
-    #[serde(default)]
-    pub level: Level,
-    /// What is done about undefined points; "harmonic" if not given.
-    #[serde(default)]
-    pub fill: Fill,
-    /// Whether the heights change their sign (the file shows the opposite body).
-    #[serde(default)]
+    /// The rectangle kept.
+    #[schemars(example = serde_json::json!({ "size": ["0.2 mm", "0.2 mm"] }))]
+    pub crop: Option<At<Crop>>,
+    /// The axis that changes its direction: of two measured surfaces that face each other, one is seen from behind.
+    pub flip: Option<At<Axis>>,
+    /// Quarter turns from x towards y.
+    #[schemars(example = 1)]
+    pub rotate: Option<At<Signed>>,
+    /// Whether the heights change their sign (a replica, or a file that shows the opposite body).
     #[schemars(example = false)]
-    pub invert: bool,
-}
-
-/// What is taken off measured heights.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Level {
-    /// Nothing.
-    None,
-    /// The mean.
-    Mean,
-    /// The least-squares plane.
-    #[default]
-    Plane,
-    /// The least-squares polynomial of second order.
-    Quadratic,
-}
-
-/// What is done about undefined points.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Fill {
-    /// Refuse the file.
-    Error,
-    /// Solve Laplace's equation over the holes.
-    #[default]
-    Harmonic,
-    /// Take the nearest defined height.
-    Nearest,
+    pub invert: Option<At<bool>>,
+    /// What is taken off the heights; "plane" if not given.
+    pub level: Option<At<Level>>,
+    /// Spikes to remove; none if not given. They become undefined, and `fill` fills them.
+    #[schemars(example = serde_json::json!({ "threshold": 6, "radius": 2 }))]
+    pub outliers: Option<At<Outliers>>,
+    /// What is done about undefined points; "harmonic" if not given.
+    pub fill: Option<At<Fill>>,
+    /// Largest share of undefined points that is filled; 0.25 if not given.
+    #[schemars(example = 0.25)]
+    pub fill_share: Option<At<Number<Share>>>,
+    /// The wavelengths kept; all if not given.
+    #[schemars(example = serde_json::json!({ "longest": "80 um", "shortest": "2.5 um" }))]
+    pub filter: Option<At<Filter>>,
+    /// A window that fades the heights out towards the edges; none if not given.
+    #[schemars(example = serde_json::json!({ "shape": "tukey", "share": 0.1 }))]
+    pub window: Option<At<Window>>,
+    /// How the heights come onto the cells of the domain, where it has others; without it they must agree.
+    pub resample: Option<At<Resample>>,
+    /// The preparation as a list of steps in the order in which they are done, instead of the keys from `crop` to
+    /// `resample`: then exactly these steps are done, no levelling or filling besides.
+    #[schemars(example = serde_json::json!([{ "op": "level", "form": "plane" }, { "op": "fill", "method": "nearest" }]))]
+    pub process: Option<At<Vec<At<Operation>>>>,
 }

@@ -1,7 +1,7 @@
 //! Gwyddion GWY: one channel in metres. Gwyddion knows no undefined heights: masked points have the mean height.
 
 use super::title;
-use crate::topography::{Problem, Topography};
+use crate::topography::{HISTORY, Problem, Topography};
 
 pub(super) fn encode(topography: &Topography) -> Result<Vec<u8>, Problem> {
     let (nx, ny) = topography.heights.dim();
@@ -21,6 +21,11 @@ pub(super) fn encode(topography: &Topography) -> Result<Vec<u8>, Problem> {
     if topography.heights.iter().any(|h| h.is_nan()) {
         let mask = field(topography, |h| f64::from(u8::from(h.is_nan())), "").ok_or_else(too_large)?;
         object(&mut container, "/0/mask", "GwyDataField", &mask).ok_or_else(too_large)?;
+    }
+    if let Some(history) = topography.history_line() {
+        let mut meta = Vec::new();
+        string(&mut meta, HISTORY, &history);
+        object(&mut container, "/0/meta", "GwyContainer", &meta).ok_or_else(too_large)?;
     }
     let mut bytes = b"GWYP".to_vec();
     named(&mut bytes, "GwyContainer", &container).ok_or_else(too_large)?;

@@ -63,8 +63,20 @@ pub(super) fn encode(topography: &Topography) -> Result<Vec<u8>, Problem> {
         name(&mut bytes, dimension);
         words(&mut bytes, &[count]);
     }
-    // No global attributes.
-    words(&mut bytes, &[0, 0, LIST_VARIABLE, variables.len() as u32]);
+    match topography.history_line() {
+        // The name that the NetCDF conventions give it.
+        Some(line) => {
+            words(&mut bytes, &[LIST_ATTRIBUTE, 1]);
+            bytes.extend(attribute(
+                "history",
+                NC_CHAR,
+                u32::try_from(line.len()).unwrap_or(0),
+                line.as_bytes(),
+            ));
+        }
+        None => words(&mut bytes, &[0, 0]),
+    }
+    words(&mut bytes, &[LIST_VARIABLE, variables.len() as u32]);
     let header_length = bytes.len() + variables.iter().map(Variable::header_length).sum::<usize>();
     let mut begin = header_length as u64;
     for variable in &variables {

@@ -1,4 +1,5 @@
-//! NPZ: the arrays `heights` (nx, ny), `size` (Lx, Ly) and the text `unit` = "m" of both, for `numpy.load`.
+//! NPZ: the arrays `heights` (nx, ny), `size` (Lx, Ly), the text `unit` = "m" of both, and the text `history` where
+//! there is one, for `numpy.load`.
 
 use std::io::{Cursor, Write};
 
@@ -16,11 +17,16 @@ pub(super) fn encode(topography: &Topography) -> Result<Vec<u8>, Problem> {
     // Measured heights hardly shrink: stored, as `numpy.savez` does.
     let stored = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
     let failed = |e: zip::result::ZipError| Problem::Io(std::io::Error::other(e));
-    let members: [(&str, &str, String, &[u8]); 3] = [
+    let text = |text: &str| text.chars().flat_map(|c| u32::from(c).to_le_bytes()).collect::<Vec<u8>>();
+    let history = topography.history_line().map(|line| (format!("<U{}", line.chars().count()), text(&line)));
+    let mut members: Vec<(&str, &str, String, &[u8])> = vec![
         ("heights.npy", "<f8", format!("({nx}, {ny})"), &heights),
         ("size.npy", "<f8", "(2,)".to_owned(), &size),
         ("unit.npy", "<U1", "()".to_owned(), &unit),
     ];
+    if let Some((descr, line)) = &history {
+        members.push(("history.npy", descr, "()".to_owned(), line));
+    }
     for (name, descr, shape, data) in members {
         zip.start_file(name, stored.large_file(data.len() > 1 << 31)).map_err(failed)?;
         zip.write_all(&header(descr, &shape))?;

@@ -12,6 +12,9 @@ pub(super) fn encode(topography: &Topography) -> Vec<u8> {
     let title = title(topography).replace(['\n', '\r'], " ");
     let mut bytes =
         format!("# Channel: {title}\n# Width: {lx:e} m\n# Height: {ly:e} m\n# Value units: m\n").into_bytes();
+    if let Some(history) = topography.history_line() {
+        bytes.extend(format!("# History: {history}\n").bytes());
+    }
     let lines: Vec<String> = topography
         .heights
         .columns()

@@ -9,7 +9,7 @@ use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
 use super::{lines, title};
-use crate::topography::{Format, Problem, Topography};
+use crate::topography::{Format, HISTORY, Problem, Topography};
 
 const DATA: &str = "bindata/data.bin";
 
@@ -50,7 +50,10 @@ fn main(topography: &Topography, checksum: &str) -> String {
     let probing = stated("ProbingSystem/Type").filter(|t| ["Contacting", "NonContacting"].contains(t));
     let probing = probing.unwrap_or("Software");
     let identification = entry("ProbingSystem/Identification", "asperity");
-    let comment = entry("Comment", title(topography));
+    let mut comment = entry("Comment", title(topography));
+    if let Some(history) = topography.history_line() {
+        comment = format!("{comment} {HISTORY}: {}", escape(history));
+    }
     format!(
         r#"<?xml version="1.0" encoding="UTF-8" standalone="no"?>
 <p:ISO5436_2 xmlns:p="http://www.opengps.eu/2008/ISO5436_2" xmlns:xsi="http://www.w3.org/2001/XMLSchema-instance" xsi:schemaLocation="http://www.opengps.eu/2008/ISO5436_2 http://www.opengps.eu/2008/ISO5436_2/ISO5436_2.xsd">

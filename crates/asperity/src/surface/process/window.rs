@@ -4,6 +4,8 @@
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
+use ndarray::parallel::prelude::*;
+
 use super::Surface;
 use crate::error::{Error, Result};
 
@@ -42,7 +44,9 @@ pub fn window(surface: &Surface, shape: Window) -> Result<Surface> {
     }
     let [along_x, along_y] = surface.grid().cells().map(|n| weights(shape, n));
     let mut windowed = surface.clone();
-    windowed.heights.indexed_iter_mut().for_each(|((i, j), z)| *z *= along_x[i] * along_y[j]);
+    windowed.heights.outer_iter_mut().into_par_iter().zip(along_x).for_each(|(mut row, at_x)| {
+        row.iter_mut().zip(&along_y).for_each(|(z, at_y)| *z *= at_x * at_y);
+    });
     Ok(windowed)
 }
 

@@ -9,6 +9,7 @@
 //! | radially averaged power spectrum | [`RadialSpectrum`] | refused |
 //! | autocorrelation, Sal, Str | [`Autocorrelation`] | refused |
 //! | Hurst exponent | [`SelfAffineFit`] | refused |
+//! | all of these but the correlation and the curves | [`Summary`] | as above; filled for the spectrum |
 //!
 //! Amplitudes, slopes and lengths in SI units; the parameters of ISO 25178-2 are of the surface as
 //! given, so level it first.
@@ -19,10 +20,12 @@ mod fit;
 mod heights;
 mod power;
 mod slopes;
+mod summary;
 
 pub use bearing::{BearingCurve, height_distribution};
 pub use correlation::{Autocorrelation, Extent};
 pub use fit::SelfAffineFit;
 pub use heights::{HeightStatistics, mean, rms_height};
-pub use power::{RadialSpectrum, Rings, SpectralMoments, rms_gradient};
+pub use power::{PowerSpectrum, RadialSpectrum, Rings, SpectralMoments, rms_gradient};
 pub use slopes::SlopeStatistics;
+pub use summary::{Summary, Waves};

@@ -18,7 +18,8 @@
 
 use std::f64::consts::TAU;
 
-use ndarray::ArrayView2;
+use ndarray::{Array2, ArrayView2, Zip};
+use rayon::prelude::*;
 
 use super::super::Surface;
 use super::super::spectrum::{count, transform, wave_vector};
@@ -62,14 +63,46 @@ impl RadialSpectrum {
     /// # Errors
     /// [`Error::Invalid`] where a point is undefined or the rings are not between 1 and 1000 to a decade.
     pub fn of(surface: &Surface, rings: Rings) -> Result<Self> {
+        PowerSpectrum::of(surface)?.radial(rings)
+    }
+}
+
+/// The power of every wave of a surface: one Fourier transform, of which all else is sums.
+#[derive(Clone, Debug)]
+pub struct PowerSpectrum {
+    grid: Grid,
+    /// |A_q|^2 \[m^2\] of the half plane ky >= 0, shape (nx, ny/2 + 1).
+    power: Array2<f64>,
+}
+
+impl PowerSpectrum {
+    /// Of a surface whose points are all defined.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where a point is undefined.
+    pub fn of(surface: &Surface) -> Result<Self> {
+        PowerSpectrum::of_heights(surface.grid(), surface.heights())
+    }
+
+    fn of_heights(grid: &Grid, heights: ArrayView2<f64>) -> Result<Self> {
+        let amplitudes = transform(grid, heights)?;
+        let mut power = Array2::zeros(amplitudes.dim());
+        Zip::from(&mut power).and(&amplitudes).par_for_each(|p, a| *p = a.norm_sqr());
+        Ok(PowerSpectrum { grid: *grid, power })
+    }
+
+    /// Radially averaged spectrum.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where the rings are not between 1 and 1000 to a decade.
+    pub fn radial(&self, rings: Rings) -> Result<RadialSpectrum> {
         if let Rings::PerDecade(n) = rings
             && !(1..=1000).contains(&n)
         {
             return Err(Error::invalid("number of rings to a decade", n, "between 1 and 1000"));
         }
-        let grid = *surface.grid();
+        let grid = &self.grid;
         let ([nx, ny], [lx, ly]) = (grid.cells(), grid.size());
-        let amplitudes = transform(&grid, surface.heights())?;
         let width = (TAU / lx).max(TAU / ly);
         let smallest = (TAU / lx).min(TAU / ly);
         let nyquist = (TAU * nx as f64 / (2.0 * lx)).min(TAU * ny as f64 / (2.0 * ly));
@@ -79,25 +112,82 @@ impl RadialSpectrum {
             Rings::PerDecade(n) => ((q / smallest * (1.0 + 1e-9)).log10() * f64::from(n)) as usize,
         };
         let last = ring(nyquist);
-        let mut sums = vec![(0.0, 0.0, 0usize); last + 1];
-        for ((i, j), a) in amplitudes.indexed_iter() {
-            let [qx, qy] = wave_vector(&grid, (i, j));
-            let q = (qx * qx + qy * qy).sqrt();
-            if q > 0.0 && q <= nyquist * (1.0 + 1e-9) {
-                let times = count(&grid, j);
-                let sum = &mut sums[ring(q).min(last)];
-                *sum = (sum.0 + times * q, sum.1 + times * a.norm_sqr(), sum.2 + times as usize);
+        // Blocks of rows apart, then added in their order: the same bits for any number of threads.
+        let blocks: Vec<Vec<Ring>> = (0..nx.div_ceil(ROWS))
+            .into_par_iter()
+            .map(|block| {
+                let mut sums = vec![Ring::default(); last + 1];
+                let rows = (block * ROWS..nx.min((block + 1) * ROWS)).flat_map(|i| {
+                    self.power.row(i).into_iter().enumerate().map(move |(j, power)| (i, j, power))
+                });
+                for (i, j, power) in rows {
+                    let [qx, qy] = wave_vector(grid, (i, j));
+                    let q = (qx * qx + qy * qy).sqrt();
+                    if q > 0.0 && q <= nyquist * (1.0 + 1e-9) {
+                        let times = count(grid, j);
+                        let sum = &mut sums[ring(q).min(last)];
+                        sum.wave_number += times * q;
+                        sum.power += times * power;
+                        sum.waves += times as usize;
+                    }
+                }
+                sums
+            })
+            .collect();
+        let mut sums = vec![Ring::default(); last + 1];
+        for block in &blocks {
+            for (sum, part) in sums.iter_mut().zip(block) {
+                sum.wave_number += part.wave_number;
+                sum.power += part.power;
+                sum.waves += part.waves;
             }
         }
         let mut spectrum = RadialSpectrum { wave_number: vec![], power: vec![], waves: vec![] };
         // The linear ring around 0 is no ring.
-        for (q, power, waves) in sums.into_iter().filter(|s| s.2 > 0) {
-            spectrum.wave_number.push(q / waves as f64);
+        for Ring { wave_number, power, waves } in sums.into_iter().filter(|s| s.waves > 0) {
+            spectrum.wave_number.push(wave_number / waves as f64);
             spectrum.power.push(grid.area() * power / waves as f64);
             spectrum.waves.push(waves);
         }
         Ok(spectrum)
     }
+
+    /// Spectral moments. Waves on the Nyquist frequency of an axis have no slope along it.
+    pub fn moments(&self) -> SpectralMoments {
+        let [m0, gradient, laplace] = self.even_moments();
+        SpectralMoments { m0, m2: 0.5 * gradient, m4: 0.375 * laplace }
+    }
+
+    /// Sums of |A|^2, |q|^2 |A|^2 and |q|^4 |A|^2, without the mean.
+    fn even_moments(&self) -> [f64; 3] {
+        let grid = &self.grid;
+        let [nx, ny] = grid.cells();
+        let rows: Vec<[f64; 3]> = (0..nx)
+            .into_par_iter()
+            .map(|i| {
+                let mut sums = [0.0; 3];
+                for (j, power) in self.power.row(i).iter().enumerate().skip(usize::from(i == 0)) {
+                    let [qx, qy] = wave_vector(grid, (i, j));
+                    let [qx, qy] = [if 2 * i == nx { 0.0 } else { qx }, if 2 * j == ny { 0.0 } else { qy }];
+                    let (q2, power) = (qx * qx + qy * qy, count(grid, j) * power);
+                    [power, q2 * power, q2 * q2 * power].iter().zip(&mut sums).for_each(|(p, s)| *s += p);
+                }
+                sums
+            })
+            .collect();
+        rows.iter().fold([0.0; 3], |sum, row| std::array::from_fn(|n| sum[n] + row[n]))
+    }
+}
+
+/// Rows of a block that is summed apart.
+const ROWS: usize = 64;
+
+/// Sums over the waves of a ring.
+#[derive(Clone, Copy, Default)]
+struct Ring {
+    wave_number: f64,
+    power: f64,
+    waves: usize,
 }
 
 /// Moments of the spectrum of a profile through an isotropic surface.
@@ -118,8 +208,7 @@ impl SpectralMoments {
     /// # Errors
     /// [`Error::Invalid`] where a point is undefined.
     pub fn of(surface: &Surface) -> Result<Self> {
-        let sums = even_moments(surface.grid(), surface.heights())?;
-        Ok(SpectralMoments { m0: sums[0], m2: 0.5 * sums[1], m4: 0.375 * sums[2] })
+        Ok(PowerSpectrum::of(surface)?.moments())
     }
 
     /// Nayak's bandwidth parameter m0 m4 / m2^2, at least 1.5.
@@ -134,21 +223,7 @@ impl SpectralMoments {
 /// # Errors
 /// [`Error::Invalid`] where a height is undefined or the shape is not the grid's.
 pub fn rms_gradient(grid: &Grid, heights: ArrayView2<f64>) -> Result<f64> {
-    Ok(even_moments(grid, heights)?[1].sqrt())
-}
-
-/// Sums of |A|^2, |q|^2 |A|^2 and |q|^4 |A|^2, without the mean.
-fn even_moments(grid: &Grid, heights: ArrayView2<f64>) -> Result<[f64; 3]> {
-    let amplitudes = transform(grid, heights)?;
-    let [nx, ny] = grid.cells();
-    let mut sums = [0.0; 3];
-    for ((i, j), a) in amplitudes.indexed_iter().skip(1) {
-        let [qx, qy] = wave_vector(grid, (i, j));
-        let [qx, qy] = [if 2 * i == nx { 0.0 } else { qx }, if 2 * j == ny { 0.0 } else { qy }];
-        let (q2, power) = (qx * qx + qy * qy, count(grid, j) * a.norm_sqr());
-        [power, q2 * power, q2 * q2 * power].iter().zip(&mut sums).for_each(|(p, s)| *s += p);
-    }
-    Ok(sums)
+    Ok(PowerSpectrum::of_heights(grid, heights)?.even_moments()[1].sqrt())
 }
 
 #[cfg(test)]

@@ -23,6 +23,15 @@ pub enum HeightDistribution {
 }
 
 impl HeightDistribution {
+    /// Whether there is such a distribution.
+    pub(super) fn validate(&self) -> Result<()> {
+        match self {
+            HeightDistribution::Gaussian => Ok(()),
+            HeightDistribution::Moments { skewness, kurtosis } => cubic(*skewness, *kurtosis).map(drop),
+            HeightDistribution::Samples(samples) => check_samples(samples),
+        }
+    }
+
     /// n heights in increasing order with mean 0 and rms 1: the quantiles at (i + 1/2) / n.
     pub(super) fn values(&self, n: usize) -> Result<Vec<f64>> {
         let shares = (0..n).map(|i| (i as f64 + 0.5) / n as f64);
@@ -54,7 +63,7 @@ impl HeightDistribution {
     }
 }
 
-fn sorted_samples(samples: &[f64]) -> Result<Vec<f64>> {
+fn check_samples(samples: &[f64]) -> Result<()> {
     if samples.len() < 2 {
         return Err(Error::invalid(
             "number of samples of the height distribution",
@@ -65,6 +74,11 @@ fn sorted_samples(samples: &[f64]) -> Result<Vec<f64>> {
     if let Some(bad) = samples.iter().find(|z| !z.is_finite()) {
         return Err(Error::invalid("sample of the height distribution", bad, "finite"));
     }
+    Ok(())
+}
+
+fn sorted_samples(samples: &[f64]) -> Result<Vec<f64>> {
+    check_samples(samples)?;
     let mut sorted = samples.to_vec();
     sorted.sort_by(f64::total_cmp);
     // In units of their range: no overflow of squares.

@@ -77,13 +77,8 @@ impl Synthesis {
     /// [`Error::Invalid`] as [`SelfAffine::heights`], where the lay is outside its domain, or where no
     /// such distribution exists.
     pub fn heights(&self, grid: &Grid) -> Result<Array2<f64>> {
+        self.validate()?;
         let Lay { angle, ratio } = self.lay.unwrap_or(Lay { angle: 0.0, ratio: 1.0 });
-        if !(ratio.is_finite() && ratio >= 1.0) {
-            return Err(Error::invalid("ratio of the lay", ratio, "finite, 1 or more"));
-        }
-        if !angle.is_finite() {
-            return Err(Error::invalid("angle of the lay", angle, "finite, in rad"));
-        }
         let (sin, cos) = libm::sincos(angle);
         let seen = |qx: f64, qy: f64| {
             let (along, across) = (qx * cos + qy * sin, qy * cos - qx * sin);
@@ -101,6 +96,21 @@ impl Synthesis {
             Roughness::RmsGradient(wanted) => wanted / gradient,
         };
         Ok(heights * scale)
+    }
+
+    /// Checks the lay and the distribution; [`SelfAffine::validate`] checks the spectrum against a grid.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where the lay is outside its domain, or where no such distribution exists.
+    pub fn validate(&self) -> Result<()> {
+        let Lay { angle, ratio } = self.lay.unwrap_or(Lay { angle: 0.0, ratio: 1.0 });
+        if !(ratio.is_finite() && ratio >= 1.0) {
+            return Err(Error::invalid("ratio of the lay", ratio, "finite, 1 or more"));
+        }
+        if !angle.is_finite() {
+            return Err(Error::invalid("angle of the lay", angle, "finite, in rad"));
+        }
+        self.distribution.validate()
     }
 }
 

@@ -1,0 +1,83 @@
+//! `asperity surface generate`: synthetic roughness.
+
+use asperity::surface::statistics::Extent;
+use asperity::surface::{Part, SelfAffine};
+use asperity_io::case::fragment;
+use asperity_io::topography::Topography;
+
+use super::table::Portrait;
+use crate::args::SurfaceGenerate;
+use crate::failure::Failure;
+
+/// Makes the surface, writes it, and prints its statistics.
+pub fn run(args: &SurfaceGenerate) -> Result<(), Failure> {
+    let format = super::targets(&args.to)?;
+    let seed = args.seed.to_string();
+    // The patch of the challenge has a size of its own.
+    let challenge_size = args.preset.is_some().then(|| SelfAffine::CHALLENGE_SIZE.to_string());
+    let given: [(&str, Option<&str>); 15] = [
+        ("cells", Some(&args.cells)),
+        ("size", args.size.as_deref().or(challenge_size.as_deref())),
+        ("preset", args.preset.as_deref()),
+        ("hurst", args.hurst.as_deref()),
+        ("rms_gradient", args.rms_gradient.as_deref()),
+        ("rms_height", args.rms_height.as_deref()),
+        ("longest", args.longest.as_deref()),
+        ("shortest", args.shortest.as_deref()),
+        ("roll_off", args.roll_off.as_deref()),
+        ("lay.angle", args.lay_angle.as_deref()),
+        ("lay.ratio", args.lay_ratio.as_deref()),
+        ("distribution.skewness", args.skewness.as_deref()),
+        ("distribution.kurtosis", args.kurtosis.as_deref()),
+        ("distribution.path", args.distribution.as_deref()),
+        ("seed", Some(&seed)),
+    ];
+    let keys: Vec<(&str, &str)> = given.into_iter().filter_map(|(key, text)| Some((key, text?))).collect();
+    let (grid, part) = fragment::roughness(&keys).map_err(|faults| {
+        let told = |fault: &fragment::Fault| {
+            let help = fault.help.as_ref().map_or(String::new(), |help| format!("; {help}"));
+            format!("{}: {}{help}", flag(&fault.key), fault.message)
+        };
+        Failure::input(faults.iter().map(told).collect::<Vec<_>>().join("\n"))
+    })?;
+    let (heights, spectrum) = match part {
+        Part::SelfAffine(roughness) => (roughness.heights(&grid), roughness),
+        Part::Synthesis(roughness) => (roughness.heights(&grid), roughness.spectrum),
+        Part::Shape { .. } | Part::Heights { .. } => return Err(Failure::input("no roughness".to_owned())),
+    };
+    let heights = heights.map_err(|error| Failure::input(error.to_string()))?;
+    let recipe: Vec<String> = keys.iter().map(|(key, text)| format!("{key} = {text}")).collect();
+    let mut topography = Topography {
+        format,
+        heights,
+        size: grid.size(),
+        channel: Some("roughness".to_owned()),
+        channels: Vec::new(),
+        metadata: Vec::new(),
+    };
+    let version = env!("CARGO_PKG_VERSION");
+    topography.record([format!("made by asperity {version}: self-affine, {}", recipe.join(", "))]);
+    super::save(&args.to, &topography, format)?;
+    let written = args.to.output.display().to_string();
+    let portrait = Portrait::of(&written, &topography, Extent::Periodic)?;
+    // The ring of the shortest waves is full only up to the cut-off.
+    portrait.fitted(spectrum.longest, 1.1 * spectrum.shortest).tell(
+        args.to.json,
+        args.to.plot.as_deref(),
+        args.to.force,
+    )
+}
+
+/// The option that gives a key.
+fn flag(key: &str) -> String {
+    match key {
+        "distribution.path" => "--distribution".to_owned(),
+        "" => "surface".to_owned(),
+        _ => {
+            let key = key.strip_prefix("distribution.").unwrap_or(key);
+            // An element of a list: "cells[1]".
+            let key = key.split('[').next().unwrap_or(key);
+            format!("--{}", key.replace(['_', '.'], "-"))
+        }
+    }
+}

@@ -1,0 +1,25 @@
+//! `asperity surface info`: what a file holds, and the statistics of its heights as stored.
+
+use asperity::surface::statistics::Extent;
+
+use super::table::Portrait;
+use crate::args::SurfaceInfo;
+use crate::failure::Failure;
+
+/// Prints the table or one JSON object, and draws the picture asked for.
+pub fn run(args: &SurfaceInfo) -> Result<(), Failure> {
+    super::table::check_plot(args.plot.as_deref(), args.force)?;
+    let limit = |given: &Option<String>, default: f64| match given {
+        Some(text) => super::length(text),
+        None => Ok(default),
+    };
+    let band = [limit(&args.longest, f64::INFINITY)?, limit(&args.shortest, 0.0)?];
+    let topography = super::open(&args.file)?;
+    let name = args.file.file.display().to_string();
+    let extent = if args.periodic { Extent::Periodic } else { Extent::Finite };
+    let mut portrait = Portrait::of(&name, &topography, extent)?;
+    if args.longest.is_some() || args.shortest.is_some() {
+        portrait = portrait.fitted_as_told(band[0], band[1])?;
+    }
+    portrait.tell(args.json, args.plot.as_deref(), args.force)
+}

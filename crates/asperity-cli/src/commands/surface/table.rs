@@ -1,0 +1,184 @@
+//! What is told of a surface: a table, a JSON object, a picture.
+
+use std::path::Path;
+
+use asperity::surface::Surface as Map;
+use asperity::surface::statistics::{BearingCurve, Extent, SelfAffineFit, Summary};
+use asperity_io::topography::Topography;
+use asperity_report::figure::Form;
+use asperity_report::surface::picture;
+use serde_json::{Value, json};
+
+use crate::failure::Failure;
+use crate::words::quantity;
+
+/// Levels of the bearing curve.
+const LEVELS: usize = 1000;
+/// Shares of the surface whose heights are told.
+const SHARES: [f64; 5] = [0.01, 0.1, 0.5, 0.9, 0.99];
+
+/// A surface and its statistics.
+pub struct Portrait<'a> {
+    name: &'a str,
+    topography: &'a Topography,
+    map: Map,
+    summary: Summary,
+    bearing: BearingCurve,
+}
+
+/// Refuses, before the work begins, a picture that cannot be written.
+pub fn check_plot(plot: Option<&Path>, force: bool) -> Result<(), Failure> {
+    let Some(plot) = plot else { return Ok(()) };
+    Form::of(plot).map_err(|error| Failure::input(error.to_string()))?;
+    if force { Ok(()) } else { super::free(plot) }
+}
+
+impl<'a> Portrait<'a> {
+    /// Takes the statistics; `name` is what the surface is called.
+    pub fn of(name: &'a str, topography: &'a Topography, extent: Extent) -> Result<Self, Failure> {
+        let map = super::map(name, topography)?;
+        let told = |error: asperity::Error| Failure::input(format!("{name}: {error}"));
+        let summary = Summary::of(&map, extent).map_err(told)?;
+        let bearing = BearingCurve::of(&map, LEVELS).map_err(told)?;
+        Ok(Portrait { name, topography, map, summary, bearing })
+    }
+
+    /// Fits the Hurst exponent to the waves between two lengths \[m\] only; no fit where there are too few.
+    pub fn fitted(mut self, longest: f64, shortest: f64) -> Self {
+        if let Some(waves) = &mut self.summary.waves {
+            waves.fit = SelfAffineFit::of(&waves.spectrum, longest, shortest).ok();
+        }
+        self
+    }
+
+    /// The same for a range that the user gives: too few waves are an error.
+    pub fn fitted_as_told(self, longest: f64, shortest: f64) -> Result<Self, Failure> {
+        if let Some(waves) = &self.summary.waves {
+            SelfAffineFit::of(&waves.spectrum, longest, shortest)
+                .map_err(|error| Failure::input(format!("{}: {error}", self.name)))?;
+        }
+        Ok(self.fitted(longest, shortest))
+    }
+
+    /// Prints the table or the object, and draws the picture where one is asked for.
+    pub fn tell(&self, json: bool, plot: Option<&Path>, force: bool) -> Result<(), Failure> {
+        if let Some(plot) = plot {
+            let title =
+                Path::new(self.name).file_name().map_or(self.name.into(), |name| name.to_string_lossy());
+            let figure = picture(&title, &self.map, &self.summary, &self.bearing);
+            figure.write(plot, force).map_err(|error| Failure::input(error.to_string()))?;
+        }
+        match json {
+            true => crate::print(&format!("{}\n", self.object())),
+            false => crate::print(&self.table()),
+        }
+    }
+
+    fn object(&self) -> Value {
+        let Portrait { topography, summary, .. } = self;
+        let (nx, ny) = topography.heights.dim();
+        let at = |i: usize, j: usize| topography.heights.get((i, j)).copied().filter(|h| h.is_finite());
+        let (h, slopes) = (&summary.heights, summary.slopes);
+        let waves = summary.waves.as_ref();
+        let heights: Vec<_> = SHARES.iter().map(|share| self.bearing.height_at(*share).ok()).collect();
+        json!({
+            "format": topography.format.name(),
+            "shape": [nx, ny],
+            "size": topography.size,
+            "undefined": topography.undefined(),
+            "min": h.min,
+            "max": h.max,
+            "mean": h.mean,
+            "sq": h.sq,
+            "sdq": slopes.map(|s| s.sdq),
+            "h00": at(0, 0),
+            "h10": at(1, 0),
+            "h01": at(0, 1),
+            "sa": h.sa,
+            "ssk": h.ssk,
+            "sku": h.sku,
+            "sp": h.sp,
+            "sv": h.sv,
+            "sz": h.sz,
+            "sdr": slopes.map(|s| s.sdr),
+            "moments": waves.map(|w| json!({
+                "m0": w.moments.m0,
+                "m2": w.moments.m2,
+                "m4": w.moments.m4,
+                "bandwidth": w.moments.bandwidth(),
+            })),
+            "fit": waves.and_then(|w| w.fit).map(|fit| json!({
+                "hurst": fit.hurst,
+                "error": fit.error,
+                "roll_off": fit.roll_off,
+                "plateau": fit.plateau,
+                "misfit": fit.misfit,
+            })),
+            "bearing": { "share": SHARES, "height": heights },
+            "channel": topography.channel,
+            "channels": topography.channels,
+            "history": topography.history().collect::<Vec<_>>(),
+        })
+    }
+
+    fn table(&self) -> String {
+        let Portrait { topography, summary, .. } = self;
+        let mut text = String::new();
+        let mut line = |name: &str, value: String, words: &str| {
+            let gap = if words.is_empty() { String::new() } else { format!("  {words}") };
+            text += format!("{name:<11}{value:<16}{gap}").trim_end();
+            text.push('\n');
+        };
+        let (nx, ny) = topography.heights.dim();
+        let [lx, ly] = topography.size;
+        let metres = |value: f64| quantity(value, "m", 1);
+        line("format", topography.format.to_string(), "");
+        line("points", format!("{nx} x {ny}, {} undefined", topography.undefined()), "");
+        line("size", format!("{} x {}", metres(lx), metres(ly)), "");
+        if let Some(channel) = &topography.channel {
+            line("channel", channel.clone(), "");
+        }
+        if topography.channels.len() > 1 {
+            line("channels", topography.channels.join(", "), "");
+        }
+        let h = &summary.heights;
+        line("heights", format!("{} to {}, mean {}", metres(h.min), metres(h.max), metres(h.mean)), "");
+        line("Sa", metres(h.sa), "mean deviation from the mean height");
+        line("Sq", metres(h.sq), "rms deviation from the mean height");
+        line("Sz", metres(h.sz), "highest peak to deepest pit");
+        line("Ssk", format!("{:.3}", h.ssk), "skewness, negative for plateaus with valleys");
+        line("Sku", format!("{:.3}", h.sku), "kurtosis, 3 for a Gaussian surface");
+        if let Some(slopes) = summary.slopes {
+            line("Sdq", format!("{:.4}", slopes.sdq), "rms gradient");
+            line("Sdr", format!("{:.4} %", 100.0 * slopes.sdr), "developed area beyond the projected one");
+        }
+        if let Some(waves) = &summary.waves {
+            let m = &waves.moments;
+            line("m0", format!("{:.4e} m\u{b2}", m.m0), "spectral moment: mean square height");
+            line("m2", format!("{:.4e}", m.m2), "mean square slope of a profile");
+            line("m4", format!("{:.4e} 1/m\u{b2}", m.m4), "mean square curvature of a profile");
+            line("alpha", format!("{:.2}", m.bandwidth()), "m0 m4/m2\u{b2}, Nayak's bandwidth");
+            if let Some(fit) = &waves.fit {
+                let words = format!(
+                    "Hurst exponent fitted to the spectrum, roll-off {}, rms misfit {:.2} of ln C",
+                    metres(fit.roll_off),
+                    fit.misfit
+                );
+                line("H", format!("{:.3} \u{b1} {:.3}", fit.hurst, fit.error), &words);
+            }
+        } else {
+            line("spectrum", "none".into(), "more than a quarter of the points are undefined");
+        }
+        let shares: Vec<String> = SHARES
+            .iter()
+            .filter_map(|share| {
+                Some(format!("{} % {}", 100.0 * share, metres(self.bearing.height_at(*share).ok()?)))
+            })
+            .collect();
+        line("bearing", shares.join(", "), "");
+        for (n, step) in topography.history().enumerate() {
+            line(if n == 0 { "history" } else { "" }, step.to_owned(), "");
+        }
+        text
+    }
+}

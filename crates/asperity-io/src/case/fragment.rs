@@ -1,0 +1,314 @@
+//! Parts of a case outside of a case file: the words of a command line, read and checked as the case file's keys.
+
+use std::path::Path;
+
+use asperity::Grid;
+use asperity::surface::Part;
+use toml::Value;
+
+use super::convert::{self, Checks};
+use super::error::CaseError;
+use super::plan::Surface;
+use super::raw;
+use super::read;
+use super::text::Text;
+use crate::preparation::Step;
+
+/// The key that a step takes without its name: `level=plane` is `level form=plane`.
+const FIRST_KEYS: [(&str, &str); 8] = [
+    ("level", "form"),
+    ("fill", "method"),
+    ("crop", "cells"),
+    ("resample", "method"),
+    ("flip", "axis"),
+    ("rotate", "quarter_turns"),
+    ("window", "shape"),
+    ("outliers", "threshold"),
+];
+
+/// A step of a preparation from words: its name and its keys as in `process` of a case file.
+///
+/// ```
+/// use asperity::surface::{Level, Operation};
+/// use asperity_io::case::fragment::step;
+/// use asperity_io::preparation::{Crop, Step};
+///
+/// assert_eq!(step("level=quadratic"), Ok(Step::Operation(Operation::Level(Level::Quadratic))));
+/// let crop = step("crop size=50um,40um corner=0m,10um");
+/// let size = [50e-6, 40e-6];
+/// assert_eq!(crop, Ok(Step::Crop(Crop::Lengths { size, corner: Some([0.0, 10e-6]) })));
+/// assert!(step("level=plain").unwrap_err().contains("did you mean \"plane\"?"));
+/// ```
+///
+/// # Errors
+/// A sentence: no such step, a key that it does not have, or a value that the key does not take.
+pub fn step(words: &str) -> Result<Step, String> {
+    let words = words.trim();
+    let end = words.find(|c: char| c.is_whitespace() || c == '=').unwrap_or(words.len());
+    let (name, rest) = words.split_at(end);
+    let mut table = toml::Table::new();
+    table.insert("op".into(), Value::String(name.to_owned()));
+    let rest = match (rest.strip_prefix('='), FIRST_KEYS.iter().find(|(step, _)| *step == name)) {
+        (Some(value), Some((_, key))) => format!("{key}={value}"),
+        (Some(_), None) => return Err(format!("\"{words}\": write the keys of {name} by name, KEY=VALUE")),
+        (None, _) => rest.to_owned(),
+    };
+    for (key, value) in keys(&rest)? {
+        table.insert(key, value);
+    }
+    let mut surface = toml::Table::new();
+    surface.insert("kind".into(), Value::String("file".into()));
+    surface.insert("path".into(), Value::String(String::new()));
+    surface.insert("process".into(), Value::Array(vec![Value::Table(table)]));
+    let document = document(vec![("surface", Value::Array(vec![Value::Table(surface)]))]);
+
+    let place = "surface[0].process[0]";
+    let told = |errors: Vec<CaseError>| {
+        let error = errors.into_iter().next();
+        let mut message = error.as_ref().map_or_else(|| "not understood".into(), |e| e.message.clone());
+        message = message.replace(&format!("{place}."), "").replace(&format!("{place}: "), "");
+        message = message.replace(place, name);
+        match error.and_then(|e| e.help) {
+            Some(help) => format!("\"{words}\": {message}; {help}"),
+            None => format!("\"{words}\": {message}"),
+        }
+    };
+    let text = Text::parse(&document).map_err(told)?;
+    let surfaces = read::surfaces(&text).map_err(told)?;
+    let mut checks = Checks { text: &text, dir: Path::new(""), errors: Vec::new() };
+    let process = surfaces.iter().find_map(|surface| match &surface.value {
+        raw::Surface::File(file) => file.process.as_ref()?.value.first(),
+        _ => None,
+    });
+    let step = process.and_then(|at| convert::prepare::operation(&mut checks, at));
+    step.ok_or_else(|| told(checks.errors))
+}
+
+/// "KEY=VALUE KEY=VALUE"; a word without "=" belongs to the value before it ("size=50 um").
+fn keys(text: &str) -> Result<Vec<(String, Value)>, String> {
+    let mut keys: Vec<(String, String)> = Vec::new();
+    for word in text.split_whitespace() {
+        match (word.split_once('='), keys.last_mut()) {
+            (Some((key, value)), _) => keys.push((key.to_owned(), value.to_owned())),
+            (None, Some((_, value))) => {
+                value.push(' ');
+                value.push_str(word);
+            }
+            (None, None) => return Err(format!("\"{word}\" has no \"=\"; write KEY=VALUE")),
+        }
+    }
+    Ok(keys.into_iter().map(|(key, text)| (key, value(&text))).collect())
+}
+
+/// A value as a case file has it: a number, true, false, a list where there are commas, or else text.
+pub(super) fn value(text: &str) -> Value {
+    let text = text.trim().trim_start_matches('[').trim_end_matches(']');
+    if text.contains(',') {
+        return Value::Array(text.split(',').map(value).collect());
+    }
+    let text = text.trim().trim_matches(['"', '\'']);
+    if let Ok(whole) = text.parse::<i64>() {
+        return Value::Integer(whole);
+    }
+    match text {
+        "true" => Value::Boolean(true),
+        "false" => Value::Boolean(false),
+        _ => text.parse::<f64>().map_or_else(|_| Value::String(text.to_owned()), Value::Float),
+    }
+}
+
+fn document(sections: Vec<(&str, Value)>) -> String {
+    sections.into_iter().map(|(key, value)| (key.to_owned(), value)).collect::<toml::Table>().to_string()
+}
+
+/// What is wrong with a key that was given as words.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fault {
+    /// The key as the case file has it, without its table ("rms_gradient", "lay.ratio").
+    pub key: String,
+    /// What is wrong, with the key where the message begins with it taken off.
+    pub message: String,
+    /// What to do, where more can be said.
+    pub help: Option<String>,
+}
+
+/// Synthetic roughness from words: the keys of `[domain]` (`cells`, `size`) and of `kind = "self-affine"`, with
+/// `lay.angle`, `lay.ratio`, `distribution.skewness` and so on for those inside tables.
+///
+/// ```
+/// use asperity_io::case::fragment::roughness;
+///
+/// let keys = [("cells", "64"), ("size", "1 mm,1 mm"), ("hurst", "0.8"), ("rms_height", "1 um"),
+///     ("longest", "0.5 mm"), ("shortest", "0.1 mm"), ("seed", "1")];
+/// let (grid, _part) = roughness(&keys).unwrap();
+/// assert_eq!((grid.cells(), grid.size()), ([64, 64], [1e-3, 1e-3]));
+///
+/// let faults = roughness(&keys[..6]).unwrap_err();
+/// assert_eq!(faults[0].key, "seed");
+/// ```
+///
+/// # Errors
+/// What is wrong with each key, missing ones included.
+pub fn roughness(keys: &[(&str, &str)]) -> Result<(Grid, Part), Vec<Fault>> {
+    let (mut domain, mut surface) = (toml::Table::new(), toml::Table::new());
+    surface.insert("kind".into(), Value::String("self-affine".into()));
+    for (key, text) in keys {
+        let mut given = value(text);
+        match key.split_once('.') {
+            None if ["cells", "size"].contains(key) => {
+                // One number for a square.
+                if !given.is_array() {
+                    given = Value::Array(vec![given.clone(), given]);
+                }
+                domain.insert((*key).to_owned(), given);
+            }
+            None => drop(surface.insert((*key).to_owned(), given)),
+            Some((table, inner)) => {
+                let table =
+                    surface.entry(table.to_owned()).or_insert_with(|| Value::Table(toml::Table::new()));
+                if let Some(table) = table.as_table_mut() {
+                    table.insert(inner.to_owned(), given);
+                }
+            }
+        }
+    }
+    let document = document(vec![
+        ("domain", Value::Table(domain)),
+        ("surface", Value::Array(vec![Value::Table(surface)])),
+    ]);
+    let text = Text::parse(&document).map_err(faults)?;
+    let (domain, surfaces) = read::roughness(&text).map_err(faults)?;
+    let mut checks = Checks { text: &text, dir: Path::new(""), errors: Vec::new() };
+    let grid = convert::domain::grid(&mut checks, &domain, &[]);
+    convert::domain::memory(&mut checks, &domain, grid.as_ref(), 0, asperity::Scheme::Linear);
+    let part = surfaces.iter().find_map(|surface| match &surface.value {
+        raw::Surface::SelfAffine(roughness) => {
+            convert::surface::self_affine(&mut checks, roughness, grid.as_ref())
+        }
+        _ => None,
+    });
+    match (grid, part, checks.errors.is_empty()) {
+        (Some(grid), Some(Surface::Part(part)), true) => Ok((grid, part)),
+        _ => Err(faults(checks.errors)),
+    }
+}
+
+fn faults(errors: Vec<CaseError>) -> Vec<Fault> {
+    let bare = |text: &str| text.replace("surface[0].", "").replace("domain.", "").replace("surface[0]", "");
+    let fault = |error: CaseError| {
+        let message = bare(error.message.strip_prefix(&error.key).unwrap_or(&error.message));
+        let message = message.trim_start_matches([':', ' ']).to_owned();
+        // "add hurst = 0.8" is advice for a case file.
+        let help = error.help.filter(|help| !help.starts_with("add "));
+        Fault { key: bare(&error.key), message, help }
+    };
+    errors.into_iter().map(fault).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use asperity::surface::process::{Axis, Band, Edge, Outliers, Resampling, Window};
+    use asperity::surface::{Fill, Operation};
+
+    #[test]
+    fn every_step_has_its_words() {
+        let operation = |words: &str| match step(words).unwrap_or_else(|e| panic!("{words}: {e}")) {
+            Step::Operation(operation) => operation,
+            other => panic!("{words}: {other:?}"),
+        };
+        assert_eq!(
+            operation("fill=nearest share=0.5"),
+            Operation::Fill { method: Fill::Nearest, largest_share: 0.5 }
+        );
+        let band = Band { longest: Some(80e-6), shortest: Some(2.5e-6), edge: Edge::Gaussian };
+        let words = "filter longest=80 um shortest=\"2.5 um\" edge=gaussian";
+        assert_eq!(operation(words), Operation::Filter(band));
+        assert_eq!(operation("flip=y"), Operation::Flip(Axis::Y));
+        assert_eq!(operation("rotate"), Operation::Rotate { quarter_turns: 1 });
+        assert_eq!(operation("rotate=-1"), Operation::Rotate { quarter_turns: -1 });
+        assert_eq!(operation("invert"), Operation::Invert);
+        assert_eq!(operation("window=tukey share=0.2"), Operation::Window(Window::Tukey { share: 0.2 }));
+        let outliers = Outliers { threshold: 5.0, radius: 3 };
+        assert_eq!(operation("outliers=5 radius=3"), Operation::RemoveOutliers(outliers));
+        assert_eq!(
+            step("resample=bilinear cells=64,32"),
+            Ok(Step::Resample { cells: Some([64, 32]), method: Resampling::Bilinear })
+        );
+    }
+
+    #[test]
+    fn a_slip_in_a_step_is_told_with_what_to_do() {
+        for (words, told) in [
+            ("", "op is \"\""),
+            ("lvel=plane", "lvel"),
+            ("lvel", "did you mean \"level\"?"),
+            ("fill=harmonic shar=0.3", "did you mean `share`?"),
+            ("fill share=2", "at most 1"),
+            ("crop", "needs `cells` or `size` or `defined`"),
+            ("crop cells=5,5 size=1um,1um", "only one of them"),
+            ("crop cells=0,5", "1 or more"),
+            ("crop corner=0,0 cells=5,5", "belongs to `size`"),
+            ("crop size=5,5 V", "a length"),
+            ("filter", "needs `longest` or `shortest`"),
+            ("filter longest=1um shortest=2um", "exchange"),
+            ("filter longest=1um,2um", "a length"),
+            ("flip", "axis is missing"),
+            ("rotate=0.5", "a whole number"),
+            ("window share=0.3", "Tukey"),
+            ("level plane", "KEY=VALUE"),
+        ] {
+            let error = step(words).unwrap_err();
+            assert!(error.contains(told), "{words}: {error}");
+            assert!(!error.contains("surface["), "{words}: {error}");
+        }
+    }
+
+    #[test]
+    fn a_slip_in_a_roughness_is_told_by_its_key() {
+        let good = [
+            ("cells", "64,32"),
+            ("size", "2 mm,1 mm"),
+            ("hurst", "0.8"),
+            ("rms_gradient", "0.1"),
+            ("longest", "0.5 mm"),
+            ("shortest", "0.1 mm"),
+            ("lay.ratio", "3"),
+            ("lay.angle", "20 deg"),
+            ("distribution.skewness", "-0.5"),
+            ("seed", "1"),
+        ];
+        assert!(matches!(roughness(&good), Ok((_, Part::Synthesis(_)))));
+        for (key, text, told) in [
+            ("hurst", "2", "at most 1"),
+            ("shortest", "1 um", "two cells"),
+            ("longest", "1 m", "size of the domain"),
+            ("lay.ratio", "0.5", "1 or more"),
+            ("lay.angle", "20 mm", "deg"),
+            ("distribution.kurtosis", "1", "well above"),
+            ("distribution.path", "nowhere.sdf", "skewness"),
+            ("seed", "-1", "0 or more"),
+            ("cells", "100000,1000000", "this machine has"),
+            ("preset", "challenge", "contact-mechanics-challenge"),
+            ("rms_height", "1 um", "only one of them"),
+        ] {
+            let mut keys: Vec<_> = good.iter().copied().filter(|k| k.0 != key).collect();
+            keys.push((key, text));
+            let told_as = format!("{:?}", roughness(&keys).unwrap_err());
+            assert!(told_as.contains(told), "{key} = {text}: {told_as}");
+        }
+    }
+
+    #[test]
+    fn the_challenge_is_a_preset_whose_keys_can_be_set() {
+        let keys =
+            [("preset", "contact-mechanics-challenge"), ("cells", "256"), ("size", "0.1 mm"), ("seed", "1")];
+        let told = roughness(&keys).unwrap_err();
+        assert!(told[0].message.contains("two cells"), "{told:?}");
+        let mut coarser = keys.to_vec();
+        coarser.push(("shortest", "1 um"));
+        let (_, part) = roughness(&coarser).unwrap();
+        let Part::SelfAffine(roughness) = part else { panic!("{part:?}") };
+        assert_eq!((roughness.hurst, roughness.roll_off, roughness.shortest), (0.8, 2e-5, 1e-6));
+    }
+}

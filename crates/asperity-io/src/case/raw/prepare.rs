@@ -1,0 +1,214 @@
+//! The steps that prepare a measured surface: `process = [...]`, and the same steps as keys of a `[[surface]]`.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use super::{At, Two};
+use crate::case::quantity::range::{Positive, Share};
+use crate::case::quantity::{Length, Number, Signed, Whole};
+
+/// One step of the preparation of a measured surface.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(tag = "op")]
+pub enum Operation {
+    /// Subtract a form, fitted by least squares to the defined points.
+    Level(LevelStep),
+    /// Fill the undefined points.
+    Fill(FillStep),
+    /// Keep a rectangle.
+    Crop(At<Crop>),
+    /// Other cells over the same rectangle.
+    Resample(ResampleStep),
+    /// Keep the wavelengths of a band; the surface is taken as periodic.
+    Filter(At<Filter>),
+    /// Mirror along an axis.
+    Flip(FlipStep),
+    /// Turn by quarter turns from x towards y.
+    Rotate(RotateStep),
+    /// Change the sign of the heights.
+    Invert(InvertStep),
+    /// Fade out towards the edges.
+    Window(At<Window>),
+    /// Make spikes undefined.
+    Outliers(Outliers),
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LevelStep {
+    /// What is taken off; "plane" if not given.
+    #[serde(default)]
+    pub form: Level,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FillStep {
+    /// How; "harmonic" if not given.
+    #[serde(default)]
+    pub method: Fill,
+    /// Largest share of undefined points that is filled; 0.25 if not given.
+    #[schemars(example = 0.25)]
+    pub share: Option<Number<Share>>,
+}
+
+/// A rectangle to keep: `cells` (counts) or `size` (lengths) or `defined = true`.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Crop {
+    /// Number of cells kept along x and y; this, `size` or `defined`.
+    #[schemars(example = [512, 512])]
+    pub cells: Option<Two<Whole<1>>>,
+    /// First cell kept along x and y, from 0; with `cells`. Not given: the middle of the surface is kept.
+    #[schemars(example = [0, 0])]
+    pub from: Option<Two<Whole<0>>>,
+    /// Lengths kept along x and y, rounded to whole cells; this, `cells` or `defined`.
+    #[schemars(example = ["0.2 mm", "0.2 mm"])]
+    pub size: Option<Two<Length<Positive>>>,
+    /// Corner of the part kept, from the surface's corner; with `size`. Not given: the middle is kept.
+    #[schemars(example = ["0 mm", "0.1 mm"])]
+    pub corner: Option<Two<Length>>,
+    /// true: the smallest rectangle that holds all defined points.
+    pub defined: Option<bool>,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ResampleStep {
+    /// How; "band-limited" if not given.
+    #[serde(default)]
+    pub method: Resample,
+    /// Number of cells along x and y; those of the domain if not given.
+    #[schemars(example = [512, 512])]
+    pub cells: Option<Two<Whole<1>>>,
+}
+
+/// How heights at new points come from old ones.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Resample {
+    /// By waves: exact for a surface that is smooth on its grid and repeats; needs every point.
+    #[default]
+    BandLimited,
+    /// Linear between neighbours: no new extremes.
+    Bilinear,
+}
+
+/// The wavelengths that are kept; one of `longest` and `shortest` at least.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Filter {
+    /// Longest wavelength kept (high-pass); without it all long waves and the mean are kept.
+    #[schemars(example = "80 um")]
+    pub longest: Option<Length<Positive>>,
+    /// Shortest wavelength kept (low-pass); without it all short waves are kept.
+    #[schemars(example = "2.5 um")]
+    pub shortest: Option<Length<Positive>>,
+    /// How the band ends; "sharp" if not given.
+    #[serde(default)]
+    pub edge: Edge,
+}
+
+/// How a filter ends its band.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Edge {
+    /// Waves inside are kept whole, others dropped.
+    #[default]
+    Sharp,
+    /// Gaussian, half of the amplitude at the cut-off (ISO 16610-61).
+    Gaussian,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct FlipStep {
+    /// The axis that changes its direction.
+    pub axis: Axis,
+}
+
+/// An axis of the surface.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Axis {
+    /// x, axis 0 of the heights.
+    X,
+    /// y, axis 1 of the heights.
+    Y,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RotateStep {
+    /// Quarter turns from x towards y; 1 if not given, negative ones turn back.
+    #[schemars(example = 1)]
+    pub quarter_turns: Option<Signed>,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct InvertStep {}
+
+/// A window along each axis, scaled to mean square 1.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Window {
+    /// "hann" or "tukey"; "hann" if not given.
+    #[serde(default)]
+    pub shape: WindowShape,
+    /// Share of the length over which Tukey's window rises and falls; 0.1 if not given.
+    #[schemars(example = 0.1)]
+    pub share: Option<Number<Share>>,
+}
+
+/// A window.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum WindowShape {
+    /// (1 - cos(2 pi x/L))/2.
+    #[default]
+    Hann,
+    /// Hann's flanks over a share of the length, flat between.
+    Tukey,
+}
+
+/// Points far from the median of their neighbourhood.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Outliers {
+    /// Robust standard deviations from the local median; 6 if not given.
+    #[schemars(example = 6)]
+    pub threshold: Option<Number<Positive>>,
+    /// Cells of the neighbourhood to each side, 1 to 10; 2 if not given.
+    #[schemars(example = 2)]
+    pub radius: Option<Whole<1>>,
+}
+
+/// What is taken off measured heights.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Level {
+    /// Nothing.
+    None,
+    /// The mean.
+    Mean,
+    /// The least-squares plane.
+    #[default]
+    Plane,
+    /// The least-squares polynomial of second order.
+    Quadratic,
+}
+
+/// What is done about undefined points.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Fill {
+    /// Refuse the file.
+    Error,
+    /// Solve Laplace's equation over the holes.
+    #[default]
+    Harmonic,
+    /// Take the nearest defined height.
+    Nearest,
+}

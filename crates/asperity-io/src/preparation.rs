@@ -1,0 +1,225 @@
+//! Preparing a measured surface: steps that may depend on the surface that they meet, and the record of what was
+//! done.
+//!
+//! An [`Operation`] is complete in itself. A [`Step`] may leave open what the surface or the case decides: a crop in
+//! lengths, the middle of the surface, the cells of the domain. [`prepare`] settles that, applies the operations in
+//! order, and writes down each one as it was done.
+
+use asperity::surface::process::{self, Resampling};
+use asperity::surface::{Operation, Surface};
+use asperity::{Error, Result};
+
+/// One step of a preparation.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Step {
+    /// As it stands.
+    Operation(Operation),
+    /// Keep a rectangle.
+    Crop(Crop),
+    /// Other cells over the same rectangle; `None`: those of the domain.
+    Resample {
+        /// Cells along x and y.
+        cells: Option<[usize; 2]>,
+        /// How.
+        method: Resampling,
+    },
+}
+
+/// A rectangle to keep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Crop {
+    /// A number of cells; from the first cell given, or about the middle.
+    Cells {
+        /// Cells kept along x and y.
+        cells: [usize; 2],
+        /// First cell kept; `None`: the middle of the surface is kept.
+        from: Option<[usize; 2]>,
+    },
+    /// Lengths \[m\], rounded to whole cells; from the corner given, or about the middle.
+    Lengths {
+        /// Lengths kept along x and y \[m\].
+        size: [f64; 2],
+        /// Corner of the part kept, from that of the surface \[m\]; `None`: the middle is kept.
+        corner: Option<[f64; 2]>,
+    },
+    /// The smallest rectangle that holds every defined point.
+    Defined,
+}
+
+/// A surface and what was done to it.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// The surface after all steps.
+    pub surface: Surface,
+    /// One sentence per step, in order.
+    pub history: Vec<String>,
+}
+
+/// Does all steps in order; `domain` are the cells of the domain, where there is one.
+///
+/// ```
+/// use asperity::{Grid, surface::{Level, Operation, Surface}};
+/// use asperity_io::preparation::{Crop, Step, prepare};
+///
+/// let grid = Grid::new([10, 8], [10e-6, 8e-6])?;
+/// let tilted = ndarray::Array2::from_shape_fn((10, 8), |(i, j)| (i + 2 * j) as f64 * 1e-9);
+/// let steps = [
+///     Step::Crop(Crop::Lengths { size: [4e-6, 4e-6], corner: None }),
+///     Step::Operation(Operation::Level(Level::Plane)),
+/// ];
+/// let prepared = prepare(Surface::new(grid, tilted)?, &steps, None)?;
+/// assert_eq!(prepared.surface.grid().size(), [4e-6, 4e-6]);
+/// assert!(prepared.surface.heights().iter().all(|z| z.abs() < 1e-20));
+/// assert_eq!(prepared.history[0], "crop to 4 x 4 cells from (3, 2)");
+/// # Ok::<(), asperity::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::Invalid`] of the first step that fails, with its number.
+pub fn prepare(surface: Surface, steps: &[Step], domain: Option<[usize; 2]>) -> Result<Prepared> {
+    let mut prepared = Prepared { surface, history: Vec::with_capacity(steps.len()) };
+    for (n, step) in steps.iter().enumerate() {
+        let done = step.settle(&prepared.surface, domain).and_then(|operation| {
+            let undefined = prepared.surface.undefined();
+            let surface = operation.apply(&prepared.surface)?;
+            let sentence = sentence(&operation, undefined, surface.undefined());
+            Ok((surface, sentence))
+        });
+        let (surface, sentence) = done.map_err(|error| in_step(error, n + 1, steps.len()))?;
+        prepared.surface = surface;
+        prepared.history.push(sentence);
+    }
+    Ok(prepared)
+}
+
+/// The operation and, where it changes them, the numbers of undefined points.
+fn sentence(operation: &Operation, before: usize, after: usize) -> String {
+    match operation {
+        Operation::Fill { .. } => format!("{operation}: {} filled", before.saturating_sub(after)),
+        Operation::RemoveOutliers(_) => format!("{operation}: {} removed", after.saturating_sub(before)),
+        _ => operation.to_string(),
+    }
+}
+
+fn in_step(error: Error, number: usize, of: usize) -> Error {
+    match error {
+        Error::Invalid { what, value, expected } if of > 1 => {
+            Error::Invalid { what: format!("step {number} of the preparation: {what}"), value, expected }
+        }
+        other => other,
+    }
+}
+
+impl Step {
+    /// The operation that this step is on this surface.
+    fn settle(&self, surface: &Surface, domain: Option<[usize; 2]>) -> Result<Operation> {
+        match *self {
+            Step::Operation(operation) => Ok(operation),
+            Step::Crop(crop) => crop.settle(surface),
+            Step::Resample { cells, method } => match cells.or(domain) {
+                Some(cells) => Ok(Operation::Resample { cells, method }),
+                None => Err(Error::invalid(
+                    "number of cells to resample to",
+                    "not given",
+                    "given: as `cells` of the step or as `domain.cells` of the case",
+                )),
+            },
+        }
+    }
+}
+
+impl Crop {
+    fn settle(self, surface: &Surface) -> Result<Operation> {
+        let ([nx, ny], spacing) = (surface.grid().cells(), surface.grid().spacing());
+        let middle = |cells: [usize; 2]| [nx.saturating_sub(cells[0]) / 2, ny.saturating_sub(cells[1]) / 2];
+        match self {
+            Crop::Cells { cells, from } => {
+                Ok(Operation::Crop { from: from.unwrap_or_else(|| middle(cells)), cells })
+            }
+            Crop::Lengths { size, corner } => {
+                // Saturates: what does not fit is refused by the crop itself, with its numbers.
+                let count = |axis: usize, length: f64| (length / spacing[axis]).round() as usize;
+                let cells = [count(0, size[0]), count(1, size[1])];
+                let Some(corner) = corner else { return Ok(Operation::Crop { from: middle(cells), cells }) };
+                if let Some(length) = corner.into_iter().find(|length| *length < 0.0) {
+                    return Err(Error::invalid(
+                        "corner of the part to keep",
+                        format!("{length:e} m"),
+                        "0 m or more, from the corner of the surface",
+                    ));
+                }
+                Ok(Operation::Crop { from: [count(0, corner[0]), count(1, corner[1])], cells })
+            }
+            Crop::Defined => match process::defined_extent(surface) {
+                Some((from, cells)) => Ok(Operation::Crop { from, cells }),
+                None => Err(Error::invalid("number of defined heights", 0, "1 at least, to crop to them")),
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use asperity::Grid;
+    use asperity::surface::{Fill, Level};
+    use ndarray::Array2;
+
+    fn surface() -> Surface {
+        let heights = Array2::from_shape_fn((10, 6), |(i, j)| (10 * i + j) as f64);
+        Surface::new(Grid::new([10, 6], [10.0, 3.0]).unwrap(), heights).unwrap()
+    }
+
+    fn crop(crop: Crop) -> Result<(f64, [usize; 2])> {
+        let prepared = prepare(surface(), &[Step::Crop(crop)], None)?;
+        Ok((prepared.surface.heights()[[0, 0]], prepared.surface.grid().cells()))
+    }
+
+    #[test]
+    fn a_crop_is_in_cells_or_lengths_from_a_corner_or_about_the_middle() {
+        let cells = [4, 2];
+        assert_eq!(crop(Crop::Cells { cells, from: Some([1, 3]) }).unwrap(), (13.0, cells));
+        assert_eq!(crop(Crop::Cells { cells, from: None }).unwrap(), (32.0, cells));
+        let size = [4.2, 0.9]; // 4.2 and 1.8 cells
+        assert_eq!(crop(Crop::Lengths { size, corner: Some([1.0, 1.5]) }).unwrap(), (13.0, cells));
+        assert_eq!(crop(Crop::Lengths { size, corner: None }).unwrap(), (32.0, cells));
+        assert_eq!(crop(Crop::Defined).unwrap(), (0.0, [10, 6]));
+    }
+
+    #[test]
+    fn crops_that_do_not_fit_are_refused() {
+        for bad in [
+            Crop::Cells { cells: [11, 1], from: None },
+            Crop::Cells { cells: [1, 1], from: Some([10, 0]) },
+            Crop::Lengths { size: [1e300, 1.0], corner: None },
+            Crop::Lengths { size: [1.0, 1.0], corner: Some([-0.6, 0.0]) },
+            Crop::Lengths { size: [0.1, 1.0], corner: None },
+        ] {
+            assert!(crop(bad).is_err(), "{bad:?}");
+        }
+    }
+
+    #[test]
+    fn the_record_says_what_was_done_with_its_numbers() {
+        let mut heights = surface().heights().to_owned();
+        heights[[3, 3]] = f64::NAN;
+        let holed = Surface::new(*surface().grid(), heights).unwrap();
+        let steps = [
+            Step::Operation(Operation::Level(Level::Mean)),
+            Step::Operation(Operation::Fill { method: Fill::Nearest, largest_share: 0.25 }),
+            Step::Resample { cells: None, method: Resampling::Bilinear },
+        ];
+        let prepared = prepare(holed.clone(), &steps, Some([5, 3])).unwrap();
+        assert_eq!(
+            prepared.history,
+            [
+                "subtract the mean (least squares)",
+                "fill undefined points (nearest, at most 25 %): 1 filled",
+                "resample to 5 x 3 cells (bilinear)"
+            ]
+        );
+        assert_eq!(prepared.surface.grid().size(), [10.0, 3.0]);
+        let error = prepare(holed, &steps, None).unwrap_err().to_string();
+        assert!(error.contains("step 3") && error.contains("domain.cells"), "{error}");
+    }
+}

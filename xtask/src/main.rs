@@ -1,5 +1,7 @@
 //! Tasks of the project: `cargo xtask test | bench | figures | verification`.
 
+mod surfaces;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
@@ -7,7 +9,7 @@ const HELP: &str = "\
 cargo xtask TASK
 
   test          format, lints, all tests, documentation, Python's view of the results
-  bench         times the convolution and the paper's case, prints a table (a quiet machine, please)
+  bench         times the convolution, the paper's case and the surfaces, prints a table (a quiet machine, please)
   figures       draws the pictures of the documentation
   verification  writes docs/verification.md from `asperity verify`
 ";
@@ -107,13 +109,14 @@ fn bench() -> Done {
             .arg(directory.join(format!("{case}.zarr")))
             .arg(root().join(format!("examples/{case}.toml"))))?;
     }
-    Ok(())
+    surfaces::bench()
 }
 
 fn figures() -> Done {
     run(&mut cargo(&["build", "--release", "-p", "asperity-cli"]))?;
     let result = root().join("target/figures/rough-pmma.zarr");
     std::fs::create_dir_all(root().join("target/figures")).map_err(|e| e.to_string())?;
+    surfaces::figure()?;
     run(Command::new(root().join("target/release/asperity"))
         .args(["run", "--quiet", "--force", "examples/rough-pmma.toml", "-o"])
         .arg(&result))?;

@@ -70,6 +70,7 @@ pub struct Crop {
     #[schemars(example = ["0 mm", "0.1 mm"])]
     pub corner: Option<Two<Length>>,
     /// true: the smallest rectangle that holds all defined points.
+    #[schemars(example = true)]
     pub defined: Option<bool>,
 }
 

@@ -145,10 +145,24 @@ impl<V: Eight> Looking<V> {
     }
 }
 
-/// Turns the direction on S, 0 elsewhere, and looks at the trial point.
-pub(super) fn turn(d: &mut [f32], z: &[f32], set: &[u8], p: &[f64], hardness: f64, turn: Turn) -> Ahead {
-    Ahead::of(sweep((d, z, Set(set), p), &|(d, z, Set(set), p): (&mut [f32], &[f32], Set, &[f64])| {
-        vectorize(Turning { d, z, set, p, hardness, turn })
+/// Turns the direction on S, 0 elsewhere, and looks at the trial point. `before` is the set of the direction that was
+/// there: other cells are zero already.
+pub(super) fn turn(
+    d: &mut [f32],
+    z: &[f32],
+    (set, before): (&[u8], &[u8]),
+    p: &[f64],
+    hardness: f64,
+    turn: Turn,
+) -> Ahead {
+    Ahead::of(sweep((d, z, Set(set), Set(before), p), &|(d, z, Set(set), Set(before), p): (
+        &mut [f32],
+        &[f32],
+        Set,
+        Set,
+        &[f64],
+    )| {
+        vectorize(Turning { d, z, set, before, p, hardness, turn })
     }))
 }
 
@@ -156,6 +170,7 @@ struct Turning<'a> {
     d: &'a mut [f32],
     z: &'a [f32],
     set: &'a [u8],
+    before: &'a [u8],
     p: &'a [f64],
     hardness: f64,
     turn: Turn,
@@ -168,9 +183,11 @@ impl Work for Turning<'_> {
     fn run<V: Eight>(self) -> [f64; 4] {
         let (mean, beta) = (V::splat(self.turn.mean), V::splat(self.turn.beta));
         let mut looking = Looking::<V>::new(self.turn.length, self.hardness);
-        for (n, set) in (0..).step_by(8).zip(self.set) {
+        for ((n, set), before) in (0..).step_by(8).zip(self.set).zip(self.before) {
             if *set == 0 {
-                V::splat(0.0).store(self.d, n);
+                if *before != 0 {
+                    V::splat(0.0).store(self.d, n);
+                }
                 continue;
             }
             let on = V::Mask::from_bits(*set);

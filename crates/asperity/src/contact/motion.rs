@@ -32,27 +32,29 @@ fn power_of_two(x: f64) -> f64 {
     if power.is_normal() { power } else { 1.0 }
 }
 
-/// s = q - p, q the trial point shifted and clipped, and the cells inside.
+/// s = q - p, q the trial point shifted and clipped, and the cells inside. `laid` is the set of the step that was laid
+/// out before: other cells are zero already, and writing costs more than anything else here.
 pub(super) fn lay_out<T: Cell>(
     trial: &Trial,
     shift: Shift,
     residual: &[f32],
     step: &mut [T],
+    laid: &mut [u8],
     inside: &mut [u8],
 ) -> Layout {
     let (length, hardness) = (trial.length, trial.hardness);
     let unit = power_of_two(length);
     let ([slope, sum, cells], Min(reach)) = sweep(
-        ((step, SetMut(inside)), trial.pressure, trial.direction, residual, Set(trial.set)),
-        &|((s, SetMut(inside)), p, d, r, Set(set)): (
-            (&mut [T], SetMut),
+        ((step, SetMut(laid), SetMut(inside)), trial.pressure, trial.direction, residual, Set(trial.set)),
+        &|((s, SetMut(laid), SetMut(inside)), p, d, r, Set(set)): (
+            (&mut [T], SetMut, SetMut),
             &[f64],
             Option<&[f32]>,
             &[f32],
             Set,
         )| {
             let d = d.unwrap_or_default();
-            vectorize(LayOut { s, inside, p, d, r, set, length, shift, hardness, per: 1.0 / unit })
+            vectorize(LayOut { s, laid, inside, p, d, r, set, length, shift, hardness, per: 1.0 / unit })
         },
     );
     Layout { slope, unit, inside: [sum, cells], reach }
@@ -60,6 +62,7 @@ pub(super) fn lay_out<T: Cell>(
 
 struct LayOut<'a, T> {
     s: &'a mut [T],
+    laid: &'a mut [u8],
     inside: &'a mut [u8],
     p: &'a [f64],
     d: &'a [f32],
@@ -81,9 +84,12 @@ impl<T: Cell> Work for LayOut<'_, T> {
         let [mut slope, mut sum, mut cells] = [zero; 3];
         let far = V::splat(f64::INFINITY);
         let mut reach = far;
-        for ((n, set), inside) in (0..).step_by(8).zip(self.set).zip(self.inside) {
+        for (((n, set), laid), inside) in (0..).step_by(8).zip(self.set).zip(self.laid).zip(self.inside) {
+            let before = std::mem::replace(laid, *set);
             if *set == 0 {
-                zero.store(self.s, n);
+                if before != 0 {
+                    zero.store(self.s, n);
+                }
                 *inside = 0;
                 continue;
             }
@@ -145,11 +151,12 @@ pub(super) struct Motion<'a, T> {
     pub length: f64,
     pub shift: Shift,
     pub direction: &'a [f32],
+    pub set: &'a [u8],
     pub image: &'a [T],
 }
 
-/// p += t s, U += t K s where there is a `motion`; then rates the state with the guess `w`, writes r / `scale` on the
-/// working set S, 0 elsewhere, and S over the set of the step.
+/// p += t s, U += t K s where there is a `motion`, on the set of its step; then rates the state with the guess `w`, and
+/// writes r / `scale` on the working set S, 0 elsewhere, and S over the set of the residual that was there.
 ///
 /// A cell that lands within rounding of a bound is put on it.
 pub(super) fn advance<T: Cell>(
@@ -161,7 +168,7 @@ pub(super) fn advance<T: Cell>(
     (residual, set): (&mut [f32], &mut [u8]),
 ) -> Rating {
     let (numbers, fields) =
-        motion.map(|m| ((m.t, m.unit, m.length, m.shift), (m.direction, m.image))).unzip();
+        motion.map(|m| ((m.t, m.unit, m.length, m.shift), (m.direction, Set(m.set), m.image))).unzip();
     let (t, unit, length, shift) = numbers.unwrap_or_default();
     sweep(
         (
@@ -172,9 +179,17 @@ pub(super) fn advance<T: Cell>(
         &|((p, u, r, SetMut(set)), h, motion): (
             (&mut [f64], &mut [f64], &mut [f32], SetMut),
             &[f64],
-            Option<(&[f32], &[T])>,
+            Option<(&[f32], Set, &[T])>,
         )| {
-            let motion = motion.map(|(direction, image)| Motion { t, unit, length, shift, direction, image });
+            let motion = motion.map(|(direction, Set(set), image)| Motion {
+                t,
+                unit,
+                length,
+                shift,
+                direction,
+                set,
+                image,
+            });
             vectorize(Advance { problem, motion, w, scale, p, u, r, set, h })
         },
     )
@@ -200,7 +215,7 @@ impl<T: Cell> Advance<'_, T> {
         let (zero, t, top) = (V::splat(0.0), V::splat(motion.t), V::splat(hardness));
         let far = V::splat(motion.t * motion.unit);
         let p = V::load(self.p, n, 0.0);
-        let on = V::Mask::from_bits(self.set[n / 8]);
+        let on = V::Mask::from_bits(motion.set[n / 8]);
         let s = (mover.target(p, V::load(motion.direction, n, 0.0)) - p).only(on);
         let new = p + t * s;
         let floor = V::splat(4.0 * f64::EPSILON) * p;
@@ -222,7 +237,7 @@ impl<T: Cell> Work for Advance<'_, T> {
             let (p, u) = match (&self.motion, &mover) {
                 (Some(motion), Some(mover)) => {
                     let (p, u) = self.moved(motion, mover, n);
-                    if self.set[n / 8] != 0 {
+                    if motion.set[n / 8] != 0 {
                         p.store(self.p, n);
                     }
                     u.store(self.u, n);
@@ -231,8 +246,10 @@ impl<T: Cell> Work for Advance<'_, T> {
                 _ => (V::load(self.p, n, 0.0), V::load(self.u, n, 0.0)),
             };
             let (r, works) = gauge.meet(p, u, V::load(self.h, n, f64::INFINITY));
-            (r * per).only(works).store(self.r, n);
-            self.set[n / 8] = works.bits();
+            let works_before = std::mem::replace(&mut self.set[n / 8], works.bits());
+            if works_before | works.bits() != 0 {
+                (r * per).only(works).store(self.r, n);
+            }
         }
         gauge.rating()
     }

@@ -80,8 +80,11 @@ pub struct ProjectedCg<T = f64> {
     /// The step s and K s.
     step: Vec<T>,
     moved: Vec<T>,
-    /// S.
+    /// S of the residual now and one iteration ago.
     working: Vec<u8>,
+    worked: Vec<u8>,
+    /// The set on which direction and step were laid out.
+    laid: Vec<u8>,
     /// Cells that the full step leaves between the bounds.
     inside: Vec<u8>,
 }
@@ -133,6 +136,8 @@ impl<T: Scalar> ProjectedCg<T> {
             step: vec![T::default(); n],
             moved: vec![T::default(); n],
             working: vec![0; n.div_ceil(8)],
+            worked: vec![0; n.div_ceil(8)],
+            laid: vec![0; n.div_ceil(8)],
             inside: vec![0; n.div_ceil(8)],
         }
     }
@@ -148,6 +153,10 @@ impl<T: Scalar> ProjectedCg<T> {
     ) -> Result<Outcome> {
         let grid = *operator.grid();
         make_feasible(problem, grid.cell_area(), state, &mut self.working)?;
+        // Whatever an earlier solve left behind is overwritten, everywhere.
+        self.working.fill(u8::MAX);
+        self.worked.fill(u8::MAX);
+        self.laid.fill(u8::MAX);
         operator.apply_into(&state.pressure, &mut state.unit_displacement);
         let mut convolutions = 1;
         let mut gradient_length = 1.0 / (problem.compliance * operator.self_influence());
@@ -247,17 +256,19 @@ impl<T: Scalar> ProjectedCg<T> {
                 }
                 _ => rating.w,
             };
+            // Residuals are measured in the largest violation of the iteration before.
+            unit = rating.violation();
+            std::mem::swap(&mut self.residual, &mut self.previous);
+            std::mem::swap(&mut self.working, &mut self.worked);
             let motion = Motion {
                 t,
                 unit: size,
                 length: step.length,
                 shift: step.shift,
                 direction: &self.direction,
+                set: &self.worked,
                 image: &self.moved,
             };
-            // Residuals are measured in the largest violation of the iteration before.
-            unit = rating.violation();
-            std::mem::swap(&mut self.residual, &mut self.previous);
             let found = (&mut self.residual[..], &mut self.working[..]);
             rating = advance(problem, state, Some(motion), foretold, unit, found);
             fresh = false;
@@ -311,7 +322,7 @@ impl<T: Scalar> ProjectedCg<T> {
         let ahead = turn(
             &mut self.direction,
             &self.image,
-            &self.working,
+            (&self.working, &self.laid),
             &state.pressure,
             problem.hardness,
             Turn { mean, beta, length },
@@ -332,6 +343,7 @@ impl<T: Scalar> ProjectedCg<T> {
     ) -> Option<Step> {
         let length = length * unit;
         let fields = (&mut self.direction[..], &mut self.residual[..], &mut self.working[..]);
+        self.laid.fill(u8::MAX);
         let ahead = steepest(problem, state, rating.w, unit, length, fields);
         self.lay_out(problem, state, sum, ahead, Kind::Gradient, length, 0.0)
     }
@@ -360,7 +372,7 @@ impl<T: Scalar> ProjectedCg<T> {
             Some(missing) => trial.shift_to_sum(ahead.pressure + missing, Some(ahead.clipped))?,
             None => Shift::default(),
         };
-        let layout = lay_out(&trial, shift, &self.residual, &mut self.step, &mut self.inside);
+        let layout = lay_out(&trial, shift, &self.residual, &mut self.step, &mut self.laid, &mut self.inside);
         (layout.slope < 0.0).then_some(Step { kind, length, shift, layout, mean })
     }
 }

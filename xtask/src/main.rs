@@ -1,5 +1,6 @@
-//! Tasks of the project: `cargo xtask test | bench | figures | verification`.
+//! Tasks of the project: `cargo xtask test | bench | peers | figures | verification`.
 
+mod peers;
 mod surfaces;
 
 use std::path::{Path, PathBuf};
@@ -9,7 +10,9 @@ const HELP: &str = "\
 cargo xtask TASK
 
   test          format, lints, all tests, documentation, Python's view of the results
-  bench         times the convolution, the paper's case and the surfaces, prints a table (a quiet machine, please)
+  bench         times convolution, elastic contact, creep and surfaces, and prints tables (a quiet machine, please);
+                with --quick up to 1024 x 1024 cells
+  peers         times other programs and this one on the same surfaces, and writes target/peers/peers.md
   figures       draws the pictures of the documentation
   verification  writes docs/verification.md from `asperity verify`
 ";
@@ -23,7 +26,8 @@ fn main() -> ExitCode {
     let task = std::env::args().nth(1);
     let done = match task.as_deref() {
         Some("test") => test(),
-        Some("bench") => bench(),
+        Some("bench") => bench(std::env::args().any(|a| a == "--quick")),
+        Some("peers") => peers::peers(std::env::args().any(|a| a == "--quick")),
         Some("figures") => figures(),
         Some("verification") => verification(),
         _ => {
@@ -88,25 +92,24 @@ fn python() -> Result<PathBuf, String> {
     Ok(python)
 }
 
-fn bench() -> Done {
-    run(&mut cargo(&[
-        "bench",
-        "-p",
-        "asperity-convolution",
-        "--bench",
-        "convolution",
-        "--",
-        "20",
-        "256",
-        "1024",
-    ]))?;
+/// The tables of docs/performance.md: the convolution's forms, where the time of a contact goes in either
+/// precision, and whole runs with their files.
+fn bench(quick: bool) -> Done {
+    let sizes: &[&str] =
+        if quick { &["256", "512", "1024"] } else { &["256", "512", "1024", "2048", "4096"] };
+    let convolution =
+        ["bench", "-p", "asperity-convolution", "--bench", "convolution", "--", "20", "256", "1024"];
+    run(&mut cargo(&convolution))?;
+    for precision in [&[][..], &["--mixed"]] {
+        run(cargo(&["bench", "-p", "asperity", "--bench", "solver", "--"]).args(precision).args(sizes))?;
+    }
     run(&mut cargo(&["build", "--release", "-p", "asperity-cli"]))?;
     let directory = root().join("target/bench");
     std::fs::create_dir_all(&directory).map_err(|e| format!("{}: {e}", directory.display()))?;
-    for case in ["hertz", "rough-pmma"] {
+    for (case, precision) in [("hertz", "double"), ("rough-pmma", "double"), ("rough-pmma", "mixed")] {
         run(Command::new(root().join("target/release/asperity"))
-            .args(["run", "--quiet", "--force", "-o"])
-            .arg(directory.join(format!("{case}.zarr")))
+            .args(["run", "--quiet", "--force", "--set", &format!("solver.precision={precision}"), "-o"])
+            .arg(directory.join(format!("{case}-{precision}.zarr")))
             .arg(root().join(format!("examples/{case}.toml"))))?;
     }
     surfaces::bench()

@@ -1,103 +1,280 @@
-//! Where the time of a contact goes: `cargo bench -p asperity --bench solver -- [creep STEPS] N ...`.
+//! Where the time of a contact goes, and how far it is from what the machine can do.
+//!
+//! `cargo bench -p asperity --bench solver -- [--mixed] N ...` prints tables in Markdown. The case is that of the paper: a
+//! rough sphere on PMMA with a cut-off (`examples/rough-pmma.toml`), its first steps.
+//!
+//! The phases are timed one by one, outside of the solver, which no clock slows; what is left of a run are its
+//! sweeps over fields. Bounds are measured in the same run: the rate of a copy between arrays that no cache
+//! holds, and the rate of independent multiplications and additions in registers.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use asperity::convolution::eights::{Eight, Work, vectorize};
 use asperity::convolution::lanes::Lanes;
 use asperity::march::{March, Simulation};
 use asperity::material::{Creep, CreepTerm};
 use asperity::operator::half_space;
 use asperity::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
-use asperity::{Boundary, Control, Grid, History, Loading, TimeGrid};
-use std::time::Instant;
+use asperity::{
+    Boundary, ContactState, Control, Grid, History, Loading, Method, Precision, Prescribed, Problem, Solver,
+    SolverOptions, TimeGrid,
+};
+use rayon::prelude::*;
 
-fn least(mut f: impl FnMut(), n: usize) -> f64 {
-    (0..n)
-        .map(|_| {
-            let t = Instant::now();
-            f();
-            t.elapsed().as_secs_f64()
-        })
-        .fold(f64::INFINITY, f64::min)
-}
+const HARDNESS: f64 = 300e6;
+const LOAD: f64 = 0.5;
+/// (1 - nu^2) C0 of PMMA \[1/Pa\].
+const COMPLIANCE: f64 = 0.8556 * 4.013744989e-10;
 
 fn main() {
-    let arguments: Vec<usize> = std::env::args().skip(1).filter_map(|a| a.parse().ok()).collect();
-    let steps = arguments.first().copied().unwrap_or(20);
-    let capped = std::env::var("CAP").map_or(300e6, |c| c.parse().unwrap());
-    let precision = std::env::var("MIXED").is_ok();
-    for &n in &arguments[1..] {
-        let grid = Grid::new([n, n], [1e-4, 1e-4]).unwrap();
-        let rough = SelfAffine {
-            hurst: 0.8,
-            roughness: Roughness::RmsGradient(0.05),
-            longest: 50e-6,
-            shortest: 0.8e-6,
-            roll_off: 50e-6,
-            seed: 1,
-        };
-        let gap = undeformed_gap(
-            &grid,
-            &[
-                Part::Shape { shape: Shape::Sphere { radius: 0.5e-3 }, center: [0.0, 0.0] },
-                Part::SelfAffine(rough),
-            ],
-        )
-        .unwrap();
-        let boundary = if std::env::var("PERIODIC").is_ok() { Boundary::Periodic } else { Boundary::Free };
-        let mut operator = half_space(grid, boundary);
-        let p: Vec<f64> = gap.iter().map(|h| 1e-6 - h).collect();
-        let mut u = vec![0.0; p.len()];
-        let tk = least(|| operator.apply_into(&p, &mut u), 10);
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let mixed = arguments.iter().any(|a| a == "--mixed");
+    let precision = if mixed { Precision::Mixed } else { Precision::Double };
+    let mut sizes: Vec<usize> = arguments.iter().filter_map(|a| a.parse().ok()).collect();
+    if sizes.is_empty() {
+        sizes = vec![256, 1024];
+    }
+    println!("{} threads, precision {precision:?}\n", rayon::current_num_threads());
+    let bytes = copy_rate();
+    let flops = arithmetic_rate();
+    println!("copy {:.1} GB/s (read and written), arithmetic {:.1} Gflop/s\n", bytes / 1e9, flops / 1e9);
+    let runs: Vec<Size> = sizes.into_iter().map(|n| Size::run(n, precision)).collect();
+
+    println!("| N | convolution | ns per cell | of the memory bound | of the FP bound | preconditioner |");
+    println!("|---|---|---|---|---|---|");
+    for run in &runs {
+        let cells = (run.n * run.n) as f64;
+        println!(
+            "| {} | {:.2} ms | {:.2} | {:.1} x | {:.1} x | {:.2} ms |",
+            run.n,
+            1e3 * run.convolution.least,
+            1e9 * run.convolution.least / cells,
+            run.convolution.least / (run.traffic() / bytes),
+            run.convolution.least / (run.operations() / flops),
+            1e3 * run.preconditioner.least,
+        );
+    }
+    println!(
+        "\n| N | run | time | convolutions | per row | ns per cell and iteration | convolution | preconditioner | sweeps |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|");
+    for run in &runs {
+        run.print("cold elastic contact", &run.elastic);
+        run.print(&format!("creep, {} steps", run.creep.rows), &run.creep);
+    }
+    if let Some(n) = runs.iter().map(|r| r.n).filter(|n| *n <= 1024).max() {
+        let [two, forty] = [2, 40].map(|terms| creep(n, precision, terms, 5).1);
+        let per = |c: &Counts| 1e3 * c.seconds / c.convolutions as f64;
+        println!(
+            "\n{n}: a step of a material of 40 terms takes {:.2} times one of 2 terms ({:.1} and {:.1} ms per convolution)",
+            per(&forty) / per(&two),
+            per(&forty),
+            per(&two)
+        );
+    }
+}
+
+/// What was measured on N x N cells.
+struct Size {
+    n: usize,
+    /// One convolution of each kind.
+    convolution: Timed,
+    single: Timed,
+    preconditioner: Timed,
+    elastic: Counts,
+    creep: Counts,
+    precision: Precision,
+}
+
+#[derive(Default)]
+struct Counts {
+    seconds: f64,
+    rows: usize,
+    convolutions: usize,
+    iterations: usize,
+}
+
+impl Size {
+    fn run(n: usize, precision: Precision) -> Self {
+        let grid = grid(n);
+        let mut operator = half_space(grid, Boundary::Free);
+        let input: Vec<f64> = (0..n * n).map(|i| (i * 7919 % 1013) as f64).collect();
+        let single: Vec<f32> = input.iter().map(|x| *x as f32).collect();
+        let (mut output, mut rough) = (vec![0.0; n * n], vec![0.0; n * n]);
+        let convolution = timed(|| operator.apply_into(&input, &mut output));
+        let single_convolution = timed(|| operator.apply_single_into(&single, &mut rough));
+        // The preconditioner's work does not depend on its symbol.
         let ones = ndarray::Array2::ones((n / 2 + 1, n / 2 + 1));
         let mut inverse = Lanes::<f32>::new([n, n], [n, n], ones.view());
-        let (ps, mut us) = (vec![1.0f32; n * n], vec![0.0f32; n * n]);
-        let tm = least(|| inverse.apply_into(&ps, &mut us), 10);
-        drop(operator);
-        let terms = vec![
-            CreepTerm { compliance: 0.8556 * 4.474062327e-11, retardation_time: 9.936295903 },
-            CreepTerm { compliance: 0.8556 * 6.072724980e-11, retardation_time: 133.8704875 },
-        ];
-        let mut march = March::new(Simulation {
-            boundary,
-            creep: Creep { instantaneous: 0.8556 * 4.013744989e-10, terms, fluidity: 0.0 },
-            hardness: capped,
-            solver: asperity::SolverOptions {
-                precision: if precision { asperity::Precision::Mixed } else { asperity::Precision::Double },
-                ..Default::default()
-            },
-            loading: Loading { control: Control::Load, history: History::Step { value: 0.5 } },
-            times: TimeGrid::Uniform { end: 5.0 * steps as f64, steps },
-            ..Simulation::new(grid, gap)
-        })
-        .unwrap();
-        let (mut iterations, mut convolutions, mut counts) = (0, 0, vec![]);
-        let mut first = 0.0;
-        let mut start = Instant::now();
-        let mut rows = 0.0;
-        loop {
-            let Some(step) = march.advance().unwrap() else { break };
-            let t = Instant::now();
-            let row = step.row();
-            rows += t.elapsed().as_secs_f64();
-            counts.push(row.convolutions);
-            if counts.len() == 1 {
-                first = start.elapsed().as_secs_f64();
-                start = Instant::now();
-                println!("first {:?}", row);
-                continue;
-            }
-            iterations += row.iterations;
-            convolutions += row.convolutions;
-        }
-        let total = start.elapsed().as_secs_f64();
-        let rest = total - tk * convolutions as f64 - tm * iterations as f64 - rows;
-        println!(
-            "{n}: K {:.2} ms, M {:.2} ms; first {:.2} s, total {:.3} s, iter {iterations}, conv {convolutions}: per iteration {:.2} ms, sweeps {:.2} ms per iteration, rows {:.2} ms each",
-            tk * 1e3,
-            tm * 1e3,
-            first,
-            total,
-            total / iterations as f64 * 1e3,
-            rest / iterations as f64 * 1e3,
-            rows / counts.len() as f64 * 1e3
-        );
-        println!("{counts:?} {precision}");
+        let preconditioner = timed(|| inverse.apply_into(&single, &mut rough));
+        drop((operator, inverse, input, single, output, rough));
+        let (elastic, creep) = creep(n, precision, 2, if n > 1024 { 5 } else { 20 });
+        Size { n, convolution, single: single_convolution, preconditioner, elastic, creep, precision }
     }
+
+    /// Bytes that a convolution moves at least: rows read and half spectrum written, read and written with the
+    /// multiplier beside, read again and rows written.
+    fn traffic(&self) -> f64 {
+        let cells = (self.n * self.n) as f64;
+        cells * (8.0 + 16.0 + (16.0 + 16.0 + 10.0) + 16.0 + 8.0)
+    }
+
+    /// 5 m log2 m operations for each complex transform of length m: N rows and N columns, there and back, columns
+    /// of twice the length.
+    fn operations(&self) -> f64 {
+        let n = self.n as f64;
+        n * 2.0 * (5.0 * n * n.log2() + 5.0 * (2.0 * n) * (2.0 * n).log2())
+    }
+
+    fn print(&self, what: &str, counts: &Counts) {
+        // In mixed precision each row starts and ends with a convolution in f64.
+        let rough = if self.precision == Precision::Mixed { counts.iterations } else { 0 };
+        let convolutions =
+            self.single.mean * rough as f64 + self.convolution.mean * (counts.convolutions - rough) as f64;
+        let preconditioner = self.preconditioner.mean * counts.iterations as f64;
+        let share = |seconds: f64| 100.0 * seconds / counts.seconds;
+        println!(
+            "| {} | {what} | {:.3} s | {} | {:.1} | {:.1} | {:.0} % | {:.0} % | {:.0} % |",
+            self.n,
+            counts.seconds,
+            counts.convolutions,
+            counts.convolutions as f64 / counts.rows as f64,
+            1e9 * counts.seconds / counts.iterations as f64 / (self.n * self.n) as f64,
+            share(convolutions),
+            share(preconditioner),
+            share(counts.seconds - convolutions - preconditioner),
+        );
+    }
+}
+
+fn grid(n: usize) -> Grid {
+    Grid::new([n, n], [1e-4, 1e-4]).expect("a grid")
+}
+
+/// The rough sphere of `examples/rough-pmma.toml`; on coarse grids its shortest wave is two cells.
+fn gap(grid: &Grid) -> ndarray::Array2<f64> {
+    let rough = SelfAffine {
+        hurst: 0.8,
+        roughness: Roughness::RmsGradient(0.05),
+        longest: 50e-6,
+        shortest: f64::max(0.8e-6, 2.0 * grid.spacing()[0]),
+        roll_off: 50e-6,
+        seed: 1,
+    };
+    let sphere = Part::Shape { shape: Shape::Sphere { radius: 0.5e-3 }, center: [0.0, 0.0] };
+    undeformed_gap(grid, &[sphere, Part::SelfAffine(rough)]).expect("a gap")
+}
+
+/// A cold elastic contact, and steps of 5 s of the creep after it.
+fn creep(n: usize, precision: Precision, terms: usize, steps: usize) -> (Counts, Counts) {
+    let grid = grid(n);
+    let gap = gap(&grid);
+    let options = SolverOptions { precision, ..SolverOptions::default() };
+    let elastic = {
+        let mut operator = half_space(grid, Boundary::Free);
+        let mut solver = Solver::with_precision(Method::ProjectedCg, precision, &*operator);
+        let mut state = ContactState::new(grid.len());
+        let problem = Problem {
+            gap: gap.as_slice().expect("C-order"),
+            compliance: COMPLIANCE,
+            hardness: HARDNESS,
+            prescribed: Prescribed::Load(LOAD),
+        };
+        let mut solve =
+            || solver.solve(&mut *operator, &problem, &options, &mut state, None).expect("a contact");
+        let start = Instant::now();
+        let outcome = solve();
+        let seconds = start.elapsed().as_secs_f64();
+        Counts { seconds, rows: 1, convolutions: outcome.convolutions, iterations: outcome.iterations }
+    };
+    // The retarded compliance of PMMA in so many terms, from 10 to 134 s.
+    let times = (0..terms).map(|k| 9.936 * 13.47_f64.powf(k as f64 / (terms - 1) as f64));
+    let compliance = 0.8556 * 10.55e-11 / terms as f64;
+    let terms = times.map(|time| CreepTerm { compliance, retardation_time: time }).collect();
+    let mut march = March::new(Simulation {
+        creep: Creep { instantaneous: COMPLIANCE, terms, fluidity: 0.0 },
+        hardness: HARDNESS,
+        loading: Loading { control: Control::Load, history: History::Step { value: LOAD } },
+        times: TimeGrid::Uniform { end: 5.0 * steps as f64, steps },
+        solver: options,
+        ..Simulation::new(grid, gap)
+    })
+    .expect("a simulation");
+    march.advance().expect("a row");
+    let mut counts = Counts::default();
+    let start = Instant::now();
+    while let Some(step) = march.advance().expect("a row") {
+        let row = step.row();
+        counts.rows += 1;
+        counts.convolutions += row.convolutions;
+        counts.iterations += row.iterations;
+    }
+    counts.seconds = start.elapsed().as_secs_f64();
+    (elastic, counts)
+}
+
+/// The least time of some calls: what a bound is compared with. A run is compared with their mean, for it met the same
+/// neighbours.
+#[derive(Clone, Copy)]
+struct Timed {
+    least: f64,
+    mean: f64,
+}
+
+/// Times some calls \[s\].
+fn timed(mut work: impl FnMut()) -> Timed {
+    let once = |work: &mut dyn FnMut()| {
+        let start = Instant::now();
+        work();
+        start.elapsed().as_secs_f64()
+    };
+    let first = once(&mut work);
+    let calls = (1.0 / first).clamp(3.0, 30.0) as usize;
+    let times: Vec<f64> = (0..calls).map(|_| once(&mut work)).collect();
+    Timed {
+        least: times.iter().copied().fold(first, f64::min),
+        mean: times.iter().sum::<f64>() / calls as f64,
+    }
+}
+
+/// Bytes per second, read and written, of a copy of 128 MiB by all threads.
+fn copy_rate() -> f64 {
+    let from = vec![1.0_f64; 1 << 24];
+    let mut to = vec![0.0; from.len()];
+    let seconds = timed(|| {
+        to.par_chunks_mut(1 << 14)
+            .zip(from.par_chunks(1 << 14))
+            .for_each(|(to, from)| to.copy_from_slice(from));
+        black_box(&to);
+    });
+    16.0 * from.len() as f64 / seconds.least
+}
+
+/// Multiplications and additions per second, in registers, of all threads.
+fn arithmetic_rate() -> f64 {
+    const ROUNDS: usize = 1 << 16;
+    struct Chains;
+    impl Work for Chains {
+        type Yield = f64;
+        #[inline(always)]
+        fn run<V: Eight>(self) -> f64 {
+            // Twelve chains keep both ports busy over the latency of four cycles; all stay near 1.
+            let (by, plus) = (V::splat(black_box(0.999_999)), V::splat(black_box(1e-6)));
+            let mut chains = [V::splat(1.0); 12];
+            for _ in 0..ROUNDS {
+                for x in &mut chains {
+                    *x = *x * by + plus;
+                }
+            }
+            chains.into_iter().fold(V::splat(0.0), |sum, x| sum + x).sum()
+        }
+    }
+    let threads = rayon::current_num_threads();
+    let seconds = timed(|| {
+        (0..threads).into_par_iter().for_each(|_| {
+            black_box(vectorize(Chains));
+        });
+    });
+    (threads * ROUNDS * 12 * 8 * 2) as f64 / seconds.least
 }

@@ -2,7 +2,7 @@
 
 use ndarray::Array2;
 
-use crate::contact::SolverOptions;
+use crate::contact::{Method, Precision, SolverOptions};
 use crate::error::{Error, Result};
 use crate::grid::{Boundary, Grid};
 use crate::load::{Control, History, Loading};
@@ -84,20 +84,27 @@ impl Simulation {
         self.parts().map(|creep| creep.instantaneous).sum()
     }
 
-    /// Memory that a march takes, in bytes per cell: fields of solver, march and history.
+    /// Memory that a march takes, in bytes per cell: its operator, solver, fields and history (docs/performance.md).
     pub fn bytes_per_cell(&self) -> usize {
-        let padded = match self.boundary {
-            // complex rows of the padded transform, and its spectrum
-            Boundary::Free => 16 + 8,
-            Boundary::Periodic => 8 + 2,
+        let mixed = self.solver.precision == Precision::Mixed;
+        let convolution = match self.boundary {
+            // half spectrum and multiplier, see `asperity_convolution::lanes`
+            Boundary::Free => 26.0,
+            Boundary::Periodic => 10.5,
         };
-        let solver = 41 + 8 + 2;
-        let march = 7 * 8;
+        let convolutions = if mixed { 1.5 * convolution } else { convolution };
+        let solver = match self.solver.method {
+            // the preconditioner's convolution in f32, four fields in f32, four sets, the step and its image
+            Method::ProjectedCg => 5.25 + 16.0 + 0.5 + if mixed { 8.0 } else { 16.0 },
+            Method::PolonskyKeer => 24.125,
+        };
+        // pressure and U of two rows, undeformed and remembered gap
+        let march = 6.0 * 8.0;
         let memory = match self.scheme {
             Scheme::Direct => self.instants().len(),
             _ => self.parts().map(|creep| creep.terms.len() + usize::from(creep.fluidity > 0.0)).sum(),
         };
-        padded + solver + march + 8 * memory
+        f64::ceil(convolutions + solver + march) as usize + 8 * memory
     }
 
     /// Checks all that can be known before the first solve.

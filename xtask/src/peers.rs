@@ -1,0 +1,255 @@
+//! `cargo xtask peers`: other programs and this one on the same surfaces, to the same accuracy, taking turns.
+//!
+//! The programs live in a virtual environment below target/peers. Each is run with tighter and tighter tolerances
+//! until its contact area lies within 1e-4 of the reference (ours at 1e-10), and that run is compared. A
+//! program that cannot be installed or does not get there is told in the table.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde_json::{Value, json};
+
+use crate::{Done, cargo, root, run};
+
+/// Programs, their packages, and the packages that building them needs.
+const PEERS: [(&str, &str); 3] =
+    [("tamaas", "tamaas"), ("contactmechanics", "ContactMechanics"), ("aspher", "aspher")];
+/// Headers of Eigen, for aspher.
+const EIGEN: &str = "cmeel-eigen";
+const TOLERANCES: [f64; 6] = [1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
+/// Relative difference of contact areas that counts as the same.
+const SAME: f64 = 1e-4;
+/// Turns of each case.
+const TURNS: usize = 3;
+/// A run that takes longer decides its own turn [s]: it is not repeated.
+const LONG: f64 = 20.0;
+
+struct Case {
+    boundary: &'static str,
+    cells: usize,
+    /// Steps of the viscoelastic case; 0 for the elastic one.
+    steps: usize,
+}
+
+pub fn peers(quick: bool) -> Done {
+    let directory = root().join("target/peers");
+    std::fs::create_dir_all(&directory).map_err(|e| format!("{}: {e}", directory.display()))?;
+    let python = environment(&directory)?;
+    run(&mut cargo(&["build", "--release", "-p", "asperity", "--example", "gap_file"]))?;
+    let cells = if quick { 256 } else { 1024 };
+    let cases = [
+        Case { boundary: "free", cells, steps: 0 },
+        Case { boundary: "periodic", cells, steps: 0 },
+        Case { boundary: "periodic", cells: cells / 2, steps: if quick { 20 } else { 100 } },
+    ];
+    let mut table = String::from(
+        "| case | program | version | tolerance | time | area, of the reference | times ours |\n|---|---|---|---|---|---|---|\n",
+    );
+    for case in &cases {
+        table += &compare(case, &directory, &python)?;
+    }
+    let text = format!("{}\n\n{table}", machine());
+    println!("{text}");
+    std::fs::write(directory.join("peers.md"), text).map_err(|e| e.to_string())
+}
+
+/// A Python with those of the programs that can be installed.
+fn environment(directory: &Path) -> Result<PathBuf, String> {
+    let environment = directory.join("environment");
+    let folder = if cfg!(windows) { "Scripts" } else { "bin" };
+    let python = environment.join(folder).join("python");
+    if !python.exists() {
+        run(Command::new("python3").args(["-m", "venv"]).arg(&environment))?;
+    }
+    let installed = |package: &str| {
+        let show = Command::new(&python).args(["-m", "pip", "show", "--quiet", package]).output();
+        show.is_ok_and(|o| o.status.success())
+    };
+    for package in [EIGEN, "tamaas", "ContactMechanics", "aspher"] {
+        if installed(package) {
+            continue;
+        }
+        // The package of headers lies beside the others; aspher looks for it where these variables say.
+        let prefix = Command::new(&python)
+            .args(["-c", "import sysconfig; print(sysconfig.get_path('purelib') + '/cmeel.prefix')"])
+            .output()
+            .map_err(|e| e.to_string())?;
+        let prefix = String::from_utf8_lossy(&prefix.stdout).trim().to_string();
+        let install = run(Command::new(&python)
+            .args(["-m", "pip", "install", "--quiet", package])
+            .env("CMAKE_PREFIX_PATH", &prefix)
+            .env("CPLUS_INCLUDE_PATH", format!("{prefix}/include/eigen3")));
+        if let Err(message) = install {
+            eprintln!("xtask: {package} is left out: {message}");
+        }
+    }
+    Ok(python)
+}
+
+/// The rows of one case.
+fn compare(case: &Case, directory: &Path, python: &Path) -> Result<String, String> {
+    let gap = directory.join(format!("gap-{}.f64", case.cells));
+    run(ours(&["write"]).arg(&gap).arg(case.cells.to_string()))?;
+    let own = |tolerance: f64, precision: &str, steps: usize| {
+        let mut command = ours(&["solve"]);
+        command.arg(&gap).args([
+            &case.cells.to_string(),
+            case.boundary,
+            &PRESSURE.to_string(),
+            &tolerance.to_string(),
+            &steps.to_string(),
+            precision,
+        ]);
+        answer(&mut command)
+    };
+    let reference = own(1e-10, "double", case.steps)?;
+    let peer = |name: &str, tolerance: f64| {
+        let description = json!({
+            "case": if case.steps == 0 { "elastic" } else { "viscoelastic" },
+            "gap": gap, "cells": case.cells, "boundary": case.boundary, "pressure": PRESSURE,
+            "tolerance": tolerance, "steps": case.steps,
+        });
+        let driver = root().join(format!("xtask/peers/{name}_driver.py"));
+        answer(Command::new(python).arg(driver).arg(description.to_string()))
+    };
+
+    // Who runs, at which tolerance.
+    let mut programs: Vec<Program> = Vec::new();
+    let mut failures = String::new();
+    for precision in ["double", "mixed"] {
+        programs.push(Program {
+            name: format!("asperity, {precision}"),
+            runs: vec![own(1e-6, precision, case.steps)?],
+            tolerance: 1e-6,
+            again: Box::new(move |t| own(t, precision, case.steps)),
+        });
+    }
+    for (name, package) in PEERS {
+        if case.steps > 0 && name != "tamaas" {
+            continue;
+        }
+        match tight_enough(&|tolerance| peer(name, tolerance), &reference, case.steps > 0) {
+            Ok((tolerance, first)) => programs.push(Program {
+                name: package.into(),
+                runs: vec![first],
+                tolerance,
+                again: Box::new(move |t| peer(name, t)),
+            }),
+            Err(message) => {
+                let last = message.lines().last().unwrap_or_default().replace('|', "/");
+                failures += &format!("| {} | {package} | | | {last} | | |\n", case.title());
+            }
+        }
+    }
+    for _ in 1..TURNS {
+        for program in &mut programs {
+            if program.runs.iter().all(|run| run.seconds < LONG) {
+                let next = (program.again)(program.tolerance)?;
+                program.runs.push(next);
+            }
+        }
+    }
+    let base = programs[0].least();
+    let mut rows = String::new();
+    for program in &programs {
+        rows += &format!(
+            "| {} | {} | {} | {:e} | {:.3} s | {:.6} | {:.1} |\n",
+            case.title(),
+            program.name,
+            program.runs[0].version,
+            program.tolerance,
+            program.least(),
+            program.runs[0].fraction / reference.fraction,
+            program.least() / base,
+        );
+    }
+    Ok(rows + &failures)
+}
+
+/// Mean pressure over E*: some tenth of the area is in contact.
+const PRESSURE: f64 = 0.005;
+
+/// A tolerance at which the area is right; for a viscoelastic case, whose error is that of the step, 1e-6.
+fn tight_enough(
+    run: &dyn Fn(f64) -> Result<Answer, String>,
+    reference: &Answer,
+    viscoelastic: bool,
+) -> Result<(f64, Answer), String> {
+    if viscoelastic {
+        return Ok((1e-6, run(1e-6)?));
+    }
+    let mut off = f64::NAN;
+    for tolerance in TOLERANCES {
+        let answer = run(tolerance)?;
+        off = (answer.fraction / reference.fraction - 1.0).abs();
+        if off <= SAME {
+            return Ok((tolerance, answer));
+        }
+    }
+    Err(format!("its area stays {off:.1e} off"))
+}
+
+struct Program<'a> {
+    name: String,
+    tolerance: f64,
+    runs: Vec<Answer>,
+    again: Box<dyn Fn(f64) -> Result<Answer, String> + 'a>,
+}
+
+impl Program<'_> {
+    fn least(&self) -> f64 {
+        self.runs.iter().map(|run| run.seconds).fold(f64::INFINITY, f64::min)
+    }
+}
+
+struct Answer {
+    seconds: f64,
+    fraction: f64,
+    version: String,
+}
+
+/// What a program prints on its last line.
+fn answer(command: &mut Command) -> Result<Answer, String> {
+    eprintln!("xtask: {command:?}");
+    let output = command.current_dir(root()).output().map_err(|e| format!("{command:?}: {e}"))?;
+    if !output.status.success() {
+        return Err(String::from_utf8_lossy(&output.stderr).into_owned());
+    }
+    let text = String::from_utf8_lossy(&output.stdout);
+    let value: Value =
+        serde_json::from_str(text.lines().last().unwrap_or_default()).map_err(|e| format!("{e}: {text}"))?;
+    let number = |key: &str| value[key].as_f64().ok_or_else(|| format!("no {key} in {value}"));
+    Ok(Answer {
+        seconds: number("seconds")?,
+        fraction: number("fraction")?,
+        version: value["version"].as_str().unwrap_or_default().into(),
+    })
+}
+
+fn ours(arguments: &[&str]) -> Command {
+    let mut command = Command::new(root().join("target/release/examples/gap_file"));
+    command.args(arguments);
+    command
+}
+
+impl Case {
+    fn title(&self) -> String {
+        let Case { boundary, cells, steps } = self;
+        if *steps == 0 {
+            format!("elastic, {boundary}, {cells} x {cells}")
+        } else {
+            format!("viscoelastic, {boundary}, {cells} x {cells}, {steps} steps")
+        }
+    }
+}
+
+/// The machine, as far as it tells.
+fn machine() -> String {
+    let processor = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = processor.lines().find_map(|line| line.strip_prefix("model name")).unwrap_or(": unknown");
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    format!(
+        "Processor {}, {threads} threads; least time of {TURNS} turns.",
+        model.trim_start_matches([' ', '\t', ':'])
+    )
+}

@@ -112,16 +112,17 @@ impl<T: Cell> Work for LayOut<'_, T> {
     }
 }
 
-/// <s, K s>, <s, s> and the sum of K s inside, s in its unit.
-pub(super) fn curvature<T: Cell>(step: &[T], image: &[T], inside: &[u8]) -> [f64; 3] {
-    sweep((step, image, Set(inside)), &|(s, k, Set(inside)): (&[T], &[T], Set)| {
-        vectorize(Curvature { s, k, inside })
+/// <s, K s>, <s, s> and the sum of K s inside, s in its unit; `laid` is the set on which it is not zero.
+pub(super) fn curvature<T: Cell>(step: &[T], image: &[T], laid: &[u8], inside: &[u8]) -> [f64; 3] {
+    sweep((step, image, Set(laid), Set(inside)), &|(s, k, Set(laid), Set(inside)): (&[T], &[T], Set, Set)| {
+        vectorize(Curvature { s, k, laid, inside })
     })
 }
 
 struct Curvature<'a, T> {
     s: &'a [T],
     k: &'a [T],
+    laid: &'a [u8],
     inside: &'a [u8],
 }
 
@@ -131,7 +132,10 @@ impl<T: Cell> Work for Curvature<'_, T> {
     #[inline(always)]
     fn run<V: Eight>(self) -> [f64; 3] {
         let [mut sk, mut ss, mut sum] = [V::splat(0.0); 3];
-        for (n, inside) in (0..).step_by(8).zip(self.inside) {
+        for ((n, inside), laid) in (0..).step_by(8).zip(self.inside).zip(self.laid) {
+            if *laid == 0 {
+                continue;
+            }
             let s = V::load(self.s, n, 0.0);
             let k = V::load(self.k, n, 0.0);
             sk = sk + s * k;

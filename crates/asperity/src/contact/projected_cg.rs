@@ -227,7 +227,7 @@ impl<T: Scalar> ProjectedCg<T> {
             };
             T::apply(operator, &self.step, &mut self.moved);
             convolutions += 1;
-            let [curvature, length, change] = curvature(&self.step, &self.moved, &self.inside);
+            let [curvature, length, change] = curvature(&self.step, &self.moved, &self.laid, &self.inside);
             let size = step.layout.unit;
             let (curvature, length) = (problem.compliance * size * size * curvature, size * size * length);
             let slope = unit * step.layout.slope;

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use asperity::material::Lateral;
 use asperity::surface::{Part, Punch, Roughness, Shape};
-use asperity::{Boundary, Control, History, Method, Scheme, TimeGrid};
+use asperity::{Boundary, Control, History, Method, Precision, Scheme, TimeGrid};
 use asperity_io::case::{Case, Field, Rows, Surface};
 
 const FRAME: &str = r#"
@@ -264,6 +264,14 @@ output = { path = "a/b.zarr", fields = ["contact", "contact"], times = ["0 s", "
         instants.iter().enumerate().filter(|(n, t)| case.output.rows.holds(*n, instants.len() - 1, **t));
     assert_eq!(stored.map(|(_, t)| *t).collect::<Vec<_>>(), [0.0, 7.0, 12.0, 60.0]);
     assert_eq!((case.describe().rows, case.describe().stored_rows), (12, 4)); // 10 steps, 0+, 7 s
+}
+
+#[test]
+fn the_precision_of_the_iterations_is_chosen() {
+    let precision = |more: &'static str| case(Parts { more, ..PARTS }).solver.precision;
+    assert_eq!(precision(""), Precision::Double);
+    assert_eq!(precision("solver = { precision = \"double\" }"), Precision::Double);
+    assert_eq!(precision("solver = { precision = \"mixed\" }"), Precision::Mixed);
 }
 
 #[test]

@@ -18,7 +18,8 @@ cargo xtask TASK
 ";
 
 /// What the Python side of the tests and figures imports.
-const PYTHON_PACKAGES: [&str; 5] = ["numpy", "xarray", "zarr", "h5py", "matplotlib"];
+const PYTHON_PACKAGES: [&str; 8] =
+    ["numpy", "xarray", "zarr", "h5py", "matplotlib", "maturin", "pytest", "mypy"];
 
 type Done = Result<(), String>;
 
@@ -69,6 +70,7 @@ fn test() -> Done {
     let mut tests = cargo(&["test", "--workspace", "--no-fail-fast"]);
     match python() {
         Ok(python) => {
+            package(&python)?;
             tests.env("ASPERITY_PYTHON", python);
         }
         Err(message) => eprintln!("xtask: the checks in Python are skipped: {message}"),
@@ -94,6 +96,24 @@ fn python() -> Result<PathBuf, String> {
 
 /// The tables of docs/performance.md: the convolution's forms, where the time of a contact goes in either
 /// precision, and whole runs with their files.
+/// Builds the Python package, installs it in the environment of `python`, and tests it there.
+fn package(python: &Path) -> Done {
+    let wheels = root().join("target/wheels");
+    let _ = std::fs::remove_dir_all(&wheels);
+    // Of the test profile, which shares what the other tests compile.
+    run(Command::new(python).args(["-m", "maturin", "build", "--profile", "dev", "--out"]).arg(&wheels))?;
+    let built = std::fs::read_dir(&wheels).map_err(|error| format!("{}: {error}", wheels.display()))?;
+    let wheel =
+        built.flatten().map(|entry| entry.path()).find(|path| path.extension().is_some_and(|e| e == "whl"));
+    let wheel = wheel.ok_or("maturin made no wheel")?;
+    run(Command::new(python)
+        .args(["-m", "pip", "install", "--quiet", "--force-reinstall", "--no-deps"])
+        .arg(&wheel))?;
+    run(Command::new(python).args(["-m", "mypy", "--strict", "crates/asperity-py/python/asperity"]))?;
+    run(Command::new(python).args(["-m", "mypy.stubtest", "asperity._core"]))?;
+    run(Command::new(python).args(["-m", "pytest", "-q", "crates/asperity-py/tests"]))
+}
+
 fn bench(quick: bool) -> Done {
     let sizes: &[&str] =
         if quick { &["256", "512", "1024"] } else { &["256", "512", "1024", "2048", "4096"] };

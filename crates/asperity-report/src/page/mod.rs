@@ -1,6 +1,6 @@
 //! The report: one HTML file that holds a result's curves and maps and needs no network.
 //!
-//! Maps are stored as 16-bit numbers between their ends ([`blob`]), reduced to means over blocks of cells where
+//! Maps are stored as 16-bit numbers between their ends, reduced to means over blocks of cells where
 //! the file would grow beyond [`Options::bytes`]; the page says so.
 
 mod blob;

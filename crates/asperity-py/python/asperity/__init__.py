@@ -1,0 +1,70 @@
+"""Contact of rough, linear viscoelastic bodies.
+
+Quantities are SI floats, arrays are numpy float64 with axes (x, y); pressure is positive in compression and the
+approach is zero at first touch.
+
+>>> import asperity as asp
+>>> sphere = asp.Surface.sphere(cells=(64, 64), size=(2e-3, 2e-3), radius=10e-3)
+>>> rubber = asp.Zener(shear=25e6, shear_kelvin=25e6, retardation_time=1.0, poisson=0.5)
+>>> result = asp.solve(sphere, rubber, load=asp.step(1.0), times=asp.uniform(10.0, 10))
+>>> growth = result.approach[-1] / result.approach[0]      # C(t)^(2/3): doubles the compliance
+>>> bool(abs(growth / 2 ** (2 / 3) - 1) < 1e-3)
+True
+"""
+
+from ._core import CaseError, ConvergenceError, __version__
+from ._contact import ElasticContact, elastic
+from ._histories import History, Times, listed, log, ramp, sine, step, table, trapezoid, triangle, uniform
+from ._materials import (
+    Burgers,
+    Creep,
+    Elastic,
+    FractionalZener,
+    KelvinVoigt,
+    Material,
+    Maxwell,
+    Prony,
+    Springpot,
+    Zener,
+)
+from ._result import Result, open
+from ._solve import March, Step, check, march, run, solve
+from ._surface import Surface
+
+__all__ = [
+    "Burgers",
+    "CaseError",
+    "ConvergenceError",
+    "Creep",
+    "Elastic",
+    "ElasticContact",
+    "FractionalZener",
+    "History",
+    "KelvinVoigt",
+    "March",
+    "Material",
+    "Maxwell",
+    "Prony",
+    "Result",
+    "Springpot",
+    "Step",
+    "Surface",
+    "Times",
+    "Zener",
+    "__version__",
+    "check",
+    "elastic",
+    "listed",
+    "log",
+    "march",
+    "open",
+    "ramp",
+    "run",
+    "sine",
+    "solve",
+    "step",
+    "table",
+    "trapezoid",
+    "triangle",
+    "uniform",
+]

@@ -1,0 +1,96 @@
+"""One elastic contact."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from . import _core
+from ._arrays import Floats, count, field, number, pair
+from ._surface import as_surface
+
+
+@dataclass(frozen=True, eq=False)
+class ElasticContact:
+    """The solution of one elastic contact, fields of shape (nx, ny)."""
+
+    #: Pressure [Pa], positive in compression.
+    pressure: Floats
+    #: Normal displacement [m].
+    displacement: Floats
+    #: Gap of the deformed surfaces [m]; below zero where the pressure is cut off.
+    gap: Floats
+    #: Load [N].
+    load: float
+    #: Approach [m].
+    approach: float
+    #: Area of the cells with pressure [m^2].
+    contact_area: float
+    #: Largest violation of the contact conditions over the mean displacement.
+    residual: float
+    #: Certified relative error of the pressure in the energy norm.
+    certificate: float
+    #: Iterations and convolutions that it took.
+    iterations: int
+    convolutions: int
+
+
+def elastic(
+    gap: Any,
+    contact_modulus: float,
+    *,
+    load: float | None = None,
+    approach: float | None = None,
+    size: Sequence[float] | None = None,
+    hardness: float | None = None,
+    boundary: str = "free",
+    method: str = "projected-cg",
+    tolerance: float = 1e-6,
+    max_iterations: int = 5000,
+) -> ElasticContact:
+    """Solves one elastic contact.
+
+    Parameters
+    ----------
+    gap : undeformed gap [m] as array (nx, ny), infinite where nothing can touch; or a Surface
+    contact_modulus : E* [Pa], (1 - nu1^2)/E1 + (1 - nu2^2)/E2 = 1/E*
+    load, approach : normal load [N] or approach [m], one of them
+    size : lengths of the domain along x and y [m], where the gap is an array
+    hardness : largest pressure [Pa]
+    boundary : "free" or "periodic"
+
+    Raises
+    ------
+    CaseError : the input is wrong, or more load than the hardness bears
+    ConvergenceError : not solved to the tolerance; carries the best pressure as `best`
+
+    Examples
+    --------
+    >>> import asperity as asp
+    >>> sphere = asp.Surface.sphere(cells=(128, 128), size=(1e-3, 1e-3), radius=5e-3)
+    >>> hertz = asp.elastic(sphere, 1e9, load=1.0)
+    >>> exact = (9 * 1.0**2 / (16 * 5e-3 * 1e9**2)) ** (1 / 3)
+    >>> abs(hertz.approach / exact - 1) < 1e-3
+    True
+    """
+    if hasattr(gap, "heights"):
+        surface = as_surface(gap, size)
+        gap, size = surface.gap(), surface.size
+    elif size is None:
+        raise _core.CaseError("the gap is an array, so that its size in m is needed: size=(Lx, Ly)")
+    h0 = field("gap", gap)
+    out = _core.elastic(
+        h0,
+        list(pair("size", size)),
+        number("contact_modulus", contact_modulus),
+        None if load is None else number("load", load),
+        None if approach is None else number("approach", approach),
+        math.inf if hardness is None else number("hardness", hardness),
+        boundary,
+        method,
+        number("tolerance", tolerance),
+        count("max_iterations", max_iterations),
+    )
+    return ElasticContact(gap=h0 + out["displacement"] - out["approach"], **out)

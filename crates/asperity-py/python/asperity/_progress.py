@@ -1,0 +1,66 @@
+"""A line that says how far a run is: in the terminal, or as one text that changes in a notebook."""
+
+from __future__ import annotations
+
+import sys
+import time
+from typing import Any
+
+BARS = "▁▂▃▄▅▆▇█"
+PAUSE = 0.2
+
+
+class Progress:
+    """Shows rows done, contact area and time left; nothing unless `on`, or unless stderr is a terminal or notebook."""
+
+    def __init__(self, total: int, on: bool | None) -> None:
+        self.total = total
+        self.started = time.monotonic()
+        self.told = 0.0
+        self.areas: list[float] = []
+        self.notebook = _notebook()
+        self.on = (self.notebook is not None or sys.stderr.isatty()) if on is None else on
+        self.handle: Any = None
+
+    def tell(self, row: dict[str, Any], done: int) -> None:
+        """One row more."""
+        if not self.on:
+            return
+        self.areas.append(row["contact_fraction"])
+        now = time.monotonic()
+        if now - self.told < PAUSE and done < self.total:
+            return
+        self.told = now
+        left = (now - self.started) / max(done, 1) * (self.total - done)
+        text = (
+            f"{done}/{self.total} rows  t = {row['time']:.4g} s  contact {100 * row['contact_fraction']:.2f} % "
+            f"{self._sparks()}  {left:.0f} s left"
+        )
+        if self.notebook is None:
+            sys.stderr.write("\r" + text + "\x1b[K")
+            sys.stderr.flush()
+        elif self.handle is None:
+            self.handle = self.notebook({"text/plain": text}, raw=True, display_id=True)
+        else:
+            self.handle.update({"text/plain": text}, raw=True)
+
+    def end(self) -> None:
+        """Clears the line."""
+        if self.on and self.notebook is None and self.areas:
+            sys.stderr.write("\r\x1b[K")
+            sys.stderr.flush()
+
+    def _sparks(self) -> str:
+        low, high = min(self.areas), max(self.areas)
+        every = max(1, len(self.areas) // 16)
+        width = high - low
+        return "".join(BARS[round(7 * (a - low) / width) if width > 0 else 3] for a in self.areas[::every])
+
+
+def _notebook() -> Any:
+    """IPython's display where this runs in a notebook, without importing it elsewhere."""
+    ipython = sys.modules.get("IPython")
+    shell = ipython.get_ipython() if ipython is not None else None
+    if shell is None or type(shell).__name__ != "ZMQInteractiveShell":
+        return None
+    return sys.modules["IPython"].display.display

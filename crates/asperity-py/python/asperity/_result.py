@@ -1,0 +1,262 @@
+"""Results: in memory or on disk, the same to use."""
+
+from __future__ import annotations
+
+import html
+import json
+import os
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _core
+from ._arrays import Floats, number
+from ._core import CaseError
+
+if TYPE_CHECKING:
+    from .plot import Plots
+
+#: Fields: unit and meaning.
+FIELDS: dict[str, tuple[str, str]] = {
+    "pressure": ("Pa", "contact pressure"),
+    "gap": ("m", "gap between the deformed surfaces"),
+    "displacement": ("m", "normal displacement"),
+    "contact": ("1", "contact state"),
+}
+
+#: Numbers of each row: unit and meaning.
+ROW: dict[str, tuple[str, str]] = {
+    "time": ("s", "time"),
+    "load": ("N", "normal load"),
+    "approach": ("m", "rigid-body approach"),
+    "contact_area": ("m2", "contact area"),
+    "contact_area_corrected": ("m2", "contact area corrected by its perimeter"),
+    "contact_fraction": ("1", "contact area over nominal area"),
+    "capped_area": ("m2", "area at the hardness"),
+    "mean_pressure": ("Pa", "load over nominal area"),
+    "max_pressure": ("Pa", "largest pressure"),
+    "mean_gap": ("m", "mean gap"),
+    "iterations": ("1", "iterations of the solver"),
+    "convolutions": ("1", "convolutions"),
+    "residual": ("1", "KKT residual"),
+    "certificate": ("1", "certified relative error in the energy norm"),
+}
+
+
+class Result:
+    """What a run found: one-dimensional arrays over the rows, and fields at some of them.
+
+    `time` [s], `load` [N], `approach` [m], `contact_area`, `contact_area_corrected`, `capped_area` [m^2],
+    `contact_fraction`, `mean_pressure`, `max_pressure` [Pa], `mean_gap` [m], `iterations`, `convolutions`, `residual`,
+    `certificate` are attributes. The first row is the state right after t = 0.
+    """
+
+    def __init__(
+        self,
+        *,
+        table: dict[str, Any],
+        fields: dict[str, Any],
+        field_steps: Any,
+        initial_gap: Any,
+        size: tuple[float, float],
+        attributes: dict[str, Any],
+        path: str | None = None,
+    ) -> None:
+        self._table = table
+        self._fields = fields
+        self._field_steps = np.asarray(field_steps, dtype=np.int64)
+        self._initial_gap = initial_gap
+        self._size = (float(size[0]), float(size[1]))
+        self._attributes = attributes
+        self._path = path
+
+    def __getattr__(self, name: str) -> Floats:
+        table = self.__dict__.get("_table")
+        if table is not None and name in table:
+            values: Floats = table[name]
+            return values
+        raise AttributeError(f"a result has no {name!r}; it has {', '.join(ROW)}, field(name, time=...) and plot")
+
+    def __dir__(self) -> list[str]:
+        return sorted([*super().__dir__(), *ROW])
+
+    def __len__(self) -> int:
+        """Rows."""
+        return len(self._table["time"])
+
+    def __getstate__(self) -> dict[str, Any]:
+        # Fields on disk are read, so that a pickle is whole.
+        state = dict(self.__dict__)
+        state["_fields"] = {name: self._stack(name) for name in self._fields}
+        state["_initial_gap"] = self.initial_gap
+        return state
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+
+    @property
+    def path(self) -> str | None:
+        """Where the result is on disk; None for one in memory."""
+        return self._path
+
+    @property
+    def attributes(self) -> dict[str, Any]:
+        """Title, version, status, the case and the work."""
+        return dict(self._attributes)
+
+    @property
+    def fields(self) -> list[str]:
+        """Names of the fields that were kept."""
+        return list(self._fields)
+
+    @property
+    def field_times(self) -> Floats:
+        """Times at which fields were kept [s]."""
+        return np.asarray(self._table["time"])[self._field_steps]
+
+    @property
+    def size(self) -> tuple[float, float]:
+        """Lengths of the domain along x and y [m]."""
+        return self._size
+
+    @property
+    def cells(self) -> tuple[int, int]:
+        """Number of cells along x and y."""
+        nx, ny = self.initial_gap.shape
+        return nx, ny
+
+    @property
+    def x(self) -> Floats:
+        """Cell centres along x [m]."""
+        return _centres(self.cells[0], self._size[0])
+
+    @property
+    def y(self) -> Floats:
+        """Cell centres along y [m]."""
+        return _centres(self.cells[1], self._size[1])
+
+    @property
+    def initial_gap(self) -> Floats:
+        """Undeformed gap [m], shape (nx, ny)."""
+        if isinstance(self._initial_gap, _core.Store):
+            self._initial_gap = self._initial_gap.initial_gap()
+        gap: Floats = self._initial_gap
+        return gap
+
+    def field(self, name: str, *, time: float | None = None, index: int | None = None) -> Floats:
+        """A field of shape (nx, ny) at the kept instant nearest to `time` [s], or of that number; default the last.
+
+        "pressure" [Pa], "gap" and "displacement" [m], "contact" (0 out of contact, 1 in contact, 2 at the hardness).
+        """
+        if name not in self._fields:
+            raise CaseError(f"the field {name!r} was not kept; kept: {', '.join(self._fields) or 'none'}")
+        return self._one(name, self._index(time, index))
+
+    def to_xarray(self) -> Any:
+        """The result as xarray.Dataset, as ``xarray.open_zarr`` gives it for one on disk."""
+        import xarray
+
+        rows = {
+            name: ("time", np.asarray(self._table[name]), {"units": unit, "long_name": words})
+            for name, (unit, words) in ROW.items()
+            if name != "time"
+        }
+        maps = {
+            name: (("field_time", "x", "y"), self._stack(name), {"units": FIELDS[name][0], "long_name": FIELDS[name][1]})
+            for name in self._fields
+        }
+        gap = ("initial_gap", (("x", "y"), self.initial_gap, {"units": "m", "long_name": "undeformed gap"}))
+        coordinates = {
+            "time": ("time", np.asarray(self._table["time"]), {"units": "s", "long_name": "time"}),
+            "field_time": ("field_time", self.field_times, {"units": "s", "long_name": "time of the fields"}),
+            "x": ("x", self.x, {"units": "m", "long_name": "x"}),
+            "y": ("y", self.y, {"units": "m", "long_name": "y"}),
+        }
+        return xarray.Dataset({**rows, **maps, **dict([gap])}, coords=coordinates, attrs=self._attributes)
+
+    @property
+    def plot(self) -> Plots:
+        """Figures by matplotlib: ``result.plot.evolution()``, ``result.plot.pressure(time=500.0)``, ..."""
+        from .plot import Plots
+
+        return Plots(self)
+
+    def report(self, path: str | os.PathLike[str], *, force: bool = False, megabytes: int = 12) -> None:
+        """Writes the result as one HTML page with maps and curves. For results on disk."""
+        if self._path is None:
+            raise CaseError("a report is made of a result on disk: use asperity.run, or plot this one")
+        _core.report(self._path, os.fspath(path), force, megabytes * 1_000_000)
+
+    def __repr__(self) -> str:
+        title = self._attributes.get("title") or "Result"
+        nx, ny = self.cells
+        if len(self) == 0:
+            return f"<{title}: no rows yet, {nx} x {ny} cells>"
+        return (
+            f"<{title}: {len(self)} rows to t = {self.time[-1]:g} s, {nx} x {ny} cells; "
+            f"approach {self.approach[-1]:.4g} m, contact {100 * self.contact_fraction[-1]:.4g} %; "
+            f"fields {', '.join(self._fields) or 'none'} at {len(self._field_steps)} times>"
+        )
+
+    def _repr_html_(self) -> str:
+        def lines() -> list[tuple[str, str]]:
+            nx, ny = self.cells
+            first = [("cells", f"{nx} x {ny} on {self._size[0]:g} m x {self._size[1]:g} m"), ("rows", str(len(self)))]
+            if len(self) == 0:
+                return first
+            last = [(words, f"{self._table[name][-1]:.6g} {'' if unit == '1' else unit}") for name, (unit, words) in ROW.items()]
+            return [*first, *last]
+
+        title = html.escape(str(self._attributes.get("title") or "Result"))
+        rows = "".join(f"<tr><th style='text-align:left'>{html.escape(a)}</th><td>{html.escape(b)}</td></tr>" for a, b in lines())
+        return f"<b>{title}</b>, last row:<table>{rows}</table>"
+
+    def _index(self, time: float | None, index: int | None) -> int:
+        kept = len(self._field_steps)
+        if kept == 0:
+            raise CaseError("no fields were kept")
+        if time is not None and index is not None:
+            raise CaseError("give time or index, one of them")
+        if time is not None:
+            distance = np.abs(self.field_times - number("time", time))
+            # Of two at the same time, before and after a jump, the later.
+            return int(kept - 1 - np.argmin(distance[::-1]))
+        if index is None:
+            return kept - 1
+        if not -kept <= index < kept:
+            raise CaseError(f"index is {index}, but fields were kept at {kept} instants")
+        return int(index) % kept
+
+    def _one(self, name: str, index: int) -> Floats:
+        held = self._fields[name]
+        out: Floats = held.field(name, index) if isinstance(held, _core.Store) else held[index]
+        return out
+
+    def _stack(self, name: str) -> Floats:
+        held = self._fields[name]
+        if not isinstance(held, _core.Store):
+            out: Floats = held
+            return out
+        shape = (0, *self.cells)
+        maps = [held.field(name, n) for n in range(len(self._field_steps))]
+        return np.array(maps) if maps else np.empty(shape)
+
+
+def _centres(cells: int, length: float) -> Floats:
+    return np.asarray((np.arange(cells) + 0.5) * (length / cells), dtype=np.float64)
+
+
+def open(path: str | os.PathLike[str]) -> Result:
+    """Opens a result on disk, finished or not; its fields are read when they are asked for."""
+    store = _core.Store(os.fspath(path))
+    attributes: dict[str, Any] = json.loads(store.attributes)
+    nx, ny = store.size
+    return Result(
+        table={name: store.series(name) for name in ROW},
+        fields={name: store for name in store.fields},
+        field_steps=store.field_steps,
+        initial_gap=store,
+        size=(nx, ny),
+        attributes=attributes,
+        path=os.fspath(path),
+    )

@@ -1,0 +1,330 @@
+"""Marches through time: from numpy to a result in memory, or from a case file to one on disk."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from . import _core
+from ._arrays import Floats, count, line, number
+from ._core import CaseError
+from ._histories import History, Times, as_history, as_times
+from ._materials import Material
+from ._progress import Progress
+from ._result import FIELDS, ROW, Result, open
+from ._surface import as_surface
+
+
+class Step:
+    """The state after one row of a march: its numbers as attributes, its fields as arrays.
+
+    `time`, `load`, `approach`, `contact_area`, ... as in results. A view: once the march has gone on, its fields can no
+    longer be read.
+    """
+
+    def __init__(self, march: March, row: dict[str, Any], index: int) -> None:
+        self._march = march
+        self._row = row
+        self._index = index
+
+    @property
+    def index(self) -> int:
+        """Number of the row, from 0."""
+        return self._index
+
+    @property
+    def row(self) -> dict[str, Any]:
+        """All numbers of the row by name."""
+        return dict(self._row)
+
+    def field(self, name: str) -> Floats:
+        """The field "pressure" [Pa], "gap", "displacement" [m] or "contact" (0, 1, 2), shape (nx, ny), as a new array."""
+        if self._march._core.done != self._index + 1:
+            raise CaseError(f"the march has gone on from row {self._index}: read fields before the next row")
+        values: Floats = self._march._core.field(name)
+        return values
+
+    @property
+    def pressure(self) -> Floats:
+        """Pressure [Pa], shape (nx, ny)."""
+        return self.field("pressure")
+
+    @property
+    def gap(self) -> Floats:
+        """Gap of the deformed surfaces [m], shape (nx, ny)."""
+        return self.field("gap")
+
+    def __getattr__(self, name: str) -> Any:
+        try:
+            return self.__dict__["_row"][name]
+        except KeyError:
+            raise AttributeError(f"a step has no {name!r}; it has {', '.join(ROW)} and field(name)") from None
+
+    def __repr__(self) -> str:
+        row = self._row
+        return (
+            f"Step({self._index}, t = {row['time']:g} s, load {row['load']:g} N, approach {row['approach']:g} m, "
+            f"contact {100 * row['contact_fraction']:.3g} %)"
+        )
+
+
+class March:
+    """A simulation that goes on row by row: iterate over it for its :class:`Step` s. Made by :func:`march`."""
+
+    def __init__(self, core: _core.March, initial_gap: Floats, size: tuple[float, float], setup: dict[str, Any]) -> None:
+        self._core = core
+        #: Undeformed gap [m], shape (nx, ny).
+        self.initial_gap = initial_gap
+        #: Lengths of the domain along x and y [m].
+        self.size = size
+        self._setup = setup
+
+    def __len__(self) -> int:
+        """Rows in all."""
+        return len(self._core)
+
+    @property
+    def times(self) -> Floats:
+        """Times of all rows [s]: 0+, the steps, and the breaks and jumps of the history."""
+        return np.array(self._core.times())
+
+    def __iter__(self) -> Iterator[Step]:
+        return self
+
+    def __next__(self) -> Step:
+        if not self._core.advance():
+            raise StopIteration
+        return Step(self, self._core.row(), self._core.done - 1)
+
+
+def march(
+    surface: Any,
+    material: Material | Sequence[Material],
+    *,
+    times: Times | Sequence[float],
+    load: History | float | None = None,
+    pressure: History | float | None = None,
+    approach: History | float | None = None,
+    size: Sequence[float] | None = None,
+    hardness: float | None = None,
+    boundary: str = "free",
+    scheme: str = "linear",
+    method: str = "projected-cg",
+    tolerance: float = 1e-6,
+    max_iterations: int = 5000,
+    include: Sequence[float] = (),
+) -> March:
+    """A simulation, step by step; the parameters are those of :func:`solve`.
+
+    >>> import asperity as asp
+    >>> cone = asp.Surface.cone(cells=(32, 32), size=(1e-3, 1e-3), slope=0.1)
+    >>> for step in asp.march(cone, asp.Elastic(young=1e6, poisson=0.5), approach=1e-5, times=[1.0]):
+    ...     print(step.index, step.time, step.pressure.shape)
+    0 0.0 (32, 32)
+    1 1.0 (32, 32)
+    """
+    shape = as_surface(surface, size)
+    gap = shape.gap()
+    bodies = [material] if isinstance(material, Material) else list(material)
+    if not 1 <= len(bodies) <= 2 or not all(isinstance(body, Material) for body in bodies):
+        raise CaseError(f"material is {material!r}, but must be a material, or a pair of them for two deformable bodies")
+    if hardness is not None:
+        limit = number("hardness", hardness)
+        bodies = [_with_hardness(body, limit) for body in bodies]
+    given = {"load": load, "pressure": pressure, "approach": approach}
+    controls = [name for name, value in given.items() if value is not None]
+    if len(controls) != 1:
+        raise CaseError(f"give load, pressure or approach, one of them; given: {', '.join(controls) or 'none'}")
+    history = as_history(controls[0], given[controls[0]])  # type: ignore[arg-type]
+    grid = as_times(times)
+    core = _core.March(
+        gap=gap,
+        size=list(shape.size),
+        boundary=boundary,
+        bodies=[body._body for body in bodies],
+        control=controls[0],
+        history=history.kind,
+        history_numbers=list(history.numbers),
+        history_points=list(history.points),
+        times=grid.kind,
+        times_numbers=list(grid.numbers),
+        include=[float(t) for t in line("include", np.asarray(include, dtype=float))],
+        scheme=scheme,
+        method=method,
+        tolerance=number("tolerance", tolerance),
+        max_iterations=count("max_iterations", max_iterations),
+    )
+    setup = {
+        "boundary": boundary,
+        "bodies": [repr(body) for body in bodies],
+        "control": controls[0],
+        "history": repr(history),
+        "scheme": scheme,
+        "tolerance": float(tolerance),
+    }
+    return March(core, gap, shape.size, setup)
+
+
+def solve(
+    surface: Any,
+    material: Material | Sequence[Material],
+    *,
+    times: Times | Sequence[float],
+    load: History | float | None = None,
+    pressure: History | float | None = None,
+    approach: History | float | None = None,
+    size: Sequence[float] | None = None,
+    hardness: float | None = None,
+    boundary: str = "free",
+    scheme: str = "linear",
+    method: str = "projected-cg",
+    tolerance: float = 1e-6,
+    max_iterations: int = 5000,
+    fields: Sequence[str] = ("pressure",),
+    every: int | None = None,
+    field_times: Sequence[float] | None = None,
+    title: str = "",
+    progress: bool | None = None,
+    on_step: Callable[[Step], object] | None = None,
+) -> Result:
+    """Solves a contact over time.
+
+    Parameters
+    ----------
+    surface : Surface, or heights [m] as array (nx, ny) with `size`, or a SurfaceTopography or xarray array
+    material : the deformable body, or a pair of them
+    times : instants that are solved: uniform, log, listed, or a sequence [s]; breaks of the history are added
+    load, pressure, approach : what is prescribed [N], [Pa] or [m]: a history, or a number for a step
+    hardness : largest pressure [Pa]; else that of the materials
+    boundary : "free" (half-space) or "periodic"
+    scheme : "linear" (second order), "constant" (SC17) or "direct" (full hereditary sum)
+    method : "projected-cg" or "polonsky-keer"
+    fields : those that are kept: "pressure", "gap", "displacement", "contact"
+    every : rows whose fields are kept: every so many, besides the first and last; default every row up to 20 of them
+    field_times : instead, times at which they are kept [s], which become steps
+    progress : a line with the progress; default: in terminals and notebooks
+    on_step : called with each Step
+
+    Raises
+    ------
+    CaseError : the input is wrong
+    ConvergenceError : a step was not solved to the tolerance; its `best` holds the state reached
+
+    Returns
+    -------
+    Result
+    """
+    kept = [str(name) for name in fields]
+    if unknown := [name for name in kept if name not in FIELDS]:
+        raise CaseError(f"fields holds {unknown[0]!r}, but may hold {', '.join(FIELDS)}")
+    wanted = None if field_times is None else line("field_times", field_times)
+    if wanted is not None and every is not None:
+        raise CaseError("give every or field_times, one of them")
+    run = march(
+        surface,
+        material,
+        times=times,
+        load=load,
+        pressure=pressure,
+        approach=approach,
+        size=size,
+        hardness=hardness,
+        boundary=boundary,
+        scheme=scheme,
+        method=method,
+        tolerance=tolerance,
+        max_iterations=max_iterations,
+        include=[] if wanted is None else [t for t in wanted.tolist() if t > 0],
+    )
+    rows = len(run)
+    instants = run.times
+    stride = count("every", every) if every is not None else max(1, -(-(rows - 1) // 20))
+    if wanted is None:
+        keep = {n for n in range(rows) if n % stride == 0 or n == rows - 1}
+    else:
+        keep = {n for n in range(rows) if n in (0, rows - 1) or np.any(np.abs(wanted - instants[n]) <= 1e-12 * instants[-1])}
+    table: dict[str, list[float]] = {name: [] for name in ROW}
+    maps: dict[str, list[Any]] = {name: [] for name in kept}
+    steps: list[int] = []
+    teller = Progress(rows, progress)
+    try:
+        for step in run:
+            for name in ROW:
+                table[name].append(step.row[name])
+            if step.index in keep:
+                steps.append(step.index)
+                for name in kept:
+                    maps[name].append(step.field(name))
+            if on_step is not None:
+                on_step(step)
+            teller.tell(step.row, step.index + 1)
+    finally:
+        teller.end()
+    return Result(
+        table={name: np.array(values) for name, values in table.items()},
+        fields={name: np.array(stack) for name, stack in maps.items()},
+        field_steps=np.array(steps),
+        initial_gap=run.initial_gap,
+        size=run.size,
+        attributes={"title": title, "version": _core.__version__, "status": "complete", **run._setup},
+    )
+
+
+def _with_hardness(body: Material, hardness: float) -> Material:
+    return type(body)(**{**body._given, "hardness": hardness})
+
+
+def run(
+    case: str | os.PathLike[str],
+    *,
+    set: dict[str, Any] | Sequence[str] | None = None,
+    output: str | os.PathLike[str] | None = None,
+    force: bool = False,
+    resume: bool = False,
+    progress: bool | None = None,
+    on_row: Callable[[dict[str, Any], int, int], object] | None = None,
+) -> Result:
+    """Runs a case file, as ``asperity run`` does, and opens its result.
+
+    `set` changes keys of the case: ``{"load.history.value": "2 N"}``. Ctrl-C leaves a readable result, which `resume`
+    goes on from.
+    """
+    teller: Progress | None = None
+
+    def told(row: dict[str, Any], done: int, total: int) -> None:
+        nonlocal teller
+        if teller is None:
+            teller = Progress(total, progress)
+        teller.tell(row, done)
+        if on_row is not None:
+            on_row(row, done, total)
+
+    try:
+        summary = _core.run(os.fspath(case), _keys(set), None if output is None else os.fspath(output), force, resume, told)
+    finally:
+        if teller is not None:
+            teller.end()
+    return open(summary["result"])
+
+
+def check(case: str | os.PathLike[str], *, set: dict[str, Any] | Sequence[str] | None = None) -> dict[str, Any]:
+    """What a case file will do, in numbers: cells, rows, moduli, memory [byte], ..."""
+    out: dict[str, Any] = json.loads(_core.check(os.fspath(case), _keys(set)))
+    return out
+
+
+def _keys(given: dict[str, Any] | Sequence[str] | None) -> list[str]:
+    if given is None:
+        return []
+    if isinstance(given, dict):
+        return [f"{key}={value if _is_toml(value) else json.dumps(value)}" for key, value in given.items()]
+    return [str(key) for key in given]
+
+
+def _is_toml(value: Any) -> bool:
+    """Text goes as it is: the core takes it as TOML or as a word."""
+    return isinstance(value, str)

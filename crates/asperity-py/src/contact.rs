@@ -1,0 +1,86 @@
+//! One elastic contact.
+
+use std::sync::atomic::AtomicBool;
+
+use asperity::operator::half_space;
+use asperity::{ContactState, Grid, Prescribed, Problem, Solver};
+use numpy::{IntoPyArray, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::error::{CaseError, raised};
+use crate::march::{boundary as boundary_of, solver as solver_of};
+use crate::wait::without_python;
+
+/// Pressure, displacement and approach of an elastic contact, and how good they are.
+#[pyfunction]
+#[pyo3(signature = (gap, size, contact_modulus, load, approach, hardness, boundary, method, tolerance, max_iterations))]
+#[allow(clippy::too_many_arguments)]
+pub fn elastic<'py>(
+    py: Python<'py>,
+    gap: PyReadonlyArray2<'_, f64>,
+    size: [f64; 2],
+    contact_modulus: f64,
+    load: Option<f64>,
+    approach: Option<f64>,
+    hardness: f64,
+    boundary: &str,
+    method: &str,
+    tolerance: f64,
+    max_iterations: usize,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (nx, ny) = gap.as_array().dim();
+    let grid = Grid::new([nx, ny], size).map_err(|error| raised(py, error))?;
+    let prescribed = match (load, approach) {
+        (Some(load), None) => Prescribed::Load(load),
+        (None, Some(approach)) => Prescribed::Approach(approach),
+        _ => return Err(CaseError::new_err("give load or approach, one of them")),
+    };
+    for (what, value) in [("contact modulus", contact_modulus), ("hardness", hardness)] {
+        if value.is_nan() || value <= 0.0 || (what == "contact modulus" && value.is_infinite()) {
+            return Err(CaseError::new_err(format!("{what} is {value}, but must be greater than 0 Pa")));
+        }
+    }
+    let cells: Vec<f64> = gap.as_array().iter().copied().collect();
+    if let Some(value) = cells.iter().find(|h| h.is_nan() || **h == f64::NEG_INFINITY) {
+        let words = "finite, or infinite where a cell cannot touch";
+        return Err(CaseError::new_err(format!("gap holds {value}, but must be {words}")));
+    }
+    let boundary = boundary_of(boundary)?;
+    let options = solver_of(method, tolerance, max_iterations)?;
+    options.validate().map_err(|error| raised(py, error))?;
+    let interrupt = AtomicBool::new(false);
+    let mut state = ContactState::new(grid.len());
+    let solved = without_python(py, &interrupt, || {
+        let mut operator = half_space(grid, boundary);
+        let mut solver = Solver::new(options.method, &*operator);
+        let problem = Problem { gap: &cells, compliance: 1.0 / contact_modulus, hardness, prescribed };
+        solver.solve(&mut *operator, &problem, &options, &mut state, Some(&interrupt))
+    })?;
+    let map = |values: Vec<f64>| {
+        let array = ndarray::Array2::from_shape_vec(grid.shape(), values);
+        array.map(|array| array.into_pyarray(py)).map_err(|error| CaseError::new_err(error.to_string()))
+    };
+    let outcome = match solved {
+        Ok(outcome) => outcome,
+        Err(error) => {
+            let raised = raised(py, error);
+            let _ = map(state.pressure).and_then(|best| raised.value(py).setattr("best", best));
+            return Err(raised);
+        }
+    };
+    let out = PyDict::new(py);
+    let sum: f64 = state.pressure.iter().sum();
+    let touching = state.pressure.iter().filter(|p| **p > 0.0).count();
+    out.set_item("load", sum * grid.cell_area())?;
+    out.set_item("approach", state.approach)?;
+    out.set_item("contact_area", touching as f64 * grid.cell_area())?;
+    let displacement = state.unit_displacement.iter().map(|u| u / contact_modulus).collect();
+    out.set_item("displacement", map(displacement)?)?;
+    out.set_item("pressure", map(state.pressure)?)?;
+    out.set_item("residual", outcome.residual)?;
+    out.set_item("certificate", outcome.certificate)?;
+    out.set_item("iterations", outcome.iterations)?;
+    out.set_item("convolutions", outcome.convolutions)?;
+    Ok(out)
+}

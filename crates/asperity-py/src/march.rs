@@ -1,0 +1,233 @@
+//! A march, row by row.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use asperity::{
+    Boundary, Control, Grid, History, Loading, Method, Scheme, Simulation, SolverOptions, TimeGrid, march,
+    material,
+};
+use numpy::{IntoPyArray, PyArray2, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::error::{CaseError, raised};
+use crate::material::Body;
+use crate::wait::without_python;
+
+/// The march of one simulation.
+#[pyclass]
+pub struct March {
+    /// Locked where threads of Python share it.
+    march: Mutex<march::March>,
+    interrupt: Arc<AtomicBool>,
+}
+
+/// What a keyword says, or an error with the words that it may be.
+pub fn choose<T: Copy>(what: &str, word: &str, words: &[(&str, T)]) -> PyResult<T> {
+    let found = words.iter().find(|(name, _)| *name == word);
+    found.map(|(_, value)| *value).ok_or_else(|| {
+        let names: Vec<_> = words.iter().map(|(name, _)| format!("'{name}'")).collect();
+        CaseError::new_err(format!("{what} is '{word}', but must be {}", names.join(" or ")))
+    })
+}
+
+pub fn boundary(word: &str) -> PyResult<Boundary> {
+    choose("boundary", word, &[("free", Boundary::Free), ("periodic", Boundary::Periodic)])
+}
+
+pub fn solver(method: &str, tolerance: f64, max_iterations: usize) -> PyResult<SolverOptions> {
+    let methods = [("projected-cg", Method::ProjectedCg), ("polonsky-keer", Method::PolonskyKeer)];
+    let method = choose("method", method, &methods)?;
+    Ok(SolverOptions { method, tolerance, max_iterations, ..SolverOptions::default() })
+}
+
+fn history(kind: &str, numbers: &[f64], points: Vec<(f64, f64)>) -> PyResult<History> {
+    Ok(match (kind, numbers) {
+        ("step", [value]) => History::Step { value: *value },
+        ("ramp", [value, duration]) => History::Ramp { value: *value, duration: *duration },
+        ("triangle", [peak, rise, fall]) => History::Triangle { peak: *peak, rise: *rise, fall: *fall },
+        ("trapezoid", [peak, rise, hold, fall]) => {
+            History::Trapezoid { peak: *peak, rise: *rise, hold: *hold, fall: *fall }
+        }
+        ("sine", [mean, amplitude, frequency]) => {
+            History::Sine { mean: *mean, amplitude: *amplitude, frequency: *frequency }
+        }
+        ("table", []) => History::Table { points },
+        _ => {
+            return Err(CaseError::new_err(format!(
+                "there is no history '{kind}' of {} numbers",
+                numbers.len()
+            )));
+        }
+    })
+}
+
+fn times(kind: &str, numbers: &[f64]) -> PyResult<TimeGrid> {
+    // Counts come as numbers; what is no count is refused by the grid's own check.
+    let count = |n: f64| if n.fract() == 0.0 && n >= 0.0 { n as usize } else { 0 };
+    Ok(match (kind, numbers) {
+        ("uniform", [end, steps]) => TimeGrid::Uniform { end: *end, steps: count(*steps) },
+        ("log", [end, steps, first]) => {
+            TimeGrid::Logarithmic { end: *end, steps: count(*steps), first: *first }
+        }
+        ("list", list) => TimeGrid::List(list.to_vec()),
+        _ => {
+            return Err(CaseError::new_err(format!(
+                "there is no time grid '{kind}' of {} numbers",
+                numbers.len()
+            )));
+        }
+    })
+}
+
+#[pymethods]
+impl March {
+    #[new]
+    #[pyo3(signature = (*, gap, size, boundary, bodies, control, history, history_numbers, history_points,
+                        times, times_numbers, include, scheme, method, tolerance, max_iterations))]
+    #[allow(clippy::too_many_arguments)]
+    fn new(
+        py: Python<'_>,
+        gap: PyReadonlyArray2<'_, f64>,
+        size: [f64; 2],
+        boundary: &str,
+        bodies: Vec<PyRef<'_, Body>>,
+        control: &str,
+        history: &str,
+        history_numbers: Vec<f64>,
+        history_points: Vec<(f64, f64)>,
+        times: &str,
+        times_numbers: Vec<f64>,
+        include: Vec<f64>,
+        scheme: &str,
+        method: &str,
+        tolerance: f64,
+        max_iterations: usize,
+    ) -> PyResult<March> {
+        let gap = gap.as_array().as_standard_layout().into_owned();
+        let (nx, ny) = gap.dim();
+        let bodies: Vec<material::Body> = bodies.iter().map(|body| body.inner.clone()).collect();
+        let controls =
+            [("load", Control::Load), ("pressure", Control::Pressure), ("approach", Control::Approach)];
+        let schemes =
+            [("linear", Scheme::Linear), ("constant", Scheme::Constant), ("direct", Scheme::Direct)];
+        let grid = Grid::new([nx, ny], size).map_err(|error| raised(py, error))?;
+        let loading = Loading {
+            control: choose("control", control, &controls)?,
+            history: self::history(history, &history_numbers, history_points)?,
+        };
+        let simulation = Simulation {
+            boundary: self::boundary(boundary)?,
+            creep: material::pair_creep(&bodies).map_err(|error| raised(py, error))?,
+            hardness: material::pair_hardness(&bodies),
+            loading,
+            times: self::times(times, &times_numbers)?,
+            include,
+            scheme: choose("scheme", scheme, &schemes)?,
+            solver: solver(method, tolerance, max_iterations)?,
+            ..Simulation::new(grid, gap)
+        };
+        let interrupt = Arc::new(AtomicBool::new(false));
+        let made = without_python(py, &interrupt, || march::March::new(simulation))?;
+        let mut march = made.map_err(|error| raised(py, error))?;
+        march.interrupt_with(interrupt.clone());
+        Ok(March { march: Mutex::new(march), interrupt })
+    }
+
+    /// Goes on by one row; False at the end.
+    fn advance(&mut self, py: Python<'_>) -> PyResult<bool> {
+        self.interrupt.store(false, Ordering::Relaxed);
+        let march = self.march.get_mut().unwrap_or_else(PoisonError::into_inner);
+        let done = without_python(py, &self.interrupt, || march.advance().map(|step| step.is_some()))?;
+        done.map_err(|error| {
+            let raised = raised(py, error);
+            if let Some(step) = march.last()
+                && raised.is_instance_of::<crate::error::ConvergenceError>(py)
+            {
+                let best = PyDict::new(py);
+                let filled = fill(&best, &step.row())
+                    .and_then(|()| best.set_item("pressure", step.pressure().to_owned().into_pyarray(py)));
+                let _ = filled.and_then(|()| raised.value(py).setattr("best", best));
+            }
+            raised
+        })
+    }
+
+    /// Rows in all.
+    fn __len__(&self) -> usize {
+        self.locked().len()
+    }
+
+    /// Rows done.
+    #[getter]
+    fn done(&self) -> usize {
+        self.locked().done()
+    }
+
+    /// Times of all rows.
+    fn times(&self) -> Vec<f64> {
+        self.locked().instants().iter().map(|instant| instant.time).collect()
+    }
+
+    /// The numbers of the last row.
+    fn row<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let row = PyDict::new(py);
+        if let Some(step) = self.locked().last() {
+            fill(&row, &step.row())?;
+        }
+        Ok(row)
+    }
+
+    /// A field of the last row: pressure, gap, displacement, contact.
+    fn field<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
+        let march = self.locked();
+        let Some(step) = march.last() else {
+            return Err(CaseError::new_err("there is no row yet: advance first"));
+        };
+        let shape = march.simulation().grid.shape();
+        let map = |write: &dyn Fn(&mut ndarray::Array2<f64>)| -> Bound<'py, PyArray2<f64>> {
+            let mut field = ndarray::Array2::zeros(shape);
+            write(&mut field);
+            field.into_pyarray(py)
+        };
+        Ok(match name {
+            "pressure" => step.pressure().to_owned().into_pyarray(py).into_any(),
+            "gap" => map(&|field| step.gap_into(field)).into_any(),
+            "displacement" => map(&|field| step.displacement_into(field)).into_any(),
+            "contact" => {
+                let mut field = ndarray::Array2::<u8>::zeros(shape);
+                step.contact_into(&mut field);
+                field.into_pyarray(py).into_any()
+            }
+            other => {
+                let words = "'pressure', 'gap', 'displacement' or 'contact'";
+                return Err(CaseError::new_err(format!("field is '{other}', but must be {words}")));
+            }
+        })
+    }
+}
+
+impl March {
+    fn locked(&self) -> MutexGuard<'_, march::March> {
+        self.march.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// The numbers of a row by their names in results.
+pub fn fill(into: &Bound<'_, PyDict>, row: &march::Row) -> PyResult<()> {
+    into.set_item("time", row.time)?;
+    into.set_item("load", row.load)?;
+    into.set_item("approach", row.approach)?;
+    into.set_item("contact_area", row.contact_area)?;
+    into.set_item("contact_area_corrected", row.contact_area_corrected)?;
+    into.set_item("contact_fraction", row.contact_fraction)?;
+    into.set_item("capped_area", row.capped_area)?;
+    into.set_item("mean_pressure", row.mean_pressure)?;
+    into.set_item("max_pressure", row.max_pressure)?;
+    into.set_item("mean_gap", row.mean_gap)?;
+    into.set_item("iterations", row.iterations)?;
+    into.set_item("convolutions", row.convolutions)?;
+    into.set_item("residual", row.residual)?;
+    into.set_item("certificate", row.certificate)
+}

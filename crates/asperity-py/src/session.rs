@@ -1,0 +1,82 @@
+//! Case files and reports.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use asperity_io::case::Case;
+use asperity_io::session::{self, RunOptions};
+use asperity_io::store::Reader;
+use asperity_report::page;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::error;
+use crate::march::fill;
+use crate::wait::without_python;
+
+fn read(path: &Path, overrides: &[String]) -> PyResult<Case> {
+    Case::read(path, overrides).map_err(error::case)
+}
+
+/// Runs a case file; `told` is called with (row, done, total) after each row. Returns a summary.
+#[pyfunction]
+#[pyo3(signature = (path, overrides, output, force, resume, told))]
+pub fn run<'py>(
+    py: Python<'py>,
+    path: PathBuf,
+    overrides: Vec<String>,
+    output: Option<PathBuf>,
+    force: bool,
+    resume: bool,
+    told: Option<Py<PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let case = read(&path, &overrides)?;
+    let interrupt = Arc::new(AtomicBool::new(false));
+    let options = RunOptions { output, force, resume, interrupt: interrupt.clone() };
+    let mut unheard = None;
+    let observe = |progress: session::Progress| {
+        let Some(told) = &told else { return };
+        let heard = Python::attach(|py| {
+            let row = PyDict::new(py);
+            fill(&row, progress.row)?;
+            told.call1(py, (row, progress.done, progress.total)).map(drop)
+        });
+        if let Err(error) = heard {
+            // What the caller raises ends the run after this row.
+            interrupt.store(true, std::sync::atomic::Ordering::Relaxed);
+            unheard.get_or_insert(error);
+        }
+    };
+    let ran = without_python(py, &interrupt, || session::run(&case, &options, observe))?;
+    if let Some(error) = unheard {
+        return Err(error);
+    }
+    let summary = ran.map_err(|failed| error::run(py, failed))?;
+    let out = PyDict::new(py);
+    out.set_item("status", summary.status.as_str())?;
+    out.set_item("steps", summary.rows)?;
+    out.set_item("wall_s", summary.wall_s)?;
+    out.set_item("convolutions", summary.convolutions)?;
+    out.set_item("iterations", summary.iterations)?;
+    out.set_item("peak_memory_bytes", summary.peak_memory_bytes)?;
+    out.set_item("result", summary.result)?;
+    Ok(out)
+}
+
+/// What a case will do, as JSON.
+#[pyfunction]
+pub fn check(path: PathBuf, overrides: Vec<String>) -> PyResult<String> {
+    serde_json::to_string(&read(&path, &overrides)?.describe()).map_err(error::file)
+}
+
+/// Writes the report of a stored result.
+#[pyfunction]
+#[pyo3(signature = (result, output, force, bytes))]
+pub fn report(py: Python<'_>, result: PathBuf, output: PathBuf, force: bool, bytes: usize) -> PyResult<()> {
+    py.detach(|| {
+        let reader = Reader::open(&result).map_err(error::file)?;
+        let options = page::Options { force, bytes, ..page::Options::default() };
+        page::write(&reader, &output, &options).map_err(error::file)
+    })
+}

@@ -94,8 +94,6 @@ fn python() -> Result<PathBuf, String> {
     Ok(python)
 }
 
-/// The tables of docs/performance.md: the convolution's forms, where the time of a contact goes in either
-/// precision, and whole runs with their files.
 /// Builds the Python package, installs it in the environment of `python`, and tests it there.
 fn package(python: &Path) -> Done {
     let wheels = root().join("target/wheels");
@@ -114,6 +112,8 @@ fn package(python: &Path) -> Done {
     run(Command::new(python).args(["-m", "pytest", "-q", "crates/asperity-py/tests"]))
 }
 
+/// The tables of docs/performance.md: the convolution's forms, where the time of a contact goes in either
+/// precision, and whole runs with their files.
 fn bench(quick: bool) -> Done {
     let sizes: &[&str] =
         if quick { &["256", "512", "1024"] } else { &["256", "512", "1024", "2048", "4096"] };

@@ -8,6 +8,27 @@ import numpy.typing as npt
 
 _Floats = npt.NDArray[np.float64]
 
+__all__ = [
+    "elastic",
+    "CaseError",
+    "ConvergenceError",
+    "March",
+    "Body",
+    "check",
+    "report",
+    "run",
+    "Store",
+    "gap",
+    "level",
+    "power_spectrum",
+    "read_surface",
+    "self_affine",
+    "shape",
+    "statistics",
+    "write_surface",
+    "__version__",
+]
+
 __version__: str
 
 class CaseError(ValueError): ...

@@ -237,7 +237,7 @@ def test_surfaces_are_written_read_and_described(tmp_path):
     assert statistics["m2"] * 2 == pytest.approx(0.1**2, rel=1e-9)
     q, c = surface.power_spectrum()
     assert np.all(np.diff(q) > 0) and np.all(c >= 0)
-    (tmp_path / "bare.txt").write_text("1 2 3\n4 5 6\n7 8 9\n")
+    (tmp_path / "bare.txt").write_text("1 2 3 4\n5 6 7 8\n9 10 11 13\n")
     with pytest.raises(OSError, match="size"):
         asp.Surface.read(tmp_path / "bare.txt")
     with pytest.raises(OSError, match="none.sdf"):

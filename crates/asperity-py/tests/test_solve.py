@@ -238,8 +238,11 @@ def test_surfaces_are_written_read_and_described(tmp_path):
     q, c = surface.power_spectrum()
     assert np.all(np.diff(q) > 0) and np.all(c >= 0)
     (tmp_path / "bare.txt").write_text("1 2 3 4\n5 6 7 8\n9 10 11 13\n")
-    with pytest.raises(OSError, match="size"):
+    with pytest.raises(OSError, match="height_unit"):
         asp.Surface.read(tmp_path / "bare.txt")
+    with pytest.raises(OSError, match="size"):
+        asp.Surface.read(tmp_path / "bare.txt", height_unit=1e-6)
+    assert asp.Surface.read(tmp_path / "bare.txt", height_unit=1e-6, size=(1e-3, 1e-3)).heights[1, 0] == 2e-6
     with pytest.raises(OSError, match="none.sdf"):
         asp.Surface.read(tmp_path / "none.sdf")
     with pytest.raises(asp.CaseError, match="same cells"):

@@ -149,6 +149,7 @@ fn figures() -> Done {
         .arg("docs/images/rough-pmma.png"))?;
     // The paper's figures: maps as dots, curves as lines.
     let directory = root().join("target/figures/paper");
+    std::fs::create_dir_all(root().join("docs/images/paper")).map_err(|error| error.to_string())?;
     for (form, numbers) in [("png", &[5, 6, 7][..]), ("svg", &[1, 2, 3, 4, 8])] {
         run(Command::new(root().join("target/release/asperity"))
             .args(["reproduce", "--force", "--form", form, "-o"])

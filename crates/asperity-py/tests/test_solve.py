@@ -286,8 +286,10 @@ def test_results_are_drawn(result):
 def test_other_threads_run_and_interruption_is_heard(tmp_path):
     script = tmp_path / "long.py"
     script.write_text("""
-import threading, time
+import signal, threading, time
 import asperity as asp
+# A shell may start jobs that ignore Ctrl-C.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 ticks = []
 threading.Thread(target=lambda: [(ticks.append(1), time.sleep(0.01)) for _ in range(2000)], daemon=True).start()
 surface = asp.Surface.self_affine(cells=(512, 512), size=(1e-3, 1e-3), hurst=0.8, rms_gradient=0.3, longest=1e-3, shortest=5e-6, seed=1)

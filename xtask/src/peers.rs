@@ -21,7 +21,7 @@ const TOLERANCES: [f64; 6] = [1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
 const SAME: f64 = 1e-4;
 /// Turns of each case.
 const TURNS: usize = 3;
-/// A run that takes longer decides its own turn [s]: it is not repeated.
+/// A run that takes longer decides its own turn \[s\]: it is not repeated.
 const LONG: f64 = 20.0;
 
 struct Case {

@@ -68,7 +68,7 @@ pub struct Prepared {
 ///     Step::Operation(Operation::Level(Level::Plane)),
 /// ];
 /// let prepared = prepare(Surface::new(grid, tilted)?, &steps, None)?;
-/// assert_eq!(prepared.surface.grid().size(), [4e-6, 4e-6]);
+/// assert_eq!(prepared.surface.grid().cells(), [4, 4]);
 /// assert!(prepared.surface.heights().iter().all(|z| z.abs() < 1e-20));
 /// assert_eq!(prepared.history[0], "crop to 4 x 4 cells from (3, 2)");
 /// # Ok::<(), asperity::Error>(())

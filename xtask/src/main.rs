@@ -147,20 +147,16 @@ fn figures() -> Done {
         .arg("docs/images/rough_pmma.py")
         .arg(&result)
         .arg("docs/images/rough-pmma.png"))?;
-    // The paper's figures: maps as dots, curves as lines.
     let directory = root().join("target/figures/paper");
-    std::fs::create_dir_all(root().join("docs/images/paper")).map_err(|error| error.to_string())?;
-    for (form, numbers) in [("png", &[5, 6, 7][..]), ("svg", &[1, 2, 3, 4, 8])] {
-        run(Command::new(root().join("target/release/asperity"))
-            .args(["reproduce", "--force", "--form", form, "-o"])
-            .arg(&directory)
-            .args(numbers.iter().map(|n: &u8| n.to_string())))?;
-        for n in numbers {
-            let name = format!("figure-{n}.{form}");
-            let to = root().join("docs/images/paper").join(&name);
-            std::fs::copy(directory.join(&name), &to)
-                .map_err(|error| format!("{}: {error}", to.display()))?;
-        }
+    let pictures = root().join("docs/images/paper");
+    std::fs::create_dir_all(&pictures).map_err(|error| error.to_string())?;
+    run(Command::new(root().join("target/release/asperity"))
+        .args(["reproduce", "--force", "-o"])
+        .arg(&directory))?;
+    for n in 1..=8 {
+        let name = format!("figure-{n}.png");
+        let to = pictures.join(&name);
+        std::fs::copy(directory.join(&name), &to).map_err(|error| format!("{}: {error}", to.display()))?;
     }
     Ok(())
 }

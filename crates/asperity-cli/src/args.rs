@@ -475,7 +475,7 @@ pub struct Reproduce {
     /// What the figures are written as: png, svg or pdf
     #[arg(long, value_name = "FORM", default_value = "png", value_parser = ["png", "svg", "pdf"])]
     pub form: String,
-    /// Cells along a side of every case [default: 256, and 1024 for the rough sphere, as in the paper]
+    /// Cells along a side of every case [default: 256, and 512 for the rough sphere; the paper has 1024]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(16..=8192))]
     pub cells: Option<u32>,
     /// Threads to use [default: one per core]

@@ -55,7 +55,7 @@ pub struct Difference {
 pub struct Options {
     /// Directory of the results that the figures are drawn from; results there are replaced.
     pub results: PathBuf,
-    /// Cells along a side of each case; `None` as in the case files, 1024 for the rough sphere.
+    /// Cells along a side of each case; `None` as in the case files.
     pub cells: Option<usize>,
 }
 

@@ -1,4 +1,4 @@
-//! The figures of Spinu & Cerlinca, Modelling and Simulation in Engineering (2017) 8720972 ("SC17"), computed
+//! The figures of Spinu & Cerlinca, Modelling and Simulation in Engineering 2017, 2521903 ("SC17"), computed
 //! again: each with an independent curve drawn over it and the difference as a number.
 //!
 //! | figure | shows | independent |

@@ -262,12 +262,7 @@ fn fit(args: &Fit) -> Result<(), Failure> {
     };
     // What cannot be written is said before the work.
     for path in args.output.iter().chain(&args.plot) {
-        if path.exists() && !args.force {
-            let path = path.display();
-            return Err(Failure::input(format!(
-                "{path} is there already; name another file or give --force"
-            )));
-        }
+        super::free(path, args.force)?;
     }
     let curves = Curves::read(&args.data, kind, &columns).map_err(told)?;
     let fitted = request.fit(&curves).map_err(told)?;

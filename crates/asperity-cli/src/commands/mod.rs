@@ -15,6 +15,8 @@ pub mod surface;
 pub mod verify;
 pub mod view;
 
+use std::path::Path;
+
 use crate::failure::Failure;
 
 /// Sets the number of threads of the whole command.
@@ -24,4 +26,13 @@ fn use_threads(threads: Option<u16>) -> Result<(), Failure> {
         .num_threads(usize::from(threads))
         .build_global()
         .map_err(|error| Failure::input(format!("cannot start {threads} threads: {error}")))
+}
+
+/// Refuses a path where there is something already that `force` does not allow to replace.
+fn free(path: &Path, force: bool) -> Result<(), Failure> {
+    if path.exists() && !force {
+        let path = path.display();
+        return Err(Failure::input(format!("{path} is there already; name another file or give --force")));
+    }
+    Ok(())
 }

@@ -13,6 +13,7 @@ use asperity::surface::Surface as Map;
 use asperity_io::case::quantity::Length;
 use asperity_io::topography::{Format, ReadOptions, Topography, read, write};
 
+use super::free;
 use crate::args::{Surface, SurfaceFile, SurfaceOutput};
 use crate::failure::Failure;
 
@@ -57,19 +58,8 @@ fn target(path: &Path, to: Option<&str>, force: bool) -> Result<Format, Failure>
             names.join(", ")
         )));
     }
-    if !force {
-        free(path)?;
-    }
+    free(path, force)?;
     Ok(format)
-}
-
-/// Refuses a path where there is something already.
-fn free(path: &Path) -> Result<(), Failure> {
-    if path.exists() {
-        let path = path.display();
-        return Err(Failure::input(format!("{path} is there already; name another file or give --force")));
-    }
-    Ok(())
 }
 
 /// Checks where the output goes before the work begins.

@@ -30,7 +30,7 @@ pub struct Portrait<'a> {
 pub fn check_plot(plot: Option<&Path>, force: bool) -> Result<(), Failure> {
     let Some(plot) = plot else { return Ok(()) };
     Form::of(plot).map_err(|error| Failure::input(error.to_string()))?;
-    if force { Ok(()) } else { super::free(plot) }
+    super::free(plot, force)
 }
 
 impl<'a> Portrait<'a> {

@@ -10,6 +10,7 @@
 // The closures of a sweep spell out the slices that they walk.
 #![allow(clippy::type_complexity)]
 
+mod coarse;
 mod direction;
 mod gauss_seidel;
 mod motion;
@@ -28,7 +29,7 @@ pub use state::ContactState;
 use std::sync::atomic::AtomicBool;
 
 use crate::error::{Error, NotConverged, Result};
-use crate::field::{Max, minimum, strands, sweep};
+use crate::field::{Max, minimum, strands, sum, sweep};
 use crate::grid::Boundary;
 use crate::operator::Operator;
 
@@ -131,7 +132,7 @@ impl SolverOptions {
 pub struct Outcome {
     /// Iterations.
     pub iterations: usize,
-    /// Applications of K.
+    /// Applications of K; one on a coarser grid counts by its share of cells.
     pub convolutions: usize,
     /// Largest violation of the contact conditions over the pressure-weighted mean displacement.
     pub residual: f64,
@@ -159,17 +160,20 @@ impl Solver {
 
     /// Plans a solver for the operator's grid. [`Method::PolonskyKeer`] knows double precision only.
     pub fn with_precision(method: Method, precision: Precision, operator: &dyn Operator) -> Self {
-        let grid = operator.grid();
+        let (grid, boundary) = (operator.grid(), operator.boundary());
         match (method, precision) {
-            (Method::ProjectedCg, Precision::Double) => Solver::ProjectedCg(Box::new(ProjectedCg::new(grid))),
+            (Method::ProjectedCg, Precision::Double) => {
+                Solver::ProjectedCg(Box::new(ProjectedCg::new(grid, boundary)))
+            }
             (Method::ProjectedCg, Precision::Mixed) => {
-                Solver::MixedProjectedCg(Box::new(ProjectedCg::new(grid)))
+                Solver::MixedProjectedCg(Box::new(ProjectedCg::new(grid, boundary)))
             }
             (Method::PolonskyKeer, _) => Solver::PolonskyKeer(Box::new(PolonskyKeer::new(grid))),
         }
     }
 
-    /// Solves `problem`, starting from the pressure in `state`, which becomes the solution.
+    /// Solves `problem`, starting from the pressure in `state`, which becomes the solution; where that is zero
+    /// everywhere, [`Method::ProjectedCg`] starts from the contact on coarser grids.
     ///
     /// # Errors
     /// [`Error::Infeasible`] where W > H times the area that can touch, [`Error::Undetermined`] where
@@ -186,11 +190,14 @@ impl Solver {
         if let Some(outcome) = trivial(operator, problem, state)? {
             return Ok(outcome);
         }
-        match self {
+        let cold = !matches!(self, Solver::PolonskyKeer(_)) && sum(&state.pressure) <= 0.0;
+        let before = if cold { coarse::start(operator, problem, options, state, interrupt)? } else { 0.0 };
+        let outcome = match self {
             Solver::ProjectedCg(s) => s.solve(operator, problem, options, state, interrupt),
             Solver::MixedProjectedCg(s) => s.solve(operator, problem, options, state, interrupt),
             Solver::PolonskyKeer(s) => s.solve(operator, problem, options, state, interrupt),
-        }
+        }?;
+        Ok(Outcome { convolutions: outcome.convolutions + before.ceil() as usize, ..outcome })
     }
 }
 
@@ -240,7 +247,7 @@ fn trivial(
             if operator.boundary() == Boundary::Periodic && problem.hardness.is_infinite() {
                 // K has no mean: full contact at the approach where the mean gap closes.
                 // A cell that cannot touch makes the mean infinite, and every approach determined.
-                let max = crate::field::sum(problem.gap) / problem.gap.len() as f64;
+                let max = sum(problem.gap) / problem.gap.len() as f64;
                 if approach >= max {
                     return Err(Error::Undetermined { approach, max });
                 }

@@ -7,8 +7,9 @@
 //! exact minimisation is taken instead: by the spacer-step theorem (Luenberger & Ye, Linear and
 //! Nonlinear Programming, section 7.11) the method converges from any start.
 //!
-//! The preconditioner is the inverse symbol |q|/2 on the unpadded grid. It and the direction are f32, in units of
-//! the largest violation: they decide where to go, never what is found there.
+//! The preconditioner is the inverse symbol |q|/2, on the grid of a periodic domain and on that of a free one with a
+//! rim. It and the direction are f32, in units of the largest violation: they decide where to go, never what is
+//! found there.
 //!
 //! An iteration is one convolution, one of the preconditioner, and five or six sweeps (`direction`, `shift`,
 //! `motion`), most of them over the groups of cells that hold one of S. The sweep that advances the state also rates it,
@@ -27,7 +28,7 @@ use super::shift::{Shift, Trial};
 use super::start::make_feasible;
 use super::{ContactState, Outcome, Prescribed, Problem, SolverOptions, interrupted, not_converged};
 use crate::error::{Error, Result};
-use crate::grid::Grid;
+use crate::grid::{Boundary, Grid};
 use crate::operator::{Operator, approximate_inverse};
 
 /// Iterations without a halving of the residual before a spacer step.
@@ -122,10 +123,10 @@ enum Kind {
 }
 
 impl<T: Scalar> ProjectedCg<T> {
-    /// Plans the method for a grid.
-    pub fn new(grid: &Grid) -> Self {
+    /// Plans the method for a grid and what surrounds it.
+    pub fn new(grid: &Grid, boundary: Boundary) -> Self {
         let n = grid.len();
-        let (inverse, sharpest) = approximate_inverse(grid);
+        let (inverse, sharpest) = approximate_inverse(grid, boundary);
         ProjectedCg {
             inverse,
             sharpest,

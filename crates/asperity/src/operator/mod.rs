@@ -51,25 +51,36 @@ impl Single {
     }
 }
 
-/// S(kx, ky) = `symbol`(qx, qy) on the wave vectors of the unpadded grid.
-pub(crate) fn wave_spectrum(grid: &Grid, symbol: impl Fn(f64, f64) -> f64) -> ndarray::Array2<f64> {
-    let [nx, ny] = grid.cells();
-    let [lx, ly] = grid.size();
+/// S(kx, ky) = `symbol`(qx, qy) on the wave vectors of a torus of `cells` and `size`.
+pub(crate) fn wave_spectrum(
+    [nx, ny]: [usize; 2],
+    [lx, ly]: [f64; 2],
+    symbol: impl Fn(f64, f64) -> f64,
+) -> ndarray::Array2<f64> {
     let tau = std::f64::consts::TAU;
     ndarray::Array2::from_shape_fn((nx / 2 + 1, ny / 2 + 1), |(kx, ky)| {
         symbol(tau * kx as f64 / lx, tau * ky as f64 / ly)
     })
 }
 
-/// The approximate inverse of K, in f32, over its largest value, and that value \[1/m\]: the symbol |q|/2 on the
-/// unpadded grid, the mean like half the first wave.
+/// Cells beyond the domain that keep the ends of a free one apart in [`approximate_inverse`].
+const APART: usize = 16;
+
+/// The approximate inverse of K, in f32, over its largest value, and that value \[1/m\]: the symbol |q|/2, the mean like
+/// half the first wave.
 ///
-/// A quarter of a free convolution, and as good a preconditioner as the padded one.
-pub(crate) fn approximate_inverse(grid: &Grid) -> (Lanes<f32>, f64) {
-    let [lx, ly] = grid.size();
-    let mean = 0.25 * std::f64::consts::TAU / lx.max(ly);
-    let mut spectrum = wave_spectrum(grid, |qx, qy| inverse_kernel(qx, qy, mean));
+/// It falls off as the third power of the distance: a free domain need not be padded to twice its cells, only so far that
+/// its opposite ends do not see each other. A third of a free convolution, and as good a preconditioner as the padded one.
+pub(crate) fn approximate_inverse(grid: &Grid, boundary: Boundary) -> (Lanes<f32>, f64) {
+    let lengths = match boundary {
+        Boundary::Free => grid.cells().map(|n| Lanes::<f32>::good_length(n + APART)),
+        Boundary::Periodic => grid.cells(),
+    };
+    let [dx, dy] = grid.spacing();
+    let size = [dx * lengths[0] as f64, dy * lengths[1] as f64];
+    let mean = 0.25 * std::f64::consts::TAU / size[0].max(size[1]);
+    let mut spectrum = wave_spectrum(lengths, size, |qx, qy| inverse_kernel(qx, qy, mean));
     let largest = spectrum.iter().fold(0.0_f64, |m, s| m.max(*s));
     spectrum /= largest;
-    (Lanes::new(grid.cells(), grid.cells(), spectrum.view()), largest)
+    (Lanes::new(grid.cells(), lengths, spectrum.view()), largest)
 }

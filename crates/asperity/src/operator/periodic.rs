@@ -18,7 +18,7 @@ pub struct Periodic {
 impl Periodic {
     /// Plans the operator.
     pub fn new(grid: Grid) -> Self {
-        let spectrum = wave_spectrum(&grid, wave_kernel);
+        let spectrum = wave_spectrum(grid.cells(), grid.size(), wave_kernel);
         let mut convolution = Convolution::new(grid.cells(), grid.cells(), spectrum.view());
         let mut unit = vec![0.0; grid.len()];
         let mut response = vec![0.0; grid.len()];
@@ -43,7 +43,13 @@ impl Operator for Periodic {
 
     fn apply_single_into(&mut self, p: &[f32], u: &mut [f32]) {
         let grid = &self.grid;
-        let plan = || Lanes::new(grid.cells(), grid.cells(), wave_spectrum(grid, wave_kernel).view());
+        let plan = || {
+            Lanes::new(
+                grid.cells(),
+                grid.cells(),
+                wave_spectrum(grid.cells(), grid.size(), wave_kernel).view(),
+            )
+        };
         self.single.apply_into(plan, p, u);
     }
 

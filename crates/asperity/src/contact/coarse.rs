@@ -1,0 +1,155 @@
+//! A cold start from coarser grids: the contact of the gap averaged over 2 x 2 cells, solved roughly (and, in its turn,
+//! started from a coarser one), tells where the fine grid will touch and under what pressure.
+//!
+//! Long waves cost the same number of iterations on every grid, and a quarter for each halving: the fine grid is
+//! left with what only it can see. Whatever goes wrong on a coarse grid only costs the start.
+
+use std::sync::atomic::AtomicBool;
+
+use rayon::prelude::*;
+
+use super::{ContactState, Precision, Problem, Solver, SolverOptions};
+use crate::error::{Error, Result};
+use crate::grid::Grid;
+use crate::operator::{Operator, half_space};
+
+/// Fewest cells along a side of a coarse grid.
+const FEWEST: usize = 64;
+/// Tolerance on a coarse grid: finer than what its cells can tell.
+const TOLERANCE: f64 = 3e-3;
+/// Iterations on a coarse grid at most.
+const ITERATIONS: usize = 30;
+
+/// Sets `state.pressure`, so far zero everywhere, to that of coarser grids where the grid has any; the sum of p is only
+/// roughly right. Returns the work in convolutions of the fine grid.
+///
+/// # Errors
+/// [`Error::Interrupted`].
+pub(super) fn start(
+    operator: &dyn Operator,
+    problem: &Problem,
+    options: &SolverOptions,
+    state: &mut ContactState,
+    interrupt: Option<&AtomicBool>,
+) -> Result<f64> {
+    let Some(grid) = coarser(operator.grid()) else {
+        return Ok(0.0);
+    };
+    let gap = averaged(operator.grid(), problem.gap);
+    let mut operator = half_space(grid, operator.boundary());
+    let mut solver = Solver::with_precision(options.method, Precision::Double, &*operator);
+    let mut coarse = ContactState::new(grid.len());
+    let options =
+        SolverOptions { tolerance: options.tolerance.max(TOLERANCE), max_iterations: ITERATIONS, ..*options };
+    let problem = Problem { gap: &gap, ..*problem };
+    match solver.solve(&mut *operator, &problem, &options, &mut coarse, interrupt) {
+        Ok(outcome) => {
+            prolong(&grid, &coarse.pressure, &mut state.pressure);
+            Ok(outcome.convolutions as f64 / 4.0)
+        }
+        Err(Error::NotConverged(report)) => {
+            prolong(&grid, &coarse.pressure, &mut state.pressure);
+            Ok(report.iterations as f64 / 4.0)
+        }
+        Err(Error::Interrupted) => Err(Error::Interrupted),
+        Err(_) => Ok(0.0),
+    }
+}
+
+/// The grid of half as many cells along each side.
+fn coarser(grid: &Grid) -> Option<Grid> {
+    let [nx, ny] = grid.cells();
+    let fits = |n: usize| n % 2 == 0 && n / 2 >= FEWEST;
+    (fits(nx) && fits(ny)).then(|| Grid::new([nx / 2, ny / 2], grid.size()).ok()).flatten()
+}
+
+/// Mean gap of 2 x 2 cells; cells that cannot touch do not count, unless none of the four can.
+fn averaged(fine: &Grid, gap: &[f64]) -> Vec<f64> {
+    let [nx, ny] = fine.cells();
+    let mut coarse = vec![0.0; nx / 2 * (ny / 2)];
+    coarse.par_chunks_mut(ny / 2).zip(gap.par_chunks(2 * ny)).for_each(|(row, two)| {
+        let (first, second) = two.split_at(ny);
+        for ((h, a), b) in row.iter_mut().zip(first.chunks_exact(2)).zip(second.chunks_exact(2)) {
+            let four = [a[0], a[1], b[0], b[1]];
+            let finite = four.iter().filter(|h| h.is_finite());
+            let (sum, cells) = finite.fold((0.0, 0.0), |(sum, cells), h| (sum + h, cells + 1.0));
+            *h = if cells > 0.0 { sum / cells } else { f64::INFINITY };
+        }
+    });
+    coarse
+}
+
+/// Each cell has the pressure of the coarse one around it.
+fn prolong(coarse: &Grid, from: &[f64], to: &mut [f64]) {
+    let ny = coarse.cells()[1];
+    to.par_chunks_mut(2 * ny).enumerate().for_each(|(i, to)| {
+        let from = &from[i / 2 * ny..][..ny];
+        to.chunks_exact_mut(2).zip(from).for_each(|(two, p)| two.fill(*p));
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::{Method, Prescribed};
+    use crate::grid::Boundary;
+
+    /// Bumps of several lengths, one of them that of four cells; a corner cannot touch.
+    fn gap(grid: &Grid) -> Vec<f64> {
+        let [nx, ny] = grid.cells();
+        let mut gap: Vec<f64> = (0..nx * ny)
+            .map(|n| {
+                let (x, y) = (grid.x(n / ny), grid.y(n % ny));
+                let wave = |k: f64, a: f64| a * (1.0 - (k * x + 0.3).cos() * (k * y + 0.7).cos());
+                wave(6.0, 0.02) + wave(31.0, 3e-3) + wave(401.0, 2e-4)
+            })
+            .collect();
+        let least = gap.iter().copied().fold(f64::INFINITY, f64::min);
+        gap.iter_mut().for_each(|h| *h -= least);
+        gap[..nx * ny / 16].fill(f64::INFINITY);
+        gap
+    }
+
+    #[test]
+    fn coarser_grids_lead_to_the_same_contact_in_fewer_convolutions() {
+        for (cells, boundary) in [([256, 256], Boundary::Free), ([512, 128], Boundary::Periodic)] {
+            let grid = Grid::new(cells, [1.0, 1.0]).unwrap();
+            let gap = gap(&grid);
+            for (prescribed, hardness) in [
+                (Prescribed::Load(0.01), f64::INFINITY),
+                (Prescribed::Load(0.01), 0.1),
+                (Prescribed::Approach(0.02), f64::INFINITY),
+            ] {
+                let problem = Problem { gap: &gap, compliance: 1.0, hardness, prescribed };
+                let options = SolverOptions::default();
+                let mut operator = half_space(grid, boundary);
+                let mut solver = Solver::new(Method::ProjectedCg, &*operator);
+                let mut solved = |p: f64| {
+                    let mut state = ContactState::new(grid.len());
+                    state.pressure.fill(p);
+                    let outcome = solver.solve(&mut *operator, &problem, &options, &mut state, None).unwrap();
+                    (state, outcome)
+                };
+                let ((cold, fast), (uniform, slow)) = (solved(0.0), solved(0.01));
+                assert!(fast.convolutions <= slow.convolutions, "{fast:?} {slow:?}");
+                assert!(fast.iterations < slow.iterations, "{fast:?} {slow:?}");
+                // Each is within its own certificate of the solution, in the energy norm.
+                let (mut energy, mut off) = (0.0, 0.0);
+                for n in 0..grid.len() {
+                    energy += cold.pressure[n] * cold.unit_displacement[n];
+                    off += (cold.pressure[n] - uniform.pressure[n])
+                        * (cold.unit_displacement[n] - uniform.unit_displacement[n]);
+                }
+                assert!((off / energy).sqrt() <= fast.certificate + slow.certificate, "{off} {energy}");
+            }
+        }
+    }
+
+    #[test]
+    fn only_even_grids_of_some_size_have_a_coarser_one() {
+        let coarser = |cells| coarser(&Grid::new(cells, [1.0, 2.0]).unwrap()).map(|g| g.cells());
+        assert_eq!(coarser([128, 130]), Some([64, 65]));
+        assert_eq!(coarser([128, 129]), None);
+        assert_eq!(coarser([126, 256]), None);
+    }
+}

@@ -54,7 +54,8 @@ pub fn elastic<'py>(
     let solved = without_python(py, &interrupt, || {
         let mut operator = half_space(grid, boundary);
         let mut solver = Solver::new(options.method, &*operator);
-        let problem = Problem { gap: &cells, compliance: 1.0 / contact_modulus, hardness, prescribed };
+        let problem =
+            Problem { gap: &cells, compliance: 1.0 / contact_modulus, hardness: hardness.into(), prescribed };
         solver.solve(&mut *operator, &problem, &options, &mut state, Some(&interrupt))
     })?;
     let map = |values: Vec<f64>| {

@@ -178,7 +178,7 @@ fn creep(n: usize, precision: Precision, terms: usize, steps: usize) -> (Counts,
         let problem = Problem {
             gap: gap.as_slice().expect("C-order"),
             compliance: COMPLIANCE,
-            hardness: HARDNESS,
+            hardness: HARDNESS.into(),
             prescribed: Prescribed::Load(LOAD),
         };
         let mut solve =

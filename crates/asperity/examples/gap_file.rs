@@ -67,7 +67,7 @@ fn solve(
         let problem = Problem {
             gap: &heights,
             compliance: 1.0,
-            hardness: f64::INFINITY,
+            hardness: f64::INFINITY.into(),
             prescribed: Prescribed::Load(pressure),
         };
         let mut operator = half_space(grid, boundary);

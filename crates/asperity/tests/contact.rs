@@ -1,6 +1,6 @@
 //! The contact solver against closed forms, the slow truth, and itself.
 
-use asperity::contact::gauss_seidel;
+use asperity::contact::{Hardness, gauss_seidel};
 use asperity::operator::half_space;
 use asperity::{
     Boundary, ContactState, Error, Grid, Method, Outcome, Precision, Prescribed, Problem, Result, Solver,
@@ -56,8 +56,12 @@ fn hertz_sphere_converges_with_the_square_of_the_cell() {
     let mut errors = vec![];
     for n in [65, 129] {
         let (grid, h) = hertz(n);
-        let problem =
-            Problem { gap: &h, compliance: 1.0, hardness: f64::INFINITY, prescribed: Prescribed::Load(1.0) };
+        let problem = Problem {
+            gap: &h,
+            compliance: 1.0,
+            hardness: f64::INFINITY.into(),
+            prescribed: Prescribed::Load(1.0),
+        };
         for method in METHODS {
             let (state, outcome) = solve(grid, Boundary::Free, &problem, method, 1e-9).unwrap();
             let centre = state.pressure[grid.len() / 2];
@@ -85,7 +89,12 @@ fn convolutions_needed_stay_as_they_are() {
     let mut counts = vec![];
     for (h, hardness) in [(&sphere, f64::INFINITY), (&rough, f64::INFINITY), (&rough, 0.4)] {
         for method in METHODS {
-            let problem = Problem { gap: h, compliance: 1.0, hardness, prescribed: Prescribed::Load(1.0) };
+            let problem = Problem {
+                gap: h,
+                compliance: 1.0,
+                hardness: hardness.into(),
+                prescribed: Prescribed::Load(1.0),
+            };
             counts.push(solve(grid, Boundary::Free, &problem, method, 1e-6).unwrap().1.convolutions);
         }
     }
@@ -115,8 +124,12 @@ fn mixed_precision_meets_the_same_tolerance() {
                     Prescribed::Load(load) => Prescribed::Load(load * unit),
                     approach => approach,
                 };
-                let problem =
-                    Problem { gap: h, compliance: 1.0 / unit, hardness: hardness * unit, prescribed };
+                let problem = Problem {
+                    gap: h,
+                    compliance: 1.0 / unit,
+                    hardness: (hardness * unit).into(),
+                    prescribed,
+                };
                 let options = SolverOptions { tolerance, ..SolverOptions::default() };
                 let found = [Precision::Double, Precision::Mixed].map(|precision| {
                     let mut solver = Solver::with_precision(Method::ProjectedCg, precision, &*operator);
@@ -154,7 +167,12 @@ fn agrees_with_gauss_seidel_capped_or_not_free_or_periodic() {
     let h = gap(&grid, |x, y| 0.4 * bumps(7.0 * x, 9.0 * y) + 2.0);
     for boundary in [Boundary::Free, Boundary::Periodic] {
         for hardness in [f64::INFINITY, 1.5] {
-            let problem = Problem { gap: &h, compliance: 0.7, hardness, prescribed: Prescribed::Load(0.4) };
+            let problem = Problem {
+                gap: &h,
+                compliance: 0.7,
+                hardness: hardness.into(),
+                prescribed: Prescribed::Load(0.4),
+            };
             let exact = gauss_seidel(&mut *half_space(grid, boundary), &problem);
             for method in METHODS {
                 let (state, _) = solve(grid, boundary, &problem, method, 1e-11).unwrap();
@@ -169,14 +187,56 @@ fn agrees_with_gauss_seidel_capped_or_not_free_or_periodic() {
 }
 
 #[test]
+fn soft_cells_yield_first() {
+    let grid = Grid::new([12, 9], [1.2, 0.7]).unwrap();
+    let h = gap(&grid, |x, y| 0.4 * bumps(7.0 * x, 9.0 * y) + 2.0);
+    let even = vec![1.5; grid.len()];
+    let soft: Vec<f64> = (0..grid.len()).map(|n| if n % 5 == 0 { 0.3 } else { 2.0 }).collect();
+    for boundary in [Boundary::Free, Boundary::Periodic] {
+        let problem =
+            |hardness| Problem { gap: &h, compliance: 0.7, hardness, prescribed: Prescribed::Load(0.4) };
+        for method in METHODS {
+            // The same hardness in every cell is one hardness, to the bit.
+            let solve = |hardness| solve(grid, boundary, &problem(hardness), method, 1e-11).unwrap();
+            let (one, _) = solve(Hardness::Uniform(1.5));
+            let (each, _) = solve(Hardness::Cells(&even));
+            assert_eq!(one.pressure, each.pressure);
+
+            let exact = gauss_seidel(&mut *half_space(grid, boundary), &problem(Hardness::Cells(&soft)));
+            let (state, outcome) = solve(Hardness::Cells(&soft));
+            assert!(outcome.certificate < 1e-4);
+            assert!(state.pressure.iter().zip(&soft).any(|(p, h)| p == h && *h < 1.0));
+            for (p, e) in state.pressure.iter().zip(&exact.pressure) {
+                assert!((p - e).abs() < 1e-8, "{boundary:?} {method:?}: {p} against {e}");
+            }
+        }
+    }
+    let hard: f64 = soft.iter().sum::<f64>() * grid.cell_area();
+    let too_much = Problem {
+        gap: &h,
+        compliance: 0.7,
+        hardness: Hardness::Cells(&soft),
+        prescribed: Prescribed::Load(1.01 * hard),
+    };
+    match solve(grid, Boundary::Free, &too_much, Method::ProjectedCg, 1e-6) {
+        Err(Error::Infeasible { max, .. }) => assert!((max / hard - 1.0).abs() < 1e-12),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
 fn the_load_of_an_approach_gives_the_approach_back() {
     let grid = Grid::new([40, 33], [1.0, 1.0]).unwrap();
     let h = gap(&grid, |x, y| 0.1 * bumps(9.0 * x, 9.0 * y));
     for boundary in [Boundary::Free, Boundary::Periodic] {
         for hardness in [f64::INFINITY, 0.5] {
             for method in METHODS {
-                let problem =
-                    Problem { gap: &h, compliance: 1.0, hardness, prescribed: Prescribed::Load(0.1) };
+                let problem = Problem {
+                    gap: &h,
+                    compliance: 1.0,
+                    hardness: hardness.into(),
+                    prescribed: Prescribed::Load(0.1),
+                };
                 let (loaded, _) = solve(grid, boundary, &problem, method, 1e-10).unwrap();
                 let approach = Problem { prescribed: Prescribed::Approach(loaded.approach), ..problem };
                 let (pressed, _) = solve(grid, boundary, &approach, method, 1e-10).unwrap();
@@ -197,7 +257,7 @@ fn flat_on_flat_terminates() {
                 let problem = Problem {
                     gap: &h,
                     compliance: 1e-9,
-                    hardness: f64::INFINITY,
+                    hardness: f64::INFINITY.into(),
                     prescribed: Prescribed::Load(3.0),
                 };
                 let (state, _) = solve(grid, boundary, &problem, method, 1e-8).unwrap();
@@ -216,7 +276,12 @@ fn the_hardness_bounds_the_area_from_below() {
     // Polonsky-Keer is not tried near saturation (0.17: 94 % of the domain at the hardness).
     for (method, hardnesses) in [(METHODS[0], &[0.5, 0.3, 0.2, 0.17][..]), (METHODS[1], &[0.5, 0.3])] {
         for &hardness in hardnesses {
-            let problem = Problem { gap: &h, compliance: 1.0, hardness, prescribed: Prescribed::Load(1.0) };
+            let problem = Problem {
+                gap: &h,
+                compliance: 1.0,
+                hardness: hardness.into(),
+                prescribed: Prescribed::Load(1.0),
+            };
             let (state, _) = solve(grid, Boundary::Free, &problem, method, 1e-7)
                 .unwrap_or_else(|e| panic!("{method:?}, H = {hardness}: {e}"));
             let area = state.pressure.iter().filter(|p| **p > 0.0).count() as f64 * grid.cell_area();
@@ -230,7 +295,7 @@ fn the_hardness_bounds_the_area_from_below() {
 fn limits_of_the_load_are_told() {
     let (grid, h) = hertz(16);
     let problem =
-        |load| Problem { gap: &h, compliance: 1.0, hardness: 1.0, prescribed: Prescribed::Load(load) };
+        |load| Problem { gap: &h, compliance: 1.0, hardness: 1.0.into(), prescribed: Prescribed::Load(load) };
     let solve = |load| solve(grid, Boundary::Free, &problem(load), Method::ProjectedCg, 1e-6);
     assert!(matches!(solve(-1.0), Err(Error::Invalid { .. })));
     assert!(matches!(solve(f64::NAN), Err(Error::Invalid { .. })));
@@ -256,7 +321,7 @@ fn a_closed_periodic_gap_leaves_the_load_undetermined() {
         let problem = Problem {
             gap: &h,
             compliance: 1.0,
-            hardness: f64::INFINITY,
+            hardness: f64::INFINITY.into(),
             prescribed: Prescribed::Approach(w),
         };
         solve(grid, Boundary::Periodic, &problem, Method::ProjectedCg, 1e-8)
@@ -268,8 +333,12 @@ fn a_closed_periodic_gap_leaves_the_load_undetermined() {
 #[test]
 fn a_solve_that_is_cut_short_says_how_far_it_came() {
     let (grid, h) = hertz(64);
-    let problem =
-        Problem { gap: &h, compliance: 1.0, hardness: f64::INFINITY, prescribed: Prescribed::Load(1.0) };
+    let problem = Problem {
+        gap: &h,
+        compliance: 1.0,
+        hardness: f64::INFINITY.into(),
+        prescribed: Prescribed::Load(1.0),
+    };
     let mut operator = half_space(grid, Boundary::Free);
     for method in METHODS {
         let mut state = ContactState::new(grid.len());
@@ -295,7 +364,12 @@ fn the_certificate_bounds_the_error() {
         gap(&grid, |x, y| 0.05 * bumps(5.0 * x, 5.0 * y)).iter().zip(&h).map(|(a, b)| a + b).collect();
     let mut operator = half_space(grid, Boundary::Free);
     for hardness in [f64::INFINITY, 0.9] {
-        let problem = Problem { gap: &rough, compliance: 1.0, hardness, prescribed: Prescribed::Load(1.0) };
+        let problem = Problem {
+            gap: &rough,
+            compliance: 1.0,
+            hardness: hardness.into(),
+            prescribed: Prescribed::Load(1.0),
+        };
         let (exact, _) = solve(grid, Boundary::Free, &problem, Method::ProjectedCg, 1e-12).unwrap();
         for tolerance in [1e-1, 1e-2, 1e-4, 1e-6] {
             let (state, outcome) =
@@ -316,10 +390,12 @@ fn the_certificate_bounds_the_error() {
 fn scaling_symmetry_and_periodic_shifts_hold() {
     let grid = Grid::new([24, 30], [1.0, 1.25]).unwrap();
     let h = gap(&grid, |x, y| 0.05 * bumps(9.0 * x, 9.0 * y));
-    let problem = Problem { gap: &h, compliance: 1.0, hardness: 0.8, prescribed: Prescribed::Load(0.2) };
+    let problem =
+        Problem { gap: &h, compliance: 1.0, hardness: 0.8.into(), prescribed: Prescribed::Load(0.2) };
     let (base, _) = solve(grid, Boundary::Free, &problem, Method::ProjectedCg, 1e-10).unwrap();
     // Modulus, load and hardness times 8: pressure times 8, same approach.
-    let stiff = Problem { compliance: 0.125, hardness: 6.4, prescribed: Prescribed::Load(1.6), ..problem };
+    let stiff =
+        Problem { compliance: 0.125, hardness: 6.4.into(), prescribed: Prescribed::Load(1.6), ..problem };
     let (scaled, _) = solve(grid, Boundary::Free, &stiff, Method::ProjectedCg, 1e-10).unwrap();
     assert!((scaled.approach / base.approach - 1.0).abs() < 1e-12);
     assert!(scaled.pressure.iter().zip(&base.pressure).all(|(s, b)| (s - 8.0 * b).abs() < 1e-9));
@@ -350,7 +426,7 @@ proptest! {
         heights in prop::collection::vec(-1.0f64..1.0, 400),
         roughness in 1e-6f64..1e3,
         share in 1e-4f64..0.999,
-        capped in any::<bool>(), periodic in any::<bool>(), masked in any::<bool>(), by_load in any::<bool>(), mixed in any::<bool>(),
+        capped in 0usize..3, periodic in any::<bool>(), masked in any::<bool>(), by_load in any::<bool>(), mixed in any::<bool>(),
     ) {
         let grid = Grid::new([nx, ny], [nx as f64, ny as f64 * 1.3]).unwrap();
         let boundary = if periodic { Boundary::Periodic } else { Boundary::Free };
@@ -359,8 +435,11 @@ proptest! {
             h.iter_mut().step_by(3).for_each(|v| *v = f64::INFINITY);
         }
         let touchable = h.iter().filter(|v| v.is_finite()).count() as f64;
-        let hardness = if capped { 1.0 } else { f64::INFINITY };
-        let load = share * touchable * grid.cell_area();
+        // One hardness, none, or one for each cell, over a factor of 25.
+        let of_cells: Vec<f64> = heights[..grid.len()].iter().map(|v| 0.2 + 2.4 * (1.0 + v)).collect();
+        let hardness = [f64::INFINITY.into(), 1.0.into(), Hardness::Cells(&of_cells)][capped];
+        let most = (0..grid.len()).filter(|n| h[*n].is_finite()).map(|n| hardness.at(n).min(1e3)).sum::<f64>();
+        let load = share * if capped == 0 { touchable } else { most } * grid.cell_area();
         let lowest = h.iter().copied().fold(f64::INFINITY, f64::min);
         let mean = h.iter().filter(|v| v.is_finite()).sum::<f64>() / touchable;
         let prescribed = if by_load { Prescribed::Load(load) } else { Prescribed::Approach(lowest + share * (mean - lowest)) };
@@ -374,7 +453,7 @@ proptest! {
             .solve(&mut *operator, &problem, &options, &mut state, None)
             .unwrap_or_else(|e| panic!("{e}: {precision:?} {problem:?}"));
         prop_assert!(outcome.convolutions < 400, "{} convolutions", outcome.convolutions);
-        prop_assert!(state.pressure.iter().all(|p| (0.0..=hardness).contains(p)));
+        prop_assert!(state.pressure.iter().enumerate().all(|(n, p)| (0.0..=hardness.at(n)).contains(p)));
         if by_load {
             let sum = state.pressure.iter().sum::<f64>() * grid.cell_area();
             prop_assert!((sum / load - 1.0).abs() < 1e-12, "load {}", sum / load);

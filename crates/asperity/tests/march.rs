@@ -74,7 +74,7 @@ fn elastic(simulation: &Simulation, compliance: f64, prescribed: Prescribed) -> 
     let problem = Problem {
         gap: simulation.gap.as_slice().unwrap(),
         compliance,
-        hardness: simulation.hardness,
+        hardness: simulation.hardness.into(),
         prescribed,
     };
     let outcome = Solver::new(Method::ProjectedCg, &*operator)
@@ -359,4 +359,32 @@ fn constant_load_never_lets_the_area_shrink() {
     let after: Vec<f64> = rows.iter().filter(|r| r.time > 1.0).map(|r| r.contact_area).collect();
     assert!(after.windows(2).all(|a| a[1] >= a[0] - 1e-15), "{after:?}");
     assert!(after.last() > after.first());
+}
+
+#[test]
+fn a_soft_half_carries_its_hardness() {
+    let base = Simulation {
+        loading: Loading { control: Control::Load, history: History::Step { value: 0.5 } },
+        hardness: 1.5,
+        ..rough([48, 48])
+    };
+    // The lesser of both holds: 0.7 in one half, 1.5 in the other.
+    let map = Array2::from_shape_fn((48, 48), |(i, _)| if i < 24 { 0.7 } else { 9.0 });
+    let (rows, pressure) = run(Simulation { hardness_map: Some(map.clone()), ..base.clone() });
+    let at = |hardness: f64| {
+        pressure.indexed_iter().filter(|((i, _), p)| (*i < 24) == (hardness < 1.0) && **p == hardness).count()
+    };
+    assert!(at(0.7) > 0 && at(1.5) > 0);
+    assert!(pressure.indexed_iter().all(|((i, _), p)| *p <= if i < 24 { 1.0 } else { 4.0 }));
+    let last = rows.last().unwrap();
+    assert_eq!(last.capped_area, (at(0.7) + at(1.5)) as f64 * base.grid.cell_area());
+
+    let wrong = |map: Array2<f64>| match March::new(Simulation { hardness_map: Some(map), ..base.clone() }) {
+        Err(error) => error.to_string(),
+        Ok(_) => panic!("accepted"),
+    };
+    assert!(wrong(Array2::ones((48, 47))).contains("(48, 47)"));
+    let mut bad = map;
+    bad[(3, 5)] = -1.0;
+    assert!(wrong(bad).contains("hardness of cell (3, 5)"));
 }

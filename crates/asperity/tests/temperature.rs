@@ -70,7 +70,7 @@ fn elastic(simulation: &Simulation, compliance: f64, load: f64) -> f64 {
     let problem = Problem {
         gap: simulation.gap.as_slice().unwrap(),
         compliance,
-        hardness: simulation.hardness,
+        hardness: simulation.hardness.into(),
         prescribed: Prescribed::Load(load),
     };
     Solver::new(Method::ProjectedCg, &*operator)

@@ -134,7 +134,7 @@ fn elastic(case: &Case, reader: &Reader, compliance: f64) -> Result<[f64; 2]> {
     let mut operator = half_space(grid, case.boundary);
     let mut solver = Solver::new(Method::PolonskyKeer, operator.as_ref());
     let problem =
-        Problem { gap: &gap, compliance, hardness: case.hardness, prescribed: Prescribed::Load(0.5) };
+        Problem { gap: &gap, compliance, hardness: case.hardness.into(), prescribed: Prescribed::Load(0.5) };
     let mut state = ContactState::new(grid.len());
     solver.solve(operator.as_mut(), &problem, &case.solver, &mut state, None)?;
     let touching = state.pressure.iter().filter(|p| **p > 0.0).count() as f64;

@@ -8,7 +8,7 @@ use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
 
-use super::{ContactState, Precision, Problem, Solver, SolverOptions};
+use super::{ContactState, Hardness, Precision, Problem, Solver, SolverOptions};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::operator::{Operator, half_space};
@@ -36,12 +36,17 @@ pub(super) fn start(
         return Ok(0.0);
     };
     let gap = averaged(operator.grid(), problem.gap);
+    let of_cells = match problem.hardness {
+        Hardness::Cells(cells) => Some(averaged(operator.grid(), cells)),
+        Hardness::Uniform(_) => None,
+    };
+    let hardness = of_cells.as_deref().map_or(problem.hardness, Hardness::Cells);
     let mut operator = half_space(grid, operator.boundary());
     let mut solver = Solver::with_precision(options.method, Precision::Double, &*operator);
     let mut coarse = ContactState::new(grid.len());
     let options =
         SolverOptions { tolerance: options.tolerance.max(TOLERANCE), max_iterations: ITERATIONS, ..*options };
-    let problem = Problem { gap: &gap, ..*problem };
+    let problem = Problem { gap: &gap, hardness, ..*problem };
     match solver.solve(&mut *operator, &problem, &options, &mut coarse, interrupt) {
         Ok(outcome) => {
             prolong(&grid, &coarse.pressure, &mut state.pressure);
@@ -63,7 +68,7 @@ fn coarser(grid: &Grid) -> Option<Grid> {
     (fits(nx) && fits(ny)).then(|| Grid::new([nx / 2, ny / 2], grid.size()).ok()).flatten()
 }
 
-/// Mean gap of 2 x 2 cells; cells that cannot touch do not count, unless none of the four can.
+/// Mean of 2 x 2 cells; infinite ones do not count, unless all four are.
 fn averaged(fine: &Grid, gap: &[f64]) -> Vec<f64> {
     let [nx, ny] = fine.cells();
     let mut coarse = vec![0.0; nx / 2 * (ny / 2)];
@@ -120,7 +125,7 @@ mod tests {
                 (Prescribed::Load(0.01), 0.1),
                 (Prescribed::Approach(0.02), f64::INFINITY),
             ] {
-                let problem = Problem { gap: &gap, compliance: 1.0, hardness, prescribed };
+                let problem = Problem { gap: &gap, compliance: 1.0, hardness: hardness.into(), prescribed };
                 let options = SolverOptions::default();
                 let mut operator = half_space(grid, boundary);
                 let mut solver = Solver::new(Method::ProjectedCg, &*operator);

@@ -7,7 +7,7 @@
 use asperity_convolution::eights::{Eight, Mask, Work, vectorize};
 
 use super::shift::ClippedSum;
-use super::{ContactState, Problem};
+use super::{ContactState, Hardness, Problem};
 use crate::field::{Set, SetMut, sweep};
 
 /// Subtracts `mean` from the residual on S.
@@ -120,25 +120,24 @@ impl Ahead {
 /// The trial point on its way.
 struct Looking<V> {
     length: V,
-    hardness: V,
     sums: [V; 4],
 }
 
 impl<V: Eight> Looking<V> {
     #[inline(always)]
-    fn new(length: f64, hardness: f64) -> Self {
-        Looking { length: V::splat(length), hardness: V::splat(hardness), sums: [V::splat(0.0); 4] }
+    fn new(length: f64) -> Self {
+        Looking { length: V::splat(length), sums: [V::splat(0.0); 4] }
     }
 
     #[inline(always)]
-    fn meet(&mut self, p: V, d: V, on: V::Mask) {
+    fn meet(&mut self, p: V, d: V, hardness: V, on: V::Mask) {
         let y = p - self.length * d;
         let [pressure, sum, slope, outside] = self.sums;
-        let out = (y.less(V::splat(0.0)) | self.hardness.less(y)) & on;
-        let inside = V::splat(0.0).less(y) & y.less(self.hardness) & on;
+        let out = (y.less(V::splat(0.0)) | hardness.less(y)) & on;
+        let inside = V::splat(0.0).less(y) & y.less(hardness) & on;
         self.sums = [
             pressure + p.only(on),
-            sum + y.clip(self.hardness).only(on),
+            sum + y.clip(hardness).only(on),
             slope + V::count(inside),
             outside + V::count(out),
         ];
@@ -152,18 +151,18 @@ pub(super) fn turn(
     z: &[f32],
     (set, before): (&[u8], &[u8]),
     p: &[f64],
-    hardness: f64,
+    hardness: Hardness,
     turn: Turn,
 ) -> Ahead {
-    Ahead::of(sweep((d, z, Set(set), Set(before), p), &|(d, z, Set(set), Set(before), p): (
+    let cells = (d, z, Set(set), Set(before), p, hardness);
+    Ahead::of(sweep(cells, &|(d, z, Set(set), Set(before), p, hardness): (
         &mut [f32],
         &[f32],
         Set,
         Set,
         &[f64],
-    )| {
-        vectorize(Turning { d, z, set, before, p, hardness, turn })
-    }))
+        Hardness,
+    )| { vectorize(Turning { d, z, set, before, p, hardness, turn }) }))
 }
 
 struct Turning<'a> {
@@ -172,7 +171,7 @@ struct Turning<'a> {
     set: &'a [u8],
     before: &'a [u8],
     p: &'a [f64],
-    hardness: f64,
+    hardness: Hardness<'a>,
     turn: Turn,
 }
 
@@ -182,7 +181,7 @@ impl Work for Turning<'_> {
     #[inline(always)]
     fn run<V: Eight>(self) -> [f64; 4] {
         let (mean, beta) = (V::splat(self.turn.mean), V::splat(self.turn.beta));
-        let mut looking = Looking::<V>::new(self.turn.length, self.hardness);
+        let mut looking = Looking::<V>::new(self.turn.length);
         for ((n, set), before) in (0..).step_by(8).zip(self.set).zip(self.before) {
             if *set == 0 {
                 if *before != 0 {
@@ -195,7 +194,7 @@ impl Work for Turning<'_> {
             d.only(on).store(self.d, n);
             // As it was rounded: later sweeps take the step from the stored direction.
             let d = V::from_singles(d.only(on).to_singles());
-            looking.meet(V::load(self.p, n, 0.0), d, on);
+            looking.meet(V::load(self.p, n, 0.0), d, self.hardness.eight(n), on);
         }
         looking.sums.map(V::sum)
     }
@@ -212,10 +211,20 @@ pub(super) fn steepest(
     (d, r, set): (&mut [f32], &mut [f32], &mut [u8]),
 ) -> Ahead {
     Ahead::of(sweep(
-        ((d, r, SetMut(set)), &state.pressure[..], &state.unit_displacement[..], problem.gap),
-        &|((d, r, SetMut(set)), p, u, h): ((&mut [f32], &mut [f32], SetMut), &[f64], &[f64], &[f64])| {
-            vectorize(Steepest { problem, w, scale, length, d, r, set, p, u, h })
-        },
+        (
+            (d, r, SetMut(set)),
+            &state.pressure[..],
+            &state.unit_displacement[..],
+            problem.gap,
+            problem.hardness,
+        ),
+        &|((d, r, SetMut(set)), p, u, h, hardness): (
+            (&mut [f32], &mut [f32], SetMut),
+            &[f64],
+            &[f64],
+            &[f64],
+            Hardness,
+        )| { vectorize(Steepest { problem, w, scale, length, d, r, set, p, u, h, hardness }) },
     ))
 }
 
@@ -230,6 +239,7 @@ struct Steepest<'a> {
     p: &'a [f64],
     u: &'a [f64],
     h: &'a [f64],
+    hardness: Hardness<'a>,
 }
 
 impl Work for Steepest<'_> {
@@ -237,7 +247,7 @@ impl Work for Steepest<'_> {
 
     #[inline(always)]
     fn run<V: Eight>(self) -> [f64; 4] {
-        let mut looking = Looking::<V>::new(self.length, self.problem.hardness);
+        let mut looking = Looking::<V>::new(self.length);
         let (c, w, per) = (V::splat(self.problem.compliance), V::splat(self.w), V::splat(1.0 / self.scale));
         for (n, set) in (0..).step_by(8).zip(self.set) {
             let h = V::load(self.h, n, f64::INFINITY);
@@ -246,7 +256,7 @@ impl Work for Steepest<'_> {
             V::from_singles(r).store(self.d, n);
             V::from_singles(r).store(self.r, n);
             *set = on.bits();
-            looking.meet(V::load(self.p, n, 0.0), V::from_singles(r), on);
+            looking.meet(V::load(self.p, n, 0.0), V::from_singles(r), self.hardness.eight(n), on);
         }
         looking.sums.map(V::sum)
     }

@@ -72,7 +72,7 @@ fn relax(matrix: &Array2<f64>, problem: &Problem, w: f64, state: &mut ContactSta
             }
             let u: f64 = matrix.row(i).iter().zip(p.iter()).map(|(k, p)| k * p).sum();
             let r = problem.compliance * u + problem.gap[i] - w;
-            let new = (p[i] - r / (problem.compliance * matrix[(i, i)])).clamp(0.0, problem.hardness);
+            let new = (p[i] - r / (problem.compliance * matrix[(i, i)])).clamp(0.0, problem.hardness.at(i));
             change = change.max((new - p[i]).abs());
             largest = largest.max(new);
             p[i] = new;

@@ -13,6 +13,7 @@
 mod coarse;
 mod direction;
 mod gauss_seidel;
+mod hardness;
 mod motion;
 mod polonsky_keer;
 mod projected_cg;
@@ -22,6 +23,7 @@ mod start;
 mod state;
 
 pub use gauss_seidel::gauss_seidel;
+pub use hardness::Hardness;
 pub use polonsky_keer::PolonskyKeer;
 pub use projected_cg::{ProjectedCg, Scalar};
 pub use state::ContactState;
@@ -29,7 +31,7 @@ pub use state::ContactState;
 use std::sync::atomic::AtomicBool;
 
 use crate::error::{Error, NotConverged, Result};
-use crate::field::{Max, minimum, strands, sum, sweep};
+use crate::field::{Max, sum, sweep};
 use crate::grid::Boundary;
 use crate::operator::Operator;
 
@@ -40,8 +42,8 @@ pub struct Problem<'a> {
     pub gap: &'a [f64],
     /// Compliance c = 1/E* \[1/Pa\].
     pub compliance: f64,
-    /// Cut-off H of the pressure \[Pa\]; infinite for none.
-    pub hardness: f64,
+    /// Cut-off H of the pressure.
+    pub hardness: Hardness<'a>,
     /// What is given.
     pub prescribed: Prescribed,
 }
@@ -207,9 +209,7 @@ fn trivial(
     problem: &Problem,
     state: &mut ContactState,
 ) -> Result<Option<Outcome>> {
-    let first_touch = minimum(problem.gap);
-    let touchable =
-        sweep(problem.gap, &|h: &[f64]| strands(h.len(), |i| [f64::from(u8::from(h[i] < f64::INFINITY))]))[0];
+    let (first_touch, touchable, most) = problem.limits();
     match problem.prescribed {
         Prescribed::Load(load) => {
             if !(load >= 0.0 && load.is_finite()) {
@@ -219,13 +219,15 @@ fn trivial(
                 state.lift_off(first_touch);
                 return Ok(Some(Outcome::default()));
             }
-            let max = problem.hardness * operator.grid().cell_area() * touchable;
+            let max = most * operator.grid().cell_area();
             if load > max * (1.0 + 1e-12) || touchable == 0.0 {
                 return Err(Error::Infeasible { load, max });
             }
             if load >= max * (1.0 - 1e-12) {
-                let at_bound = |h: f64| if h < f64::INFINITY { problem.hardness } else { 0.0 };
-                state.pressure.iter_mut().zip(problem.gap).for_each(|(p, h)| *p = at_bound(*h));
+                let at_bound =
+                    |n: usize, h: f64| if h < f64::INFINITY { problem.hardness.at(n) } else { 0.0 };
+                let cells = state.pressure.iter_mut().zip(problem.gap).enumerate();
+                cells.for_each(|(n, (p, h))| *p = at_bound(n, *h));
                 operator.apply_into(&state.pressure, &mut state.unit_displacement);
                 state.approach =
                     sweep((problem.gap, &state.unit_displacement[..]), &|(h, u): (&[f64], &[f64])| {

@@ -8,7 +8,7 @@ use asperity_convolution::eights::{Cell, Eight, Mask, Work, vectorize};
 
 use super::residual::{Gauge, Rating};
 use super::shift::{Mover, Shift, Trial};
-use super::{ContactState, Problem};
+use super::{ContactState, Hardness, Problem};
 use crate::field::{Min, Set, SetMut, sweep};
 
 /// What laying out a step finds. "Inside" are the cells of the set that the full step leaves between the bounds: there
@@ -42,16 +42,24 @@ pub(super) fn lay_out<T: Cell>(
     laid: &mut [u8],
     inside: &mut [u8],
 ) -> Layout {
-    let (length, hardness) = (trial.length, trial.hardness);
+    let length = trial.length;
     let unit = power_of_two(length);
     let ([slope, sum, cells], Min(reach)) = sweep(
-        ((step, SetMut(laid), SetMut(inside)), trial.pressure, trial.direction, residual, Set(trial.set)),
-        &|((s, SetMut(laid), SetMut(inside)), p, d, r, Set(set)): (
+        (
+            (step, SetMut(laid), SetMut(inside)),
+            trial.pressure,
+            trial.direction,
+            residual,
+            Set(trial.set),
+            trial.hardness,
+        ),
+        &|((s, SetMut(laid), SetMut(inside)), p, d, r, Set(set), hardness): (
             (&mut [T], SetMut, SetMut),
             &[f64],
             Option<&[f32]>,
             &[f32],
             Set,
+            Hardness,
         )| {
             let d = d.unwrap_or_default();
             vectorize(LayOut { s, laid, inside, p, d, r, set, length, shift, hardness, per: 1.0 / unit })
@@ -70,7 +78,7 @@ struct LayOut<'a, T> {
     set: &'a [u8],
     length: f64,
     shift: Shift,
-    hardness: f64,
+    hardness: Hardness<'a>,
     per: f64,
 }
 
@@ -79,8 +87,8 @@ impl<T: Cell> Work for LayOut<'_, T> {
 
     #[inline(always)]
     fn run<V: Eight>(self) -> ([f64; 3], Min) {
-        let mover = Mover::<V>::new(self.length, self.shift, self.hardness);
-        let (zero, hardness, per) = (V::splat(0.0), V::splat(self.hardness), V::splat(self.per));
+        let mover = Mover::<V>::new(self.length, self.shift);
+        let (zero, per) = (V::splat(0.0), V::splat(self.per));
         let [mut slope, mut sum, mut cells] = [zero; 3];
         let far = V::splat(f64::INFINITY);
         let mut reach = far;
@@ -96,11 +104,12 @@ impl<T: Cell> Work for LayOut<'_, T> {
             let on = V::Mask::from_bits(*set);
             let p = V::load(self.p, n, 0.0);
             let r = V::load(self.r, n, 0.0);
-            let q = mover.target(p, V::load(self.d, n, 0.0));
+            let hardness: V = self.hardness.eight(n);
+            let q = mover.target(p, V::load(self.d, n, 0.0), hardness);
             let s = (q - p).only(on);
             (s * per).store(self.s, n);
             slope = slope + r * s;
-            let stays = mover.inside(q) & on;
+            let stays = Mover::inside(q, hardness) & on;
             *inside = stays.bits();
             sum = sum + r.only(stays);
             cells = cells + V::count(stays);
@@ -179,11 +188,13 @@ pub(super) fn advance<T: Cell>(
             (&mut state.pressure[..], &mut state.unit_displacement[..], residual, SetMut(set)),
             problem.gap,
             fields,
+            problem.hardness,
         ),
-        &|((p, u, r, SetMut(set)), h, motion): (
+        &|((p, u, r, SetMut(set)), h, motion, hardness): (
             (&mut [f64], &mut [f64], &mut [f32], SetMut),
             &[f64],
             Option<(&[f32], Set, &[T])>,
+            Hardness,
         )| {
             let motion = motion.map(|(direction, Set(set), image)| Motion {
                 t,
@@ -194,7 +205,7 @@ pub(super) fn advance<T: Cell>(
                 set,
                 image,
             });
-            vectorize(Advance { problem, motion, w, scale, p, u, r, set, h })
+            vectorize(Advance { problem, motion, w, scale, p, u, r, set, h, hardness })
         },
     )
 }
@@ -209,22 +220,22 @@ struct Advance<'a, T> {
     r: &'a mut [f32],
     set: &'a mut [u8],
     h: &'a [f64],
+    hardness: Hardness<'a>,
 }
 
 impl<T: Cell> Advance<'_, T> {
     /// The new p and U of eight cells.
     #[inline(always)]
-    fn moved<V: Eight>(&self, motion: &Motion<T>, mover: &Mover<V>, n: usize) -> (V, V) {
-        let hardness = self.problem.hardness;
-        let (zero, t, top) = (V::splat(0.0), V::splat(motion.t), V::splat(hardness));
+    fn moved<V: Eight>(&self, motion: &Motion<T>, mover: &Mover<V>, n: usize, top: V) -> (V, V) {
+        let (zero, t) = (V::splat(0.0), V::splat(motion.t));
         let far = V::splat(motion.t * motion.unit);
         let p = V::load(self.p, n, 0.0);
         let on = V::Mask::from_bits(motion.set[n / 8]);
-        let s = (mover.target(p, V::load(motion.direction, n, 0.0)) - p).only(on);
+        let s = (mover.target(p, V::load(motion.direction, n, 0.0), top) - p).only(on);
         let new = p + t * s;
         let floor = V::splat(4.0 * f64::EPSILON) * p;
         let new = V::select(s.less(zero) & new.at_most(floor), zero, new);
-        let below = new.less(V::splat(hardness * (1.0 - 4.0 * f64::EPSILON)));
+        let below = new.less(top * V::splat(1.0 - 4.0 * f64::EPSILON));
         (V::select(below, new, top), V::load(self.u, n, 0.0) + far * V::load(motion.image, n, 0.0))
     }
 }
@@ -236,11 +247,12 @@ impl<T: Cell> Work for Advance<'_, T> {
     fn run<V: Eight>(self) -> Rating {
         let mut gauge = Gauge::<V>::new(self.problem, self.w);
         let per = V::splat(1.0 / self.scale);
-        let mover = self.motion.as_ref().map(|m| Mover::<V>::new(m.length, m.shift, self.problem.hardness));
+        let mover = self.motion.as_ref().map(|m| Mover::<V>::new(m.length, m.shift));
         for n in (0..self.p.len()).step_by(8) {
+            let top = self.hardness.eight(n);
             let (p, u) = match (&self.motion, &mover) {
                 (Some(motion), Some(mover)) => {
-                    let (p, u) = self.moved(motion, mover, n);
+                    let (p, u) = self.moved(motion, mover, n, top);
                     if motion.set[n / 8] != 0 {
                         p.store(self.p, n);
                     }
@@ -249,7 +261,7 @@ impl<T: Cell> Work for Advance<'_, T> {
                 }
                 _ => (V::load(self.p, n, 0.0), V::load(self.u, n, 0.0)),
             };
-            let (r, works) = gauge.meet(p, u, V::load(self.h, n, f64::INFINITY));
+            let (r, works) = gauge.meet(p, u, V::load(self.h, n, f64::INFINITY), top);
             let works_before = std::mem::replace(&mut self.set[n / 8], works.bits());
             if works_before | works.bits() != 0 {
                 (r * per).only(works).store(self.r, n);

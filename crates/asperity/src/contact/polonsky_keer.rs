@@ -11,7 +11,9 @@ use std::sync::atomic::AtomicBool;
 use super::residual::Rating;
 use super::shift::clip;
 use super::start::{make_feasible, set_load};
-use super::{ContactState, Outcome, Prescribed, Problem, SolverOptions, interrupted, not_converged};
+use super::{
+    ContactState, Hardness, Outcome, Prescribed, Problem, SolverOptions, interrupted, not_converged,
+};
 use crate::error::{Error, Result};
 use crate::field::{strands, sweep};
 use crate::grid::Grid;
@@ -117,11 +119,18 @@ impl PolonskyKeer {
 
     /// r on D = {0 < p < H} (with `all`, on the cells to be released too), 0 elsewhere; returns G = <r, r>.
     fn residual_on_free(&mut self, problem: &Problem, state: &ContactState, w: f64, all: bool) -> f64 {
-        let (c, hardness) = (problem.compliance, problem.hardness);
+        let c = problem.compliance;
         sweep(
-            (&mut self.residual[..], &state.pressure[..], &state.unit_displacement[..], problem.gap),
-            &|(r, p, u, h): (&mut [f64], &[f64], &[f64], &[f64])| {
+            (
+                &mut self.residual[..],
+                &state.pressure[..],
+                &state.unit_displacement[..],
+                problem.gap,
+                problem.hardness,
+            ),
+            &|(r, p, u, h, hardness): (&mut [f64], &[f64], &[f64], &[f64], Hardness)| {
                 strands(r.len(), |i| {
+                    let hardness = hardness.at(i);
                     let gap = c * u[i] + h[i] - w;
                     let free = p[i] > 0.0 && p[i] < hardness;
                     r[i] = if free || (all && released(p[i], gap, hardness)) { gap } else { 0.0 };
@@ -135,12 +144,12 @@ impl PolonskyKeer {
     fn turn(&mut self, problem: &Problem, state: &ContactState, beta: f64, all: bool) {
         let hardness = problem.hardness;
         // With `all`, the residual itself tells which cells may move.
-        let moves = |p: f64, r: f64| (p > 0.0 && p < hardness) || (all && r != 0.0);
+        let moves = |p: f64, r: f64, hardness: f64| (p > 0.0 && p < hardness) || (all && r != 0.0);
         let [sum, cells] = sweep(
-            (&mut self.direction[..], &self.residual[..], &state.pressure[..]),
-            &|(d, r, p): (&mut [f64], &[f64], &[f64])| {
+            (&mut self.direction[..], &self.residual[..], &state.pressure[..], hardness),
+            &|(d, r, p, hardness): (&mut [f64], &[f64], &[f64], Hardness)| {
                 strands(d.len(), |i| {
-                    let moves = moves(p[i], r[i]);
+                    let moves = moves(p[i], r[i], hardness.at(i));
                     d[i] = if moves { r[i] + beta * d[i] } else { 0.0 };
                     [d[i], f64::from(u8::from(moves))]
                 })
@@ -148,15 +157,14 @@ impl PolonskyKeer {
         );
         if cells > 0.0 && matches!(problem.prescribed, Prescribed::Load(_)) {
             let mean = sum / cells;
-            sweep((&mut self.direction[..], &self.residual[..], &state.pressure[..]), &|(d, r, p): (
-                &mut [f64],
-                &[f64],
-                &[f64],
-            )| {
-                for i in 0..d.len() {
-                    d[i] -= if moves(p[i], r[i]) { mean } else { 0.0 };
-                }
-            });
+            sweep(
+                (&mut self.direction[..], &self.residual[..], &state.pressure[..], hardness),
+                &|(d, r, p, hardness): (&mut [f64], &[f64], &[f64], Hardness)| {
+                    for i in 0..d.len() {
+                        d[i] -= if moves(p[i], r[i], hardness.at(i)) { mean } else { 0.0 };
+                    }
+                },
+            );
         }
     }
 
@@ -174,11 +182,18 @@ impl PolonskyKeer {
     /// p <- clip(p - a d); cells that must leave their bound move by `release` r besides. True where the
     /// set changed.
     fn step(&self, problem: &Problem, state: &mut ContactState, w: f64, length: f64, release: f64) -> bool {
-        let (c, hardness) = (problem.compliance, problem.hardness);
+        let c = problem.compliance;
         let [changes] = sweep(
-            (&mut state.pressure[..], &self.direction[..], &state.unit_displacement[..], problem.gap),
-            &|(p, d, u, h): (&mut [f64], &[f64], &[f64], &[f64])| {
+            (
+                &mut state.pressure[..],
+                &self.direction[..],
+                &state.unit_displacement[..],
+                problem.gap,
+                problem.hardness,
+            ),
+            &|(p, d, u, h, hardness): (&mut [f64], &[f64], &[f64], &[f64], Hardness)| {
                 strands(p.len(), |i| {
+                    let hardness = hardness.at(i);
                     let r = c * u[i] + h[i] - w;
                     let released = released(p[i], r, hardness);
                     let new = p[i] - length * d[i] - if released { release * r } else { 0.0 };

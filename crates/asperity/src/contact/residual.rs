@@ -10,7 +10,7 @@
 
 use asperity_convolution::eights::{Eight, Work, vectorize};
 
-use super::{ContactState, Outcome, Prescribed, Problem};
+use super::{ContactState, Hardness, Outcome, Prescribed, Problem};
 use crate::field::{Max, Merge, Min, sweep};
 use crate::grid::Grid;
 
@@ -67,7 +67,6 @@ impl Merge for Rating {
 /// The rating of a sweep on its way, one strand for each of eight cells.
 pub(super) struct Gauge<V> {
     compliance: V,
-    hardness: V,
     w: V,
     guess: f64,
     free: [V; 2],
@@ -87,7 +86,6 @@ impl<V: Eight> Gauge<V> {
         let [zero, up, down] = [0.0, f64::INFINITY, f64::NEG_INFINITY].map(V::splat);
         Gauge {
             compliance: V::splat(problem.compliance),
-            hardness: V::splat(problem.hardness),
             w: V::splat(w),
             guess: w,
             free: [zero; 2],
@@ -102,13 +100,13 @@ impl<V: Eight> Gauge<V> {
         }
     }
 
-    /// Takes in eight cells; returns r and S.
+    /// Takes in eight cells, the last their H; returns r and S.
     #[inline(always)]
-    pub(super) fn meet(&mut self, p: V, u: V, h: V) -> (V, V::Mask) {
+    pub(super) fn meet(&mut self, p: V, u: V, h: V, hardness: V) -> (V, V::Mask) {
         let zero = V::splat(0.0);
         let r = self.compliance * u + h - self.w;
         let touches = zero.less(p);
-        let below = p.less(self.hardness);
+        let below = p.less(hardness);
         let free = touches & below;
         // |r| counts unless the cell sits at the bound that r presses it against.
         let works = free | (!touches & r.less(zero)) | (!below & zero.less(r));
@@ -117,7 +115,7 @@ impl<V: Eight> Gauge<V> {
         self.working = [self.working[0] + r.only(works), self.working[1] + V::count(works)];
         let [sum, pu, pr] = self.pressure;
         self.pressure = [sum + p, pu + p * u, pr + (p * r).only(touches)];
-        let distance = V::select(zero.less(r), p, self.hardness - p);
+        let distance = V::select(zero.less(r), p, hardness - p);
         self.gamma = self.gamma + (distance * violation).only(works);
         let [up, down] = [f64::INFINITY, f64::NEG_INFINITY].map(V::splat);
         self.capped = V::select(below, down, r).larger(self.capped);
@@ -150,13 +148,12 @@ impl<V: Eight> Gauge<V> {
 impl Rating {
     /// Rates a state with a guess of w.
     pub(super) fn of(problem: &Problem, state: &ContactState, w: f64) -> Self {
-        sweep((&state.pressure[..], &state.unit_displacement[..], problem.gap), &|(p, u, h): (
-            &[f64],
-            &[f64],
-            &[f64],
-        )| {
-            vectorize(Rate { problem, w, p, u, h })
-        })
+        sweep(
+            (&state.pressure[..], &state.unit_displacement[..], problem.gap, problem.hardness),
+            &|(p, u, h, hardness): (&[f64], &[f64], &[f64], Hardness)| {
+                vectorize(Rate { problem, w, p, u, h, hardness })
+            },
+        )
     }
 
     /// The approach: given, or the mean of g over D; where D is empty, the middle of what the cells
@@ -211,7 +208,7 @@ impl Rating {
     /// What rounding alone makes of g: a violation below it means nothing.
     fn rounding(&self, problem: &Problem, grid: &Grid) -> f64 {
         let [lx, ly] = grid.size();
-        let peak = self.peak.0.clamp(0.0, problem.hardness);
+        let peak = self.peak.0.max(0.0);
         16.0 * f64::EPSILON * (self.w.abs() + problem.compliance * peak * lx.max(ly))
     }
 
@@ -223,7 +220,7 @@ impl Rating {
         let violation = if self.largest.0 > 0.0 { self.largest.0 + apart } else { 0.0 };
         let residual = if violation > 0.0 { violation / scale } else { 0.0 };
         let [pressure, pu, pr] = self.sums.pressure;
-        let gamma = if problem.hardness.is_finite() {
+        let gamma = if !problem.hardness.is_infinite() {
             self.sums.gamma
         } else {
             let least = self.empty.0.min(self.touching.0);
@@ -247,6 +244,7 @@ struct Rate<'a> {
     p: &'a [f64],
     u: &'a [f64],
     h: &'a [f64],
+    hardness: Hardness<'a>,
 }
 
 impl Work for Rate<'_> {
@@ -257,7 +255,7 @@ impl Work for Rate<'_> {
         let mut gauge = Gauge::<V>::new(self.problem, self.w);
         for n in (0..self.p.len()).step_by(8) {
             let h = V::load(self.h, n, f64::INFINITY);
-            gauge.meet(V::load(self.p, n, 0.0), V::load(self.u, n, 0.0), h);
+            gauge.meet(V::load(self.p, n, 0.0), V::load(self.u, n, 0.0), h, self.hardness.eight(n));
         }
         gauge.rating()
     }

@@ -6,6 +6,7 @@
 
 use asperity_convolution::eights::{Eight, Mask, Work, vectorize};
 
+use super::Hardness;
 use crate::field::{Max, Min, Set, sweep};
 
 /// A sum is met when it misses by this share: the cells inside take the rest back, and so few of them cross a bound
@@ -21,7 +22,7 @@ pub(super) struct Trial<'a> {
     pub set: &'a [u8],
     /// a
     pub length: f64,
-    pub hardness: f64,
+    pub hardness: Hardness<'a>,
 }
 
 /// What moves a trial point: q = clip(y + lambda), less `rest` inside the bounds.
@@ -39,31 +40,25 @@ pub(super) struct Mover<V> {
     length: V,
     lambda: V,
     rest: V,
-    hardness: V,
 }
 
 impl<V: Eight> Mover<V> {
     #[inline(always)]
-    pub(super) fn new(length: f64, shift: Shift, hardness: f64) -> Self {
-        Mover {
-            length: V::splat(length),
-            lambda: V::splat(shift.lambda),
-            rest: V::splat(shift.rest),
-            hardness: V::splat(hardness),
-        }
+    pub(super) fn new(length: f64, shift: Shift) -> Self {
+        Mover { length: V::splat(length), lambda: V::splat(shift.lambda), rest: V::splat(shift.rest) }
     }
 
     /// 0 < p < H
     #[inline(always)]
-    pub(super) fn inside(&self, p: V) -> V::Mask {
-        V::splat(0.0).less(p) & p.less(self.hardness)
+    pub(super) fn inside(p: V, hardness: V) -> V::Mask {
+        V::splat(0.0).less(p) & p.less(hardness)
     }
 
     /// q, where a step of full length leads.
     #[inline(always)]
-    pub(super) fn target(&self, p: V, d: V) -> V {
-        let moved = (p - self.length * d + self.lambda).clip(self.hardness);
-        V::select(self.inside(moved), (moved - self.rest).clip(self.hardness), moved)
+    pub(super) fn target(&self, p: V, d: V, hardness: V) -> V {
+        let moved = (p - self.length * d + self.lambda).clip(hardness);
+        V::select(Self::inside(moved, hardness), (moved - self.rest).clip(hardness), moved)
     }
 }
 
@@ -123,37 +118,35 @@ impl Trial<'_> {
     }
 
     fn clipped_sum(&self, lambda: f64) -> ClippedSum {
-        let Trial { length, hardness, .. } = *self;
-        let [sum, slope] = sweep((self.pressure, self.direction, Set(self.set)), &|(p, d, Set(set)): (
-            &[f64],
-            Option<&[f32]>,
-            Set,
-        )| {
-            vectorize(Clipped { p, d, set, length, lambda, hardness })
-        });
+        let length = self.length;
+        let [sum, slope] = sweep(
+            (self.pressure, self.direction, Set(self.set), self.hardness),
+            &|(p, d, Set(set), hardness): (&[f64], Option<&[f32]>, Set, Hardness)| {
+                vectorize(Clipped { p, d, set, length, lambda, hardness })
+            },
+        );
         ClippedSum { sum, slope }
     }
 
     /// A shift beyond the nearest bend of the sum above (or below) `lambda`, where some cell moves.
     fn nearest_bend(&self, lambda: f64, above: bool) -> Option<f64> {
-        let Trial { length, hardness, .. } = *self;
-        let (up, down) = sweep((self.pressure, self.direction, Set(self.set)), &|(p, d, Set(set)): (
-            &[f64],
-            Option<&[f32]>,
-            Set,
-        )| {
-            let (mut up, mut down) = (f64::INFINITY, f64::NEG_INFINITY);
-            for (i, p) in p.iter().enumerate().filter(|(i, _)| set[i / 8] >> (i % 8) & 1 == 1) {
-                let y = p - d.map_or(0.0, |d| length * f64::from(d[i]));
-                if !y.is_finite() {
-                } else if y + lambda <= 0.0 {
-                    up = up.min(-y);
-                } else if y + lambda >= hardness {
-                    down = down.max(hardness - y);
+        let length = self.length;
+        let cells = (self.pressure, self.direction, Set(self.set), self.hardness);
+        let (up, down) =
+            sweep(cells, &|(p, d, Set(set), hardness): (&[f64], Option<&[f32]>, Set, Hardness)| {
+                let (mut up, mut down) = (f64::INFINITY, f64::NEG_INFINITY);
+                for (i, p) in p.iter().enumerate().filter(|(i, _)| set[i / 8] >> (i % 8) & 1 == 1) {
+                    let hardness = hardness.at(i);
+                    let y = p - d.map_or(0.0, |d| length * f64::from(d[i]));
+                    if !y.is_finite() {
+                    } else if y + lambda <= 0.0 {
+                        up = up.min(-y);
+                    } else if y + lambda >= hardness {
+                        down = down.max(hardness - y);
+                    }
                 }
-            }
-            (Min(up), Max(down))
-        });
+                (Min(up), Max(down))
+            });
         let bend = if above { up.0 } else { down.0 };
         // Past the bend by a little of the shift or of the pressure there, so that the slope is not zero.
         let past = 1e-3 * bend.abs().max(f64::MIN_POSITIVE);
@@ -167,7 +160,7 @@ struct Clipped<'a> {
     set: &'a [u8],
     length: f64,
     lambda: f64,
-    hardness: f64,
+    hardness: Hardness<'a>,
 }
 
 impl Work for Clipped<'_> {
@@ -176,9 +169,10 @@ impl Work for Clipped<'_> {
     #[inline(always)]
     fn run<V: Eight>(self) -> [f64; 2] {
         let (mut sum, mut slope) = (V::splat(0.0), V::splat(0.0));
-        let (length, lambda, top) = (V::splat(self.length), V::splat(self.lambda), V::splat(self.hardness));
+        let (length, lambda) = (V::splat(self.length), V::splat(self.lambda));
         for (n, set) in (0..).step_by(8).zip(self.set).filter(|(_, set)| **set != 0) {
             let on = V::Mask::from_bits(*set);
+            let top = self.hardness.eight(n);
             let d = self.d.map_or(V::splat(0.0), |d| V::load(d, n, 0.0));
             let moved = V::load(self.p, n, 0.0) - length * d + lambda;
             sum = sum + moved.clip(top).only(on);
@@ -193,7 +187,8 @@ mod tests {
     use super::*;
 
     fn shift(y: &[f64], set: u8, hardness: f64, target: f64) -> Option<Shift> {
-        Trial { pressure: y, direction: None, set: &[set], length: 0.0, hardness }.shift_to_sum(target, None)
+        Trial { pressure: y, direction: None, set: &[set], length: 0.0, hardness: hardness.into() }
+            .shift_to_sum(target, None)
     }
 
     fn check(y: &[f64], set: u8, hardness: f64, target: f64) {

@@ -3,8 +3,8 @@
 
 use asperity_convolution::eights::{Eight, Mask, Work, vectorize};
 
-use super::shift::{Mover, Shift, Trial};
-use super::{ContactState, Prescribed, Problem};
+use super::shift::{Mover, Shift, Trial, clip};
+use super::{ContactState, Hardness, Prescribed, Problem};
 use crate::error::{Error, Result};
 use crate::field::{Set, SetMut, sweep};
 
@@ -18,47 +18,53 @@ pub(super) fn make_feasible(
     touchable: &mut [u8],
 ) -> Result<()> {
     let hardness = problem.hardness;
-    let [sum, cells] =
-        sweep((&mut state.pressure[..], problem.gap, SetMut(touchable)), &|(p, h, SetMut(set)): (
-            &mut [f64],
-            &[f64],
-            SetMut,
-        )| {
+    let [sum, cells] = sweep(
+        (&mut state.pressure[..], problem.gap, SetMut(touchable), hardness),
+        &|(p, h, SetMut(set), hardness): (&mut [f64], &[f64], SetMut, Hardness)| {
             vectorize(Clip { p, h, set, hardness })
-        });
+        },
+    );
     let Prescribed::Load(load) = problem.prescribed else {
         return Ok(());
     };
     let target = load / cell_area;
     if sum <= 0.0 {
         let uniform = target / cells;
-        for (p, set) in state.pressure.chunks_mut(8).zip(touchable) {
+        for (p, set) in state.pressure.chunks_mut(8).zip(&*touchable) {
             p.iter_mut().enumerate().for_each(|(i, p)| *p = uniform * f64::from(*set >> i & 1));
         }
-        return Ok(());
+        if matches!(hardness, Hardness::Uniform(_)) {
+            return Ok(());
+        }
+        // Soft cells carry less.
+        state.pressure.iter_mut().enumerate().for_each(|(n, p)| *p = clip(*p, hardness.at(n)));
     }
     set_load(&mut state.pressure, touchable, hardness, target)
-        .ok_or(Error::Infeasible { load, max: hardness * cell_area * cells })
+        .ok_or_else(|| Error::Infeasible { load, max: problem.limits().2 * cell_area })
 }
 
 /// Gives a pressure within \[0, H\] the sum `target`: by scaling the cells below H, which keeps open
 /// cells open; where those cannot carry it, by a shift of all cells of `set`.
-pub(super) fn set_load(p: &mut [f64], set: &[u8], hardness: f64, target: f64) -> Option<()> {
+pub(super) fn set_load(p: &mut [f64], set: &[u8], hardness: Hardness, target: f64) -> Option<()> {
     for _ in 0..50 {
-        let [below, capped] = sweep(&*p, &|p: &[f64]| vectorize(BelowAndCapped { p, hardness }));
-        let rest = if capped > 0.0 { target - capped * hardness } else { target };
+        let [below, capped] = sweep((&*p, hardness), &|(p, hardness): (&[f64], Hardness)| {
+            vectorize(BelowAndCapped { p, hardness })
+        });
+        let rest = target - capped;
         if below <= 0.0 || rest <= 0.0 {
             break;
         }
         let factor = rest / below;
-        let over = sweep(&mut *p, &|p: &mut [f64]| vectorize(Scale { p, factor, hardness }));
+        let over = sweep((&mut *p, hardness), &|(p, hardness): (&mut [f64], Hardness)| {
+            vectorize(Scale { p, factor, hardness })
+        });
         if over == 0.0 {
             return Some(());
         }
     }
     let trial = Trial { pressure: p, direction: None, set, length: 0.0, hardness };
     let shift = trial.shift_to_sum(target, None)?;
-    sweep((p, Set(set)), &|(p, Set(set)): (&mut [f64], Set)| {
+    sweep((p, Set(set), hardness), &|(p, Set(set), hardness): (&mut [f64], Set, Hardness)| {
         vectorize(Move { p, set, shift, hardness });
     });
     Some(())
@@ -69,7 +75,7 @@ struct Clip<'a> {
     p: &'a mut [f64],
     h: &'a [f64],
     set: &'a mut [u8],
-    hardness: f64,
+    hardness: Hardness<'a>,
 }
 
 impl Work for Clip<'_> {
@@ -80,7 +86,7 @@ impl Work for Clip<'_> {
         let (mut sum, mut cells) = (V::splat(0.0), V::splat(0.0));
         for (n, set) in (0..).step_by(8).zip(self.set) {
             let can_touch = V::load(self.h, n, f64::INFINITY).less(V::splat(f64::INFINITY));
-            let p = V::load(self.p, n, 0.0).clip(V::splat(self.hardness)).only(can_touch);
+            let p = V::load(self.p, n, 0.0).clip(self.hardness.eight(n)).only(can_touch);
             p.store(self.p, n);
             *set = can_touch.bits();
             sum = sum + p;
@@ -90,10 +96,10 @@ impl Work for Clip<'_> {
     }
 }
 
-/// The sum below H, and the number of cells at it.
+/// The sums below H and at it.
 struct BelowAndCapped<'a> {
     p: &'a [f64],
-    hardness: f64,
+    hardness: Hardness<'a>,
 }
 
 impl Work for BelowAndCapped<'_> {
@@ -101,14 +107,14 @@ impl Work for BelowAndCapped<'_> {
 
     #[inline(always)]
     fn run<V: Eight>(self) -> [f64; 2] {
-        let (mut sum, mut cells) = (V::splat(0.0), V::splat(0.0));
+        let (mut sum, mut capped) = (V::splat(0.0), V::splat(0.0));
         for n in (0..self.p.len()).step_by(8) {
             let p = V::load(self.p, n, 0.0);
-            let below = p.less(V::splat(self.hardness));
+            let below = p.less(self.hardness.eight(n));
             sum = sum + p.only(below);
-            cells = cells + V::count(!below);
+            capped = capped + p.only(!below);
         }
-        [sum.sum(), cells.sum()]
+        [sum.sum(), capped.sum()]
     }
 }
 
@@ -116,7 +122,7 @@ impl Work for BelowAndCapped<'_> {
 struct Scale<'a> {
     p: &'a mut [f64],
     factor: f64,
-    hardness: f64,
+    hardness: Hardness<'a>,
 }
 
 impl Work for Scale<'_> {
@@ -125,9 +131,9 @@ impl Work for Scale<'_> {
     #[inline(always)]
     fn run<V: Eight>(self) -> f64 {
         let mut over = V::splat(0.0);
-        let hardness = V::splat(self.hardness);
         for n in (0..self.p.len()).step_by(8) {
             let p = V::load(self.p, n, 0.0);
+            let hardness = self.hardness.eight(n);
             let scaled = V::select(p.less(hardness), p * V::splat(self.factor), p);
             scaled.smaller(hardness).store(self.p, n);
             over = over + V::count(hardness.less(scaled));
@@ -141,7 +147,7 @@ struct Move<'a> {
     p: &'a mut [f64],
     set: &'a [u8],
     shift: Shift,
-    hardness: f64,
+    hardness: Hardness<'a>,
 }
 
 impl Work for Move<'_> {
@@ -149,9 +155,9 @@ impl Work for Move<'_> {
 
     #[inline(always)]
     fn run<V: Eight>(self) {
-        let mover = Mover::<V>::new(0.0, self.shift, self.hardness);
+        let mover = Mover::<V>::new(0.0, self.shift);
         for (n, set) in (0..).step_by(8).zip(self.set) {
-            let p = mover.target(V::load(self.p, n, 0.0), V::splat(0.0));
+            let p = mover.target(V::load(self.p, n, 0.0), V::splat(0.0), self.hardness.eight(n));
             p.only(V::Mask::from_bits(*set)).store(self.p, n);
         }
     }

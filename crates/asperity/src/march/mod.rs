@@ -20,7 +20,7 @@ use std::sync::atomic::AtomicBool;
 
 use ndarray::Array2;
 
-use crate::contact::{ContactState, Outcome, Prescribed, Problem, Solver};
+use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem, Solver};
 use crate::error::{Error, Result};
 use crate::field::sweep;
 use crate::operator::{Operator, half_space};
@@ -67,6 +67,8 @@ pub struct March {
     previous: Previous,
     /// h0 + g of the last step.
     gap: Vec<f64>,
+    /// Cut-off of each cell, where it is not the same everywhere.
+    hardness: Option<Vec<f64>>,
     /// c of the last step.
     compliance: f64,
     /// Length of the step on the clock of each part of the creep function \[s\].
@@ -78,6 +80,11 @@ pub struct March {
 struct Previous {
     pressure: Vec<f64>,
     unit_displacement: Vec<f64>,
+}
+
+/// The cut-off of each cell.
+fn cap<'a>(simulation: &Simulation, of_cells: &'a Option<Vec<f64>>) -> Hardness<'a> {
+    of_cells.as_deref().map_or(Hardness::Uniform(simulation.hardness), Hardness::Cells)
 }
 
 /// What the bodies remember.
@@ -126,6 +133,7 @@ impl March {
         };
         Ok(March {
             gap: simulation.gap.iter().copied().collect(),
+            hardness: simulation.hardness_of_cells(),
             lengths: vec![0.0; simulation.parts().count()],
             simulation,
             instants,
@@ -192,7 +200,7 @@ impl March {
         let problem = Problem {
             gap: &self.gap,
             compliance: self.compliance,
-            hardness: self.simulation.hardness,
+            hardness: cap(&self.simulation, &self.hardness),
             prescribed: match self.simulation.loading.control {
                 crate::load::Control::Load => Prescribed::Load(instant.value),
                 crate::load::Control::Pressure => Prescribed::Load(instant.value * area),
@@ -237,6 +245,7 @@ impl March {
             index,
             instant: self.instants[index],
             simulation: &self.simulation,
+            hardness: cap(&self.simulation, &self.hardness),
             state: &self.state,
             gap: &self.gap,
             compliance: self.compliance,

@@ -3,7 +3,7 @@
 use ndarray::parallel::prelude::*;
 use ndarray::{Array2, ArrayView2, Axis};
 
-use crate::contact::{ContactState, Outcome};
+use crate::contact::{ContactState, Hardness, Outcome};
 use crate::field::{Max, larger, strands, sweep};
 use crate::grid::Boundary;
 use crate::march::{Past, Simulation};
@@ -51,6 +51,7 @@ pub struct Step<'a> {
     pub(super) index: usize,
     pub(super) instant: Instant,
     pub(super) simulation: &'a Simulation,
+    pub(super) hardness: Hardness<'a>,
     pub(super) state: &'a ContactState,
     /// h0 + g.
     pub(super) gap: &'a [f64],
@@ -101,18 +102,18 @@ impl<'a> Step<'a> {
 
     /// 0 out of contact, 1 in contact, 2 at the hardness.
     pub fn contact_into(&self, contact: &mut Array2<u8>) {
-        let hardness = self.simulation.hardness;
-        let state = |p: f64| u8::from(p > 0.0) + u8::from(p >= hardness);
-        contact.iter_mut().zip(&self.state.pressure).for_each(|(c, p)| *c = state(*p));
+        let state = |p: f64, hardness: f64| u8::from(p > 0.0) + u8::from(p >= hardness);
+        let cells = contact.iter_mut().zip(&self.state.pressure).enumerate();
+        cells.for_each(|(n, (c, p))| *c = state(*p, self.hardness.at(n)));
     }
 
     /// The numbers of the row.
     pub fn row(&self) -> Row {
         let grid = &self.simulation.grid;
-        let (c, w, hardness) = (self.compliance, self.state.approach, self.simulation.hardness);
+        let (c, w) = (self.compliance, self.state.approach);
         let ([pressure, touching, capped, gap, touchable], Max(peak)) = sweep(
-            (&self.state.pressure[..], &self.state.unit_displacement[..], self.gap),
-            &|(p, u, h): (&[f64], &[f64], &[f64])| {
+            (&self.state.pressure[..], &self.state.unit_displacement[..], self.gap, self.hardness),
+            &|(p, u, h, hardness): (&[f64], &[f64], &[f64], Hardness)| {
                 let mut peak = 0.0;
                 let n = p.len();
                 let (u, h) = (&u[..n], &h[..n]);
@@ -121,7 +122,7 @@ impl<'a> Step<'a> {
                     let can_touch = h[i] < f64::INFINITY;
                     let one = |yes: bool| f64::from(u8::from(yes));
                     let gap = if can_touch { c * u[i] + h[i] - w } else { 0.0 };
-                    [p[i], one(p[i] > 0.0), one(p[i] >= hardness), gap, one(can_touch)]
+                    [p[i], one(p[i] > 0.0), one(p[i] >= hardness.at(i)), gap, one(can_touch)]
                 });
                 (sums, Max(peak))
             },

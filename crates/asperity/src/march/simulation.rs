@@ -37,6 +37,9 @@ pub struct Simulation {
     pub thermal: Vec<ThermalCreep>,
     /// Cut-off of the pressure \[Pa\]; infinite for none.
     pub hardness: f64,
+    /// Cut-off of the pressure in each cell \[Pa\], finite, where it is not the same everywhere; where `hardness` is less,
+    /// that holds.
+    pub hardness_map: Option<Array2<f64>>,
     /// What is prescribed.
     pub loading: Loading,
     /// When the state is computed.
@@ -59,6 +62,7 @@ impl Simulation {
             creep: Creep::elastic(1.0),
             thermal: vec![],
             hardness: f64::INFINITY,
+            hardness_map: None,
             loading: Loading { control: Control::Load, history: History::Step { value: 0.0 } },
             times: TimeGrid::Uniform { end: 1.0, steps: 1 },
             include: vec![],
@@ -147,14 +151,53 @@ impl Simulation {
         if self.hardness.is_nan() || self.hardness <= 0.0 {
             return Err(Error::invalid("hardness", format!("{} Pa", self.hardness), "greater than 0"));
         }
+        self.validate_hardness_map()?;
         self.loading.history.validate()?;
         self.times.validate()?;
         self.solver.validate()?;
-        self.validate_load(touchable as f64)?;
+        self.validate_load()?;
         self.validate_jumps()
     }
 
-    fn validate_load(&self, touchable: f64) -> Result<()> {
+    fn validate_hardness_map(&self) -> Result<()> {
+        let Some(map) = &self.hardness_map else {
+            return Ok(());
+        };
+        if map.dim() != self.grid.shape() {
+            return Err(Error::invalid(
+                "shape of the hardness of the cells",
+                format!("{:?}", map.dim()),
+                format!("{:?}, one for each cell", self.grid.shape()),
+            ));
+        }
+        match map.indexed_iter().find(|(_, h)| !(h.is_finite() && **h > 0.0)) {
+            Some(((i, j), h)) => Err(Error::invalid(
+                format!("hardness of cell ({i}, {j})"),
+                format!("{h} Pa"),
+                "finite and greater than 0",
+            )),
+            None => Ok(()),
+        }
+    }
+
+    /// The cut-off that holds in each cell, where it is not the same everywhere.
+    pub(super) fn hardness_of_cells(&self) -> Option<Vec<f64>> {
+        let map = self.hardness_map.as_ref()?;
+        Some(map.iter().map(|hardness| hardness.min(self.hardness)).collect())
+    }
+
+    /// Sum of the cut-off over the cells that can touch \[Pa\].
+    fn most(&self) -> f64 {
+        let can_touch = |h: &&f64| h.is_finite();
+        match self.hardness_of_cells() {
+            Some(cells) => {
+                self.gap.iter().zip(cells).filter(|(h, _)| can_touch(h)).map(|(_, cell)| cell).sum()
+            }
+            None => self.hardness * self.gap.iter().filter(can_touch).count() as f64,
+        }
+    }
+
+    fn validate_load(&self) -> Result<()> {
         let [least, most] = self.loading.history.range(self.times.end());
         let factor = match self.loading.control {
             Control::Approach => return Ok(()),
@@ -168,7 +211,7 @@ impl Simulation {
             };
             return Err(Error::invalid(what, format!("{least} {unit}"), "not negative (bodies only press)"));
         }
-        let max = self.hardness * self.grid.cell_area() * touchable;
+        let max = self.most() * self.grid.cell_area();
         if most * factor > max * (1.0 + 1e-12) {
             return Err(Error::Infeasible { load: most * factor, max });
         }

@@ -128,6 +128,9 @@ fn tell(case: &Case, d: &Description, estimate: Option<f64>) -> String {
     if let Some(hardness) = d.hardness {
         line("hardness", quantity(hardness, "Pa", 1));
     }
+    if let Some([least, most]) = d.hardness_of_cells {
+        line("hardness", format!("{} to {}, by cell", quantity(least, "Pa", 1), quantity(most, "Pa", 1)));
+    }
     line("time", format!("{} rows to {}, {} scheme", d.rows, quantity(d.end, "s", 1), d.scheme));
     line(
         "output",

@@ -74,6 +74,9 @@ pub struct Description {
     pub temperature: Option<[f64; 2]>,
     /// Cut-off of the pressure \[Pa\].
     pub hardness: Option<f64>,
+    /// Least and largest cut-off of the cells \[Pa\], where a file gives them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hardness_of_cells: Option<[f64; 2]>,
     /// Last instant \[s\].
     pub end: f64,
     /// Rows of the result: the state at 0+, one per step, one more per jump.
@@ -124,6 +127,10 @@ impl Case {
             warnings: self.warnings.clone(),
             temperature: self.temperature_range(),
             hardness: self.hardness.is_finite().then_some(self.hardness),
+            hardness_of_cells: self.hardness_map.as_ref().map(|map| {
+                let pick = |f: fn(f64, f64) -> f64| map.iter().copied().reduce(f).unwrap_or(f64::NAN);
+                [pick(f64::min), pick(f64::max)].map(|hardness| hardness.min(self.hardness))
+            }),
             end: self.times.end(),
             rows: self.rows,
             scheme: match self.scheme {

@@ -109,6 +109,8 @@ pub struct Case {
     pub files: Vec<(String, String)>,
     /// Cut-off H of the pressure \[Pa\], the softer body's; infinite without.
     pub hardness: f64,
+    /// Cut-off of the pressure in each cell \[Pa\], where a file gives it; the lesser of it and `hardness` holds.
+    pub hardness_map: Option<Array2<f64>>,
     /// What is prescribed over time.
     pub loading: Loading,
     /// The instants of the solution.
@@ -208,6 +210,7 @@ impl Case {
             creep: self.creep.clone(),
             thermal: self.thermal.clone(),
             hardness: self.hardness,
+            hardness_map: self.hardness_map.clone(),
             loading: self.loading.clone(),
             times: self.times.clone(),
             include: self.include.clone(),

@@ -294,3 +294,43 @@ fn a_punch_bears_only_under_its_face() {
     assert_eq!(errors.errors[0].key, "load.history");
     assert!(errors.to_string().contains("hardness times the area that can touch"), "{errors}");
 }
+
+#[test]
+fn a_file_gives_each_cell_its_hardness() {
+    let dir = tempfile::tempdir().unwrap();
+    // MPa; x runs along a line: 1 in the left half, 3 in the right.
+    let line = (0..40).map(|i| if i < 20 { "1 " } else { "3 " }).collect::<String>();
+    let write = |name: &str, line: &str, lines: usize| {
+        std::fs::write(dir.path().join(name), format!("{line}\n").repeat(lines)).unwrap();
+    };
+    write("map.txt", &line, 20);
+    let body = r#"{ poisson = 0.5, hardness = "2 MPa", hardness_file = { path = "map.txt", unit = "1 MPa" }, material = { model = "elastic", shear = "1 MPa" } }"#;
+    let case = case_in(dir.path(), Parts { body, ..PARTS });
+    let map = case.hardness_map.as_ref().unwrap();
+    assert_eq!((map.dim(), map[[19, 3]], map[[20, 3]]), ((40, 20), 1e6, 3e6));
+    assert_eq!(case.describe().hardness_of_cells, Some([1e6, 2e6])); // the lesser of both holds
+    assert_eq!(case.files[0].0, "map.txt");
+    let simulation = case.simulation().unwrap();
+    assert_eq!(simulation.hardness_map.as_ref(), Some(map));
+
+    write("short.txt", &line, 19);
+    write("negative.txt", &line.replacen('3', "-3", 1), 20);
+    for (path, words) in [
+        ("short.txt", "40 x 19 numbers, but the domain has 40 x 20 cells"),
+        ("negative.txt", "the hardness of cell (20, 0)"),
+        ("none.txt", "does not exist"),
+    ] {
+        let text = format!(
+            r#"
+            domain = {{ cells = [40, 20], size = ["2 mm", "1 mm"] }}
+            surface = [{{ kind = "sphere", radius = "1 cm" }}]
+            body = [{{ poisson = 0.5, hardness_file = {{ path = "{path}" }}, material = {{ model = "elastic", shear = "1 MPa" }} }}]
+            load = {{ control = "load", history = {{ kind = "step", value = "10 mN" }} }}
+            time = {{ end = "1 min", steps = 10 }}
+            "#
+        );
+        let errors = Case::parse(&text, dir.path(), &[]).unwrap_err();
+        assert_eq!(errors.errors[0].key, "body[0].hardness_file.path");
+        assert!(errors.to_string().contains(words), "{errors}");
+    }
+}

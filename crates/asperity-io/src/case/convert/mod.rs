@@ -4,6 +4,7 @@
 mod body;
 mod curve;
 pub(super) mod domain;
+mod hardness;
 mod history_file;
 mod load;
 mod material;
@@ -56,6 +57,9 @@ pub fn case(
     let mut files: Vec<_> = samples.iter().flatten().filter_map(|sample| sample.file.clone()).collect();
     files.extend(temperatures.iter().flatten().filter_map(|t| t.file.clone()));
     files.extend(prescription.iter().filter_map(|p| p.file.clone()));
+    let maps = document.body.iter().filter_map(|body| body.value.hardness_file.as_ref());
+    let hardness = hardness::of_cells(&mut checks, maps, grid.as_ref());
+    files.extend(hardness.iter().flat_map(|hardness| hardness.files.iter().cloned()));
     let instants = |breaks: &[f64]| match (&times, &prescription) {
         (Some(times), Some(p)) => times.instants(&p.loading.history, &[include.as_slice(), breaks].concat()),
         _ => Vec::new(),
@@ -78,34 +82,42 @@ pub fn case(
     let memory = domain::memory(&mut checks, &document.domain, grid.as_ref(), fields, scheme);
 
     checks.errors.sort_by_key(|error| error.span.as_ref().map_or(usize::MAX, |span| span.start));
+    let surfaces = surfaces.zip(hardness);
     match (checks.errors.is_empty(), grid, surfaces, pair, prescription, times, output) {
-        (true, Some(grid), Some(surfaces), Some(pair), Some(prescription), Some(times), Some(output)) => {
-            Ok(Case {
-                title: document.title.clone(),
-                name: String::new(),
-                source: text.source.to_owned(),
-                grid,
-                boundary: domain::boundary(document.domain.value.boundary),
-                surfaces,
-                bodies: pair.bodies,
-                creep: pair.creep,
-                thermal: pair.thermal,
-                temperatures: points.map(<[_]>::to_vec),
-                materials: pair.reports,
-                warnings: pair.warnings,
-                files,
-                hardness: pair.hardness,
-                loading: prescription.loading,
-                times,
-                include,
-                scheme,
-                solver: output::solver(&document.solver),
-                output,
-                rows: pair.rows,
-                memory,
-                history: document.load.value.history.span.clone(),
-            })
-        }
+        (
+            true,
+            Some(grid),
+            Some((surfaces, hardness)),
+            Some(pair),
+            Some(prescription),
+            Some(times),
+            Some(output),
+        ) => Ok(Case {
+            title: document.title.clone(),
+            name: String::new(),
+            source: text.source.to_owned(),
+            grid,
+            boundary: domain::boundary(document.domain.value.boundary),
+            surfaces,
+            bodies: pair.bodies,
+            creep: pair.creep,
+            thermal: pair.thermal,
+            temperatures: points.map(<[_]>::to_vec),
+            materials: pair.reports,
+            warnings: pair.warnings,
+            files,
+            hardness: pair.hardness,
+            hardness_map: hardness.map,
+            loading: prescription.loading,
+            times,
+            include,
+            scheme,
+            solver: output::solver(&document.solver),
+            output,
+            rows: pair.rows,
+            memory,
+            history: document.load.value.history.span.clone(),
+        }),
         _ => Err(checks.errors),
     }
 }

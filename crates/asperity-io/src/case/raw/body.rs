@@ -23,7 +23,22 @@ pub struct Body {
     /// Cut-off for the pressure; none if not given. The softer body decides.
     #[schemars(example = "300 MPa")]
     pub hardness: Option<Pressure<Positive>>,
+    /// Cut-off for the pressure in each cell, from a file. With `hardness`, or one of the other body, the least holds.
+    pub hardness_file: Option<At<HardnessFile>>,
     /// Linear viscoelastic material.
     #[schemars(example = serde_json::json!({ "model": "elastic", "young": "2.1 GPa" }))]
     pub material: At<Material>,
+}
+
+/// A number for each cell of the domain.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HardnessFile {
+    /// The file, relative to the case file: an array of shape (nx, ny) as NPY or NPZ, or a text matrix with a line for
+    /// each y and values along x.
+    #[schemars(example = "hardness.npy")]
+    pub path: At<String>,
+    /// What one in the file is; 1 Pa if not given.
+    #[schemars(example = "1 MPa")]
+    pub unit: Option<Pressure<Positive>>,
 }

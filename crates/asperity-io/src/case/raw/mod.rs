@@ -20,7 +20,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, IgnoredAny, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
-pub use body::Body;
+pub use body::{Body, HardnessFile};
 pub use load::{Control, History, Load, Scheme, Sine, Spacing, Table, Time};
 pub use material::{
     Column, CreepTable, CreepTerm, Dma, Fit, FractionalZener, LongTime, Material, Measure, Prony,

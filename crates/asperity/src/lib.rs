@@ -15,6 +15,7 @@
 //! - [`material`]: models, conversion between creep and relaxation, contact compliance of a pair;
 //! - [`load`], [`time`]: what is prescribed, and when the state is computed;
 //! - [`march`]: the simulation; [`contact`]: the elastic contact inside every step;
+//! - [`quantities`], [`spots`]: what each row may be asked for besides;
 //! - [`operator`], [`kernel`], [`convolution`]: u = Kp;
 //! - [`mod@reference`], [`verification`]: closed forms and the checks against them.
 //!
@@ -30,6 +31,7 @@ pub mod load;
 pub mod march;
 pub mod material;
 pub mod operator;
+pub mod quantities;
 pub mod reference;
 pub mod spots;
 pub mod surface;
@@ -42,7 +44,7 @@ pub use contact::{ContactState, Method, Outcome, Precision, Prescribed, Problem,
 pub use error::{Error, NotConverged, Result};
 pub use grid::{Boundary, Grid};
 pub use load::{Control, History, Loading};
-pub use march::{March, Scheme, Simulation};
+pub use march::{March, Plasticity, Scheme, Simulation};
 pub use time::TimeGrid;
 
 /// The example of the README, compiled and run by the tests.

@@ -7,13 +7,16 @@
 
 #![allow(clippy::type_complexity)] // the closures of a sweep spell out the slices that they walk
 
+mod dents;
 mod direct;
+mod energy;
+mod measure;
 mod memory;
 mod record;
 mod simulation;
 
 pub use record::{Row, Step};
-pub use simulation::{Scheme, Simulation};
+pub use simulation::{Plasticity, Scheme, Simulation};
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -25,7 +28,9 @@ use crate::error::{Error, Result};
 use crate::field::sweep;
 use crate::operator::{Operator, half_space};
 use crate::time::Instant;
+use dents::Dents;
 use direct::Direct;
+use measure::Meter;
 use memory::Memory;
 
 /// A simulation on its way.
@@ -74,6 +79,9 @@ pub struct March {
     /// Length of the step on the clock of each part of the creep function \[s\].
     lengths: Vec<f64>,
     outcome: Outcome,
+    /// The permanent flattening, where there is any.
+    dents: Option<Dents>,
+    meter: Meter,
     interrupt: Option<Arc<AtomicBool>>,
 }
 
@@ -131,6 +139,9 @@ impl March {
             Scheme::Direct => Past::Direct(Direct::new(&simulation.creep, &simulation.thermal)),
             scheme => Past::Memory(Memory::new(simulation.parts(), scheme, n)),
         };
+        let branches = if let Past::Memory(memory) = &past { memory.branches() } else { 0 };
+        let meter = Meter::new(simulation.columns()?, &simulation.grid, simulation.boundary, branches);
+        let dents = Dents::new(&simulation);
         Ok(March {
             gap: simulation.gap.iter().copied().collect(),
             hardness: simulation.hardness_of_cells(),
@@ -146,6 +157,8 @@ impl March {
             previous: Previous { pressure: vec![0.0; n], unit_displacement: vec![0.0; n] },
             compliance: 0.0,
             outcome: Outcome::default(),
+            dents,
+            meter,
             interrupt: None,
         })
     }
@@ -187,8 +200,12 @@ impl March {
         };
         self.current = Some(self.done);
         self.measure_step(instant);
+        self.meter.clear();
         let unit = &self.state.unit_displacement;
-        let rigid = self.simulation.gap.as_slice().unwrap_or_default();
+        let rigid = match &self.dents {
+            Some(dents) => dents.gap(),
+            None => self.simulation.gap.as_slice().unwrap_or_default(),
+        };
         self.compliance = match &mut self.past {
             Past::Memory(m) => {
                 m.history(&self.lengths, &self.previous.unit_displacement, unit, rigid, &mut self.gap)
@@ -223,6 +240,8 @@ impl March {
             }
             Err(error) => return Err(error),
         }
+        self.measure(instant.dt == 0.0)?;
+        self.dent();
         self.done += 1;
         Ok(self.last())
     }
@@ -252,6 +271,8 @@ impl March {
             outcome: self.outcome,
             past: &self.past,
             before: &self.previous.unit_displacement,
+            dents: self.dents.as_ref(),
+            meter: &self.meter,
         })
     }
 
@@ -286,10 +307,14 @@ impl March {
             field("previous_pressure", &self.previous.pressure),
             field("previous_unit_displacement", &self.previous.unit_displacement),
         ];
-        let (scalars, memory) = match &self.past {
+        if let Some(dents) = &self.dents {
+            fields.push(field("dented_gap", dents.gap()));
+        }
+        let (mut scalars, memory) = match &self.past {
             Past::Memory(m) => m.save(),
             Past::Direct(d) => d.save(),
         };
+        scalars.extend(self.meter.save());
         fields.extend(memory.iter().enumerate().map(|(k, cells)| field(&format!("memory_{k}"), cells)));
         Checkpoint { step: self.done, scalars, fields }
     }
@@ -318,12 +343,20 @@ impl March {
         march.state.unit_displacement = next("unit_displacement")?;
         march.previous.pressure = next("previous_pressure")?;
         march.previous.unit_displacement = next("previous_unit_displacement")?;
-        let memory = (0..checkpoint.fields.len().saturating_sub(4))
+        let mut others = 4;
+        if let Some(dents) = &mut march.dents {
+            dents.restore(next("dented_gap")?);
+            others += 1;
+        }
+        let memory = (0..checkpoint.fields.len().saturating_sub(others))
             .map(|k| next(&format!("memory_{k}")))
             .collect::<Result<Vec<_>>>()?;
+        let Some(scalars) = march.meter.load(&checkpoint.scalars) else {
+            return Err(foreign("one without the energies asked for".into()));
+        };
         let restored = match &mut march.past {
-            Past::Memory(m) => m.load(&checkpoint.scalars, &memory),
-            Past::Direct(d) => d.load(&checkpoint.scalars, memory),
+            Past::Memory(m) => m.load(scalars, &memory),
+            Past::Direct(d) => d.load(scalars, memory),
         };
         if !restored {
             return Err(foreign("a memory of another material or scheme".into()));

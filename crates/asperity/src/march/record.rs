@@ -1,12 +1,13 @@
 //! What a row of the result tells: numbers of the contact, and the fields on request.
 
-use ndarray::parallel::prelude::*;
-use ndarray::{Array2, ArrayView2, Axis};
+use ndarray::{Array2, ArrayView2};
 
 use crate::contact::{ContactState, Hardness, Outcome};
 use crate::field::{Max, larger, strands, sweep};
-use crate::grid::Boundary;
+use crate::march::dents::Dents;
+use crate::march::measure::Meter;
 use crate::march::{Past, Simulation};
+use crate::quantities::{Column, Quantity, contact_edges};
 use crate::time::Instant;
 
 /// The numbers of one row.
@@ -61,6 +62,8 @@ pub struct Step<'a> {
     pub(super) past: &'a Past,
     /// U of the row before.
     pub(super) before: &'a [f64],
+    pub(super) dents: Option<&'a Dents>,
+    pub(super) meter: &'a Meter,
 }
 
 impl<'a> Step<'a> {
@@ -149,26 +152,35 @@ impl<'a> Step<'a> {
 
     /// Number of edges between a touching and an open cell; the border of a free domain is none.
     fn contact_edges(&self) -> usize {
-        let pressure = self.pressure();
-        let periodic = self.simulation.boundary == Boundary::Periodic;
-        let (nx, ny) = pressure.dim();
-        let touches = |i: usize, j: usize| pressure[(i, j)] > 0.0;
-        pressure
-            .axis_iter(Axis(0))
-            .into_par_iter()
-            .enumerate()
-            .map(|(i, row)| {
-                let next = if i + 1 < nx { Some(i + 1) } else { (periodic && nx > 1).then_some(0) };
-                let mut edges = 0;
-                for (j, p) in row.iter().enumerate() {
-                    let here = *p > 0.0;
-                    let right = if j + 1 < ny { Some(j + 1) } else { (periodic && ny > 1).then_some(0) };
-                    edges += usize::from(right.is_some_and(|r| touches(i, r) != here));
-                    edges += usize::from(next.is_some_and(|n| touches(n, j) != here));
-                }
-                edges
-            })
-            .sum()
+        contact_edges(self.pressure(), self.simulation.boundary).number()
+    }
+
+    /// Permanent flattening \[m\] since t = 0, 0 or more: what [`Plasticity::Accumulate`](super::Plasticity) has added to the
+    /// undeformed gap. 0 everywhere with the reversible cut-off.
+    pub fn flattening_into(&self, flattening: &mut Array2<f64>) {
+        let undeformed = &self.simulation.gap;
+        match self.dents {
+            Some(dents) => {
+                let cells = flattening.iter_mut().zip(dents.gap().iter().zip(undeformed));
+                cells.for_each(|(f, (now, then))| *f = if now > then { now - then } else { 0.0 });
+            }
+            None => flattening.fill(0.0),
+        }
+    }
+
+    /// The quantities asked for, with the ends of their bins.
+    pub fn columns(&self) -> &'a [Column] {
+        self.meter.columns()
+    }
+
+    /// The numbers of all [`columns`](Self::columns), one after the other. NaN after a solve that failed.
+    pub fn quantities(&self) -> &'a [f64] {
+        self.meter.values()
+    }
+
+    /// A quantity of this row: one number, or one per bin; `None` where it was not asked for.
+    pub fn quantity(&self, quantity: Quantity) -> Option<&'a [f64]> {
+        self.meter.of(quantity)
     }
 }
 

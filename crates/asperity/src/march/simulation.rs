@@ -7,6 +7,7 @@ use crate::error::{Error, Result};
 use crate::grid::{Boundary, Grid};
 use crate::load::{Control, History, Loading};
 use crate::material::{Creep, ThermalCreep};
+use crate::quantities::{Column, Quantities, Quantity};
 use crate::time::{Instant, TimeGrid};
 
 /// How the hereditary integral is taken over a step.
@@ -20,6 +21,16 @@ pub enum Scheme {
     Constant,
     /// SC17's full hereditary sum, pressure constant in each step: every past state is kept.
     Direct,
+}
+
+/// What flattening at the hardness leaves behind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+pub enum Plasticity {
+    /// Nothing: the cut-off is reversible, the overlap heals on unloading (SC17).
+    #[default]
+    Cap,
+    /// A dent: after each row the overlap of the cells at the hardness is added to their undeformed gap and stays.
+    Accumulate,
 }
 
 /// A contact of two bodies under a history of load or approach.
@@ -40,6 +51,8 @@ pub struct Simulation {
     /// Cut-off of the pressure in each cell \[Pa\], finite, where it is not the same everywhere; where `hardness` is less,
     /// that holds.
     pub hardness_map: Option<Array2<f64>>,
+    /// What flattening at the cut-off leaves behind.
+    pub plasticity: Plasticity,
     /// What is prescribed.
     pub loading: Loading,
     /// When the state is computed.
@@ -50,6 +63,8 @@ pub struct Simulation {
     pub scheme: Scheme,
     /// How each step is solved.
     pub solver: SolverOptions,
+    /// Quantities that each row has besides those of [`Row`](super::Row).
+    pub quantities: Quantities,
 }
 
 impl Simulation {
@@ -63,11 +78,13 @@ impl Simulation {
             thermal: vec![],
             hardness: f64::INFINITY,
             hardness_map: None,
+            plasticity: Plasticity::default(),
             loading: Loading { control: Control::Load, history: History::Step { value: 0.0 } },
             times: TimeGrid::Uniform { end: 1.0, steps: 1 },
             include: vec![],
             scheme: Scheme::default(),
             solver: SolverOptions::default(),
+            quantities: Quantities::default(),
         }
     }
 
@@ -97,18 +114,40 @@ impl Simulation {
             Boundary::Periodic => 10.5,
         };
         let convolutions = if mixed { 1.5 * convolution } else { convolution };
+        // on the grid, or with a rim around it, see `operator::approximate_inverse`
+        let inverse = if self.boundary == Boundary::Free { 7.0 } else { 5.25 };
         let solver = match self.solver.method {
             // the preconditioner's convolution in f32, four fields in f32, four sets, the step and its image
-            Method::ProjectedCg => 5.25 + 16.0 + 0.5 + if mixed { 8.0 } else { 16.0 },
+            Method::ProjectedCg => inverse + 16.0 + 0.5 + if mixed { 8.0 } else { 16.0 },
             Method::PolonskyKeer => 24.125,
         };
-        // pressure and U of two rows, undeformed and remembered gap
-        let march = 6.0 * 8.0;
+        // pressure and U of two rows, undeformed and remembered gap; the gap with its dents
+        let dents = if self.plasticity == Plasticity::Accumulate { 8.0 } else { 0.0 };
+        // the set, residual, direction and its image, two fields and a plan in f32; the forest of spots and its counts
+        let stiffness = if self.quantities.has(Quantity::ContactStiffness) {
+            1.0 + 3.0 * 8.0 + 8.0 + inverse
+        } else {
+            0.0
+        };
+        let spots = if self.quantities.list.iter().any(|q| q.is_of_spots()) { 16.0 } else { 0.0 };
+        let march = 6.0 * 8.0 + dents + stiffness + spots;
         let memory = match self.scheme {
             Scheme::Direct => self.instants().len(),
             _ => self.parts().map(|creep| creep.terms.len() + usize::from(creep.fluidity > 0.0)).sum(),
         };
         f64::ceil(convolutions + solver + march) as usize + 8 * memory
+    }
+
+    /// The quantities of each row, with the ends of their bins.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] as [`Quantities::columns`].
+    pub fn columns(&self) -> Result<Vec<Column>> {
+        let hardness = match self.hardness_of_cells() {
+            Some(cells) => cells.into_iter().fold(0.0, f64::max),
+            None => self.hardness,
+        };
+        self.quantities.columns(&self.grid, &self.gap, hardness)
     }
 
     /// Checks all that can be known before the first solve.
@@ -152,6 +191,29 @@ impl Simulation {
             return Err(Error::invalid("hardness", format!("{} Pa", self.hardness), "greater than 0"));
         }
         self.validate_hardness_map()?;
+        if self.plasticity == Plasticity::Accumulate
+            && self.hardness.is_infinite()
+            && self.hardness_map.is_none()
+        {
+            return Err(Error::invalid(
+                "hardness",
+                "infinite",
+                "finite where flattening stays (plasticity \"accumulate\"): nothing is flattened without",
+            ));
+        }
+        self.columns()?;
+        if self.quantities.has_energy() && self.scheme == Scheme::Direct {
+            let energies = self.quantities.list.iter().filter(|quantity| quantity.is_energy());
+            let names: Vec<_> = energies.map(|quantity| quantity.name()).collect();
+            return Err(Error::invalid(
+                "scheme",
+                "direct",
+                format!(
+                    "linear or constant where {} is asked for: the full hereditary sum knows no springs and dashpots",
+                    names.join(", ")
+                ),
+            ));
+        }
         self.loading.history.validate()?;
         self.times.validate()?;
         self.solver.validate()?;

@@ -1,0 +1,204 @@
+//! The quantities of a row, taken when the row is solved.
+
+use super::energy::{End, Ends, Energy, Flattening};
+use super::{March, Past, Step};
+use crate::contact::Hardness;
+use crate::error::Result;
+use crate::field::{strands, sweep};
+use crate::grid::{Boundary, Grid};
+use crate::quantities::{Column, ContactStiffness, Quantity, contact_edges, densities, spot_classes};
+use crate::spots::Spots;
+
+/// What takes the quantities of a march, and those of the last row.
+#[derive(Default)]
+pub(super) struct Meter {
+    columns: Vec<Column>,
+    /// The numbers of all columns, one after the other.
+    values: Vec<f64>,
+    stiffness: Option<ContactStiffness>,
+    energy: Option<Energy>,
+}
+
+impl Meter {
+    /// For these columns, of bodies with `branches` branches.
+    pub(super) fn new(columns: Vec<Column>, grid: &Grid, boundary: Boundary, branches: usize) -> Self {
+        let has = |test: &dyn Fn(Quantity) -> bool| columns.iter().any(|column| test(column.quantity));
+        Meter {
+            values: vec![f64::NAN; columns.iter().map(Column::width).sum()],
+            stiffness: has(&|q| q == Quantity::ContactStiffness)
+                .then(|| ContactStiffness::new(grid, boundary)),
+            energy: has(&Quantity::is_energy).then(|| Energy::new(branches)),
+            columns,
+        }
+    }
+
+    pub(super) fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    pub(super) fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The numbers of a quantity.
+    pub(super) fn of(&self, quantity: Quantity) -> Option<&[f64]> {
+        let mut start = 0;
+        for column in &self.columns {
+            let end = start + column.width();
+            if column.quantity == quantity {
+                return self.values.get(start..end);
+            }
+            start = end;
+        }
+        None
+    }
+
+    /// A row under way has no quantities.
+    pub(super) fn clear(&mut self) {
+        self.values.fill(f64::NAN);
+    }
+
+    pub(super) fn save(&self) -> Vec<f64> {
+        self.energy.as_ref().map_or(vec![], Energy::save)
+    }
+
+    /// Splits what [`save`](Self::save) gave off the end of `scalars` and takes it back; `None` where it does not fit.
+    pub(super) fn load<'s>(&mut self, scalars: &'s [f64]) -> Option<&'s [f64]> {
+        let Some(energy) = &mut self.energy else { return Some(scalars) };
+        let (rest, own) = scalars.split_at_checked(scalars.len().checked_sub(energy.len())?)?;
+        energy.load(own).then_some(rest)
+    }
+}
+
+impl March {
+    /// Takes the quantities of the row that the state was just solved for, which is `jump` where no time passed.
+    pub(super) fn measure(&mut self, jump: bool) -> Result<()> {
+        if self.meter.columns.is_empty() {
+            return Ok(());
+        }
+        let mut meter = std::mem::take(&mut self.meter);
+        let taken = self.take(&mut meter, jump);
+        self.meter = meter;
+        taken
+    }
+
+    fn take(&mut self, meter: &mut Meter, jump: bool) -> Result<()> {
+        let mut stiffness = 0.0;
+        if let Some(solver) = &mut meter.stiffness {
+            let (pressure, simulation) = (&self.state.pressure, &self.simulation);
+            let most = match simulation.plasticity {
+                super::Plasticity::Cap => super::cap(simulation, &self.hardness),
+                super::Plasticity::Accumulate => Hardness::Uniform(f64::INFINITY),
+            };
+            let bears = |k: usize| pressure[k] > 0.0 && pressure[k] < most.at(k);
+            let compliance = simulation.instantaneous();
+            let found = solver.of(&mut *self.operator, compliance, bears, self.interrupt.as_deref())?;
+            stiffness = found.0;
+            self.outcome.convolutions += found.1;
+        }
+        if let (Some(energy), Past::Memory(memory)) = (&mut meter.energy, &self.past) {
+            let ends = Ends {
+                before: (&self.previous.pressure, &self.previous.unit_displacement),
+                now: (&self.state.pressure, &self.state.unit_displacement),
+            };
+            let cell_area = self.simulation.grid.cell_area();
+            let overlap = cell_area * self.overlap_work();
+            let end = End {
+                load: cell_area * crate::field::sum(&self.state.pressure),
+                approach: self.state.approach,
+                flattening: match self.simulation.plasticity {
+                    super::Plasticity::Cap => Flattening::Held(overlap),
+                    super::Plasticity::Accumulate => Flattening::Spent(overlap),
+                },
+                jump,
+            };
+            let parts = memory.parts(ends.before.0, ends.now.0);
+            energy.take(&ends, &parts, self.simulation.instantaneous(), cell_area, end);
+        }
+        let Some(step) = self.last() else { return Ok(()) };
+        step.fill(meter, stiffness);
+        Ok(())
+    }
+
+    /// Σ p |h| over the cells at the hardness \[m Pa\].
+    fn overlap_work(&self) -> f64 {
+        let (c, w) = (self.compliance, self.state.approach);
+        let hardness = super::cap(&self.simulation, &self.hardness);
+        let cells = (&self.state.pressure[..], &self.state.unit_displacement[..], &self.gap[..], hardness);
+        sweep(cells, &|(p, u, h, hardness): (&[f64], &[f64], &[f64], Hardness)| {
+            strands(p.len(), |i| {
+                let overlap = if p[i] >= hardness.at(i) { (w - c * u[i] - h[i]).max(0.0) } else { 0.0 };
+                [if overlap > 0.0 { p[i] * overlap } else { 0.0 }]
+            })
+        })[0]
+    }
+}
+
+impl Step<'_> {
+    /// Writes the quantities of the row into `meter`.
+    fn fill(&self, meter: &mut Meter, stiffness: f64) {
+        let Meter { columns, values, energy, .. } = meter;
+        let grid = &self.simulation.grid;
+        let boundary = self.simulation.boundary;
+        let pressure = self.pressure();
+        let spots = columns
+            .iter()
+            .any(|column| column.quantity.is_of_spots())
+            .then(|| Spots::of(grid, boundary, pressure, |p| *p > 0.0));
+        let of_spots = |of: fn(&Spots) -> f64| spots.as_ref().map_or(f64::NAN, of);
+        let energy = |of: fn(&Energy) -> f64| energy.as_ref().map_or(f64::NAN, of);
+        let (c, w) = (self.compliance, self.state.approach);
+        let gaps = || {
+            let fields = self.state.unit_displacement.iter().zip(self.gap).zip(&self.state.pressure);
+            fields.filter(|((_, h), _)| **h < f64::INFINITY).map(move |((u, h), p)| (c * u + h - w, *p))
+        };
+        let mut rest = &mut values[..];
+        for column in columns {
+            let (own, after) = std::mem::take(&mut rest).split_at_mut(column.width());
+            rest = after;
+            let one = match column.quantity {
+                Quantity::ContactStiffness => stiffness,
+                Quantity::ContactSpots => of_spots(|s| s.len() as f64),
+                Quantity::LargestSpot => of_spots(|s| s.areas.first().copied().unwrap_or(0.0)),
+                Quantity::MeanSpot => of_spots(Spots::mean_area),
+                Quantity::ContactPerimeter => contact_edges(pressure, boundary).length(grid),
+                Quantity::RmsGap => self.rms_gap(),
+                Quantity::ElasticEnergy => energy(|e| e.elastic),
+                Quantity::DissipatedEnergy => energy(|e| e.dissipated),
+                Quantity::FlatteningWork => energy(|e| e.flattening),
+                Quantity::ExternalWork => energy(|e| e.work),
+                Quantity::SpotHistogram => {
+                    if let Some(spots) = &spots {
+                        spot_classes(spots, grid.cell_area(), own);
+                    }
+                    continue;
+                }
+                Quantity::PressureHistogram => {
+                    let touching = self.state.pressure.iter().copied().filter(|p| *p > 0.0);
+                    densities(touching, &column.edges, own);
+                    continue;
+                }
+                Quantity::GapHistogram => {
+                    let open = gaps().filter(|(_, p)| *p <= 0.0).map(|(gap, _)| gap);
+                    densities(open, &column.edges, own);
+                    continue;
+                }
+            };
+            own.fill(one);
+        }
+    }
+
+    /// Root of the mean square of the gap over the cells that can touch \[m\].
+    fn rms_gap(&self) -> f64 {
+        let (c, w) = (self.compliance, self.state.approach);
+        let [square, cells] =
+            sweep((&self.state.unit_displacement[..], self.gap), &|(u, h): (&[f64], &[f64])| {
+                strands(u.len(), |i| {
+                    let can_touch = h[i] < f64::INFINITY;
+                    let gap = if can_touch { c * u[i] + h[i] - w } else { 0.0 };
+                    [gap * gap, f64::from(u8::from(can_touch))]
+                })
+            });
+        (square / cells).sqrt()
+    }
+}

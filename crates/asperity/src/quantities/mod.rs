@@ -1,0 +1,328 @@
+//! Quantities of each row beyond load, approach and area, computed where they are asked for.
+//!
+//! | quantity | unit | meaning |
+//! |---|---|---|
+//! | `contact_stiffness` | N/m | dW/dw of the present contact against the instantaneous compliance |
+//! | `contact_spots` | | number of contact spots: patches of cells that touch and share edges |
+//! | `largest_spot`, `mean_spot` | m² | area of the largest spot, mean area of a spot; 0 without contact |
+//! | `contact_perimeter` | m | length of the edges between cells in and out of contact |
+//! | `rms_gap` | m | root of the mean square of the gap over the cells that can touch |
+//! | `elastic_energy` | J | energy in the springs of the bodies |
+//! | `dissipated_energy` | J | energy that their dashpots have turned into heat since t = 0 |
+//! | `flattening_work` | J | work on the cells at the hardness |
+//! | `external_work` | J | ∫ W dw since t = 0 |
+//! | `spot_histogram` | | number of spots per class of area, by powers of two of the cell |
+//! | `pressure_histogram` | 1/Pa | probability density of the pressure of the cells in contact |
+//! | `gap_histogram` | 1/m | probability density of the gap of the open cells |
+//!
+//! What each costs and how it is derived: docs/theory.md, sections 17 and 18. A march takes them by
+//! [`Simulation::quantities`](crate::Simulation::quantities) and lends them in [`Step::quantity`](crate::march::Step::quantity).
+
+mod histogram;
+mod perimeter;
+mod stiffness;
+
+use ndarray::Array2;
+
+use crate::error::{Error, Result, positive};
+use crate::grid::Grid;
+
+pub(crate) use histogram::{densities, spot_classes};
+pub use perimeter::{Edges, contact_edges};
+pub use stiffness::ContactStiffness;
+
+/// A quantity that each row may have; see the table of [`self`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Quantity {
+    /// dW/dw \[N/m\]: what a small, sudden change of the approach would change the load by. The bodies answer with
+    /// their instantaneous compliance C(0+), as at the onset of unloading; infinite where that is 0, and in the full
+    /// contact of a periodic body. Cells at the hardness carry no more, unless flattening stays: then they answer
+    /// elastically to unloading and count. A linear solve per row: some ten applications of K.
+    ContactStiffness,
+    /// Number of contact spots. Cells that share an edge belong to one spot; on a periodic domain opposite borders
+    /// are neighbours.
+    ContactSpots,
+    /// Area of the largest spot \[m²\]; 0 without contact.
+    LargestSpot,
+    /// Mean area of a spot \[m²\]; 0 without contact.
+    MeanSpot,
+    /// Length of the edges between cells in and out of contact \[m\]; the border of a free domain is none. A smooth
+    /// contour without preferred direction is shorter by π/4 (Yastrebov, Anciaux & Molinari 2017).
+    ContactPerimeter,
+    /// Root of the mean square of the gap over the cells that can touch \[m\].
+    RmsGap,
+    /// Energy stored in the springs of both bodies \[J\].
+    ElasticEnergy,
+    /// Energy that the dashpots of both bodies have turned into heat since t = 0 \[J\].
+    DissipatedEnergy,
+    /// Work on the cells at the hardness \[J\], hardness times overlap: given back on unloading where the cut-off is
+    /// reversible, summed up where flattening stays.
+    FlatteningWork,
+    /// Work of the load since t = 0 \[J\], ∫ W dw by the trapezoidal rule, jumps exact. It is the sum of the three
+    /// energies, up to the error of the steps.
+    ExternalWork,
+    /// Number of spots per class of area; class k holds spots of 2^k to 2^(k+1) - 1 cells.
+    SpotHistogram,
+    /// Probability density of the pressure over the cells in contact \[1/Pa\].
+    PressureHistogram,
+    /// Probability density of the gap over the open cells \[1/m\].
+    GapHistogram,
+}
+
+impl Quantity {
+    /// Every quantity.
+    pub const ALL: [Quantity; 13] = [
+        Quantity::ContactStiffness,
+        Quantity::ContactSpots,
+        Quantity::LargestSpot,
+        Quantity::MeanSpot,
+        Quantity::ContactPerimeter,
+        Quantity::RmsGap,
+        Quantity::ElasticEnergy,
+        Quantity::DissipatedEnergy,
+        Quantity::FlatteningWork,
+        Quantity::ExternalWork,
+        Quantity::SpotHistogram,
+        Quantity::PressureHistogram,
+        Quantity::GapHistogram,
+    ];
+
+    /// Its name in case files and results.
+    pub fn name(self) -> &'static str {
+        match self {
+            Quantity::ContactStiffness => "contact_stiffness",
+            Quantity::ContactSpots => "contact_spots",
+            Quantity::LargestSpot => "largest_spot",
+            Quantity::MeanSpot => "mean_spot",
+            Quantity::ContactPerimeter => "contact_perimeter",
+            Quantity::RmsGap => "rms_gap",
+            Quantity::ElasticEnergy => "elastic_energy",
+            Quantity::DissipatedEnergy => "dissipated_energy",
+            Quantity::FlatteningWork => "flattening_work",
+            Quantity::ExternalWork => "external_work",
+            Quantity::SpotHistogram => "spot_histogram",
+            Quantity::PressureHistogram => "pressure_histogram",
+            Quantity::GapHistogram => "gap_histogram",
+        }
+    }
+
+    /// The quantity of that name.
+    pub fn from_name(name: &str) -> Option<Quantity> {
+        Quantity::ALL.into_iter().find(|quantity| quantity.name() == name)
+    }
+
+    /// Its unit; "1" where it has none.
+    pub fn units(self) -> &'static str {
+        match self {
+            Quantity::ContactStiffness => "N/m",
+            Quantity::ContactSpots | Quantity::SpotHistogram => "1",
+            Quantity::LargestSpot | Quantity::MeanSpot => "m2",
+            Quantity::ContactPerimeter | Quantity::RmsGap => "m",
+            Quantity::ElasticEnergy
+            | Quantity::DissipatedEnergy
+            | Quantity::FlatteningWork
+            | Quantity::ExternalWork => "J",
+            Quantity::PressureHistogram => "1/Pa",
+            Quantity::GapHistogram => "1/m",
+        }
+    }
+
+    /// What it is, for axes and legends.
+    pub fn long_name(self) -> &'static str {
+        match self {
+            Quantity::ContactStiffness => "contact stiffness",
+            Quantity::ContactSpots => "contact spots",
+            Quantity::LargestSpot => "area of the largest contact spot",
+            Quantity::MeanSpot => "mean area of a contact spot",
+            Quantity::ContactPerimeter => "counted perimeter of the contact",
+            Quantity::RmsGap => "rms gap",
+            Quantity::ElasticEnergy => "elastic energy",
+            Quantity::DissipatedEnergy => "dissipated energy",
+            Quantity::FlatteningWork => "work of flattening",
+            Quantity::ExternalWork => "external work",
+            Quantity::SpotHistogram => "number of contact spots per class of area",
+            Quantity::PressureHistogram => "probability density of the contact pressure",
+            Quantity::GapHistogram => "probability density of the open gap",
+        }
+    }
+
+    /// Whether it has a number per bin; otherwise one per row.
+    pub fn is_histogram(self) -> bool {
+        matches!(self, Quantity::SpotHistogram | Quantity::PressureHistogram | Quantity::GapHistogram)
+    }
+
+    /// Whether it follows the energy of the bodies.
+    pub fn is_energy(self) -> bool {
+        matches!(
+            self,
+            Quantity::ElasticEnergy
+                | Quantity::DissipatedEnergy
+                | Quantity::FlatteningWork
+                | Quantity::ExternalWork
+        )
+    }
+
+    /// Whether it is about contact spots.
+    pub(crate) fn is_of_spots(self) -> bool {
+        matches!(
+            self,
+            Quantity::ContactSpots | Quantity::LargestSpot | Quantity::MeanSpot | Quantity::SpotHistogram
+        )
+    }
+}
+
+impl std::fmt::Display for Quantity {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// The quantities that a march takes at each row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quantities {
+    /// Which, each once; default none.
+    pub list: Vec<Quantity>,
+    /// Bins of the histograms of pressure and gap, all of one width; default 50, at most 10 000.
+    pub bins: usize,
+    /// Upper end of the histogram of the pressure \[Pa\]; by default the hardness. It begins at 0.
+    pub largest_pressure: Option<f64>,
+    /// Upper end of the histogram of the gap \[m\]; by default the largest undeformed gap. It begins at 0.
+    pub largest_gap: Option<f64>,
+}
+
+impl Default for Quantities {
+    fn default() -> Self {
+        Quantities { list: vec![], bins: 50, largest_pressure: None, largest_gap: None }
+    }
+}
+
+/// Most bins of a histogram.
+const MOST_BINS: usize = 10_000;
+
+/// A quantity with the ends of its bins.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// The quantity.
+    pub quantity: Quantity,
+    /// Ends of the bins, one more than there are bins, in the unit of what is counted (m², Pa, m); empty for a single
+    /// number.
+    pub edges: Vec<f64>,
+}
+
+impl Column {
+    /// Numbers per row.
+    pub fn width(&self) -> usize {
+        if self.edges.is_empty() { 1 } else { self.edges.len() - 1 }
+    }
+}
+
+impl Quantities {
+    /// These quantities, with the default bins.
+    pub fn of(list: impl IntoIterator<Item = Quantity>) -> Self {
+        Quantities { list: list.into_iter().collect(), ..Quantities::default() }
+    }
+
+    /// Whether a quantity is asked for.
+    pub fn has(&self, quantity: Quantity) -> bool {
+        self.list.contains(&quantity)
+    }
+
+    /// Whether any energy is asked for.
+    pub fn has_energy(&self) -> bool {
+        self.list.iter().any(|quantity| quantity.is_energy())
+    }
+
+    /// The quantities with their bins, for an undeformed gap \[m\] and a largest hardness \[Pa\] (infinite for none).
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where a quantity is named twice, the bins are none or too many, an end is not positive, or the
+    /// histogram of the pressure has no upper end.
+    pub fn columns(&self, grid: &Grid, gap: &Array2<f64>, hardness: f64) -> Result<Vec<Column>> {
+        for (n, quantity) in self.list.iter().enumerate() {
+            if self.list[..n].contains(quantity) {
+                return Err(Error::invalid(
+                    "list of quantities",
+                    format!("{quantity} twice"),
+                    "each named once",
+                ));
+            }
+        }
+        if !(1..=MOST_BINS).contains(&self.bins) {
+            return Err(Error::invalid(
+                "bins of the histograms",
+                self.bins,
+                format!("between 1 and {MOST_BINS}"),
+            ));
+        }
+        let evenly = |top: f64| (0..=self.bins).map(|k| top * k as f64 / self.bins as f64).collect();
+        let edges = |quantity: &Quantity| -> Result<Vec<f64>> {
+            Ok(match quantity {
+                Quantity::SpotHistogram => {
+                    let classes = grid.len().ilog2() as i32 + 1;
+                    (0..=classes).map(|k| grid.cell_area() * libm::ldexp(1.0, k)).collect()
+                }
+                Quantity::PressureHistogram => match self.largest_pressure {
+                    Some(top) => evenly(positive("largest pressure of the histogram", top, "Pa")?),
+                    None if hardness.is_finite() => evenly(hardness),
+                    None => {
+                        return Err(Error::invalid(
+                            "largest pressure of the histogram",
+                            "not given",
+                            "a pressure, as the bodies have no hardness that bounds it",
+                        ));
+                    }
+                },
+                Quantity::GapHistogram => match self.largest_gap {
+                    Some(top) => evenly(positive("largest gap of the histogram", top, "m")?),
+                    None => {
+                        let top = gap.iter().filter(|h| h.is_finite()).fold(0.0, |m: f64, h| m.max(*h));
+                        if top <= 0.0 {
+                            return Err(Error::invalid(
+                                "largest gap of the histogram",
+                                "not given",
+                                "a length, as the undeformed surfaces are flat",
+                            ));
+                        }
+                        evenly(top)
+                    }
+                },
+                _ => vec![],
+            })
+        };
+        self.list.iter().map(|quantity| Ok(Column { quantity: *quantity, edges: edges(quantity)? })).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_unique_and_found_again() {
+        for quantity in Quantity::ALL {
+            assert_eq!(Quantity::from_name(quantity.name()), Some(quantity));
+        }
+        assert_eq!(Quantity::from_name("stiffness"), None);
+    }
+
+    #[test]
+    fn histograms_need_ends() {
+        let grid = Grid::new([5, 4], [5.0, 8.0]).unwrap();
+        let flat = Array2::zeros((5, 4));
+        let said = |list: &[Quantity], gap: &Array2<f64>, hardness| {
+            Quantities::of(list.iter().copied()).columns(&grid, gap, hardness).unwrap_err().to_string()
+        };
+        assert!(said(&[Quantity::PressureHistogram], &flat, f64::INFINITY).contains("no hardness"));
+        assert!(said(&[Quantity::GapHistogram], &flat, 1.0).contains("flat"));
+        assert!(said(&[Quantity::RmsGap, Quantity::RmsGap], &flat, 1.0).contains("rms_gap twice"));
+        let mut gap = flat;
+        gap[(1, 1)] = 3.0;
+        gap[(0, 1)] = f64::INFINITY;
+        let list = [Quantity::SpotHistogram, Quantity::PressureHistogram, Quantity::GapHistogram];
+        let columns = Quantities { bins: 2, ..Quantities::of(list) }.columns(&grid, &gap, 8.0).unwrap();
+        // 20 cells of 2 m2: classes of 1, 2-3, 4-7, 8-15 and 16-31 cells.
+        assert_eq!(columns[0].edges, [2.0, 4.0, 8.0, 16.0, 32.0, 64.0]);
+        assert_eq!(columns[1].edges, [0.0, 4.0, 8.0]);
+        assert_eq!(columns[2].edges, [0.0, 1.5, 3.0]);
+    }
+}

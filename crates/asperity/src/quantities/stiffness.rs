@@ -1,0 +1,219 @@
+//! The stiffness of a contact: dW/dw with the contact set as it is.
+//!
+//! Where cells carry a pressure between its bounds the gap stays closed, so that a small change dw of the approach
+//! moves all of them alike, c K dp = dw, while the others keep their pressure. With the unit distribution
+//!
+//! ```text
+//! K_SS q = 1 on the set S,     dW/dw = (dx dy / c) Σ q
+//! ```
+//!
+//! (the set itself changes with dw, but at its border the pressure is 0: to first order that changes nothing).
+//! Conjugate gradients from q = 0, preconditioned as the contact solver: each iteration adds α <r, z> to Σ q, which
+//! rises to its limit as the square of the error in the energy norm.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::convolution::lanes::Lanes;
+use crate::error::{Error, NotConverged, Result};
+use crate::field::{strands, sweep};
+use crate::grid::{Boundary, Grid};
+use crate::operator::{Operator, approximate_inverse};
+
+/// Iterations end where one adds less than this share of the sum: its relative error is then of that size.
+const SMALLEST_SHARE: f64 = 1e-7;
+/// More than any contact needs; some ten are usual.
+const MOST_ITERATIONS: usize = 1000;
+
+/// Solves for the stiffness of contacts on one grid, with its own working memory (38 bytes per cell).
+pub struct ContactStiffness {
+    inverse: Lanes<f32>,
+    set: Vec<bool>,
+    residual: Vec<f64>,
+    direction: Vec<f64>,
+    moved: Vec<f64>,
+    single: Vec<f32>,
+    image: Vec<f32>,
+}
+
+impl ContactStiffness {
+    /// Plans the solve for a grid and what surrounds it.
+    pub fn new(grid: &Grid, boundary: Boundary) -> Self {
+        let n = grid.len();
+        ContactStiffness {
+            inverse: approximate_inverse(grid, boundary).0,
+            set: vec![false; n],
+            residual: vec![0.0; n],
+            direction: vec![0.0; n],
+            moved: vec![0.0; n],
+            single: vec![0.0; n],
+            image: vec![0.0; n],
+        }
+    }
+
+    /// dW/dw \[N/m\] of the cells that `bears` names, for a compliance \[1/Pa\], and the applications of K that it took.
+    ///
+    /// 0 where no cell bears; infinite without compliance, and where every cell of a periodic domain bears.
+    ///
+    /// ```
+    /// use asperity::{Boundary, Grid, operator::half_space, quantities::ContactStiffness};
+    /// // A flat punch of radius a: dW/dw = 2 a E* (Sneddon 1965).
+    /// let grid = Grid::new([64, 64], [2.0, 2.0])?;
+    /// let mut operator = half_space(grid, Boundary::Free);
+    /// let inside = |k: usize| f64::hypot(grid.x(k / 64) - 1.0, grid.y(k % 64) - 1.0) < 0.7;
+    /// let (stiffness, _) = ContactStiffness::new(&grid, Boundary::Free).of(&mut *operator, 1e-9, inside, None)?;
+    /// assert!((stiffness / (2.0 * 0.7 * 1e9) - 1.0).abs() < 0.02);
+    /// # Ok::<(), asperity::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`] where `interrupt` becomes true; [`Error::NotConverged`].
+    pub fn of(
+        &mut self,
+        operator: &mut dyn Operator,
+        compliance: f64,
+        bears: impl Fn(usize) -> bool,
+        interrupt: Option<&AtomicBool>,
+    ) -> Result<(f64, usize)> {
+        let mut cells = 0;
+        for (k, (set, residual)) in self.set.iter_mut().zip(&mut self.residual).enumerate() {
+            *set = bears(k);
+            *residual = f64::from(u8::from(*set));
+            cells += usize::from(*set);
+        }
+        if cells == 0 {
+            return Ok((0.0, 0));
+        }
+        if compliance <= 0.0 || (operator.boundary() == Boundary::Periodic && cells == self.set.len()) {
+            return Ok((f64::INFINITY, 0));
+        }
+        self.direction.fill(0.0);
+        let (mut sum, mut product) = (0.0, f64::INFINITY);
+        for iteration in 1..=MOST_ITERATIONS {
+            if interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+                return Err(Error::Interrupted);
+            }
+            self.single.iter_mut().zip(&self.residual).for_each(|(single, r)| *single = *r as f32);
+            self.inverse.apply_into(&self.single, &mut self.image);
+            let last = std::mem::replace(&mut product, self.preconditioned_product());
+            self.turn(product / last);
+            operator.apply_into(&self.direction, &mut self.moved);
+            let curvature = self.curvature();
+            if !(product > 0.0 && curvature > 0.0) {
+                // Nothing but rounding is left.
+                return Ok((operator.grid().cell_area() * sum / compliance, iteration));
+            }
+            let length = product / curvature;
+            sum += length * product;
+            if length * product <= SMALLEST_SHARE * sum {
+                return Ok((operator.grid().cell_area() * sum / compliance, iteration));
+            }
+            self.advance(length);
+        }
+        Err(Error::NotConverged(NotConverged {
+            method: "contact stiffness",
+            iterations: MOST_ITERATIONS,
+            residual: f64::NAN,
+            tolerance: SMALLEST_SHARE,
+            certificate: f64::NAN,
+            time: None,
+        }))
+    }
+
+    /// <r, z>; r is 0 outside of S.
+    fn preconditioned_product(&self) -> f64 {
+        sweep((&self.residual[..], &self.image[..]), &|(r, z): (&[f64], &[f32])| {
+            strands(r.len(), |i| [r[i] * f64::from(z[i])])
+        })[0]
+    }
+
+    /// d = z + beta d on S.
+    fn turn(&mut self, beta: f64) {
+        sweep((&mut self.direction[..], &self.image[..], &self.set[..]), &|(d, z, set): (
+            &mut [f64],
+            &[f32],
+            &[bool],
+        )| {
+            for ((d, z), on) in d.iter_mut().zip(z).zip(set) {
+                *d = if *on { f64::from(*z) + beta * *d } else { 0.0 };
+            }
+        });
+    }
+
+    /// <d, K d>; d is 0 outside of S.
+    fn curvature(&self) -> f64 {
+        sweep((&self.direction[..], &self.moved[..]), &|(d, moved): (&[f64], &[f64])| {
+            strands(d.len(), |i| [d[i] * moved[i]])
+        })[0]
+    }
+
+    /// r = r - α K d on S.
+    fn advance(&mut self, length: f64) {
+        sweep((&mut self.residual[..], &self.moved[..], &self.set[..]), &|(r, moved, set): (
+            &mut [f64],
+            &[f64],
+            &[bool],
+        )| {
+            for ((r, moved), on) in r.iter_mut().zip(moved).zip(set) {
+                if *on {
+                    *r -= length * moved;
+                }
+            }
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::operator::half_space;
+
+    #[test]
+    fn the_sum_meets_the_direct_solution() {
+        // A ragged set on a small grid of oblong cells, against Gaussian elimination of K_SS q = 1.
+        let grid = Grid::new([9, 7], [9.0, 10.5]).unwrap();
+        let on = |k: usize| !(k * k + k / 3).is_multiple_of(3);
+        for boundary in [Boundary::Free, Boundary::Periodic] {
+            let mut operator = half_space(grid, boundary);
+            let cells: Vec<usize> = (0..grid.len()).filter(|k| on(*k)).collect();
+            let mut matrix: Vec<Vec<f64>> = cells
+                .iter()
+                .map(|k| {
+                    let (mut p, mut u) = (vec![0.0; grid.len()], vec![0.0; grid.len()]);
+                    p[*k] = 1.0;
+                    operator.apply_into(&p, &mut u);
+                    cells.iter().map(|l| u[*l]).chain([1.0]).collect()
+                })
+                .collect();
+            let n = cells.len();
+            for k in 0..n {
+                // K_SS is positive definite: no pivoting.
+                let pivot = matrix[k].clone();
+                for (row, cells) in matrix.iter_mut().enumerate().filter(|(row, _)| *row != k) {
+                    let factor = cells[k] / pivot[k];
+                    assert!(factor.is_finite(), "{row}");
+                    cells.iter_mut().zip(&pivot).for_each(|(c, p)| *c -= factor * p);
+                }
+            }
+            let exact: f64 =
+                (0..n).map(|k| matrix[k][n] / matrix[k][k]).sum::<f64>() * grid.cell_area() / 0.25;
+            let (found, convolutions) =
+                ContactStiffness::new(&grid, boundary).of(&mut *operator, 0.25, on, None).unwrap();
+            // The last iteration added less than 1e-7.
+            assert!((found / exact - 1.0).abs() < 1e-6, "{boundary:?}: {found} {exact}");
+            assert!(convolutions <= 25, "{convolutions}");
+        }
+    }
+
+    #[test]
+    fn limits_are_answered() {
+        let grid = Grid::new([4, 4], [1.0, 1.0]).unwrap();
+        let mut stiffness = ContactStiffness::new(&grid, Boundary::Periodic);
+        let mut periodic = half_space(grid, Boundary::Periodic);
+        assert_eq!(stiffness.of(&mut *periodic, 1.0, |_| false, None).unwrap(), (0.0, 0));
+        assert_eq!(stiffness.of(&mut *periodic, 1.0, |_| true, None).unwrap(), (f64::INFINITY, 0));
+        assert_eq!(stiffness.of(&mut *periodic, 0.0, |k| k == 1, None).unwrap(), (f64::INFINITY, 0));
+        let flag = AtomicBool::new(true);
+        let stopped = stiffness.of(&mut *periodic, 1.0, |k| k == 1, Some(&flag));
+        assert!(matches!(stopped, Err(Error::Interrupted)));
+    }
+}

@@ -38,6 +38,8 @@ pub enum Command {
     /// Show a material over time and frequency, or fit one to measured curves
     #[command(subcommand)]
     Material(Material),
+    /// Find the material of a body from a measured indentation: load and depth over time
+    FitIndentation(FitIndentation),
     /// Write a result for other programs: NetCDF, HDF5, npz, VTK, CSV, PNG
     Export(Export),
     /// Compute the figures of Spinu and Cerlinca (2017) again, each with an independent curve and the difference
@@ -435,11 +437,66 @@ pub struct View {
 }
 
 #[derive(Debug, clap::Args)]
+pub struct FitIndentation {
+    /// The record: a text table with columns of time, load and depth
+    pub record: PathBuf,
+    /// Radius of the sphere, e.g. '5 mm'
+    #[arg(long, value_name = "LENGTH", required_unless_present = "cone", conflicts_with = "cone")]
+    pub radius: Option<String>,
+    /// Slope of a cone instead: rise per length, the cotangent of its half angle
+    #[arg(long, value_name = "SLOPE")]
+    pub cone: Option<String>,
+    /// Poisson's ratio of the body
+    #[arg(long, value_name = "NU", default_value = "0.5")]
+    pub poisson: String,
+    /// The moduli to give
+    #[arg(long, value_enum, default_value = "young")]
+    pub modulus: MeasureName,
+    /// The channel that the instrument controlled, taken as it was measured [default: the one with less scatter]
+    #[arg(long, value_enum)]
+    pub given: Option<GivenName>,
+    /// Number of terms, at most 6 [default: as many as the record calls for]
+    #[arg(long, value_name = "N")]
+    pub terms: Option<usize>,
+    /// What happens at times longer than the record
+    #[arg(long, value_enum, default_value = "free")]
+    pub long_time: LongTimeName,
+    /// Fit the depth of first touch too, instead of taking it as 0
+    #[arg(long)]
+    pub fit_touch: bool,
+    /// Where a quantity stands: QUANTITY=NUMBER or QUANTITY=HEADER, of time, load, depth; may be given several times
+    #[arg(long, value_name = "QUANTITY=COLUMN")]
+    pub column: Vec<String>,
+    /// The unit of a quantity: QUANTITY=UNIT; may be given several times
+    #[arg(long, value_name = "QUANTITY=UNIT")]
+    pub unit: Vec<String>,
+    /// Write the material, ready to paste under a [[body]] of a case file
+    #[arg(short, long, value_name = "PATH")]
+    pub output: Option<PathBuf>,
+    /// Draw record and model as PNG, SVG or PDF
+    #[arg(long, value_name = "PATH")]
+    pub plot: Option<PathBuf>,
+    /// Replace files that are there already
+    #[arg(long)]
+    pub force: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// A channel of an indentation.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub enum GivenName {
+    Depth,
+    Load,
+}
+
+#[derive(Debug, clap::Args)]
 pub struct Plot {
     /// The result (a Zarr directory)
     pub result: PathBuf,
-    /// evolution, load-displacement, pressure, gap, displacement, contact, initial-gap, profile, histogram, spots
-    /// or work
+    /// evolution, load-displacement, pressure, gap, displacement, contact, flattening, initial-gap, profile,
+    /// histogram, spots, work or quantities
     pub what: String,
     /// The file to write; its ending tells the form: png, svg or pdf [default: RESULT-WHAT.png]
     #[arg(short, long, value_name = "PATH")]

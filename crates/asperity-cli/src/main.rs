@@ -36,6 +36,7 @@ fn main() -> ExitCode {
         Command::View(view) => commands::view::run(&view),
         Command::Plot(plot) => commands::plot::run(&plot),
         Command::Material(material) => commands::material::run(&material),
+        Command::FitIndentation(fit) => commands::fit_indentation::run(&fit),
         Command::Export(export) => commands::export::run(&export),
         Command::Reproduce(reproduce) => commands::reproduce::run(&reproduce),
         Command::Schema => commands::schema::run(),

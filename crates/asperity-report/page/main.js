@@ -44,10 +44,10 @@ const PANELS = [
 function timePanels() {
   const time = state.series.time;
   const axis = { label: "time", unit: "s", log: chosen.log };
-  const specs = PANELS.map(([title, label, names]) => ({
+  const specs = [...PANELS, ...state.quantities].map(([title, label, names]) => ({
     title,
     x: axis,
-    y: { label, unit: state.units[names[0][1]] },
+    y: { label, unit: state.units[names[0][1]] === "1" ? "" : state.units[names[0][1]] },
     series: names.filter(([, key]) => key !== "capped_area" || state.series[key].some((v) => v > 0)).map(([name, key]) => ({ name, x: time, y: state.series[key] })),
   }));
   if (!evolution.length) {

@@ -69,6 +69,7 @@ pub fn pictures(
             FieldKind::Gap => Plot::Gap,
             FieldKind::Displacement => Plot::Displacement,
             FieldKind::Contact => Plot::Contact,
+            FieldKind::Flattening => Plot::Flattening,
         };
         let range = range(reader, *kind)?;
         for n in 0..reader.field_times().len() {

@@ -26,6 +26,7 @@ pub mod contact;
 pub mod error;
 mod field;
 pub mod grid;
+pub mod indentation;
 pub mod kernel;
 pub mod load;
 pub mod march;

@@ -45,7 +45,7 @@ fn fields(args: &Export) -> Result<Option<Vec<FieldKind>>, Failure> {
 fn field(name: &str) -> Result<FieldKind, Failure> {
     FieldKind::from_name(name).ok_or_else(|| {
         Failure::input(format!(
-            "there is no field \"{name}\"; choose from pressure, gap, displacement, contact"
+            "there is no field \"{name}\"; choose from pressure, gap, displacement, contact, flattening"
         ))
     })
 }

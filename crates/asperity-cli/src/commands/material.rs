@@ -307,7 +307,7 @@ fn options(args: &Fit) -> FitOptions {
 }
 
 /// "frequency=1", "storage=E' [MPa]".
-fn pairs(option: &str, texts: &[String]) -> Result<BTreeMap<Role, String>, Failure> {
+pub(super) fn pairs(option: &str, texts: &[String]) -> Result<BTreeMap<Role, String>, Failure> {
     let pair = |text: &String| {
         let (role, value) = text.split_once('=').ok_or_else(|| {
             Failure::input(format!("{option} is \"{text}\", but must be QUANTITY=..., e.g. {option} time=1"))
@@ -366,18 +366,18 @@ fn split<'t, const N: usize>(text: &'t str, option: &str, wanted: &str) -> Resul
         .map_err(|_| Failure::input(format!("{option} is \"{text}\", but must be {wanted}")))
 }
 
-fn parsed<T: std::str::FromStr>(what: &str, text: &str) -> Result<T, Failure>
+pub(super) fn parsed<T: std::str::FromStr>(what: &str, text: &str) -> Result<T, Failure>
 where
     T::Err: std::fmt::Display,
 {
     text.parse().map_err(|error| Failure::input(format!("{what} is \"{text}\", but must be {error}")))
 }
 
-fn told(error: impl std::fmt::Display) -> Failure {
+pub(super) fn told(error: impl std::fmt::Display) -> Failure {
     Failure::input(error.to_string())
 }
 
-fn write(path: &Path, text: &str, force: bool) -> Result<(), Failure> {
+pub(super) fn write(path: &Path, text: &str, force: bool) -> Result<(), Failure> {
     let mut options = std::fs::OpenOptions::new();
     match force {
         true => options.write(true).create(true).truncate(true),

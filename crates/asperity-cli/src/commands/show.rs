@@ -1,7 +1,8 @@
 //! `asperity show`: a result in the terminal.
 
+use asperity::quantities::Quantity;
 use asperity_io::case::quantity::Time;
-use asperity_io::store::{At, Reader, SCALARS, Status, StoreError};
+use asperity_io::store::{At, Reader, Status, StoreError};
 use asperity_report::result::contact;
 use serde_json::json;
 
@@ -28,7 +29,7 @@ pub fn run(args: &ShowResult) -> Result<(), Failure> {
 fn object(reader: &Reader) -> Result<String, StoreError> {
     let work = reader.work();
     let mut last = serde_json::Map::new();
-    for scalar in SCALARS {
+    for scalar in reader.scalars() {
         last.insert(scalar.name.into(), json!(reader.series(scalar.name)?.last()));
     }
     let object = json!({
@@ -105,6 +106,18 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
     }
     let pressure = [last.mean_pressure, last.max_pressure].map(|p| quantity(p, "Pa", 1));
     line("pressure", format!("mean {}, largest {}", pressure[0], pressure[1]));
+    let asked = reader.scalars().into_iter().filter(|s| Quantity::from_name(s.name).is_some());
+    for (n, series) in asked.enumerate() {
+        let values = reader.series(series.name)?;
+        let value = values.last().copied().unwrap_or(f64::NAN);
+        let unit = series.units.replace("m2", "m²");
+        let words = if unit == "1" {
+            format!("{value}")
+        } else {
+            quantity(value, &unit, if unit == "m²" { 2 } else { 1 })
+        };
+        line(if n == 0 { "quantities" } else { "" }, format!("{:<20}{words}", series.name));
+    }
     let worst = rows.iter().map(|row| row.certificate).fold(0.0, f64::max);
     line("certificate", format!("{worst:.1e} at worst (relative error of the pressure)"));
     let work = reader.work();

@@ -61,8 +61,9 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use asperity::material::{Body, Creep, ThermalCreep};
+use asperity::quantities::{Quantities, Quantity};
 use asperity::surface::undeformed_gap;
-use asperity::{Boundary, Error, Grid, Loading, Scheme, Simulation, SolverOptions, TimeGrid};
+use asperity::{Boundary, Error, Grid, Loading, Plasticity, Scheme, Simulation, SolverOptions, TimeGrid};
 use ndarray::Array2;
 
 pub use describe::{Description, MaterialReport, Preparation};
@@ -119,6 +120,8 @@ pub struct Case {
     pub include: Vec<f64>,
     /// How the pressure goes over a step.
     pub scheme: Scheme,
+    /// What flattening at the cut-off leaves behind.
+    pub plasticity: Plasticity,
     /// How each step is solved.
     pub solver: SolverOptions,
     /// What is stored, and where.
@@ -215,15 +218,31 @@ impl Case {
             times: self.times.clone(),
             include: self.include.clone(),
             scheme: self.scheme,
+            plasticity: self.plasticity,
             solver: self.solver,
             ..Simulation::new(self.grid, self.gap()?)
         };
+        let simulation = Simulation { quantities: self.quantities(&simulation), ..simulation };
         match simulation.validate() {
             Ok(()) => Ok(simulation),
             // Under a punch only a part of the domain bears.
             Err(error @ Error::Infeasible { .. }) => Err(self.fault(&self.history, error.to_string())),
             Err(error) => Err(CaseErrors::without_place(&self.name, error.to_string(), "", None)),
         }
+    }
+
+    /// The quantities that are asked for, of this simulation.
+    fn quantities(&self, simulation: &Simulation) -> Quantities {
+        let mut wanted = self.output.quantities.clone();
+        if self.output.all_quantities {
+            let possible = |quantity: &Quantity| {
+                let alone = Quantities { list: vec![*quantity], ..wanted.clone() };
+                let known = !(quantity.is_energy() && simulation.scheme == Scheme::Direct);
+                known && alone.columns(&simulation.grid, &simulation.gap, simulation.hardness).is_ok()
+            };
+            wanted.list = Quantity::ALL.into_iter().filter(possible).collect();
+        }
+        wanted
     }
 
     fn fault(&self, span: &Range<usize>, reason: String) -> CaseErrors {

@@ -7,6 +7,7 @@ use asperity::surface::Part;
 
 use super::measured::Measured;
 pub use super::raw::Field;
+use asperity::quantities::Quantities;
 
 /// One part of the undeformed gap.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,6 +27,10 @@ pub struct Output {
     pub fields: BTreeSet<Field>,
     /// The rows whose fields are stored.
     pub rows: Rows,
+    /// The quantities of each row; with `all_quantities` those that the case allows are added.
+    pub quantities: Quantities,
+    /// Whether every quantity that the case allows is wanted.
+    pub all_quantities: bool,
     /// Whether the run leaves what it needs to be resumed.
     pub checkpoint: bool,
 }
@@ -72,6 +77,7 @@ impl Field {
             Field::Gap => "gap",
             Field::Displacement => "displacement",
             Field::Contact => "contact",
+            Field::Flattening => "flattening",
         }
     }
 

@@ -12,7 +12,6 @@ use super::text::{Text, join};
 const NOT_AVAILABLE: &[(&str, &str)] = &[
     ("stages", NOT_YET),
     ("adaptive", NOT_YET),
-    ("accumulate", NOT_YET),
     ("array", "is for arrays that a Python program passes; in a case file use kind = \"file\""),
 ];
 const NOT_YET: &str = "is not available in this version";

@@ -29,10 +29,32 @@ pub enum Role {
     TanDelta,
     /// Temperature of the point.
     Temperature,
+    /// Load of an indentation.
+    Load,
+    /// Depth of an indentation.
+    Depth,
+}
+
+/// The columns of a kind of file.
+#[derive(Clone, Copy)]
+pub(super) struct Form {
+    /// "relaxation"
+    pub(super) name: &'static str,
+    /// What its columns hold or may hold, in their order.
+    pub(super) roles: &'static [Role],
+    /// What "t" means.
+    pub(super) t: Role,
+}
+
+impl From<Kind> for Form {
+    fn from(kind: Kind) -> Self {
+        let t = if kind == Kind::Dma { Role::Temperature } else { Role::Time };
+        Form { name: kind.name(), roles: kind.roles(), t }
+    }
 }
 
 impl Role {
-    const ALL: [Role; 8] = [
+    const ALL: [Role; 10] = [
         Role::Time,
         Role::Modulus,
         Role::Compliance,
@@ -41,6 +63,8 @@ impl Role {
         Role::Loss,
         Role::TanDelta,
         Role::Temperature,
+        Role::Load,
+        Role::Depth,
     ];
 
     /// Its key in case files and on the command line.
@@ -54,13 +78,16 @@ impl Role {
             Role::Loss => "loss",
             Role::TanDelta => "tan_delta",
             Role::Temperature => "temperature",
+            Role::Load => "load",
+            Role::Depth => "depth",
         }
     }
 
     /// Names of columns that mean nothing else in a file of this kind.
-    fn aliases(self, kind: Kind) -> &'static [&'static str] {
-        match (self, kind) {
-            (Role::Time, _) => &["time", "t"],
+    fn aliases(self, form: Form) -> &'static [&'static str] {
+        match (self, form.t) {
+            (Role::Time, Role::Time) => &["time", "t"],
+            (Role::Time, _) => &["time"],
             (Role::Modulus, _) => &["modulus", "relaxation modulus", "e", "g", "e(t)", "g(t)"],
             (Role::Compliance, _) => &["compliance", "creep compliance", "d", "j", "d(t)", "j(t)"],
             (Role::Frequency, _) => {
@@ -73,8 +100,12 @@ impl Role {
             (Role::TanDelta, _) => {
                 &["tan_delta", "tan delta", "tan(delta)", "tandelta", "tan δ", "tan(δ)", "loss factor"]
             }
-            (Role::Temperature, Kind::Dma) => &["temperature", "temp", "temp.", "t"],
+            (Role::Temperature, Role::Temperature) => &["temperature", "temp", "temp.", "t"],
             (Role::Temperature, _) => &["temperature", "temp", "temp."],
+            (Role::Load, _) => &["load", "force", "normal load", "normal force", "w", "p", "f", "fn"],
+            (Role::Depth, _) => {
+                &["depth", "indentation", "displacement", "indentation depth", "approach", "h", "d"]
+            }
         }
     }
 }
@@ -112,8 +143,8 @@ pub struct Columns {
 pub(super) type Values = BTreeMap<Role, Vec<f64>>;
 
 /// The values of all quantities of a curve of `kind`, in SI, and what was assumed.
-pub(super) fn values(table: &Table, kind: Kind, said: &Columns) -> Result<(Values, Vec<String>), Fault> {
-    let places = places(table, kind, said)?;
+pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<(Values, Vec<String>), Fault> {
+    let places = places(table, form, said)?;
     let (mut values, mut notes) = (Values::new(), Vec::new());
     for (role, column) in places {
         let header_unit = table.units.get(column).map_or("", String::as_str);
@@ -146,15 +177,15 @@ pub(super) fn values(table: &Table, kind: Kind, said: &Columns) -> Result<(Value
 }
 
 /// The column of each quantity: as said; else by the names in the header; else in order.
-fn places(table: &Table, kind: Kind, said: &Columns) -> Result<BTreeMap<Role, usize>, Fault> {
+fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeMap<Role, usize>, Fault> {
     let mut places = BTreeMap::new();
-    let possible = kind.roles();
+    let possible = form.roles;
     for role in said.columns.keys().chain(said.units.keys()) {
         if !possible.contains(role) {
             let names: Vec<&str> = possible.iter().map(|role| role.name()).collect();
             let message = format!(
                 "a {} file has no `{}`; its columns are {}",
-                kind.name(),
+                form.name,
                 role.name(),
                 names.join(", ")
             );
@@ -165,7 +196,7 @@ fn places(table: &Table, kind: Kind, said: &Columns) -> Result<BTreeMap<Role, us
         places.insert(*role, find(table, *role, column)?);
     }
     for role in possible {
-        let known = |name: &String| role.aliases(kind).contains(&name.to_lowercase().as_str());
+        let known = |name: &String| role.aliases(form).contains(&name.to_lowercase().as_str());
         let taken = |n: &usize| places.values().any(|place| place == n);
         let both = matches!(role, Role::TanDelta) && places.contains_key(&Role::Loss)
             || matches!(role, Role::Loss) && places.contains_key(&Role::TanDelta);
@@ -207,7 +238,7 @@ fn places(table: &Table, kind: Kind, said: &Columns) -> Result<BTreeMap<Role, us
 /// Whether the header names all that a file of this kind needs.
 pub(super) fn named(table: &Table, kind: Kind) -> bool {
     let has = |role: Role| {
-        table.names.iter().any(|name| role.aliases(kind).contains(&name.to_lowercase().as_str()))
+        table.names.iter().any(|name| role.aliases(kind.into()).contains(&name.to_lowercase().as_str()))
     };
     match kind {
         Kind::Relaxation => has(Role::Time) && has(Role::Modulus),
@@ -251,6 +282,8 @@ fn convert(role: Role, unit: &str, numbers: Vec<f64>) -> Result<Vec<f64>, (Optio
         Role::Modulus | Role::Storage | Role::Loss => scale::<dimension::Pressure>(unit).map_err(whole)?,
         Role::Compliance => scale::<dimension::Compliance>(unit).map_err(whole)?,
         Role::TanDelta => scale::<dimension::Number>(unit).map_err(whole)?,
+        Role::Load => scale::<dimension::Force>(unit).map_err(whole)?,
+        Role::Depth => scale::<dimension::Length>(unit).map_err(whole)?,
     };
     Ok(numbers.into_iter().map(|value| factor * value).collect())
 }
@@ -309,6 +342,8 @@ fn si(role: Role) -> &'static str {
         Role::Frequency => "Hz",
         Role::TanDelta => "",
         Role::Temperature => "K",
+        Role::Load => "N",
+        Role::Depth => "m",
     }
 }
 
@@ -318,6 +353,8 @@ fn example(role: Role) -> &'static str {
         Role::Compliance => "1/MPa",
         Role::TanDelta => "-",
         Role::Temperature => "°C",
+        Role::Load => "mN",
+        Role::Depth => "um",
         role => si(role),
     }
 }

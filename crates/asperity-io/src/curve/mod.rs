@@ -27,6 +27,7 @@ mod block;
 mod columns;
 mod error;
 mod fit;
+mod indentation;
 mod table;
 
 use std::io::Read;
@@ -37,6 +38,7 @@ use md5::{Digest, Md5};
 pub use columns::{Column, Columns, Role, angular_frequency};
 pub use error::CurveError;
 pub use fit::{Fitted, Request, Series, ShiftRequest};
+pub use indentation::{Indentation, MaterialOf, indentation_block};
 
 use columns::Values;
 use error::{Fault, fault};
@@ -137,7 +139,7 @@ impl Curves {
     pub fn parse(path: &Path, bytes: &[u8], kind: Kind, columns: &Columns) -> Result<Curves, CurveError> {
         let digest = Md5::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();
         let parsed = Table::parse(bytes).and_then(|table| {
-            let (values, notes) = columns::values(&table, kind, columns)?;
+            let (values, notes) = columns::values(&table, kind.into(), columns)?;
             let lines: Vec<usize> = table.rows.iter().map(|row| row.line).collect();
             Ok((sweeps(kind, &values, &lines)?, notes))
         });

@@ -4,7 +4,7 @@ use ndarray::Array2;
 use serde_json::Value;
 
 use super::error::Result;
-use crate::store::{At, FieldKind, Reader, SCALARS};
+use crate::store::{At, FieldKind, Reader, coordinates};
 
 /// A result as variables over dimensions.
 pub(super) struct Contents<'a> {
@@ -60,12 +60,12 @@ impl<'a> Contents<'a> {
         let grid = &reader.header().grid;
         let [nx, ny] = grid.cells();
         let rows = reader.rows()?;
-        let dimensions = vec![("time", rows.len()), ("field_time", instants.len()), ("x", nx), ("y", ny)];
+        let mut dimensions = vec![("time", rows.len()), ("field_time", instants.len()), ("x", nx), ("y", ny)];
         let mut variables = Vec::new();
         let mut add = |name, units, long_name, dimensions: &[usize], data| {
             variables.push(Variable { name, units, long_name, dimensions: dimensions.to_vec(), data });
         };
-        for scalar in &SCALARS {
+        for scalar in &reader.scalars() {
             let series = reader.series(scalar.name)?;
             let data = match scalar.name {
                 "iterations" => Data::Counts(rows.iter().map(|row| count(row.iterations)).collect()),
@@ -73,6 +73,16 @@ impl<'a> Contents<'a> {
                 _ => Data::Reals(series),
             };
             add(scalar.name, scalar.units, scalar.long_name, &[TIME], data);
+        }
+        for column in reader.header().quantities.iter().filter(|column| column.quantity.is_histogram()) {
+            let (kind, place) = (column.quantity, dimensions.len());
+            for (n, (series, numbers)) in coordinates(column).into_iter().enumerate() {
+                dimensions.push((series.name, numbers.len()));
+                add(series.name, series.units, series.long_name, &[place + n], Data::Reals(numbers));
+            }
+            let (_, rows) = reader.histogram(kind)?;
+            let numbers = rows.into_raw_vec_and_offset().0;
+            add(kind.name(), kind.units(), kind.long_name(), &[TIME, place], Data::Reals(numbers));
         }
         let times = instants.iter().map(|index| reader.field_times()[*index]).collect();
         add("field_time", "s", "time of the fields", &[FIELD_TIME], Data::Reals(times));

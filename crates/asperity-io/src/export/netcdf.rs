@@ -239,6 +239,7 @@ mod tests {
             version: "0".into(),
             grid,
             fields: vec![FieldKind::Pressure, FieldKind::Contact],
+            quantities: vec![],
             rows_expected: None,
             setup: Default::default(),
         };

@@ -142,7 +142,7 @@ fn run_inside(
             Ok(Some(step)) => {
                 let row = step.row();
                 let fields = maps.of(&step, total);
-                if let Err(source) = writer.append(&row, &fields) {
+                if let Err(source) = writer.append_with(&row, step.quantities(), &fields) {
                     return Err(stop_storing(writer, source, &path, last));
                 }
                 row
@@ -171,6 +171,7 @@ struct Maps<'a> {
     case: &'a Case,
     gap: Array2<f64>,
     displacement: Array2<f64>,
+    flattening: Array2<f64>,
     contact: Array2<u8>,
 }
 
@@ -183,6 +184,7 @@ impl<'a> Maps<'a> {
             case,
             gap: map(keeps(case::Field::Gap)),
             displacement: map(keeps(case::Field::Displacement)),
+            flattening: map(keeps(case::Field::Flattening)),
             contact: Array2::zeros(if keeps(case::Field::Contact) { shape } else { (0, 0) }),
         }
     }
@@ -210,6 +212,10 @@ impl<'a> Maps<'a> {
             step.contact_into(&mut self.contact);
             fields.push(Field::Contact(self.contact.view()));
         }
+        if keeps(case::Field::Flattening) {
+            step.flattening_into(&mut self.flattening);
+            fields.push(Field::Flattening(self.flattening.view()));
+        }
         fields
     }
 }
@@ -221,6 +227,7 @@ fn header(case: &Case, simulation: &Simulation) -> Header {
         case::Field::Gap => FieldKind::Gap,
         case::Field::Displacement => FieldKind::Displacement,
         case::Field::Contact => FieldKind::Contact,
+        case::Field::Flattening => FieldKind::Flattening,
     };
     Header {
         title: case.title.clone().unwrap_or_default(),
@@ -228,6 +235,8 @@ fn header(case: &Case, simulation: &Simulation) -> Header {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         grid: simulation.grid,
         fields: case.output.fields.iter().map(field).collect(),
+        // Checked with the simulation.
+        quantities: simulation.columns().unwrap_or_default(),
         rows_expected: Some(simulation.instants().len()),
         setup: setup(case),
     }

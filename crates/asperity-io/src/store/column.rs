@@ -1,7 +1,7 @@
-//! A per-step array that grows by one number at a time.
+//! A per-step array that grows by one row at a time, of one number or one per bin.
 //!
-//! Its chunks are not compressed: number n is the eight bytes at 8 n of its chunk, and is written in
-//! place. A number becomes visible when the group's document counts it (see [`super::document`]).
+//! Its chunks are not compressed: row n is the eight bytes of each of its numbers at their place in its chunk, and is
+//! written there. A number becomes visible when the group's document counts it (see [`super::document`]).
 
 use std::fs::{self, File, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
@@ -11,55 +11,88 @@ use asperity::march::Row;
 
 use super::chunks::Chunks;
 use super::error::{Result, corrupt, io};
-use super::layout::{ArraySpec, Entry, ROWS_PER_CHUNK};
-
-const CHUNK_BYTES: u64 = 8 * ROWS_PER_CHUNK as u64;
+use super::layout::{ArraySpec, Entry};
 
 /// The writing end of a per-step array.
 pub(super) struct Column {
     chunks: Chunks,
+    layout: Layout,
     open: Option<(u64, PathBuf, File)>,
+}
+
+/// How the rows lie in the chunks.
+#[derive(Clone, Copy)]
+struct Layout {
+    /// Rows of a chunk.
+    rows: usize,
+    /// Numbers of a row, and whether they have a dimension of their own.
+    width: usize,
+    wide: bool,
+}
+
+impl Layout {
+    fn of(spec: &ArraySpec) -> Self {
+        let rows = spec.chunk.first().copied().unwrap_or(1).max(1);
+        Layout { rows, width: spec.chunk[1..].iter().product(), wide: spec.chunk.len() > 1 }
+    }
+
+    fn bytes(self) -> u64 {
+        8 * (self.rows * self.width) as u64
+    }
+
+    /// Index of a chunk.
+    fn index(self, chunk: u64) -> Vec<u64> {
+        if self.wide { vec![chunk, 0] } else { vec![chunk] }
+    }
 }
 
 impl Column {
     pub(super) fn new(root: &Path, spec: &ArraySpec) -> Result<Self> {
-        Ok(Column { chunks: Chunks::new(root, spec)?, open: None })
+        Ok(Column { chunks: Chunks::new(root, spec)?, layout: Layout::of(spec), open: None })
     }
 
     /// Writes number `index`.
     pub(super) fn put(&mut self, index: usize, bytes: [u8; 8]) -> Result<()> {
-        let chunk = (index / ROWS_PER_CHUNK) as u64;
+        self.put_row(index, &bytes)
+    }
+
+    /// Writes row `index`, all of its numbers.
+    pub(super) fn put_row(&mut self, index: usize, bytes: &[u8]) -> Result<()> {
+        let layout = self.layout;
+        let chunk = (index / layout.rows) as u64;
         if self.open.as_ref().is_none_or(|(open, ..)| *open != chunk) {
-            let path = self.chunks.path(&[chunk]);
+            let path = self.chunks.path(&layout.index(chunk));
             let directory = path.parent().unwrap_or(&path);
             fs::create_dir_all(directory).map_err(io("make", directory))?;
             let file = OpenOptions::new().write(true).create(true).truncate(false).open(&path);
             let file = file.map_err(io("open", &path))?;
-            file.set_len(CHUNK_BYTES).map_err(io("write", &path))?;
+            file.set_len(layout.bytes()).map_err(io("write", &path))?;
             self.open = Some((chunk, path, file));
         }
         if let Some((_, path, file)) = &mut self.open {
-            let offset = 8 * (index % ROWS_PER_CHUNK) as u64;
+            let offset = 8 * (index % layout.rows * layout.width) as u64;
             file.seek(SeekFrom::Start(offset))
-                .and_then(|_| file.write_all(&bytes))
+                .and_then(|_| file.write_all(bytes))
                 .map_err(io("write", path))?;
         }
         Ok(())
     }
 }
 
-/// The first `length` entries of a per-step array, as bytes.
+/// The first `length` rows of a per-step array, as the bytes of their numbers.
 pub(super) fn read(root: &Path, spec: &ArraySpec, length: usize) -> Result<Vec<[u8; 8]>> {
     let chunks = Chunks::new(root, spec)?;
+    let layout = Layout::of(spec);
     let mut numbers = Vec::new();
     // A length beyond what the files hold ends at the first missing chunk, not at the memory's end.
-    for chunk in 0..length.div_ceil(ROWS_PER_CHUNK) {
-        let path = chunks.path(&[chunk as u64]);
-        let bytes = chunks.bytes(&[chunk as u64])?;
-        if bytes.len() as u64 != CHUNK_BYTES {
-            return Err(corrupt(&path, format_args!("{} bytes instead of {CHUNK_BYTES}", bytes.len())));
+    for chunk in 0..length.div_ceil(layout.rows) {
+        let index = layout.index(chunk as u64);
+        let path = chunks.path(&index);
+        let bytes = chunks.bytes(&index)?;
+        if bytes.len() as u64 != layout.bytes() {
+            return Err(corrupt(&path, format_args!("{} bytes instead of {}", bytes.len(), layout.bytes())));
         }
-        let wanted = ROWS_PER_CHUNK.min(length - chunk * ROWS_PER_CHUNK);
+        let wanted = layout.width * layout.rows.min(length - chunk * layout.rows);
         let (entries, _) = bytes.as_chunks::<8>();
         numbers.extend_from_slice(&entries[..wanted.min(entries.len())]);
     }

@@ -4,13 +4,14 @@ use std::fs::{self, File};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
+use asperity::quantities::Quantity;
 use ndarray::ArrayView2;
 
 use super::checkpoint;
 use super::chunks::Chunks;
 use super::document::{self, Document};
 use super::error::{Result, StoreError, input, io};
-use super::layout::{FieldKind, SCALARS};
+use super::layout::{FieldKind, SCALARS, bins, coordinates};
 use super::writer::{lock, remove};
 
 /// Lets `build` fill a new directory, which then appears at `path`; returns its lock.
@@ -86,6 +87,11 @@ fn is_part(name: &str) -> bool {
         || ["field_time", "field_step", "x", "y", "initial_gap"].contains(&name)
         || SCALARS.iter().any(|scalar| scalar.name == name)
         || FieldKind::from_name(name).is_some()
+        || Quantity::from_name(name).is_some()
+        || Quantity::ALL
+            .into_iter()
+            .filter_map(bins)
+            .any(|bins| [bins.middles.name, bins.edges.name].contains(&name))
 }
 
 /// A new directory beside `path`.
@@ -123,7 +129,7 @@ fn free_name(path: &Path, role: &str) -> Result<PathBuf> {
     Ok(names.into_iter().find(|name| fs::symlink_metadata(name).is_err()).unwrap_or(base))
 }
 
-/// Writes what does not change over time: the coordinates x and y, and the undeformed gap.
+/// Writes what does not change over time: the coordinates x and y, those of the histograms, and the undeformed gap.
 pub(super) fn write_constants(
     root: &Path,
     document: &Document,
@@ -131,6 +137,7 @@ pub(super) fn write_constants(
 ) -> Result<()> {
     let grid = &document.header.grid;
     let [nx, ny] = grid.cells();
+    let lines: Vec<_> = document.header.quantities.iter().flat_map(coordinates).collect();
     for spec in document.arrays() {
         let centres: Vec<f64> = match spec.name {
             "x" => (0..nx).map(|i| grid.x(i)).collect(),
@@ -139,7 +146,10 @@ pub(super) fn write_constants(
                 Chunks::new(root, &spec)?.write_map(&[], initial_gap)?;
                 continue;
             }
-            _ => continue,
+            name => match lines.iter().find(|(series, _)| series.name == name) {
+                Some((_, numbers)) => numbers.clone(),
+                None => continue,
+            },
         };
         let chunks = Chunks::new(root, &spec)?;
         let path = chunks.path(&[0]);

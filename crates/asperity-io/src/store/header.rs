@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use asperity::Grid;
+use asperity::quantities::{Column, Quantity};
 use serde_json::{Map, Value, json};
 
 use super::error::{Result, StoreError, corrupt};
@@ -26,6 +27,8 @@ pub struct Header {
     pub grid: Grid,
     /// The fields that are kept.
     pub fields: Vec<FieldKind>,
+    /// The quantities that each row has besides those of every result.
+    pub quantities: Vec<Column>,
     /// Rows of the full run, where known.
     pub rows_expected: Option<usize>,
     /// The case in numbers (bodies, creep terms, boundary, ...), for readers that know no case files.
@@ -115,6 +118,11 @@ pub(super) fn attributes(header: &Header) -> Map<String, Value> {
     put("cells", json!([nx, ny]));
     put("size", json!([lx, ly]));
     put("fields", json!(fields.join(" ")));
+    if !header.quantities.is_empty() {
+        let columns = header.quantities.iter();
+        let columns = columns.map(|c| json!({"name": c.quantity.name(), "edges": c.edges}));
+        put("quantities", json!(Value::Array(columns.collect()).to_string()));
+    }
     if let Some(rows) = header.rows_expected {
         put("rows_expected", json!(rows));
     }
@@ -175,6 +183,10 @@ pub(super) fn parse(
         .split_whitespace()
         .map(|name| FieldKind::from_name(name).ok_or_else(|| missing("fields")))
         .collect::<Result<Vec<_>>>()?;
+    let quantities = match attributes.get("quantities") {
+        None => vec![],
+        Some(text) => quantities(text).ok_or_else(|| missing("quantities"))?,
+    };
     let setup = serde_json::from_str(text("setup")?).map_err(|_| missing("setup"))?;
     let word = text("status")?;
     let status = Status::ALL.into_iter().find(|s| s.as_str() == word).ok_or_else(|| missing("status"))?;
@@ -184,6 +196,7 @@ pub(super) fn parse(
         version,
         grid,
         fields,
+        quantities,
         rows_expected: count("rows_expected").and_then(|n| usize::try_from(n).ok()),
         setup,
     };
@@ -196,4 +209,21 @@ pub(super) fn parse(
         message: attributes.get("status_message").and_then(Value::as_str).map(str::to_owned),
     };
     Ok((header, status, work))
+}
+
+/// The inverse of the attribute `quantities`; `None` where it is malformed.
+fn quantities(attribute: &Value) -> Option<Vec<Column>> {
+    let columns: Value = serde_json::from_str(attribute.as_str()?).ok()?;
+    let mut found: Vec<Column> = vec![];
+    for column in columns.as_array()? {
+        let quantity = Quantity::from_name(column.get("name")?.as_str()?)?;
+        let edges = column.get("edges")?.as_array()?.iter().map(Value::as_f64).collect::<Option<Vec<_>>>()?;
+        let rising = edges.windows(2).all(|pair| pair[0] < pair[1]);
+        let fits = if quantity.is_histogram() { edges.len() >= 2 && rising } else { edges.is_empty() };
+        if !fits || found.iter().any(|other| other.quantity == quantity) {
+            return None;
+        }
+        found.push(Column { quantity, edges });
+    }
+    Some(found)
 }

@@ -1,12 +1,15 @@
 //! Names, units, dimensions and chunks of the arrays of a result.
 
 use asperity::march::Row;
+use asperity::quantities::{Column as Quantity, Quantity as Kind};
 use serde_json::{Value, json};
 
 use super::header::Header;
 
 /// Rows per chunk of the per-step arrays: 32 KiB, one file each for all but the longest runs.
 pub(super) const ROWS_PER_CHUNK: usize = 4096;
+/// Rows per chunk of the histograms.
+const HISTOGRAMS_PER_CHUNK: usize = 256;
 /// Longest side of a field's chunk: 512 KiB of doubles, enough chunks of a map for every core.
 const LONGEST_SIDE: usize = 256;
 
@@ -21,12 +24,19 @@ pub enum FieldKind {
     Displacement,
     /// Contact state: 0 out of contact, 1 in contact, 2 at the hardness.
     Contact,
+    /// Permanent flattening \[m\]: what the undeformed gap has gained.
+    Flattening,
 }
 
 impl FieldKind {
     /// Every kind.
-    pub const ALL: [FieldKind; 4] =
-        [FieldKind::Pressure, FieldKind::Gap, FieldKind::Displacement, FieldKind::Contact];
+    pub const ALL: [FieldKind; 5] = [
+        FieldKind::Pressure,
+        FieldKind::Gap,
+        FieldKind::Displacement,
+        FieldKind::Contact,
+        FieldKind::Flattening,
+    ];
 
     /// Its name in case files and results.
     pub fn name(self) -> &'static str {
@@ -35,6 +45,7 @@ impl FieldKind {
             FieldKind::Gap => "gap",
             FieldKind::Displacement => "displacement",
             FieldKind::Contact => "contact",
+            FieldKind::Flattening => "flattening",
         }
     }
 
@@ -47,7 +58,7 @@ impl FieldKind {
     pub fn units(self) -> &'static str {
         match self {
             FieldKind::Pressure => "Pa",
-            FieldKind::Gap | FieldKind::Displacement => "m",
+            FieldKind::Gap | FieldKind::Displacement | FieldKind::Flattening => "m",
             FieldKind::Contact => "1",
         }
     }
@@ -59,6 +70,7 @@ impl FieldKind {
             FieldKind::Gap => "gap between the deformed surfaces",
             FieldKind::Displacement => "normal displacement",
             FieldKind::Contact => "contact state",
+            FieldKind::Flattening => "permanent flattening",
         }
     }
 }
@@ -79,6 +91,71 @@ pub struct Scalar {
     /// What it is, for axes and legends.
     pub long_name: &'static str,
     pub(super) entry: Entry,
+}
+
+/// A per-step number that a result has, whether every result has it or it was asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Series {
+    /// Its name in results.
+    pub name: &'static str,
+    /// Its unit; "1" where it has none.
+    pub units: &'static str,
+    /// What it is, for axes and legends.
+    pub long_name: &'static str,
+}
+
+impl From<&Scalar> for Series {
+    fn from(scalar: &Scalar) -> Self {
+        Series { name: scalar.name, units: scalar.units, long_name: scalar.long_name }
+    }
+}
+
+impl From<Kind> for Series {
+    fn from(kind: Kind) -> Self {
+        Series { name: kind.name(), units: kind.units(), long_name: kind.long_name() }
+    }
+}
+
+/// The dimension of a histogram and the coordinates along it: the middles of its bins and their ends.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Bins {
+    pub(crate) middles: Series,
+    pub(crate) edges: Series,
+}
+
+/// The bins of a histogram.
+pub(crate) fn bins(kind: Kind) -> Option<Bins> {
+    let bins = |[middles, edges]: [&'static str; 2], units, [middle, end]: [&'static str; 2]| Bins {
+        middles: Series { name: middles, units, long_name: middle },
+        edges: Series { name: edges, units, long_name: end },
+    };
+    Some(match kind {
+        Kind::SpotHistogram => bins(
+            ["spot_bin", "spot_edge"],
+            "m2",
+            ["geometric mean of the ends of a class of spots", "ends of the classes of spots"],
+        ),
+        Kind::PressureHistogram => bins(
+            ["pressure_bin", "pressure_edge"],
+            "Pa",
+            ["middle of a bin of the pressure", "ends of the bins of the pressure"],
+        ),
+        Kind::GapHistogram => {
+            bins(["gap_bin", "gap_edge"], "m", ["middle of a bin of the gap", "ends of the bins of the gap"])
+        }
+        _ => return None,
+    })
+}
+
+/// The coordinates of a histogram, with their numbers: middles, then ends.
+pub(crate) fn coordinates(column: &Quantity) -> Vec<(Series, Vec<f64>)> {
+    let Some(bins) = bins(column.quantity) else { return vec![] };
+    let middle = |pair: &[f64]| match column.quantity {
+        Kind::SpotHistogram => (pair[0] * pair[1]).sqrt(),
+        _ => 0.5 * (pair[0] + pair[1]),
+    };
+    let middles = column.edges.windows(2).map(middle).collect();
+    vec![(bins.middles, middles), (bins.edges, column.edges.clone())]
 }
 
 /// Where a row keeps a scalar.
@@ -204,6 +281,33 @@ pub(super) fn arrays(header: &Header, rows: usize, maps: usize) -> Vec<ArraySpec
         .iter()
         .map(|s| series(s.name, s.entry.data_type(), "time", rows, s.units, s.long_name))
         .collect();
+    for column in &header.quantities {
+        let kind = column.quantity;
+        match dimensions(kind) {
+            None => arrays.push(series(
+                kind.name(),
+                DataType::Float64,
+                "time",
+                rows,
+                kind.units(),
+                kind.long_name(),
+            )),
+            Some(dimensions) => {
+                arrays.push(ArraySpec {
+                    name: kind.name(),
+                    data_type: DataType::Float64,
+                    dimensions,
+                    shape: vec![rows, column.width()],
+                    chunk: vec![HISTOGRAMS_PER_CHUNK, column.width()],
+                    compressed: false,
+                    attributes: json!({"units": kind.units(), "long_name": kind.long_name()}),
+                });
+                arrays.extend(
+                    coordinates(column).into_iter().map(|(series, numbers)| line(&series, numbers.len())),
+                );
+            }
+        }
+    }
     arrays.push(series("field_time", DataType::Float64, "field_time", maps, "s", "time of the fields"));
     arrays.push(series("field_step", DataType::Int64, "field_time", maps, "1", "row of the fields"));
     arrays.push(coordinate("x", nx, "x, centres of the cells"));
@@ -234,6 +338,37 @@ pub(super) fn arrays(header: &Header, rows: usize, maps: usize) -> Vec<ArraySpec
         });
     }
     arrays
+}
+
+/// Dimensions of a histogram.
+fn dimensions(kind: Kind) -> Option<&'static [&'static str]> {
+    Some(match kind {
+        Kind::SpotHistogram => &["time", "spot_bin"],
+        Kind::PressureHistogram => &["time", "pressure_bin"],
+        Kind::GapHistogram => &["time", "gap_bin"],
+        _ => return None,
+    })
+}
+
+/// A coordinate along the dimension of its name.
+fn line(series: &Series, length: usize) -> ArraySpec {
+    let dimensions: &[&str] = match series.name {
+        "spot_bin" => &["spot_bin"],
+        "spot_edge" => &["spot_edge"],
+        "pressure_bin" => &["pressure_bin"],
+        "pressure_edge" => &["pressure_edge"],
+        "gap_bin" => &["gap_bin"],
+        _ => &["gap_edge"],
+    };
+    ArraySpec {
+        name: series.name,
+        data_type: DataType::Float64,
+        dimensions,
+        shape: vec![length],
+        chunk: vec![length],
+        compressed: false,
+        attributes: json!({"units": series.units, "long_name": series.long_name}),
+    }
 }
 
 fn series(

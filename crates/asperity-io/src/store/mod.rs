@@ -3,7 +3,9 @@
 //! | array | dimensions | |
 //! |---|---|---|
 //! | the [`SCALARS`], with the coordinate `time` | `time` | one number per step |
-//! | `pressure`, `gap`, `displacement`, `contact` | `field_time`, `x`, `y` | fields of the chosen steps |
+//! | the quantities asked for | `time`, of histograms also `spot_bin`, `pressure_bin` or `gap_bin` | |
+//! | `spot_edge`, `pressure_edge`, `gap_edge` | | ends of the bins |
+//! | `pressure`, `gap`, `displacement`, `contact`, `flattening` | `field_time`, `x`, `y` | fields of the chosen steps |
 //! | `field_time`, `field_step` | `field_time` | time and row of each stored field |
 //! | `initial_gap` | `x`, `y` | undeformed gap |
 //! | `x`, `y` | | centres of the cells |
@@ -29,6 +31,7 @@
 //!     version: "0.1.0".into(),
 //!     grid: Grid::new([4, 3], [4e-3, 3e-3])?,
 //!     fields: vec![FieldKind::Pressure],
+//!     quantities: vec![],
 //!     rows_expected: Some(1),
 //!     setup: Default::default(),
 //! };
@@ -59,6 +62,7 @@ mod writer;
 pub use asperity::march::{Checkpoint, Row};
 pub use error::{Result, StoreError};
 pub use header::{Header, Status, Work};
-pub use layout::{FieldKind, SCALARS, Scalar};
+pub(crate) use layout::coordinates;
+pub use layout::{FieldKind, SCALARS, Scalar, Series};
 pub use reader::{At, Reader};
 pub use writer::{Field, Outcome, Writer};

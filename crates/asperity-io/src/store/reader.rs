@@ -4,6 +4,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use asperity::march::Row;
+use asperity::quantities::Quantity;
 use ndarray::Array2;
 use serde_json::{Map, Value};
 
@@ -12,7 +13,7 @@ use super::column;
 use super::document::Document;
 use super::error::{Result, StoreError, corrupt};
 use super::header::{self, Header, Status, Work};
-use super::layout::{ArraySpec, Entry, FieldKind, SCALARS};
+use super::layout::{ArraySpec, Entry, FieldKind, SCALARS, Series};
 
 /// A result as it is at the instant of opening; a run that goes on is seen by opening it again.
 #[derive(Clone, Debug)]
@@ -121,21 +122,50 @@ impl Reader {
         Ok(rows)
     }
 
-    /// One scalar of every row, by its name in [`SCALARS`], in its unit.
+    /// What each row has one number of: the [`SCALARS`], and the quantities that were asked for.
+    pub fn scalars(&self) -> Vec<Series> {
+        let asked = self.header().quantities.iter().map(|column| column.quantity);
+        let asked = asked.filter(|quantity| !quantity.is_histogram());
+        SCALARS.iter().map(Series::from).chain(asked.map(Series::from)).collect()
+    }
+
+    /// A histogram that was asked for: the ends of its bins, and its rows (shape: rows, bins).
+    ///
+    /// # Errors
+    /// [`StoreError::Missing`] where it was not asked for, and those of [`rows`](Self::rows).
+    pub fn histogram(&self, quantity: Quantity) -> Result<(Vec<f64>, Array2<f64>)> {
+        let column = self.header().quantities.iter().find(|column| column.quantity == quantity);
+        let Some(column) = column.filter(|_| quantity.is_histogram()) else {
+            let kept = self.header().quantities.iter().map(|column| column.quantity);
+            let names: Vec<_> = kept.filter(|q| q.is_histogram()).map(Quantity::name).collect();
+            let names = if names.is_empty() { "no histograms".to_owned() } else { names.join(", ") };
+            return Err(self.missing(format!("histogram `{quantity}`"), names));
+        };
+        let numbers = column::read(&self.root, &self.spec(quantity.name())?, self.len())?;
+        let numbers: Vec<f64> = numbers.into_iter().map(f64::from_le_bytes).collect();
+        let shape = (numbers.len() / column.width(), column.width());
+        let rows = Array2::from_shape_vec(shape, numbers)
+            .map_err(|error| corrupt(&self.root.join(quantity.name()), error))?;
+        Ok((column.edges.clone(), rows))
+    }
+
+    /// One scalar of every row, by its name in [`scalars`](Self::scalars), in its unit.
     ///
     /// # Errors
     /// [`StoreError::Missing`] where there is no such scalar, and those of [`rows`](Self::rows).
     pub fn series(&self, name: &str) -> Result<Vec<f64>> {
-        let Some(scalar) = SCALARS.iter().find(|scalar| scalar.name == name) else {
-            let names: Vec<_> = SCALARS.iter().map(|scalar| scalar.name).collect();
+        let known = self.scalars();
+        if !known.iter().any(|series| series.name == name) {
+            let names: Vec<_> = known.iter().map(|series| series.name).collect();
             return Err(self.missing(format!("series `{name}`"), names.join(", ")));
-        };
+        }
+        let entry = SCALARS.iter().find(|scalar| scalar.name == name).map(|scalar| scalar.entry);
         let numbers = column::read(&self.root, &self.spec(name)?, self.len())?;
         Ok(numbers
             .into_iter()
-            .map(|bytes| match scalar.entry {
-                Entry::Real(_) => f64::from_le_bytes(bytes),
-                Entry::Count(_) => i64::from_le_bytes(bytes) as f64,
+            .map(|bytes| match entry {
+                Some(Entry::Count(_)) => i64::from_le_bytes(bytes) as f64,
+                _ => f64::from_le_bytes(bytes),
             })
             .collect())
     }
@@ -244,6 +274,11 @@ impl Reader {
             format!("the fields {}", names.join(", "))
         };
         self.missing(format!("field `{kind}`"), available)
+    }
+
+    /// The error of a result whose case asked for no quantities.
+    pub fn no_quantities(&self) -> StoreError {
+        self.missing("quantities".into(), "none (its case has no output.quantities)".into())
     }
 
     fn spec(&self, name: &str) -> Result<ArraySpec> {

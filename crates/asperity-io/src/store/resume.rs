@@ -107,6 +107,13 @@ fn compare(path: &Path, stored: &Header, given: &Header) -> Result<()> {
         };
         return mismatch("the list of fields", names(stored), names(given));
     }
+    if stored.quantities != given.quantities {
+        let names = |header: &Header| {
+            let names: Vec<_> = header.quantities.iter().map(|column| column.quantity.name()).collect();
+            if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+        };
+        return mismatch("the list of quantities or their bins", names(stored), names(given));
+    }
     let keys = stored.setup.keys().chain(given.setup.keys());
     for key in keys {
         let (old, new) = (stored.setup.get(key), given.setup.get(key));

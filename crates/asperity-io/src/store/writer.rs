@@ -35,6 +35,8 @@ pub enum Field<'a> {
     Displacement(ArrayView2<'a, f64>),
     /// 0 out of contact, 1 in contact, 2 at the hardness.
     Contact(ArrayView2<'a, u8>),
+    /// Permanent flattening \[m\].
+    Flattening(ArrayView2<'a, f64>),
 }
 
 impl Field<'_> {
@@ -45,12 +47,15 @@ impl Field<'_> {
             Field::Gap(_) => FieldKind::Gap,
             Field::Displacement(_) => FieldKind::Displacement,
             Field::Contact(_) => FieldKind::Contact,
+            Field::Flattening(_) => FieldKind::Flattening,
         }
     }
 
     fn dim(&self) -> (usize, usize) {
         match self {
-            Field::Pressure(map) | Field::Gap(map) | Field::Displacement(map) => map.dim(),
+            Field::Pressure(map) | Field::Gap(map) | Field::Displacement(map) | Field::Flattening(map) => {
+                map.dim()
+            }
             Field::Contact(map) => map.dim(),
         }
     }
@@ -88,6 +93,8 @@ pub struct Writer {
     progress: Progress,
     pages: Pages,
     columns: Vec<(Entry, Column)>,
+    /// The quantities asked for, and how many numbers of a row each has.
+    quantities: Vec<(usize, Column)>,
     field_time: Column,
     field_step: Column,
     fields: Vec<(FieldKind, Chunks)>,
@@ -152,10 +159,13 @@ impl Writer {
             specs.iter().find(|spec| spec.name == name).ok_or_else(|| input("array", name, "one of a result"))
         };
         let columns = SCALARS.iter().map(|s| Ok((s.entry, Column::new(root, spec(s.name)?)?)));
+        let quantities = document.header.quantities.iter();
+        let quantities = quantities.map(|q| Ok((q.width(), Column::new(root, spec(q.quantity.name())?)?)));
         let fields = document.header.fields.iter();
         let fields = fields.map(|kind| Ok((*kind, Chunks::new(root, spec(kind.name())?)?)));
         Ok(Writer {
             columns: columns.collect::<Result<_>>()?,
+            quantities: quantities.collect::<Result<_>>()?,
             field_time: Column::new(root, spec("field_time")?)?,
             field_step: Column::new(root, spec("field_step")?)?,
             fields: fields.collect::<Result<_>>()?,
@@ -202,6 +212,23 @@ impl Writer {
     /// [`StoreError::Io`] where the system refuses, for example on a full disk. The step is then not
     /// stored, those before it are, and the same step may be appended again.
     pub fn append(&mut self, row: &Row, fields: &[Field<'_>]) -> Result<()> {
+        self.append_with(row, &[], fields)
+    }
+
+    /// Appends a step with the quantities of the header: their numbers one after the other, as
+    /// [`Step::quantities`](asperity::march::Step::quantities) lends them.
+    ///
+    /// # Errors
+    /// As [`append`](Self::append); [`StoreError::Input`] where there are more or fewer numbers.
+    pub fn append_with(&mut self, row: &Row, quantities: &[f64], fields: &[Field<'_>]) -> Result<()> {
+        let wanted: usize = self.quantities.iter().map(|(width, _)| width).sum();
+        if quantities.len() != wanted {
+            return Err(input(
+                "numbers of the quantities",
+                quantities.len(),
+                format!("{wanted}, those of the header"),
+            ));
+        }
         if row.time.is_nan() || row.time < self.last_time {
             let expected = format!("not less than the time before it, {} s", self.last_time);
             return Err(input("time of the row", format!("{} s", row.time), expected));
@@ -211,13 +238,23 @@ impl Writer {
         for (entry, column) in &mut self.columns {
             column.put(rows, entry.to_bytes(row))?;
         }
+        let mut rest = quantities;
+        for (width, column) in &mut self.quantities {
+            let (own, after) = rest.split_at(*width);
+            let bytes: Vec<u8> = own.iter().flat_map(|x| x.to_le_bytes()).collect();
+            column.put_row(rows, &bytes)?;
+            rest = after;
+        }
         for field in fields {
             let index = [maps as u64];
             let Some((_, chunks)) = self.fields.iter().find(|(kind, _)| *kind == field.kind()) else {
                 continue;
             };
             match field {
-                Field::Pressure(map) | Field::Gap(map) | Field::Displacement(map) => {
+                Field::Pressure(map)
+                | Field::Gap(map)
+                | Field::Displacement(map)
+                | Field::Flattening(map) => {
                     chunks.write_map(&index, *map)?;
                 }
                 Field::Contact(map) => chunks.write_map(&index, *map)?,

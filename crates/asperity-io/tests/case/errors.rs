@@ -400,8 +400,34 @@ fn what_this_version_lacks_is_refused_not_ignored() {
     let words = "not available in this version";
     says("control = \"load\"", "control = \"load\"\nstages = []", "load.stages", 33, &[words]);
     says("steps = 20", "steps = 20\nspacing = \"adaptive\"", "time.spacing", 41, &["adaptive", words]);
-    says("1e-6", "1e-6\nplasticity = \"accumulate\"", "solver.plasticity", 44, &["accumulate", words]);
     says("\"sphere\"", "\"array\"", "surface[0].kind", 7, &["Python"]);
+}
+
+#[test]
+fn what_a_quantity_or_a_dent_needs_is_said() {
+    let of = |list: &str| format!("fields = [\"pressure\"]\nquantities = [{list}]");
+    let fields = "fields = [\"pressure\"]";
+    says(
+        fields,
+        &of("\"contact_stifness\""),
+        "output.quantities[0]",
+        46,
+        &["did you mean \"contact_stiffness\"?"],
+    );
+    let bins = format!("{}\nhistogram = {{ bins = 20000 }}", of("\"gap_histogram\""));
+    says(fields, &bins, "output.histogram.bins", 47, &["20000", "up to 10000"]);
+    let flat = format!("{}\nhistogram = {{ pressure = \"0 Pa\" }}", of("\"pressure_histogram\""));
+    says(fields, &flat, "output.histogram.pressure", 47, &["0 Pa"]);
+    says(fields, "fields = [\"flattening\"]", "output.fields[0]", 45, &["accumulate"]);
+    let soft = GOOD.replace("hardness = \"10 MPa\"\n", "");
+    let asked = soft.replace(fields, &of("\"all\", \"pressure_histogram\""));
+    let found = errors(&asked)[0].to_string();
+    assert!(found.contains("no upper end") && found.contains("histogram = { pressure"), "{found}");
+    let found = errors(&soft.replace("1e-6", "1e-6\nplasticity = \"accumulate\""))[0].to_string();
+    assert!(found.contains("no body has one"), "{found}");
+    let direct = GOOD.replace("steps = 20", "steps = 20\nscheme = \"direct\"");
+    let found = errors(&direct.replace(fields, &of("\"elastic_energy\"")))[0].to_string();
+    assert!(found.contains("elastic_energy") && found.contains("time.scheme"), "{found}");
 }
 
 #[test]

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use asperity::material::Lateral;
+use asperity::quantities::{Quantities, Quantity};
 use asperity::surface::{Part, Punch, Roughness, Shape};
-use asperity::{Boundary, Control, History, Method, Precision, Scheme, TimeGrid};
+use asperity::{Boundary, Control, History, Method, Plasticity, Precision, Scheme, TimeGrid};
 use asperity_io::case::{Case, Field, Rows, Surface};
 
 const FRAME: &str = r#"
@@ -264,6 +265,31 @@ output = { path = "a/b.zarr", fields = ["contact", "contact"], times = ["0 s", "
         instants.iter().enumerate().filter(|(n, t)| case.output.rows.holds(*n, instants.len() - 1, **t));
     assert_eq!(stored.map(|(_, t)| *t).collect::<Vec<_>>(), [0.0, 7.0, 12.0, 60.0]);
     assert_eq!((case.describe().rows, case.describe().stored_rows), (12, 4)); // 10 steps, 0+, 7 s
+}
+
+#[test]
+fn quantities_are_those_named_or_all_that_the_case_allows() {
+    let simulation =
+        |more: &'static str, body: &'static str| case(Parts { more, body, ..PARTS }).simulation().unwrap();
+    let soft = PARTS.body;
+    let hard = r#"{ poisson = 0.5, hardness = "1 MPa", material = { model = "elastic", shear = "1 MPa" } }"#;
+    assert_eq!(simulation("", soft).quantities, Quantities::default());
+    let named = simulation("output = { quantities = [\"rms_gap\", \"contact_spots\", \"rms_gap\"] }", soft);
+    assert_eq!(named.quantities.list, [Quantity::RmsGap, Quantity::ContactSpots]);
+    let all = "output = { quantities = [\"all\"], histogram = { bins = 7, gap = \"1 um\" } }";
+    // Without a hardness nothing bounds the pressure.
+    let list = simulation(all, soft).quantities.list;
+    assert_eq!(list.len(), Quantity::ALL.len() - 1);
+    assert!(!list.contains(&Quantity::PressureHistogram));
+    let all = simulation(all, hard);
+    assert_eq!(all.quantities.list, Quantity::ALL);
+    let columns = all.columns().unwrap();
+    let edges = |quantity| &columns.iter().find(|c| c.quantity == quantity).unwrap().edges;
+    assert_eq!((edges(Quantity::PressureHistogram)[7], edges(Quantity::GapHistogram)[7]), (1e6, 1e-6));
+    let dented = "solver = { plasticity = \"accumulate\" }\noutput = { fields = [\"flattening\"] }";
+    let case = case(Parts { more: dented, body: hard, ..PARTS });
+    assert_eq!(case.plasticity, Plasticity::Accumulate);
+    assert_eq!(case.output.fields.iter().copied().collect::<Vec<_>>(), [Field::Flattening]);
 }
 
 #[test]

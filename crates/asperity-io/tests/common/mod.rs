@@ -35,6 +35,7 @@ impl Case {
             version: "0.1.0".into(),
             grid,
             fields: fields.to_vec(),
+            quantities: vec![],
             rows_expected: Some(20),
             setup,
         };
@@ -79,8 +80,9 @@ impl Case {
 
     pub(crate) fn append(&self, writer: &mut Writer, step: usize, keep: bool) -> Result<()> {
         let (p, h, contact) = (self.pressure(step), self.gap(step), self.contact(step));
-        let u = &h * 0.5;
+        let (u, f) = (&h * 0.5, p.mapv(|p| 1e-12 * p));
         let all = [
+            Field::Flattening(f.view()),
             Field::Contact(contact.view()),
             Field::Displacement(u.view()),
             Field::Gap(h.view()),

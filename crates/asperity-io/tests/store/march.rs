@@ -2,15 +2,16 @@
 
 use asperity::march::{March, Simulation};
 use asperity::material::{Creep, CreepTerm};
+use asperity::quantities::{Quantities, Quantity};
 use asperity::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
 use asperity::time::TimeGrid;
-use asperity::{Control, Grid, History, Loading};
+use asperity::{Control, Grid, History, Loading, Plasticity};
 use asperity_io::store::{At, Field, FieldKind, Outcome, Reader, Status, Writer};
 use ndarray::Array2;
 
 use crate::{Case, bits, place, row_bits};
 
-const FIELDS: [FieldKind; 4] = FieldKind::ALL;
+const FIELDS: [FieldKind; 5] = FieldKind::ALL;
 
 /// A rough sphere on a Zener solid under a load that jumps, cut off by a hardness.
 fn simulation() -> Simulation {
@@ -29,6 +30,8 @@ fn simulation() -> Simulation {
     Simulation {
         creep: Creep { instantaneous: 1e-8, terms, fluidity: 1e-9 },
         hardness: 2e6,
+        plasticity: Plasticity::Accumulate,
+        quantities: Quantities::of(Quantity::ALL),
         loading: Loading { control: Control::Load, history: History::Table { points } },
         times: TimeGrid::Uniform { end: 3.0, steps: 12 },
         ..Simulation::new(grid, undeformed_gap(&grid, &[sphere, roughness]).unwrap())
@@ -39,20 +42,22 @@ fn simulation() -> Simulation {
 fn go(march: &mut March, writer: &mut Writer, end: usize) {
     let shape = march.simulation().grid.shape();
     let (mut gap, mut displacement) = (Array2::zeros(shape), Array2::zeros(shape));
-    let mut contact = Array2::zeros(shape);
+    let (mut contact, mut flattening) = (Array2::zeros(shape), Array2::zeros(shape));
     while writer.len() < end {
         let Some(step) = march.advance().unwrap() else { break };
         step.gap_into(&mut gap);
         step.displacement_into(&mut displacement);
         step.contact_into(&mut contact);
+        step.flattening_into(&mut flattening);
         let fields = [
             Field::Pressure(step.pressure()),
             Field::Gap(gap.view()),
             Field::Displacement(displacement.view()),
             Field::Contact(contact.view()),
+            Field::Flattening(flattening.view()),
         ];
         let kept = if step.index() % 3 == 0 { &fields[..] } else { &[] };
-        writer.append(&step.row(), kept).unwrap();
+        writer.append_with(&step.row(), step.quantities(), kept).unwrap();
     }
 }
 
@@ -60,6 +65,7 @@ fn go(march: &mut March, writer: &mut Writer, end: usize) {
 fn a_resumed_march_ends_with_the_same_bits() {
     let mut header = Case::new([1, 1], &FIELDS).header;
     header.grid = simulation().grid;
+    header.quantities = simulation().columns().unwrap();
     let (_directory, whole) = place();
     let mut march = March::new(simulation()).unwrap();
     let mut writer = Writer::create(&whole, &header, march.simulation().gap.view(), false).unwrap();
@@ -85,6 +91,17 @@ fn a_resumed_march_ends_with_the_same_bits() {
     assert!(parts.len() > 13); // the jump is a row of its own
     for (one, other) in parts.rows().unwrap().iter().zip(whole.rows().unwrap()) {
         assert_eq!(row_bits(one), row_bits(&other));
+    }
+    for series in whole.scalars() {
+        let [one, other] = [&parts, &whole].map(|r| r.series(series.name).unwrap());
+        let bits = |numbers: &[f64]| numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+        assert_eq!(bits(&one), bits(&other), "{}", series.name);
+    }
+    for quantity in Quantity::ALL.into_iter().filter(|quantity| quantity.is_histogram()) {
+        let [(edges, one), (_, other)] = [&parts, &whole].map(|r| r.histogram(quantity).unwrap());
+        assert_eq!((one.nrows(), one.ncols()), (whole.len(), edges.len() - 1));
+        assert_eq!(bits(&one), bits(&other), "{quantity}");
+        assert!(one.sum() > 0.0, "{quantity}");
     }
     assert_eq!(parts.field_steps(), whole.field_steps());
     for index in 0..whole.field_steps().len() {

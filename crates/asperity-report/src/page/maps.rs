@@ -93,11 +93,18 @@ pub(super) fn one(reader: &Reader, kind: FieldKind, at: At, block: usize) -> Res
     Ok(means(reader.field(kind, at)?.view(), block))
 }
 
-/// The fields to show: those kept, and the contact, which any but the displacement tells.
+/// The fields to show: those kept, and the contact, which any but displacement and flattening tells.
 fn kinds(reader: &Reader) -> Vec<FieldKind> {
     let kept = &reader.header().fields;
-    let tells = kept.iter().any(|kind| *kind != FieldKind::Displacement);
+    let silent = [FieldKind::Displacement, FieldKind::Flattening];
+    let tells = kept.iter().any(|kind| !silent.contains(kind));
     let shown = |kind: &FieldKind| if *kind == FieldKind::Contact { tells } else { kept.contains(kind) };
-    let order = [FieldKind::Pressure, FieldKind::Contact, FieldKind::Gap, FieldKind::Displacement];
+    let order = [
+        FieldKind::Pressure,
+        FieldKind::Contact,
+        FieldKind::Gap,
+        FieldKind::Displacement,
+        FieldKind::Flattening,
+    ];
     order.into_iter().filter(shown).collect()
 }

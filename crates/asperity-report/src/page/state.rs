@@ -1,6 +1,6 @@
 //! What a page knows besides its maps.
 
-use asperity_io::store::{FieldKind, Reader, SCALARS, Status, StoreError};
+use asperity_io::store::{FieldKind, Reader, Status, StoreError};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Map, Value, json};
@@ -25,7 +25,7 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
     }
     let mut series = Map::new();
     let mut units = Map::new();
-    for scalar in SCALARS {
+    for scalar in reader.scalars() {
         series.insert(scalar.name.into(), json!(reader.series(scalar.name)?));
         units.insert(scalar.name.into(), json!(scalar.units));
     }
@@ -52,6 +52,7 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
         "grid": {"cells": grid.cells(), "size": grid.size()},
         "series": series,
         "units": units,
+        "quantities": quantities(reader),
         "fields": maps.fields.iter().map(field).collect::<Vec<_>>(),
         "instants": instants.collect::<Vec<_>>(),
         "note": note,
@@ -65,11 +66,23 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
     }))
 }
 
+/// The quantities that were asked for, as panels over time: title, label, and the series by name. Energies share one.
+fn quantities(reader: &Reader) -> Vec<Value> {
+    crate::result::quantity_panels(reader)
+        .into_iter()
+        .map(|panel| {
+            let lines: Vec<_> = panel.lines.iter().map(|(name, series)| json!([name, series])).collect();
+            json!([panel.title, panel.label, lines])
+        })
+        .collect()
+}
+
 fn field((kind, range): &(FieldKind, Option<[f64; 2]>)) -> Value {
     let (title, label, colours) = match kind {
         FieldKind::Pressure => ("Pressure", "pressure", "heat"),
         FieldKind::Gap => ("Gap", "gap", "sequential"),
         FieldKind::Displacement => ("Displacement", "displacement", "sequential"),
+        FieldKind::Flattening => ("Permanent flattening", "flattening", "sequential"),
         FieldKind::Contact => ("Contact", "state", "states"),
     };
     json!({

@@ -1,5 +1,6 @@
 //! What changes over time.
 
+use asperity::quantities::Quantity;
 use asperity_io::store::{Reader, StoreError};
 
 use super::{Options, nameless};
@@ -27,6 +28,64 @@ pub(super) fn evolution(reader: &Reader, options: &Options) -> Result<Figure, St
         .with(nameless(approach, &time, reader.series("approach")?))
         .with(nameless(load, &time, reader.series("load")?))
         .with(pressure))
+}
+
+/// A panel of quantities over time.
+pub(crate) struct QuantityPanel {
+    pub(crate) title: &'static str,
+    pub(crate) label: &'static str,
+    pub(crate) units: &'static str,
+    /// Name in the legend and name of the series.
+    pub(crate) lines: Vec<(&'static str, &'static str)>,
+}
+
+/// The quantities with one number per row that were asked for: one panel for all energies, one for the areas of spots,
+/// one for each other.
+pub(crate) fn quantity_panels(reader: &Reader) -> Vec<QuantityPanel> {
+    let mut panels: Vec<QuantityPanel> = vec![];
+    for column in &reader.header().quantities {
+        let quantity = column.quantity;
+        let (title, label, line) = match quantity {
+            _ if quantity.is_histogram() => continue,
+            Quantity::ElasticEnergy => ("Energy", "energy", "elastic"),
+            Quantity::DissipatedEnergy => ("Energy", "energy", "dissipated"),
+            Quantity::FlatteningWork => ("Energy", "energy", "flattening"),
+            Quantity::ExternalWork => ("Energy", "energy", "work of the load"),
+            Quantity::LargestSpot => ("Areas of contact spots", "area", "largest"),
+            Quantity::MeanSpot => ("Areas of contact spots", "area", "mean"),
+            Quantity::ContactSpots => ("Contact spots", "number", ""),
+            Quantity::ContactStiffness => ("Contact stiffness", "stiffness", ""),
+            Quantity::ContactPerimeter => ("Perimeter of the contact", "length", ""),
+            _ => ("Rms gap", "rms gap", ""),
+        };
+        let line = (line, quantity.name());
+        match panels.iter_mut().find(|panel| panel.title == title) {
+            Some(panel) => panel.lines.push(line),
+            None => {
+                let units = if quantity.units() == "1" { "" } else { quantity.units() };
+                panels.push(QuantityPanel { title, label, units, lines: vec![line] });
+            }
+        }
+    }
+    panels
+}
+
+pub(super) fn quantities(reader: &Reader, options: &Options) -> Result<Figure, StoreError> {
+    let time = times(reader)?;
+    let panels = quantity_panels(reader);
+    if panels.is_empty() {
+        return Err(reader.no_quantities());
+    }
+    let mut figure = Figure::new("");
+    for panel in panels {
+        let axis = if options.log_time { Axis::log("time", "s") } else { Axis::linear("time", "s") };
+        let mut curves = Curves::new(panel.title, axis, Axis::linear(panel.label, panel.units));
+        for (name, series) in panel.lines {
+            curves = curves.with(Series::new(name, Style::Line, time.clone(), reader.series(series)?));
+        }
+        figure = figure.with(curves);
+    }
+    Ok(figure)
 }
 
 pub(super) fn load_displacement(reader: &Reader) -> Result<Figure, StoreError> {

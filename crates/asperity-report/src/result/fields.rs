@@ -18,6 +18,7 @@ pub(super) fn map(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, St
         FieldKind::Pressure => ("Pressure", Colours::Heat),
         FieldKind::Gap => ("Gap", Colours::Sequential),
         FieldKind::Displacement => ("Displacement", Colours::Sequential),
+        FieldKind::Flattening => ("Permanent flattening", Colours::Sequential),
         FieldKind::Contact => return contact(reader, at),
     };
     let size = reader.header().grid.size();

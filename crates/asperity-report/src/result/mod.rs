@@ -19,6 +19,7 @@ use asperity::Boundary;
 use asperity_io::store::{At, FieldKind, Reader, StoreError};
 use serde_json::Value;
 
+pub(crate) use evolution::quantity_panels;
 pub(crate) use fields::contact_states;
 
 use crate::figure::{Curves, Figure, Series, shown};
@@ -38,6 +39,8 @@ pub enum Plot {
     Displacement,
     /// Map of the contact area at an instant.
     Contact,
+    /// Map of the permanent flattening at an instant.
+    Flattening,
     /// Map of the undeformed gap.
     InitialGap,
     /// Pressure and gap along a line at an instant.
@@ -48,6 +51,8 @@ pub enum Plot {
     Spots,
     /// Iterations, convolutions, residual and certificate of each step.
     Work,
+    /// The quantities that were asked for, over time.
+    Quantities,
 }
 
 /// What a figure shows of a result.
@@ -98,18 +103,20 @@ pub enum PlotError {
 
 impl Plot {
     /// Every plot.
-    pub const ALL: [Plot; 11] = [
+    pub const ALL: [Plot; 13] = [
         Plot::Evolution,
         Plot::LoadDisplacement,
         Plot::Pressure,
         Plot::Gap,
         Plot::Displacement,
         Plot::Contact,
+        Plot::Flattening,
         Plot::InitialGap,
         Plot::Profile,
         Plot::Histogram,
         Plot::Spots,
         Plot::Work,
+        Plot::Quantities,
     ];
 
     /// Its name on the command line.
@@ -121,11 +128,13 @@ impl Plot {
             Plot::Gap => "gap",
             Plot::Displacement => "displacement",
             Plot::Contact => "contact",
+            Plot::Flattening => "flattening",
             Plot::InitialGap => "initial-gap",
             Plot::Profile => "profile",
             Plot::Histogram => "histogram",
             Plot::Spots => "spots",
             Plot::Work => "work",
+            Plot::Quantities => "quantities",
         }
     }
 
@@ -146,6 +155,8 @@ pub fn figure(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, 
         Plot::Evolution => evolution::evolution(reader, options)?,
         Plot::LoadDisplacement => evolution::load_displacement(reader)?,
         Plot::Work => evolution::work(reader)?,
+        Plot::Quantities => evolution::quantities(reader, options)?,
+        Plot::Flattening => fields::map(reader, FieldKind::Flattening, options.at)?,
         Plot::Pressure => fields::map(reader, FieldKind::Pressure, options.at)?,
         Plot::Gap => fields::map(reader, FieldKind::Gap, options.at)?,
         Plot::Displacement => fields::map(reader, FieldKind::Displacement, options.at)?,

@@ -1,4 +1,4 @@
-//! The energy of the bodies: work of the load, springs, dashpots, flattening (docs/theory.md, section 17).
+//! The energy of the bodies: work of the load, springs, dashpots, flattening (docs/theory.md, "Energy and other quantities").
 //!
 //! A body is a chain: the spring C0, one Kelvin element per retarded term, a dashpot 1/η. The spring of element j
 //! carries the pressure q_j with λ q_j' + q_j = p, and gives way by e_j = C_j K q_j. With A the area of a cell

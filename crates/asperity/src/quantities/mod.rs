@@ -15,7 +15,8 @@
 //! | `pressure_histogram` | 1/Pa | probability density of the pressure of the cells in contact |
 //! | `gap_histogram` | 1/m | probability density of the gap of the open cells |
 //!
-//! What each costs and how it is derived: docs/theory.md, sections 17 and 18. A march takes them by
+//! What each costs and how it is derived: docs/theory.md ("Energy and other
+//! quantities of a row", "Flattening that stays"). A march takes them by
 //! [`Simulation::quantities`](crate::Simulation::quantities) and lends them in [`Step::quantity`](crate::march::Step::quantity).
 
 mod histogram;

@@ -74,6 +74,9 @@ pub fn case(
         load::possible(&mut checks, load, prescription, times, grid.as_ref(), pair);
     }
     let scheme = time::scheme(document.time.value.scheme);
+    if let Some(pair) = &pair {
+        output::possible(&mut checks, &document.solver, &document.output, scheme, pair.hardness.is_finite());
+    }
     let fields = match (scheme, &pair) {
         (_, None) => 0,
         (Scheme::Direct, Some(pair)) => pair.rows,
@@ -112,6 +115,7 @@ pub fn case(
             times,
             include,
             scheme,
+            plasticity: output::plasticity(&document.solver),
             solver: output::solver(&document.solver),
             output,
             rows: pair.rows,

@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use asperity::{Method, Precision, SolverOptions, TimeGrid};
+use asperity::quantities::{Quantities, Quantity};
+use asperity::{Method, Plasticity, Precision, Scheme, SolverOptions, TimeGrid};
 
 use super::Checks;
 use super::time;
@@ -10,12 +11,11 @@ use crate::case::plan::{Output, Rows};
 use crate::case::raw::{self, Field};
 use crate::case::words::number;
 
+/// Most bins of a histogram.
+const MOST_BINS: usize = 10_000;
+
 pub fn solver(solver: &raw::Solver) -> SolverOptions {
     let default = SolverOptions::default();
-    // One member in this version; the match keeps this place in step with the format.
-    match solver.plasticity {
-        raw::Plasticity::Cap => {}
-    }
     SolverOptions {
         method: match solver.method {
             raw::Method::ProjectedCg => Method::ProjectedCg,
@@ -28,6 +28,102 @@ pub fn solver(solver: &raw::Solver) -> SolverOptions {
         tolerance: solver.tolerance.map_or(default.tolerance, |tolerance| tolerance.get()),
         max_iterations: solver.max_iterations.map_or(default.max_iterations, |most| most.count()),
     }
+}
+
+pub fn plasticity(solver: &raw::Solver) -> Plasticity {
+    match solver.plasticity.as_ref().map(|at| at.value).unwrap_or_default() {
+        raw::Plasticity::Cap => Plasticity::Cap,
+        raw::Plasticity::Accumulate => Plasticity::Accumulate,
+    }
+}
+
+/// What solver and output ask for, where the case does not allow it.
+pub fn possible(
+    checks: &mut Checks<'_, '_>,
+    solver: &raw::Solver,
+    output: &raw::Output,
+    scheme: Scheme,
+    capped: bool,
+) {
+    let lasting = plasticity(solver) == Plasticity::Accumulate;
+    if let Some(at) = solver.plasticity.as_ref().filter(|_| lasting && !capped) {
+        let message =
+            "plasticity = \"accumulate\" flattens what is at the hardness, but no body has one".to_owned();
+        checks.fault(
+            &at.span,
+            message,
+            "\"cap\", or a hardness of a body",
+            Some("give a body its `hardness`"),
+        );
+    }
+    let flattening = output.fields.iter().flatten().find(|at| at.value == Field::Flattening);
+    if let Some(at) = flattening.filter(|_| !lasting) {
+        let message = "the flattening does not stay with plasticity = \"cap\"".to_owned();
+        checks.fault(&at.span, message, "another field", Some("set solver.plasticity = \"accumulate\""));
+    }
+    let top = output.histogram.as_ref().is_some_and(|histogram| histogram.value.pressure.is_some());
+    for at in output.quantities.iter().flatten() {
+        let Some(quantity) = named(at.value) else { continue };
+        if quantity == Quantity::PressureHistogram && !capped && !top {
+            let message = "the histogram of the pressure has no upper end: no body has a hardness".to_owned();
+            let help = "add histogram = { pressure = \"...\" }";
+            checks.fault(&at.span, message, "an upper end of the pressure", Some(help));
+        }
+        if quantity.is_energy() && scheme == Scheme::Direct {
+            let message =
+                format!("{quantity} needs springs and dashpots, which scheme = \"direct\" does not know");
+            checks.fault(
+                &at.span,
+                message,
+                "another quantity",
+                Some("set time.scheme to \"linear\" or \"constant\""),
+            );
+        }
+    }
+}
+
+/// The quantity of a name; `None` for all.
+fn named(quantity: raw::Quantity) -> Option<Quantity> {
+    Some(match quantity {
+        raw::Quantity::All => return None,
+        raw::Quantity::ContactStiffness => Quantity::ContactStiffness,
+        raw::Quantity::ContactSpots => Quantity::ContactSpots,
+        raw::Quantity::LargestSpot => Quantity::LargestSpot,
+        raw::Quantity::MeanSpot => Quantity::MeanSpot,
+        raw::Quantity::ContactPerimeter => Quantity::ContactPerimeter,
+        raw::Quantity::RmsGap => Quantity::RmsGap,
+        raw::Quantity::ElasticEnergy => Quantity::ElasticEnergy,
+        raw::Quantity::DissipatedEnergy => Quantity::DissipatedEnergy,
+        raw::Quantity::FlatteningWork => Quantity::FlatteningWork,
+        raw::Quantity::ExternalWork => Quantity::ExternalWork,
+        raw::Quantity::SpotHistogram => Quantity::SpotHistogram,
+        raw::Quantity::PressureHistogram => Quantity::PressureHistogram,
+        raw::Quantity::GapHistogram => Quantity::GapHistogram,
+    })
+}
+
+/// The quantities that are named, each once, and their bins.
+fn quantities(checks: &mut Checks<'_, '_>, output: &raw::Output) -> Option<Quantities> {
+    let mut list: Vec<Quantity> = vec![];
+    for quantity in output.quantities.iter().flatten().filter_map(|at| named(at.value)) {
+        if !list.contains(&quantity) {
+            list.push(quantity);
+        }
+    }
+    let mut quantities = Quantities::of(list);
+    if let Some(histogram) = &output.histogram {
+        let raw = &histogram.value;
+        if let Some(bins) = &raw.bins {
+            quantities.bins = bins.value.count();
+            if quantities.bins > MOST_BINS {
+                checks.wrong(&bins.span, &format!("a number of bins up to {MOST_BINS}"), None);
+                return None;
+            }
+        }
+        quantities.largest_pressure = raw.pressure.map(|pressure| pressure.get());
+        quantities.largest_gap = raw.gap.map(|gap| gap.get());
+    }
+    Some(quantities)
 }
 
 pub fn output(
@@ -70,5 +166,12 @@ pub fn output(
             Rows::At(instants)
         }
     };
-    Some(Output { path, fields, rows, checkpoint: output.checkpoint.unwrap_or(true) })
+    Some(Output {
+        path,
+        fields,
+        rows,
+        quantities: quantities(checks, output)?,
+        all_quantities: output.quantities.iter().flatten().any(|at| at.value == raw::Quantity::All),
+        checkpoint: output.checkpoint.unwrap_or(true),
+    })
 }

@@ -26,7 +26,7 @@ pub use material::{
     Column, CreepTable, CreepTerm, Dma, Fit, FractionalZener, LongTime, Material, Measure, Prony,
     RelaxationTable,
 };
-pub use run::{Field, Method, Output, Plasticity, Precision, Solver};
+pub use run::{Field, Method, Output, Plasticity, Precision, Quantity, Solver};
 pub use surface::{Distribution, File, Preset, SelfAffine, Surface};
 pub use thermal::{Shift, Temperature, TemperatureHistory, TemperaturePoint};
 

@@ -4,8 +4,8 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::At;
-use crate::case::quantity::range::{NonNegative, Tolerance};
-use crate::case::quantity::{Number, Time, Whole};
+use crate::case::quantity::range::{NonNegative, Positive, Tolerance};
+use crate::case::quantity::{Length, Number, Pressure, Time, Whole};
 
 /// How each step is solved.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
@@ -23,9 +23,8 @@ pub struct Solver {
     /// Floating-point numbers of the iterations; "double" if not given.
     #[serde(default)]
     pub precision: Precision,
-    /// What flattening leaves behind; "cap" if not given.
-    #[serde(default)]
-    pub plasticity: Plasticity,
+    /// What flattening at the hardness leaves behind; "cap" if not given.
+    pub plasticity: Option<At<Plasticity>>,
 }
 
 /// Solver of one step.
@@ -58,6 +57,8 @@ pub enum Plasticity {
     /// Nothing: the pressure is cut off at the hardness, the flattening heals on unloading.
     #[default]
     Cap,
+    /// A dent: what a cell is flattened by is added to the undeformed gap after every row and stays. Needs a hardness.
+    Accumulate,
 }
 
 /// What is stored, and where.
@@ -70,6 +71,12 @@ pub struct Output {
     /// The fields that are stored; ["pressure", "gap"] if not given, [] for none.
     #[schemars(example = ["pressure", "gap"])]
     pub fields: Option<Vec<At<Field>>>,
+    /// Quantities that each row has besides load, approach and areas; ["all"] for all that the case allows.
+    #[schemars(example = ["contact_stiffness", "contact_spots", "dissipated_energy"])]
+    pub quantities: Option<Vec<At<Quantity>>>,
+    /// Bins of the histograms among the quantities.
+    #[schemars(example = serde_json::json!({ "bins": 50, "pressure": "300 MPa" }))]
+    pub histogram: Option<At<Histogram>>,
     /// Fields are stored at the first row, at every n-th row after it and at the last row; if not given, n is
     /// a tenth of the number of steps. This or `times`.
     #[schemars(example = 10)]
@@ -95,4 +102,55 @@ pub enum Field {
     Displacement,
     /// Contact state: 0 out of contact, 1 in contact, 2 at the hardness.
     Contact,
+    /// Permanent flattening, in m; with plasticity = "accumulate".
+    Flattening,
+}
+
+/// A quantity of each row.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Quantity {
+    /// All that the case allows.
+    All,
+    /// Slope of load over approach under a small, sudden change, in N/m; some ten convolutions a row.
+    ContactStiffness,
+    /// Number of contact spots.
+    ContactSpots,
+    /// Area of the largest contact spot, in m2.
+    LargestSpot,
+    /// Mean area of a contact spot, in m2.
+    MeanSpot,
+    /// Length of the border of the contact, counted along the edges of cells, in m.
+    ContactPerimeter,
+    /// Root of the mean square of the gap, in m.
+    RmsGap,
+    /// Energy in the springs of the bodies, in J.
+    ElasticEnergy,
+    /// Heat since the start, in J.
+    DissipatedEnergy,
+    /// Work on the cells at the hardness, in J.
+    FlatteningWork,
+    /// Work of the load since the start, in J.
+    ExternalWork,
+    /// Number of contact spots per class of area: 1 cell, 2 to 3, 4 to 7, and so on.
+    SpotHistogram,
+    /// Probability density of the pressure of the cells in contact, in 1/Pa.
+    PressureHistogram,
+    /// Probability density of the gap of the open cells, in 1/m.
+    GapHistogram,
+}
+
+/// Bins of the histograms of pressure and gap; they begin at 0 and have one width.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Histogram {
+    /// Number of bins, at most 10000; 50 if not given.
+    #[schemars(example = 50)]
+    pub bins: Option<At<Whole<1>>>,
+    /// Upper end of the pressure; the hardness if not given, needed where there is none.
+    #[schemars(example = "300 MPa")]
+    pub pressure: Option<Pressure<Positive>>,
+    /// Upper end of the gap; the largest undeformed gap if not given.
+    #[schemars(example = "5 um")]
+    pub gap: Option<Length<Positive>>,
 }

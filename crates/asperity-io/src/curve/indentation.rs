@@ -1,0 +1,138 @@
+//! Records of indentations: load and depth over time, and the material found from one as a block of a case file.
+//!
+//! ```
+//! use asperity_io::curve::{Columns, Indentation};
+//! let text = "t [s]; P [mN]; h [um]\n0; 0; 0\n1,5; 2,25; 10\n";
+//! let record = Indentation::parse("test.csv".as_ref(), text.as_bytes(), &Columns::default())?;
+//! assert_eq!((record.times[1], record.loads[1]), (1.5, 2.25e-3));
+//! # Ok::<(), asperity_io::curve::CurveError>(())
+//! ```
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use asperity::indentation::{IndentationFit, Interval};
+use asperity::material::Modulus;
+
+use super::bytes;
+use super::columns::{self, Columns, Form, Role};
+use super::error::CurveError;
+use super::table::Table;
+
+/// The columns of a record.
+const FORM: Form = Form { name: "indentation", roles: &[Role::Time, Role::Load, Role::Depth], t: Role::Time };
+
+/// A record of an indentation, in SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Indentation {
+    /// The file.
+    pub path: PathBuf,
+    /// Times \[s\].
+    pub times: Vec<f64>,
+    /// Loads \[N\].
+    pub loads: Vec<f64>,
+    /// Depths \[m\].
+    pub depths: Vec<f64>,
+    /// What was assumed about the file.
+    pub notes: Vec<String>,
+}
+
+impl Indentation {
+    /// Reads a text table with columns of time, load and depth, as [`Curves::read`](super::Curves::read) does.
+    ///
+    /// # Errors
+    /// [`CurveError`] with the line: no table, a column that is not there, a cell that is no number, a unit of another
+    /// quantity.
+    pub fn read(path: &Path, columns: &Columns) -> Result<Indentation, CurveError> {
+        Indentation::parse(path, &bytes(path)?, columns)
+    }
+
+    /// From the bytes of a text table that is called `path` in messages.
+    ///
+    /// # Errors
+    /// As [`read`](Self::read).
+    pub fn parse(path: &Path, bytes: &[u8], columns: &Columns) -> Result<Indentation, CurveError> {
+        let parsed = Table::parse(bytes).and_then(|table| columns::values(&table, FORM, columns));
+        let (values, notes) = parsed.map_err(|fault| fault.of(path))?;
+        let of = |role: Role| values.get(&role).cloned().unwrap_or_default();
+        let [times, loads, depths] = [Role::Time, Role::Load, Role::Depth].map(of);
+        Ok(Indentation { path: path.to_owned(), times, loads, depths, notes })
+    }
+}
+
+/// How the moduli of a material are to be given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MaterialOf {
+    /// Young's or shear modulus.
+    pub modulus: Modulus,
+    /// Poisson's ratio, constant in time.
+    pub poisson: f64,
+}
+
+impl MaterialOf {
+    /// Modulus over contact modulus: E = (1 - ν²) E*, G = (1 - ν) E*/2.
+    pub fn factor(self) -> f64 {
+        match self.modulus {
+            Modulus::Young => 1.0 - self.poisson * self.poisson,
+            Modulus::Shear => 0.5 * (1.0 - self.poisson),
+        }
+    }
+
+    /// The modulus and its interval that belong to a contact modulus.
+    pub fn of(self, contact: Interval) -> Interval {
+        let factor = self.factor();
+        Interval { value: factor * contact.value, low: factor * contact.low, high: factor * contact.high }
+    }
+}
+
+/// `poisson = ...` and `material = { ... }` in full precision, to stand under a `[[body]]` of a case file, with intervals
+/// behind the terms.
+pub fn indentation_block(record: &Indentation, fit: &IndentationFit, of: MaterialOf) -> String {
+    let name = record.path.file_name().map_or("record".into(), |name| name.to_string_lossy().into_owned());
+    let name: String = name.chars().map(|c| if c.is_control() { '?' } else { c }).collect();
+    let [step, length] = fit.window;
+    let mut text = format!(
+        "# From the indentation {name}: {} rows, misfit {:.2} % rms of the largest value; steps from {step:.3e} s, {length:.3e} s in \
+         all.\n# Behind each line: 95 % confidence intervals.\n",
+        fit.rows.len(),
+        100.0 * fit.relative_rms,
+    );
+    let measure = match of.modulus {
+        Modulus::Young => "young",
+        Modulus::Shear => "shear",
+    };
+    let interval = |x: Interval, unit: &str| format!("{:.3e} to {:.3e} {unit}", x.low, x.high);
+    let equilibrium = of.of(fit.equilibrium);
+    let _ = writeln!(text, "poisson = {:?}", of.poisson);
+    if fit.terms.is_empty() {
+        let known = interval(equilibrium, "Pa");
+        let _ = writeln!(
+            text,
+            "material = {{ model = \"elastic\", {measure} = \"{:e} Pa\" }}  # {known}",
+            equilibrium.value
+        );
+        return text;
+    }
+    let known = match equilibrium.value > 0.0 {
+        true => format!("  # equilibrium {}", interval(equilibrium, "Pa")),
+        false => String::new(),
+    };
+    let _ = write!(
+        text,
+        "material = {{ model = \"prony\", modulus = \"{measure}\", equilibrium = \"{:e} Pa\", terms = [{known}",
+        equilibrium.value
+    );
+    for [modulus, time] in &fit.terms {
+        let modulus = of.of(*modulus);
+        let _ = write!(
+            text,
+            "\n  {{ modulus = \"{:e} Pa\", time = \"{:e} s\" }},  # {}, {}",
+            modulus.value,
+            time.value,
+            interval(modulus, "Pa"),
+            interval(*time, "s")
+        );
+    }
+    text.push_str("\n] }\n");
+    text
+}

@@ -1,0 +1,200 @@
+//! Levenberg-Marquardt on the parameters of a record, and the covariance of what it finds.
+
+use rayon::prelude::*;
+
+use super::model::{Model, Parameters};
+use crate::error::{Error, Result};
+
+/// Steps of the central differences, in logarithms: the model's own steps are 1e-5 of its values.
+const STEP: f64 = 1e-2;
+/// Longest move of a parameter: a factor of e.
+const LONGEST: f64 = 1.0;
+const MOST_ITERATIONS: usize = 60;
+
+/// The parameters that fit best.
+pub(super) struct Solution {
+    pub(super) at: Vec<f64>,
+    /// Over the largest measured value.
+    pub(super) residuals: Vec<f64>,
+    /// Standard deviations of the parameters; infinite where the record shows nothing of one.
+    pub(super) deviations: Vec<f64>,
+    pub(super) covariance: Vec<Vec<f64>>,
+}
+
+impl Solution {
+    pub(super) fn rms(&self) -> f64 {
+        (squares(&self.residuals) / self.residuals.len() as f64).sqrt()
+    }
+}
+
+/// Minimises the residuals from `start`.
+pub(super) fn solve(model: &Model, parameters: &Parameters, start: Vec<f64>) -> Result<Solution> {
+    if model.times.len() < 2 * parameters.len() {
+        return Err(Error::invalid(
+            "number of rows of the record",
+            model.times.len(),
+            format!("at least {} for {} terms", 2 * parameters.len(), parameters.terms),
+        ));
+    }
+    let mut at = start;
+    let mut residuals = model.residuals(parameters, &at)?;
+    let mut columns = jacobian(model, parameters, &at)?;
+    let mut damping = 1e-3;
+    for _ in 0..MOST_ITERATIONS {
+        let (normal, gradient) = system(&columns, &residuals);
+        let Some(step) = damped_step(&normal, &gradient, damping) else {
+            damping *= 10.0;
+            if damping > 1e10 {
+                break;
+            }
+            continue;
+        };
+        let longest = step.iter().fold(0.0, |m: f64, s| m.max(s.abs()));
+        let share = if longest > LONGEST { LONGEST / longest } else { 1.0 };
+        let trial: Vec<f64> = at.iter().zip(&step).map(|(x, s)| x + share * s).collect();
+        // Parameters that the model cannot follow (a contact that opens from within) are no improvement.
+        let moved = model.residuals(parameters, &trial).ok();
+        let better = moved.filter(|moved| squares(moved) < squares(&residuals));
+        match better {
+            Some(moved) => {
+                let gain = 1.0 - squares(&moved) / squares(&residuals);
+                (at, residuals) = (trial, moved);
+                damping = (damping * 0.2).max(1e-12);
+                if gain < 1e-7 && longest < 1e-3 {
+                    break;
+                }
+                columns = jacobian(model, parameters, &at)?;
+            }
+            None => {
+                damping *= 8.0;
+                if damping > 1e10 || longest < 1e-9 {
+                    break;
+                }
+            }
+        }
+    }
+    let columns = jacobian(model, parameters, &at)?;
+    let covariance = covariance(&columns, &residuals);
+    let deviations = (0..at.len())
+        .map(|k| match &covariance {
+            Some(covariance) => covariance[k][k].max(0.0).sqrt(),
+            None => f64::INFINITY,
+        })
+        .collect();
+    let k = at.len();
+    let covariance = covariance.unwrap_or_else(|| vec![vec![f64::INFINITY; k]; k]);
+    Ok(Solution { at, residuals, deviations, covariance })
+}
+
+/// Columns of dr/dx by central differences; one-sided where the model cannot go one way.
+fn jacobian(model: &Model, parameters: &Parameters, at: &[f64]) -> Result<Vec<Vec<f64>>> {
+    let moved = |k: usize, by: f64| {
+        let mut there = at.to_vec();
+        there[k] += by;
+        model.residuals(parameters, &there)
+    };
+    (0..at.len())
+        .into_par_iter()
+        .map(|k| {
+            let (ends, length) = match (moved(k, STEP), moved(k, -STEP)) {
+                (Ok(up), Ok(down)) => ((up, down), 2.0 * STEP),
+                (Ok(up), Err(_)) => ((up, model.residuals(parameters, at)?), STEP),
+                (Err(_), Ok(down)) => ((model.residuals(parameters, at)?, down), STEP),
+                (Err(error), Err(_)) => return Err(error),
+            };
+            Ok(ends.0.iter().zip(&ends.1).map(|(up, down)| (up - down) / length).collect())
+        })
+        .collect()
+}
+
+/// J'J and J'r.
+fn system(columns: &[Vec<f64>], residuals: &[f64]) -> (Vec<Vec<f64>>, Vec<f64>) {
+    let normal = columns.iter().map(|a| columns.iter().map(|b| dot(a, b)).collect()).collect();
+    (normal, columns.iter().map(|a| dot(a, residuals)).collect())
+}
+
+/// (J'J + damping diag J'J) step = -J'r.
+fn damped_step(normal: &[Vec<f64>], gradient: &[f64], damping: f64) -> Option<Vec<f64>> {
+    let largest = (0..normal.len()).map(|k| normal[k][k]).fold(0.0, f64::max);
+    let mut damped = normal.to_vec();
+    for (k, row) in damped.iter_mut().enumerate() {
+        row[k] += damping * row[k] + 1e-14 * largest;
+    }
+    let inverse = invert(damped)?;
+    let step: Vec<f64> = inverse.iter().map(|row| -dot(row, gradient)).collect();
+    step.iter().all(|s| s.is_finite()).then_some(step)
+}
+
+/// (J'J)⁻¹ (Σ r² J J'/(1 - h)²) (J'J)⁻¹ over the rows, h their leverages (HC3); `None` where J'J is singular.
+fn covariance(columns: &[Vec<f64>], residuals: &[f64]) -> Option<Vec<Vec<f64>>> {
+    let (normal, _) = system(columns, residuals);
+    let inverse = invert(normal)?;
+    let n = columns.len();
+    let mut middle = vec![vec![0.0; n]; n];
+    for (row, r) in residuals.iter().enumerate() {
+        let j: Vec<f64> = columns.iter().map(|column| column[row]).collect();
+        let leverage: f64 = inverse.iter().zip(&j).map(|(line, a)| a * dot(line, &j)).sum();
+        let weight = (r / (1.0 - leverage.min(0.99))).powi(2);
+        for a in 0..n {
+            for b in 0..n {
+                middle[a][b] += weight * j[a] * j[b];
+            }
+        }
+    }
+    let half: Vec<Vec<f64>> = inverse
+        .iter()
+        .map(|line| (0..n).map(|b| (0..n).map(|a| line[a] * middle[a][b]).sum()).collect())
+        .collect();
+    Some(half.iter().map(|line| inverse.iter().map(|other| dot(line, other)).collect()).collect())
+}
+
+/// The inverse of a symmetric, positive definite matrix by Gauss-Jordan on its scaled form; `None` where it is singular.
+pub(super) fn invert(mut matrix: Vec<Vec<f64>>) -> Option<Vec<Vec<f64>>> {
+    let n = matrix.len();
+    let scale: Vec<f64> = (0..n).map(|k| matrix[k][k].sqrt()).collect();
+    if scale.iter().any(|s| !(*s > 0.0 && s.is_finite())) {
+        return None;
+    }
+    for (i, row) in matrix.iter_mut().enumerate() {
+        row.iter_mut().enumerate().for_each(|(j, m)| *m /= scale[i] * scale[j]);
+        row.extend((0..n).map(|j| if i == j { 1.0 } else { 0.0 }));
+    }
+    for k in 0..n {
+        // The pivots of a scaled positive definite matrix lie between 0 and 1.
+        if matrix[k][k].is_nan() || matrix[k][k] < 1e-13 {
+            return None;
+        }
+        let pivot = matrix[k][k];
+        matrix[k].iter_mut().for_each(|m| *m /= pivot);
+        let line = matrix[k].clone();
+        for (i, row) in matrix.iter_mut().enumerate().filter(|(i, _)| *i != k) {
+            let factor = row[k];
+            debug_assert!(i != k);
+            row.iter_mut().zip(&line).for_each(|(m, l)| *m -= factor * l);
+        }
+    }
+    Some(
+        matrix
+            .iter()
+            .enumerate()
+            .map(|(i, row)| (0..n).map(|j| row[n + j] / (scale[i] * scale[j])).collect())
+            .collect(),
+    )
+}
+
+/// The 97.5 % quantile of Student's distribution (Cornish-Fisher expansion about the normal one: 1e-3 from 8 degrees of
+/// freedom on).
+pub(super) fn quantile(freedom: usize) -> f64 {
+    let (z, v): (f64, f64) = (1.959_963_984_540_054, freedom.max(1) as f64);
+    z + (z.powi(3) + z) / (4.0 * v)
+        + (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / (96.0 * v * v)
+        + (3.0 * z.powi(7) + 19.0 * z.powi(5) + 17.0 * z.powi(3) - 15.0 * z) / (384.0 * v.powi(3))
+}
+
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn squares(r: &[f64]) -> f64 {
+    dot(r, r)
+}

@@ -14,7 +14,7 @@ use crate::wait::without_python;
 
 /// Pressure, displacement and approach of an elastic contact, and how good they are.
 #[pyfunction]
-#[pyo3(signature = (gap, size, contact_modulus, load, approach, hardness, boundary, method, tolerance, max_iterations))]
+#[pyo3(signature = (gap, size, contact_modulus, load, approach, hardness, boundary, method, precision, tolerance, max_iterations))]
 #[allow(clippy::too_many_arguments)]
 pub fn elastic<'py>(
     py: Python<'py>,
@@ -26,6 +26,7 @@ pub fn elastic<'py>(
     hardness: f64,
     boundary: &str,
     method: &str,
+    precision: &str,
     tolerance: f64,
     max_iterations: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
@@ -47,7 +48,7 @@ pub fn elastic<'py>(
         return Err(CaseError::new_err(format!("gap holds {value}, but must be {words}")));
     }
     let boundary = boundary_of(boundary)?;
-    let options = solver_of(method, tolerance, max_iterations)?;
+    let options = solver_of(method, precision, tolerance, max_iterations)?;
     options.validate().map_err(|error| raised(py, error))?;
     let interrupt = AtomicBool::new(false);
     let mut state = ContactState::new(grid.len());

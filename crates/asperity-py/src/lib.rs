@@ -3,6 +3,7 @@
 
 mod contact;
 mod error;
+mod fit;
 mod march;
 mod material;
 mod session;
@@ -21,17 +22,22 @@ mod _core {
     #[pymodule_export]
     use super::error::{CaseError, ConvergenceError};
     #[pymodule_export]
+    use super::fit::{fit, fit_file};
+    #[pymodule_export]
     use super::march::March;
     #[pymodule_export]
-    use super::material::Body;
+    use super::material::{Body, shift_factor};
     #[pymodule_export]
-    use super::session::{check, report, run};
+    use super::session::{case_text, check, report, run};
     #[pymodule_export]
-    use super::store::Store;
+    use super::store::{Store, save};
     #[pymodule_export]
     use super::surface::{
-        gap, level, power_spectrum, read_surface, self_affine, shape, statistics, write_surface,
+        autocorrelation, bearing_curve, describe, gap, height_distribution, power_spectrum, process,
+        read_surface, roughness, self_affine, shape, write_surface,
     };
+    #[pymodule_export]
+    use super::wait::{set_threads, threads};
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

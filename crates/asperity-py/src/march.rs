@@ -3,6 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use asperity::contact::Precision;
 use asperity::{
     Boundary, Control, Grid, History, Loading, Method, Scheme, Simulation, SolverOptions, TimeGrid, march,
     material,
@@ -36,10 +37,17 @@ pub fn boundary(word: &str) -> PyResult<Boundary> {
     choose("boundary", word, &[("free", Boundary::Free), ("periodic", Boundary::Periodic)])
 }
 
-pub fn solver(method: &str, tolerance: f64, max_iterations: usize) -> PyResult<SolverOptions> {
+pub fn solver(
+    method: &str,
+    precision: &str,
+    tolerance: f64,
+    max_iterations: usize,
+) -> PyResult<SolverOptions> {
     let methods = [("projected-cg", Method::ProjectedCg), ("polonsky-keer", Method::PolonskyKeer)];
     let method = choose("method", method, &methods)?;
-    Ok(SolverOptions { method, tolerance, max_iterations, ..SolverOptions::default() })
+    let precisions = [("double", Precision::Double), ("mixed", Precision::Mixed)];
+    let precision = choose("precision", precision, &precisions)?;
+    Ok(SolverOptions { method, precision, tolerance, max_iterations })
 }
 
 fn history(kind: &str, numbers: &[f64], points: Vec<(f64, f64)>) -> PyResult<History> {
@@ -85,7 +93,8 @@ fn times(kind: &str, numbers: &[f64]) -> PyResult<TimeGrid> {
 impl March {
     #[new]
     #[pyo3(signature = (*, gap, size, boundary, bodies, control, history, history_numbers, history_points,
-                        times, times_numbers, include, scheme, method, tolerance, max_iterations))]
+                        times, times_numbers, include, temperatures, scheme, method, precision, tolerance,
+                        max_iterations))]
     #[allow(clippy::too_many_arguments)]
     fn new(
         py: Python<'_>,
@@ -100,13 +109,23 @@ impl March {
         times: &str,
         times_numbers: Vec<f64>,
         include: Vec<f64>,
+        temperatures: Vec<(f64, f64)>,
         scheme: &str,
         method: &str,
+        precision: &str,
         tolerance: f64,
         max_iterations: usize,
     ) -> PyResult<March> {
         let gap = gap.as_array().as_standard_layout().into_owned();
         let (nx, ny) = gap.dim();
+        if !temperatures.is_empty() && !bodies.iter().any(|body| body.is_thermal()) {
+            return Err(CaseError::new_err(
+                "temperature is given, but no body depends on it: none has a shift (without a temperature of its \
+                 own); give a material shift=asperity.wlf(...), or leave the temperature out",
+            ));
+        }
+        let (creep, thermal) =
+            crate::material::pair(&bodies, &temperatures).map_err(|error| raised(py, error))?;
         let bodies: Vec<material::Body> = bodies.iter().map(|body| body.inner.clone()).collect();
         let controls =
             [("load", Control::Load), ("pressure", Control::Pressure), ("approach", Control::Approach)];
@@ -119,13 +138,14 @@ impl March {
         };
         let simulation = Simulation {
             boundary: self::boundary(boundary)?,
-            creep: material::pair_creep(&bodies).map_err(|error| raised(py, error))?,
+            creep,
+            thermal,
             hardness: material::pair_hardness(&bodies),
             loading,
             times: self::times(times, &times_numbers)?,
             include,
             scheme: choose("scheme", scheme, &schemes)?,
-            solver: solver(method, tolerance, max_iterations)?,
+            solver: solver(method, precision, tolerance, max_iterations)?,
             ..Simulation::new(grid, gap)
         };
         let interrupt = Arc::new(AtomicBool::new(false));
@@ -152,6 +172,20 @@ impl March {
             }
             raised
         })
+    }
+
+    /// The creep functions of the pair: (instantaneous, [(compliance, time)], fluidity) of the bodies of constant
+    /// temperature, then of each on a clock of its own.
+    #[allow(clippy::type_complexity)]
+    fn creep(&self) -> Vec<(f64, Vec<(f64, f64)>, f64)> {
+        let march = self.locked();
+        let simulation = march.simulation();
+        let parts =
+            std::iter::once(&simulation.creep).chain(simulation.thermal.iter().map(|body| &body.creep));
+        let terms = |creep: &material::Creep| {
+            creep.terms.iter().map(|term| (term.compliance, term.retardation_time)).collect()
+        };
+        parts.map(|creep| (creep.instantaneous, terms(creep), creep.fluidity)).collect()
     }
 
     /// Rows in all.

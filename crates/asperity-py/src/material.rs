@@ -1,15 +1,101 @@
 //! Materials and bodies.
 
-use asperity::material::{self, Creep, CreepTerm, Fractional, Lateral, Material, Modulus, Relaxation};
+use asperity::material::{
+    self, Creep, CreepTerm, Fractional, Lateral, Material, Modulus, ReducedTime, Relaxation, Shift,
+    ThermalCreep,
+};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
 use crate::error::{CaseError, raised};
 
-/// One deformable body: its creep function, Poisson's ratio or bulk modulus, and hardness.
+/// One deformable body: its creep function, Poisson's ratio or bulk modulus, hardness, and how warm it is.
 #[pyclass(frozen)]
 pub struct Body {
+    /// At its own temperature where it has one, else at the reference temperature of its shift.
     pub inner: material::Body,
+    /// Where the temperature of the run is its own.
+    shift: Option<Shift>,
+    /// Relative error of the Prony sum that stands for a fractional model.
+    error: Option<f64>,
+}
+
+/// A shift as Python gives it: its model, numbers, and points of (temperature, ln a_T).
+pub type ShiftWords = (String, Vec<f64>, Vec<(f64, f64)>);
+
+pub fn shift(words: ShiftWords) -> PyResult<Shift> {
+    let (model, numbers, points) = words;
+    Ok(match (model.as_str(), numbers.as_slice()) {
+        ("wlf", [c1, c2, reference]) => Shift::Wlf { c1: *c1, c2: *c2, reference: *reference },
+        ("arrhenius", [activation_energy, reference]) => {
+            Shift::Arrhenius { activation_energy: *activation_energy, reference: *reference }
+        }
+        ("table", []) => Shift::Table { points },
+        _ => {
+            return Err(CaseError::new_err(format!(
+                "there is no shift '{model}' of {} numbers",
+                numbers.len()
+            )));
+        }
+    })
+}
+
+/// The words of a shift, for Python.
+pub fn words(shift: Shift) -> ShiftWords {
+    match shift {
+        Shift::Wlf { c1, c2, reference } => ("wlf".into(), vec![c1, c2, reference], vec![]),
+        Shift::Arrhenius { activation_energy, reference } => {
+            ("arrhenius".into(), vec![activation_energy, reference], vec![])
+        }
+        Shift::Table { points } => ("table".into(), vec![], points),
+    }
+}
+
+/// Shift factors a_T at temperatures.
+#[pyfunction]
+pub fn shift_factor<'py>(
+    py: Python<'py>,
+    words: ShiftWords,
+    temperatures: PyReadonlyArray1<'_, f64>,
+) -> PyResult<Curve<'py>> {
+    let shift = shift(words)?;
+    shift.validate().map_err(|error| raised(py, error))?;
+    let factors =
+        temperatures.as_array().iter().map(|t| shift.factor(*t)).collect::<asperity::Result<Vec<_>>>();
+    Ok(factors.map_err(|error| raised(py, error))?.into_pyarray(py))
+}
+
+/// Bodies as the march takes them: those of constant temperature in one creep function, the others on their clocks.
+pub fn pair(
+    bodies: &[PyRef<'_, Body>],
+    temperatures: &[(f64, f64)],
+) -> asperity::Result<(Creep, Vec<ThermalCreep>)> {
+    let (mut creep, mut thermal) = (Creep::default(), Vec::new());
+    for body in bodies {
+        match (&body.shift, temperatures) {
+            (Some(shift), [first, rest @ ..]) if rest.iter().all(|point| point.1 == first.1) => {
+                creep = creep.sum(&stretched(&body.inner, shift.factor(first.1)?)?.contact_creep()?);
+            }
+            (Some(shift), [_, ..]) => {
+                let clock = ReducedTime::new(shift.clone(), temperatures)?;
+                thermal.push(ThermalCreep { creep: body.inner.contact_creep()?, clock });
+            }
+            _ => creep = creep.sum(&body.inner.contact_creep()?),
+        }
+    }
+    Ok((creep, thermal))
+}
+
+impl Body {
+    /// Whether the temperature of the run changes its times.
+    pub fn is_thermal(&self) -> bool {
+        self.shift.is_some()
+    }
+}
+
+fn stretched(body: &material::Body, factor: f64) -> asperity::Result<material::Body> {
+    let material = if factor == 1.0 { body.material.clone() } else { body.material.stretched(factor)? };
+    Ok(material::Body { material, ..body.clone() })
 }
 
 type Curve<'py> = Bound<'py, PyArray1<f64>>;
@@ -19,7 +105,7 @@ impl Body {
     /// A body of a named model. `numbers` are the model's moduli and times in the order of its Rust constructor,
     /// `terms` its (modulus or fraction or compliance, time) pairs.
     #[new]
-    #[pyo3(signature = (model, measure, numbers, terms, poisson, bulk_modulus, hardness, name))]
+    #[pyo3(signature = (model, measure, numbers, terms, poisson, bulk_modulus, hardness, name, shift, temperature))]
     #[allow(clippy::too_many_arguments)]
     fn new(
         py: Python<'_>,
@@ -31,6 +117,8 @@ impl Body {
         bulk_modulus: Option<f64>,
         hardness: Option<f64>,
         name: String,
+        shift: Option<ShiftWords>,
+        temperature: Option<f64>,
     ) -> PyResult<Body> {
         let measure = match measure {
             "young" => Modulus::Young,
@@ -46,11 +134,24 @@ impl Body {
             (None, Some(modulus)) => Lateral::BulkModulus(modulus),
             _ => return Err(CaseError::new_err("give poisson or bulk_modulus, one of them")),
         };
-        let material = build(model, measure, &numbers, &terms).map_err(|error| raised(py, error))?;
-        let inner = material::Body { name, material, lateral, hardness };
+        let (material, error) = build(model, measure, &numbers, &terms).map_err(|error| raised(py, error))?;
+        let mut inner = material::Body { name, material, lateral, hardness };
+        let mut shift = shift.map(self::shift).transpose()?;
+        if let Some(shift) = &shift {
+            shift.validate().map_err(|error| raised(py, error))?;
+        }
+        if let Some(own) = temperature {
+            let Some(law) = shift.take() else {
+                let words =
+                    "but without a shift the material does not depend on it: give shift=asperity.wlf(...)";
+                return Err(CaseError::new_err(format!("temperature is {own}, {words}")));
+            };
+            let moved = law.factor(own).and_then(|factor| stretched(&inner, factor));
+            inner = moved.map_err(|error| raised(py, error))?;
+        }
         // Poisson's ratio, bulk modulus and hardness are checked where they are used.
         inner.contact_creep().map_err(|error| raised(py, error))?;
-        Ok(Body { inner })
+        Ok(Body { inner, shift, error })
     }
 
     /// Creep compliance at times: 1/Pa, of the modulus that the material was given in.
@@ -71,14 +172,8 @@ impl Body {
         omega: PyReadonlyArray1<'_, f64>,
     ) -> PyResult<(Curve<'py>, Curve<'py>)> {
         let creep = self.inner.material.creep();
-        // E' + i E'' = 1 / (D' - i D'')
-        let modulus = |w: f64| {
-            let (stored, lost) = creep.complex(w);
-            let square = stored * stored + lost * lost;
-            (stored / square, lost / square)
-        };
-        let pairs: Vec<_> = omega.as_array().iter().map(|w| modulus(*w)).collect();
-        let (storage, loss): (Vec<f64>, Vec<f64>) = pairs.into_iter().unzip();
+        let (storage, loss): (Vec<f64>, Vec<f64>) =
+            omega.as_array().iter().map(|w| creep.modulus(*w)).unzip();
         Ok((storage.into_pyarray(py), loss.into_pyarray(py)))
     }
 
@@ -95,6 +190,12 @@ impl Body {
         (creep.instantaneous, terms, creep.fluidity)
     }
 
+    /// Largest relative error of creep and relaxation of a fractional model in its window; None of others.
+    #[getter]
+    fn error(&self) -> Option<f64> {
+        self.error
+    }
+
     /// (equilibrium modulus, [(modulus, relaxation time)]).
     fn relaxation_terms(&self, py: Python<'_>) -> PyResult<(f64, Vec<(f64, f64)>)> {
         let relaxation = self.inner.material.relaxation().map_err(|error| raised(py, error))?;
@@ -107,7 +208,43 @@ fn map<'py>(py: Python<'py>, at: PyReadonlyArray1<'_, f64>, f: impl Fn(f64) -> f
     at.as_array().iter().map(|v| f(*v)).collect::<Vec<f64>>().into_pyarray(py)
 }
 
-fn build(model: &str, measure: Modulus, numbers: &[f64], terms: &[(f64, f64)]) -> asperity::Result<Material> {
+/// The material, and how far a Prony sum is from the fractional model that it stands for.
+fn build(
+    model: &str,
+    measure: Modulus,
+    numbers: &[f64],
+    terms: &[(f64, f64)],
+) -> asperity::Result<(Material, Option<f64>)> {
+    let sum = |model: Fractional, window: [f64; 2], tolerance: f64| {
+        let sum = model.to_prony(window, tolerance)?;
+        Ok((Material::generalised_kelvin(measure, sum.creep)?, Some(sum.error)))
+    };
+    match (model, numbers) {
+        ("springpot", [modulus, time, order, first, last, tolerance]) => sum(
+            Fractional::Springpot { modulus: *modulus, time: *time, order: *order },
+            [*first, *last],
+            *tolerance,
+        ),
+        ("fractional-maxwell", [modulus, time, order, first, last, tolerance]) => sum(
+            Fractional::Maxwell { modulus: *modulus, time: *time, order: *order },
+            [*first, *last],
+            *tolerance,
+        ),
+        ("fractional-zener", [equilibrium, instantaneous, time, order, first, last, tolerance]) => {
+            let model = Fractional::Zener {
+                equilibrium: *equilibrium,
+                instantaneous: *instantaneous,
+                time: *time,
+                order: *order,
+            };
+            sum(model, [*first, *last], *tolerance)
+        }
+        _ => Ok((exact(model, measure, numbers, terms)?, None)),
+    }
+}
+
+/// A model that is a Prony series.
+fn exact(model: &str, measure: Modulus, numbers: &[f64], terms: &[(f64, f64)]) -> asperity::Result<Material> {
     match (model, numbers) {
         ("elastic", [modulus]) => Material::elastic(measure, *modulus),
         ("maxwell", [modulus, time]) => Material::maxwell(measure, *modulus, *time),
@@ -127,19 +264,6 @@ fn build(model: &str, measure: Modulus, numbers: &[f64], terms: &[(f64, f64)]) -
             });
             let creep = Creep { instantaneous: *instantaneous, terms: terms.collect(), fluidity: *fluidity };
             Material::generalised_kelvin(measure, creep)
-        }
-        ("springpot", [modulus, time, order, first, last, tolerance]) => {
-            let model = Fractional::Springpot { modulus: *modulus, time: *time, order: *order };
-            Material::generalised_kelvin(measure, model.to_prony([*first, *last], *tolerance)?.creep)
-        }
-        ("fractional-zener", [equilibrium, instantaneous, time, order, first, last, tolerance]) => {
-            let model = Fractional::Zener {
-                equilibrium: *equilibrium,
-                instantaneous: *instantaneous,
-                time: *time,
-                order: *order,
-            };
-            Material::generalised_kelvin(measure, model.to_prony([*first, *last], *tolerance)?.creep)
         }
         _ => Err(asperity::Error::invalid("model", model, "one of those of the package, with its numbers")),
     }

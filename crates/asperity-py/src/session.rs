@@ -13,7 +13,7 @@ use pyo3::types::PyDict;
 
 use crate::error;
 use crate::march::fill;
-use crate::wait::without_python;
+use crate::wait::{detached, without_python};
 
 fn read(path: &Path, overrides: &[String]) -> PyResult<Case> {
     Case::read(path, overrides).map_err(error::case)
@@ -70,13 +70,23 @@ pub fn check(path: PathBuf, overrides: Vec<String>) -> PyResult<String> {
     serde_json::to_string(&read(&path, &overrides)?.describe()).map_err(error::file)
 }
 
+/// A case given as JSON, as the text of a case file.
+#[pyfunction]
+pub fn case_text(json: &str) -> PyResult<String> {
+    let wrong = |error: &dyn std::fmt::Display| {
+        error::CaseError::new_err(format!("the case is no table of keys: {error}"))
+    };
+    let table: toml::Table = serde_json::from_str(json).map_err(|error| wrong(&error))?;
+    toml::to_string(&table).map_err(|error| wrong(&error))
+}
+
 /// Writes the report of a stored result.
 #[pyfunction]
 #[pyo3(signature = (result, output, force, bytes))]
 pub fn report(py: Python<'_>, result: PathBuf, output: PathBuf, force: bool, bytes: usize) -> PyResult<()> {
-    py.detach(|| {
+    detached(py, || {
         let reader = Reader::open(&result).map_err(error::file)?;
         let options = page::Options { force, bytes, ..page::Options::default() };
         page::write(&reader, &output, &options).map_err(error::file)
-    })
+    })?
 }

@@ -1,12 +1,16 @@
 //! Stored results.
 
+use std::collections::HashMap;
 use std::path::PathBuf;
 
-use asperity_io::store::{At, FieldKind, Reader};
-use numpy::{IntoPyArray, PyArray1, PyArray2};
+use asperity::Grid;
+use asperity_io::store::{At, Field, FieldKind, Header, Outcome, Reader, Row, Status, Writer};
+use ndarray::{ArrayView3, Axis};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
 
-use crate::error::file;
+use crate::error::{CaseError, file, raised};
+use crate::wait::detached;
 
 /// A result on disk, read as it is asked for.
 #[pyclass(frozen)]
@@ -34,14 +38,14 @@ impl Store {
         let at = At::Index(index);
         Ok(match kind {
             FieldKind::Contact => {
-                py.detach(|| self.reader.contact(at)).map_err(file)?.into_pyarray(py).into_any()
+                detached(py, || self.reader.contact(at))?.map_err(file)?.into_pyarray(py).into_any()
             }
-            kind => py.detach(|| self.reader.field(kind, at)).map_err(file)?.into_pyarray(py).into_any(),
+            kind => detached(py, || self.reader.field(kind, at))?.map_err(file)?.into_pyarray(py).into_any(),
         })
     }
 
     fn initial_gap<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        Ok(py.detach(|| self.reader.initial_gap()).map_err(file)?.into_pyarray(py))
+        Ok(detached(py, || self.reader.initial_gap())?.map_err(file)?.into_pyarray(py))
     }
 
     #[getter]
@@ -69,4 +73,143 @@ impl Store {
     fn attributes(&self) -> String {
         serde_json::Value::Object(self.reader.attributes()).to_string()
     }
+}
+
+/// A stack of fields, (kept instants, nx, ny), as Python holds it.
+enum Held<'py> {
+    Real(FieldKind, PyReadonlyArray3<'py, f64>),
+    Contact(PyReadonlyArray3<'py, u8>),
+}
+
+/// The same without Python.
+#[derive(Clone, Copy)]
+enum Stack<'a> {
+    Real(FieldKind, ArrayView3<'a, f64>),
+    Contact(ArrayView3<'a, u8>),
+}
+
+impl<'a> Stack<'a> {
+    /// The field of the kept instant number `k`.
+    fn field(self, k: usize) -> Field<'a> {
+        let at = Axis(0);
+        match self {
+            Stack::Real(FieldKind::Gap, maps) => Field::Gap(maps.index_axis_move(at, k)),
+            Stack::Real(FieldKind::Displacement, maps) => Field::Displacement(maps.index_axis_move(at, k)),
+            Stack::Real(_, maps) => Field::Pressure(maps.index_axis_move(at, k)),
+            Stack::Contact(maps) => Field::Contact(maps.index_axis_move(at, k)),
+        }
+    }
+
+    fn kind(&self) -> FieldKind {
+        match self {
+            Stack::Real(kind, _) => *kind,
+            Stack::Contact(_) => FieldKind::Contact,
+        }
+    }
+
+    fn dim(&self) -> (usize, usize, usize) {
+        match self {
+            Stack::Real(_, maps) => maps.dim(),
+            Stack::Contact(maps) => maps.dim(),
+        }
+    }
+}
+
+/// Writes a result that was in memory. `columns` are the numbers of all rows by their names, `fields` the stacks of
+/// the rows `field_steps`; `setup` is JSON that says what was solved.
+#[pyfunction]
+#[allow(clippy::too_many_arguments)]
+pub fn save(
+    py: Python<'_>,
+    path: PathBuf,
+    force: bool,
+    title: String,
+    setup: &str,
+    size: [f64; 2],
+    initial_gap: PyReadonlyArray2<'_, f64>,
+    columns: HashMap<String, PyReadonlyArray1<'_, f64>>,
+    fields: Vec<(String, Bound<'_, PyAny>)>,
+    field_steps: Vec<usize>,
+) -> PyResult<()> {
+    let (nx, ny) = initial_gap.as_array().dim();
+    let grid = Grid::new([nx, ny], size).map_err(|error| raised(py, error))?;
+    let setup = serde_json::from_str(setup).map_err(|error| CaseError::new_err(error.to_string()))?;
+    let rows = rows(&columns)?;
+    let mut held = Vec::new();
+    for (name, stack) in &fields {
+        let kind = FieldKind::from_name(name)
+            .ok_or_else(|| CaseError::new_err(format!("there is no field '{name}' in results")))?;
+        held.push(match kind {
+            FieldKind::Contact => Held::Contact(stack.extract()?),
+            kind => Held::Real(kind, stack.extract()?),
+        });
+    }
+    let stacks = held.iter().map(|held| match held {
+        Held::Real(kind, stack) => Stack::Real(*kind, stack.as_array()),
+        Held::Contact(stack) => Stack::Contact(stack.as_array()),
+    });
+    let stacks: Vec<Stack> = stacks.collect();
+    if let Some(stack) = stacks.iter().find(|stack| stack.dim() != (field_steps.len(), nx, ny)) {
+        let expected = format!("({}, {nx}, {ny})", field_steps.len());
+        let (kind, found) = (stack.kind(), stack.dim());
+        return Err(CaseError::new_err(format!(
+            "the field '{kind}' has shape {found:?}, but must have {expected}"
+        )));
+    }
+    let header = Header {
+        title,
+        case_text: String::new(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        grid,
+        fields: stacks.iter().map(Stack::kind).collect(),
+        rows_expected: Some(rows.len()),
+        setup,
+    };
+    let gap = initial_gap.as_array();
+    detached(py, || {
+        let mut writer = Writer::create(&path, &header, gap, force)?;
+        for (n, row) in rows.iter().enumerate() {
+            let kept = field_steps.iter().position(|step| *step == n);
+            let fields: Vec<Field> =
+                kept.map_or(vec![], |k| stacks.iter().map(|stack| stack.field(k)).collect());
+            writer.append(row, &fields)?;
+        }
+        writer.finish(&Outcome::new(Status::Complete))
+    })?
+    .map(drop)
+    .map_err(file)
+}
+
+/// The rows of columns of equal length: the inverse of [`crate::march::fill`].
+fn rows(columns: &HashMap<String, PyReadonlyArray1<'_, f64>>) -> PyResult<Vec<Row>> {
+    let column = |name: &str| {
+        let column = columns.get(name).map(|column| column.as_array());
+        column.ok_or_else(|| CaseError::new_err(format!("the result has no column '{name}'")))
+    };
+    let length = column("time")?.len();
+    let mut rows = vec![Row::default(); length];
+    let mut set = |name: &str, set: fn(&mut Row, f64)| {
+        let column = column(name)?;
+        if column.len() != length {
+            let found = column.len();
+            return Err(CaseError::new_err(format!("'{name}' has {found} rows, but time has {length}")));
+        }
+        rows.iter_mut().zip(column).for_each(|(row, value)| set(row, *value));
+        Ok(())
+    };
+    set("time", |row, value| row.time = value)?;
+    set("load", |row, value| row.load = value)?;
+    set("approach", |row, value| row.approach = value)?;
+    set("contact_area", |row, value| row.contact_area = value)?;
+    set("contact_area_corrected", |row, value| row.contact_area_corrected = value)?;
+    set("contact_fraction", |row, value| row.contact_fraction = value)?;
+    set("capped_area", |row, value| row.capped_area = value)?;
+    set("mean_pressure", |row, value| row.mean_pressure = value)?;
+    set("max_pressure", |row, value| row.max_pressure = value)?;
+    set("mean_gap", |row, value| row.mean_gap = value)?;
+    set("iterations", |row, value| row.iterations = value as usize)?;
+    set("convolutions", |row, value| row.convolutions = value as usize)?;
+    set("residual", |row, value| row.residual = value)?;
+    set("certificate", |row, value| row.certificate = value)?;
+    Ok(rows)
 }

@@ -5,9 +5,11 @@ use std::str::FromStr;
 
 use asperity::Grid;
 use asperity::surface::statistics::{
-    HeightStatistics, RadialSpectrum, Rings, SlopeStatistics, SpectralMoments,
+    Autocorrelation, BearingCurve, Extent, RadialSpectrum, Rings, SelfAffineFit, Summary,
 };
-use asperity::surface::{self, Level, Part, Roughness, SelfAffine, Shape, Surface, undeformed_gap};
+use asperity::surface::{self, Part, Roughness, SelfAffine, Shape, Surface, undeformed_gap};
+use asperity_io::case::fragment;
+use asperity_io::preparation::{Step, prepare};
 use asperity_io::topography::{Format, ReadOptions, Topography, read, write};
 use ndarray::Array2;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2};
@@ -15,7 +17,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::{CaseError, file, raised};
-use crate::march::choose;
+use crate::wait::detached;
 
 type Heights<'py> = Bound<'py, PyArray2<f64>>;
 
@@ -47,7 +49,7 @@ pub fn self_affine<'py>(
     let roll_off = roll_off.unwrap_or(longest);
     let grid = grid(py, cells, size)?;
     let made =
-        py.detach(|| SelfAffine { hurst, roughness, longest, shortest, roll_off, seed }.heights(&grid));
+        detached(py, || SelfAffine { hurst, roughness, longest, shortest, roll_off, seed }.heights(&grid))?;
     Ok(made.map_err(|error| raised(py, error))?.into_pyarray(py))
 }
 
@@ -97,7 +99,7 @@ pub fn gap<'py>(
     let grid = grid(py, heights.dim(), size)?;
     if heights.iter().all(|z| z.is_finite()) {
         let part = Part::Heights { name: "surface".into(), heights };
-        let gap = undeformed_gap(&grid, &[part]).map_err(|error| raised(py, error))?;
+        let gap = detached(py, || undeformed_gap(&grid, &[part]))?.map_err(|error| raised(py, error))?;
         return Ok(gap.into_pyarray(py));
     }
     if let Some(value) = heights.iter().find(|z| z.is_nan() || **z == f64::INFINITY) {
@@ -122,9 +124,10 @@ pub fn read_surface<'py>(
     channel: Option<String>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let options = ReadOptions { size, height_unit, channel, ..ReadOptions::default() };
-    let topography = py.detach(|| read(&path, &options)).map_err(file)?;
+    let topography = detached(py, || read(&path, &options))?.map_err(file)?;
     let out = PyDict::new(py);
     out.set_item("format", topography.format.name())?;
+    out.set_item("history", topography.history().collect::<Vec<_>>())?;
     out.set_item("size", topography.size)?;
     out.set_item("channel", topography.channel)?;
     out.set_item("channels", topography.channels)?;
@@ -141,28 +144,84 @@ pub fn write_surface(
     heights: PyReadonlyArray2<'_, f64>,
     size: [f64; 2],
     format: &str,
+    history: Vec<String>,
 ) -> PyResult<()> {
     let format = Format::from_str(format).map_err(|error| CaseError::new_err(error.to_string()))?;
     let heights = heights.as_array().as_standard_layout().into_owned();
-    let topography = Topography { format, heights, size, channel: None, channels: vec![], metadata: vec![] };
-    py.detach(|| write(&path, &topography, format)).map_err(file)
+    let mut topography =
+        Topography { format, heights, size, channel: None, channels: vec![], metadata: vec![] };
+    topography.record(history);
+    detached(py, || write(&path, &topography, format))?.map_err(file)
 }
 
-/// Parameters of ISO 25178 and spectral moments.
+/// Synthetic roughness from the keys of a case (`cells`, `size`, `hurst`, `lay.angle`, ...): heights and size.
 #[pyfunction]
-pub fn statistics<'py>(
+pub fn roughness<'py>(py: Python<'py>, keys: Vec<(String, String)>) -> PyResult<(Heights<'py>, [f64; 2])> {
+    let keys: Vec<(&str, &str)> = keys.iter().map(|(key, text)| (key.as_str(), text.as_str())).collect();
+    let (grid, part) = fragment::roughness(&keys).map_err(|faults| {
+        let told = |fault: &fragment::Fault| {
+            let help = fault.help.as_ref().map_or(String::new(), |help| format!("; {help}"));
+            format!("{}: {}{help}", fault.key, fault.message)
+        };
+        CaseError::new_err(faults.iter().map(told).collect::<Vec<_>>().join("\n"))
+    })?;
+    let heights = detached(py, || match part {
+        Part::SelfAffine(roughness) => roughness.heights(&grid),
+        Part::Synthesis(roughness) => roughness.heights(&grid),
+        Part::Heights { heights, .. } => Ok(heights),
+        Part::Shape { shape, .. } => Err(asperity::Error::invalid("kind", shape.name(), "self-affine")),
+    })?;
+    Ok((heights.map_err(|error| raised(py, error))?.into_pyarray(py), grid.size()))
+}
+
+/// Steps of a preparation, each in words as `asperity surface process --op` takes them: heights, size, and one
+/// sentence per step.
+#[pyfunction]
+pub fn process<'py>(
     py: Python<'py>,
     heights: PyReadonlyArray2<'_, f64>,
     size: [f64; 2],
+    steps: Vec<String>,
+) -> PyResult<(Heights<'py>, [f64; 2], Vec<String>)> {
+    let steps = steps.iter().map(|words| fragment::step(words).map_err(CaseError::new_err));
+    let steps = steps.collect::<PyResult<Vec<Step>>>()?;
+    let map = map(py, heights, size)?;
+    let prepared = detached(py, || prepare(map, &steps, None))?.map_err(|error| {
+        // There is no domain here.
+        let reason = error.to_string();
+        CaseError::new_err(
+            reason.replace("as `cells` of the step or as `domain.cells` of the case", "cells=(nx, ny)"),
+        )
+    })?;
+    let size = prepared.surface.grid().size();
+    Ok((prepared.surface.into_heights().into_pyarray(py), size, prepared.history))
+}
+
+fn extent(periodic: bool) -> Extent {
+    if periodic { Extent::Periodic } else { Extent::Finite }
+}
+
+/// Statistics of a surface, as `asperity surface info` tells them; `band` limits the fit of the Hurst exponent.
+#[pyfunction]
+#[pyo3(signature = (heights, size, periodic, band))]
+pub fn describe<'py>(
+    py: Python<'py>,
+    heights: PyReadonlyArray2<'_, f64>,
+    size: [f64; 2],
+    periodic: bool,
+    band: Option<[f64; 2]>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let map = map(py, heights, size)?;
+    let summary = detached(py, || Summary::of(&map, extent(periodic)))?.map_err(|error| raised(py, error))?;
     let out = PyDict::new(py);
-    let z = HeightStatistics::of(&map).map_err(|error| raised(py, error))?;
+    let z = &summary.heights;
     for (name, value) in [
         ("sa", z.sa),
         ("sq", z.sq),
         ("ssk", z.ssk),
         ("sku", z.sku),
+        ("sp", z.sp),
+        ("sv", z.sv),
         ("sz", z.sz),
         ("min", z.min),
         ("max", z.max),
@@ -171,16 +230,78 @@ pub fn statistics<'py>(
         out.set_item(name, value)?;
     }
     out.set_item("undefined", map.undefined())?;
-    if let Ok(slopes) = SlopeStatistics::of(&map) {
+    if let Some(slopes) = &summary.slopes {
         out.set_item("sdq", slopes.sdq)?;
         out.set_item("sdr", slopes.sdr)?;
     }
-    if let Ok(moments) = SpectralMoments::of(&map) {
-        out.set_item("m0", moments.m0)?;
-        out.set_item("m2", moments.m2)?;
-        out.set_item("m4", moments.m4)?;
+    if let Some(waves) = &summary.waves {
+        out.set_item("m0", waves.moments.m0)?;
+        out.set_item("m2", waves.moments.m2)?;
+        out.set_item("m4", waves.moments.m4)?;
+        out.set_item("bandwidth", waves.moments.bandwidth())?;
+        let fit = match band {
+            Some([longest, shortest]) => Some(
+                SelfAffineFit::of(&waves.spectrum, longest, shortest).map_err(|error| raised(py, error))?,
+            ),
+            None => waves.fit,
+        };
+        if let Some(fit) = fit {
+            out.set_item("hurst", fit.hurst)?;
+            out.set_item("hurst_error", fit.error)?;
+            out.set_item("roll_off", fit.roll_off)?;
+            out.set_item("plateau", fit.plateau)?;
+            out.set_item("spectrum_misfit", fit.misfit)?;
+        }
     }
     Ok(out)
+}
+
+/// Heights and the share of points at or above each.
+#[pyfunction]
+#[allow(clippy::type_complexity)]
+pub fn bearing_curve<'py>(
+    py: Python<'py>,
+    heights: PyReadonlyArray2<'_, f64>,
+    size: [f64; 2],
+    levels: usize,
+) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
+    let map = map(py, heights, size)?;
+    let curve = detached(py, || BearingCurve::of(&map, levels))?.map_err(|error| raised(py, error))?;
+    Ok((curve.heights.into_pyarray(py), curve.share.into_pyarray(py)))
+}
+
+/// Middles of bins of height and the density of points in them.
+#[pyfunction]
+#[allow(clippy::type_complexity)]
+pub fn height_distribution<'py>(
+    py: Python<'py>,
+    heights: PyReadonlyArray2<'_, f64>,
+    size: [f64; 2],
+    bins: usize,
+) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
+    let map = map(py, heights, size)?;
+    let (at, density) = detached(py, || surface::statistics::height_distribution(&map, bins))?
+        .map_err(|error| raised(py, error))?;
+    Ok((at.into_pyarray(py), density.into_pyarray(py)))
+}
+
+/// The autocorrelation map, and Sal and Str where they exist.
+#[pyfunction]
+#[allow(clippy::type_complexity)]
+pub fn autocorrelation<'py>(
+    py: Python<'py>,
+    heights: PyReadonlyArray2<'_, f64>,
+    size: [f64; 2],
+    periodic: bool,
+) -> PyResult<(Heights<'py>, Option<f64>, Option<f64>)> {
+    let map = map(py, heights, size)?;
+    let made = detached(py, || {
+        let correlation = Autocorrelation::of(&map, extent(periodic))?;
+        let numbers = (correlation.length(), correlation.texture_aspect_ratio());
+        Ok((correlation, numbers))
+    })?;
+    let (correlation, (length, aspect)) = made.map_err(|error: asperity::Error| raised(py, error))?;
+    Ok((correlation.values.into_pyarray(py), length, aspect))
 }
 
 /// Wavenumbers and radially averaged power spectrum.
@@ -194,22 +315,8 @@ pub fn power_spectrum<'py>(
 ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
     let map = map(py, heights, size)?;
     let rings = if per_decade == 0 { Rings::Linear } else { Rings::PerDecade(per_decade) };
-    let spectrum = RadialSpectrum::of(&map, rings).map_err(|error| raised(py, error))?;
+    let spectrum = detached(py, || RadialSpectrum::of(&map, rings))?.map_err(|error| raised(py, error))?;
     Ok((spectrum.wave_number.into_pyarray(py), spectrum.power.into_pyarray(py)))
-}
-
-/// Heights without their mean, plane or paraboloid.
-#[pyfunction]
-pub fn level<'py>(py: Python<'py>, heights: PyReadonlyArray2<'_, f64>, form: &str) -> PyResult<Heights<'py>> {
-    let forms = [
-        ("none", Level::None),
-        ("mean", Level::Mean),
-        ("plane", Level::Plane),
-        ("quadratic", Level::Quadratic),
-    ];
-    let form = choose("level", form, &forms)?;
-    let level = surface::level(heights.as_array(), form).map_err(|error| raised(py, error))?;
-    Ok(level.into_pyarray(py))
 }
 
 fn map(py: Python<'_>, heights: PyReadonlyArray2<'_, f64>, size: [f64; 2]) -> PyResult<Surface> {

@@ -41,11 +41,9 @@ pub(super) fn curves(reader: &Reader) -> Value {
     let time: Vec<f64> =
         (first * FINE..=last * FINE).map(|n| 10f64.powf(f64::from(n) / f64::from(FINE))).collect();
     let omega: Vec<f64> = time.iter().rev().map(|t| TAU / t).collect();
-    // E'(w) + i E''(w) = 1 / (C'(w) - i C''(w))
     let complex = omega.iter().map(|w| {
-        let (real, lost) = creep.complex(*w);
-        let square = real * real + lost * lost;
-        [real / square, lost / square, lost / real]
+        let (stored, lost) = creep.modulus(*w);
+        [stored, lost, lost / stored]
     });
     let complex: Vec<[f64; 3]> = complex.collect();
     let column = |k: usize| complex.iter().map(|row| row[k]).collect::<Vec<f64>>();

@@ -105,6 +105,22 @@ impl Creep {
         })
     }
 
+    /// Storage and loss modulus (E', E'') \[Pa\] at the angular frequency `omega` > 0 \[rad/s\]:
+    /// E' + i E'' = 1 / (J' - i J'') of [`complex`](Self::complex); tan delta = E''/E' = J''/J'.
+    ///
+    /// ```
+    /// use asperity::material::{Creep, CreepTerm};
+    /// // Maxwell's element J = 1/G + t/(G tau): E'' = E' = G/2 where omega tau = 1.
+    /// let maxwell = Creep { instantaneous: 1e-6, terms: vec![], fluidity: 0.5e-6 };
+    /// let (storage, loss) = maxwell.modulus(0.5);
+    /// assert!((storage / 0.5e6 - 1.0).abs() < 1e-15 && (loss / storage - 1.0).abs() < 1e-15);
+    /// ```
+    pub fn modulus(&self, omega: f64) -> (f64, f64) {
+        let (storage, loss) = self.complex(omega);
+        let square = storage * storage + loss * loss;
+        (storage / square, loss / square)
+    }
+
     /// C(t) + other(t): two bodies in contact, or elements in series. Equal times become one term.
     #[must_use]
     pub fn sum(&self, other: &Creep) -> Creep {

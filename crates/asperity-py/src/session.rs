@@ -15,23 +15,30 @@ use crate::error;
 use crate::march::fill;
 use crate::wait::{detached, without_python};
 
-fn read(path: &Path, overrides: &[String]) -> PyResult<Case> {
-    Case::read(path, overrides).map_err(error::case)
+/// A case from its file; or from its text, whose relative paths begin at `path`.
+fn read(path: &Path, text: Option<&str>, overrides: &[String]) -> PyResult<Case> {
+    match text {
+        Some(text) => Case::parse(text, path, overrides),
+        None => Case::read(path, overrides),
+    }
+    .map_err(error::case)
 }
 
-/// Runs a case file; `told` is called with (row, done, total) after each row. Returns a summary.
+/// Runs a case; `told` is called with (row, done, total) after each row. Returns a summary.
 #[pyfunction]
-#[pyo3(signature = (path, overrides, output, force, resume, told))]
+#[pyo3(signature = (path, text, overrides, output, force, resume, told))]
+#[allow(clippy::too_many_arguments)]
 pub fn run<'py>(
     py: Python<'py>,
     path: PathBuf,
+    text: Option<String>,
     overrides: Vec<String>,
     output: Option<PathBuf>,
     force: bool,
     resume: bool,
     told: Option<Py<PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let case = read(&path, &overrides)?;
+    let case = read(&path, text.as_deref(), &overrides)?;
     let interrupt = Arc::new(AtomicBool::new(false));
     let options = RunOptions { output, force, resume, interrupt: interrupt.clone() };
     let mut unheard = None;
@@ -66,8 +73,9 @@ pub fn run<'py>(
 
 /// What a case will do, as JSON.
 #[pyfunction]
-pub fn check(path: PathBuf, overrides: Vec<String>) -> PyResult<String> {
-    serde_json::to_string(&read(&path, &overrides)?.describe()).map_err(error::file)
+#[pyo3(signature = (path, text, overrides))]
+pub fn check(path: PathBuf, text: Option<String>, overrides: Vec<String>) -> PyResult<String> {
+    serde_json::to_string(&read(&path, text.as_deref(), &overrides)?.describe()).map_err(error::file)
 }
 
 /// A case given as JSON, as the text of a case file.

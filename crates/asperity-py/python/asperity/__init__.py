@@ -14,11 +14,13 @@ True
 
 from ._core import CaseError, ConvergenceError, __version__
 from ._contact import ElasticContact, elastic
+from ._fit import Fit, fit_creep, fit_dma, fit_file, fit_relaxation
 from ._histories import History, Times, listed, log, ramp, sine, step, table, trapezoid, triangle, uniform
 from ._materials import (
     Burgers,
     Creep,
     Elastic,
+    FractionalMaxwell,
     FractionalZener,
     KelvinVoigt,
     Material,
@@ -28,16 +30,22 @@ from ._materials import (
     Zener,
 )
 from ._result import Result, open
+from ._shifts import Shift, arrhenius, shift_table, wlf
 from ._solve import March, Step, check, march, run, solve
-from ._surface import Surface
+from ._study import study
+from ._surface import Autocorrelation, Surface
+from ._threads import set_threads, threads
 
 __all__ = [
+    "Autocorrelation",
     "Burgers",
     "CaseError",
     "ConvergenceError",
     "Creep",
     "Elastic",
     "ElasticContact",
+    "Fit",
+    "FractionalMaxwell",
     "FractionalZener",
     "History",
     "KelvinVoigt",
@@ -46,25 +54,36 @@ __all__ = [
     "Maxwell",
     "Prony",
     "Result",
+    "Shift",
     "Springpot",
     "Step",
     "Surface",
     "Times",
     "Zener",
     "__version__",
+    "arrhenius",
     "check",
     "elastic",
+    "fit_creep",
+    "fit_dma",
+    "fit_file",
+    "fit_relaxation",
     "listed",
     "log",
     "march",
     "open",
     "ramp",
     "run",
+    "set_threads",
+    "shift_table",
     "sine",
     "solve",
     "step",
+    "study",
     "table",
+    "threads",
     "trapezoid",
     "triangle",
     "uniform",
+    "wlf",
 ]

@@ -52,6 +52,13 @@ def counts(what: str, value: Any) -> tuple[int, int]:
     return count(f"{what} along x", x), count(f"{what} along y", y)
 
 
+def plain(array: Any) -> Floats:
+    """The array as the core takes it: float64, in C order, aligned (what came through a socket may not be); no copy where
+    it is so."""
+    out: Floats = np.require(array, np.float64, ["C_CONTIGUOUS", "ALIGNED"])
+    return out
+
+
 def field(what: str, value: Any) -> Floats:
     """A two-dimensional array of real numbers as C-ordered float64; no copy where it is one already."""
     mask = np.ma.getmask(value)
@@ -60,7 +67,7 @@ def field(what: str, value: Any) -> Floats:
         raise CaseError(f"{what} has dtype {array.dtype}, but must hold real numbers")
     if array.ndim != 2 or array.size == 0:
         raise CaseError(f"{what} has shape {array.shape}, but must be two-dimensional, (nx, ny)")
-    out = np.ascontiguousarray(array, dtype=np.float64)
+    out = plain(array)
     if mask is not np.ma.nomask and np.any(mask):
         out = np.where(mask, np.nan, out)
     return out
@@ -71,7 +78,7 @@ def line(what: str, value: Any) -> Floats:
     array = np.asarray(value)
     if array.dtype.kind not in "fiu" or array.ndim != 1:
         raise CaseError(f"{what} has shape {array.shape} and dtype {array.dtype}, but must be a list of real numbers")
-    return np.ascontiguousarray(array, dtype=np.float64)
+    return plain(array)
 
 
 def points(what: str, value: Any) -> list[tuple[float, float]]:

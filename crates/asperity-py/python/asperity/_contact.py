@@ -36,6 +36,25 @@ class ElasticContact:
     iterations: int
     convolutions: int
 
+    def _repr_html_(self) -> str:
+        nx, ny = self.pressure.shape
+        lines = [
+            ("load", f"{self.load:.6g} N"),
+            ("approach", f"{self.approach:.6g} m"),
+            ("contact area", f"{self.contact_area:.6g} m²"),
+            ("largest pressure", f"{self.pressure.max():.6g} Pa"),
+            ("certified error", f"{self.certificate:.1e}"),
+        ]
+        rows = "".join(f"<tr><th style='text-align:left'>{a}</th><td>{b}</td></tr>" for a, b in lines)
+        return f"<b>Elastic contact</b>, {nx} x {ny} cells<table>{rows}</table>"
+
+    def __repr__(self) -> str:
+        nx, ny = self.pressure.shape
+        return (
+            f"<ElasticContact: {nx} x {ny} cells, load {self.load:.4g} N, approach {self.approach:.4g} m, "
+            f"area {self.contact_area:.4g} m^2, certified error {self.certificate:.1e}>"
+        )
+
 
 def elastic(
     gap: Any,
@@ -47,6 +66,7 @@ def elastic(
     hardness: float | None = None,
     boundary: str = "free",
     method: str = "projected-cg",
+    precision: str = "double",
     tolerance: float = 1e-6,
     max_iterations: int = 5000,
 ) -> ElasticContact:
@@ -60,6 +80,8 @@ def elastic(
     size : lengths of the domain along x and y [m], where the gap is an array
     hardness : largest pressure [Pa]
     boundary : "free" or "periodic"
+    method : "projected-cg" or "polonsky-keer"
+    precision : "double", or "mixed": the convolutions of iterations in single precision, to the same tolerance
 
     Raises
     ------
@@ -90,6 +112,7 @@ def elastic(
         math.inf if hardness is None else number("hardness", hardness),
         boundary,
         method,
+        precision,
         number("tolerance", tolerance),
         count("max_iterations", max_iterations),
     )

@@ -7,25 +7,37 @@ import numpy as np
 import numpy.typing as npt
 
 _Floats = npt.NDArray[np.float64]
+_Shift = tuple[str, list[float], list[tuple[float, float]]]
 
 __all__ = [
     "elastic",
     "CaseError",
     "ConvergenceError",
     "March",
+    "fit",
+    "fit_file",
     "Body",
+    "shift_factor",
+    "case_text",
     "check",
     "report",
     "run",
     "Store",
+    "save",
+    "autocorrelation",
+    "bearing_curve",
+    "describe",
     "gap",
-    "level",
+    "height_distribution",
     "power_spectrum",
+    "process",
     "read_surface",
+    "roughness",
     "self_affine",
     "shape",
-    "statistics",
     "write_surface",
+    "set_threads",
+    "threads",
     "__version__",
 ]
 
@@ -53,12 +65,16 @@ class Body:
         bulk_modulus: float | None,
         hardness: float | None,
         name: str,
+        shift: _Shift | None,
+        temperature: float | None,
     ) -> Body: ...
     def creep(self, times: _Floats) -> _Floats: ...
     def relaxation(self, times: _Floats) -> _Floats: ...
     def complex(self, omega: _Floats) -> tuple[_Floats, _Floats]: ...
     def contact_creep(self, times: _Floats) -> _Floats: ...
     def creep_terms(self) -> tuple[float, list[tuple[float, float]], float]: ...
+    @property
+    def error(self) -> float | None: ...
     def relaxation_terms(self) -> tuple[float, list[tuple[float, float]]]: ...
 
 @final
@@ -77,12 +93,15 @@ class March:
         times: str,
         times_numbers: list[float],
         include: list[float],
+        temperatures: list[tuple[float, float]],
         scheme: str,
         method: str,
+        precision: str,
         tolerance: float,
         max_iterations: int,
     ) -> March: ...
     def advance(self) -> bool: ...
+    def creep(self) -> list[tuple[float, list[tuple[float, float]], float]]: ...
     def __len__(self) -> int: ...
     @property
     def done(self) -> int: ...
@@ -116,19 +135,53 @@ def elastic(
     hardness: float,
     boundary: str,
     method: str,
+    precision: str,
     tolerance: float,
     max_iterations: int,
 ) -> dict[str, Any]: ...
 def run(
     path: str,
+    text: str | None,
     overrides: list[str],
     output: str | None,
     force: bool,
     resume: bool,
     told: Callable[[dict[str, Any], int, int], object] | None,
 ) -> dict[str, Any]: ...
-def check(path: str, overrides: list[str]) -> str: ...
+def fit(
+    kind: str, sweeps: list[tuple[float | None, _Floats, list[_Floats]]], options: dict[str, Any]
+) -> dict[str, Any]: ...
+def fit_file(
+    path: str,
+    kind: str | None,
+    columns: list[tuple[str, str | None, int | None, str | None]],
+    options: dict[str, Any],
+) -> dict[str, Any]: ...
+def shift_factor(words: _Shift, temperatures: _Floats) -> _Floats: ...
+def case_text(json: str) -> str: ...
+def check(path: str, text: str | None, overrides: list[str]) -> str: ...
 def report(result: str, output: str, force: bool, bytes: int) -> None: ...
+def save(
+    path: str,
+    force: bool,
+    title: str,
+    setup: str,
+    size: list[float],
+    initial_gap: _Floats,
+    columns: dict[str, _Floats],
+    fields: list[tuple[str, Any]],
+    field_steps: list[int],
+) -> None: ...
+def set_threads(number: int | None) -> None: ...
+def threads() -> int: ...
+def roughness(keys: list[tuple[str, str]]) -> tuple[_Floats, list[float]]: ...
+def process(heights: _Floats, size: list[float], steps: list[str]) -> tuple[_Floats, list[float], list[str]]: ...
+def describe(heights: _Floats, size: list[float], periodic: bool, band: list[float] | None) -> dict[str, float]: ...
+def bearing_curve(heights: _Floats, size: list[float], levels: int) -> tuple[_Floats, _Floats]: ...
+def height_distribution(heights: _Floats, size: list[float], bins: int) -> tuple[_Floats, _Floats]: ...
+def autocorrelation(
+    heights: _Floats, size: list[float], periodic: bool
+) -> tuple[_Floats, float | None, float | None]: ...
 def self_affine(
     cells: tuple[int, int],
     size: list[float],
@@ -143,7 +196,5 @@ def self_affine(
 def shape(kind: str, numbers: list[float], center: list[float], cells: tuple[int, int], size: list[float]) -> _Floats: ...
 def gap(heights: _Floats, size: list[float]) -> _Floats: ...
 def read_surface(path: str, size: list[float] | None, height_unit: float | None, channel: str | None) -> dict[str, Any]: ...
-def write_surface(path: str, heights: _Floats, size: list[float], format: str) -> None: ...
-def statistics(heights: _Floats, size: list[float]) -> dict[str, float]: ...
+def write_surface(path: str, heights: _Floats, size: list[float], format: str, history: list[str]) -> None: ...
 def power_spectrum(heights: _Floats, size: list[float], per_decade: int) -> tuple[_Floats, _Floats]: ...
-def level(heights: _Floats, form: str) -> _Floats: ...

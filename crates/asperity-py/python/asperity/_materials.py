@@ -2,7 +2,11 @@
 
 Each is a body: its creep and relaxation functions, Poisson's ratio or a constant bulk modulus, and the hardness at
 which the pressure is cut off. Moduli in Pa, compliances in 1/Pa, times in s. A modulus is given as `young` or as
-`shear`; Prony series and creep series say which with `modulus=`.
+`shear`; Prony series and creep series say which with `modulus=` and `compliance=`.
+
+With a `shift` (:func:`asperity.wlf`, ...) its numbers hold at the reference temperature of the shift, and its times scale with
+the temperature of the run, or with its own where `temperature` [K] is given; then its functions are those at that
+temperature.
 
 Sources: N. W. Tschoegl, The Phenomenological Theory of Linear Viscoelastic Behavior (1989); K. L. Johnson, Contact
 Mechanics (1985), section 3.2, for the contact compliance.
@@ -19,6 +23,7 @@ import numpy.typing as npt
 from . import _core
 from ._arrays import Floats, line, number, points
 from ._core import CaseError
+from ._shifts import Shift
 
 
 class Material:
@@ -45,6 +50,9 @@ class Material:
             return None if value is None else number(name, value)
 
         name = given.get("name")
+        shift = given.get("shift")
+        if shift is not None and not isinstance(shift, Shift):
+            raise CaseError(f"shift is {shift!r}, but must be one of asperity.wlf, arrhenius or shift_table")
         self._body = _core.Body(
             model,
             measure,
@@ -54,10 +62,26 @@ class Material:
             optional("bulk_modulus"),
             optional("hardness"),
             type(self).__name__ if name is None else str(name),
+            None if shift is None else shift._words,
+            optional("temperature"),
         )
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({', '.join(f'{key}={value!r}' for key, value in self._given.items())})"
+
+    def _repr_html_(self) -> str:
+        import html
+
+        def words(value: Any) -> str:
+            if isinstance(value, list):
+                return ", ".join(f"({a:g}, {b:g})" for a, b in value[:12]) + (", ..." if len(value) > 12 else "")
+            return f"{value:g}" if isinstance(value, float) else str(value)
+
+        rows = "".join(
+            f"<tr><th style='text-align:left'>{html.escape(key)}</th><td style='text-align:left'>{html.escape(words(value))}</td></tr>"
+            for key, value in self._given.items()
+        )
+        return f"<b>{type(self).__name__}</b> (SI)<table>{rows}</table>"
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _make, (type(self), self._given)
@@ -104,6 +128,11 @@ class Material:
         return self._body.creep_terms()
 
     @property
+    def error(self) -> float | None:
+        """Largest relative error of the Prony sum that stands for a fractional model, in its window; else None."""
+        return self._body.error
+
+    @property
     def relaxation_terms(self) -> tuple[float, list[tuple[float, float]]]:
         """Equilibrium modulus, (modulus, relaxation time) of each term."""
         return self._body.relaxation_terms()
@@ -145,6 +174,8 @@ class Elastic(Material):
         bulk_modulus: float | None = None,
         hardness: float | None = None,
         name: str | None = None,
+        shift: Shift | None = None,
+        temperature: float | None = None,
     ) -> None:
         given = dict(locals())
         measure, modulus = _modulus(given)
@@ -164,6 +195,8 @@ class Maxwell(Material):
         bulk_modulus: float | None = None,
         hardness: float | None = None,
         name: str | None = None,
+        shift: Shift | None = None,
+        temperature: float | None = None,
     ) -> None:
         given = dict(locals())
         measure, modulus = _modulus(given)
@@ -183,6 +216,8 @@ class KelvinVoigt(Material):
         bulk_modulus: float | None = None,
         hardness: float | None = None,
         name: str | None = None,
+        shift: Shift | None = None,
+        temperature: float | None = None,
     ) -> None:
         given = dict(locals())
         measure, modulus = _modulus(given)
@@ -204,6 +239,8 @@ class Zener(Material):
         bulk_modulus: float | None = None,
         hardness: float | None = None,
         name: str | None = None,
+        shift: Shift | None = None,
+        temperature: float | None = None,
     ) -> None:
         given = dict(locals())
         measure, modulus = _modulus(given)
@@ -227,6 +264,8 @@ class Burgers(Material):
         bulk_modulus: float | None = None,
         hardness: float | None = None,
         name: str | None = None,
+        shift: Shift | None = None,
+        temperature: float | None = None,
     ) -> None:
         given = dict(locals())
         measure, modulus = _modulus(given)
@@ -263,6 +302,8 @@ class Prony(Material):
         bulk_modulus: float | None = None,
         hardness: float | None = None,
         name: str | None = None,
+        shift: Shift | None = None,
+        temperature: float | None = None,
     ) -> None:
         given = dict(locals())
         if (equilibrium is None) == (instantaneous is None):
@@ -295,6 +336,8 @@ class Creep(Material):
         bulk_modulus: float | None = None,
         hardness: float | None = None,
         name: str | None = None,
+        shift: Shift | None = None,
+        temperature: float | None = None,
     ) -> None:
         given = dict(locals())
         pairs = points("terms", terms) if len(terms) else []
@@ -304,8 +347,16 @@ class Creep(Material):
 
 
 class Springpot(Material):
-    """Creep (t/time)^order / (modulus Gamma(1 + order)), as a Prony sum with a relative error below `tolerance`
-    over `window` = (first, last) time [s]."""
+    """Creep (t/time)^order / (modulus Gamma(1 + order)), between spring and dashpot.
+
+    As a Prony sum with a relative error of creep and relaxation below `tolerance` over `window` = (first, last) time [s];
+    take the shortest step and the end of the run. The error that it has is :attr:`error`.
+
+    >>> import asperity as asp
+    >>> clay = asp.Springpot(shear=1e6, time=1.0, order=0.3, window=(1e-2, 1e3), poisson=0.5)
+    >>> round(float(clay.creep_compliance(10.0) / clay.creep_compliance(1.0)) / 10**0.3, 2), clay.error < 1e-3
+    (1.0, True)
+    """
 
     def __init__(
         self,
@@ -320,11 +371,38 @@ class Springpot(Material):
         bulk_modulus: float | None = None,
         hardness: float | None = None,
         name: str | None = None,
+        shift: Shift | None = None,
+        temperature: float | None = None,
     ) -> None:
         given = dict(locals())
         measure, modulus = _modulus(given)
         numbers = [modulus, number("time", time), number("order", order), *_window(window), number("tolerance", tolerance)]
         super().__init__("springpot", measure, numbers, given=given)
+
+
+class FractionalMaxwell(Material):
+    """A spring and a springpot in series, as a Prony sum; see :class:`Springpot`."""
+
+    def __init__(
+        self,
+        *,
+        young: float | None = None,
+        shear: float | None = None,
+        time: float,
+        order: float,
+        window: tuple[float, float],
+        tolerance: float = 1e-3,
+        poisson: float | None = None,
+        bulk_modulus: float | None = None,
+        hardness: float | None = None,
+        name: str | None = None,
+        shift: Shift | None = None,
+        temperature: float | None = None,
+    ) -> None:
+        given = dict(locals())
+        measure, modulus = _modulus(given)
+        numbers = [modulus, number("time", time), number("order", order), *_window(window), number("tolerance", tolerance)]
+        super().__init__("fractional-maxwell", measure, numbers, given=given)
 
 
 class FractionalZener(Material):
@@ -345,6 +423,8 @@ class FractionalZener(Material):
         bulk_modulus: float | None = None,
         hardness: float | None = None,
         name: str | None = None,
+        shift: Shift | None = None,
+        temperature: float | None = None,
     ) -> None:
         given = dict(locals())
         pairs = {

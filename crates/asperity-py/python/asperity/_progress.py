@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Callable
 from typing import Any
 
 BARS = "▁▂▃▄▅▆▇█"
@@ -18,9 +19,8 @@ class Progress:
         self.started = time.monotonic()
         self.told = 0.0
         self.areas: list[float] = []
-        self.notebook = _notebook()
-        self.on = (self.notebook is not None or sys.stderr.isatty()) if on is None else on
-        self.handle: Any = None
+        self.on = _wanted(on)
+        self.show = line_of(on)
 
     def tell(self, row: dict[str, Any], done: int) -> None:
         """One row more."""
@@ -36,25 +36,42 @@ class Progress:
             f"{done}/{self.total} rows  t = {row['time']:.4g} s  contact {100 * row['contact_fraction']:.2f} % "
             f"{self._sparks()}  {left:.0f} s left"
         )
-        if self.notebook is None:
-            sys.stderr.write("\r" + text + "\x1b[K")
-            sys.stderr.flush()
-        elif self.handle is None:
-            self.handle = self.notebook({"text/plain": text}, raw=True, display_id=True)
-        else:
-            self.handle.update({"text/plain": text}, raw=True)
+        self.show(text)
 
     def end(self) -> None:
         """Clears the line."""
-        if self.on and self.notebook is None and self.areas:
-            sys.stderr.write("\r\x1b[K")
-            sys.stderr.flush()
+        if self.areas:
+            self.show(None)
 
     def _sparks(self) -> str:
         low, high = min(self.areas), max(self.areas)
         every = max(1, len(self.areas) // 16)
         width = high - low
         return "".join(BARS[round(7 * (a - low) / width) if width > 0 else 3] for a in self.areas[::every])
+
+
+def _wanted(on: bool | None) -> bool:
+    return (_notebook() is not None or sys.stderr.isatty()) if on is None else on
+
+
+def line_of(on: bool | None) -> Callable[[str | None], None]:
+    """A function that shows a line in place of the one before; None clears it. Silent as :class:`Progress`."""
+    notebook = _notebook()
+    if not _wanted(on):
+        return lambda text: None
+    handle: Any = None
+
+    def show(text: str | None) -> None:
+        nonlocal handle
+        if notebook is None:
+            sys.stderr.write("\r" + (text or "") + "\x1b[K")
+            sys.stderr.flush()
+        elif text is not None and handle is None:
+            handle = notebook({"text/plain": text}, raw=True, display_id=True)
+        elif text is not None:
+            handle.update({"text/plain": text}, raw=True)
+
+    return show
 
 
 def _notebook() -> Any:

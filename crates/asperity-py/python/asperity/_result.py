@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._arrays import Floats, number
+from ._arrays import Floats, number, plain
 from ._core import CaseError
 
 if TYPE_CHECKING:
@@ -181,11 +181,42 @@ class Result:
 
         return Plots(self)
 
+    def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
+        """Writes the result as a Zarr group, as a run of a case file does: :func:`open` and xarray read it.
+
+        Raises
+        ------
+        OSError : something is at the path already (and `force` is not given), or the disk refuses
+        """
+        if len(self) == 0:
+            raise CaseError("the result has no rows to save")
+        attributes = self._attributes
+        _core.save(
+            os.fspath(path),
+            force,
+            str(attributes.get("title") or ""),
+            str(attributes.get("setup") or "{}"),
+            list(self._size),
+            plain(self.initial_gap),
+            {name: plain(self._table[name]) for name in ROW},
+            [(name, np.require(self._stack(name), None, ["C_CONTIGUOUS", "ALIGNED"])) for name in self._fields],
+            [int(n) for n in self._field_steps],
+        )
+
     def report(self, path: str | os.PathLike[str], *, force: bool = False, megabytes: int = 12) -> None:
-        """Writes the result as one HTML page with maps and curves. For results on disk."""
-        if self._path is None:
-            raise CaseError("a report is made of a result on disk: use asperity.run, or plot this one")
-        _core.report(self._path, os.fspath(path), force, megabytes * 1_000_000)
+        """Writes the result as one HTML page with maps and curves, of that size at most.
+
+        It shows the fields that were kept.
+        """
+        if self._path is not None:
+            _core.report(self._path, os.fspath(path), force, megabytes * 1_000_000)
+            return
+        import tempfile
+
+        with tempfile.TemporaryDirectory() as folder:
+            stored = os.path.join(folder, "result.zarr")
+            self.save(stored)
+            _core.report(stored, os.fspath(path), force, megabytes * 1_000_000)
 
     def __repr__(self) -> str:
         title = self._attributes.get("title") or "Result"

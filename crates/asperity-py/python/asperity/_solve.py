@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,6 +16,7 @@ from ._histories import History, Times, as_history, as_times
 from ._materials import Material
 from ._progress import Progress
 from ._result import FIELDS, ROW, Result, open
+from ._shifts import temperatures
 from ._surface import as_surface
 
 
@@ -111,9 +112,11 @@ def march(
     approach: History | float | None = None,
     size: Sequence[float] | None = None,
     hardness: float | None = None,
+    temperature: float | Sequence[tuple[float, float]] | None = None,
     boundary: str = "free",
     scheme: str = "linear",
     method: str = "projected-cg",
+    precision: str = "double",
     tolerance: float = 1e-6,
     max_iterations: int = 5000,
     include: Sequence[float] = (),
@@ -153,19 +156,34 @@ def march(
         times=grid.kind,
         times_numbers=list(grid.numbers),
         include=[float(t) for t in line("include", np.asarray(include, dtype=float))],
+        temperatures=temperatures(temperature),
         scheme=scheme,
         method=method,
+        precision=precision,
         tolerance=number("tolerance", tolerance),
         max_iterations=count("max_iterations", max_iterations),
     )
-    setup = {
+    creeps = [{"instantaneous": first, "terms": terms, "fluidity": flow} for first, terms, flow in core.creep()]
+    setup: dict[str, Any] = {
         "boundary": boundary,
         "bodies": [repr(body) for body in bodies],
         "control": controls[0],
         "history": repr(history),
         "scheme": scheme,
-        "tolerance": float(tolerance),
+        "method": method,
+        "precision": precision,
+        "solver_tolerance": float(tolerance),
+        "end": core.times()[-1],
+        "contact_creep_compliance": creeps[0],
+        "retardation_times": [time for _, terms, _ in core.creep() for _, time in terms],
     }
+    if len(creeps) > 1:
+        setup["contact_creep_compliance_over_reduced_time"] = creeps[1:]
+    if temperature is not None:
+        setup["temperature"] = temperatures(temperature)
+    limits = [body._given["hardness"] for body in bodies if body._given.get("hardness") is not None]
+    if limits:
+        setup["hardness"] = float(min(limits))
     return March(core, gap, shape.size, setup)
 
 
@@ -179,9 +197,11 @@ def solve(
     approach: History | float | None = None,
     size: Sequence[float] | None = None,
     hardness: float | None = None,
+    temperature: float | Sequence[tuple[float, float]] | None = None,
     boundary: str = "free",
     scheme: str = "linear",
     method: str = "projected-cg",
+    precision: str = "double",
     tolerance: float = 1e-6,
     max_iterations: int = 5000,
     fields: Sequence[str] = ("pressure",),
@@ -201,8 +221,11 @@ def solve(
     load, pressure, approach : what is prescribed [N], [Pa] or [m]: a history, or a number for a step
     hardness : largest pressure [Pa]; else that of the materials
     boundary : "free" (half-space) or "periodic"
+    temperature : of the run [K], or its (time [s], temperature [K]) points, straight in between and held after the last;
+        of every material that has a shift and no temperature of its own
     scheme : "linear" (second order), "constant" (SC17) or "direct" (full hereditary sum)
     method : "projected-cg" or "polonsky-keer"
+    precision : "double", or "mixed": the convolutions of iterations in single precision, to the same tolerance
     fields : those that are kept: "pressure", "gap", "displacement", "contact"
     every : rows whose fields are kept: every so many, besides the first and last; default every row up to 20 of them
     field_times : instead, times at which they are kept [s], which become steps
@@ -233,9 +256,11 @@ def solve(
         approach=approach,
         size=size,
         hardness=hardness,
+        temperature=temperature,
         boundary=boundary,
         scheme=scheme,
         method=method,
+        precision=precision,
         tolerance=tolerance,
         max_iterations=max_iterations,
         include=[] if wanted is None else [t for t in wanted.tolist() if t > 0],
@@ -270,7 +295,7 @@ def solve(
         field_steps=np.array(steps),
         initial_gap=run.initial_gap,
         size=run.size,
-        attributes={"title": title, "version": _core.__version__, "status": "complete", **run._setup},
+        attributes={"title": title, "version": _core.__version__, "status": "complete", "setup": json.dumps(run._setup)},
     )
 
 
@@ -279,7 +304,7 @@ def _with_hardness(body: Material, hardness: float) -> Material:
 
 
 def run(
-    case: str | os.PathLike[str],
+    case: str | os.PathLike[str] | Mapping[str, Any],
     *,
     set: dict[str, Any] | Sequence[str] | None = None,
     output: str | os.PathLike[str] | None = None,
@@ -288,10 +313,39 @@ def run(
     progress: bool | None = None,
     on_row: Callable[[dict[str, Any], int, int], object] | None = None,
 ) -> Result:
-    """Runs a case file, as ``asperity run`` does, and opens its result.
+    """Runs a case, as ``asperity run`` does, and opens its result.
 
-    `set` changes keys of the case: ``{"load.history.value": "2 N"}``. Ctrl-C leaves a readable result, which `resume`
-    goes on from.
+    Parameters
+    ----------
+    case : path of a case file; or its text (of several lines), or its keys as a dictionary, with files relative to the
+        working directory
+    set : changed keys of the case: ``{"load.history.value": "2 N"}``
+    output : where the result goes; default: what the case says, or its name with .zarr
+    force : replace a result that is there
+    resume : go on with the stopped run whose result is there; Ctrl-C leaves a readable one
+    progress : a line with the progress; default: in terminals and notebooks
+    on_row : called with the numbers of each row, the rows done, and those in all
+
+    Raises
+    ------
+    CaseError : the case is wrong; names key and line
+    ConvergenceError : a step was not solved to the tolerance; the rows before it are stored
+    OSError : a file cannot be read or written
+
+    Examples
+    --------
+    >>> import asperity as asp, tempfile
+    >>> case = {
+    ...     "domain": {"cells": [32, 32], "size": ["1 mm", "1 mm"]},
+    ...     "surface": [{"kind": "sphere", "radius": "10 mm"}],
+    ...     "body": [{"poisson": 0.5, "material": {"model": "elastic", "young": "3 MPa"}}],
+    ...     "load": {"control": "load", "history": {"kind": "step", "value": "10 mN"}},
+    ...     "time": {"end": "1 s", "steps": 1},
+    ... }
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     result = asp.run(case, set={"load.history.value": "20 mN"}, output=folder + "/ball.zarr")
+    ...     result.load.round(12).tolist()
+    [0.02, 0.02]
     """
     teller: Progress | None = None
 
@@ -304,17 +358,29 @@ def run(
             on_row(row, done, total)
 
     try:
-        summary = _core.run(os.fspath(case), _keys(set), None if output is None else os.fspath(output), force, resume, told)
+        summary = _core.run(*_source(case), _keys(set), None if output is None else os.fspath(output), force, resume, told)
     finally:
         if teller is not None:
             teller.end()
     return open(summary["result"])
 
 
-def check(case: str | os.PathLike[str], *, set: dict[str, Any] | Sequence[str] | None = None) -> dict[str, Any]:
-    """What a case file will do, in numbers: cells, rows, moduli, memory [byte], ..."""
-    out: dict[str, Any] = json.loads(_core.check(os.fspath(case), _keys(set)))
+def check(case: str | os.PathLike[str] | Mapping[str, Any], *, set: dict[str, Any] | Sequence[str] | None = None) -> dict[str, Any]:
+    """What a case (as in :func:`run`) will do, in numbers: cells, rows, moduli, memory [byte], ..."""
+    out: dict[str, Any] = json.loads(_core.check(*_source(case), _keys(set)))
     return out
+
+
+def _source(case: str | os.PathLike[str] | Mapping[str, Any]) -> tuple[str, str | None]:
+    """The path of a case file; or where the files of a case lie that is given as text or keys, and its text."""
+    if isinstance(case, Mapping):
+        try:
+            return os.curdir, _core.case_text(json.dumps(case))
+        except TypeError as error:
+            raise CaseError(f"the case holds what a case file cannot: {error}; write quantities as text with units") from None
+    if isinstance(case, str) and "\n" in case:
+        return os.curdir, case
+    return os.fspath(case), None
 
 
 def _keys(given: dict[str, Any] | Sequence[str] | None) -> list[str]:

@@ -5,13 +5,31 @@ from __future__ import annotations
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field as dataclass_field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _core
 from ._arrays import Floats, count, counts, field, number, pair
 from ._core import CaseError
+
+if TYPE_CHECKING:
+    from .plot import SurfacePlots
+
+
+@dataclass(frozen=True, eq=False)
+class Autocorrelation:
+    """f(tx, ty) = <z(x, y) z(x + tx, y + ty)>/<z^2>, z about its mean."""
+
+    #: f at the lags `x`, `y`, shape (nx, ny); 1 where both are 0.
+    values: Floats
+    #: Lags along x and y [m].
+    x: Floats
+    y: Floats
+    #: Sal: shortest lag at which f falls to 0.2 [m]; None where it does not.
+    length: float | None
+    #: Str: shortest over longest such lag, 1 isotropic, near 0 with a lay.
+    texture_aspect_ratio: float | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +48,9 @@ class Surface:
         object.__setattr__(self, "heights", field("heights", heights))
         object.__setattr__(self, "size", pair("size", size))
         object.__setattr__(self, "metadata", dict(metadata or {}))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _surface, (self.heights, self.size, self.metadata)
 
     @property
     def cells(self) -> tuple[int, int]:
@@ -55,13 +76,124 @@ class Surface:
         """The undeformed gap against a flat [m]: least value 0, infinite where nothing can touch."""
         return _core.gap(self.heights, list(self.size))
 
-    def level(self, form: str = "plane") -> Surface:
-        """The surface without its least-squares "mean", "plane" or "quadratic" form."""
-        return Surface(_core.level(self.heights, form), size=self.size, metadata=self.metadata)
+    @property
+    def history(self) -> list[str]:
+        """What was done to the heights since they were measured or made, one sentence per step."""
+        return list(self.metadata.get("history", []))
 
-    def statistics(self) -> dict[str, float]:
-        """Parameters of ISO 25178 (sa, sq, ssk, sku, sz, sdq, sdr), spectral moments, extremes, undefined points."""
-        return _core.statistics(self.heights, list(self.size))
+    def process(self, *steps: str) -> Surface:
+        """The surface after steps in the words of ``asperity surface process --op``, done in order.
+
+        ``level=plane``, ``fill=harmonic share=0.25``, ``crop cells=512,512 from=0,0``, ``filter longest=40um``, ... The
+        methods below say the same one by one. Each step is recorded in :attr:`history`.
+
+        >>> import asperity as asp, numpy as np
+        >>> tilted = asp.Surface(np.add.outer(np.arange(10.0), np.arange(8.0)), size=(10e-6, 8e-6))
+        >>> flat = tilted.process("level=plane", "crop size=4um,4um")
+        >>> flat.cells, bool(np.all(abs(flat.heights) < 1e-13)), flat.history[1]
+        ((4, 4), True, 'crop to 4 x 4 cells from (3, 2)')
+        """
+        heights, size, done = _core.process(self.heights, list(self.size), [str(step) for step in steps])
+        metadata = {**self.metadata, "history": [*self.history, *done]}
+        return Surface(heights, size=size, metadata=metadata)
+
+    def level(self, form: str = "plane") -> Surface:
+        """The surface without its least-squares "mean", "plane" or "quadratic" form; "none" leaves it."""
+        return self.process(f"level={form}")
+
+    def outliers(self, threshold: float = 6.0, *, radius: int = 2) -> Surface:
+        """Spikes become undefined: points farther from the median of the `radius` cells around them than `threshold`
+        robust standard deviations."""
+        return self.process(f"outliers threshold={number('threshold', threshold)!r} radius={count('radius', radius)}")
+
+    def fill(self, method: str = "harmonic", *, share: float = 0.25) -> Surface:
+        """Undefined points filled: "harmonic" (Laplace's equation) or "nearest"; refused above that share of them."""
+        return self.process(f"fill method={method} share={number('share', share)!r}")
+
+    def crop(
+        self,
+        *,
+        cells: Sequence[int] | None = None,
+        start: Sequence[int] | None = None,
+        size: Sequence[float] | None = None,
+        corner: Sequence[float] | None = None,
+        defined: bool = False,
+    ) -> Surface:
+        """A rectangle of it: `cells` from the cell `start`, or `size` [m] from the `corner` [m], else about the middle;
+        or the smallest rectangle that holds every defined point."""
+        given = [name for name, value in (("cells", cells), ("size", size), ("defined", defined or None)) if value is not None]
+        if len(given) != 1:
+            raise CaseError(f"give cells, size or defined=True, one of them; given: {', '.join(given) or 'none'}")
+        if defined:
+            return self.process("crop defined=true")
+        if cells is not None:
+            words = "crop cells={},{}".format(*counts("cells", cells))
+            if start is not None:
+                i, j = pair("start", start)
+                words += f" from={count('start along x', i, 0)},{count('start along y', j, 0)}"
+            return self.process(words)
+        words = "crop size={!r},{!r}".format(*pair("size", size))
+        return self.process(words if corner is None else words + " corner={!r},{!r}".format(*pair("corner", corner)))
+
+    def resample(self, cells: Sequence[int], *, method: str = "band-limited") -> Surface:
+        """Other cells over the same rectangle: "band-limited" (by waves; needs every point) or "bilinear"."""
+        nx, ny = counts("cells", cells)
+        return self.process(f"resample method={method} cells={nx},{ny}")
+
+    def filter(self, *, longest: float | None = None, shortest: float | None = None, edge: str = "sharp") -> Surface:
+        """Only the wavelengths from `shortest` to `longest` [m]; the edge is "sharp" or "gaussian" (ISO 16610-61).
+
+        The surface is taken as periodic: lay a :meth:`window` over one that is not.
+        """
+        words = ["filter"]
+        for name, value in (("longest", longest), ("shortest", shortest)):
+            if value is not None:
+                words.append(f"{name}={number(name, value)!r}")
+        return self.process(" ".join([*words, f"edge={edge}"]))
+
+    def flip(self, axis: str) -> Surface:
+        """Mirrored along "x" or "y"."""
+        return self.process(f"flip={axis}")
+
+    def rotate(self, quarter_turns: int = 1) -> Surface:
+        """Turned by quarter turns from x towards y; negative ones turn back."""
+        return self.process(f"rotate={count('quarter_turns', quarter_turns, -(2**31))}")
+
+    def invert(self) -> Surface:
+        """Heights of the other sign: a replica."""
+        return self.process("invert")
+
+    def window(self, shape: str = "hann", *, share: float | None = None) -> Surface:
+        """Faded to zero at the edges by a "hann" window, or a "tukey" one that rises over a `share` of the length (0.1)."""
+        words = f"window shape={shape}"
+        return self.process(words if share is None else f"{words} share={number('share', share)!r}")
+
+    def statistics(
+        self, *, periodic: bool | None = None, longest: float | None = None, shortest: float | None = None
+    ) -> dict[str, float]:
+        """What ``asperity surface info`` tells of the heights as they are.
+
+        Parameters
+        ----------
+        periodic : whether the surface repeats beyond its edges; by default true unless it was read from a file. For the
+            waves one that does not repeat is levelled, filled and windowed first.
+        longest, shortest : wavelengths [m] between which the Hurst exponent is fitted
+
+        Returns
+        -------
+        dict : sa, sq, sz, sp, sv, min, max, mean [m], ssk, sku, sdq, sdr (ISO 25178-2); undefined (number of points);
+            m0 [m^2], m2, m4 [1/m^2], bandwidth m0 m4/m2^2 (Nayak 1971); hurst, hurst_error, roll_off [m], plateau [m^4],
+            spectrum_misfit of a self-affine spectrum, where one can be fitted
+        """
+        band = None
+        if longest is not None or shortest is not None:
+            # Without one of them: from the size of the surface, or down to its cells.
+            from_, to = max(self.size), 2 * min(length / n for length, n in zip(self.size, self.cells))
+            band = [
+                from_ if longest is None else number("longest", longest),
+                to if shortest is None else number("shortest", shortest),
+            ]
+        return _core.describe(self.heights, list(self.size), self._repeats(periodic), band)
 
     def power_spectrum(self, per_decade: int = 16) -> tuple[Floats, Floats]:
         """Wavenumbers [1/m] and radially averaged power spectrum C(q) [m^4]; 0 rings per decade: linear rings.
@@ -70,12 +202,51 @@ class Surface:
         """
         return _core.power_spectrum(self.heights, list(self.size), count("per_decade", per_decade, 0))
 
+    def bearing_curve(self, levels: int = 200) -> tuple[Floats, Floats]:
+        """Heights [m] and the share of the points at or above each (Abbott and Firestone 1933)."""
+        return _core.bearing_curve(self.heights, list(self.size), count("levels", levels, 2))
+
+    def height_distribution(self, bins: int = 100) -> tuple[Floats, Floats]:
+        """Heights [m], the middles of bins, and the density of points there [1/m]."""
+        return _core.height_distribution(self.heights, list(self.size), count("bins", bins))
+
+    def autocorrelation(self, *, periodic: bool | None = None) -> Autocorrelation:
+        """The autocorrelation function and the spatial parameters Sal and Str (ISO 25178-2)."""
+        values, length, aspect = _core.autocorrelation(self.heights, list(self.size), self._repeats(periodic))
+        lags: list[Floats] = [np.asarray((np.arange(n) - n // 2) * (side / n), dtype=np.float64) for n, side in zip(self.cells, self.size)]
+        return Autocorrelation(values, lags[0], lags[1], length, aspect)
+
+    def _repeats(self, periodic: bool | None) -> bool:
+        # A file's surface knows its format.
+        return "format" not in self.metadata if periodic is None else bool(periodic)
+
+    @property
+    def plot(self) -> SurfacePlots:
+        """Figures by matplotlib: ``surface.plot.heights()``, ``surface.plot.power_spectrum()``, ..."""
+        from .plot import SurfacePlots
+
+        return SurfacePlots(self)
+
+    def _repr_html_(self) -> str:
+        import html
+
+        finite = self.heights[np.isfinite(self.heights)]
+        lines = [("size", f"{self.size[0]:g} m x {self.size[1]:g} m")]
+        if finite.size:
+            lines.append(("heights", f"{finite.min():.4g} m to {finite.max():.4g} m, Sq {finite.std():.4g} m"))
+        if missing := self.heights.size - finite.size:
+            lines.append(("undefined", f"{missing} of {self.heights.size} points"))
+        lines += [("history" if n == 0 else "", step) for n, step in enumerate(self.history)]
+        rows = "".join(f"<tr><th style='text-align:left'>{a}</th><td style='text-align:left'>{html.escape(b)}</td></tr>" for a, b in lines)
+        return f"<b>Surface</b>, {self.cells[0]} x {self.cells[1]} cells<table>{rows}</table>"
+
     def write(self, path: str | os.PathLike[str], *, format: str | None = None, force: bool = False) -> None:
         """Writes NPZ, GWY, X3P, SDF, NetCDF or text, as the path's ending or `format` says."""
         path = os.fspath(path)
         if not force and os.path.exists(path):
             raise FileExistsError(f"{path} is there already; name another file or give force=True")
-        _core.write_surface(path, self.heights, list(self.size), format or os.path.splitext(path)[1].lstrip("."))
+        form = format or os.path.splitext(path)[1].lstrip(".")
+        _core.write_surface(path, self.heights, list(self.size), form, self.history)
 
     @staticmethod
     def read(
@@ -84,10 +255,18 @@ class Surface:
         size: Sequence[float] | None = None,
         height_unit: float | None = None,
         channel: str | int | None = None,
+        level: str | None = None,
+        fill: str | None = None,
     ) -> Surface:
         """Reads a measured surface; the format is found from the content.
 
-        `size` [m] and `height_unit` [m] are needed where the file holds none; `channel` by name or number.
+        Parameters
+        ----------
+        path : text matrix, CSV, XYZ, NPY, NPZ, NetCDF, HDF5, SDF, X3P, SUR, GWY, AL3D, OPD, BCR; also packed by gzip
+        size : lengths along x and y [m], needed where the file holds none
+        height_unit : what a number of the file is worth [m], needed where the file does not say
+        channel : which one, by name or number, where the file holds several
+        level, fill : as the methods of that name; by default the heights are as measured, undefined points NaN
         """
         found = _core.read_surface(
             os.fspath(path),
@@ -96,7 +275,10 @@ class Surface:
             None if channel is None else str(channel),
         )
         heights, extent = found.pop("heights"), found.pop("size")
-        return Surface(heights, size=extent, metadata=found)
+        surface = Surface(heights, size=extent, metadata=found)
+        if level is not None:
+            surface = surface.level(level)
+        return surface if fill is None else surface.fill(fill)
 
     @staticmethod
     def self_affine(
@@ -110,11 +292,17 @@ class Surface:
         rms_height: float | None = None,
         roll_off: float | None = None,
         seed: int = 0,
+        lay_angle: float | None = None,
+        lay_ratio: float | None = None,
+        skewness: float | None = None,
+        kurtosis: float | None = None,
     ) -> Surface:
-        """Isotropic Gaussian roughness, periodic, the same on every machine for one seed.
+        """Self-affine roughness, periodic, the same on every machine for one seed.
 
         The spectrum is flat from wavelength `longest` to `roll_off` and falls as q^(-2 - 2 hurst) to `shortest` [m].
-        The rms gradient, or the rms height [m], is exact.
+        The rms gradient, or the rms height [m], is exact. With a lay the waves are `lay_ratio` times longer along the
+        direction `lay_angle` [rad from x towards y]; with `skewness` or `kurtosis` the heights are distributed so, exactly,
+        and the spectrum is met as nearly as that allows.
 
         >>> import asperity as asp
         >>> surface = asp.Surface.self_affine(cells=(64, 64), size=(1e-3, 1e-3), hurst=0.8, rms_height=1e-6,
@@ -123,6 +311,15 @@ class Surface:
         1.0
         """
         extent = pair("size", size)
+        special = {
+            "lay.angle": lay_angle,
+            "lay.ratio": lay_ratio,
+            "distribution.skewness": skewness,
+            "distribution.kurtosis": kurtosis,
+        }
+        if any(value is not None for value in special.values()):
+            plain = dict(hurst=hurst, rms_gradient=rms_gradient, rms_height=rms_height, longest=longest, shortest=shortest)
+            return _roughness(cells, extent, seed, {**plain, "roll_off": roll_off, **special})
         heights = _core.self_affine(
             counts("cells", cells),
             list(extent),
@@ -135,6 +332,14 @@ class Surface:
             count("seed", seed, 0),
         )
         return Surface(heights, size=extent)
+
+    @staticmethod
+    def contact_mechanics_challenge(*, cells: Sequence[int], seed: int = 0) -> Surface:
+        """The roughness of the Contact Mechanics Challenge (Mueser et al., Tribol. Lett. 65 (2017) 118) on 0.1 mm x 0.1 mm.
+
+        Hurst exponent 0.8, roll-off 20 um, cut-off 0.1 um, rms gradient 1; it needs 2000 cells a side or more.
+        """
+        return _roughness(cells, (1e-4, 1e-4), seed, {}, preset="contact-mechanics-challenge")
 
     @staticmethod
     def sphere(
@@ -185,6 +390,20 @@ class Surface:
         """A wave of that amplitude and those wavelengths along x and y [m]; an infinite one: a ridge."""
         x, y = pair("wavelength", wavelength)
         return _shape("wave", [number("amplitude", amplitude), x, y], (0.0, 0.0), cells, size)
+
+
+def _surface(heights: Any, size: Any, metadata: Any) -> Surface:
+    return Surface(heights, size=size, metadata=metadata)
+
+
+def _roughness(
+    cells: Sequence[int], size: tuple[float, float], seed: int, numbers: dict[str, float | None], **words: str
+) -> Surface:
+    """Roughness by the keys of a case file."""
+    keys = [(key, repr(number(key, value))) for key, value in numbers.items() if value is not None]
+    grid = [("cells", "{},{}".format(*counts("cells", cells))), ("size", "{!r},{!r}".format(*size))]
+    heights, extent = _core.roughness([*grid, *words.items(), *keys, ("seed", str(count("seed", seed, 0)))])
+    return Surface(heights, size=extent)
 
 
 def _shape(kind: str, numbers: list[float], center: Sequence[float], cells: Sequence[int], size: Sequence[float]) -> Surface:

@@ -1,4 +1,4 @@
-"""Figures of results by matplotlib (an optional dependency: pip install asperity[plot])."""
+"""Figures of results, surfaces and fits by matplotlib (an optional dependency: pip install asperity[plot])."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ import numpy as np
 from ._arrays import number
 
 if TYPE_CHECKING:
+    from ._fit import Fit
     from ._result import Result
+    from ._surface import Surface
 
 #: Prefixes by power of a thousand.
 _PREFIXES = {-4: "p", -3: "n", -2: "µ", -1: "m", 0: "", 1: "k", 2: "M", 3: "G"}
@@ -125,6 +127,66 @@ class Plots:
         ax.set_xlabel(f"x [{text}]")
         ax.set_ylabel(f"y [{text}]")
         return image
+
+
+class SurfacePlots:
+    """Each method draws one figure and returns its axes; `ax` draws into axes that are there."""
+
+    def __init__(self, surface: Surface) -> None:
+        self._surface = surface
+
+    def heights(self, *, ax: Any = None) -> Any:
+        """Map of the heights about their mean; undefined points are left white."""
+        surface = self._surface
+        z = np.where(np.isfinite(surface.heights), surface.heights, np.nan)
+        z = z - np.nanmean(z)
+        along = _shown(max(surface.size), "m")
+        across = _shown(float(np.nanmax(np.abs(z), initial=0.0)), "m")
+        ax = _axes(ax)
+        lx, ly = (length * along[0] for length in surface.size)
+        image = ax.imshow(z.T * across[0], origin="lower", extent=(0, lx, 0, ly), interpolation="nearest", cmap="viridis")
+        ax.set_xlabel(f"x [{along[1]}]")
+        ax.set_ylabel(f"y [{along[1]}]")
+        ax.figure.colorbar(image, ax=ax, label=f"height [{across[1]}]")
+        return ax
+
+    def power_spectrum(self, *, per_decade: int = 16, ax: Any = None) -> Any:
+        """Radially averaged power spectrum over wavenumber, both logarithmic."""
+        q, c = self._surface.power_spectrum(per_decade)
+        ax = _axes(ax)
+        ax.loglog(q[c > 0], c[c > 0], ".-")
+        ax.set_xlabel("wavenumber q [1/m]")
+        ax.set_ylabel("power spectrum C [m⁴]")
+        return ax
+
+    def bearing_curve(self, *, ax: Any = None) -> Any:
+        """Height over the share of the surface above it."""
+        z, share = self._surface.bearing_curve()
+        across = _shown(float(np.max(np.abs(z), initial=0.0)), "m")
+        ax = _axes(ax)
+        ax.plot(100 * share, z * across[0])
+        ax.set_xlabel("share of the surface above [%]")
+        ax.set_ylabel(f"height [{across[1]}]")
+        ax.set_xlim(0, 100)
+        return ax
+
+
+def fitted(fit: Fit, ax: Any) -> Any:
+    """Points and curves of a fit."""
+    ax = _axes(ax)
+    dma = fit.kind == "dma"
+    fine = np.geomspace(fit.x[fit.x > 0].min(), fit.x.max(), 400)
+    labels = {"relaxation": ["modulus"], "creep": ["compliance"], "dma": ["storage modulus", "loss modulus"]}[fit.kind]
+    for k, (label, data, curve) in enumerate(zip(labels, fit.curves, fit.curve(fine))):
+        ax.loglog(fit.x, data, "o^"[k], color=f"C{k}", markersize=3, alpha=0.6, label=f"{label}, measured")
+        ax.loglog(fine, curve, color=f"C{k}", label=f"{label}, fitted")
+    reduced = "reduced " if fit.shift is not None else ""
+    ax.set_xlabel(f"{reduced}angular frequency [rad/s]" if dma else f"{reduced}time [s]")
+    letter = "E" if fit.modulus == "young" else "G"
+    names = {"relaxation": f"{letter}(t) [Pa]", "creep": f"{'D' if letter == 'E' else 'J'}(t) [1/Pa]"}
+    ax.set_ylabel(names.get(fit.kind, f"{letter}′, {letter}″ [Pa]"))
+    ax.legend(frameon=False)
+    return ax
 
 
 def _axes(ax: Any) -> Any:

@@ -1,0 +1,425 @@
+"""Materials from measured curves.
+
+A passive material has non-negative weights only, so a fit is a non-negative least squares of relative residuals on a
+logarithmic grid of times; terms that the data do not call for are then merged and left out. Curves at several
+temperatures become a master curve first (J. D. Ferry, Viscoelastic Properties of Polymers, 1980, chapter 11).
+"""
+
+from __future__ import annotations
+
+import html
+import math
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._arrays import Floats, count, line, number, pair, plain
+from ._core import CaseError
+from ._materials import Creep, Material, Prony
+from ._shifts import Shift, made
+
+#: Temperatures closer than this belong to one sweep [K], and those of one sweep spread by no more.
+_SAME, _SPREAD = 1.0, 3.0
+_LABELS = {"relaxation": ("relaxation modulus",), "creep": ("creep compliance",), "dma": ("storage modulus", "loss modulus")}
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A Prony series fitted to measured curves, and how well it meets them.
+
+    Made by :func:`fit_relaxation`, :func:`fit_creep`, :func:`fit_dma` and :func:`fit_file`.
+    """
+
+    #: "relaxation", "creep" or "dma": what was measured.
+    kind: str
+    #: "young" or "shear": what the numbers are.
+    modulus: str
+    #: (modulus [Pa], relaxation time [s]) or, of creep data, (compliance [1/Pa], retardation time [s]).
+    terms: list[tuple[float, float]]
+    #: Modulus after all relaxation [Pa]; None of creep data.
+    equilibrium: float | None
+    #: Instantaneous compliance [1/Pa] and fluidity [1/(Pa s)] of creep data; else None.
+    instantaneous: float | None
+    fluidity: float | None
+    #: Largest and root mean square of |fit/data - 1|.
+    max_misfit: float
+    rms_misfit: float
+    #: Where the largest is: time [s] or angular frequency [rad/s].
+    worst: float
+    #: Relative scatter of the data (standard deviation).
+    noise: float
+    #: Relative standard deviations of weight and time of each term; infinite where the data show nothing of it.
+    uncertainty: list[tuple[float, float]]
+    #: First and last (reduced) time that the data cover [s].
+    window: tuple[float, float]
+    #: How times depend on temperature, given or estimated.
+    shift: Shift | None
+    #: Distance of an estimated law from the factors found [decades of a_T]; None where there is none.
+    shift_rms: float | None
+    #: Temperatures of the sweeps [K].
+    temperatures: list[float]
+    #: What was assumed.
+    notes: list[str]
+    #: Reduced times [s] or angular frequencies [rad/s] of the points, at the reference temperature.
+    x: Floats
+    #: The measured curves at `x`: modulus [Pa] or compliance [1/Pa]; storage and loss of a DMA.
+    curves: tuple[Floats, ...]
+    #: The material as a block of a case file.
+    case_block: str
+    _body: dict[str, Any]
+
+    @property
+    def material(self) -> Material:
+        """The material with the Poisson's ratio (or bulk modulus, hardness, name) that was given to the fit."""
+        if self._body.get("poisson") is None and self._body.get("bulk_modulus") is None:
+            raise CaseError("a body needs poisson or bulk_modulus: give one to the fit, or use with_body(poisson=...)")
+        return self.with_body(**self._body)
+
+    def with_body(
+        self,
+        *,
+        poisson: float | None = None,
+        bulk_modulus: float | None = None,
+        hardness: float | None = None,
+        name: str | None = None,
+        temperature: float | None = None,
+    ) -> Material:
+        """The material with this Poisson's ratio or bulk modulus [Pa], hardness [Pa], and constant temperature [K]."""
+        rest: dict[str, Any] = dict(
+            poisson=poisson, bulk_modulus=bulk_modulus, hardness=hardness, name=name, shift=self.shift, temperature=temperature
+        )
+        if self.equilibrium is not None:
+            return Prony(equilibrium=self.equilibrium, terms=self.terms, modulus=self.modulus, **rest)
+        assert self.instantaneous is not None and self.fluidity is not None
+        return Creep(
+            instantaneous=self.instantaneous, terms=self.terms, fluidity=self.fluidity, compliance=self.modulus, **rest
+        )
+
+    def curve(self, x: npt.ArrayLike) -> tuple[Floats, ...]:
+        """The fitted curves at reduced times [s], or angular frequencies [rad/s] of a DMA."""
+        # The functions of a material do not depend on Poisson's ratio.
+        material = self.with_body(poisson=0.5)
+        if self.kind == "relaxation":
+            return (material.relaxation_modulus(x),)
+        if self.kind == "creep":
+            return (material.creep_compliance(x),)
+        return material.storage_loss(x)
+
+    def table(self) -> dict[str, Floats]:
+        """Points, fit, and relative misfit as columns: ``pandas.DataFrame(fit.table())`` shows them."""
+        axis = "angular_frequency" if self.kind == "dma" else "time"
+        out = {axis: self.x}
+        for label, data, fitted in zip(_LABELS[self.kind], self.curves, self.curve(self.x)):
+            key = label.replace(" ", "_")
+            out[key] = data
+            out[f"{key}_fitted"] = fitted
+            out[f"{key}_misfit"] = fitted / data - 1.0
+        return out
+
+    def plot(self, *, ax: Any = None) -> Any:
+        """Points and fitted curves over reduced time or angular frequency, on logarithmic axes."""
+        from .plot import fitted
+
+        return fitted(self, ax)
+
+    def __repr__(self) -> str:
+        first, last = self.window
+        return (
+            f"<Fit of {len(self.x)} {self.kind} points: {len(self.terms)} terms, misfit {100 * self.rms_misfit:.2g} % rms, "
+            f"{100 * self.max_misfit:.2g} % at most; {first:.3g} s to {last:.3g} s>"
+        )
+
+    def _repr_html_(self) -> str:
+        weight = "modulus [Pa]" if self.equilibrium is not None else "compliance [1/Pa]"
+        head = f"<tr><th>{weight}</th><th>time [s]</th><th>&plusmn; weight</th><th>&plusmn; time</th></tr>"
+        rows = "".join(
+            f"<tr><td>{w:.6g}</td><td>{t:.6g}</td><td>{100 * a:.2g} %</td><td>{100 * b:.2g} %</td></tr>"
+            for (w, t), (a, b) in zip(self.terms, self.uncertainty)
+        )
+        return f"<p>{html.escape(repr(self).strip('<>'))}</p><table>{head}{rows}</table>"
+
+
+def fit_relaxation(
+    time: Any,
+    values: Any,
+    /,
+    *,
+    temperature: Any = None,
+    modulus: str = "young",
+    shift: Shift | str | None = None,
+    reference: float | None = None,
+    poisson: float | None = None,
+    bulk_modulus: float | None = None,
+    hardness: float | None = None,
+    name: str | None = None,
+    window: Sequence[float] | None = None,
+    per_decade: float = 3.0,
+    margin: float = 1.0,
+    long_time: str = "free",
+    max_misfit: float = 0.1,
+    max_terms: int | None = None,
+) -> Fit:
+    """Fits a relaxation modulus.
+
+    Parameters
+    ----------
+    time : times since the step [s]; those of one temperature in order
+    values : relaxation modulus [Pa] at these times
+    temperature : temperature of each point [K], where there are several
+    modulus : "young" or "shear": what the values are
+    shift : how times depend on temperature, or "estimated": from the overlap of the sweeps, about `reference` [K]
+    poisson, bulk_modulus, hardness, name : of the body, for :attr:`Fit.material`
+    window : first and last (reduced) time that is fitted [s]
+    per_decade : times per decade that the fit begins with
+    margin : decades of times beyond the data
+    long_time : "free", "solid" (no flow) or "fluid" (no modulus is left)
+    max_misfit : largest mean relative misfit of neighbours before the data are refused
+    max_terms : most terms; by default as many as the data call for
+
+    Raises
+    ------
+    CaseError : naming the point: times out of order or twice, values that no passive material has
+
+    Examples
+    --------
+    >>> import asperity as asp, numpy as np
+    >>> t = np.geomspace(0.1, 100, 40)
+    >>> fit = asp.fit_relaxation(t, 1e6 + 2e6 * np.exp(-t / 10), poisson=0.5)
+    >>> fit.max_misfit < 1e-4, round(fit.terms[0][1], 3)
+    (True, 10.0)
+    >>> round(float(fit.material.relaxation_modulus(0.0)), -3)
+    3000000.0
+    """
+    return _fit("relaxation", time, [values], temperature, **_rest(locals()))
+
+
+def fit_creep(
+    time: Any,
+    values: Any,
+    /,
+    *,
+    temperature: Any = None,
+    modulus: str = "young",
+    shift: Shift | str | None = None,
+    reference: float | None = None,
+    poisson: float | None = None,
+    bulk_modulus: float | None = None,
+    hardness: float | None = None,
+    name: str | None = None,
+    window: Sequence[float] | None = None,
+    per_decade: float = 3.0,
+    margin: float = 1.0,
+    long_time: str = "free",
+    max_misfit: float = 0.1,
+    max_terms: int | None = None,
+) -> Fit:
+    """Fits a creep compliance [1/Pa]; the parameters are those of :func:`fit_relaxation`.
+
+    >>> import asperity as asp, numpy as np
+    >>> t = np.geomspace(0.1, 100, 40)
+    >>> fit = asp.fit_creep(t, 1e-6 + 2e-6 * (1 - np.exp(-t / 10)), modulus="shear")
+    >>> round(fit.instantaneous * 1e6, 3), [(round(c * 1e6, 3), round(s, 2)) for c, s in fit.terms]
+    (1.0, [(2.0, 10.0)])
+    """
+    return _fit("creep", time, [values], temperature, **_rest(locals()))
+
+
+def fit_dma(
+    frequency: Any,
+    storage: Any,
+    loss: Any,
+    /,
+    *,
+    angular: bool = False,
+    temperature: Any = None,
+    modulus: str = "young",
+    shift: Shift | str | None = None,
+    reference: float | None = None,
+    poisson: float | None = None,
+    bulk_modulus: float | None = None,
+    hardness: float | None = None,
+    name: str | None = None,
+    window: Sequence[float] | None = None,
+    per_decade: float = 3.0,
+    margin: float = 1.0,
+    long_time: str = "free",
+    max_misfit: float = 0.1,
+    max_terms: int | None = None,
+) -> Fit:
+    """Fits storage and loss modulus [Pa] over frequency [Hz], or [rad/s] where `angular`, by one spectrum.
+
+    `window` is in rad/s; the other parameters are those of :func:`fit_relaxation`.
+
+    >>> import asperity as asp, numpy as np
+    >>> rubber = asp.Prony(equilibrium=1e6, terms=[(5e6, 0.01), (2e6, 1.0)], poisson=0.5)
+    >>> f = np.geomspace(0.01, 100, 41)
+    >>> fit = asp.fit_dma(f, *rubber.storage_loss(2 * np.pi * f), poisson=0.5)
+    >>> len(fit.terms), fit.max_misfit < 1e-3
+    (2, True)
+    """
+    rest = _rest(locals())
+    omega = line("frequency", frequency) * (1.0 if angular else 2.0 * math.pi)
+    return _fit("dma", omega, [storage, loss], temperature, **rest)
+
+
+def fit_file(
+    path: str | os.PathLike[str],
+    *,
+    kind: str | None = None,
+    columns: Mapping[str, str | int] | None = None,
+    units: Mapping[str, str] | None = None,
+    modulus: str = "young",
+    shift: Shift | str | None = None,
+    reference: float | None = None,
+    poisson: float | None = None,
+    bulk_modulus: float | None = None,
+    hardness: float | None = None,
+    name: str | None = None,
+    window: Sequence[float] | None = None,
+    per_decade: float = 3.0,
+    margin: float = 1.0,
+    long_time: str = "free",
+    max_misfit: float = 0.1,
+    max_terms: int | None = None,
+) -> Fit:
+    """Fits a text table of a relaxation test, a creep test or a DMA, as ``asperity material fit`` does.
+
+    Parameters
+    ----------
+    path : table with one point per line; quantities and units are found from its header
+    kind : "relaxation", "creep" or "dma", where the header does not tell
+    columns : names or numbers (from 1) of columns by quantity: time, modulus, compliance, frequency, storage, loss,
+        tan_delta, temperature
+    units : units by quantity, which go before those of the header
+
+    The others are those of :func:`fit_relaxation`; `window` in s, or rad/s of a DMA.
+
+    Raises
+    ------
+    CaseError : naming the line of the file
+    OSError : the file cannot be read
+    """
+    names, given_units = dict(columns or {}), dict(units or {})
+    said: list[tuple[str, str | None, int | None, str | None]] = []
+    for role in dict.fromkeys([*names, *given_units]):
+        at = names.get(role)
+        told = at if isinstance(at, str) or at is None else None
+        place = None if told is not None or at is None else count(f"column of {role}", at)
+        said.append((role, told, place, given_units.get(role)))
+    rest = _rest(locals())
+    options = _options(rest)
+    return _made(_core.fit_file(os.fspath(path), kind, said, options), rest)
+
+
+def _rest(given: dict[str, Any]) -> dict[str, Any]:
+    names = [
+        *("modulus", "shift", "reference", "poisson", "bulk_modulus", "hardness", "name"),
+        *("window", "per_decade", "margin", "long_time", "max_misfit", "max_terms"),
+    ]
+    return {key: given[key] for key in names}
+
+
+def _options(rest: dict[str, Any]) -> dict[str, Any]:
+    shift, reference = rest["shift"], rest["reference"]
+    estimated = isinstance(shift, str) and shift == "estimated"
+    if shift is not None and not estimated and not isinstance(shift, Shift):
+        raise CaseError(f"shift is {shift!r}, but must be one of asperity.wlf, arrhenius, shift_table, or 'estimated'")
+    if estimated and reference is None:
+        raise CaseError("shift is 'estimated', so that a reference temperature in K is needed: reference=...")
+    if reference is not None and not estimated:
+        raise CaseError("reference goes with shift='estimated'; other shifts have their own")
+    most = rest["max_terms"]
+    return {
+        "measure": rest["modulus"],
+        "shift": shift._words if isinstance(shift, Shift) else None,
+        "estimate": number("reference", reference) if estimated else None,
+        "window": None if rest["window"] is None else list(pair("window", rest["window"])),
+        "per_decade": number("per_decade", rest["per_decade"]),
+        "margin": number("margin", rest["margin"]),
+        "long_time": rest["long_time"],
+        "limit": number("max_misfit", rest["max_misfit"]),
+        "max_terms": None if most is None else count("max_terms", most),
+    }
+
+
+def _fit(kind: str, x: Any, values: list[Any], temperature: Any, **rest: Any) -> Fit:
+    at = line("frequency" if kind == "dma" else "time", x)
+    curves = [line(label, value) for label, value in zip(_LABELS[kind], values)]
+    for label, curve in zip(_LABELS[kind], curves):
+        if len(curve) != len(at):
+            raise CaseError(f"{label} has {len(curve)} values for {len(at)} points")
+    sweeps = _sweeps(at, curves, temperature)
+    if len(sweeps) > 1 and rest["shift"] is None:
+        known = ", ".join(f"{kelvin:.2f} K" for kelvin, _, _ in sweeps[:20])
+        raise CaseError(
+            f"the data hold {len(sweeps)} temperatures ({known}); say how times depend on temperature: "
+            "shift=asperity.wlf(c1=..., c2=..., reference=...), or shift='estimated' with reference=..."
+        )
+    return _made(_core.fit(kind, sweeps, _options(rest)), rest)
+
+
+def _sweeps(x: Floats, curves: list[Floats], temperature: Any) -> list[tuple[float | None, Floats, list[Floats]]]:
+    """The points by temperature, the coldest first; a sweep that goes down is turned."""
+
+    def turned(rows: npt.NDArray[np.intp]) -> npt.NDArray[np.intp]:
+        return rows[::-1] if len(rows) > 1 and bool(np.all(np.diff(x[rows]) < 0)) else rows
+
+    def sweep(kelvin: float | None, rows: npt.NDArray[np.intp]) -> tuple[float | None, Floats, list[Floats]]:
+        rows = turned(rows)
+        return kelvin, plain(x[rows]), [plain(curve[rows]) for curve in curves]
+
+    everything = np.arange(len(x))
+    if temperature is None:
+        return [sweep(None, everything)]
+    if np.ndim(temperature) == 0:
+        return [sweep(number("temperature", temperature), everything)]
+    kelvin = line("temperature", temperature)
+    if len(kelvin) != len(x):
+        raise CaseError(f"temperature has {len(kelvin)} values for {len(x)} points")
+    order = np.argsort(kelvin, kind="stable")
+    groups = np.split(order, np.flatnonzero(np.diff(kelvin[order]) > _SAME) + 1)
+    found = []
+    for rows in groups:
+        held = kelvin[rows]
+        if np.ptp(held) > _SPREAD:
+            raise CaseError(
+                f"the temperatures from {held.min():g} K to {held.max():g} K follow each other within {_SAME:g} K; "
+                "sweeps at held temperatures are needed"
+            )
+        found.append(sweep(float(held.mean()), np.sort(rows)))
+    return found
+
+
+def _made(found: dict[str, Any], rest: dict[str, Any]) -> Fit:
+    equilibrium = instantaneous = fluidity = None
+    if "relaxation" in found:
+        equilibrium, terms = found["relaxation"]
+    else:
+        instantaneous, terms, fluidity = found["creep"]
+    return Fit(
+        kind=found["kind"],
+        modulus=rest["modulus"],
+        terms=terms,
+        equilibrium=equilibrium,
+        instantaneous=instantaneous,
+        fluidity=fluidity,
+        max_misfit=found["max_misfit"],
+        rms_misfit=found["rms_misfit"],
+        worst=found["worst"],
+        noise=found["noise"],
+        uncertainty=found["uncertainty"],
+        window=found["window"],
+        shift=made(found["shift"]),
+        shift_rms=found["shift_rms"],
+        temperatures=found["temperatures"],
+        notes=found["notes"],
+        x=found["x"],
+        curves=tuple(found["curves"]),
+        case_block=found["toml"],
+        _body={key: rest[key] for key in ("poisson", "bulk_modulus", "hardness", "name")},
+    )

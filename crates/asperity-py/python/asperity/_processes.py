@@ -1,0 +1,168 @@
+"""Processes on this machine that solve points, one each at a time.
+
+They are started by name and import nothing of the caller's script, so that a study runs from a notebook and from a
+script without a guard. A process that dies takes its own point with it and no other.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+import queue
+import subprocess
+import sys
+import threading
+from collections.abc import Generator, Sequence
+from typing import Any
+
+from ._core import CaseError
+from ._points import Point, Solved
+
+#: How long a process may take to stop [s]: it stops within one iteration of its solver.
+_PATIENCE = 10.0
+_CODE = "import sys; sys.path.insert(0, sys.argv[1]); from asperity._worker import main; main()"
+
+
+def cores() -> int:
+    """Processors that this process may use."""
+    try:
+        return len(os.sched_getaffinity(0))
+    except AttributeError:
+        return os.cpu_count() or 1
+
+
+def shared(points: int, workers: int | None, threads: int | None) -> tuple[int, int]:
+    """Processes and threads of each, so that together they are as many as there are processors."""
+    there = cores()
+    if workers is None:
+        workers = min(points, there if threads is None else max(1, there // threads))
+    return workers, max(1, there // workers) if threads is None else threads
+
+
+class _Process:
+    """One process and the point that it solves."""
+
+    def __init__(self, threads: int, answers: queue.SimpleQueue[tuple[_Process, Any]]) -> None:
+        self.point: int | None = None
+        package = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+        self.process = subprocess.Popen(
+            [sys.executable, "-c", _CODE, package],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            # Ctrl-C is for the study, which tells its processes.
+            start_new_session=True,
+            creationflags=getattr(subprocess, "CREATE_NEW_PROCESS_GROUP", 0),
+        )
+        self._write(pickle.dumps({"path": list(sys.path), "threads": threads}))
+        threading.Thread(target=self._listen, args=(answers,), daemon=True).start()
+
+    def _listen(self, answers: queue.SimpleQueue[tuple[_Process, Any]]) -> None:
+        assert self.process.stdout is not None
+        try:
+            while True:
+                answers.put((self, pickle.load(self.process.stdout)))
+        except Exception:
+            answers.put((self, None))
+
+    def _write(self, data: bytes) -> None:
+        assert self.process.stdin is not None
+        try:
+            self.process.stdin.write(data)
+            self.process.stdin.flush()
+        except OSError:
+            pass  # It has ended; who listens says so.
+
+    def send(self, number: int, task: bytes) -> None:
+        self.point = number
+        self._write(pickle.dumps(task))
+
+    def close(self) -> None:
+        """Tells it to stop."""
+        try:
+            assert self.process.stdin is not None
+            self.process.stdin.close()
+        except OSError:
+            pass
+
+    def end(self) -> None:
+        """Waits until it has."""
+        try:
+            self.process.wait(_PATIENCE)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+            self.process.wait()
+        if self.process.stdout is not None:
+            self.process.stdout.close()
+
+    def fate(self) -> str:
+        """Why it ended, in words."""
+        code = self.process.wait()
+        if code < 0:
+            return f"its process was ended by signal {-code} (by the system, perhaps for lack of memory)"
+        return f"its process ended with exit code {code}"
+
+
+def pickled(point: Point) -> bytes:
+    """A point for another process; functions of a notebook or script need cloudpickle."""
+    function = point.function
+    if function is not None and getattr(function, "__module__", "") == "__main__":
+        try:
+            import cloudpickle  # type: ignore[import-not-found,import-untyped,unused-ignore]
+        except ImportError:
+            raise CaseError(
+                f"the function {getattr(function, '__name__', function)!r} of this script or notebook cannot be sent to another "
+                "process: install cloudpickle, or put the function into a module"
+            ) from None
+        data: bytes = cloudpickle.dumps(point)
+        return data
+    try:
+        return pickle.dumps(point, protocol=pickle.HIGHEST_PROTOCOL)
+    except Exception as error:
+        raise CaseError(f"a point of the study cannot be sent to another process: {error}") from None
+
+
+def solved(points: Sequence[Point], workers: int, threads: int) -> Generator[tuple[int, Solved], None, None]:
+    """The points as they are done, with their numbers."""
+    tasks = [pickled(point) for point in points]
+    answers: queue.SimpleQueue[tuple[_Process, Any]] = queue.SimpleQueue()
+    waiting = list(range(len(points)))[::-1]
+    running: set[_Process] = set()
+
+    def occupy(process: _Process) -> None:
+        if waiting:
+            number = waiting.pop()
+            process.send(number, tasks[number])
+        else:
+            process.point = None
+            process.close()
+
+    try:
+        for _ in range(min(workers, len(points))):
+            process = _Process(threads, answers)
+            running.add(process)
+            occupy(process)
+        while running:
+            try:
+                # With an end, so that Ctrl-C is heard on every system.
+                process, answer = answers.get(timeout=0.5)
+            except queue.Empty:
+                continue
+            if answer is None:
+                running.discard(process)
+                if process.point is not None:
+                    yield process.point, ("failed", process.fate(), None)
+                    if waiting:
+                        fresh = _Process(threads, answers)
+                        running.add(fresh)
+                        occupy(fresh)
+                process.end()
+                continue
+            number = process.point
+            assert number is not None
+            occupy(process)
+            yield number, answer
+    finally:
+        for process in running:
+            process.close()
+        for process in running:
+            process.end()

@@ -1,0 +1,381 @@
+"""Parameter studies: many cases in parallel, as one dataset."""
+
+from __future__ import annotations
+
+import contextlib
+import dataclasses
+import importlib
+import itertools
+import json
+import os
+import re
+import time
+import warnings
+from collections.abc import Callable, Generator, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _core
+from ._arrays import count
+from ._core import CaseError
+from ._points import Point, Solved, base_of, found, label, label_all, note, solve_point
+from ._processes import cores, shared, solved
+from ._progress import line_of
+from ._result import FIELDS, ROW, Result
+from ._solve import _source
+
+if TYPE_CHECKING:
+    import xarray
+
+#: Names that a parameter may not have in the dataset.
+_TAKEN = {*ROW, *FIELDS, "status", "error", "steps", "step", "point", "x", "y", "field_step", "field_time"}
+_QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\s\d].*?)?\s*")
+
+
+def study(
+    case: str | os.PathLike[str] | Mapping[str, Any] | Callable[..., Result],
+    over: Mapping[str, Any] | Sequence[Mapping[str, Any]],
+    *,
+    zip: bool = False,
+    folder: str | os.PathLike[str] | None = None,
+    fields: Sequence[str] = (),
+    workers: int | None = None,
+    threads: int | None = None,
+    client: Any = None,
+    retry: bool = False,
+    progress: bool | None = None,
+) -> xarray.Dataset:
+    """Solves a case for many values of its parameters, in parallel, and returns all results as one dataset.
+
+    Parameters
+    ----------
+    case : path, text or dictionary of a case as in :func:`run`; or a dictionary of the parameters of :func:`solve`; or
+        a function that takes the parameters of a point and returns a :class:`Result`
+    over : values by parameter; the study solves every combination. Parameters of a case are dotted keys,
+        ``{"load.history.value": ["0.1 N", "0.5 N"]}``. Values that are no numbers or text (materials, surfaces) are best
+        given with labels: ``{"material": {"soft": ..., "hard": ...}}``. Or a list of points, each a dictionary.
+    zip : the first values of all parameters are the first point, and so on, instead of every combination
+    folder : where the result of every point is kept. A study that is called again finds what is done, goes on with what
+        was stopped, and solves what is new. Without it nothing is kept but the dataset.
+    fields : fields that become part of the dataset: "pressure", "gap", "displacement", "contact"
+    workers : processes; default: as many as there are processors, or points
+    threads : threads of each; default: what makes workers times threads the number of processors
+    client : a ``dask.distributed.Client``: its workers solve the points, each with its own number of threads; a `folder`,
+        and files that the case names, must be where they can reach them
+    retry : solve again what had failed
+    progress : a line with the progress; default: in terminals and notebooks
+
+    Returns
+    -------
+    xarray.Dataset : the numbers of all rows with dimensions (parameters..., step), NaN beyond the last row of a point;
+        `time` of each step, of all points or of each; `steps` (number of rows), `status` ("complete" or "failed") and
+        `error` (why) of each point. A parameter that is called as one of them has "_given" at its end. Points that
+        are no product have the dimension `point`.
+
+    Raises
+    ------
+    CaseError : parameters or case are wrong as a whole. A point that fails is no error: it says so in the dataset.
+
+    Notes
+    -----
+    Every point has the same numbers as a run by itself, to the last bit, whatever the number of workers and threads.
+    Ctrl-C stops within one iteration of the solver; what is done is in the `folder`. A point of a case goes on from
+    its last checkpoint, one of :func:`solve` or a function from its beginning. A point is known again by its settings
+    and by all that the points share: the text of the case and the files that it names, or arguments and code of the function.
+
+    Examples
+    --------
+    >>> import asperity as asp
+    >>> sphere = asp.Surface.sphere(cells=(32, 32), size=(1e-3, 1e-3), radius=10e-3)
+    >>> zener = asp.Zener(shear=1e6, shear_kelvin=1e6, retardation_time=1.0, poisson=0.5)
+    >>> data = asp.study(
+    ...     dict(surface=sphere, material=zener, times=asp.uniform(5.0, 5)),
+    ...     over={"load": [0.001, 0.002], "hardness": [1e5, 1e6]},
+    ... )
+    >>> dict(data.sizes)
+    {'load_given': 2, 'hardness': 2, 'step': 6}
+    >>> bool((data.status == "complete").all()), float(data["load"].sel(load_given=0.002).isel(hardness=0, step=-1).round(12))
+    (True, 0.002)
+    """
+    try:
+        import xarray  # noqa: F401
+    except ImportError:
+        raise ImportError("a study gives an xarray.Dataset: pip install xarray (or asperity[xarray])") from None
+    plan = _Plan(over, zip)
+    if unknown := [name for name in fields if name not in FIELDS]:
+        raise CaseError(f"fields holds {unknown[0]!r}, but may hold {', '.join(FIELDS)}")
+    for what, number in (("workers", workers), ("threads", threads)):
+        if number is not None:
+            count(what, number)
+    common = _common(case, plan.names)
+    place = None if folder is None else os.path.abspath(os.fspath(folder))
+    if place is not None:
+        os.makedirs(place, exist_ok=True)
+    points = [
+        Point(**common, settings=settings, folder=place, fields=tuple(fields), threads=None if client is None else threads)
+        for settings in plan.points
+    ]
+    names = [point.name for point in points]
+    if len(set(names)) < len(names):
+        twice = next(n for n, name in enumerate(names) if name in names[:n])
+        raise CaseError(f"the point {label_all(points[twice].settings)} is there twice")
+
+    done: dict[int, Solved] = {}
+    if place is not None:
+        note(place, "study", {"asperity": _core.__version__, "parameters": plan.names, "points": names})
+        done = {n: answer for n, point in enumerate(points) if (answer := found(point, retry)) is not None}
+    left = [n for n in range(len(points)) if n not in done]
+    tell = _Teller(len(points), done, progress)
+    if left:
+        tasks = [points[n] for n in left]
+        if client is not None:
+            answers = _on_cluster(client, tasks)
+        else:
+            answers = solved(tasks, *shared(len(tasks), workers, threads))
+        with contextlib.closing(answers):
+            try:
+                for n, answer in answers:
+                    done[left[n]] = answer
+                    tell(done)
+            finally:
+                tell.end()
+    return _dataset(plan, [done[n] for n in range(len(points))], points, tuple(fields), common.get("case"))
+
+
+class _Plan:
+    """The points, and how they lie along the dimensions of the dataset."""
+
+    def __init__(self, over: Any, zipped: bool) -> None:
+        if isinstance(over, Mapping):
+            columns = {str(name): _values(str(name), values) for name, values in over.items()}
+            if not columns:
+                raise CaseError("over names no parameter: give at least one, as in over={'load': [0.1, 0.5]}")
+            self.names = list(columns)
+            labels = {name: [pair[0] for pair in column] for name, column in columns.items()}
+            lengths = [len(column) for column in columns.values()]
+            if zipped:
+                if len(set(lengths)) > 1:
+                    told = ", ".join(f"{name} {n}" for name, n in _pairs(self.names, lengths))
+                    raise CaseError(f"zip needs as many values of every parameter; there are: {told}")
+                rows: Any = _pairs(*columns.values())
+                self.shape: tuple[int, ...] = (lengths[0],)
+            else:
+                for name, column in labels.items():
+                    if len(set(column)) < len(column):
+                        raise CaseError(f"the values of {name} must differ from each other; there are: {column}")
+                rows = itertools.product(*columns.values())
+                self.shape = tuple(lengths)
+            self.points = [{name: pair[1] for name, pair in _pairs(self.names, row)} for row in rows]
+            self.labels = labels
+            self.product = not zipped
+            return
+        if isinstance(over, (str, bytes)) or not isinstance(over, Sequence) or not all(isinstance(p, Mapping) for p in over):
+            raise CaseError(f"over is {over!r}, but must be values by parameter, or a list of points (dictionaries)")
+        self.points = [{str(name): value for name, value in point.items()} for point in over]
+        if not self.points or not self.points[0]:
+            raise CaseError("over holds no points: give at least one, as in over=[{'load': 0.1}]")
+        self.names = list(self.points[0])
+        if other := [n for n, point in enumerate(self.points) if set(point) != set(self.names)]:
+            raise CaseError(f"point {other[0]} has the parameters {list(self.points[other[0]])}, but the first {self.names}")
+        self.labels = {name: [label(point[name]) for point in self.points] for name in self.names}
+        self.shape, self.product = (len(self.points),), False
+
+
+_pairs = zip
+
+
+def _values(name: str, values: Any) -> list[tuple[Any, Any]]:
+    """(label, value) pairs of a parameter."""
+    if isinstance(values, Mapping):
+        pairs = [(label(key), value) for key, value in values.items()]
+    elif isinstance(values, (str, bytes)) or not isinstance(values, (Sequence, np.ndarray)):
+        raise CaseError(f"the values of {name} are {values!r}, but must be a list, or values by label")
+    else:
+        pairs = [(label(value), value.item() if isinstance(value, np.generic) else value) for value in values]
+    if not pairs:
+        raise CaseError(f"there are no values of {name}")
+    return pairs
+
+
+def _common(case: Any, names: list[str]) -> dict[str, Any]:
+    """What all points share."""
+    if isinstance(case, Mapping) and ("material" in case or "material" in names):
+        given = {str(key): value for key, value in case.items()}
+        return {"fixed": given, "base": base_of(None, "", None, given)}
+    if callable(case) and not isinstance(case, (str, os.PathLike)):
+        from ._solve import solve
+
+        function = None if case is solve else case
+        return {"function": function, "base": base_of(None, "", function, {})}
+    path, text = _source(case)
+    directory = path
+    if text is None:
+        try:
+            text = Path(path).read_text(encoding="utf-8")
+        except (OSError, UnicodeDecodeError) as error:
+            raise CaseError(f"the case {path} cannot be read: {error}") from None
+        directory = os.path.dirname(path)
+    directory = os.path.abspath(directory)
+    return {"case": text, "directory": directory, "base": base_of(text, directory, None, {})}
+
+
+def _on_cluster(client: Any, points: list[Point]) -> Generator[tuple[int, Solved], None, None]:
+    """The points on the workers of a dask client, as they are done."""
+    distributed: Any = importlib.import_module("distributed")
+
+    busy = _tasks_by_host(client)
+    futures = [
+        client.submit(_with_threads, point, busy, pure=False, key=f"asperity-{point.name}-{os.getpid()}-{time.monotonic_ns()}")
+        for point in points
+    ]
+    number = {future.key: n for n, future in enumerate(futures)}
+    finished = False
+    try:
+        for future in distributed.as_completed(futures):
+            if future.status == "finished":
+                answer: Solved = future.result()
+            else:
+                error = future.exception() if future.status == "error" else None
+                answer = ("failed", f"{type(error).__name__}: {error}" if error else f"the task was {future.status}", None)
+            future.release()
+            yield number[future.key], answer
+        finished = True
+    finally:
+        if not finished:
+            client.cancel(futures)
+
+
+def _tasks_by_host(client: Any) -> dict[str, int]:
+    """How many tasks the workers of each machine run at once."""
+    tasks: dict[str, int] = {}
+    try:
+        known = client.scheduler_info(n_workers=-1)
+    except TypeError:  # before version 2025.4
+        known = client.scheduler_info()
+    for address, worker in known["workers"].items():
+        host = _host(address)
+        tasks[host] = tasks.get(host, 0) + int(worker["nthreads"])
+    return tasks
+
+
+def _host(address: str) -> str:
+    return address.rsplit(":", 1)[0]
+
+
+def _with_threads(point: Point, busy: dict[str, int]) -> Solved:
+    """A point on a worker of dask; the tasks on its machine share the processors."""
+    if point.threads is None:
+        distributed: Any = importlib.import_module("distributed")
+
+        tasks = busy.get(_host(distributed.get_worker().address), 1)
+        point = dataclasses.replace(point, threads=max(1, cores() // max(1, tasks)))
+    return solve_point(point)
+
+
+class _Teller:
+    """The line of progress."""
+
+    def __init__(self, total: int, done: dict[int, Solved], on: bool | None) -> None:
+        self.total, self.before = total, len(done)
+        self.started = time.monotonic()
+        self.show = line_of(on)
+
+    def __call__(self, done: dict[int, Solved]) -> None:
+        failed = sum(answer[0] == "failed" for answer in done.values())
+        here = len(done) - self.before
+        left = (time.monotonic() - self.started) / max(here, 1) * (self.total - len(done))
+        self.show(f"{len(done)}/{self.total} points{f', {failed} failed' if failed else ''}  {left:.0f} s left")
+
+    def end(self) -> None:
+        self.show(None)
+
+
+def _dataset(
+    plan: _Plan, answers: list[Solved], points: list[Point], names: tuple[str, ...], case: str | None
+) -> xarray.Dataset:
+    import xarray
+
+    given = {name: f"{name}_given" if name in _TAKEN else name for name in plan.names}
+    dims = tuple(given.values()) if plan.product else ("point",)
+    coordinates: dict[str, Any] = {}
+    for name, column in plan.labels.items():
+        values, attributes = _coordinate(column)
+        coordinates[given[name]] = (given[name] if plan.product else "point", values, {"long_name": name, **attributes})
+    results = [answer[2] for answer in answers]
+    steps = np.array([0 if result is None else len(result) for result in results])
+    most = int(steps.max(initial=0))
+    columns: dict[str, Any] = {}
+    for name, (unit, words) in ROW.items():
+        table = np.full((len(points), most), np.nan)
+        for n, result in enumerate(results):
+            if result is not None:
+                table[n, : steps[n]] = result._table[name]
+        attributes = {"units": unit, "long_name": words}
+        if name == "time":
+            whole = table[steps == most] if most else table
+            if len(whole) and bool(np.all(whole == whole[0])) and bool(np.all((steps == most) | (steps == 0))):
+                coordinates["time"] = ("step", whole[0], attributes)
+            else:
+                coordinates["time"] = ((*dims, "step"), table.reshape(*plan.shape, most), attributes)
+            continue
+        columns[name] = ((*dims, "step"), table.reshape(*plan.shape, most), attributes)
+    columns["steps"] = (dims, steps.reshape(plan.shape), {"units": "1", "long_name": "number of rows"})
+    columns["status"] = (dims, np.array([answer[0] for answer in answers]).reshape(plan.shape), {"long_name": "status"})
+    columns["error"] = (dims, np.array([answer[1] for answer in answers]).reshape(plan.shape), {"long_name": "why it failed"})
+    if names:
+        _add_fields(columns, coordinates, plan, dims, results, names)
+    attributes = {"asperity_version": _core.__version__}
+    if case is not None:
+        attributes["case"] = case
+    return xarray.Dataset(columns, coords=coordinates, attrs=attributes)
+
+
+def _add_fields(
+    columns: dict[str, Any],
+    coordinates: dict[str, Any],
+    plan: _Plan,
+    dims: tuple[str, ...],
+    results: list[Result | None],
+    names: tuple[str, ...],
+) -> None:
+    whole = [result for result in results if result is not None]
+    grids = {(result.cells, result.size) for result in whole}
+    if len(grids) != 1:
+        if grids:
+            warnings.warn("the points have different grids: the dataset holds no fields", stacklevel=3)
+        return
+    first = whole[0]
+    most = max(len(result.field_times) for result in whole)
+    times = np.full((len(results), most), np.nan)
+    for n, result in enumerate(results):
+        if result is not None:
+            times[n, : len(result.field_times)] = result.field_times
+    words = {"units": "s", "long_name": "time of the fields"}
+    coordinates["field_time"] = ((*dims, "field_step"), times.reshape(*plan.shape, most), words)
+    coordinates["x"] = ("x", first.x, {"units": "m", "long_name": "x"})
+    coordinates["y"] = ("y", first.y, {"units": "m", "long_name": "y"})
+    for name in names:
+        stack = np.full((len(results), most, *first.cells), np.nan)
+        for n, result in enumerate(results):
+            if result is not None:
+                stack[n, : len(result.field_times)] = result._stack(name)
+        unit, long_name = FIELDS[name]
+        shape = (*plan.shape, most, *first.cells)
+        columns[name] = ((*dims, "field_step", "x", "y"), stack.reshape(shape), {"units": unit, "long_name": long_name})
+
+
+def _coordinate(column: list[Any]) -> tuple[Any, dict[str, str]]:
+    """Values of a coordinate; quantities in one unit become numbers with that unit."""
+    if all(isinstance(value, str) for value in column):
+        matches = [_QUANTITY.fullmatch(value) for value in column]
+        units = {match.group(2) for match in matches if match is not None}
+        if None not in matches and len(units) == 1:
+            (unit,) = units
+            values = np.array([float(match.group(1)) for match in matches if match is not None])
+            return values, {} if unit is None else {"units": unit}
+        return np.array(column), {}
+    if all(isinstance(value, (bool, int, float)) for value in column):
+        return np.array(column), {}
+    return np.array([value if isinstance(value, str) else json.dumps(value) for value in column]), {}

@@ -54,7 +54,7 @@ pub fn elastic<'py>(
     let mut state = ContactState::new(grid.len());
     let solved = without_python(py, &interrupt, || {
         let mut operator = half_space(grid, boundary);
-        let mut solver = Solver::new(options.method, &*operator);
+        let mut solver = Solver::with_precision(options.method, options.precision, &*operator);
         let problem =
             Problem { gap: &cells, compliance: 1.0 / contact_modulus, hardness: hardness.into(), prescribed };
         solver.solve(&mut *operator, &problem, &options, &mut state, Some(&interrupt))

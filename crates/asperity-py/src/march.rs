@@ -8,13 +8,13 @@ use asperity::{
     Boundary, Control, Grid, History, Loading, Method, Scheme, Simulation, SolverOptions, TimeGrid, march,
     material,
 };
-use numpy::{IntoPyArray, PyArray2, PyReadonlyArray2};
+use numpy::{IntoPyArray, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::{CaseError, raised};
 use crate::material::Body;
-use crate::wait::without_python;
+use crate::wait::{detached, without_python};
 
 /// The march of one simulation.
 #[pyclass]
@@ -162,13 +162,15 @@ impl March {
         let done = without_python(py, &self.interrupt, || march.advance().map(|step| step.is_some()))?;
         done.map_err(|error| {
             let raised = raised(py, error);
-            if let Some(step) = march.last()
-                && raised.is_instance_of::<crate::error::ConvergenceError>(py)
-            {
-                let best = PyDict::new(py);
-                let filled = fill(&best, &step.row())
-                    .and_then(|()| best.set_item("pressure", step.pressure().to_owned().into_pyarray(py)));
-                let _ = filled.and_then(|()| raised.value(py).setattr("best", best));
+            if raised.is_instance_of::<crate::error::ConvergenceError>(py) {
+                let march = &mut *march;
+                let last = move || march.last().map(|step| (step.row(), step.pressure().to_owned()));
+                if let Ok(Some((row, pressure))) = detached(py, last) {
+                    let best = PyDict::new(py);
+                    let filled =
+                        fill(&best, &row).and_then(|()| best.set_item("pressure", pressure.into_pyarray(py)));
+                    let _ = filled.and_then(|()| raised.value(py).setattr("best", best));
+                }
             }
             raised
         })
@@ -206,40 +208,46 @@ impl March {
 
     /// The numbers of the last row.
     fn row<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let row = PyDict::new(py);
-        if let Some(step) = self.locked().last() {
-            fill(&row, &step.row())?;
+        let out = PyDict::new(py);
+        if let Some(row) = detached(py, || self.locked().last().map(|step| step.row()))? {
+            fill(&out, &row)?;
         }
-        Ok(row)
+        Ok(out)
     }
 
     /// A field of the last row: pressure, gap, displacement, contact.
     fn field<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        let march = self.locked();
-        let Some(step) = march.last() else {
-            return Err(CaseError::new_err("there is no row yet: advance first"));
-        };
-        let shape = march.simulation().grid.shape();
-        let map = |write: &dyn Fn(&mut ndarray::Array2<f64>)| -> Bound<'py, PyArray2<f64>> {
+        let names = ["pressure", "gap", "displacement", "contact"].map(|name| (name, name));
+        let name = choose("field", name, &names)?;
+        let found = detached(py, || {
+            let march = self.locked();
+            let step = march.last()?;
+            let shape = march.simulation().grid.shape();
+            if name == "contact" {
+                let mut states = ndarray::Array2::<u8>::zeros(shape);
+                step.contact_into(&mut states);
+                return Some(Map::Contact(states));
+            }
             let mut field = ndarray::Array2::zeros(shape);
-            write(&mut field);
-            field.into_pyarray(py)
-        };
-        Ok(match name {
-            "pressure" => step.pressure().to_owned().into_pyarray(py).into_any(),
-            "gap" => map(&|field| step.gap_into(field)).into_any(),
-            "displacement" => map(&|field| step.displacement_into(field)).into_any(),
-            "contact" => {
-                let mut field = ndarray::Array2::<u8>::zeros(shape);
-                step.contact_into(&mut field);
-                field.into_pyarray(py).into_any()
+            match name {
+                "gap" => step.gap_into(&mut field),
+                "displacement" => step.displacement_into(&mut field),
+                _ => field.assign(&step.pressure()),
             }
-            other => {
-                let words = "'pressure', 'gap', 'displacement' or 'contact'";
-                return Err(CaseError::new_err(format!("field is '{other}', but must be {words}")));
-            }
-        })
+            Some(Map::Real(field))
+        })?;
+        match found {
+            Some(Map::Real(field)) => Ok(field.into_pyarray(py).into_any()),
+            Some(Map::Contact(states)) => Ok(states.into_pyarray(py).into_any()),
+            None => Err(CaseError::new_err("there is no row yet: advance first")),
+        }
     }
+}
+
+/// A field on its way to Python.
+enum Map {
+    Real(ndarray::Array2<f64>),
+    Contact(ndarray::Array2<u8>),
 }
 
 impl March {

@@ -72,14 +72,17 @@ pub fn pair(
 ) -> asperity::Result<(Creep, Vec<ThermalCreep>)> {
     let (mut creep, mut thermal) = (Creep::default(), Vec::new());
     for body in bodies {
-        match (&body.shift, temperatures) {
-            (Some(shift), [first, rest @ ..]) if rest.iter().all(|point| point.1 == first.1) => {
+        let clock = match &body.shift {
+            Some(shift) if !temperatures.is_empty() => {
+                Some((shift, ReducedTime::new(shift.clone(), temperatures)?))
+            }
+            _ => None,
+        };
+        match (clock, temperatures) {
+            (Some((shift, _)), [first, rest @ ..]) if rest.iter().all(|point| point.1 == first.1) => {
                 creep = creep.sum(&stretched(&body.inner, shift.factor(first.1)?)?.contact_creep()?);
             }
-            (Some(shift), [_, ..]) => {
-                let clock = ReducedTime::new(shift.clone(), temperatures)?;
-                thermal.push(ThermalCreep { creep: body.inner.contact_creep()?, clock });
-            }
+            (Some((_, clock)), _) => thermal.push(ThermalCreep { creep: body.inner.contact_creep()?, clock }),
             _ => creep = creep.sum(&body.inner.contact_creep()?),
         }
     }

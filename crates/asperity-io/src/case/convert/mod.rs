@@ -75,7 +75,9 @@ pub fn case(
     }
     let scheme = time::scheme(document.time.value.scheme);
     if let Some(pair) = &pair {
-        output::possible(&mut checks, &document.solver, &document.output, scheme, pair.hardness.is_finite());
+        let capped =
+            pair.hardness.is_finite() || hardness.as_ref().is_some_and(|hardness| hardness.map.is_some());
+        output::possible(&mut checks, &document.solver, &document.output, scheme, capped);
     }
     let fields = match (scheme, &pair) {
         (_, None) => 0,

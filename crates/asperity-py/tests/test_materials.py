@@ -1,0 +1,222 @@
+"""Materials: fractional models, fits, shifts, and temperatures that change."""
+
+import copy
+import math
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import asperity as asp
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+T = np.geomspace(1e-2, 1e3, 60)
+PMMA = dict(equilibrium=1973e6, terms=[(254.776e6, 8.93), (263.6628e6, 117.96)])
+WLF = dict(c1=8.86, c2=101.6, reference=293.15)
+
+
+def test_a_relaxation_test_gives_the_material_back():
+    pmma = asp.Prony(**PMMA, poisson=0.38)
+    fit = asp.fit_relaxation(T, pmma.relaxation_modulus(T), poisson=0.38, hardness=300e6, name="PMMA")
+    # Exact data: what is left is the fit's own tolerance (some 1e-6).
+    assert fit.max_misfit < 1e-5 and len(fit.terms) == 2 and fit.equilibrium == pytest.approx(1973e6, rel=1e-4)
+    assert [time for _, time in fit.terms] == pytest.approx([8.93, 117.96], rel=1e-3)
+    assert fit.window == (T[0], T[-1]) and fit.shift is None and "prony" in fit.case_block
+    material = fit.material
+    assert isinstance(material, asp.Prony) and material.contact_compliance(5.0) == pytest.approx(pmma.contact_compliance(5.0), rel=1e-5)
+    table = fit.table()
+    assert np.array_equal(table["time"], T) and np.abs(table["relaxation_modulus_misfit"]).max() == pytest.approx(fit.max_misfit, rel=1e-6)
+
+
+def test_a_creep_test_gives_the_material_back():
+    burgers = asp.Burgers(shear=1e6, relaxation_time=200.0, shear_kelvin=2e6, retardation_time=5.0, poisson=0.5)
+    fit = asp.fit_creep(T, burgers.creep_compliance(T), modulus="shear", poisson=0.5)
+    assert fit.max_misfit < 1e-4 and fit.instantaneous == pytest.approx(1e-6, rel=1e-3)
+    assert fit.fluidity == pytest.approx(1 / (1e6 * 200.0), rel=1e-2)
+    assert fit.material.creep_compliance(20.0) == pytest.approx(float(burgers.creep_compliance(20.0)), rel=1e-4)
+
+
+def test_a_dma_at_several_temperatures_becomes_a_master_curve():
+    shift = asp.wlf(**WLF)
+    rubber = asp.FractionalZener(
+        shear_equilibrium=1e6, shear_instantaneous=1e9, time=1e-6, order=0.5, window=(1e-12, 1e4), poisson=0.5
+    )
+    f = np.geomspace(0.1, 100, 13)
+    kelvin = np.repeat([263.15, 273.15, 283.15, 293.15, 303.15], len(f))
+    frequency = np.tile(f, 5)
+    storage, loss = rubber.storage_loss(2 * np.pi * frequency * shift.factor(kelvin))
+    given = asp.fit_dma(frequency, storage, loss, temperature=kelvin, shift=shift, modulus="shear", poisson=0.5)
+    assert given.shift == shift and given.temperatures == pytest.approx([263.15, 273.15, 283.15, 293.15, 303.15])
+    # Three terms per decade of time follow a fractional spectrum to about a percent.
+    assert given.max_misfit < 0.03
+    assert given.x.min() == pytest.approx(2 * np.pi * 0.1 * float(shift.factor(303.15)), rel=1e-12)
+    estimated = asp.fit_dma(frequency, storage, loss, temperature=kelvin, shift="estimated", reference=293.15, modulus="shear")
+    assert math.log10(float(estimated.shift.factor(263.15) / shift.factor(263.15))) == pytest.approx(0, abs=0.05)
+    # In any order of rows.
+    order = np.random.default_rng(1).permutation(5)
+    shuffled = np.concatenate([np.arange(k * 13, k * 13 + 13) for k in order])
+    again = asp.fit_dma(frequency[shuffled], storage[shuffled], loss[shuffled], temperature=kelvin[shuffled], shift=shift, modulus="shear")
+    assert again.terms == given.terms
+    with pytest.raises(asp.CaseError, match=r"5 temperatures.*asperity\.wlf"):
+        asp.fit_dma(frequency, storage, loss, temperature=kelvin)
+
+
+def test_a_file_is_fitted_as_the_command_does(tmp_path):
+    path = EXAMPLES / "data" / "rubber-dma.csv"
+    if not path.exists():
+        pytest.skip("the examples are not here")
+    fit = asp.fit_file(path, modulus="shear", shift=asp.wlf(**WLF), bulk_modulus=2e9)
+    assert fit.kind == "dma" and len(fit.temperatures) == 8 and 0.01 < fit.rms_misfit < 0.03 and fit.noise == pytest.approx(0.02, rel=0.3)
+    told = asp.check(EXAMPLES / "rubber-dma.toml")["materials"][0]
+    assert fit.max_misfit == told["max_misfit"] and fit.rms_misfit == told["rms_misfit"] and len(fit.x) == told["points"]
+    by_hand = asp.fit_file(path, kind="dma", columns={"frequency": 2, "storage": "G' [MPa]"}, units={"loss": "MPa"}, modulus="shear", shift=asp.wlf(**WLF))
+    assert by_hand.terms == fit.terms
+    with pytest.raises(OSError, match="none.csv"):
+        asp.fit_file(tmp_path / "none.csv", kind="dma")
+    (tmp_path / "bad.csv").write_text("t [s], E [MPa]\n1, 3\n2, x\n")
+    with pytest.raises(asp.CaseError, match="line 3"):
+        asp.fit_file(tmp_path / "bad.csv")
+    with pytest.raises(asp.CaseError, match="stress"):
+        asp.fit_file(path, columns={"stress": 1})
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: asp.fit_relaxation([1.0, 2.0, 2.0], [3.0, 2.0, 1.0]), "point 3"),
+        (lambda: asp.fit_relaxation([1.0, 2.0, 3.0], [3.0, -2.0, 1.0]), "point 2"),
+        (lambda: asp.fit_relaxation([1.0, 2.0, 3.0], [1.0, 2.0, 4.0]), "point"),
+        (lambda: asp.fit_relaxation([1.0, np.nan, 3.0], [3.0, 2.0, 1.0]), "point 2"),
+        (lambda: asp.fit_relaxation([1.0], [3.0]), "points"),
+        (lambda: asp.fit_relaxation([], []), "points|real numbers"),
+        (lambda: asp.fit_relaxation([1.0, 2.0], [3.0]), "1 values for 2 points"),
+        (lambda: asp.fit_relaxation("1 s", [3.0]), "time"),
+        (lambda: asp.fit_relaxation([1.0, 2.0], [3.0, 2.0], modulus="bulk"), "'young' or 'shear'"),
+        (lambda: asp.fit_relaxation([1.0, 2.0], [3.0, 2.0], shift="wlf"), "asperity.wlf"),
+        (lambda: asp.fit_relaxation([1.0, 2.0], [3.0, 2.0], shift="estimated"), "reference"),
+        (lambda: asp.fit_relaxation([1.0, 2.0], [3.0, 2.0], reference=300.0), "reference"),
+        (lambda: asp.fit_relaxation([1.0, 2.0], [3.0, 2.0], long_time="liquid"), "'fluid'"),
+        (lambda: asp.fit_relaxation([1.0, 2.0], [3.0, 2.0], per_decade=1e9), "decade"),
+        (lambda: asp.fit_relaxation([1.0, 2.0], [3.0, 2.0], max_terms=0), "max_terms"),
+        (lambda: asp.fit_relaxation([1.0, 2.0], [3.0, 2.0], window=(5.0, 6.0)), "window"),
+        (lambda: asp.fit_relaxation([1.0, 2.0], [3.0, 2.0], temperature=[300.0]), "temperature"),
+        (lambda: asp.fit_relaxation([1.0, 2.0, 3.0, 4.0, 5.0], [5.0, 4.0, 3.0, 2.0, 1.0], temperature=[300.0, 300.9, 301.8, 302.7, 303.6], shift=asp.wlf(**WLF)), "held temperatures"),
+        (lambda: asp.fit_relaxation([1.0, 2.0], [3.0, 2.0]).material, "poisson"),
+        (lambda: asp.wlf(c1=-1.0, c2=50.0, reference=300.0), "c1"),
+        (lambda: asp.wlf(c1=10.0, c2=50.0, reference=300.0).factor(240.0), "240"),
+        (lambda: asp.arrhenius(activation_energy=0.0, reference=300.0), "activation"),
+        (lambda: asp.shift_table([(300.0, 0.0)]), "at least 2"),
+        (lambda: asp.Elastic(young=1e6, poisson=0.5, temperature=300.0), "shift"),
+        (lambda: asp.Elastic(young=1e6, poisson=0.5, shift="wlf"), "shift"),
+    ],
+)
+def test_wrong_data_are_named(make, words):
+    with pytest.raises(asp.CaseError, match=words):
+        make()
+
+
+def test_fractional_models_keep_their_tolerance():
+    # J of a fractional Maxwell element: (1 + (t/tau)^a / Gamma(1 + a)) / G.
+    t = np.geomspace(1e-2, 1e2, 9)
+    element = asp.FractionalMaxwell(shear=2e6, time=3.0, order=0.5, window=(1e-2, 1e2), tolerance=1e-4, poisson=0.5)
+    exact = (1 + (t / 3.0) ** 0.5 / math.gamma(1.5)) / 2e6
+    assert element.error <= 1e-4
+    assert np.max(np.abs(element.creep_compliance(t) / exact - 1)) <= 1.01 * element.error
+    assert asp.Elastic(young=1e6, poisson=0.5).error is None
+
+
+def test_storage_and_loss_are_those_of_the_series():
+    pmma = asp.Prony(**PMMA, poisson=0.38)
+    w = np.geomspace(1e-3, 1e2, 11)
+    z = [1j * w * t for _, t in PMMA["terms"]]
+    exact = PMMA["equilibrium"] + sum(e * x / (1 + x) for (e, _), x in zip(PMMA["terms"], z))
+    storage, loss = pmma.storage_loss(w)
+    # Through the creep function and back.
+    assert storage == pytest.approx(exact.real, rel=1e-11) and loss == pytest.approx(exact.imag, rel=1e-9)
+
+
+def test_a_constant_temperature_stretches_all_times():
+    shift = asp.wlf(**WLF)
+    sphere = asp.Surface.sphere(cells=(32, 32), size=(1e-3, 1e-3), radius=10e-3)
+    zener = dict(shear=1e6, shear_kelvin=1e6, poisson=0.5)
+    factor = float(shift.factor(283.15))
+    kw = dict(load=1e-3, times=asp.uniform(10.0, 10), progress=False)
+    cold = asp.solve(sphere, asp.Zener(**zener, retardation_time=2.0, shift=shift), temperature=283.15, **kw)
+    slow = asp.solve(sphere, asp.Zener(**zener, retardation_time=2.0 * factor), **kw)
+    assert cold.approach == pytest.approx(slow.approach, rel=1e-12)
+    own = asp.solve(sphere, asp.Zener(**zener, retardation_time=2.0, shift=shift, temperature=283.15), **kw)
+    assert np.array_equal(own.approach, cold.approach)
+    table = asp.solve(sphere, asp.Zener(**zener, retardation_time=2.0, shift=shift), temperature=[(0.0, 283.15), (5.0, 283.15)], **kw)
+    assert np.array_equal(table.approach, cold.approach)
+    reference = asp.solve(sphere, asp.Zener(**zener, retardation_time=2.0, shift=shift), **kw)
+    assert np.array_equal(reference.approach, asp.solve(sphere, asp.Zener(**zener, retardation_time=2.0), **kw).approach)
+    with pytest.raises(asp.CaseError, match="shift"):
+        asp.solve(sphere, asp.Zener(**zener, retardation_time=2.0), temperature=300.0, **kw)
+    with pytest.raises(asp.CaseError, match="shift"):
+        asp.solve(sphere, asp.Zener(**zener, retardation_time=2.0, shift=shift, temperature=300.0), temperature=300.0, **kw)
+    for wrong in (-5.0, [(0.0, 300.0), (-1.0, 300.0)], [(1.0, 300.0)], "20 degC", [], float("nan")):
+        with pytest.raises(asp.CaseError):
+            asp.solve(sphere, asp.Zener(**zener, retardation_time=2.0, shift=shift), temperature=wrong, **kw)
+
+
+def test_a_warming_body_has_the_bits_of_the_case(tmp_path, monkeypatch):
+    case = tmp_path / "warm.toml"
+    case.write_text("""
+[domain]
+cells = [32, 32]
+size = ["1 mm", "1 mm"]
+[[surface]]
+kind = "sphere"
+radius = "10 mm"
+[[body]]
+poisson = 0.5
+material = { model = "zener", shear = "1 MPa", shear_kelvin = "1 MPa", retardation_time = "2 s", shift = { model = "wlf", c1 = 8.86, c2 = "101.6 K", reference = "293.15 K" } }
+[[body]]
+poisson = 0.3
+material = { model = "elastic", young = "100 MPa" }
+[load]
+control = "load"
+history = { kind = "step", value = "1 mN" }
+[temperature]
+history = { kind = "ramp", from = "283.15 K", to = "303.15 K", duration = "5 s" }
+[time]
+end = "10 s"
+steps = 10
+""")
+    monkeypatch.chdir(tmp_path)
+    stored = asp.run(case)
+    sphere = asp.Surface.sphere(cells=(32, 32), size=(1e-3, 1e-3), radius=10e-3)
+    rubber = asp.Zener(shear=1e6, shear_kelvin=1e6, retardation_time=2.0, poisson=0.5, shift=asp.wlf(**WLF))
+    here = asp.solve(
+        sphere, [rubber, asp.Elastic(young=100e6, poisson=0.3)], load=1e-3, times=asp.uniform(10.0, 10),
+        temperature=[(0.0, 283.15), (5.0, 303.15)], progress=False,
+    )
+    for name in asp._result.ROW:
+        assert np.array_equal(getattr(stored, name), getattr(here, name)), name
+
+
+def test_fits_shifts_and_materials_are_shown_copied_and_pickled():
+    shift = asp.wlf(**WLF)
+    fit = asp.fit_relaxation(T, asp.Prony(**PMMA, poisson=0.38).relaxation_modulus(T), poisson=0.38)
+    material = asp.Maxwell(young=1e6, relaxation_time=1.0, poisson=0.5, shift=shift)
+    for way in (copy.copy, copy.deepcopy, lambda value: pickle.loads(pickle.dumps(value))):
+        assert way(shift) == shift and way(material) == material
+        assert way(fit).terms == fit.terms and way(fit).material == fit.material
+    assert eval(repr(shift), vars(asp)) == shift and eval(repr(material), vars(asp)) == material
+    table = asp.shift_table([(283.15, 1.0), (293.15, 0.0)])
+    assert eval(repr(table), vars(asp)).factor(288.15) == pytest.approx(float(table.factor(288.15)), rel=1e-14)
+    assert "<table>" in fit._repr_html_() and "relaxation_time" in material._repr_html_() and "2 terms" in repr(fit)
+
+
+def test_fits_are_drawn():
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    rubber = asp.Prony(equilibrium=1e6, terms=[(5e6, 0.01), (2e6, 1.0)], poisson=0.5)
+    f = np.geomspace(0.01, 100, 41)
+    ax = asp.fit_dma(f, *rubber.storage_loss(2 * np.pi * f)).plot()
+    assert ax.get_xlabel() == "angular frequency [rad/s]" and "[Pa]" in ax.get_ylabel()
+    assert asp.fit_creep(T, rubber.creep_compliance(T), modulus="shear").plot().get_ylabel() == "J(t) [1/Pa]"
+    plt.close("all")

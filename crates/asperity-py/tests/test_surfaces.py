@@ -1,0 +1,167 @@
+"""Surfaces: each step of a preparation, its record, and the statistics."""
+
+import copy
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import asperity as asp
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
+
+
+@pytest.fixture(scope="module")
+def rough():
+    return asp.Surface.self_affine(cells=(64, 48), size=(1e-3, 7.5e-4), hurst=0.7, rms_gradient=0.1, longest=5e-4, shortest=6e-5, seed=3)
+
+
+def test_steps_do_what_numpy_says(rough):
+    z = rough.heights
+    assert np.array_equal(rough.flip("x").heights, z[::-1]) and np.array_equal(rough.flip("y").heights, z[:, ::-1])
+    assert np.array_equal(rough.invert().heights, -z)
+    turned = rough.rotate(1)
+    assert turned.cells == (48, 64) and turned.size == rough.size[::-1]
+    assert np.array_equal(rough.rotate(2).heights, z[::-1, ::-1]) and np.array_equal(turned.rotate(-1).heights, z)
+    part = rough.crop(cells=(16, 8), start=(4, 2))
+    assert np.array_equal(part.heights, z[4:20, 2:10]) and part.size == pytest.approx((16 * rough.size[0] / 64, 8 * rough.size[1] / 48))
+    assert np.array_equal(rough.crop(cells=(16, 8)).heights, z[24:40, 20:28])
+    assert rough.crop(size=(5e-4, 3.75e-4), corner=(0.0, 0.0)).cells == (32, 24)
+    assert rough.level("mean").heights.mean() == pytest.approx(0, abs=1e-20)
+    x = np.arange(64)[:, None] * 1e-8
+    assert np.allclose(asp.Surface(z + x, size=rough.size).level("plane").heights, rough.level("plane").heights, atol=1e-18)
+    # The surface has no waves beyond its band: a finer grid holds the same ones, and going back gives it back.
+    assert np.allclose(rough.resample((128, 96)).resample((64, 48)).heights, z, atol=1e-12 * np.abs(z).max())
+    low, high = rough.filter(shortest=1.5e-4), rough.filter(longest=1.5e-4)
+    assert low.statistics()["sdq"] < rough.statistics()["sdq"] and np.abs(high.heights).max() < np.abs(z).max()
+    assert rough.window("tukey", share=0.2).heights[0, 0] == pytest.approx(0, abs=1e-3 * np.abs(z).max())
+
+
+def test_holes_and_spikes(rough):
+    z = rough.heights.copy()
+    z[10:12, 10:12] = np.nan
+    z[30, 30] += 1e-3
+    holed = asp.Surface(z, size=rough.size)
+    clean = holed.outliers(8.0).fill("harmonic", share=0.1)
+    assert np.isfinite(clean.heights).all() and abs(clean.heights[30, 30] - rough.heights[30, 30]) < 1e-5
+    assert len(clean.history) == 2
+    assert "1 removed" in clean.history[0] and "5 filled" in clean.history[1]
+    assert holed.crop(defined=True).cells == rough.cells
+    with pytest.raises(asp.CaseError, match="share|0.0001|0.01 %"):
+        holed.fill(share=1e-4)
+    with pytest.raises(asp.CaseError, match="fill"):
+        holed.gap()
+    words = holed.process("outliers=8", "fill=harmonic share=0.1")
+    assert np.array_equal(words.heights, clean.heights) and words.history == clean.history
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda s: s.level("plain"), 'did you mean "plane"'),
+        (lambda s: s.flip("z"), "x"),
+        (lambda s: s.crop(), "one of them"),
+        (lambda s: s.crop(cells=(4, 4), defined=True), "one of them"),
+        (lambda s: s.crop(cells=(1000, 4)), "1000"),
+        (lambda s: s.crop(cells=(4, 4.5)), "whole"),
+        (lambda s: s.crop(size=(1.0, 1.0)), "crop|keep|cells"),
+        (lambda s: s.resample((0, 4)), "at least 1"),
+        (lambda s: s.resample((10**9, 10**9)), "."),
+        (lambda s: s.resample((8, 8), method="cubic"), "bilinear"),
+        (lambda s: s.filter(), "longest|shortest"),
+        (lambda s: s.filter(longest=-1.0), "longest"),
+        (lambda s: s.filter(longest=float("nan")), "."),
+        (lambda s: s.window("kaiser"), "hann"),
+        (lambda s: s.outliers(0.0), "threshold"),
+        (lambda s: s.rotate(1.5), "whole"),
+        (lambda s: s.process("polish=1"), "polish"),
+        (lambda s: s.bearing_curve(1), "levels"),
+        (lambda s: s.height_distribution(0), "bins"),
+        (lambda s: s.statistics(longest=1e-5, shortest=2e-4), "."),
+    ],
+)
+def test_wrong_steps_are_named(rough, make, words):
+    with pytest.raises(asp.CaseError, match=words):
+        make(rough)
+
+
+def test_statistics_are_those_of_the_command_and_of_numpy(rough):
+    z = rough.heights - rough.heights.mean()
+    told = rough.statistics()
+    assert told["sa"] == pytest.approx(np.abs(z).mean(), rel=1e-12) and told["ssk"] == pytest.approx((z**3).mean() / told["sq"] ** 3, rel=1e-10)
+    assert told["sz"] == pytest.approx(told["sp"] + told["sv"], rel=1e-12) == pytest.approx(np.ptp(z), rel=1e-12)
+    assert told["bandwidth"] == pytest.approx(told["m0"] * told["m4"] / told["m2"] ** 2, rel=1e-12)
+    # 5e-4 m to 6e-5 m is less than a decade of a small surface: the exponent is known to a few tenths.
+    assert told["hurst"] == pytest.approx(0.7, abs=0.4) and told["hurst_error"] > 0
+    banded = rough.statistics(longest=4e-4, shortest=8e-5)
+    assert banded["hurst"] != told["hurst"] and banded["sq"] == told["sq"]
+    heights, share = rough.bearing_curve(50)
+    assert share[0] == 1.0 and np.all(np.diff(share) <= 0) and share[10] == pytest.approx((rough.heights >= heights[10]).mean(), abs=1e-15)
+    at, density = rough.height_distribution(20)
+    assert density.sum() * (at[1] - at[0]) == pytest.approx(1, rel=1e-9)
+    correlation = rough.autocorrelation()
+    assert correlation.values[32, 24] == pytest.approx(1, rel=1e-12) and correlation.x[32] == 0 == correlation.y[24]
+    shifted = (z * np.roll(z, 3, axis=0)).mean() / (z**2).mean()
+    assert correlation.values[35, 24] == pytest.approx(shifted, rel=1e-9)
+    assert 0 < correlation.texture_aspect_ratio <= 1 and correlation.length > 0
+
+
+def test_a_lay_and_a_height_distribution():
+    kw = dict(cells=(128, 128), size=(1e-3, 1e-3), hurst=0.8, rms_height=1e-6, longest=2e-4, shortest=2e-5, seed=1)
+    lay = asp.Surface.self_affine(**kw, lay_angle=0.0, lay_ratio=8.0)
+    dx, dy = (np.diff(lay.heights, axis=axis).std() for axis in (0, 1))
+    assert dx < 0.35 * dy, "the lay runs along x: heights change slowly along it"
+    skewed = asp.Surface.self_affine(**kw, skewness=-1.0, kurtosis=5.0).statistics()
+    assert skewed["ssk"] == pytest.approx(-1, abs=0.02) and skewed["sku"] == pytest.approx(5, abs=0.1)
+    with pytest.raises(asp.CaseError, match="2000|cells|shortest"):
+        asp.Surface.contact_mechanics_challenge(cells=(64, 64))
+
+
+def test_a_measured_surface_is_prepared_as_in_the_case(tmp_path):
+    path = EXAMPLES / "data" / "ground-steel.x3p"
+    if not path.exists():
+        pytest.skip("the examples are not here")
+    raw = asp.Surface.read(path)
+    assert np.isnan(raw.heights).any()
+    steel = raw.level("plane").outliers(8, radius=2).level("plane").fill("harmonic").window("tukey", share=0.1)
+    # The file says itself how it was made.
+    assert len(steel.history) == len(raw.history) + 5
+    told = asp.check(EXAMPLES / "ground-steel.toml")
+    assert told["cells"] == list(steel.cells) and told["size"] == pytest.approx(steel.size)
+    result = asp.run(EXAMPLES / "ground-steel.toml", set={"time.steps": 1, "output.every": 1}, output=tmp_path / "steel.zarr")
+    assert np.array_equal(result.initial_gap, steel.gap())
+    short = asp.Surface.read(path, level="plane", fill="nearest")
+    assert np.isfinite(short.heights).all() and len(short.history) == len(raw.history) + 2
+    # The record travels with the file.
+    steel.write(tmp_path / "steel.x3p")
+    assert asp.Surface.read(tmp_path / "steel.x3p").history == steel.history
+
+
+def test_surfaces_are_shown_copied_and_pickled(rough):
+    steps = rough.flip("x")
+    for way in (copy.copy, copy.deepcopy, lambda value: pickle.loads(pickle.dumps(value))):
+        again = way(steps)
+        assert np.array_equal(again.heights, steps.heights) and again.size == steps.size and again.history == steps.history
+    assert "<table>" in steps._repr_html_() and "flip" in steps._repr_html_()
+
+
+def test_surfaces_are_drawn(rough):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    assert rough.plot.heights().get_xlabel() == "x [mm]"
+    assert rough.plot.power_spectrum().get_ylabel() == "power spectrum C [m⁴]"
+    assert rough.plot.bearing_curve().get_ylabel().startswith("height [")
+    plt.close("all")
+
+
+def test_a_topography_of_surfacetopography_is_a_surface(rough):
+    topography = pytest.importorskip("SurfaceTopography")
+    theirs = topography.Topography(rough.heights * 1e6, tuple(length * 1e6 for length in rough.size), unit="µm", periodic=True)
+    kw = dict(pressure=1e4, times=[1.0], boundary="periodic", progress=False)
+    material = asp.Elastic(young=1e8, poisson=0.3)
+    ours, other = (asp.solve(surface, material, **kw) for surface in (rough, theirs))
+    # The factor of the unit rounds the heights.
+    assert other.approach == pytest.approx(ours.approach, rel=1e-6)

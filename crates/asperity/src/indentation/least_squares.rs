@@ -7,6 +7,11 @@ use crate::error::{Error, Result};
 
 /// Steps of the central differences, in logarithms: the model's own steps are 1e-5 of its values.
 const STEP: f64 = 1e-2;
+/// Steps of the one-sided differences on the way.
+const SIDESTEP: f64 = 3e-3;
+/// Gains of the sum of squares that are slow, and how many of them in a row end the search.
+const SLOW: f64 = 1e-4;
+const PATIENCE: usize = 3;
 /// Longest move of a parameter: a factor of e.
 const LONGEST: f64 = 1.0;
 const MOST_ITERATIONS: usize = 60;
@@ -38,8 +43,8 @@ pub(super) fn solve(model: &Model, parameters: &Parameters, start: Vec<f64>) -> 
     }
     let mut at = start;
     let mut residuals = model.residuals(parameters, &at)?;
-    let mut columns = jacobian(model, parameters, &at)?;
-    let mut damping = 1e-3;
+    let mut columns = slopes(model, parameters, &at, &residuals)?;
+    let (mut damping, mut slow) = (1e-3, 0);
     for _ in 0..MOST_ITERATIONS {
         let (normal, gradient) = system(&columns, &residuals);
         let Some(step) = damped_step(&normal, &gradient, damping) else {
@@ -60,10 +65,11 @@ pub(super) fn solve(model: &Model, parameters: &Parameters, start: Vec<f64>) -> 
                 let gain = 1.0 - squares(&moved) / squares(&residuals);
                 (at, residuals) = (trial, moved);
                 damping = (damping * 0.2).max(1e-12);
-                if gain < 1e-7 && longest < 1e-3 {
+                slow = if gain < SLOW { slow + 1 } else { 0 };
+                if slow == PATIENCE || (gain < 1e-7 && longest < 1e-3) {
                     break;
                 }
-                columns = jacobian(model, parameters, &at)?;
+                columns = slopes(model, parameters, &at, &residuals)?;
             }
             None => {
                 damping *= 8.0;
@@ -84,6 +90,20 @@ pub(super) fn solve(model: &Model, parameters: &Parameters, start: Vec<f64>) -> 
     let k = at.len();
     let covariance = covariance.unwrap_or_else(|| vec![vec![f64::INFINITY; k]; k]);
     Ok(Solution { at, residuals, deviations, covariance })
+}
+
+/// Columns of dr/dx by one-sided differences, to go on with.
+fn slopes(model: &Model, parameters: &Parameters, at: &[f64], residuals: &[f64]) -> Result<Vec<Vec<f64>>> {
+    let column = |k: usize| {
+        let moved = |by: f64| {
+            let mut there = at.to_vec();
+            there[k] += by;
+            model.residuals(parameters, &there).map(|there| (there, by))
+        };
+        let (there, by) = moved(SIDESTEP).or_else(|_| moved(-SIDESTEP))?;
+        Ok(there.iter().zip(residuals).map(|(there, here)| (there - here) / by).collect())
+    };
+    (0..at.len()).into_par_iter().map(column).collect()
 }
 
 /// Columns of dr/dx by central differences; one-sided where the model cannot go one way.

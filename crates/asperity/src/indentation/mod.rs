@@ -241,6 +241,14 @@ fn best_of(model: &Model, terms: usize, long_time: LongTime) -> Result<(Solution
     let mut best: Option<(Solution, Parameters)> = None;
     let mut refused = None;
     for solid in solids {
+        // An equilibrium modulus that is known to 30 % and bears a share of the load is not 0.
+        let known = |(solution, of): &(Solution, Parameters)| {
+            let share = solution.at[0].exp() / of.relaxation(&solution.at).instantaneous();
+            of.solid && solution.deviations[0] < 0.3 && share > 1e-3
+        };
+        if best.as_ref().is_some_and(known) {
+            break;
+        }
         let parameters = Parameters { solid: *solid, terms, touch: model.fits_touch() };
         let found = start::start(model, &parameters).and_then(|start| solve(model, &parameters, start));
         match found {

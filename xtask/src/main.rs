@@ -18,8 +18,21 @@ cargo xtask TASK
 ";
 
 /// What the Python side of the tests and figures imports.
-const PYTHON_PACKAGES: [&str; 8] =
-    ["numpy", "xarray", "zarr", "h5py", "matplotlib", "maturin", "pytest", "mypy"];
+const PYTHON_PACKAGES: [&str; 12] = [
+    "numpy",
+    "xarray",
+    "zarr",
+    "h5py",
+    "matplotlib",
+    "maturin",
+    "pytest",
+    "mypy",
+    // studies on a cluster, and the notebooks
+    "distributed",
+    "nbclient",
+    "nbformat",
+    "ipykernel",
+];
 
 type Done = Result<(), String>;
 

@@ -154,7 +154,9 @@ class SurfacePlots:
         """Radially averaged power spectrum over wavenumber, both logarithmic."""
         q, c = self._surface.power_spectrum(per_decade)
         ax = _axes(ax)
-        ax.loglog(q[c > 0], c[c > 0], ".-")
+        # Below is the rounding of the transform, where a synthetic surface has no waves.
+        seen = c > 1e-20 * np.max(c, initial=0.0)
+        ax.loglog(q[seen], c[seen], ".-")
         ax.set_xlabel("wavenumber q [1/m]")
         ax.set_ylabel("power spectrum C [m⁴]")
         return ax

@@ -162,6 +162,7 @@ pub fn save(
         version: env!("CARGO_PKG_VERSION").to_owned(),
         grid,
         fields: stacks.iter().map(Stack::kind).collect(),
+        quantities: vec![],
         rows_expected: Some(rows.len()),
         setup,
     };

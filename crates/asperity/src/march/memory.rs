@@ -137,7 +137,7 @@ fn mean_square_growth(x: f64) -> f64 {
             power *= -x;
             factorial *= f64::from(k);
             two *= 2.0;
-            sum -= power * (two - 2.0) / (factorial * x);
+            sum += power * (two - 2.0) / (factorial * x);
         }
         sum
     } else {

@@ -238,7 +238,7 @@ impl Case {
             let possible = |quantity: &Quantity| {
                 let alone = Quantities { list: vec![*quantity], ..wanted.clone() };
                 let known = !(quantity.is_energy() && simulation.scheme == Scheme::Direct);
-                known && alone.columns(&simulation.grid, &simulation.gap, simulation.hardness).is_ok()
+                known && simulation.columns_of(&alone).is_ok()
             };
             wanted.list = Quantity::ALL.into_iter().filter(possible).collect();
         }

@@ -34,11 +34,11 @@ impl Solution {
 
 /// Minimises the residuals from `start`.
 pub(super) fn solve(model: &Model, parameters: &Parameters, start: Vec<f64>) -> Result<Solution> {
-    if model.times.len() < 2 * parameters.len() {
+    if model.compared() < 2 * parameters.len() + 2 {
         return Err(Error::invalid(
             "number of rows of the record",
-            model.times.len(),
-            format!("at least {} for {} terms", 2 * parameters.len(), parameters.terms),
+            format!("{} with load", model.compared()),
+            format!("at least {} for {} terms", 2 * parameters.len() + 2, parameters.terms),
         ));
     }
     let mut at = start;

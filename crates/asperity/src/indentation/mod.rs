@@ -128,7 +128,8 @@ pub struct IndentationFit {
     pub touch: Interval,
     /// The channel that was taken as it is.
     pub given: Given,
-    /// Model of the other channel at each row that was used \[N or m\].
+    /// Model of the other channel at each row that was used \[N or m\]. Where the load is given and less than 2 % of the
+    /// largest, the depth of the surface: it is not compared with that of the indenter.
     pub predicted: Vec<f64>,
     /// Numbers of the rows that were used: every k-th of a long record.
     pub rows: Vec<usize>,
@@ -148,6 +149,8 @@ const FEWEST: usize = 10;
 /// More rows are thinned to about this number.
 const MANY: usize = 2000;
 const MOST: usize = 10_000_000;
+/// Larger numbers, and a load or depth less than one over it, nobody measures.
+const LARGEST: f64 = 1e30;
 /// More terms no single record determines.
 const MOST_TERMS: usize = 6;
 /// Loads below minus this share of the largest are no noise.
@@ -228,7 +231,8 @@ pub fn fit_indentation(
             "smaller, or a record that is longer or has more points in the beginning",
         ));
     }
-    Ok(report(&model, solution, &parameters, kept))
+    let predicted = model.predict(&parameters, &solution.at)?;
+    Ok(report(&model, solution, &parameters, kept, predicted))
 }
 
 /// Fits with `terms` terms: a solid, a fluid, or the better of both.
@@ -292,7 +296,13 @@ fn information(solution: &Solution, parameters: &Parameters) -> f64 {
     n * mean.ln() + parameters.len() as f64 * n.ln()
 }
 
-fn report(model: &Model, solution: Solution, parameters: &Parameters, rows: Vec<usize>) -> IndentationFit {
+fn report(
+    model: &Model,
+    solution: Solution,
+    parameters: &Parameters,
+    rows: Vec<usize>,
+    predicted: Vec<f64>,
+) -> IndentationFit {
     let half = |k: usize| {
         let freedom = solution.residuals.len() - parameters.len();
         least_squares::quantile(freedom) * solution.deviations[k]
@@ -330,12 +340,7 @@ fn report(model: &Model, solution: Solution, parameters: &Parameters, rows: Vec<
         terms,
         touch,
         given: model.given(),
-        predicted: model
-            .measured()
-            .iter()
-            .zip(&solution.residuals)
-            .map(|(m, r)| m + model.scale() * r)
-            .collect(),
+        predicted,
         rows,
         rms: solution.rms() * model.scale(),
         relative_rms: solution.rms(),
@@ -382,11 +387,13 @@ fn check(record: &IndentationRecord) -> Result<()> {
     }
     let columns = [("time", "s", record.times), ("load", "N", record.loads), ("depth", "m", record.depths)];
     for (name, unit, column) in columns {
-        if let Some((row, value)) = column.iter().enumerate().find(|(_, value)| !value.is_finite()) {
+        if let Some((row, value)) =
+            column.iter().enumerate().find(|(_, value)| value.is_nan() || value.abs() > LARGEST)
+        {
             return Err(Error::invalid(
                 format!("{name} of row {}", row + 1),
                 value,
-                format!("finite, in {unit}"),
+                format!("a number, at most {LARGEST:e} {unit}"),
             ));
         }
     }
@@ -399,7 +406,7 @@ fn check(record: &IndentationRecord) -> Result<()> {
     }
     let largest = |column: &[f64]| column.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     for (name, unit, column) in [("load", "N", record.loads), ("depth", "m", record.depths)] {
-        if largest(column) <= 0.0 {
+        if largest(column) < 1.0 / LARGEST {
             return Err(Error::invalid(
                 format!("largest {name}"),
                 format!("{} {unit}", largest(column)),

@@ -1,6 +1,6 @@
 //! The record as a function of the parameters.
 
-use super::{Given, IndentationOptions};
+use super::{Given, IndentationOptions, LARGEST};
 use crate::error::{Error, Result, positive};
 use crate::material::{Relaxation, RelaxationTerm};
 use crate::reference::{Mdr, MdrProfile, MdrTarget};
@@ -8,6 +8,9 @@ use crate::reference::{Mdr, MdrProfile, MdrTarget};
 /// Steps between two rows where the load is given: its response is of second order in them (under a given depth one
 /// step is exact).
 const SUBSTEPS: usize = 2;
+
+/// Loads below this share of the largest are none, where the load is given.
+const LOADED: f64 = 0.02;
 
 /// A record, and the rule that predicts one of its channels from the other.
 pub(super) struct Model {
@@ -22,6 +25,8 @@ pub(super) struct Model {
     reach: f64,
     /// Largest measured value of the predicted channel.
     scale: f64,
+    /// Rows where model and measurement are compared.
+    compared: Vec<bool>,
 }
 
 /// Which numbers are sought: \[ln E∞\], ln E_i, ln τ_i, \[depth of first touch over the largest depth\].
@@ -97,16 +102,35 @@ impl Model {
             MdrProfile::Sphere { radius } => positive("radius of the sphere", radius, "m")?,
             MdrProfile::Cone { slope } => positive("slope of the cone", slope, "")?,
         };
+        if let MdrProfile::Sphere { radius } = profile
+            && let Some(depth) = depths.iter().find(|depth| **depth > radius)
+        {
+            return Err(Error::invalid(
+                "depth",
+                format!("{depth:e} m"),
+                format!("less than the radius of the sphere, {radius:e} m (check their units)"),
+            ));
+        }
         let start = times[0];
         times.iter_mut().for_each(|time| *time -= start);
         let largest = |column: &[f64]| column.iter().copied().fold(0.0, f64::max);
         let reach = 1.05 * profile.reach(largest(&depths));
+        if !(1.0 / LARGEST..=LARGEST).contains(&reach) {
+            return Err(Error::invalid(
+                "radius of the largest contact",
+                format!("{reach:e} m"),
+                "one that can be measured (check the units of depth, radius and slope)",
+            ));
+        }
         let scale = match given {
             Given::Depth => largest(&loads),
             Given::Load => largest(&depths),
         };
+        // Without load a depth tells nothing: the indenter may be anywhere above the surface.
+        let least = LOADED * largest(&loads);
+        let compared = loads.iter().map(|load| given == Given::Depth || *load > least).collect();
         let (fit_touch, springs) = (options.fit_touch, options.springs);
-        Ok(Model { profile, times, loads, depths, given, fit_touch, springs, reach, scale })
+        Ok(Model { profile, times, loads, depths, given, fit_touch, springs, reach, scale, compared })
     }
 
     pub(super) fn given(&self) -> Given {
@@ -151,18 +175,29 @@ impl Model {
         }
     }
 
-    /// Model less measurement over the largest measured value, at each row.
+    /// Model less measurement over the largest measured value, at each row where they are compared.
     pub(super) fn residuals(&self, parameters: &Parameters, at: &[f64]) -> Result<Vec<f64>> {
+        let predicted = self.predict(parameters, at)?;
+        let rows =
+            predicted.iter().zip(self.measured()).zip(&self.compared).filter(|(_, compared)| **compared);
+        Ok(rows.map(|((model, measured), _)| (model - measured) / self.scale).collect())
+    }
+
+    /// Number of rows where model and measurement are compared.
+    pub(super) fn compared(&self) -> usize {
+        self.compared.iter().filter(|compared| **compared).count()
+    }
+
+    /// The channel that is not given, at each row.
+    pub(super) fn predict(&self, parameters: &Parameters, at: &[f64]) -> Result<Vec<f64>> {
         let relaxation = parameters.relaxation(at);
         let touch = if parameters.touch { self.depth_scale() * at[parameters.len() - 1] } else { 0.0 };
         let mut springs = Mdr::new(self.profile, &relaxation, self.reach, self.springs)?;
-        let mut residuals = Vec::with_capacity(self.times.len());
+        let mut predicted = Vec::with_capacity(self.times.len());
         for n in 0..self.times.len() {
             let dt = if n == 0 { 0.0 } else { self.times[n] - self.times[n - 1] };
             let value = match self.given {
-                Given::Depth => {
-                    springs.step(dt, MdrTarget::Approach(self.depths[n] - touch))?.load - self.loads[n]
-                }
+                Given::Depth => springs.step(dt, MdrTarget::Approach(self.depths[n] - touch))?.load,
                 Given::Load => {
                     let load = self.loads[n].max(0.0);
                     let before = if n == 0 { load } else { self.loads[n - 1].max(0.0) };
@@ -173,13 +208,13 @@ impl Model {
                         let target = MdrTarget::Load(before + share * (load - before));
                         depth = springs.step(dt / substeps as f64, target)?.approach;
                     }
-                    depth + touch - self.depths[n]
+                    depth + touch
                 }
             };
-            residuals.push(value / self.scale);
+            predicted.push(value);
         }
-        match residuals.iter().all(|r| r.is_finite()) {
-            true => Ok(residuals),
+        match predicted.iter().all(|value| (value / self.scale).abs() < 1e100) {
+            true => Ok(predicted),
             false => {
                 Err(Error::invalid("model of the record", "not finite", "finite (check units and radius)"))
             }

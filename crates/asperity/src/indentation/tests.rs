@@ -219,3 +219,40 @@ fn the_quantile_is_students() {
         assert!((least_squares::quantile(freedom) / value - 1.0).abs() < 1e-3, "{freedom}");
     }
 }
+
+#[test]
+fn any_numbers_are_answered() {
+    let mut noise = Noise(9);
+    let wild = [0.0, 1.0, -1.0, 1e300, -1e300, 1e-300, 5e-324, 1e-9, 1e9, f64::MAX];
+    for round in 0..300 {
+        let n = 10 + round % 20;
+        let mut draw = |tame: f64| -> Vec<f64> {
+            (0..n)
+                .map(|_| match noise.uniform() < tame {
+                    true => noise.uniform(),
+                    false => wild[(noise.uniform() * wild.len() as f64) as usize],
+                })
+                .collect()
+        };
+        let (mut times, loads, depths) = (draw(0.5 + 0.5 * (round % 2) as f64), draw(0.9), draw(0.9));
+        if round % 3 > 0 {
+            times.sort_by(f64::total_cmp);
+        }
+        let options = IndentationOptions {
+            terms: [None, Some(1), Some(2)][round % 3],
+            fit_touch: round % 5 == 0,
+            springs: 20,
+            limit: 1e300,
+            ..IndentationOptions::default()
+        };
+        let profile = match round % 7 {
+            0 => MdrProfile::Cone { slope: wild[(round / 7) % wild.len()] },
+            1 => MdrProfile::Sphere { radius: wild[(round / 7) % wild.len()] },
+            _ => SPHERE,
+        };
+        match fit_of(profile, (&times, &loads, &depths), options) {
+            Ok(fit) => assert!(fit.rms.is_finite() && fit.relaxation.validate().is_ok(), "{round}"),
+            Err(error) => assert!(!error.to_string().is_empty()),
+        }
+    }
+}

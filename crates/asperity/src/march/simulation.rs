@@ -143,11 +143,19 @@ impl Simulation {
     /// # Errors
     /// [`Error::Invalid`] as [`Quantities::columns`].
     pub fn columns(&self) -> Result<Vec<Column>> {
+        self.columns_of(&self.quantities)
+    }
+
+    /// The bins of other quantities than those of the simulation.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] as [`Quantities::columns`].
+    pub fn columns_of(&self, quantities: &Quantities) -> Result<Vec<Column>> {
         let hardness = match self.hardness_of_cells() {
             Some(cells) => cells.into_iter().fold(0.0, f64::max),
             None => self.hardness,
         };
-        self.quantities.columns(&self.grid, &self.gap, hardness)
+        quantities.columns(&self.grid, &self.gap, hardness)
     }
 
     /// Checks all that can be known before the first solve.

@@ -6,6 +6,7 @@
 //! area is known to a part of its last ring of cells, invariants hold to the solver's tolerance.
 
 mod elastic;
+mod energy;
 mod invariants;
 mod springs;
 mod temperature;
@@ -44,7 +45,7 @@ impl Check {
 pub type Case = (&'static str, fn() -> Result<Vec<Check>>);
 
 /// All cases, in the order of the documentation.
-pub const CASES: [Case; 19] = [
+pub const CASES: [Case; 22] = [
     ("hertz-sphere", elastic::hertz_sphere),
     ("hertz-ellipse", elastic::hertz_ellipse),
     ("cone", elastic::cone),
@@ -64,6 +65,9 @@ pub const CASES: [Case; 19] = [
     ("one-elastic-solve", invariants::one_elastic_solve),
     ("long-time-limit", invariants::long_time_limit),
     ("duality", invariants::duality),
+    ("hertz-energy", energy::hertz),
+    ("energy-balance", energy::balance),
+    ("lasting-dents", energy::dents),
 ];
 
 /// The checks of one case, as it gathers them.

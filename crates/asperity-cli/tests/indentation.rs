@@ -1,0 +1,90 @@
+//! `asperity fit-indentation` as a user meets it.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use asperity_io::case::Case;
+use serde_json::Value;
+
+fn record() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/data/silicone-indentation.csv")
+}
+
+fn fit(directory: &Path, record: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_asperity"));
+    command.arg("fit-indentation").arg(record).args(arguments).current_dir(directory).output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8(bytes.to_vec()).unwrap()
+}
+
+fn holds(interval: &Value, value: f64) -> bool {
+    let [low, high] = [1, 2].map(|k| interval[k].as_f64().unwrap());
+    low <= value && value <= high
+}
+
+#[test]
+fn the_example_gives_its_material_back() {
+    // examples/data/README.md: E = 1.2 + 0.8 exp(-t/0.6 s) + 0.5 exp(-t/8 s) MPa, 1 % of noise.
+    let dir = tempfile::tempdir().unwrap();
+    let output =
+        fit(dir.path(), &record(), &["--radius", "5 mm", "--json", "-o", "pad.toml", "--plot", "fit.svg"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let found: Value = serde_json::from_str(&text(&output.stdout)).unwrap();
+    assert_eq!((found["given"].as_str(), found["modulus"].as_str()), (Some("depth"), Some("young")));
+    assert!(holds(&found["equilibrium"], 1.2e6) && holds(&found["instantaneous"], 2.5e6), "{found}");
+    let terms = found["terms"].as_array().unwrap();
+    assert_eq!(terms.len(), 2, "{found}");
+    for (term, (modulus, time)) in terms.iter().zip([(0.8e6, 0.6), (0.5e6, 8.0)]) {
+        assert!(holds(&term["modulus"], modulus) && holds(&term["time"], time), "{term}");
+    }
+    assert!((found["relative_rms"].as_f64().unwrap() - 0.01).abs() < 0.001);
+    assert!(std::fs::read_to_string(dir.path().join("fit.svg")).unwrap().contains("Load over depth"));
+    // The block stands under a body of a case.
+    let block = std::fs::read_to_string(dir.path().join("pad.toml")).unwrap();
+    let case = format!(
+        "[domain]\ncells = [8, 8]\nsize = [1e-3, 1e-3]\n[[surface]]\nkind = \"sphere\"\nradius = 1\n[[body]]\n{block}\
+         [load]\ncontrol = \"load\"\nhistory = {{ kind = \"step\", value = 1e-3 }}\n[time]\nend = 1\nsteps = 1\n"
+    );
+    let case = Case::parse(&case, dir.path(), &[]).unwrap_or_else(|errors| panic!("{errors}"));
+    let young = 1.0 / case.creep.instantaneous * 0.75;
+    assert!((young / found["instantaneous"][0].as_f64().unwrap() - 1.0).abs() < 1e-12);
+    // Shear moduli are a third of Young's where nu = 0.5.
+    let output =
+        fit(dir.path(), &record(), &["--radius", "5 mm", "--json", "--modulus", "shear", "--terms", "2"]);
+    let shear: Value = serde_json::from_str(&text(&output.stdout)).unwrap();
+    let ratio = shear["equilibrium"][0].as_f64().unwrap() / found["equilibrium"][0].as_f64().unwrap();
+    assert!((ratio * 3.0 - 1.0).abs() < 1e-9, "{ratio}");
+    // In words.
+    let output = fit(dir.path(), &record(), &["--radius", "5 mm"]);
+    let words = text(&output.stdout);
+    for word in ["E(inf)", "tau_2", "95 % confidence", "depth; the load is fitted", "model = \"prony\""] {
+        assert!(words.contains(word), "{words}");
+    }
+}
+
+#[test]
+fn slips_are_told() {
+    let dir = tempfile::tempdir().unwrap();
+    let says = |arguments: &[&str], record: &Path, words: &[&str]| {
+        let output = fit(dir.path(), record, arguments);
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(2), "{said}");
+        for word in words {
+            assert!(said.contains(word), "{said:?} lacks {word:?}");
+        }
+    };
+    says(&[], &record(), &["--radius"]);
+    says(&["--radius", "5 s"], &record(), &["--radius", "5 s", "length"]);
+    says(&["--radius", "5 mm", "--poisson", "0.6"], &record(), &["--poisson is 0.6"]);
+    says(&["--radius", "5 mm", "--terms", "7"], &record(), &["number of terms is 7"]);
+    says(&["--radius", "5 mm", "--unit", "load=mm"], &record(), &["load", "mm"]);
+    says(&["--radius", "5 mm", "--column", "depth=4"], &record(), &["depth", "column 4"]);
+    let turned = dir.path().join("turned.csv");
+    let good = std::fs::read_to_string(record()).unwrap();
+    std::fs::write(&turned, good.replace("load [mN]", "load [Pa]")).unwrap();
+    says(&["--radius", "5 mm"], &turned, &["load", "a pressure"]);
+    std::fs::write(&turned, good.lines().take(8).collect::<Vec<_>>().join("\n")).unwrap();
+    says(&["--radius", "5 mm"], &turned, &["turned.csv", "number of rows"]);
+}

@@ -181,26 +181,27 @@ fn a_fluid_and_an_elastic_body_are_known_as_such() {
 #[test]
 fn what_tells_nothing_is_refused_with_the_reason() {
     let (times, loads, depths) = record(SPHERE, &one_term(), Given::Depth, 1e-4, 100);
-    let said = |change: &dyn Fn(&mut Vec<f64>, &mut Vec<f64>, &mut Vec<f64>), options: IndentationOptions| {
+    type Columns<'a> = [&'a mut Vec<f64>; 3];
+    let said = |change: &dyn Fn(Columns), options: IndentationOptions| {
         let (mut times, mut loads, mut depths) = (times.clone(), loads.clone(), depths.clone());
-        change(&mut times, &mut loads, &mut depths);
+        change([&mut times, &mut loads, &mut depths]);
         fit_of(SPHERE, (&times, &loads, &depths), options).unwrap_err().to_string()
     };
     let default = IndentationOptions::default();
-    let few = said(&|t, w, d| [t, w, d].into_iter().for_each(|c| c.truncate(9)), default);
+    let few = said(&|columns| columns.into_iter().for_each(|c| c.truncate(9)), default);
     assert!(few.contains("number of rows"), "{few}");
-    let late = said(&|t, _, _| t[5] = t[4], default);
+    let late = said(&|[t, _, _]| t[5] = t[4], default);
     assert!(late.contains("time of row 6") && late.contains("later"), "{late}");
-    let missing = said(&|_, w, _| w[3] = f64::NAN, default);
+    let missing = said(&|[_, w, _]| w[3] = f64::NAN, default);
     assert!(missing.contains("load of row 4"), "{missing}");
-    let pulled = said(&|_, w, _| w[60] = -0.2 * w[10], default);
+    let pulled = said(&|[_, w, _]| w[60] = -0.2 * w[10], default);
     assert!(pulled.contains("adhesion"), "{pulled}");
-    let turned = said(&|_, _, d| d.iter_mut().for_each(|d| *d = -*d), default);
+    let turned = said(&|[_, _, d]| d.iter_mut().for_each(|d| *d = -*d), default);
     assert!(turned.contains("largest depth") && turned.contains("sign"), "{turned}");
-    let many = said(&|_, _, _| {}, IndentationOptions { terms: Some(4), ..default });
+    let many = said(&|_| {}, IndentationOptions { terms: Some(4), ..default });
     assert!(many.contains("number of terms (4)") && many.contains("known to"), "{many}");
     let wild = said(
-        &|_, w, _| {
+        &|[_, w, _]| {
             let mut noise = Noise(1);
             let most = w.iter().copied().fold(0.0, f64::max);
             w.iter_mut().for_each(|w| *w = (0.5 * most * (1.0 + noise.normal().clamp(-1.0, 1.0))).max(0.0));

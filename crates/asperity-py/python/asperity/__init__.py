@@ -12,6 +12,7 @@ approach is zero at first touch.
 True
 """
 
+from . import compat
 from ._core import CaseError, ConvergenceError, __version__
 from ._contact import ElasticContact, elastic
 from ._fit import Fit, fit_creep, fit_dma, fit_file, fit_relaxation
@@ -63,6 +64,7 @@ __all__ = [
     "__version__",
     "arrhenius",
     "check",
+    "compat",
     "elastic",
     "fit_creep",
     "fit_dma",

@@ -24,7 +24,7 @@ mod _core {
     #[pymodule_export]
     use super::fit::{fit, fit_file};
     #[pymodule_export]
-    use super::march::March;
+    use super::march::{March, quantities};
     #[pymodule_export]
     use super::material::{Body, shift_factor};
     #[pymodule_export]

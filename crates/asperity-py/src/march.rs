@@ -4,6 +4,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use asperity::contact::Precision;
+use asperity::march::Plasticity;
+use asperity::quantities::{Quantities, Quantity};
 use asperity::{
     Boundary, Control, Grid, History, Loading, Method, Scheme, Simulation, SolverOptions, TimeGrid, march,
     material,
@@ -11,6 +13,8 @@ use asperity::{
 use numpy::{IntoPyArray, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+
+use asperity_io::store::FieldKind;
 
 use crate::error::{CaseError, raised};
 use crate::material::Body;
@@ -48,6 +52,19 @@ pub fn solver(
     let precisions = [("double", Precision::Double), ("mixed", Precision::Mixed)];
     let precision = choose("precision", precision, &precisions)?;
     Ok(SolverOptions { method, precision, tolerance, max_iterations })
+}
+
+/// The quantity of a name.
+pub fn quantity(name: &str) -> PyResult<Quantity> {
+    let names = Quantity::ALL.map(|quantity| (quantity.name(), quantity));
+    choose("quantity", name, &names)
+}
+
+/// (name, unit, meaning, whether it is a histogram) of all quantities.
+#[pyfunction]
+pub fn quantities() -> Vec<(&'static str, &'static str, &'static str, bool)> {
+    let words = |q: Quantity| (q.name(), q.units(), q.long_name(), q.is_histogram());
+    Quantity::ALL.into_iter().map(words).collect()
 }
 
 fn history(kind: &str, numbers: &[f64], points: Vec<(f64, f64)>) -> PyResult<History> {
@@ -94,7 +111,7 @@ impl March {
     #[new]
     #[pyo3(signature = (*, gap, size, boundary, bodies, control, history, history_numbers, history_points,
                         times, times_numbers, include, temperatures, scheme, method, precision, tolerance,
-                        max_iterations))]
+                        max_iterations, hardness_map, plasticity, quantities, bins, largest_pressure, largest_gap))]
     #[allow(clippy::too_many_arguments)]
     fn new(
         py: Python<'_>,
@@ -115,6 +132,12 @@ impl March {
         precision: &str,
         tolerance: f64,
         max_iterations: usize,
+        hardness_map: Option<PyReadonlyArray2<'_, f64>>,
+        plasticity: &str,
+        quantities: Vec<String>,
+        bins: usize,
+        largest_pressure: Option<f64>,
+        largest_gap: Option<f64>,
     ) -> PyResult<March> {
         let gap = gap.as_array().as_standard_layout().into_owned();
         let (nx, ny) = gap.dim();
@@ -132,6 +155,8 @@ impl March {
         let schemes =
             [("linear", Scheme::Linear), ("constant", Scheme::Constant), ("direct", Scheme::Direct)];
         let grid = Grid::new([nx, ny], size).map_err(|error| raised(py, error))?;
+        let plasticities = [("cap", Plasticity::Cap), ("accumulate", Plasticity::Accumulate)];
+        let list = quantities.iter().map(|name| quantity(name)).collect::<PyResult<Vec<Quantity>>>()?;
         let loading = Loading {
             control: choose("control", control, &controls)?,
             history: self::history(history, &history_numbers, history_points)?,
@@ -146,6 +171,9 @@ impl March {
             include,
             scheme: choose("scheme", scheme, &schemes)?,
             solver: solver(method, precision, tolerance, max_iterations)?,
+            hardness_map: hardness_map.map(|map| map.as_array().as_standard_layout().into_owned()),
+            plasticity: choose("plasticity", plasticity, &plasticities)?,
+            quantities: Quantities { list, bins, largest_pressure, largest_gap },
             ..Simulation::new(grid, gap)
         };
         let interrupt = Arc::new(AtomicBool::new(false));
@@ -190,6 +218,13 @@ impl March {
         parts.map(|creep| (creep.instantaneous, terms(creep), creep.fluidity)).collect()
     }
 
+    /// The quantities of each row: name and ends of its bins, none for a single number.
+    fn columns(&self) -> Vec<(&'static str, Vec<f64>)> {
+        let march = self.locked();
+        let columns = march.simulation().columns().unwrap_or_default();
+        columns.into_iter().map(|column| (column.quantity.name(), column.edges)).collect()
+    }
+
     /// Rows in all.
     fn __len__(&self) -> usize {
         self.locked().len()
@@ -209,30 +244,47 @@ impl March {
     /// The numbers of the last row.
     fn row<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let out = PyDict::new(py);
-        if let Some(row) = detached(py, || self.locked().last().map(|step| step.row()))? {
+        let last = detached(py, || {
+            let march = self.locked();
+            let step = march.last()?;
+            let columns =
+                step.columns().iter().map(|column| (column.quantity.name(), column.edges.is_empty()));
+            let numbers = columns.zip(step.columns()).map(|((name, single), column)| {
+                (name, single, step.quantity(column.quantity).map(<[f64]>::to_vec).unwrap_or_default())
+            });
+            Some((step.row(), numbers.collect::<Vec<_>>()))
+        })?;
+        if let Some((row, quantities)) = last {
             fill(&out, &row)?;
+            for (name, single, numbers) in quantities {
+                match (single, numbers.first()) {
+                    (true, Some(number)) => out.set_item(name, number)?,
+                    _ => out.set_item(name, numbers.into_pyarray(py))?,
+                }
+            }
         }
         Ok(out)
     }
 
-    /// A field of the last row: pressure, gap, displacement, contact.
+    /// A field of the last row, by its name in results.
     fn field<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        let names = ["pressure", "gap", "displacement", "contact"].map(|name| (name, name));
-        let name = choose("field", name, &names)?;
+        let names = FieldKind::ALL.map(|kind| (kind.name(), kind));
+        let kind = choose("field", name, &names)?;
         let found = detached(py, || {
             let march = self.locked();
             let step = march.last()?;
             let shape = march.simulation().grid.shape();
-            if name == "contact" {
+            if kind == FieldKind::Contact {
                 let mut states = ndarray::Array2::<u8>::zeros(shape);
                 step.contact_into(&mut states);
                 return Some(Map::Contact(states));
             }
             let mut field = ndarray::Array2::zeros(shape);
-            match name {
-                "gap" => step.gap_into(&mut field),
-                "displacement" => step.displacement_into(&mut field),
-                _ => field.assign(&step.pressure()),
+            match kind {
+                FieldKind::Gap => step.gap_into(&mut field),
+                FieldKind::Displacement => step.displacement_into(&mut field),
+                FieldKind::Flattening => step.flattening_into(&mut field),
+                FieldKind::Pressure | FieldKind::Contact => field.assign(&step.pressure()),
             }
             Some(Map::Real(field))
         })?;

@@ -4,13 +4,18 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 
 use asperity::Grid;
+use asperity::quantities::Column;
 use asperity_io::store::{At, Field, FieldKind, Header, Outcome, Reader, Row, Status, Writer};
 use ndarray::{ArrayView3, Axis};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
 
 use crate::error::{CaseError, file, raised};
+use crate::march::quantity;
 use crate::wait::detached;
+
+/// The ends of the bins, and the numbers of all rows.
+type Histogram<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>);
 
 /// A result on disk, read as it is asked for.
 #[pyclass(frozen)]
@@ -30,11 +35,21 @@ impl Store {
         Ok(self.reader.series(name).map_err(file)?.into_pyarray(py))
     }
 
+    /// Names of the quantities that were asked for.
+    #[getter]
+    fn quantities(&self) -> Vec<&'static str> {
+        self.reader.header().quantities.iter().map(|column| column.quantity.name()).collect()
+    }
+
+    /// A histogram: the ends of its bins, and its rows.
+    fn histogram<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Histogram<'py>> {
+        let (edges, rows) = self.reader.histogram(quantity(name)?).map_err(file)?;
+        Ok((edges.into_pyarray(py), rows.into_pyarray(py)))
+    }
+
     /// A field at a stored instant, by its number.
     fn field<'py>(&self, py: Python<'py>, name: &str, index: usize) -> PyResult<Bound<'py, PyAny>> {
-        let names = "pressure, gap, displacement, contact";
-        let kind = FieldKind::from_name(name)
-            .ok_or_else(|| file(format!("there is no field '{name}'; choose from {names}")))?;
+        let kind = FieldKind::from_name(name).ok_or_else(|| file(format!("there is no field '{name}'")))?;
         let at = At::Index(index);
         Ok(match kind {
             FieldKind::Contact => {
@@ -95,6 +110,7 @@ impl<'a> Stack<'a> {
         match self {
             Stack::Real(FieldKind::Gap, maps) => Field::Gap(maps.index_axis_move(at, k)),
             Stack::Real(FieldKind::Displacement, maps) => Field::Displacement(maps.index_axis_move(at, k)),
+            Stack::Real(FieldKind::Flattening, maps) => Field::Flattening(maps.index_axis_move(at, k)),
             Stack::Real(_, maps) => Field::Pressure(maps.index_axis_move(at, k)),
             Stack::Contact(maps) => Field::Contact(maps.index_axis_move(at, k)),
         }
@@ -115,6 +131,9 @@ impl<'a> Stack<'a> {
     }
 }
 
+/// A quantity: its name, the ends of its bins (none for a single number), and its rows.
+type Asked<'py> = (String, PyReadonlyArray1<'py, f64>, PyReadonlyArray2<'py, f64>);
+
 /// Writes a result that was in memory. `columns` are the numbers of all rows by their names, `fields` the stacks of
 /// the rows `field_steps`; `setup` is JSON that says what was solved.
 #[pyfunction]
@@ -130,6 +149,7 @@ pub fn save(
     columns: HashMap<String, PyReadonlyArray1<'_, f64>>,
     fields: Vec<(String, Bound<'_, PyAny>)>,
     field_steps: Vec<usize>,
+    quantities: Vec<Asked<'_>>,
 ) -> PyResult<()> {
     let (nx, ny) = initial_gap.as_array().dim();
     let grid = Grid::new([nx, ny], size).map_err(|error| raised(py, error))?;
@@ -156,13 +176,26 @@ pub fn save(
             "the field '{kind}' has shape {found:?}, but must have {expected}"
         )));
     }
+    let mut asked = Vec::new();
+    for (name, edges, values) in &quantities {
+        let column = Column { quantity: quantity(name)?, edges: edges.as_array().to_vec() };
+        let (found, width) = (values.as_array().dim(), column.width());
+        if found != (rows.len(), width) {
+            let expected = format!("({}, {width})", rows.len());
+            return Err(CaseError::new_err(format!(
+                "'{name}' has shape {found:?}, but must have {expected}"
+            )));
+        }
+        asked.push(column);
+    }
+    let numbers: Vec<_> = quantities.iter().map(|(_, _, values)| values.as_array()).collect();
     let header = Header {
         title,
         case_text: String::new(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
         grid,
         fields: stacks.iter().map(Stack::kind).collect(),
-        quantities: vec![],
+        quantities: asked,
         rows_expected: Some(rows.len()),
         setup,
     };
@@ -173,7 +206,8 @@ pub fn save(
             let kept = field_steps.iter().position(|step| *step == n);
             let fields: Vec<Field> =
                 kept.map_or(vec![], |k| stacks.iter().map(|stack| stack.field(k)).collect());
-            writer.append(row, &fields)?;
+            let numbers: Vec<f64> = numbers.iter().flat_map(|values| values.row(n).to_vec()).collect();
+            writer.append_with(row, &numbers, &fields)?;
         }
         writer.finish(&Outcome::new(Status::Complete))
     })?

@@ -68,3 +68,109 @@ def test_results_and_contacts_are_copied_and_shown(result):
     contact = asp.elastic(asp.Surface.sphere(cells=(16, 16), size=(1e-3, 1e-3), radius=1e-2), 1e6, load=1e-3)
     assert "certified" in repr(contact) and "<table>" in contact._repr_html_()
     assert np.array_equal(copy.deepcopy(contact).pressure, contact.pressure)
+
+
+CASE = """
+[domain]
+cells = [40, 32]
+size = ["1 mm", "0.8 mm"]
+[[surface]]
+kind = "sphere"
+radius = "10 mm"
+[[body]]
+poisson = 0.5
+hardness = "30 kPa"
+material = { model = "zener", shear = "1 MPa", shear_kelvin = "1 MPa", retardation_time = "1 s" }
+[load]
+control = "load"
+history = { kind = "trapezoid", peak = "4 mN", rise = "1 s", hold = "2 s", fall = "1 s" }
+[time]
+end = "5 s"
+steps = 10
+[solver]
+plasticity = "accumulate"
+[output]
+fields = ["pressure", "flattening"]
+every = 5
+quantities = ["contact_stiffness", "contact_spots", "external_work", "elastic_energy", "dissipated_energy", "flattening_work", "spot_histogram", "pressure_histogram"]
+"""
+ASKED = ["contact_stiffness", "contact_spots", "external_work", "elastic_energy", "dissipated_energy", "flattening_work"]
+
+
+@pytest.fixture(scope="module")
+def flattened():
+    surface = asp.Surface.sphere(cells=(40, 32), size=(1e-3, 8e-4), radius=10e-3)
+    zener = asp.Zener(shear=1e6, shear_kelvin=1e6, retardation_time=1.0, poisson=0.5, hardness=3e4)
+    return asp.solve(
+        surface, zener, load=asp.trapezoid(4e-3, rise=1.0, hold=2.0, fall=1.0), times=asp.uniform(5.0, 10), plasticity="accumulate",
+        quantities=[*ASKED, "spot_histogram", "pressure_histogram"], fields=["pressure", "flattening"], every=5, progress=False,
+    )
+
+
+def test_quantities_and_flattening_have_the_bits_of_the_case(flattened, tmp_path):
+    stored = asp.run(CASE, output=tmp_path / "case.zarr")
+    flattened.save(tmp_path / "saved.zarr")
+    for other in (stored, asp.open(tmp_path / "saved.zarr")):
+        assert other.quantities == flattened.quantities
+        for name in [*asp._result.ROW, *ASKED]:
+            assert np.array_equal(getattr(other, name), getattr(flattened, name)), name
+        for name in ("spot_histogram", "pressure_histogram"):
+            for a, b in zip(other.histogram(name), flattened.histogram(name)):
+                assert np.array_equal(a, b), name
+        assert np.array_equal(other._stack("flattening"), flattened._stack("flattening"))
+
+
+def test_quantities_are_physics(flattened):
+    assert flattened.field("flattening").max() > 0 and flattened.capped_area.max() > 0
+    # Work is what is stored, lost and spent on dents; the trapezoidal rule over 10 steps leaves some percent.
+    parts = flattened.elastic_energy + flattened.dissipated_energy + flattened.flattening_work
+    assert parts == pytest.approx(flattened.external_work, abs=0.05 * flattened.external_work.max())
+    assert flattened.contact_spots[4] == 1 and flattened.contact_spots[-1] == 0
+    edges, density = flattened.histogram("pressure_histogram")
+    assert edges[-1] == 3e4 and density[4].sum() * (edges[1] - edges[0]) == pytest.approx(1, rel=1e-9)
+    edges, spots = flattened.histogram("spot_histogram")
+    assert spots.sum(axis=1).tolist() == flattened.contact_spots.tolist() and spots.shape == (len(flattened), len(edges) - 1)
+
+
+def test_quantities_reach_xarray_and_studies(flattened, tmp_path):
+    xarray = pytest.importorskip("xarray")
+    ours = flattened.to_xarray()
+    assert ours.contact_stiffness.attrs["units"] == "N/m" and ours.pressure_histogram.dims == ("time", "pressure_bin")
+    if pytest.importorskip("zarr"):
+        flattened.save(tmp_path / "saved.zarr")
+        stored = xarray.open_zarr(tmp_path / "saved.zarr").drop_vars("field_step", errors="ignore")
+        for name in ours.variables:
+            assert np.allclose(ours[name], stored[name], rtol=1e-15), name
+            assert ours[name].dims == stored[name].dims and ours[name].attrs["units"] == stored[name].attrs["units"], name
+    data = asp.study(CASE, {"load.history.peak": ["2 mN", "4 mN"]})
+    assert np.array_equal(data.external_work.isel({"load.history.peak": 1}), flattened.external_work)
+    with pytest.raises(AttributeError, match="asked for"):
+        flattened.rms_gap
+    with pytest.raises(AttributeError, match="histogram"):
+        flattened.spot_histogram
+    with pytest.raises(asp.CaseError, match="gap_histogram"):
+        flattened.histogram("gap_histogram")
+
+
+def test_a_hardness_for_each_cell():
+    surface = asp.Surface.sphere(cells=(40, 32), size=(1e-3, 8e-4), radius=10e-3)
+    rubber = asp.Elastic(young=3e6, poisson=0.5)
+    cells = np.full((40, 32), 5e4)
+    cells[20:] = 2e4
+    result = asp.solve(surface, rubber, load=3e-3, times=[1.0], hardness=cells, progress=False)
+    p = result.field("pressure")
+    assert p[20:].max() == 2e4 and 2e4 < p[:20].max() <= 5e4
+    for wrong, words in ((cells[:10], "shape"), (np.where(cells > 3e4, np.nan, cells), "hardness"), (-cells, "hardness")):
+        with pytest.raises(asp.CaseError, match=words):
+            asp.solve(surface, rubber, load=3e-3, times=[1.0], hardness=wrong, progress=False)
+    for change, words in (
+        (dict(quantities=["stiffness"]), "contact_stiffness"),
+        (dict(quantities=["rms_gap", "rms_gap"]), "twice"),
+        (dict(quantities=["pressure_histogram"]), "largest pressure"),
+        (dict(quantities=["gap_histogram"], bins=0), "bins"),
+        (dict(quantities=["gap_histogram"], largest_gap=-1.0), "gap"),
+        (dict(plasticity="hard"), "'cap' or 'accumulate'"),
+        (dict(plasticity="accumulate"), "hardness|accumulate"),
+    ):
+        with pytest.raises(asp.CaseError, match=words):
+            asp.solve(surface, rubber, load=3e-3, times=[1.0], progress=False, **change)

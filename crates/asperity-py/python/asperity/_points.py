@@ -199,6 +199,7 @@ def trimmed(result: Result, names: tuple[str, ...]) -> Result:
         initial_gap=result.initial_gap if names else np.empty((0, 0)),
         size=result.size,
         attributes=result.attributes,
+        histograms=result._histograms,
     )
 
 

@@ -22,6 +22,7 @@ FIELDS: dict[str, tuple[str, str]] = {
     "gap": ("m", "gap between the deformed surfaces"),
     "displacement": ("m", "normal displacement"),
     "contact": ("1", "contact state"),
+    "flattening": ("m", "permanent flattening"),
 }
 
 #: Numbers of each row: unit and meaning.
@@ -42,13 +43,22 @@ ROW: dict[str, tuple[str, str]] = {
     "certificate": ("1", "certified relative error in the energy norm"),
 }
 
+#: Quantities that rows have where they are asked for: unit and meaning.
+QUANTITIES: dict[str, tuple[str, str]] = {name: (unit, words) for name, unit, words, _ in _core.quantities()}
+#: Those of them with a number for each bin: names of dimension and ends, unit and meaning of what is counted.
+HISTOGRAMS: dict[str, tuple[str, str, str, str]] = {
+    "spot_histogram": ("spot_bin", "spot_edge", "m2", "a class of spots"),
+    "pressure_histogram": ("pressure_bin", "pressure_edge", "Pa", "a bin of the pressure"),
+    "gap_histogram": ("gap_bin", "gap_edge", "m", "a bin of the gap"),
+}
+
 
 class Result:
     """What a run found: one-dimensional arrays over the rows, and fields at some of them.
 
     `time` [s], `load` [N], `approach` [m], `contact_area`, `contact_area_corrected`, `capped_area` [m^2],
     `contact_fraction`, `mean_pressure`, `max_pressure` [Pa], `mean_gap` [m], `iterations`, `convolutions`, `residual`,
-    `certificate` are attributes. The first row is the state right after t = 0.
+    `certificate` are attributes, and so are the quantities that were asked for. The first row is the state right after t = 0.
     """
 
     def __init__(
@@ -61,6 +71,7 @@ class Result:
         size: tuple[float, float],
         attributes: dict[str, Any],
         path: str | None = None,
+        histograms: dict[str, tuple[Floats, Floats]] | None = None,
     ) -> None:
         self._table = table
         self._fields = fields
@@ -69,16 +80,21 @@ class Result:
         self._size = (float(size[0]), float(size[1]))
         self._attributes = attributes
         self._path = path
+        self._histograms = dict(histograms or {})
 
     def __getattr__(self, name: str) -> Floats:
         table = self.__dict__.get("_table")
         if table is not None and name in table:
             values: Floats = table[name]
             return values
+        if name in QUANTITIES:
+            if table is not None and name in self.__dict__.get("_histograms", {}):
+                raise AttributeError(f"{name!r} has a number for each bin: use histogram({name!r})")
+            raise AttributeError(f"the result has no {name!r}, as it was not asked for: quantities=[{name!r}]")
         raise AttributeError(f"a result has no {name!r}; it has {', '.join(ROW)}, field(name, time=...) and plot")
 
     def __dir__(self) -> list[str]:
-        return sorted([*super().__dir__(), *ROW])
+        return sorted([*super().__dir__(), *self._table])
 
     def __len__(self) -> int:
         """Rows."""
@@ -108,6 +124,18 @@ class Result:
     def fields(self) -> list[str]:
         """Names of the fields that were kept."""
         return list(self._fields)
+
+    @property
+    def quantities(self) -> list[str]:
+        """Names of the quantities that were asked for."""
+        return [*(name for name in self._table if name in QUANTITIES), *self._histograms]
+
+    def histogram(self, name: str) -> tuple[Floats, Floats]:
+        """Ends of the bins, and the numbers of all rows, shape (rows, bins), of "spot_histogram" (number of spots per class of
+        area [m^2]), "pressure_histogram" or "gap_histogram" (probability densities [1/Pa], [1/m])."""
+        if name not in self._histograms:
+            raise CaseError(f"the histogram {name!r} was not asked for; kept: {', '.join(self._histograms) or 'none'}")
+        return self._histograms[name]
 
     @property
     def field_times(self) -> Floats:
@@ -146,7 +174,7 @@ class Result:
     def field(self, name: str, *, time: float | None = None, index: int | None = None) -> Floats:
         """A field of shape (nx, ny) at the kept instant nearest to `time` [s], or of that number; default the last.
 
-        "pressure" [Pa], "gap" and "displacement" [m], "contact" (0 out of contact, 1 in contact, 2 at the hardness).
+        "pressure" [Pa], "gap", "displacement", "flattening" [m], "contact" (0 out of contact, 1 in contact, 2 at the hardness).
         """
         if name not in self._fields:
             raise CaseError(f"the field {name!r} was not kept; kept: {', '.join(self._fields) or 'none'}")
@@ -158,8 +186,8 @@ class Result:
 
         rows = {
             name: ("time", np.asarray(self._table[name]), {"units": unit, "long_name": words})
-            for name, (unit, words) in ROW.items()
-            if name != "time"
+            for name, (unit, words) in {**ROW, **QUANTITIES}.items()
+            if name != "time" and name in self._table
         }
         maps = {
             name: (("field_time", "x", "y"), self._stack(name), {"units": FIELDS[name][0], "long_name": FIELDS[name][1]})
@@ -172,6 +200,12 @@ class Result:
             "x": ("x", self.x, {"units": "m", "long_name": "x"}),
             "y": ("y", self.y, {"units": "m", "long_name": "y"}),
         }
+        for name, (edges, numbers) in self._histograms.items():
+            along, ends, unit, words = HISTOGRAMS[name]
+            middle = np.sqrt(edges[1:] * edges[:-1]) if name == "spot_histogram" else 0.5 * (edges[1:] + edges[:-1])
+            rows[name] = (("time", along), numbers, dict(zip(("units", "long_name"), QUANTITIES[name])))  # type: ignore[assignment]
+            coordinates[along] = (along, middle, {"units": unit, "long_name": f"middle of {words}"})
+            coordinates[ends] = (ends, edges, {"units": unit, "long_name": f"ends of {words}"})
         return xarray.Dataset({**rows, **maps, **dict([gap])}, coords=coordinates, attrs=self._attributes)
 
     @property
@@ -201,6 +235,14 @@ class Result:
             {name: plain(self._table[name]) for name in ROW},
             [(name, np.require(self._stack(name), None, ["C_CONTIGUOUS", "ALIGNED"])) for name in self._fields],
             [int(n) for n in self._field_steps],
+            [
+                *(
+                    (name, np.empty(0), plain(np.reshape(self._table[name], (-1, 1))))
+                    for name in self._table
+                    if name in QUANTITIES
+                ),
+                *((name, plain(edges), plain(numbers)) for name, (edges, numbers) in self._histograms.items()),
+            ],
         )
 
     def report(self, path: str | os.PathLike[str], *, force: bool = False, megabytes: int = 12) -> None:
@@ -283,7 +325,8 @@ def open(path: str | os.PathLike[str]) -> Result:
     attributes: dict[str, Any] = json.loads(store.attributes)
     nx, ny = store.size
     return Result(
-        table={name: store.series(name) for name in ROW},
+        table={name: store.series(name) for name in [*ROW, *(q for q in store.quantities if q not in HISTOGRAMS)]},
+        histograms={name: store.histogram(name) for name in store.quantities if name in HISTOGRAMS},
         fields={name: store for name in store.fields},
         field_steps=store.field_steps,
         initial_gap=store,

@@ -8,14 +8,15 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, count, line, number
+from ._arrays import Floats, count, field, line, number
 from ._core import CaseError
 from ._histories import History, Times, as_history, as_times
 from ._materials import Material
 from ._progress import Progress
-from ._result import FIELDS, ROW, Result, open
+from ._result import FIELDS, HISTOGRAMS, ROW, Result, open
 from ._shifts import temperatures
 from ._surface import as_surface
 
@@ -43,7 +44,8 @@ class Step:
         return dict(self._row)
 
     def field(self, name: str) -> Floats:
-        """The field "pressure" [Pa], "gap", "displacement" [m] or "contact" (0, 1, 2), shape (nx, ny), as a new array."""
+        """The field "pressure" [Pa], "gap", "displacement", "flattening" [m] or "contact" (0, 1, 2), shape (nx, ny), as a new
+        array."""
         if self._march._core.done != self._index + 1:
             raise CaseError(f"the march has gone on from row {self._index}: read fields before the next row")
         values: Floats = self._march._core.field(name)
@@ -111,7 +113,7 @@ def march(
     pressure: History | float | None = None,
     approach: History | float | None = None,
     size: Sequence[float] | None = None,
-    hardness: float | None = None,
+    hardness: float | npt.ArrayLike | None = None,
     temperature: float | Sequence[tuple[float, float]] | None = None,
     boundary: str = "free",
     scheme: str = "linear",
@@ -119,6 +121,11 @@ def march(
     precision: str = "double",
     tolerance: float = 1e-6,
     max_iterations: int = 5000,
+    plasticity: str = "cap",
+    quantities: Sequence[str] = (),
+    bins: int = 50,
+    largest_pressure: float | None = None,
+    largest_gap: float | None = None,
     include: Sequence[float] = (),
 ) -> March:
     """A simulation, step by step; the parameters are those of :func:`solve`.
@@ -135,7 +142,10 @@ def march(
     bodies = [material] if isinstance(material, Material) else list(material)
     if not 1 <= len(bodies) <= 2 or not all(isinstance(body, Material) for body in bodies):
         raise CaseError(f"material is {material!r}, but must be a material, or a pair of them for two deformable bodies")
-    if hardness is not None:
+    cells = None
+    if hardness is not None and np.ndim(hardness) == 2:
+        cells = field("hardness", hardness)
+    elif hardness is not None:
         limit = number("hardness", hardness)
         bodies = [_with_hardness(body, limit) for body in bodies]
     given = {"load": load, "pressure": pressure, "approach": approach}
@@ -162,6 +172,12 @@ def march(
         precision=precision,
         tolerance=number("tolerance", tolerance),
         max_iterations=count("max_iterations", max_iterations),
+        hardness_map=cells,
+        plasticity=plasticity,
+        quantities=[str(name) for name in quantities],
+        bins=count("bins", bins),
+        largest_pressure=None if largest_pressure is None else number("largest_pressure", largest_pressure),
+        largest_gap=None if largest_gap is None else number("largest_gap", largest_gap),
     )
     creeps = [{"instantaneous": first, "terms": terms, "fluidity": flow} for first, terms, flow in core.creep()]
     setup: dict[str, Any] = {
@@ -172,6 +188,7 @@ def march(
         "scheme": scheme,
         "method": method,
         "precision": precision,
+        "plasticity": plasticity,
         "solver_tolerance": float(tolerance),
         "end": core.times()[-1],
         "contact_creep_compliance": creeps[0],
@@ -196,7 +213,7 @@ def solve(
     pressure: History | float | None = None,
     approach: History | float | None = None,
     size: Sequence[float] | None = None,
-    hardness: float | None = None,
+    hardness: float | npt.ArrayLike | None = None,
     temperature: float | Sequence[tuple[float, float]] | None = None,
     boundary: str = "free",
     scheme: str = "linear",
@@ -204,6 +221,11 @@ def solve(
     precision: str = "double",
     tolerance: float = 1e-6,
     max_iterations: int = 5000,
+    plasticity: str = "cap",
+    quantities: Sequence[str] = (),
+    bins: int = 50,
+    largest_pressure: float | None = None,
+    largest_gap: float | None = None,
     fields: Sequence[str] = ("pressure",),
     every: int | None = None,
     field_times: Sequence[float] | None = None,
@@ -219,14 +241,19 @@ def solve(
     material : the deformable body, or a pair of them
     times : instants that are solved: uniform, log, listed, or a sequence [s]; breaks of the history are added
     load, pressure, approach : what is prescribed [N], [Pa] or [m]: a history, or a number for a step
-    hardness : largest pressure [Pa]; else that of the materials
+    hardness : largest pressure [Pa], of all cells or as array (nx, ny); else that of the materials
     boundary : "free" (half-space) or "periodic"
     temperature : of the run [K], or its (time [s], temperature [K]) points, straight in between and held after the last;
         of every material that has a shift and no temperature of its own
     scheme : "linear" (second order), "constant" (SC17) or "direct" (full hereditary sum)
     method : "projected-cg" or "polonsky-keer"
     precision : "double", or "mixed": the convolutions of iterations in single precision, to the same tolerance
-    fields : those that are kept: "pressure", "gap", "displacement", "contact"
+    plasticity : what flattening at the hardness leaves: "cap" (nothing) or "accumulate" (it stays, as the field "flattening")
+    quantities : numbers of each row besides: "contact_stiffness", "contact_spots", "largest_spot", "mean_spot",
+        "contact_perimeter", "rms_gap", "elastic_energy", "dissipated_energy", "flattening_work", "external_work", and
+        "spot_histogram", "pressure_histogram", "gap_histogram" of that many `bins` up to `largest_pressure` [Pa] (by default the
+        hardness) and `largest_gap` [m] (by default that of the undeformed gap)
+    fields : those that are kept: "pressure", "gap", "displacement", "contact", "flattening"
     every : rows whose fields are kept: every so many, besides the first and last; default every row up to 20 of them
     field_times : instead, times at which they are kept [s], which become steps
     progress : a line with the progress; default: in terminals and notebooks
@@ -263,6 +290,11 @@ def solve(
         precision=precision,
         tolerance=tolerance,
         max_iterations=max_iterations,
+        plasticity=plasticity,
+        quantities=quantities,
+        bins=bins,
+        largest_pressure=largest_pressure,
+        largest_gap=largest_gap,
         include=[] if wanted is None else [t for t in wanted.tolist() if t > 0],
     )
     rows = len(run)
@@ -272,14 +304,15 @@ def solve(
         keep = {n for n in range(rows) if n % stride == 0 or n == rows - 1}
     else:
         keep = {n for n in range(rows) if n in (0, rows - 1) or np.any(np.abs(wanted - instants[n]) <= 1e-12 * instants[-1])}
-    table: dict[str, list[float]] = {name: [] for name in ROW}
+    edges = {name: np.array(ends) for name, ends in run._core.columns()}
+    table: dict[str, list[Any]] = {name: [] for name in [*ROW, *edges]}
     maps: dict[str, list[Any]] = {name: [] for name in kept}
     steps: list[int] = []
     teller = Progress(rows, progress)
     try:
         for step in run:
-            for name in ROW:
-                table[name].append(step.row[name])
+            for name, values in table.items():
+                values.append(step.row[name])
             if step.index in keep:
                 steps.append(step.index)
                 for name in kept:
@@ -290,7 +323,8 @@ def solve(
     finally:
         teller.end()
     return Result(
-        table={name: np.array(values) for name, values in table.items()},
+        table={name: np.array(values) for name, values in table.items() if name not in HISTOGRAMS},
+        histograms={name: (ends, np.array(table[name])) for name, ends in edges.items() if name in HISTOGRAMS},
         fields={name: np.array(stack) for name, stack in maps.items()},
         field_steps=np.array(steps),
         initial_gap=run.initial_gap,

@@ -23,14 +23,14 @@ from ._core import CaseError
 from ._points import Point, Solved, base_of, found, label, label_all, note, solve_point
 from ._processes import cores, shared, solved
 from ._progress import line_of
-from ._result import FIELDS, ROW, Result
+from ._result import FIELDS, QUANTITIES, ROW, Result
 from ._solve import _source
 
 if TYPE_CHECKING:
     import xarray
 
 #: Names that a parameter may not have in the dataset.
-_TAKEN = {*ROW, *FIELDS, "status", "error", "steps", "step", "point", "x", "y", "field_step", "field_time"}
+_TAKEN = {*ROW, *QUANTITIES, *FIELDS, "status", "error", "steps", "step", "point", "x", "y", "field_step", "field_time"}
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\s\d].*?)?\s*")
 
 
@@ -59,7 +59,7 @@ def study(
     zip : the first values of all parameters are the first point, and so on, instead of every combination
     folder : where the result of every point is kept. A study that is called again finds what is done, goes on with what
         was stopped, and solves what is new. Without it nothing is kept but the dataset.
-    fields : fields that become part of the dataset: "pressure", "gap", "displacement", "contact"
+    fields : fields that become part of the dataset: "pressure", "gap", "displacement", "contact", "flattening"
     workers : processes; default: as many as there are processors, or points
     threads : threads of each; default: what makes workers times threads the number of processors
     client : a ``dask.distributed.Client``: its workers solve the points, each with its own number of threads; a `folder`,
@@ -307,10 +307,11 @@ def _dataset(
     steps = np.array([0 if result is None else len(result) for result in results])
     most = int(steps.max(initial=0))
     columns: dict[str, Any] = {}
-    for name, (unit, words) in ROW.items():
+    asked = dict.fromkeys(name for result in results if result is not None for name in result._table if name not in ROW)
+    for name, (unit, words) in {**ROW, **{name: QUANTITIES[name] for name in asked}}.items():
         table = np.full((len(points), most), np.nan)
         for n, result in enumerate(results):
-            if result is not None:
+            if result is not None and name in result._table:
                 table[n, : steps[n]] = result._table[name]
         attributes = {"units": unit, "long_name": words}
         if name == "time":

@@ -195,7 +195,7 @@ fn creep(n: usize, precision: Precision, terms: usize, steps: usize) -> (Counts,
     let mut march = March::new(Simulation {
         creep: Creep { instantaneous: COMPLIANCE, terms, fluidity: 0.0 },
         hardness: HARDNESS,
-        loading: Loading { control: Control::Load, history: History::Step { value: LOAD } },
+        loading: Loading { control: Control::Load, history: History::Step { value: LOAD } }.into(),
         times: TimeGrid::Uniform { end: 5.0 * steps as f64, steps },
         solver: options,
         ..Simulation::new(grid, gap)

@@ -42,6 +42,23 @@ pub enum Error {
     /// The solver stopped before it met its tolerance; the state that it reached is kept by the caller.
     #[error(transparent)]
     NotConverged(#[from] NotConverged),
+    /// A stage waited for an event that did not come; the rows so far are complete.
+    #[error(
+        "stage {stage} waits for {event}, but the run ends at t = {end} s without it (approach {approach:e} m, load \
+         {load:e} N); end the run later, change the event, or give the stage a duration"
+    )]
+    Missed {
+        /// Number of the stage, from 1.
+        stage: usize,
+        /// The event in words.
+        event: String,
+        /// End of the run \[s\].
+        end: f64,
+        /// Approach at the end \[m\].
+        approach: f64,
+        /// Load at the end \[N\].
+        load: f64,
+    },
     /// Somebody asked to stop; the rows so far are complete.
     #[error("interrupted")]
     Interrupted,

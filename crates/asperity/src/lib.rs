@@ -44,7 +44,7 @@ pub use asperity_convolution as convolution;
 pub use contact::{ContactState, Method, Outcome, Precision, Prescribed, Problem, Solver, SolverOptions};
 pub use error::{Error, NotConverged, Result};
 pub use grid::{Boundary, Grid};
-pub use load::{Control, History, Loading};
+pub use load::{Control, Course, Event, History, Loading, Programme, Stage};
 pub use march::{March, Plasticity, Scheme, Simulation};
 pub use time::TimeGrid;
 

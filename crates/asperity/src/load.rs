@@ -3,6 +3,11 @@
 //! A history is piecewise smooth. Where it jumps it has two values, `before(t)` and `after(t)`;
 //! the march takes a jump as a step of zero length. Every history is zero before t = 0.
 
+mod programme;
+
+pub(crate) use programme::of_stage;
+pub use programme::{Course, Event, Programme, Stage};
+
 use crate::error::{Error, Result, non_negative, positive};
 
 /// The prescribed quantity.
@@ -67,7 +72,7 @@ pub enum History {
     },
 }
 
-/// A control and its history.
+/// A control and its history, for a whole run: the [`Programme`] of one stage.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loading {
     /// What is prescribed.

@@ -42,7 +42,7 @@ fn steps_allocate_nothing_after_the_first() {
         let mut march = March::new(Simulation {
             creep: Creep { instantaneous: 1e-8, terms, fluidity: 1e-9 },
             hardness: 3e6,
-            loading: Loading { control: Control::Load, history: History::Step { value: 1.0 } },
+            loading: Loading { control: Control::Load, history: History::Step { value: 1.0 } }.into(),
             times: TimeGrid::Uniform { end: 10.0, steps: 20 },
             ..Simulation::new(grid, gap)
         })

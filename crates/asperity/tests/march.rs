@@ -6,7 +6,7 @@ use asperity::material::{Creep, CreepTerm, Relaxation, RelaxationTerm};
 use asperity::operator::half_space;
 use asperity::surface::{Part, Punch, Roughness, SelfAffine, Shape, undeformed_gap};
 use asperity::{
-    Boundary, ContactState, Control, Error, Grid, History, Loading, Method, Prescribed, Problem, Solver,
+    Boundary, ContactState, Control, Error, Grid, History, Loading, Method, Prescribed, Problem, Programme, Solver,
     SolverOptions, TimeGrid,
 };
 use ndarray::Array2;
@@ -54,8 +54,8 @@ fn tight() -> SolverOptions {
     SolverOptions { tolerance: 1e-10, ..SolverOptions::default() }
 }
 
-fn load(history: History) -> Loading {
-    Loading { control: Control::Load, history }
+fn load(history: History) -> Programme {
+    Loading { control: Control::Load, history }.into()
 }
 
 fn run(simulation: Simulation) -> (Vec<Row>, Array2<f64>) {
@@ -115,7 +115,7 @@ fn held_approach_relaxes_every_cell_like_the_modulus() {
     let mut errors = vec![];
     for steps in [20, 40] {
         let simulation = Simulation {
-            loading: loading.clone(),
+            loading: loading.clone().into(),
             times: TimeGrid::Uniform { end: 2.0, steps },
             ..base.clone()
         };

@@ -23,7 +23,7 @@ fn both(
     let gap = undeformed_gap(&grid, &[Part::Shape { shape, center: [0.0, 0.0] }]).unwrap();
     let simulation = Simulation {
         creep: relaxation().to_creep().unwrap(),
-        loading: loading.clone(),
+        loading: loading.clone().into(),
         times: TimeGrid::Uniform { end, steps },
         ..Simulation::new(grid, gap)
     };

@@ -5,7 +5,7 @@ use asperity::material::{Creep, CreepTerm, ReducedTime, Shift, ThermalCreep};
 use asperity::operator::half_space;
 use asperity::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
 use asperity::{
-    ContactState, Control, Grid, History, Loading, Method, Prescribed, Problem, Solver, SolverOptions,
+    ContactState, Control, Grid, History, Loading, Method, Prescribed, Problem, Programme, Solver, SolverOptions,
     TimeGrid,
 };
 
@@ -50,8 +50,8 @@ fn clock(shift: Shift, temperatures: &[(f64, f64)]) -> ReducedTime {
 /// A jump up, a ramp down.
 const TEMPERATURES: [(f64, f64); 4] = [(0.0, 295.0), (1.0, 295.0), (1.0, 312.0), (3.0, 300.0)];
 
-fn load(history: History) -> Loading {
-    Loading { control: Control::Load, history }
+fn load(history: History) -> Programme {
+    Loading { control: Control::Load, history }.into()
 }
 
 fn run(simulation: Simulation) -> Vec<Row> {

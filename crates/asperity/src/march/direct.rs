@@ -61,6 +61,23 @@ impl Direct {
         self.creep.value(dt) + thermal
     }
 
+    /// As [`Direct::history`] for the step under way, `dt` long: what came before it is taken in already.
+    pub(super) fn retry(&mut self, dt: f64, rigid: &[f64], gap: &mut [f64]) -> f64 {
+        let compliance = self.shorten(dt);
+        gap.copy_from_slice(rigid);
+        self.add_history(gap);
+        compliance
+    }
+
+    /// Ends the step under way `dt` after its start; returns c.
+    fn shorten(&mut self, dt: f64) -> f64 {
+        let Some([start, _]) = self.open.take() else { return self.creep.value(dt) };
+        let end = self.moment(start.time + dt);
+        let thermal: f64 = self.thermal.iter().map(|body| body.value(start.time, end.time)).sum();
+        self.open = Some([start, end]);
+        self.creep.value(dt) + thermal
+    }
+
     /// g of the step under way.
     pub(super) fn remembered(&self, g: &mut [f64]) {
         g.fill(0.0);

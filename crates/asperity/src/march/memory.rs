@@ -17,6 +17,7 @@
 
 use crate::field::{BLOCK, Cells, strands, sweep};
 use crate::march::Scheme;
+use crate::march::adaptive::{Defect, chord_defect};
 use crate::material::Creep;
 
 /// Share of the retarded compliance below which the instantaneous one is too small for the linear
@@ -223,17 +224,46 @@ impl Memory {
         self.instantaneous + self.update.iter().map(|r| r.new).sum::<f64>()
     }
 
+    /// As [`Memory::history`] for the pending step at another length: what came before it is taken in already.
+    pub(super) fn retry(&mut self, lengths: &[f64], unit: &[f64], rigid: &[f64], gap: &mut [f64]) -> f64 {
+        self.update.fill(Rule::IDENTITY);
+        self.history(lengths, unit, unit, rigid, gap)
+    }
+
+    /// As [`Memory::history`] for a part of the pending step, `lengths` long, with nothing changed.
+    pub(super) fn partial(&self, lengths: &[f64], unit: &[f64], rigid: &[f64], gap: &mut [f64]) -> f64 {
+        let scheme = self.pending.unwrap_or(self.scheme);
+        let rules: Vec<Rule> = self.branches.iter().map(|b| b.rule(lengths, scheme)).collect();
+        gap.copy_from_slice(rigid);
+        add_history(&rules, &self.strains, unit, gap);
+        self.instantaneous + rules.iter().map(|r| r.new).sum::<f64>()
+    }
+
+    /// Whether the pending step takes U as linear.
+    pub(super) fn is_linear(&self) -> bool {
+        self.pending == Some(Scheme::Linear)
+    }
+
+    /// What the scheme of the pending step, `dt` long in the laboratory, leaves out.
+    pub(super) fn defect(&self, dt: f64) -> Defect {
+        let branches = self.branches.iter().map(|b| (b.element, self.lengths[b.part]));
+        if self.pending == Some(Scheme::Linear) {
+            let weight = branches.map(|(element, length)| match element {
+                Element::Retarded { compliance, time } => compliance * chord_defect(length / time),
+                Element::Flow { fluidity } => fluidity * length / 12.0,
+            });
+            Defect::Curvature(dt * dt * weight.sum::<f64>())
+        } else {
+            let weight =
+                self.branches.iter().map(|b| b.rule(&self.lengths, Scheme::Linear).old);
+            Defect::Change(weight.sum())
+        }
+    }
+
     /// g of the pending step, with `unit` = U at its beginning.
     pub(super) fn remembered(&self, unit: &[f64], g: &mut [f64]) {
-        let mut strains = &self.strains[..];
-        for (g, unit) in g.chunks_mut(BLOCK).zip(unit.chunks(BLOCK)) {
-            g.fill(0.0);
-            for rule in &self.update {
-                let (e, rest) = strains.split_at(g.len());
-                g.iter_mut().zip(e).zip(unit).for_each(|((g, e), u)| *g += rule.keep * e + rule.old * u);
-                strains = rest;
-            }
-        }
+        g.fill(0.0);
+        add_history(&self.update, &self.strains, unit, g);
     }
 
     /// Number of branches.
@@ -329,6 +359,17 @@ impl Memory {
     }
 }
 
+/// Adds sum (keep e + old U) to `g`.
+fn add_history(rules: &[Rule], mut strains: &[f64], unit: &[f64], g: &mut [f64]) {
+    for (g, unit) in g.chunks_mut(BLOCK).zip(unit.chunks(BLOCK)) {
+        for rule in rules {
+            let (e, rest) = strains.split_at(g.len());
+            g.iter_mut().zip(e).zip(unit).for_each(|((g, e), u)| *g += rule.keep * e + rule.old * u);
+            strains = rest;
+        }
+    }
+}
+
 /// Branch fields whose blocks of cells lie side by side, so that a sweep's block is one slice.
 struct Interleaved<'a> {
     cells: usize,
@@ -420,6 +461,52 @@ mod tests {
             last[0] = 1.0;
             assert!((c + gap[0] - creep.value(t)).abs() < 1e-14);
         }
+    }
+
+    #[test]
+    fn a_step_tried_again_at_another_length_leaves_no_trace() {
+        let creep = zener(2.0);
+        let n = BLOCK + 5;
+        let new = || Memory::new([&creep].into_iter(), Scheme::Linear, n);
+        let (mut once, mut twice) = (new(), new());
+        let rigid = vec![0.25; n];
+        let (before, last) = (vec![0.0; n], vec![1.5; n]);
+        let (mut gap, mut again, mut part) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+        for memory in [&mut once, &mut twice] {
+            memory.history(&[0.3], &before, &before, &rigid, &mut gap);
+        }
+        let c = once.history(&[0.2], &before, &last, &rigid, &mut gap);
+        twice.history(&[0.7], &before, &last, &rigid, &mut again);
+        let partial = twice.partial(&[0.2], &last, &rigid, &mut part);
+        assert_eq!(twice.retry(&[0.2], &last, &rigid, &mut again), c);
+        assert_eq!(partial, c);
+        assert_eq!(gap, again);
+        // One sum in another order.
+        assert!(part.iter().zip(&gap).all(|(a, b)| (a - b).abs() < 1e-15));
+    }
+
+    #[test]
+    fn the_defect_is_what_a_parabola_leaves_over() {
+        // U = t^2 in one step of 0.2 from rest: the exact strain less that of the chord is the defect times U'' = 2.
+        let creep = zener(2.0);
+        let dt = 0.2;
+        let mut memory = Memory::new([&creep].into_iter(), Scheme::Linear, 1);
+        let mut gap = [0.0];
+        let c = memory.history(&[dt], &[0.0], &[0.0], &[0.0], &mut gap);
+        // u(dt) = integral of C(dt - s) 2 s ds = 2 x the second integral of C; by Simpson's rule.
+        let n = 1000;
+        let f = |k: usize| {
+            let s = dt * k as f64 / n as f64;
+            2.0 * s * creep.value(dt - s)
+        };
+        let sum: f64 = (1..n).map(|k| if k % 2 == 1 { 4.0 * f(k) } else { 2.0 * f(k) }).sum::<f64>() + f(0) + f(n);
+        let exact = sum * dt / (3.0 * n as f64);
+        let Defect::Curvature(weight) = memory.defect(dt) else { panic!() };
+        let chord = c * dt * dt + gap[0];
+        assert!((chord - exact - 2.0 * weight).abs() < 1e-12, "{chord} {exact} {weight}");
+        let mut stiff = Memory::new([&zener(0.0)].into_iter(), Scheme::Linear, 1);
+        stiff.history(&[dt], &[0.0], &[0.0], &[0.0], &mut gap);
+        assert!(matches!(stiff.defect(dt), Defect::Change(weight) if weight > 0.0));
     }
 
     #[test]

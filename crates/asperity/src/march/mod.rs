@@ -7,14 +7,19 @@
 
 #![allow(clippy::type_complexity)] // the closures of a sweep spell out the slices that they walk
 
+mod adaptive;
+mod dense;
 mod dents;
 mod direct;
 mod energy;
+mod event;
 mod measure;
 mod memory;
 mod record;
 mod simulation;
+mod timeline;
 
+pub use dense::Between;
 pub use record::{Row, Step};
 pub use simulation::{Plasticity, Scheme, Simulation};
 
@@ -25,13 +30,18 @@ use ndarray::Array2;
 
 use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem, Solver};
 use crate::error::{Error, Result};
-use crate::field::sweep;
+use crate::field::{minimum, sum, sweep};
+use crate::load::{Control, Event};
 use crate::operator::{Operator, half_space};
 use crate::time::Instant;
+use adaptive::{Defect, Three};
 use dents::Dents;
 use direct::Direct;
+use event::{Enclosure, MET};
 use measure::Meter;
 use memory::Memory;
+use record::Remembered;
+use timeline::Timeline;
 
 /// A simulation on its way.
 ///
@@ -45,7 +55,7 @@ use memory::Memory;
 /// let creep = Creep { instantaneous: 1e-8, terms: vec![asperity::material::CreepTerm { compliance: 1e-8, retardation_time: 1.0 }], fluidity: 0.0 };
 /// let loading = Loading { control: Control::Load, history: History::Step { value: 1.0 } };
 /// let mut march = March::new(Simulation {
-///     loading, creep,
+///     loading: loading.into(), creep,
 ///     times: TimeGrid::Uniform { end: 10.0, steps: 10 },
 ///     ..Simulation::new(grid, gap)
 /// })?;
@@ -59,14 +69,14 @@ use memory::Memory;
 /// ```
 pub struct March {
     simulation: Simulation,
-    instants: Vec<Instant>,
+    timeline: Timeline,
     operator: Box<dyn Operator>,
     solver: Solver,
     past: Past,
     /// Rows done.
     done: usize,
-    /// The row that `state` belongs to.
-    current: Option<usize>,
+    /// The row that `state` belongs to, and its instant.
+    current: Option<(usize, Instant)>,
     state: ContactState,
     /// Pressure and U of the row before.
     previous: Previous,
@@ -82,6 +92,12 @@ pub struct March {
     /// The permanent flattening, where there is any.
     dents: Option<Dents>,
     meter: Meter,
+    /// U two rows before, where steps are adaptive.
+    older: Vec<f64>,
+    /// Estimated error of the last step.
+    time_error: Option<f64>,
+    /// What the last row reached, where stages ask for it.
+    reached: Reached,
     interrupt: Option<Arc<AtomicBool>>,
 }
 
@@ -93,6 +109,13 @@ struct Previous {
 /// The cut-off of each cell.
 fn cap<'a>(simulation: &Simulation, of_cells: &'a Option<Vec<f64>>) -> Hardness<'a> {
     of_cells.as_deref().map_or(Hardness::Uniform(simulation.hardness), Hardness::Cells)
+}
+
+/// What a row reached: a stage may end or begin with it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Reached {
+    approach: f64,
+    load: f64,
 }
 
 /// What the bodies remember.
@@ -130,7 +153,7 @@ impl March {
     /// hardness times the area that can touch.
     pub fn new(simulation: Simulation) -> Result<Self> {
         simulation.validate()?;
-        let instants = simulation.instants();
+        let timeline = Timeline::new(&simulation);
         let operator = half_space(simulation.grid, simulation.boundary);
         let options = &simulation.solver;
         let solver = Solver::with_precision(options.method, options.precision, &*operator);
@@ -145,9 +168,12 @@ impl March {
         Ok(March {
             gap: simulation.gap.iter().copied().collect(),
             hardness: simulation.hardness_of_cells(),
+            older: vec![0.0; if simulation.is_adaptive() { n } else { 0 }],
+            time_error: None,
+            reached: Reached::default(),
             lengths: vec![0.0; simulation.parts().count()],
             simulation,
-            instants,
+            timeline,
             operator,
             solver,
             past,
@@ -168,15 +194,15 @@ impl March {
         self.interrupt = Some(flag);
     }
 
-    /// Number of rows in all.
-    #[allow(clippy::len_without_is_empty)] // there is always the row at 0+
-    pub fn len(&self) -> usize {
-        self.instants.len()
+    /// Number of rows in all, where it is known beforehand: without events and adaptive steps.
+    pub fn rows_expected(&self) -> Option<usize> {
+        let plan = self.simulation.plan();
+        plan.exact.then_some(plan.instants.len())
     }
 
-    /// The rows to come and gone: time, step, prescribed value.
-    pub fn instants(&self) -> &[Instant] {
-        &self.instants
+    /// Whether the last row is done.
+    pub fn finished(&self) -> bool {
+        self.timeline.finished()
     }
 
     /// Rows done.
@@ -193,12 +219,32 @@ impl March {
     ///
     /// # Errors
     /// [`Error::NotConverged`] with the time; [`March::last`] then lends the best state reached.
-    /// [`Error::Undetermined`], [`Error::Interrupted`].
+    /// [`Error::Undetermined`], [`Error::Interrupted`]; [`Error::Missed`] where an event did not come;
+    /// [`Error::Invalid`] where a stage begins with a jump that the material cannot follow.
     pub fn advance(&mut self) -> Result<Option<Step<'_>>> {
-        let Some(instant) = self.instants.get(self.done).copied() else {
+        let Some(mut instant) = self.timeline.propose(&self.simulation)? else {
             return Ok(None);
         };
-        self.current = Some(self.done);
+        self.outcome = Outcome::default();
+        self.begin(instant);
+        self.solve(instant)?;
+        let mut error = self.local_error(instant);
+        while let Some(dt) = self.timeline.pace().and_then(|pace| pace.rejects(instant.dt, error)) {
+            instant = self.try_again(dt)?;
+            error = self.local_error(instant);
+        }
+        let event = self.find_event(&mut instant)?;
+        self.measure(instant.dt == 0.0)?;
+        self.dent();
+        self.time_error = if event { self.local_error(instant) } else { error };
+        self.reached = self.reached_now();
+        self.timeline.accept(&self.simulation, instant, self.time_error, event, self.reached);
+        self.done += 1;
+        Ok(self.last())
+    }
+
+    /// Sets the contact of the step that ends at `instant`: its compliance, its gap, its first guess.
+    fn begin(&mut self, instant: Instant) {
         self.measure_step(instant);
         self.meter.clear();
         let unit = &self.state.unit_displacement;
@@ -212,22 +258,53 @@ impl March {
             }
             Past::Direct(d) => d.history(instant.time, instant.dt, unit, rigid, &mut self.gap),
         };
-        self.extrapolate();
+        self.extrapolate(instant.dt);
+        // The solver writes U anew: what stands there is U two rows before.
+        let older = &self.state.unit_displacement[..self.older.len()];
+        self.older.copy_from_slice(older);
+    }
+
+    /// The step under way at another length, solved from the last guess.
+    fn try_again(&mut self, dt: f64) -> Result<Instant> {
+        let instant = self.timeline.inside(&self.simulation, dt);
+        self.measure_step(instant);
+        let unit = &self.previous.unit_displacement;
+        let rigid = self.simulation.gap.as_slice().unwrap_or_default();
+        self.compliance = match &mut self.past {
+            Past::Memory(m) => m.retry(&self.lengths, unit, rigid, &mut self.gap),
+            Past::Direct(d) => d.retry(dt, rigid, &mut self.gap),
+        };
+        self.solve(instant)?;
+        Ok(instant)
+    }
+
+    /// Solves the contact that is set.
+    fn solve(&mut self, instant: Instant) -> Result<()> {
+        self.current = Some((self.done, instant));
         let area = self.simulation.grid.area();
         let problem = Problem {
             gap: &self.gap,
             compliance: self.compliance,
             hardness: cap(&self.simulation, &self.hardness),
-            prescribed: match self.simulation.loading.control {
-                crate::load::Control::Load => Prescribed::Load(instant.value),
-                crate::load::Control::Pressure => Prescribed::Load(instant.value * area),
-                crate::load::Control::Approach => Prescribed::Approach(instant.value),
+            prescribed: match instant.control {
+                Control::Load => Prescribed::Load(instant.value),
+                Control::Pressure => Prescribed::Load(instant.value * area),
+                Control::Approach => Prescribed::Approach(instant.value),
             },
         };
         let options = &self.simulation.solver;
         let interrupt = self.interrupt.as_deref();
+        let before = self.outcome;
         match self.solver.solve(&mut *self.operator, &problem, options, &mut self.state, interrupt) {
-            Ok(outcome) => self.outcome = outcome,
+            Ok(outcome) => {
+                // The work of all trials of a step is its work.
+                self.outcome = Outcome {
+                    iterations: before.iterations + outcome.iterations,
+                    convolutions: before.convolutions + outcome.convolutions,
+                    ..outcome
+                };
+                Ok(())
+            }
             Err(Error::NotConverged(mut report)) => {
                 report.time = Some(instant.time);
                 self.outcome = Outcome {
@@ -236,22 +313,106 @@ impl March {
                     certificate: report.certificate,
                     ..Outcome::default()
                 };
-                return Err(Error::NotConverged(report));
+                Err(Error::NotConverged(report))
             }
-            Err(error) => return Err(error),
+            Err(error) => Err(error),
         }
-        self.measure(instant.dt == 0.0)?;
-        self.dent();
-        self.done += 1;
-        Ok(self.last())
+    }
+
+    /// Error that the step adds to the approach, over the largest approach so far; see [`adaptive`].
+    fn local_error(&self, instant: Instant) -> Option<f64> {
+        let (Past::Memory(memory), Some(_), false) = (&self.past, self.timeline.pace(), instant.jump) else {
+            return None;
+        };
+        let pressures = [&self.previous.pressure[..], &self.state.pressure[..]];
+        let (before, now) = (&self.previous.unit_displacement, &self.state.unit_displacement);
+        let error = match memory.defect(instant.dt) {
+            Defect::Curvature(weight) => {
+                let last = self.timeline.last().filter(|last| self.timeline.smooth() && last.dt > 0.0)?;
+                let states = Three { older: &self.older, before, now, lengths: [last.dt, instant.dt] };
+                weight * adaptive::curvature(&states, pressures)
+            }
+            Defect::Change(weight) => weight * adaptive::change(before, now, pressures),
+        };
+        let scale = self.timeline.largest.approach.max(self.state.approach.abs());
+        Some(if error > 0.0 { error / scale } else { 0.0 })
+    }
+
+    /// Whether the event that ends the stage happens in the step under way, which is then cut there.
+    fn find_event(&mut self, instant: &mut Instant) -> Result<bool> {
+        let Some(event) = self.timeline.stage(&self.simulation).until else { return Ok(false) };
+        let (signal, tolerance) = self.signal(event, self.reached_now(), *instant);
+        let side = self.timeline.side;
+        if side == 0.0 {
+            // The value must be left before it can be reached; what never touched is not lost.
+            let waits = signal > tolerance || (signal < -tolerance && event != Event::ContactLost);
+            self.timeline.side = if waits { signal.signum() } else { 0.0 };
+            // A stage starts from what the one before reached: its first jump may pass the value.
+            let (start, _) = self.signal(event, self.reached, *instant);
+            let passed = instant.jump && event != Event::ContactLost && start * signal < 0.0;
+            return Ok(passed);
+        }
+        let met = |signal: f64| match event {
+            Event::ContactLost => signal <= 0.0 && -signal <= tolerance,
+            _ => signal.abs() <= tolerance,
+        };
+        if side * signal > 0.0 && !met(signal) {
+            return Ok(false);
+        }
+        if instant.jump || met(signal) {
+            return Ok(true);
+        }
+        let before = match (event, instant.control) {
+            // The distance between the bodies is known only of open ones.
+            (Event::ContactLost, Control::Approach) => f64::NAN,
+            _ => side * self.signal(event, self.reached, *instant).0,
+        };
+        let mut enclosure = Enclosure::new(instant.dt, before, side * signal);
+        while let Some(dt) = enclosure.guess() {
+            *instant = self.try_again(dt)?;
+            let (signal, _) = self.signal(event, self.reached_now(), *instant);
+            if met(signal) {
+                return Ok(true);
+            }
+            enclosure.narrow(dt, side * signal);
+        }
+        if instant.dt != enclosure.far() {
+            *instant = self.try_again(enclosure.far())?;
+        }
+        Ok(true)
+    }
+
+    /// The quantity of an event less its value, and what counts as none.
+    fn signal(&self, event: Event, reached: Reached, instant: Instant) -> (f64, f64) {
+        let area = self.simulation.grid.area();
+        let Reached { approach, load } = self.timeline.largest;
+        let [deepest, heaviest] = [approach.max(reached.approach.abs()), load.max(reached.load)];
+        match event {
+            Event::Approach(value) => (reached.approach - value, MET * deepest.max(value.abs())),
+            Event::Load(value) => (reached.load - value, MET * heaviest.max(value)),
+            Event::Pressure(value) => (reached.load / area - value, MET * value.max(heaviest / area)),
+            Event::ContactLost if instant.control == Control::Approach => {
+                (reached.approach - minimum(&self.gap), MET * deepest)
+            }
+            // Under a load the bodies touch as long as there is any.
+            Event::ContactLost => (reached.load, 0.0),
+        }
+    }
+
+    /// Approach and load of the state, where stages ask for them.
+    fn reached_now(&self) -> Reached {
+        let programme = &self.simulation.loading;
+        let load = if programme.stages.len() > 1 || programme.has_events() {
+            sum(&self.state.pressure) * self.simulation.grid.cell_area()
+        } else {
+            0.0
+        };
+        Reached { approach: self.state.approach, load }
     }
 
     /// How long the step is in laboratory time and on the clock of each body.
     fn measure_step(&mut self, instant: Instant) {
-        let start = match self.done.checked_sub(1) {
-            Some(before) => self.instants[before].time,
-            None => instant.time,
-        };
+        let start = self.timeline.last().map_or(instant.time, |last| last.time);
         let clocks = self.simulation.thermal.iter().map(|body| &body.clock);
         let clocked = clocks.map(|clock| clock.elapsed(start, instant.time));
         self.lengths.iter_mut().zip(std::iter::once(instant.dt).chain(clocked)).for_each(|(l, x)| *l = x);
@@ -259,31 +420,29 @@ impl March {
 
     /// The last row (after an error: the state that the failed solve reached); `None` before the first.
     pub fn last(&self) -> Option<Step<'_>> {
-        let index = self.current?;
+        let (index, instant) = self.current?;
         Some(Step {
             index,
-            instant: self.instants[index],
+            instant,
             simulation: &self.simulation,
             hardness: cap(&self.simulation, &self.hardness),
             state: &self.state,
             gap: &self.gap,
             compliance: self.compliance,
             outcome: self.outcome,
-            past: &self.past,
-            before: &self.previous.unit_displacement,
+            remembered: Remembered::Past(&self.past, &self.previous.unit_displacement),
+            time_error: self.time_error,
             dents: self.dents.as_ref(),
-            meter: &self.meter,
+            meter: Some(&self.meter),
         })
     }
 
-    /// Starts the next solve from the last two pressures, prolonged linearly in time; after a jump from
+    /// Starts the next solve from the last two pressures, prolonged linearly in time by `now`; after a jump from
     /// the last one.
-    fn extrapolate(&mut self) {
+    fn extrapolate(&mut self, now: f64) {
         std::mem::swap(&mut self.state.pressure, &mut self.previous.pressure);
         std::mem::swap(&mut self.state.unit_displacement, &mut self.previous.unit_displacement);
-        let dt = |n: usize| self.instants.get(n).map_or(0.0, |i| i.dt);
-        let now = dt(self.done);
-        let before = if self.done > 0 { dt(self.done - 1) } else { 0.0 };
+        let before = self.timeline.last().map_or(0.0, |last| last.dt);
         let factor = if before > 0.0 { (now / before).min(4.0) } else { 0.0 };
         // state.pressure holds the row before the last one.
         sweep((&mut self.state.pressure[..], &self.previous.pressure[..]), &|(p, last): (
@@ -310,10 +469,13 @@ impl March {
         if let Some(dents) = &self.dents {
             fields.push(field("dented_gap", dents.gap()));
         }
-        let (mut scalars, memory) = match &self.past {
+        let (memory_scalars, memory) = match &self.past {
             Past::Memory(m) => m.save(),
             Past::Direct(d) => d.save(),
         };
+        let mut scalars = self.timeline.save();
+        scalars.extend([self.reached.approach, self.reached.load]);
+        scalars.extend(memory_scalars);
         scalars.extend(self.meter.save());
         fields.extend(memory.iter().enumerate().map(|(k, cells)| field(&format!("memory_{k}"), cells)));
         Checkpoint { step: self.done, scalars, fields }
@@ -326,9 +488,16 @@ impl March {
     pub fn resume(simulation: Simulation, checkpoint: &Checkpoint) -> Result<Self> {
         let mut march = March::new(simulation)?;
         let foreign = |what: String| Error::invalid("checkpoint", what, "one of this simulation");
-        if checkpoint.step > march.instants.len() {
-            return Err(foreign(format!("{} rows of {}", checkpoint.step, march.instants.len())));
+        let Some((timeline, rest)) = checkpoint.scalars.split_at_checked(Timeline::SAVED) else {
+            return Err(foreign(format!("{} numbers", checkpoint.scalars.len())));
+        };
+        let [approach, load, scalars @ ..] = rest else {
+            return Err(foreign(format!("{} numbers", checkpoint.scalars.len())));
+        };
+        if !march.timeline.load(&march.simulation, timeline) {
+            return Err(foreign("of another programme".into()));
         }
+        march.reached = Reached { approach: *approach, load: *load };
         let mut fields = checkpoint.fields.iter();
         let mut next = |name: &str| -> Result<Vec<f64>> {
             match fields.next() {
@@ -351,7 +520,7 @@ impl March {
         let memory = (0..checkpoint.fields.len().saturating_sub(others))
             .map(|k| next(&format!("memory_{k}")))
             .collect::<Result<Vec<_>>>()?;
-        let Some(scalars) = march.meter.load(&checkpoint.scalars) else {
+        let Some(scalars) = march.meter.load(scalars) else {
             return Err(foreign("one without the energies asked for".into()));
         };
         let restored = match &mut march.past {

@@ -41,6 +41,11 @@ pub struct Row {
     pub residual: f64,
     /// Certified relative energy-norm error of the pressure.
     pub certificate: f64,
+    /// Estimated error that the step adds to the approach, over the largest approach so far; where steps are
+    /// adaptive, and the last three states are smooth in time.
+    pub time_error: Option<f64>,
+    /// Number of the stage, from 0.
+    pub stage: usize,
 }
 
 /// (pi - 1 + ln 2)/24: the mean excess of a counted area per perimeter and cell.
@@ -59,11 +64,20 @@ pub struct Step<'a> {
     /// c: u = c U + g.
     pub(super) compliance: f64,
     pub(super) outcome: Outcome,
-    pub(super) past: &'a Past,
-    /// U of the row before.
-    pub(super) before: &'a [f64],
+    pub(super) remembered: Remembered<'a>,
+    pub(super) time_error: Option<f64>,
     pub(super) dents: Option<&'a Dents>,
-    pub(super) meter: &'a Meter,
+    /// The quantities of the row; `None` between rows.
+    pub(super) meter: Option<&'a Meter>,
+}
+
+/// g, the displacement that the past leaves.
+#[derive(Clone, Copy)]
+pub(super) enum Remembered<'a> {
+    /// Of the step under way, which began with this U.
+    Past(&'a Past, &'a [f64]),
+    /// Itself.
+    Field(&'a [f64]),
 }
 
 impl<'a> Step<'a> {
@@ -97,7 +111,10 @@ impl<'a> Step<'a> {
     /// Normal displacement u = integral C d(Kp) of both surfaces together \[m\].
     pub fn displacement_into(&self, displacement: &mut Array2<f64>) {
         if let Some(displacement) = displacement.as_slice_mut() {
-            self.past.remembered(self.before, displacement);
+            match self.remembered {
+                Remembered::Past(past, before) => past.remembered(before, displacement),
+                Remembered::Field(g) => displacement.copy_from_slice(g),
+            }
         }
         let cells = displacement.iter_mut().zip(&self.state.unit_displacement);
         cells.for_each(|(g, u)| *g += self.compliance * u);
@@ -147,6 +164,8 @@ impl<'a> Step<'a> {
             convolutions: self.outcome.convolutions,
             residual: self.outcome.residual,
             certificate: self.outcome.certificate,
+            time_error: self.time_error,
+            stage: self.instant.stage,
         }
     }
 
@@ -168,19 +187,19 @@ impl<'a> Step<'a> {
         }
     }
 
-    /// The quantities asked for, with the ends of their bins.
+    /// The quantities asked for, with the ends of their bins; none of a state between rows.
     pub fn columns(&self) -> &'a [Column] {
-        self.meter.columns()
+        self.meter.map_or(&[], Meter::columns)
     }
 
     /// The numbers of all [`columns`](Self::columns), one after the other. NaN after a solve that failed.
     pub fn quantities(&self) -> &'a [f64] {
-        self.meter.values()
+        self.meter.map_or(&[], Meter::values)
     }
 
     /// A quantity of this row: one number, or one per bin; `None` where it was not asked for.
     pub fn quantity(&self, quantity: Quantity) -> Option<&'a [f64]> {
-        self.meter.of(quantity)
+        self.meter?.of(quantity)
     }
 }
 

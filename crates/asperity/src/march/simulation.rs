@@ -5,10 +5,10 @@ use ndarray::Array2;
 use crate::contact::{Method, Precision, SolverOptions};
 use crate::error::{Error, Result};
 use crate::grid::{Boundary, Grid};
-use crate::load::{Control, History, Loading};
+use crate::load::{Control, Course, History, Loading, Programme, of_stage};
 use crate::material::{Creep, ThermalCreep};
 use crate::quantities::{Column, Quantities, Quantity};
-use crate::time::{Instant, TimeGrid};
+use crate::time::{Plan, TimeGrid};
 
 /// How the hereditary integral is taken over a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -53,11 +53,11 @@ pub struct Simulation {
     pub hardness_map: Option<Array2<f64>>,
     /// What flattening at the cut-off leaves behind.
     pub plasticity: Plasticity,
-    /// What is prescribed.
-    pub loading: Loading,
+    /// What is prescribed; a [`Loading`] becomes a programme by `into()`.
+    pub loading: Programme,
     /// When the state is computed.
     pub times: TimeGrid,
-    /// Instants that are steps besides \[s\].
+    /// Instants that are steps besides \[s\]. (Adaptive steps need none: see [`crate::March::between`].)
     pub include: Vec<f64>,
     /// How time is discretised.
     pub scheme: Scheme,
@@ -79,7 +79,7 @@ impl Simulation {
             hardness: f64::INFINITY,
             hardness_map: None,
             plasticity: Plasticity::default(),
-            loading: Loading { control: Control::Load, history: History::Step { value: 0.0 } },
+            loading: Loading { control: Control::Load, history: History::Step { value: 0.0 } }.into(),
             times: TimeGrid::Uniform { end: 1.0, steps: 1 },
             include: vec![],
             scheme: Scheme::default(),
@@ -88,11 +88,18 @@ impl Simulation {
         }
     }
 
-    /// All rows: t = 0+, the steps, the breaks and jumps of the history, and those of the temperature.
-    pub fn instants(&self) -> Vec<Instant> {
+    /// The rows as far as they are known beforehand: t = 0+, the steps, the breaks and jumps of the histories, those
+    /// of the temperature, the ends of the stages.
+    pub fn plan(&self) -> Plan {
         let mut include = self.include.clone();
         include.extend(self.thermal.iter().flat_map(|body| body.clock.breaks(self.times.end())));
-        self.times.instants(&self.loading.history, &include)
+        self.loading.plan(&self.times, &include)
+    }
+
+    /// Whether the steps of a stage are adaptive.
+    pub fn is_adaptive(&self) -> bool {
+        let own = self.loading.stages.iter().flat_map(|stage| &stage.times);
+        self.times.is_adaptive() || own.into_iter().any(TimeGrid::is_adaptive)
     }
 
     /// The creep functions whose sum answers: that of laboratory time, then those of `thermal`.
@@ -130,9 +137,10 @@ impl Simulation {
             0.0
         };
         let spots = if self.quantities.list.iter().any(|q| q.is_of_spots()) { 16.0 } else { 0.0 };
-        let march = 6.0 * 8.0 + dents + stiffness + spots;
+        let older = if self.is_adaptive() { 8.0 } else { 0.0 };
+        let march = 6.0 * 8.0 + dents + stiffness + spots + older;
         let memory = match self.scheme {
-            Scheme::Direct => self.instants().len(),
+            Scheme::Direct => self.plan().instants.len(),
             _ => self.parts().map(|creep| creep.terms.len() + usize::from(creep.fluidity > 0.0)).sum(),
         };
         f64::ceil(convolutions + solver + march) as usize + 8 * memory
@@ -222,8 +230,15 @@ impl Simulation {
                 ),
             ));
         }
-        self.loading.history.validate()?;
+        self.loading.validate()?;
         self.times.validate()?;
+        if self.is_adaptive() && self.scheme != Scheme::Linear {
+            return Err(Error::invalid(
+                "scheme of a run with adaptive steps",
+                format!("{:?}", self.scheme).to_lowercase(),
+                "linear (the error estimate belongs to it)",
+            ));
+        }
         self.solver.validate()?;
         self.validate_load()?;
         self.validate_jumps()
@@ -268,22 +283,32 @@ impl Simulation {
     }
 
     fn validate_load(&self) -> Result<()> {
-        let [least, most] = self.loading.history.range(self.times.end());
-        let factor = match self.loading.control {
-            Control::Approach => return Ok(()),
-            Control::Load => 1.0,
-            Control::Pressure => self.grid.area(),
-        };
-        if least < 0.0 {
-            let (what, unit) = match self.loading.control {
-                Control::Pressure => ("smallest mean pressure", "Pa"),
-                _ => ("smallest load", "N"),
+        let end = self.times.end();
+        for (n, stage) in self.loading.stages.iter().enumerate() {
+            let factor = match stage.control {
+                Control::Approach => continue,
+                Control::Load => 1.0,
+                Control::Pressure => self.grid.area(),
             };
-            return Err(Error::invalid(what, format!("{least} {unit}"), "not negative (bodies only press)"));
-        }
-        let max = self.most() * self.grid.cell_area();
-        if most * factor > max * (1.0 + 1e-12) {
-            return Err(Error::Infeasible { load: most * factor, max });
+            let lasts = stage.duration.unwrap_or(end).min(end);
+            let [least, most] = match &stage.course {
+                Course::Given(history) => history.range(lasts),
+                Course::Hold => continue,
+                Course::RampTo { value, .. } => [*value; 2],
+            };
+            if least < 0.0 {
+                let (what, unit) = match stage.control {
+                    Control::Pressure => ("smallest mean pressure", "Pa"),
+                    _ => ("smallest load", "N"),
+                };
+                let error =
+                    Error::invalid(what, format!("{least} {unit}"), "not negative (bodies only press)");
+                return Err(if self.loading.stages.len() > 1 { of_stage(error, n) } else { error });
+            }
+            let max = self.most() * self.grid.cell_area();
+            if most * factor > max * (1.0 + 1e-12) {
+                return Err(Error::Infeasible { load: most * factor, max });
+            }
         }
         Ok(())
     }
@@ -294,15 +319,17 @@ impl Simulation {
             return Ok(());
         }
         let mut last = 0.0;
-        for instant in self.instants() {
-            if instant.jump && instant.value != last {
+        let mut stage = 0;
+        for instant in self.plan().instants {
+            // What a stage starts from may be known only as the run goes; the march looks then.
+            if instant.jump && instant.stage == stage && instant.value != last {
                 return Err(Error::invalid(
                     format!("jump of the history at t = {} s", instant.time),
                     format!("{:e} to {:e}", last, instant.value),
                     "a ramp: the material has no instantaneous compliance, so no contact follows a jump",
                 ));
             }
-            last = instant.value;
+            (last, stage) = (instant.value, instant.stage);
         }
         Ok(())
     }

@@ -4,7 +4,7 @@ use super::{Check, Checks, rows, step_load, zener};
 use crate::contact::SolverOptions;
 use crate::error::Result;
 use crate::grid::{Boundary, Grid};
-use crate::load::{Control, History, Loading};
+use crate::load::{Control, History, Loading, Programme};
 use crate::march::{March, Row, Simulation};
 use crate::material::Creep;
 use crate::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
@@ -34,8 +34,8 @@ fn rough(boundary: Boundary) -> Result<Simulation> {
 }
 
 /// The elastic contact of compliance `c` under a load: its row and pressure.
-fn elastic(base: &Simulation, c: f64, loading: Loading) -> Result<(Row, Vec<f64>)> {
-    let mut march = March::new(Simulation { creep: Creep::elastic(c), loading, ..base.clone() })?;
+fn elastic(base: &Simulation, c: f64, loading: impl Into<Programme>) -> Result<(Row, Vec<f64>)> {
+    let mut march = March::new(Simulation { creep: Creep::elastic(c), loading: loading.into(), ..base.clone() })?;
     let step = march.advance()?;
     Ok(step.map(|s| (s.row(), s.pressure().iter().copied().collect())).unwrap_or_default())
 }
@@ -57,7 +57,7 @@ pub(super) fn one_elastic_solve() -> Result<Vec<Check>> {
         let ramp = History::Ramp { value: 0.3, duration: 2.0 };
         let rows = rows(Simulation {
             creep: zener(),
-            loading: Loading { control: Control::Load, history: ramp },
+            loading: Loading { control: Control::Load, history: ramp }.into(),
             times: TimeGrid::List(vec![0.5, 2.0, 2.7, 9.0]),
             ..base.clone()
         })?;

@@ -14,7 +14,7 @@ mod viscoelastic;
 
 use crate::error::Result;
 use crate::grid::Grid;
-use crate::load::{Control, History, Loading};
+use crate::load::{Control, History, Loading, Programme};
 use crate::march::{March, Row, Simulation};
 use crate::material::{Creep, CreepTerm, Relaxation, RelaxationTerm};
 use crate::surface::{Part, Shape, undeformed_gap};
@@ -113,14 +113,14 @@ fn shape_on(n: usize, size: f64, shape: Shape) -> Result<Simulation> {
     Ok(Simulation::new(grid, gap))
 }
 
-fn step_load(value: f64) -> Loading {
-    Loading { control: Control::Load, history: History::Step { value } }
+fn step_load(value: f64) -> Programme {
+    Loading { control: Control::Load, history: History::Step { value } }.into()
 }
 
 /// The rows of a simulation.
 fn rows(simulation: Simulation) -> Result<Vec<Row>> {
     let mut march = March::new(simulation)?;
-    let mut rows = Vec::with_capacity(march.len());
+    let mut rows = Vec::with_capacity(march.rows_expected().unwrap_or(0));
     while let Some(step) = march.advance()? {
         rows.push(step.row());
     }

@@ -72,7 +72,7 @@ pub(super) fn temperature_springs() -> Result<Vec<Check>> {
     let simulation = Simulation {
         creep: Creep::default(),
         thermal: vec![body(zener())?],
-        loading: Loading { control: Control::Load, history },
+        loading: Loading { control: Control::Load, history }.into(),
         times,
         ..shape_on(n, size, Shape::Sphere { radius: 1.0 })?
     };

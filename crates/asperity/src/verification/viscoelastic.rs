@@ -50,7 +50,7 @@ fn sphere_follows(
     let exact = Ting::new(radius, &zener(), history, times.end())?;
     let simulation = Simulation {
         creep: zener(),
-        loading: Loading { control: Control::Load, history: history.clone() },
+        loading: Loading { control: Control::Load, history: history.clone() }.into(),
         times,
         ..shape_on(n, size, Shape::Sphere { radius })?
     };
@@ -90,7 +90,7 @@ pub(super) fn westergaard_creep() -> Result<Vec<Check>> {
     let simulation = Simulation {
         boundary: Boundary::Periodic,
         creep: zener(),
-        loading: Loading { control: Control::Pressure, history: History::Step { value: pressure } },
+        loading: Loading { control: Control::Pressure, history: History::Step { value: pressure } }.into(),
         times: TimeGrid::Uniform { end: 4.0, steps: 80 },
         ..Simulation::new(grid, gap)
     };
@@ -120,7 +120,7 @@ pub(super) fn held_approach() -> Result<Vec<Check>> {
     let depth = 0.04;
     let simulation = Simulation {
         creep: zener(),
-        loading: Loading { control: Control::Approach, history: History::Step { value: depth } },
+        loading: Loading { control: Control::Approach, history: History::Step { value: depth } }.into(),
         times: TimeGrid::Uniform { end: 2.0, steps: 80 },
         solver: tight(),
         ..shape_on(n, size, Shape::Sphere { radius: 1.0 })?
@@ -156,7 +156,7 @@ pub(super) fn flat_punch_history() -> Result<Vec<Check>> {
     let history = History::Table { points };
     let simulation = Simulation {
         creep: zener(),
-        loading: Loading { control: Control::Load, history: history.clone() },
+        loading: Loading { control: Control::Load, history: history.clone() }.into(),
         times: TimeGrid::List(vec![0.5, 1.5, 2.5, 3.5, 4.0, 6.0, 10.0]),
         solver: SolverOptions { tolerance: 1e-10, ..SolverOptions::default() },
         ..shape_on(48, 2.4, Shape::FlatPunch(Punch::Circle { radius: 1.0 }))?
@@ -181,7 +181,7 @@ pub(super) fn order_in_time() -> Result<Vec<Check>> {
     let solve = |steps: usize| -> Result<f64> {
         let simulation = Simulation {
             creep: zener(),
-            loading: Loading { control: Control::Approach, history: History::Step { value: 0.04 } },
+            loading: Loading { control: Control::Approach, history: History::Step { value: 0.04 } }.into(),
             times: TimeGrid::Uniform { end: 1.0, steps },
             solver: SolverOptions { tolerance: 1e-11, ..SolverOptions::default() },
             ..shape_on(33, 0.6, Shape::Sphere { radius: 1.0 })?
@@ -191,7 +191,7 @@ pub(super) fn order_in_time() -> Result<Vec<Check>> {
     let modulus = zener_relaxation();
     let start = rows(Simulation {
         creep: zener(),
-        loading: Loading { control: Control::Approach, history: History::Step { value: 0.04 } },
+        loading: Loading { control: Control::Approach, history: History::Step { value: 0.04 } }.into(),
         solver: SolverOptions { tolerance: 1e-11, ..SolverOptions::default() },
         ..shape_on(33, 0.6, Shape::Sphere { radius: 1.0 })?
     })?[0]

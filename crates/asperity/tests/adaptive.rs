@@ -1,0 +1,223 @@
+//! Steps that follow their error, states between the steps, and marches resumed on the way.
+
+use asperity::load::{Control, Course, Event, History, Loading, Programme, Stage};
+use asperity::march::{Checkpoint, March, Row, Scheme, Simulation};
+use asperity::material::{Creep, CreepTerm};
+use asperity::operator::half_space;
+use asperity::surface::{Part, Shape, undeformed_gap};
+use asperity::{
+    ContactState, Grid, Method, Prescribed, Problem, Solver, SolverOptions, TimeGrid,
+};
+use ndarray::Array2;
+
+/// Three terms over five decades.
+fn creep() -> Creep {
+    let term = |compliance, retardation_time| CreepTerm { compliance, retardation_time };
+    Creep { instantaneous: 0.2, terms: vec![term(0.3, 1e-2), term(0.4, 1.0), term(0.5, 1e3)], fluidity: 0.0 }
+}
+
+fn sphere(n: usize) -> Simulation {
+    let grid = Grid::new([n, n], [1.0, 1.0]).unwrap();
+    let part = Part::Shape { shape: Shape::Sphere { radius: 1.0 }, center: [0.0, 0.0] };
+    let gap = undeformed_gap(&grid, &[part]).unwrap();
+    let solver = SolverOptions { tolerance: 1e-9, ..SolverOptions::default() };
+    Simulation { creep: creep(), solver, ..Simulation::new(grid, gap) }
+}
+
+fn load(history: History) -> Programme {
+    Loading { control: Control::Load, history }.into()
+}
+
+fn adaptive(end: f64, tolerance: f64, first: f64) -> TimeGrid {
+    TimeGrid::Adaptive { end, tolerance, first }
+}
+
+fn rows(simulation: Simulation) -> Vec<Row> {
+    let mut march = March::new(simulation).unwrap();
+    let mut rows = vec![];
+    while let Some(step) = march.advance().unwrap() {
+        rows.push(step.row());
+    }
+    rows
+}
+
+/// The elastic contact of this compliance under the load.
+fn elastic(simulation: &Simulation, compliance: f64, load: f64) -> ContactState {
+    let mut operator = half_space(simulation.grid, simulation.boundary);
+    let mut state = ContactState::new(simulation.grid.len());
+    let problem = Problem {
+        gap: simulation.gap.as_slice().unwrap(),
+        compliance,
+        hardness: f64::INFINITY,
+        prescribed: Prescribed::Load(load),
+    };
+    let mut solver = Solver::new(Method::ProjectedCg, &*operator);
+    solver.solve(&mut *operator, &problem, &simulation.solver, &mut state, None).unwrap();
+    state
+}
+
+#[test]
+fn eight_decades_of_time_take_at_most_eighty_steps_to_a_thousandth_of_the_approach() {
+    // While the contact grows the approach is that of one elastic contact with C(t), on every grid.
+    let base = sphere(32);
+    let simulation = Simulation {
+        loading: load(History::Step { value: 0.01 }),
+        times: adaptive(1e5, 1e-3, 1e-3),
+        ..base.clone()
+    };
+    let rows = rows(simulation);
+    let mut worst = 0.0_f64;
+    for row in &rows {
+        let exact = elastic(&base, creep().value(row.time), 0.01).approach;
+        worst = worst.max((row.approach / exact - 1.0).abs());
+    }
+    println!("{} rows, worst {worst:e}", rows.len());
+    assert!(rows.len() <= 81, "{} rows", rows.len());
+    assert!(worst < 1e-3, "{worst:e}");
+    // Every step but the first, which has no past, says its error; none is above the tolerance.
+    assert_eq!(rows.iter().filter(|row| row.time_error.is_none()).count(), 2);
+    assert!(rows.iter().flat_map(|row| row.time_error).all(|error| (0.0..1e-3).contains(&error)));
+    // Steps grow at most twofold (the last but one may be half of the rest).
+    let dt: Vec<f64> = rows.windows(2).map(|pair| pair[1].time - pair[0].time).collect();
+    assert!(dt.windows(2).all(|pair| pair[1] < 2.3 * pair[0]), "{dt:?}");
+}
+
+#[test]
+fn a_tighter_tolerance_gives_a_smaller_error_and_breaks_are_hit() {
+    let base = sphere(32);
+    let history = History::Table { points: vec![(0.0, 0.0), (3.0, 0.01), (8.0, 0.01), (8.0, 0.02), (40.0, 0.002)] };
+    let run = |times| rows(Simulation { loading: load(history.clone()), times, ..base.clone() });
+    let fine = run(TimeGrid::List((1..=4000).map(|n| f64::from(n) / 4000.0).map(|s| 40.0 * s * s).collect()));
+    let reference = |t: f64| {
+        let after = fine.partition_point(|row| row.time < t);
+        let (a, b) = (&fine[after.max(1) - 1], &fine[after.min(fine.len() - 1)]);
+        if b.time == t || b.time == a.time {
+            b.approach
+        } else {
+            a.approach + (t - a.time) / (b.time - a.time) * (b.approach - a.approach)
+        }
+    };
+    let deepest = fine.iter().map(|row| row.approach).fold(0.0, f64::max);
+    let mut errors = vec![];
+    for tolerance in [1e-2, 1e-3, 1e-4] {
+        let rows = run(adaptive(40.0, tolerance, 1e-3));
+        for t in [3.0, 8.0, 40.0] {
+            assert!(rows.iter().any(|row| row.time == t), "{t}");
+        }
+        assert_eq!(rows.iter().filter(|row| row.time == 8.0).count(), 2);
+        let smooth = rows.iter().filter(|row| row.time != 8.0);
+        let error = smooth.map(|row| (row.approach - reference(row.time)).abs() / deepest).fold(0.0, f64::max);
+        println!("{tolerance}: {} rows, {error:e}", rows.len());
+        assert!(error < tolerance, "{tolerance}: {error:e}");
+        errors.push(error);
+    }
+    assert!(errors[2] < 0.2 * errors[0], "{errors:?}");
+}
+
+#[test]
+fn states_between_rows_are_second_order_and_disturb_nothing() {
+    let base = sphere(32);
+    let loading = load(History::Step { value: 0.01 });
+    let times = adaptive(100.0, 1e-3, 1e-3);
+    let simulation = Simulation { loading, times, ..base.clone() };
+    let plain = rows(simulation.clone());
+    let wanted = [5e-4, 0.033, 0.7, 5.0, 33.0, 100.0];
+    let mut march = March::new(simulation).unwrap();
+    let (mut with, mut shown) = (vec![], 0);
+    let mut start = 0.0;
+    while march.advance().unwrap().is_some() {
+        let row = march.last().unwrap().row();
+        for t in wanted.into_iter().filter(|t| *t > start && *t <= row.time) {
+            let between = march.between(t).unwrap();
+            let step = march.view(&between);
+            let state = elastic(&base, creep().value(t), 0.01);
+            let view = step.row();
+            // The tolerance of the steps.
+            assert!((view.approach / state.approach - 1.0).abs() < 1e-3, "{t}: {} {}", view.approach, state.approach);
+            assert!((view.load - 0.01).abs() < 1e-12);
+            // The gap is closed where the bodies press, up to the change of the contact's rim in a step; and the
+            // displacement is that of the gap: h = h0 + u - w.
+            let (mut gap, mut u) = (Array2::zeros((32, 32)), Array2::zeros((32, 32)));
+            step.gap_into(&mut gap);
+            step.displacement_into(&mut u);
+            for ((h, h0), u) in gap.iter().zip(&base.gap).zip(&u) {
+                assert!((h - (h0 + u - view.approach)).abs() < 1e-14);
+            }
+            let open: f64 = gap.iter().zip(step.pressure()).map(|(h, p)| h * p).sum::<f64>()
+                / step.pressure().iter().sum::<f64>();
+            assert!(open.abs() < 1e-12 * view.approach.abs() + 1e-15, "{open:e}");
+            shown += 1;
+        }
+        assert!(march.between(start - 1.0).is_none() && march.between(row.time * 1.01 + 1.0).is_none());
+        // At the end of a step the state between is the row.
+        if let Some(end) = march.between(row.time) {
+            assert!((march.view(&end).row().approach / row.approach - 1.0).abs() < 1e-6);
+        }
+        start = row.time;
+        with.push(row);
+    }
+    assert_eq!(shown, wanted.len());
+    assert_eq!(with, plain);
+}
+
+#[test]
+fn events_and_adaptive_steps_resumed_from_any_row_give_the_same_bits() {
+    let stage = |control, course: Course| Stage::new(control, course);
+    let ramp = History::Ramp { value: 0.02, duration: 1.0 };
+    let programme = Programme::new(vec![
+        Stage { until: Some(Event::Approach(0.05)), ..stage(Control::Load, ramp.into()) },
+        Stage { until: Some(Event::Load(0.005)), duration: Some(9.0), ..stage(Control::Approach, Course::Hold) },
+        Stage {
+            until: Some(Event::ContactLost),
+            ..stage(Control::Approach, Course::RampTo { value: -0.05, duration: 1.0 })
+        },
+        Stage {
+            duration: Some(1.0),
+            times: Some(TimeGrid::Uniform { end: 1.0, steps: 3 }),
+            ..stage(Control::Load, Course::Hold)
+        },
+        Stage { duration: Some(2.0), ..stage(Control::Load, History::Step { value: 0.01 }.into()) },
+    ]);
+    for times in [adaptive(50.0, 1e-2, 1e-2), TimeGrid::Uniform { end: 50.0, steps: 200 }] {
+        let simulation = Simulation { loading: programme.clone(), times, ..sphere(24) };
+        let mut march = March::new(simulation.clone()).unwrap();
+        let mut checkpoints: Vec<Checkpoint> = vec![march.checkpoint()];
+        let mut rows = vec![];
+        while let Some(step) = march.advance().unwrap() {
+            rows.push(step.row());
+            checkpoints.push(march.checkpoint());
+        }
+        println!("{} rows", rows.len());
+        assert_eq!(rows.last().unwrap().stage, 4);
+        for at in (0..rows.len()).step_by(3).chain([rows.len()]) {
+            let mut resumed = March::resume(simulation.clone(), &checkpoints[at]).unwrap();
+            let mut rest = vec![];
+            while let Some(step) = resumed.advance().unwrap() {
+                rest.push(step.row());
+            }
+            assert_eq!(rest, rows[at..], "from row {at}");
+            assert_eq!(resumed.checkpoint(), *checkpoints.last().unwrap());
+        }
+    }
+}
+
+#[test]
+fn adaptive_steps_belong_to_the_linear_scheme() {
+    let simulation = Simulation { scheme: Scheme::Constant, times: adaptive(1.0, 1e-3, 1e-3), ..sphere(8) };
+    let Err(error) = March::new(simulation) else { panic!("accepted") };
+    assert!(error.to_string().contains("linear"), "{error}");
+}
+
+#[test]
+fn a_material_without_instantaneous_compliance_takes_adaptive_steps_too() {
+    // Such steps are constant in U; C(t) = 1 - exp(-t), a ramp and a hold, against many steps.
+    let terms = vec![CreepTerm { compliance: 1.0, retardation_time: 1.0 }];
+    let creep = Creep { instantaneous: 0.0, terms, fluidity: 0.0 };
+    let base = Simulation { creep, loading: load(History::Ramp { value: 0.01, duration: 0.5 }), ..sphere(24) };
+    let fine = rows(Simulation { times: TimeGrid::Uniform { end: 4.0, steps: 4000 }, ..base.clone() });
+    let rows = rows(Simulation { times: adaptive(4.0, 1e-2, 1e-4), ..base });
+    let exact = fine.last().unwrap().approach;
+    println!("{} rows", rows.len());
+    assert!((rows.last().unwrap().approach / exact - 1.0).abs() < 1e-2);
+    assert!(rows.len() < 1000);
+}

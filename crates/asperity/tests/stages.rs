@@ -1,0 +1,269 @@
+//! Stages, events and pull-off: against closed forms that hold on every grid, and the row of springs.
+
+use asperity::load::{Control, Course, Event, History, Programme, Stage};
+use asperity::march::{March, Row, Simulation};
+use asperity::material::{Creep, CreepTerm, Relaxation};
+use asperity::reference::{Mdr, MdrProfile, MdrTarget};
+use asperity::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
+use asperity::{Boundary, Error, Grid, SolverOptions, TimeGrid};
+use ndarray::Array2;
+
+/// C(t) = 1/4 + 1/4 (1 - exp(-t)), E*(t) = 2 + 2 exp(-2t).
+fn zener() -> Creep {
+    Creep {
+        instantaneous: 0.25,
+        terms: vec![CreepTerm { compliance: 0.25, retardation_time: 1.0 }],
+        fluidity: 0.0,
+    }
+}
+
+fn rough(cells: [usize; 2]) -> Simulation {
+    let grid = Grid::new(cells, [1.0, 1.0 * cells[1] as f64 / cells[0] as f64]).unwrap();
+    let roughness = SelfAffine {
+        hurst: 0.8,
+        roughness: Roughness::RmsGradient(0.3),
+        longest: 0.5,
+        shortest: 0.1,
+        roll_off: 0.5,
+        seed: 3,
+    };
+    let sphere = Part::Shape { shape: Shape::Sphere { radius: 2.0 }, center: [0.0, 0.0] };
+    let gap = undeformed_gap(&grid, &[sphere, Part::SelfAffine(roughness)]).unwrap();
+    let solver = SolverOptions { tolerance: 1e-10, ..SolverOptions::default() };
+    Simulation { creep: zener(), solver, ..Simulation::new(grid, gap) }
+}
+
+fn rows(simulation: Simulation) -> Vec<Row> {
+    let mut march = March::new(simulation).unwrap();
+    let mut rows = vec![];
+    while let Some(step) = march.advance().unwrap() {
+        rows.push(step.row());
+    }
+    assert!(march.finished());
+    rows
+}
+
+fn timed(control: Control, course: impl Into<Course>, duration: f64) -> Stage {
+    Stage { duration: Some(duration), ..Stage::new(control, course) }
+}
+
+fn until(control: Control, course: impl Into<Course>, event: Event) -> Stage {
+    Stage { until: Some(event), ..Stage::new(control, course) }
+}
+
+#[test]
+fn pressed_under_a_load_then_held_the_load_relaxes_as_the_material_does() {
+    // While the contact does not shrink, W(t) = int E*(t - s) dL(s) with L(s) = W0 C(s) the elastic load of unit modulus
+    // at the approach w(s), which stands still from t1 = 1 on: W/W0 = 1 - exp(-t1)/2 + exp(t1 - 2t)/2, on every
+    // grid.
+    let programme = Programme::new(vec![
+        timed(Control::Load, History::Step { value: 0.2 }, 1.0),
+        Stage::new(Control::Approach, Course::Hold),
+    ]);
+    let error = |steps| {
+        let times = TimeGrid::Uniform { end: 3.0, steps };
+        let rows = rows(Simulation { loading: programme.clone(), times, ..rough([32, 32]) });
+        assert_eq!(rows.len(), steps + 1, "no row for a switch without a jump");
+        let held: Vec<&Row> = rows.iter().filter(|row| row.stage == 1).collect();
+        let switch = rows.iter().rfind(|row| row.stage == 0).unwrap();
+        assert_eq!(switch.time, 1.0);
+        assert!(held.iter().all(|row| row.approach == switch.approach));
+        assert!(held.iter().all(|row| row.contact_area == switch.contact_area));
+        let exact = |t: f64| 0.2 * (1.0 - 0.5 * (-1.0_f64).exp() + 0.5 * (1.0 - 2.0 * t).exp());
+        held.iter().map(|row| (row.load / exact(row.time) - 1.0).abs()).fold(0.0, f64::max)
+    };
+    // Twice the steps, a quarter of the error.
+    let errors = [error(30), error(60)];
+    assert!(errors[0] < 2e-4, "{errors:?}");
+    assert!((errors[0] / errors[1] - 4.0).abs() < 0.4, "{errors:?}");
+}
+
+/// The rows of a march, and what the springs say under the prescribed values of the same rows.
+fn beside_springs(simulation: Simulation, relaxation: &Relaxation) -> Vec<(Row, [f64; 2])> {
+    let controls: Vec<Control> = simulation.loading.stages.iter().map(|stage| stage.control).collect();
+    let rows = rows(simulation);
+    let mut springs = Mdr::new(MdrProfile::Sphere { radius: 1.0 }, relaxation, 0.8, 2000).unwrap();
+    let mut out = vec![];
+    let mut last = Row::default();
+    for row in rows {
+        let dt = row.time - last.time;
+        // The prescribed values are straight from row to row. After a loss of contact under load the springs' own
+        // approach is compared, not set.
+        let parts = if dt > 0.0 { 20 } else { 1 };
+        let mut state = None;
+        for n in 1..=parts {
+            let share = f64::from(n) / f64::from(parts);
+            let target = match controls[row.stage] {
+                Control::Approach => MdrTarget::Approach(last.approach + share * (row.approach - last.approach)),
+                _ => MdrTarget::Load(last.load + share * (row.load - last.load)),
+            };
+            state = Some(springs.step(dt / f64::from(parts), target).unwrap());
+        }
+        let state = state.unwrap();
+        out.push((row, [state.load, state.approach]));
+        last = row;
+    }
+    out
+}
+
+#[test]
+fn press_hold_retract_wait_and_touch_again() {
+    let grid = Grid::new([64, 64], [1.8, 1.8]).unwrap();
+    let part = Part::Shape { shape: Shape::Sphere { radius: 1.0 }, center: [0.0, 0.0] };
+    let gap = undeformed_gap(&grid, &[part]).unwrap();
+    let relaxation = Relaxation::absolute(2.0, &[(2.0, 0.5), (1.0, 2.0)]).unwrap();
+    let programme = Programme::new(vec![
+        until(Control::Load, History::Ramp { value: 1.5, duration: 1.0 }, Event::Approach(0.3)),
+        until(Control::Approach, Course::Hold, Event::Load(0.6)),
+        until(Control::Approach, Course::RampTo { value: -0.3, duration: 1.0 }, Event::ContactLost),
+        timed(Control::Load, Course::Hold, 0.4),
+        until(Control::Approach, Course::RampTo { value: 0.3, duration: 0.5 }, Event::Load(0.5)),
+        timed(Control::Load, Course::Hold, 0.5),
+    ]);
+    let simulation = Simulation {
+        creep: relaxation.to_creep().unwrap(),
+        loading: programme.clone(),
+        times: TimeGrid::Uniform { end: 10.0, steps: 500 },
+        ..Simulation::new(grid, gap)
+    };
+    assert_eq!(March::new(simulation.clone()).unwrap().rows_expected(), None);
+    let pairs = beside_springs(simulation, &relaxation);
+    let end_of = |stage| pairs.iter().rfind(|(row, _)| row.stage == stage).unwrap().0;
+    // Events are met to a millionth of the largest value; a contact is lost to the last cell.
+    assert!((end_of(0).approach - 0.3).abs() <= 1e-6 * 0.3);
+    assert!((end_of(1).load - 0.6).abs() <= 1e-6 * end_of(0).load);
+    assert_eq!((end_of(2).load, end_of(2).contact_area), (0.0, 0.0));
+    assert!((end_of(4).load - 0.5).abs() <= 1e-6 * end_of(0).load);
+    assert_eq!(end_of(5).stage, 5);
+    assert!((end_of(5).time - end_of(4).time - 0.5).abs() < 1e-12);
+    // The row just before the loss touches still.
+    let lost = pairs.iter().position(|(row, _)| row.stage == 2 && row.contact_area == 0.0).unwrap();
+    assert!(pairs[lost - 1].0.contact_area > 0.0);
+    // While open, the surface comes back: the approach at which it just touches rises towards 0.
+    let open: Vec<f64> =
+        pairs.iter().filter(|(row, _)| row.stage == 3).map(|(row, _)| row.approach).collect();
+    assert!(open.windows(2).all(|w| w[1] < w[0]) && *open.last().unwrap() > 0.0, "{open:?}");
+    // 20 cells to the radius: (dx/a)^2 = 2.5e-3 of the load and the approach. A bit more where a few cells carry
+    // all of the load.
+    let most = pairs.iter().map(|(row, _)| row.load).fold(0.0, f64::max);
+    for (row, [load, approach]) in &pairs {
+        assert!((row.load - load).abs() < 6e-3 * most, "{row:?} {load}");
+        assert!((row.approach - approach).abs() < 6e-3 * 0.3, "{row:?} {approach}");
+    }
+}
+
+#[test]
+fn at_zero_load_the_contact_is_empty_and_the_surface_recovers() {
+    // One branch: after the pull-off at t = 1 every displacement falls as exp(-t).
+    for boundary in [Boundary::Free, Boundary::Periodic] {
+        let simulation = Simulation {
+            boundary,
+            loading: Programme::new(vec![
+                timed(Control::Load, History::Ramp { value: 0.2, duration: 0.6 }, 0.6),
+                timed(Control::Load, Course::RampTo { value: 0.0, duration: 0.4 }, 0.4),
+                Stage::new(Control::Load, Course::Hold),
+            ]),
+            times: TimeGrid::Uniform { end: 4.0, steps: 40 },
+            ..rough([32, 36])
+        };
+        let gap = simulation.gap.clone();
+        let mut march = March::new(simulation).unwrap();
+        let mut pulled: Option<(f64, Array2<f64>)> = None;
+        let mut open = 0;
+        while let Some(step) = march.advance().unwrap() {
+            if step.instant().time < 1.0 - 1e-9 {
+                continue;
+            }
+            let row = step.row();
+            assert!(step.pressure().iter().all(|p| *p == 0.0));
+            assert_eq!([row.load, row.contact_area, row.max_pressure], [0.0; 3]);
+            let mut u = Array2::zeros(gap.dim());
+            step.displacement_into(&mut u);
+            let touch = gap.iter().zip(&u).map(|(h, u)| h + u).fold(f64::INFINITY, f64::min);
+            // one rounding
+            assert!((row.approach - touch).abs() < 1e-15, "{} {touch}", row.approach);
+            let (start, first) = pulled.get_or_insert_with(|| (row.time, u.clone()));
+            let decay = (*start - row.time).exp();
+            let largest = first.iter().fold(0.0, |m: f64, u| m.max(u.abs()));
+            // thirty steps of roundings
+            assert!(u.iter().zip(first.iter()).all(|(u, v)| (u - v * decay).abs() < 1e-13 * largest));
+            open += 1;
+        }
+        assert_eq!(open, 31);
+    }
+}
+
+#[test]
+fn an_event_that_does_not_come_is_said_and_a_duration_makes_it_optional() {
+    let stage = until(Control::Load, History::Step { value: 0.1 }, Event::Approach(5.0));
+    let simulation = |stage: &Stage| Simulation {
+        loading: Programme::new(vec![stage.clone(), Stage::new(Control::Approach, Course::Hold)]),
+        times: TimeGrid::Uniform { end: 1.0, steps: 4 },
+        ..rough([20, 20])
+    };
+    let mut march = March::new(simulation(&stage)).unwrap();
+    let mut rows = 0;
+    let error = loop {
+        match march.advance() {
+            Ok(step) => rows += usize::from(step.is_some()),
+            Err(error) => break error,
+        }
+    };
+    assert_eq!(rows, 5);
+    assert!(matches!(error, Error::Missed { stage: 1, .. }));
+    assert!(error.to_string().contains("stage 1 waits for approach 5e0 m"), "{error}");
+    let optional = Stage { duration: Some(0.5), ..stage };
+    let rows = self::rows(simulation(&optional));
+    assert_eq!(rows.last().map(|row| (row.time, row.stage)), Some((1.0, 1)));
+}
+
+#[test]
+fn a_jump_that_passes_the_value_ends_the_stage() {
+    let first = until(Control::Load, History::Step { value: 0.2 }, Event::Approach(1e-4));
+    let second = until(Control::Approach, Course::Hold, Event::Load(0.15));
+    let third = timed(Control::Load, History::Step { value: 0.3 }, 0.3);
+    let simulation = Simulation {
+        loading: Programme::new(vec![first, second, third]),
+        times: TimeGrid::Uniform { end: 9.0, steps: 90 },
+        ..rough([24, 24])
+    };
+    let rows = rows(simulation);
+    assert_eq!((rows[0].time, rows[0].stage, rows[1].stage), (0.0, 0, 1));
+    let event = rows.iter().rposition(|row| row.stage == 1).unwrap();
+    assert!((rows[event].load - 0.15).abs() < 1e-6 * 0.2);
+    // The jump to 0.3 is a row of no length.
+    assert_eq!(rows[event + 1].time, rows[event].time);
+    assert!((rows[event + 1].load - 0.3).abs() < 1e-12);
+}
+
+#[test]
+fn constant_load_never_lets_the_counted_area_shrink() {
+    // A theorem for linear viscoelastic, non-adhesive contact, whatever came before; three surfaces, no tolerance.
+    for seed in [1, 2, 5] {
+        let base = rough([40, 44]);
+        let roughness = SelfAffine {
+            hurst: 0.7,
+            roughness: Roughness::RmsGradient(0.5),
+            longest: 0.4,
+            shortest: 0.08,
+            roll_off: 0.4,
+            seed,
+        };
+        let gap = undeformed_gap(&base.grid, &[Part::SelfAffine(roughness)]).unwrap();
+        let creep = Relaxation::absolute(1.0, &[(2.0, 0.5), (1.0, 5.0)]).unwrap().to_creep().unwrap();
+        let simulation = Simulation {
+            gap,
+            creep,
+            loading: Programme::new(vec![
+                timed(Control::Load, History::Step { value: 0.3 }, 1.0),
+                timed(Control::Approach, Course::Hold, 1.0),
+                timed(Control::Load, History::Step { value: 0.1 }, 20.0),
+            ]),
+            times: TimeGrid::Logarithmic { end: 22.0, steps: 60, first: 0.01 },
+            ..base
+        };
+        let held: Vec<Row> = rows(simulation).into_iter().filter(|row| row.stage == 2).collect();
+        assert!(held.windows(2).all(|pair| pair[1].contact_area >= pair[0].contact_area));
+        assert!(held[held.len() - 1].contact_area > held[0].contact_area);
+    }
+}

@@ -41,6 +41,27 @@ fn rows(simulation: Simulation) -> Vec<Row> {
     rows
 }
 
+/// Largest difference of the approach to that of steps of a twentieth, over the largest approach.
+fn beside_finer(rows: &[Row], run: impl Fn(TimeGrid) -> Vec<Row>) -> f64 {
+    let steps = rows.windows(2).filter(|pair| pair[1].time > pair[0].time);
+    let parts = |pair: &[Row]| {
+        let [start, end] = [pair[0].time, pair[1].time];
+        (1..=20).map(move |n| start + (end - start) * f64::from(n) / 20.0)
+    };
+    let fine = run(TimeGrid::List(steps.flat_map(parts).collect()));
+    let deepest = fine.iter().map(|row| row.approach).fold(0.0, f64::max);
+    let mut rest = &fine[..];
+    let mut worst = 0.0_f64;
+    for row in rows {
+        // The same instant; of a jump's two rows the same.
+        let same = |a: &Row| (a.time - row.time).abs() <= 1e-12 * row.time;
+        let found = rest.iter().position(same).unwrap();
+        worst = worst.max((row.approach - rest[found].approach).abs() / deepest);
+        rest = &rest[found + 1..];
+    }
+    worst
+}
+
 /// The elastic contact of this compliance under the load.
 fn elastic(simulation: &Simulation, compliance: f64, load: f64) -> ContactState {
     let mut operator = half_space(simulation.grid, simulation.boundary);
@@ -57,29 +78,41 @@ fn elastic(simulation: &Simulation, compliance: f64, load: f64) -> ContactState 
 }
 
 #[test]
-fn eight_decades_of_time_take_at_most_eighty_steps_to_a_thousandth_of_the_approach() {
-    // While the contact grows the approach is that of one elastic contact with C(t), on every grid.
+fn eight_decades_of_time_take_at_most_eighty_steps_to_a_thousandth() {
     let base = sphere(32);
-    let simulation = Simulation {
-        loading: load(History::Step { value: 0.01 }),
-        times: adaptive(1e5, 1e-3, 1e-3),
-        ..base.clone()
-    };
-    let rows = rows(simulation);
-    let mut worst = 0.0_f64;
-    for row in &rows {
-        let exact = elastic(&base, creep().value(row.time), 0.01).approach;
-        worst = worst.max((row.approach / exact - 1.0).abs());
+    let times = adaptive(1e5, 1e-3, 1e-3);
+    let run = |loading: Programme| rows(Simulation { loading, times: times.clone(), ..base.clone() });
+    // While the contact grows the approach is that of one elastic contact with C(t), on every grid.
+    let crept = run(load(History::Step { value: 0.01 }));
+    let exact = |row: &Row| elastic(&base, creep().value(row.time), 0.01).approach;
+    let creep_error = crept.iter().map(|row| (row.approach / exact(row) - 1.0).abs()).fold(0.0, f64::max);
+    // Held at its approach the load goes as E*(t).
+    let relaxation = creep().to_relaxation().unwrap();
+    let history = History::Step { value: 0.03 };
+    let relaxed = run(Loading { control: Control::Approach, history }.into());
+    let exact = |row: &Row| relaxed[0].load * relaxation.value(row.time) / relaxation.value(0.0);
+    let load_error = relaxed.iter().map(|row| (row.load / exact(row) - 1.0).abs()).fold(0.0, f64::max);
+    // Unloaded halfway: the load jumps down at 0.1 s. Against steps of a twentieth.
+    let points = vec![(0.0, 0.01), (0.1, 0.01), (0.1, 0.003)];
+    let step_down = load(History::Table { points });
+    let unloaded = run(step_down.clone());
+    let finer = |times| rows(Simulation { loading: step_down.clone(), times, ..base.clone() });
+    let unload_error = beside_finer(&unloaded, finer);
+    println!("{} {} {} rows, {creep_error:e} {load_error:e} {unload_error:e}", crept.len(), relaxed.len(), unloaded.len());
+    assert!(crept.len() <= 81 && unloaded.len() <= 81, "{} {} rows", crept.len(), unloaded.len());
+    // A load that relaxes is harder.
+    assert!(relaxed.len() <= 110, "{} rows", relaxed.len());
+    for rows in [&crept, &relaxed] {
+        // Every step but the first, which has no past, says its error; none is above the tolerance.
+        assert_eq!(rows.iter().filter(|row| row.time_error.is_none()).count(), 2);
+        assert!(rows.iter().flat_map(|row| row.time_error).all(|error| (0.0..1e-3).contains(&error)));
+        // Steps grow at most twofold (the last but one may be half of the rest).
+        let dt: Vec<f64> = rows.windows(2).map(|pair| pair[1].time - pair[0].time).collect();
+        assert!(dt.windows(2).all(|pair| pair[1] < 2.3 * pair[0]), "{dt:?}");
     }
-    println!("{} rows, worst {worst:e}", rows.len());
-    assert!(rows.len() <= 81, "{} rows", rows.len());
-    assert!(worst < 1e-3, "{worst:e}");
-    // Every step but the first, which has no past, says its error; none is above the tolerance.
-    assert_eq!(rows.iter().filter(|row| row.time_error.is_none()).count(), 2);
-    assert!(rows.iter().flat_map(|row| row.time_error).all(|error| (0.0..1e-3).contains(&error)));
-    // Steps grow at most twofold (the last but one may be half of the rest).
-    let dt: Vec<f64> = rows.windows(2).map(|pair| pair[1].time - pair[0].time).collect();
-    assert!(dt.windows(2).all(|pair| pair[1] < 2.3 * pair[0]), "{dt:?}");
+    assert!(creep_error < 1e-6, "exact but for the solver: {creep_error:e}");
+    assert!(load_error < 1e-3, "{load_error:e}");
+    assert!(unload_error < 1e-3, "{unload_error:e}");
 }
 
 #[test]
@@ -87,17 +120,6 @@ fn a_tighter_tolerance_gives_a_smaller_error_and_breaks_are_hit() {
     let base = sphere(32);
     let history = History::Table { points: vec![(0.0, 0.0), (3.0, 0.01), (8.0, 0.01), (8.0, 0.02), (40.0, 0.002)] };
     let run = |times| rows(Simulation { loading: load(history.clone()), times, ..base.clone() });
-    let fine = run(TimeGrid::List((1..=4000).map(|n| f64::from(n) / 4000.0).map(|s| 40.0 * s * s).collect()));
-    let reference = |t: f64| {
-        let after = fine.partition_point(|row| row.time < t);
-        let (a, b) = (&fine[after.max(1) - 1], &fine[after.min(fine.len() - 1)]);
-        if b.time == t || b.time == a.time {
-            b.approach
-        } else {
-            a.approach + (t - a.time) / (b.time - a.time) * (b.approach - a.approach)
-        }
-    };
-    let deepest = fine.iter().map(|row| row.approach).fold(0.0, f64::max);
     let mut errors = vec![];
     for tolerance in [1e-2, 1e-3, 1e-4] {
         let rows = run(adaptive(40.0, tolerance, 1e-3));
@@ -105,8 +127,7 @@ fn a_tighter_tolerance_gives_a_smaller_error_and_breaks_are_hit() {
             assert!(rows.iter().any(|row| row.time == t), "{t}");
         }
         assert_eq!(rows.iter().filter(|row| row.time == 8.0).count(), 2);
-        let smooth = rows.iter().filter(|row| row.time != 8.0);
-        let error = smooth.map(|row| (row.approach - reference(row.time)).abs() / deepest).fold(0.0, f64::max);
+        let error = beside_finer(&rows, run);
         println!("{tolerance}: {} rows, {error:e}", rows.len());
         assert!(error < tolerance, "{tolerance}: {error:e}");
         errors.push(error);
@@ -215,9 +236,9 @@ fn a_material_without_instantaneous_compliance_takes_adaptive_steps_too() {
     let creep = Creep { instantaneous: 0.0, terms, fluidity: 0.0 };
     let base = Simulation { creep, loading: load(History::Ramp { value: 0.01, duration: 0.5 }), ..sphere(24) };
     let fine = rows(Simulation { times: TimeGrid::Uniform { end: 4.0, steps: 4000 }, ..base.clone() });
-    let rows = rows(Simulation { times: adaptive(4.0, 1e-2, 1e-4), ..base });
+    let rows = rows(Simulation { times: adaptive(4.0, 0.05, 1e-3), ..base });
     let exact = fine.last().unwrap().approach;
     println!("{} rows", rows.len());
-    assert!((rows.last().unwrap().approach / exact - 1.0).abs() < 1e-2);
-    assert!(rows.len() < 1000);
+    assert!((rows.last().unwrap().approach / exact - 1.0).abs() < 0.05);
+    assert!(rows.len() < 700);
 }

@@ -28,6 +28,26 @@ pub enum Teller {
     Silent,
 }
 
+/// Parts of a run whose rows are not known beforehand.
+const COURSE: u64 = 1_000_000;
+
+/// Where the run began, is, and ends: in rows where their number is known, else in time.
+fn course(progress: &Progress) -> [u64; 3] {
+    match progress.total {
+        Some(total) => [progress.resumed as u64, progress.done as u64, total as u64],
+        None if progress.finished => [0, COURSE, COURSE],
+        None => [0, (COURSE as f64 * (progress.row.time / progress.end).clamp(0.0, 1.0)) as u64, COURSE],
+    }
+}
+
+/// "12/100", or "12".
+fn rows(progress: &Progress) -> String {
+    match progress.total {
+        Some(total) => format!("{}/{total}", progress.done),
+        None => progress.done.to_string(),
+    }
+}
+
 impl Teller {
     /// A live line where stderr is a terminal, plain lines elsewhere.
     pub fn new(quiet: bool) -> Self {
@@ -38,7 +58,7 @@ impl Teller {
             return Teller::Lines { started: Instant::now(), told: None };
         }
         let bar = ProgressBar::with_draw_target(Some(1), ProgressDrawTarget::stderr());
-        let template = "{bar:20.cyan/dim} {pos}/{len} rows  {msg}  {elapsed} ({eta} left)";
+        let template = "{bar:20.cyan/dim} {prefix} rows  {msg}  {elapsed} ({eta} left)";
         if let Ok(style) = ProgressStyle::with_template(template) {
             bar.set_style(style.progress_chars("━╸ "));
         }
@@ -58,22 +78,28 @@ impl Teller {
         match self {
             Teller::Bar(bar, areas) => {
                 areas.push(row.contact_fraction);
+                let [from, done, all] = course(progress);
                 if bar.position() == 0 {
-                    bar.set_length(progress.total as u64);
-                    bar.set_position(progress.resumed as u64);
+                    bar.set_length(all);
+                    bar.set_position(from);
                     bar.reset_eta();
                 }
-                bar.set_position(progress.done as u64);
+                bar.set_position(done);
+                bar.set_prefix(rows(progress));
                 bar.set_message(format!("area {}  {state}", terminal::sparkline(areas, SPARKS)));
             }
             Teller::Lines { started, told } => {
                 let due = told.is_none_or(|told| told.elapsed() > PAUSE);
-                if due || progress.done == progress.total {
-                    let done = (progress.done - progress.resumed) as f64;
-                    let rest = (progress.total - progress.done) as f64;
-                    let left = started.elapsed().as_secs_f64() * rest / done.max(1.0);
-                    let left = words::duration(left);
-                    eprintln!("row {}/{}: {state}, {left} left", progress.done, progress.total);
+                if due || progress.finished {
+                    let [from, done, all] = course(progress);
+                    let rest = all.saturating_sub(done) as f64;
+                    let left = started.elapsed().as_secs_f64() * rest / done.saturating_sub(from).max(1) as f64;
+                    // Time says little of the rows to come.
+                    let left = match progress.total {
+                        Some(_) => words::duration(left),
+                        None => format!("{} of the time", words::quantity(rest / COURSE as f64 * progress.end, "s", 1)),
+                    };
+                    eprintln!("row {}: {state}, {left} left", rows(progress));
                     *told = Some(Instant::now());
                 }
             }

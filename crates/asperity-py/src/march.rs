@@ -166,7 +166,7 @@ impl March {
             creep,
             thermal,
             hardness: material::pair_hardness(&bodies),
-            loading,
+            loading: loading.into(),
             times: self::times(times, &times_numbers)?,
             include,
             scheme: choose("scheme", scheme, &schemes)?,
@@ -227,7 +227,8 @@ impl March {
 
     /// Rows in all.
     fn __len__(&self) -> usize {
-        self.locked().len()
+        let march = self.locked();
+        march.rows_expected().unwrap_or(march.done())
     }
 
     /// Rows done.
@@ -236,9 +237,9 @@ impl March {
         self.locked().done()
     }
 
-    /// Times of all rows.
+    /// Times of all rows, as far as they are known beforehand.
     fn times(&self) -> Vec<f64> {
-        self.locked().instants().iter().map(|instant| instant.time).collect()
+        self.locked().simulation().plan().instants.iter().map(|instant| instant.time).collect()
     }
 
     /// The numbers of the last row.
@@ -323,5 +324,7 @@ pub fn fill(into: &Bound<'_, PyDict>, row: &march::Row) -> PyResult<()> {
     into.set_item("iterations", row.iterations)?;
     into.set_item("convolutions", row.convolutions)?;
     into.set_item("residual", row.residual)?;
-    into.set_item("certificate", row.certificate)
+    into.set_item("certificate", row.certificate)?;
+    into.set_item("time_error", row.time_error.unwrap_or(f64::NAN))?;
+    into.set_item("stage", row.stage)
 }

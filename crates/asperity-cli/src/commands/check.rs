@@ -61,7 +61,7 @@ fn seconds(case: &Case, description: &Description) -> Option<f64> {
     let timed = start.elapsed().as_secs_f64() / 3.0;
     let cost = |n: f64| n * n.max(2.0).log2();
     let convolution = timed * cost(case.grid.len() as f64) / cost(grid.len() as f64);
-    let rows = description.rows as f64;
+    let rows = description.usual_rows as f64;
     let past = match case.scheme {
         // One sweep over a field, about a fifth of a convolution, per past row.
         Scheme::Direct => 0.1 * rows * rows * convolution,
@@ -131,14 +131,26 @@ fn tell(case: &Case, d: &Description, estimate: Option<f64>) -> String {
     if let Some([least, most]) = d.hardness_of_cells {
         line("hardness", format!("{} to {}, by cell", quantity(least, "Pa", 1), quantity(most, "Pa", 1)));
     }
-    line("time", format!("{} rows to {}, {} scheme", d.rows, quantity(d.end, "s", 1), d.scheme));
+    let end = quantity(d.end, "s", 1);
+    line(
+        "time",
+        match d.rows {
+            Some(rows) => format!("{rows} rows to {end}, {} scheme", d.scheme),
+            None => format!("rows as the run finds them, to {end} at the latest, {} scheme", d.scheme),
+        },
+    );
+    if d.stages > 1 {
+        line("stages", d.stages.to_string());
+    }
     line(
         "output",
         format!(
-            "{} at {} rows, up to {}, in {}",
+            "{} at {}, in {}",
             if d.fields.is_empty() { "no fields".to_owned() } else { d.fields.join(", ") },
-            d.stored_rows,
-            bytes(d.result_bytes as f64),
+            match (d.stored_rows, d.result_bytes) {
+                (Some(rows), Some(size)) => format!("{rows} rows, up to {}", bytes(size as f64)),
+                _ => "some rows".to_owned(),
+            },
             case.output.path.display()
         ),
     );

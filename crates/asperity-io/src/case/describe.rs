@@ -79,18 +79,23 @@ pub struct Description {
     pub hardness_of_cells: Option<[f64; 2]>,
     /// Last instant \[s\].
     pub end: f64,
-    /// Rows of the result: the state at 0+, one per step, one more per jump.
-    pub rows: usize,
+    /// Rows of the result: the state at 0+, one per step, one more per jump; absent where they are found as the run
+    /// goes (adaptive steps, events).
+    pub rows: Option<usize>,
+    /// About as many.
+    pub usual_rows: usize,
+    /// Stages of the load.
+    pub stages: usize,
     /// "linear", "constant" or "direct".
     pub scheme: &'static str,
-    /// Rows whose fields are stored.
-    pub stored_rows: usize,
+    /// Rows and states between rows whose fields are stored; absent where not known beforehand.
+    pub stored_rows: Option<usize>,
     /// Fields that are stored.
     pub fields: Vec<&'static str>,
     /// Memory of the run, estimated from above \[bytes\].
     pub memory_bytes: u64,
-    /// Stored fields before compression \[bytes\].
-    pub result_bytes: u64,
+    /// Stored fields before compression \[bytes\]; absent where not known beforehand.
+    pub result_bytes: Option<u64>,
 }
 
 /// What was done to a measured surface.
@@ -133,6 +138,8 @@ impl Case {
             }),
             end: self.times.end(),
             rows: self.rows,
+            usual_rows: self.usual_rows,
+            stages: self.loading.stages.len(),
             scheme: match self.scheme {
                 Scheme::Linear => "linear",
                 Scheme::Constant => "constant",
@@ -142,7 +149,8 @@ impl Case {
             fields: self.output.fields.iter().map(|field| field.name()).collect(),
             memory_bytes: u64::try_from(self.memory).unwrap_or(u64::MAX),
             // initial_gap is always stored
-            result_bytes: (self.grid.len() as u64).saturating_mul(8 + stored_rows as u64 * field_bytes),
+            result_bytes: stored_rows
+                .map(|stored| (self.grid.len() as u64).saturating_mul(8 + stored as u64 * field_bytes)),
         }
     }
 
@@ -156,13 +164,15 @@ impl Case {
         Some([points.clone().fold(f64::INFINITY, f64::min), points.fold(0.0, f64::max)])
     }
 
-    fn stored_rows(&self) -> usize {
-        let last = self.rows - 1;
-        match &self.output.rows {
-            Rows::Every(n) => 1 + last.div_ceil((*n).max(1)),
-            Rows::At(times) => times.iter().filter(|t| **t > 0.0 && **t < self.times.end()).count() + 2,
+    fn stored_rows(&self) -> Option<usize> {
+        match (&self.output.rows, self.rows) {
+            (Rows::Every(n), Some(rows)) => Some((1 + (rows - 1).div_ceil((*n).max(1))).min(rows)),
+            (Rows::Every(_), None) => None,
+            (Rows::At(times), rows) => {
+                let inner = times.iter().filter(|t| **t > 0.0 && **t < self.times.end()).count();
+                Some(rows.map_or(inner + 2, |rows| rows.min(inner + 2)))
+            }
         }
-        .min(self.rows)
     }
 }
 

@@ -31,7 +31,7 @@
 //! "#;
 //! let case = Case::parse(text, ".".as_ref(), &["load.history.value=8 N".into()])?;
 //! assert_eq!(case.grid.spacing(), [1e-3 / 32.0; 2]); // metres
-//! assert_eq!(case.loading.history.after(0.0), 8.0); // newtons
+//! assert_eq!(case.loading.stages[0].course.resolve(0.0).after(0.0), 8.0); // newtons
 //!
 //! let errors = Case::parse(&text.replace("210 GPa", "210 mm"), ".".as_ref(), &[]).unwrap_err();
 //! assert_eq!(errors.errors[0].key, "body[0].material.young");
@@ -63,7 +63,7 @@ use std::path::{Path, PathBuf};
 use asperity::material::{Body, Creep, ThermalCreep};
 use asperity::quantities::{Quantities, Quantity};
 use asperity::surface::undeformed_gap;
-use asperity::{Boundary, Error, Grid, Loading, Plasticity, Scheme, Simulation, SolverOptions, TimeGrid};
+use asperity::{Boundary, Error, Grid, Plasticity, Programme, Scheme, Simulation, SolverOptions, TimeGrid};
 use ndarray::Array2;
 
 pub use describe::{Description, MaterialReport, Preparation};
@@ -113,10 +113,10 @@ pub struct Case {
     /// Cut-off of the pressure in each cell \[Pa\], where a file gives it; the lesser of it and `hardness` holds.
     pub hardness_map: Option<Array2<f64>>,
     /// What is prescribed over time.
-    pub loading: Loading,
+    pub loading: Programme,
     /// The instants of the solution.
     pub times: TimeGrid,
-    /// Instants that are steps besides \[s\]: those of `output.times`.
+    /// Instants that are steps besides \[s\]: those of `output.times`, unless steps are adaptive.
     pub include: Vec<f64>,
     /// How the pressure goes over a step.
     pub scheme: Scheme,
@@ -126,8 +126,10 @@ pub struct Case {
     pub solver: SolverOptions,
     /// What is stored, and where.
     pub output: Output,
-    /// Rows of the result.
-    rows: usize,
+    /// Rows of the result, where known beforehand.
+    rows: Option<usize>,
+    /// About as many.
+    usual_rows: usize,
     /// Memory of the run in bytes.
     memory: u128,
     /// Place of the history in the source.

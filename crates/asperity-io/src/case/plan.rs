@@ -48,15 +48,15 @@ pub enum Rows {
 const SAME: f64 = 1e-9;
 
 impl Rows {
-    /// Whether the fields of `row` (from 0, at `time` \[s\]) are stored, in a run whose last row is `last`.
+    /// Whether the fields of `row` (from 0, at `time` \[s\]) are stored; `last` where the run ends with it.
     ///
     /// ```
     /// use asperity_io::case::Rows;
-    /// let stored: Vec<usize> = (0..=25).filter(|row| Rows::Every(10).holds(*row, 25, 0.0)).collect();
+    /// let stored: Vec<usize> = (0..=25).filter(|row| Rows::Every(10).holds(*row, *row == 25, 0.0)).collect();
     /// assert_eq!(stored, [0, 10, 20, 25]);
-    /// assert!(Rows::At(vec![0.3]).holds(3, 25, 0.1 * 3.0));
+    /// assert!(Rows::At(vec![0.3]).holds(3, false, 0.1 * 3.0));
     /// ```
-    pub fn holds(&self, row: usize, last: usize, time: f64) -> bool {
+    pub fn holds(&self, row: usize, last: bool, time: f64) -> bool {
         let chosen = match self {
             Rows::Every(n) => row.is_multiple_of((*n).max(1)),
             Rows::At(times) => {
@@ -65,7 +65,21 @@ impl Rows {
                 times.get(after).is_some_and(|t| *t <= time + margin)
             }
         };
-        chosen || row == 0 || row == last
+        chosen || row == 0 || last
+    }
+
+    /// The times within the step from `start` to `end` \[s\], its ends left out.
+    ///
+    /// ```
+    /// use asperity_io::case::Rows;
+    /// assert_eq!(Rows::At(vec![1.0, 1.5, 2.0]).between(1.0, 2.0), [1.5]);
+    /// assert!(Rows::Every(1).between(1.0, 2.0).is_empty());
+    /// ```
+    pub fn between(&self, start: f64, end: f64) -> &[f64] {
+        let Rows::At(times) = self else { return &[] };
+        let first = times.partition_point(|t| *t <= start * (1.0 + SAME));
+        let last = times.partition_point(|t| *t < end * (1.0 - SAME));
+        times.get(first..last).unwrap_or_default()
     }
 }
 

@@ -147,7 +147,9 @@ impl<'t> Reader<'_, 't> {
 
     fn read<T: DeserializeOwned>(&mut self, value: &Spanned<DeValue<'t>>, tags: &[Tag]) -> Option<T> {
         let mut value = value.clone();
-        if let Err(error) = self.move_steps(&mut value) {
+        let lists = [("process", &[][..], "op"), ("stages", &["history"][..], "kind")];
+        let mut moved = lists.into_iter().map(|(list, inside, key)| self.move_list(&mut value, list, Tag { inside, key }));
+        if let Err(error) = moved.try_for_each(|result| result) {
             self.errors.push(*error);
             return None;
         }
@@ -181,12 +183,13 @@ impl<'t> Reader<'_, 't> {
         self.outwards(union, tag.key)
     }
 
-    /// The steps of a measured surface are a list of tagged unions inside it.
-    fn move_steps(&self, value: &mut Spanned<DeValue<'t>>) -> Result<(), Box<CaseError>> {
+    /// The steps of a measured surface, and the stages of a load, are a list inside of it: of tagged unions, or of
+    /// tables that hold one.
+    fn move_list(&self, value: &mut Spanned<DeValue<'t>>, list: &str, tag: Tag) -> Result<(), Box<CaseError>> {
         let DeValue::Table(table) = value.get_mut() else { return Ok(()) };
-        let Some(process) = table.get_mut("process") else { return Ok(()) };
-        let DeValue::Array(steps) = process.get_mut() else { return Ok(()) }; // serde says what it is
-        steps.iter_mut().try_for_each(|step| self.outwards(step, "op"))
+        let Some(list) = table.get_mut(list) else { return Ok(()) };
+        let DeValue::Array(elements) = list.get_mut() else { return Ok(()) }; // serde says what it is
+        elements.iter_mut().try_for_each(|element| self.move_tag(element, tag))
     }
 
     /// `{ tag = name, ... }` becomes `{ name = { ... } }`.

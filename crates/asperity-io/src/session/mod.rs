@@ -43,8 +43,12 @@ pub struct Progress<'a> {
     pub done: usize,
     /// Rows that a resumed run found stored.
     pub resumed: usize,
-    /// Rows of the full run.
-    pub total: usize,
+    /// Rows of the full run; `None` where they are found as the run goes.
+    pub total: Option<usize>,
+    /// The run is over at the latest then \[s\].
+    pub end: f64,
+    /// Whether this was the last row.
+    pub finished: bool,
 }
 
 /// What a run did.
@@ -133,20 +137,17 @@ fn run_inside(
         Err(source) => return Err(fail(writer, source, None, &path, None)),
     };
     march.interrupt_with(options.interrupt.clone());
-    let (total, resumed) = (march.len(), march.done());
+    let (total, resumed, end_time) = (march.rows_expected(), march.done(), case.times.end());
     let mut maps = Maps::new(case, &march);
     let mut last = None;
     loop {
-        let row = match march.advance() {
-            Ok(None) => break,
-            Ok(Some(step)) => {
-                let row = step.row();
-                let fields = maps.of(&step, total);
-                if let Err(source) = writer.append_with(&row, step.quantities(), &fields) {
-                    return Err(stop_storing(writer, source, &path, last));
-                }
-                row
-            }
+        let row = match march.advance().map(|step| step.is_some()) {
+            Ok(false) => break,
+            Ok(true) => match store(&mut writer, &mut maps, &march) {
+                Ok(Some(row)) => row,
+                Ok(None) => break,
+                Err(source) => return Err(stop_storing(writer, source, &path, last)),
+            },
             Err(Error::Interrupted) => {
                 // The step under way is lost: a resumed run repeats what came after the last checkpoint.
                 return end(writer, Outcome::new(Status::Interrupted), &path, last);
@@ -157,13 +158,32 @@ fn run_inside(
             }
         };
         last = Some(row);
-        let due = case.output.checkpoint && march.done() < total && writer.checkpoint_due();
+        let due = case.output.checkpoint && !march.finished() && writer.checkpoint_due();
         if due && let Err(source) = writer.checkpoint(&march.checkpoint()) {
             return Err(stop_storing(writer, source, &path, last));
         }
-        observe(Progress { row: &row, done: march.done(), resumed, total });
+        let finished = march.finished();
+        observe(Progress { row: &row, done: march.done(), resumed, total, end: end_time, finished });
     }
     end(writer, Outcome::new(Status::Complete), &path, last)
+}
+
+/// Stores the last row, and before it the fields between it and the row before it that are asked for.
+fn store(writer: &mut Writer, maps: &mut Maps<'_>, march: &March) -> Result<Option<Row>, StoreError> {
+    let Some(step) = march.last() else { return Ok(None) };
+    let instant = step.instant();
+    for time in maps.case.output.rows.between(instant.time - instant.dt, instant.time) {
+        // Steps that end there keep their own fields.
+        if let Some(between) = march.between(*time) {
+            let fields = maps.of(&march.view(&between));
+            writer.stage(*time, &fields)?;
+        }
+    }
+    let row = step.row();
+    let keeps = maps.case.output.rows.holds(step.index(), march.finished(), instant.time);
+    let fields = if keeps { maps.of(&step) } else { vec![] };
+    writer.append_with(&row, step.quantities(), &fields)?;
+    Ok(Some(row))
 }
 
 /// The fields of the rows that keep them, in memory of their own.
@@ -189,12 +209,9 @@ impl<'a> Maps<'a> {
         }
     }
 
-    /// All fields of the case where this row keeps them, none otherwise.
-    fn of<'b>(&'b mut self, step: &Step<'b>, total: usize) -> Vec<Field<'b>> {
+    /// All fields of the case.
+    fn of<'b>(&'b mut self, step: &Step<'b>) -> Vec<Field<'b>> {
         let output = &self.case.output;
-        if !output.rows.holds(step.index(), total - 1, step.instant().time) {
-            return vec![];
-        }
         let keeps = |field| output.fields.contains(&field);
         let mut fields = vec![];
         if keeps(case::Field::Pressure) {
@@ -237,7 +254,7 @@ fn header(case: &Case, simulation: &Simulation) -> Header {
         fields: case.output.fields.iter().map(field).collect(),
         // Checked with the simulation.
         quantities: simulation.columns().unwrap_or_default(),
-        rows_expected: Some(simulation.instants().len()),
+        rows_expected: Some(simulation.plan()).filter(|plan| plan.exact).map(|plan| plan.instants.len()),
         setup: setup(case),
     }
 }

@@ -163,12 +163,14 @@ pub(crate) fn coordinates(column: &Quantity) -> Vec<(Series, Vec<f64>)> {
 pub(super) enum Entry {
     Real(fn(&mut Row) -> &mut f64),
     Count(fn(&mut Row) -> &mut usize),
+    /// A number that not every row has: NaN for none.
+    Maybe(fn(&mut Row) -> &mut Option<f64>),
 }
 
 impl Entry {
     fn data_type(self) -> DataType {
         match self {
-            Entry::Real(_) => DataType::Float64,
+            Entry::Real(_) | Entry::Maybe(_) => DataType::Float64,
             Entry::Count(_) => DataType::Int64,
         }
     }
@@ -178,6 +180,7 @@ impl Entry {
         let mut row = *row;
         match self {
             Entry::Real(entry) => entry(&mut row).to_le_bytes(),
+            Entry::Maybe(entry) => entry(&mut row).unwrap_or(f64::NAN).to_le_bytes(),
             Entry::Count(entry) => i64::try_from(*entry(&mut row)).unwrap_or(i64::MAX).to_le_bytes(),
         }
     }
@@ -186,6 +189,7 @@ impl Entry {
     pub(super) fn set(self, row: &mut Row, bytes: [u8; 8]) -> Option<()> {
         match self {
             Entry::Real(entry) => *entry(row) = f64::from_le_bytes(bytes),
+            Entry::Maybe(entry) => *entry(row) = Some(f64::from_le_bytes(bytes)).filter(|number| !number.is_nan()),
             Entry::Count(entry) => *entry(row) = usize::try_from(i64::from_le_bytes(bytes)).ok()?,
         }
         Some(())
@@ -204,7 +208,7 @@ macro_rules! scalars {
 }
 
 /// The per-step numbers of a result, `time` first.
-pub const SCALARS: [Scalar; 14] = scalars![
+pub const SCALARS: [Scalar; 16] = scalars![
     Real time ["s"] "time";
     Real load ["N"] "normal load";
     Real approach ["m"] "rigid-body approach";
@@ -219,6 +223,8 @@ pub const SCALARS: [Scalar; 14] = scalars![
     Count convolutions ["1"] "convolutions";
     Real residual ["1"] "KKT residual";
     Real certificate ["1"] "certified relative error in the energy norm";
+    Maybe time_error ["1"] "estimated error of the step over the approach";
+    Count stage ["1"] "stage of the load";
 ];
 
 #[derive(Clone, Copy, Debug, PartialEq)]

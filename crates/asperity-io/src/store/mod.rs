@@ -6,7 +6,7 @@
 //! | the quantities asked for | `time`, of histograms also `spot_bin`, `pressure_bin` or `gap_bin` | |
 //! | `spot_edge`, `pressure_edge`, `gap_edge` | | ends of the bins |
 //! | `pressure`, `gap`, `displacement`, `contact`, `flattening` | `field_time`, `x`, `y` | fields of the chosen steps |
-//! | `field_time`, `field_step` | `field_time` | time and row of each stored field |
+//! | `field_time`, `field_step` | `field_time` | time and row of each stored field; of a field between two rows the later |
 //! | `initial_gap` | `x`, `y` | undeformed gap |
 //! | `x`, `y` | | centres of the cells |
 //!

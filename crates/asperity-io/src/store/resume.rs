@@ -62,10 +62,14 @@ impl Writer {
         let mut pages = Pages::new(&document);
         pages.commit(path, &document.progress, Way::Safe)?;
         pages.write_arrays(path, Way::Safe)?;
-        // The map after the last one counted may have been half written.
+        // Maps after the last one counted may have been written, the last of them by half.
         for kind in &document.header.fields {
-            for map in maps..=stored_maps {
-                remove(&path.join(kind.name()).join("c").join(map.to_string()))?;
+            for map in maps.. {
+                let directory = path.join(kind.name()).join("c").join(map.to_string());
+                if map > stored_maps && !directory.exists() {
+                    break;
+                }
+                remove(&directory)?;
             }
         }
         let last_time = all[..rows].last().map_or(f64::NEG_INFINITY, |row| row.time);

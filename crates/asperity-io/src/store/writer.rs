@@ -99,6 +99,9 @@ pub struct Writer {
     field_step: Column,
     fields: Vec<(FieldKind, Chunks)>,
     last_time: f64,
+    /// Maps written that the next row brings into the result, and the time of the last of them.
+    staged: usize,
+    staged_time: f64,
     wall_before: f64,
     started: Instant,
     committed: Instant,
@@ -171,6 +174,8 @@ impl Writer {
             fields: fields.collect::<Result<_>>()?,
             root: root.to_owned(),
             last_time,
+            staged: 0,
+            staged_time: last_time,
             wall_before: document.progress.work.wall_s,
             started: Instant::now(),
             committed: Instant::now(),
@@ -234,7 +239,12 @@ impl Writer {
             return Err(input("time of the row", format!("{} s", row.time), expected));
         }
         self.check_fields(fields)?;
+        if self.staged > 0 && row.time < self.staged_time {
+            let expected = format!("not less than that of the fields before it, {} s", self.staged_time);
+            return Err(input("time of the row", format!("{} s", row.time), expected));
+        }
         let Progress { rows, maps, .. } = self.progress;
+        let maps = maps + self.staged;
         for (entry, column) in &mut self.columns {
             column.put(rows, entry.to_bytes(row))?;
         }
@@ -245,8 +255,54 @@ impl Writer {
             column.put_row(rows, &bytes)?;
             rest = after;
         }
+        let mut progress = self.progress.clone();
+        progress.maps = maps;
+        if !fields.is_empty() {
+            self.write_maps(maps, row.time, fields)?;
+            progress.maps += 1;
+        }
+        progress.rows += 1;
+        progress.work.iterations += row.iterations as u64;
+        progress.work.convolutions += row.convolutions as u64;
+        progress.work.wall_s = self.wall();
+        let way = if self.committed.elapsed() < QUICK { Way::Quick } else { Way::Safe };
+        self.pages.commit(&self.root, &progress, way)?;
+        self.committed = Instant::now();
+        self.progress = progress;
+        self.staged = 0;
+        self.last_time = row.time;
+        self.documents_behind = true;
+        if self.documents_written.elapsed() > LAG {
+            self.flush_documents(Way::Quick)?;
+        }
+        Ok(())
+    }
+
+    /// Writes the fields of a state between the last row and the next, which is appended then and brings them into the
+    /// result: their `field_step` is that row, their `field_time` is `time` \[s\].
+    ///
+    /// # Errors
+    /// As of [`append`](Self::append); without fields nothing is done.
+    pub fn stage(&mut self, time: f64, fields: &[Field<'_>]) -> Result<()> {
+        let last = if self.staged > 0 { self.staged_time } else { self.last_time };
+        if time.is_nan() || time < last {
+            let expected = format!("not less than the time before it, {last} s");
+            return Err(input("time of the fields", format!("{time} s"), expected));
+        }
+        self.check_fields(fields)?;
+        if fields.is_empty() {
+            return Ok(());
+        }
+        self.write_maps(self.progress.maps + self.staged, time, fields)?;
+        self.staged += 1;
+        self.staged_time = time;
+        Ok(())
+    }
+
+    /// Writes the fields of number `map`.
+    fn write_maps(&mut self, map: usize, time: f64, fields: &[Field<'_>]) -> Result<()> {
         for field in fields {
-            let index = [maps as u64];
+            let index = [map as u64];
             let Some((_, chunks)) = self.fields.iter().find(|(kind, _)| *kind == field.kind()) else {
                 continue;
             };
@@ -260,26 +316,8 @@ impl Writer {
                 Field::Contact(map) => chunks.write_map(&index, *map)?,
             }
         }
-        let mut progress = self.progress.clone();
-        if !fields.is_empty() {
-            self.field_time.put(maps, row.time.to_le_bytes())?;
-            self.field_step.put(maps, (rows as i64).to_le_bytes())?;
-            progress.maps += 1;
-        }
-        progress.rows += 1;
-        progress.work.iterations += row.iterations as u64;
-        progress.work.convolutions += row.convolutions as u64;
-        progress.work.wall_s = self.wall();
-        let way = if self.committed.elapsed() < QUICK { Way::Quick } else { Way::Safe };
-        self.pages.commit(&self.root, &progress, way)?;
-        self.committed = Instant::now();
-        self.progress = progress;
-        self.last_time = row.time;
-        self.documents_behind = true;
-        if self.documents_written.elapsed() > LAG {
-            self.flush_documents(Way::Quick)?;
-        }
-        Ok(())
+        self.field_time.put(map, time.to_le_bytes())?;
+        self.field_step.put(map, (self.progress.rows as i64).to_le_bytes())
     }
 
     /// Whether writing a checkpoint now keeps the writing of all of them below 1 % of the time. A killed run

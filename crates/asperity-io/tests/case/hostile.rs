@@ -11,7 +11,8 @@ fn check(text: &str, overrides: &[String]) {
     match Case::parse(text, Path::new("/nowhere"), overrides) {
         Ok(case) => {
             let description = case.describe();
-            assert!(description.rows >= 1 && description.stored_rows <= description.rows);
+            let Some(rows) = description.rows else { return };
+            assert!(rows >= 1 && description.stored_rows.is_some_and(|stored| stored <= rows));
         }
         Err(errors) => well_formed(&errors),
     }

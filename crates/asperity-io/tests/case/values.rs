@@ -5,7 +5,9 @@ use std::path::Path;
 use asperity::material::Lateral;
 use asperity::quantities::{Quantities, Quantity};
 use asperity::surface::{Part, Punch, Roughness, Shape};
-use asperity::{Boundary, Control, History, Method, Plasticity, Precision, Scheme, TimeGrid};
+use asperity::{
+    Boundary, Control, Course, Event, History, Method, Plasticity, Precision, Scheme, Stage, TimeGrid,
+};
 use asperity_io::case::{Case, Field, Rows, Surface};
 
 const FRAME: &str = r#"
@@ -188,7 +190,14 @@ fn pairs_of_bodies() {
 }
 
 fn history(control: &'static str, history: &'static str) -> History {
-    case(Parts { control, history, ..PARTS }).loading.history
+    history_of(&case(Parts { control, history, ..PARTS }))
+}
+
+/// The history of a case of one stage.
+pub fn history_of(case: &Case) -> History {
+    let [stage] = case.loading.stages.as_slice() else { panic!("{:?}", case.loading) };
+    let Course::Given(history) = &stage.course else { panic!("{stage:?}") };
+    history.clone()
 }
 
 #[test]
@@ -218,8 +227,8 @@ fn histories() {
     std::fs::write(dir.path().join("h.csv"), "time [min], load [mN]\n0, 0\n1, 5\n").unwrap();
     let parts = Parts { history: r#"{ kind = "file", path = "h.csv" }"#, ..PARTS };
     let case = case_in(dir.path(), parts);
-    assert_eq!(case.loading.control, Control::Load);
-    assert_eq!(case.loading.history, History::Table { points: vec![(0.0, 0.0), (60.0, 5e-3)] });
+    assert_eq!(case.loading.stages[0].control, Control::Load);
+    assert_eq!(history_of(&case), History::Table { points: vec![(0.0, 0.0), (60.0, 5e-3)] });
 }
 
 #[test]
@@ -259,12 +268,82 @@ output = { path = "a/b.zarr", fields = ["contact", "contact"], times = ["0 s", "
     );
     assert_eq!((case.output.path.as_path(), case.output.checkpoint), (Path::new("a/b.zarr"), false));
     assert_eq!(case.output.fields.len(), 1);
-    let instants: Vec<f64> = case.simulation().unwrap().instants().iter().map(|i| i.time).collect();
+    let instants: Vec<f64> = case.simulation().unwrap().plan().instants.iter().map(|i| i.time).collect();
     assert!(instants.contains(&7.0) && instants.contains(&12.0) && instants.contains(&6.0));
     let stored =
-        instants.iter().enumerate().filter(|(n, t)| case.output.rows.holds(*n, instants.len() - 1, **t));
+        instants.iter().enumerate().filter(|(n, t)| case.output.rows.holds(*n, *n == instants.len() - 1, **t));
     assert_eq!(stored.map(|(_, t)| *t).collect::<Vec<_>>(), [0.0, 7.0, 12.0, 60.0]);
-    assert_eq!((case.describe().rows, case.describe().stored_rows), (12, 4)); // 10 steps, 0+, 7 s
+    assert_eq!((case.describe().rows, case.describe().stored_rows), (Some(12), Some(4))); // 10 steps, 0+, 7 s
+}
+
+#[test]
+fn stages() {
+    let stages = r#"stages = [
+  { control = "load", history = { kind = "ramp", value = "1 N", duration = "2 s" }, until = { approach = "2 um" }, duration = 2 },
+  { control = "approach", history = { kind = "hold" }, duration = "10 s", steps = 5, spacing = "log", first = "0.1 s" },
+  { control = "approach", history = { kind = "ramp", from = "current", value = "-1 um", duration = 1 }, until = "contact-lost" },
+  { control = "pressure", history = { kind = "step", value = "1 kPa" }, until = { load = "2 mN" } },
+  { control = "load", history = { kind = "hold" }, until = { pressure = "1 MPa" }, duration = 3, spacing = "adaptive", tolerance = 1e-4, first = 0.01 },
+]"#;
+    let text = FRAME
+        .replace("SURFACE", PARTS.surface)
+        .replace("BODY", PARTS.body)
+        .replace(r#"control = "CONTROL", history = HISTORY"#, stages)
+        .replace("TIME", PARTS.time);
+    // An inline table is one line.
+    let text = text.replace("load = { stages = [", "[load]
+stages = [").replace("] }
+time", "]
+[time]
+X");
+    let (head, _) = text.split_once("[time]").unwrap();
+    let text = format!("{head}
+[time]
+end = "1 min"
+steps = 10
+");
+    let case = Case::parse(&text, Path::new("."), &[]).unwrap_or_else(|errors| panic!("{errors}"));
+    let ramp = Stage {
+        duration: Some(2.0),
+        until: Some(Event::Approach(2e-6)),
+        ..Stage::new(Control::Load, History::Ramp { value: 1.0, duration: 2.0 })
+    };
+    let hold = Stage {
+        duration: Some(10.0),
+        times: Some(TimeGrid::Logarithmic { end: 10.0, steps: 5, first: 0.1 }),
+        ..Stage::new(Control::Approach, Course::Hold)
+    };
+    let retract = Stage {
+        until: Some(Event::ContactLost),
+        ..Stage::new(Control::Approach, Course::RampTo { value: -1e-6, duration: 1.0 })
+    };
+    let press = Stage {
+        until: Some(Event::Load(2e-3)),
+        ..Stage::new(Control::Pressure, History::Step { value: 1e3 })
+    };
+    let last = Stage {
+        duration: Some(3.0),
+        until: Some(Event::Pressure(1e6)),
+        times: Some(TimeGrid::Adaptive { end: 3.0, tolerance: 1e-4, first: 0.01 }),
+        ..Stage::new(Control::Load, Course::Hold)
+    };
+    assert_eq!(case.loading.stages, [ramp, hold, retract, press, last]);
+    let description = case.describe();
+    assert_eq!((description.rows, description.stages), (None, 5));
+}
+
+#[test]
+fn adaptive_steps() {
+    let grid = |time| case(Parts { time, ..PARTS }).times;
+    let adaptive = |tolerance, first| TimeGrid::Adaptive { end: 60.0, tolerance, first };
+    let text = r#"{ end = "1 min", spacing = "adaptive", tolerance = 1e-4, first = "1 ms" }"#;
+    assert_eq!(grid(text), adaptive(1e-4, 1e-3));
+    assert_eq!(grid(r#"{ end = "1 min", spacing = "adaptive" }"#), adaptive(1e-3, 0.06));
+    // States at the output times are interpolated: they are no steps.
+    let more = "output = { times = ["7 s"] }";
+    let case = case(Parts { time: r#"{ end = "1 min", spacing = "adaptive" }"#, more, ..PARTS });
+    assert!(case.include.is_empty() && case.describe().rows.is_none());
+    assert_eq!(case.describe().stored_rows, Some(3));
 }
 
 #[test]

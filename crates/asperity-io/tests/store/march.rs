@@ -32,7 +32,7 @@ fn simulation() -> Simulation {
         hardness: 2e6,
         plasticity: Plasticity::Accumulate,
         quantities: Quantities::of(Quantity::ALL),
-        loading: Loading { control: Control::Load, history: History::Table { points } },
+        loading: Loading { control: Control::Load, history: History::Table { points } }.into(),
         times: TimeGrid::Uniform { end: 3.0, steps: 12 },
         ..Simulation::new(grid, undeformed_gap(&grid, &[sphere, roughness]).unwrap())
     }

@@ -1,7 +1,7 @@
 //! Bodies: from samples of materials to what the pair of them is to the contact.
 
 use asperity::material::{Body, Creep, Lateral, Material, ReducedTime, Shift, ThermalCreep, pair_hardness};
-use asperity::time::Instant;
+use asperity::time::Plan;
 
 use super::Checks;
 use super::material::{Model, Sample};
@@ -22,7 +22,7 @@ pub struct Pair {
     /// Where the run goes beyond what is known of a material.
     pub warnings: Vec<String>,
     /// Rows of the run.
-    pub rows: usize,
+    pub plan: Plan,
 }
 
 impl Pair {
@@ -42,8 +42,8 @@ impl Pair {
 pub struct Course<'a> {
     /// Last instant [s]; `None` for a fault.
     pub end: Option<f64>,
-    /// The rows of the run, with steps at further instants [s]; none for a fault.
-    pub instants: &'a dyn Fn(&[f64]) -> Vec<Instant>,
+    /// The rows of the run as far as they are known, with steps at further instants [s]; none for a fault.
+    pub plan: &'a dyn Fn(&[f64]) -> Plan,
     /// (time [s], temperature [K]) of the section [temperature].
     pub temperatures: Option<&'a [(f64, f64)]>,
 }
@@ -65,12 +65,12 @@ pub fn pair(
         .collect();
     let clocks = warmths.iter().flatten().filter_map(Warmth::clock);
     let end = course.end.unwrap_or(0.0);
-    let instants = (course.instants)(&clocks.flat_map(|clock| clock.breaks(end)).collect::<Vec<f64>>());
+    let plan = (course.plan)(&clocks.flat_map(|clock| clock.breaks(end)).collect::<Vec<f64>>());
     let made: Vec<_> = samples
         .into_iter()
         .zip(warmths)
         .enumerate()
-        .map(|(n, ((at, sample), warmth))| body(checks, n, at, sample.as_ref(), warmth, &instants))
+        .map(|(n, ((at, sample), warmth))| body(checks, n, at, sample.as_ref(), warmth, &plan))
         .collect();
     let made = made.into_iter().collect::<Option<Vec<Made>>>()?;
     let mut pair = Pair {
@@ -80,7 +80,7 @@ pub fn pair(
         hardness: f64::INFINITY,
         reports: Vec::new(),
         warnings: Vec::new(),
-        rows: instants.len(),
+        plan,
     };
     for made in made {
         match made.clock {
@@ -110,7 +110,7 @@ fn body(
     at: &At<raw::Body>,
     sample: Option<&Sample>,
     warmth: Option<Warmth>,
-    instants: &[Instant],
+    plan: &Plan,
 ) -> Option<Made> {
     let raw = &at.value;
     let keys = [("poisson", raw.poisson.is_some()), ("bulk_modulus", raw.bulk_modulus.is_some())];
@@ -122,7 +122,7 @@ fn body(
         (None, None) => return None,
     };
     let (sample, warmth) = (sample?, warmth?);
-    let window = warmth.window(instants);
+    let window = warmth.window(plan);
     let (reference, report, warning) = reference(checks, &raw.material, sample, window)?;
     let warning = warning.map(|warning| format!("{name}: {warning}"));
     let factor = warmth.constant_factor();
@@ -152,7 +152,8 @@ pub fn alone(
     sample: &Sample,
     window: Option<[f64; 2]>,
 ) -> Option<(Material, MaterialReport)> {
-    let course = Course { end: None, instants: &|_| Vec::new(), temperatures: None };
+    let plan = |_: &[f64]| Plan { instants: Vec::new(), exact: true };
+    let course = Course { end: None, plan: &plan, temperatures: None };
     let factor = checks.core(&at.span, warmth(sample, &course))?.constant_factor().unwrap_or(1.0);
     let around = match &sample.model {
         Model::Fractional { time, .. } => Some([1e-4 * time, 1e4 * time]),
@@ -210,14 +211,12 @@ impl Warmth {
     }
 
     /// The shortest step and the end of the run, on the clock of the body [s].
-    fn window(&self, instants: &[Instant]) -> Option<[f64; 2]> {
-        let end = instants.last()?.time;
-        let steps = instants.iter().filter(|instant| instant.dt > 0.0);
+    fn window(&self, plan: &Plan) -> Option<[f64; 2]> {
+        let [shortest, end] = plan.window();
         let window = match self {
-            Warmth::Constant(factor) => {
-                [steps.map(|i| i.dt).fold(f64::INFINITY, f64::min) / factor, end / factor]
-            }
+            Warmth::Constant(factor) => [shortest / factor, end / factor],
             Warmth::Changing(clock) => {
+                let steps = plan.instants.iter().filter(|instant| instant.dt > 0.0);
                 let lengths = steps.map(|i| clock.elapsed(i.time - i.dt, i.time));
                 [lengths.fold(f64::INFINITY, f64::min), clock.value(end)]
             }

@@ -2,49 +2,164 @@
 
 use std::ops::Range;
 
-use asperity::{Control, Grid, History, Loading, TimeGrid};
+use asperity::{Control, Course, Event, Grid, History, Programme, Stage, TimeGrid};
 
 use super::body::Pair;
 use super::{Checks, history_file};
 use crate::case::quantity::range::{Finite, NonNegative};
 use crate::case::quantity::{Prescribed, QuantityError, dimension};
 use crate::case::raw::{self, At, Two};
-use crate::case::words::number;
+use crate::case::words::{missing_key, number};
 
-/// What is prescribed, and where in the case its largest value stands.
+/// What is prescribed, and where in the case it stands.
 pub struct Prescription {
-    pub loading: Loading,
-    place: Range<usize>,
-    /// Path as written and MD5 of a file that holds the history.
-    pub file: Option<(String, String)>,
+    pub programme: Programme,
+    /// Of each stage.
+    places: Vec<Place>,
+    /// Path as written and MD5 of the files that hold histories.
+    pub files: Vec<(String, String)>,
+    /// Where the load is described.
+    pub span: Range<usize>,
 }
 
-pub fn prescription(checks: &mut Checks<'_, '_>, load: &raw::Load) -> Option<Prescription> {
-    let control = match load.control {
+/// Where in the case a history stands, and its largest value.
+struct Place {
+    history: Range<usize>,
+    largest: Range<usize>,
+}
+
+/// `times` makes the grid of a stage from its keys.
+pub fn prescription(
+    checks: &mut Checks<'_, '_>,
+    load: &At<raw::Load>,
+    mut times: impl FnMut(&mut Checks<'_, '_>, &At<raw::Stage>) -> Option<Option<TimeGrid>>,
+) -> Option<Prescription> {
+    let raw = &load.value;
+    let mut files = vec![];
+    if let Some(list) = &raw.stages {
+        let beside =
+            [("control", raw.control.as_ref().map(|at| &at.span)), ("history", raw.history.as_ref().map(|at| &at.span))];
+        for (key, span) in beside {
+            if let Some(span) = span {
+                let message = format!("`{key}` does not go with `stages`, each of which has its own");
+                checks.fault(span, message, "one of the two", Some("leave one of them out"));
+                return None;
+            }
+        }
+        if list.value.is_empty() {
+            checks.wrong(&list.span, "a list of one stage at least", None);
+            return None;
+        }
+        let last = list.value.len() - 1;
+        let made: Vec<_> = list
+            .value
+            .iter()
+            .enumerate()
+            .map(|(n, at)| {
+                let own = times(checks, at);
+                let made = stage(checks, at, n == last, &mut files)?;
+                Some((Stage { times: own?, ..made.0 }, made.1))
+            })
+            .collect();
+        let (stages, places) = made.into_iter().collect::<Option<Vec<_>>>()?.into_iter().unzip();
+        let programme = Programme::new(stages);
+        let programme = checks.core(&list.span, programme.validate().map(|()| programme))?;
+        return Some(Prescription { programme, places, files, span: list.span.clone() });
+    }
+    for (key, missing) in [("control", raw.control.is_none()), ("history", raw.history.is_none())] {
+        if missing {
+            checks.push(|text| missing_key(text, &load.span, key));
+        }
+    }
+    let (control, at) = (control(raw.control.as_ref()?.value), raw.history.as_ref()?);
+    if let raw::History::Hold(_) = at.value {
+        let help = "kind = \"hold\" belongs to a stage; to press from the start use kind = \"step\"";
+        checks.fault(&at.span, "nothing is there to be held".to_owned(), "another kind", Some(help));
+        return None;
+    }
+    let (course, place) = course(checks, control, at, &mut files)?;
+    let programme = Programme::new(vec![Stage::new(control, course)]);
+    let programme = checks.core(&at.span, programme.validate().map(|()| programme))?;
+    Some(Prescription { programme, places: vec![place], files, span: at.span.clone() })
+}
+
+fn control(control: raw::Control) -> Control {
+    match control {
         raw::Control::Load => Control::Load,
         raw::Control::Pressure => Control::Pressure,
         raw::Control::Approach => Control::Approach,
+    }
+}
+
+fn stage(
+    checks: &mut Checks<'_, '_>,
+    at: &At<raw::Stage>,
+    last: bool,
+    files: &mut Vec<(String, String)>,
+) -> Option<(Stage, Place)> {
+    let raw = &at.value;
+    if !last && raw.duration.is_none() && raw.until.is_none() {
+        let message = "this stage never ends, so the stages after it never begin".to_owned();
+        let help = "give it duration = \"10 s\", or until = { approach = \"2 um\" }, { load = \"0.1 N\" } or \
+                    \"contact-lost\"";
+        checks.fault(&at.span, message, "`duration` or `until`", Some(help));
+        return None;
+    }
+    let control = control(raw.control);
+    let (course, place) = course(checks, control, &raw.history, files)?;
+    let stage = Stage {
+        duration: raw.duration.as_ref().map(|at| at.value.get()),
+        until: raw.until.as_ref().map(|at| match &at.value {
+            raw::Until::ContactLost => Event::ContactLost,
+            raw::Until::Approach(value) => Event::Approach(value.get()),
+            raw::Until::Load(value) => Event::Load(value.get()),
+            raw::Until::Pressure(value) => Event::Pressure(value.get()),
+        }),
+        ..Stage::new(control, course)
     };
-    let mut file = None;
-    let (history, place) = history(checks, control, &load.history, &mut file)?;
-    let history = checks.core(&load.history.span, history.validate().map(|()| history))?;
-    Some(Prescription { loading: Loading { control, history }, place, file })
+    Some((stage, place))
+}
+
+/// The course, checked.
+fn course(
+    checks: &mut Checks<'_, '_>,
+    control: Control,
+    at: &At<raw::History>,
+    files: &mut Vec<(String, String)>,
+) -> Option<(Course, Place)> {
+    let (course, largest) = match &at.value {
+        raw::History::Hold(_) => (Course::Hold, at.span.clone()),
+        raw::History::Ramp(ramp) if ramp.from == raw::From::Current => {
+            let value = checks.quantity(&ramp.value, resolve(&ramp.value.value, control))?;
+            (Course::RampTo { value, duration: ramp.duration.get() }, ramp.value.span.clone())
+        }
+        _ => {
+            let mut file = None;
+            let (history, largest) = history(checks, control, at, &mut file)?;
+            files.extend(file);
+            let history = checks.core(&at.span, history.validate().map(|()| history))?;
+            (Course::Given(history), largest)
+        }
+    };
+    Some((course, Place { history: at.span.clone(), largest }))
 }
 
 /// Whether the bodies can follow what is prescribed.
 pub fn possible(
     checks: &mut Checks<'_, '_>,
-    load: &raw::Load,
     prescription: &Prescription,
     times: &TimeGrid,
     grid: Option<&Grid>,
     pair: &Pair,
 ) {
-    let Prescription { loading, place, .. } = prescription;
-    if let Some(grid) = grid {
-        bearable(checks, loading, place, times.end(), grid, pair);
+    let stages = prescription.programme.stages.iter().zip(&prescription.places);
+    for (n, (stage, place)) in stages.enumerate() {
+        let end = stage.duration.unwrap_or(times.end()).min(times.end());
+        if let Some(grid) = grid {
+            bearable(checks, stage, &place.largest, end, grid, pair);
+        }
+        jumps(checks, stage, n == 0, &place.history, end, pair);
     }
-    jumps(checks, loading, &load.history.span, times.end(), pair);
 }
 
 /// The history, and the place of its largest value.
@@ -61,6 +176,8 @@ fn history(
         raw::History::Step(step) => {
             (History::Step { value: one(checks, &step.value)? }, step.value.span.clone())
         }
+        // A hold is a course that needs no history.
+        raw::History::Hold(_) => return None,
         raw::History::Ramp(ramp) => {
             let value = one(checks, &ramp.value)?;
             (History::Ramp { value, duration: ramp.duration.get() }, ramp.value.span.clone())
@@ -167,25 +284,29 @@ fn table_points(
 /// No solution exists above hardness times area.
 fn bearable(
     checks: &mut Checks<'_, '_>,
-    loading: &Loading,
+    stage: &Stage,
     place: &Range<usize>,
     end: f64,
     grid: &Grid,
     pair: &Pair,
 ) {
-    let limit = match loading.control {
+    let limit = match stage.control {
         Control::Load => pair.hardness * grid.area(),
         Control::Pressure => pair.hardness,
         Control::Approach => return,
     };
-    let [_, largest] = loading.history.range(end);
+    let largest = match &stage.course {
+        Course::Given(history) => history.range(end)[1],
+        Course::RampTo { value, .. } => *value,
+        Course::Hold => return,
+    };
     // Equality within rounding is the limit itself, which has a solution.
     if largest <= limit * (1.0 + 1e-12) {
         return;
     }
-    let unit = unit(loading.control);
+    let unit = unit(stage.control);
     let [reached, limit, hardness] = [largest, limit, pair.hardness].map(number);
-    let area = match loading.control {
+    let area = match stage.control {
         Control::Load => format!(" times the area {} m^2", number(grid.area())),
         _ => String::new(),
     };
@@ -198,15 +319,20 @@ fn bearable(
 }
 
 /// Bodies that do not yield at once cannot follow a jump: no state exists right after it.
-fn jumps(checks: &mut Checks<'_, '_>, loading: &Loading, place: &Range<usize>, end: f64, pair: &Pair) {
-    if pair.instantaneous() > 0.0 {
-        return;
-    }
-    let history = &loading.history;
-    let instants = std::iter::once(0.0).chain(history.breaks(end));
+fn jumps(
+    checks: &mut Checks<'_, '_>,
+    stage: &Stage,
+    first: bool,
+    place: &Range<usize>,
+    end: f64,
+    pair: &Pair,
+) {
+    let (Course::Given(history), false) = (&stage.course, pair.instantaneous() > 0.0) else { return };
+    // What a later stage starts from is known only as the run goes.
+    let instants = first.then_some(0.0).into_iter().chain(history.breaks(end));
     let jump = instants.map(|t| (t, history.before(t), history.after(t))).find(|(_, b, a)| a != b);
     let Some((t, before, after)) = jump else { return };
-    let unit = unit(loading.control);
+    let unit = unit(stage.control);
     let [t, before, after] = [t, before, after].map(number);
     let message = format!(
         "the history jumps from {before} to {after} {unit} at t = {t} s, but the bodies do not yield at once \

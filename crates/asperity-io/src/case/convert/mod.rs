@@ -18,6 +18,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use asperity::material::Material;
+use asperity::time::Plan;
 use asperity::{Scheme, TimeGrid};
 
 use super::error::CaseError;
@@ -46,32 +47,40 @@ pub fn case(
     let temperatures = temperature::temperatures(&mut checks, document.temperature.as_ref(), &samples);
     let points = temperatures.iter().flatten().map(|t| t.points.as_slice()).next();
     let shortest = |end: f64| material::shortest(&samples, points, end);
-    let times = time::times(&mut checks, &document.time, shortest);
-    let load = &document.load.value;
-    let prescription = load::prescription(&mut checks, load);
-    let output = output::output(&mut checks, &document.output, times.as_ref(), output);
+    let stages = document.load.value.stages.as_ref().map(|list| list.value.as_slice()).unwrap_or_default();
+    let own = |stage: &At<raw::Stage>| stage.value.steps.is_some() || stage.value.spacing.is_some();
+    let all_own = !stages.is_empty() && stages.iter().all(own);
+    let times = time::times(&mut checks, &document.time, all_own, shortest);
+    let prescription = load::prescription(&mut checks, &document.load, |checks, stage| {
+        time::of_stage(checks, stage, shortest)
+    });
+    let programme = prescription.as_ref().map(|prescription| &prescription.programme);
+    let output = output::output(&mut checks, &document.output, times.as_ref(), programme, output);
+    let grids = programme.iter().flat_map(|programme| &programme.stages).filter_map(|stage| stage.times.as_ref());
+    let adaptive = times.iter().chain(grids).any(TimeGrid::is_adaptive);
     let include = match output.as_ref().map(|output| &output.rows) {
-        Some(Rows::At(times)) => times.clone(),
+        // States between adaptive steps are interpolated; other steps end there.
+        Some(Rows::At(times)) if !adaptive => times.clone(),
         _ => Vec::new(),
     };
     let mut files: Vec<_> = samples.iter().flatten().filter_map(|sample| sample.file.clone()).collect();
     files.extend(temperatures.iter().flatten().filter_map(|t| t.file.clone()));
-    files.extend(prescription.iter().filter_map(|p| p.file.clone()));
     let maps = document.body.iter().filter_map(|body| body.value.hardness_file.as_ref());
     let hardness = hardness::of_cells(&mut checks, maps, grid.as_ref());
     files.extend(hardness.iter().flat_map(|hardness| hardness.files.iter().cloned()));
-    let instants = |breaks: &[f64]| match (&times, &prescription) {
-        (Some(times), Some(p)) => times.instants(&p.loading.history, &[include.as_slice(), breaks].concat()),
-        _ => Vec::new(),
+    files.extend(prescription.iter().flat_map(|p| p.files.clone()));
+    let plan = |breaks: &[f64]| match (&times, programme) {
+        (Some(times), Some(programme)) => programme.plan(times, &[include.as_slice(), breaks].concat()),
+        _ => Plan { instants: Vec::new(), exact: true },
     };
     let course =
-        body::Course { end: times.as_ref().map(TimeGrid::end), instants: &instants, temperatures: points };
+        body::Course { end: times.as_ref().map(TimeGrid::end), plan: &plan, temperatures: points };
     let pair = match temperatures {
         Some(_) => body::pair(&mut checks, &document.body, &samples, &course),
         None => None, // a fault
     };
     if let (Some(times), Some(prescription), Some(pair)) = (&times, &prescription, &pair) {
-        load::possible(&mut checks, load, prescription, times, grid.as_ref(), pair);
+        load::possible(&mut checks, prescription, times, grid.as_ref(), pair);
     }
     let scheme = time::scheme(document.time.value.scheme);
     if let Some(pair) = &pair {
@@ -79,9 +88,14 @@ pub fn case(
             pair.hardness.is_finite() || hardness.as_ref().is_some_and(|hardness| hardness.map.is_some());
         output::possible(&mut checks, &document.solver, &document.output, scheme, capped);
     }
+    if adaptive && scheme != Scheme::Linear {
+        let message = "adaptive steps go with the scheme \"linear\", which their error estimate belongs to".to_owned();
+        let help = "leave `scheme` out, or take spacing = \"log\" with `steps`";
+        checks.fault(&document.time.span, message, "scheme = \"linear\"", Some(help));
+    }
     let fields = match (scheme, &pair) {
         (_, None) => 0,
-        (Scheme::Direct, Some(pair)) => pair.rows,
+        (Scheme::Direct, Some(pair)) => pair.plan.instants.len(),
         (_, Some(pair)) => pair.branches(),
     };
     let memory = domain::memory(&mut checks, &document.domain, grid.as_ref(), fields, scheme);
@@ -113,16 +127,17 @@ pub fn case(
             files,
             hardness: pair.hardness,
             hardness_map: hardness.map,
-            loading: prescription.loading,
+            loading: prescription.programme,
             times,
             include,
             scheme,
             plasticity: output::plasticity(&document.solver),
             solver: output::solver(&document.solver),
             output,
-            rows: pair.rows,
+            usual_rows: pair.plan.instants.len() + if adaptive { time::USUAL_STEPS } else { 0 },
+            rows: pair.plan.exact.then_some(pair.plan.instants.len()),
             memory,
-            history: document.load.value.history.span.clone(),
+            history: prescription.span,
         }),
         _ => Err(checks.errors),
     }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use asperity::quantities::{Quantities, Quantity};
-use asperity::{Method, Plasticity, Precision, Scheme, SolverOptions, TimeGrid};
+use asperity::{Method, Plasticity, Precision, Programme, Scheme, SolverOptions, TimeGrid};
 
 use super::Checks;
 use super::time;
@@ -130,6 +130,7 @@ pub fn output(
     checks: &mut Checks<'_, '_>,
     output: &raw::Output,
     times: Option<&TimeGrid>,
+    programme: Option<&Programme>,
     default_path: PathBuf,
 ) -> Option<Output> {
     let path = match &output.path {
@@ -151,7 +152,13 @@ pub fn output(
             return None;
         }
         (Some(every), None) => Rows::Every(every.value.count()),
-        (None, None) => Rows::Every(time::steps(times?).div_ceil(10)),
+        (None, None) => {
+            let own = programme.iter().flat_map(|programme| &programme.stages).filter_map(|stage| stage.times.as_ref());
+            let own: usize = own.map(time::steps).sum();
+            let own_only = matches!(times?, TimeGrid::List(end) if end.len() == 1);
+            let steps = if own > 0 && own_only { own } else { time::steps(times?) + own };
+            Rows::Every(steps.div_ceil(10))
+        }
         (None, Some(list)) => {
             let instants = time::increasing(checks, &list.value, |time| time.get())?;
             let end = times?.end();

@@ -5,17 +5,28 @@ use std::ops::Range;
 use asperity::{Scheme, TimeGrid};
 
 use super::Checks;
-use crate::case::quantity::Time as Duration;
 use crate::case::quantity::range::Positive;
+use crate::case::quantity::{Number, Time as Duration, Whole};
 use crate::case::raw::{self, At, Spacing};
 use crate::case::words;
+
+/// Tolerance of adaptive steps, where none is given.
+const TOLERANCE: f64 = 1e-3;
+/// The first of adaptive steps is no longer than this share of the end.
+const FIRST: f64 = 1e-3;
+/// ... and no shorter than this one.
+const SHORTEST: f64 = 1e-14;
+/// Adaptive steps of a usual run (docs/verification.md).
+pub const USUAL_STEPS: usize = 100;
 
 /// More steps than this are a slip of the pen (and more than a time grid takes).
 pub const MOST_STEPS: usize = 10_000_000;
 
+/// The instants of the run; `own` where every stage of the load has its own.
 pub fn times(
     checks: &mut Checks<'_, '_>,
     time: &At<raw::Time>,
+    own: bool,
     shortest: impl Fn(f64) -> f64,
 ) -> Option<TimeGrid> {
     let raw = &time.value;
@@ -26,6 +37,7 @@ pub fn times(
             ("steps", raw.steps.as_ref().map(|at| &at.span)),
             ("first", raw.first.as_ref().map(|at| &at.span)),
             ("spacing", raw.spacing.as_ref().map(|at| &at.span)),
+            ("tolerance", raw.tolerance.as_ref().map(|at| &at.span)),
         ];
         for (key, span) in beside {
             if let Some(span) = span {
@@ -36,46 +48,130 @@ pub fn times(
         }
         return list(checks, times).filter(|_| alone);
     }
-    let (end, steps) = (raw.end.as_ref(), raw.steps.as_ref());
-    for (key, missing) in [("end", end.is_none()), ("steps", steps.is_none())] {
+    let steps = Steps {
+        steps: raw.steps.as_ref(),
+        spacing: raw.spacing.as_ref(),
+        first: raw.first.as_ref(),
+        tolerance: raw.tolerance.as_ref(),
+    };
+    let unspecified = own && steps.none();
+    let missing_steps = !steps.adaptive() && raw.steps.is_none() && !unspecified;
+    for (key, missing) in [("end", raw.end.is_none()), ("steps", missing_steps)] {
         if missing {
             checks.push(|text| words::missing_key(text, &time.span, key));
         }
     }
-    let (end, steps) = (end?.value.get(), steps?);
-    let count = steps.value.count();
-    if count > MOST_STEPS {
-        let expected = format!("{MOST_STEPS} at most");
-        checks.wrong(
-            &steps.span,
-            &expected,
-            Some("one step is one contact problem; take fewer, or spacing = \"log\""),
-        );
+    let end = raw.end.as_ref()?.value.get();
+    if unspecified { Some(TimeGrid::List(vec![end])) } else { steps.grid(checks, end, shortest) }
+}
+
+/// The instants of a stage, on its clock; the inner `None` where it has none of its own.
+pub fn of_stage(
+    checks: &mut Checks<'_, '_>,
+    stage: &At<raw::Stage>,
+    shortest: impl Fn(f64) -> f64,
+) -> Option<Option<TimeGrid>> {
+    let raw = &stage.value;
+    let steps = Steps {
+        steps: raw.steps.as_ref(),
+        spacing: raw.spacing.as_ref(),
+        first: raw.first.as_ref(),
+        tolerance: raw.tolerance.as_ref(),
+    };
+    if steps.none() {
+        return Some(None);
+    }
+    if !steps.adaptive() && raw.steps.is_none() {
+        checks.push(|text| words::missing_key(text, &stage.span, "steps"));
         return None;
     }
-    Some(match raw.spacing.as_ref().map_or(Spacing::Uniform, |at| at.value) {
-        Spacing::Uniform => {
-            if let Some(first) = &raw.first {
-                let message = "`first` belongs to spacing = \"log\"".to_owned();
-                checks.fault(
-                    &first.span,
-                    message,
-                    "no such key",
-                    Some("add spacing = \"log\" or leave it out"),
-                );
-                return None;
+    let Some(duration) = &raw.duration else {
+        let message = "steps of a stage need its `duration` (with `until`, the latest end)".to_owned();
+        checks.fault(&stage.span, message, "a duration", Some("add duration = \"10 s\", or leave the steps to [time]"));
+        return None;
+    };
+    steps.grid(checks, duration.value.get(), shortest).map(Some)
+}
+
+/// Keys that say how long the steps are.
+#[derive(Clone, Copy)]
+struct Steps<'a> {
+    steps: Option<&'a At<Whole<1>>>,
+    spacing: Option<&'a At<Spacing>>,
+    first: Option<&'a At<Duration<Positive>>>,
+    tolerance: Option<&'a At<Number<Positive>>>,
+}
+
+impl Steps<'_> {
+    fn none(&self) -> bool {
+        self.steps.is_none() && self.spacing.is_none() && self.first.is_none() && self.tolerance.is_none()
+    }
+
+    fn adaptive(&self) -> bool {
+        self.spacing.is_some_and(|at| at.value == Spacing::Adaptive)
+    }
+
+    /// The grid to `end`.
+    fn grid(self, checks: &mut Checks<'_, '_>, end: f64, shortest: impl Fn(f64) -> f64) -> Option<TimeGrid> {
+        if self.adaptive() {
+            return self.adaptive_grid(checks, end, shortest);
+        }
+        if let Some(tolerance) = self.tolerance {
+            let message = "`tolerance` belongs to spacing = \"adaptive\"".to_owned();
+            let help = "add spacing = \"adaptive\" in place of steps, or leave it out";
+            checks.fault(&tolerance.span, message, "no such key", Some(help));
+            return None;
+        }
+        let steps = self.steps?;
+        let count = steps.value.count();
+        if count > MOST_STEPS {
+            let expected = format!("{MOST_STEPS} at most");
+            let help = "one step is one contact problem; take fewer, or spacing = \"log\"";
+            checks.wrong(&steps.span, &expected, Some(help));
+            return None;
+        }
+        Some(match self.spacing.map_or(Spacing::Uniform, |at| at.value) {
+            Spacing::Log => {
+                let first = match self.first {
+                    Some(first) => before_end(checks, first, end, count)?,
+                    // A tenth of the shortest time of the material, but not later than a uniform step.
+                    None => (0.1 * shortest(end)).min(end / count as f64),
+                };
+                TimeGrid::Logarithmic { end, steps: count, first }
             }
-            TimeGrid::Uniform { end, steps: count }
+            Spacing::Uniform | Spacing::Adaptive => {
+                if let Some(first) = self.first {
+                    let message = "`first` belongs to spacing = \"log\" or \"adaptive\"".to_owned();
+                    let help = "add spacing = \"log\" or leave it out";
+                    checks.fault(&first.span, message, "no such key", Some(help));
+                    return None;
+                }
+                TimeGrid::Uniform { end, steps: count }
+            }
+        })
+    }
+
+    fn adaptive_grid(
+        self,
+        checks: &mut Checks<'_, '_>,
+        end: f64,
+        shortest: impl Fn(f64) -> f64,
+    ) -> Option<TimeGrid> {
+        if let Some(steps) = self.steps {
+            let message = "`steps` does not go with spacing = \"adaptive\", which finds their number".to_owned();
+            let help = "leave `steps` out, and set `tolerance`";
+            checks.fault(&steps.span, message, "one of the two", Some(help));
+            return None;
         }
-        Spacing::Log => {
-            let first = match &raw.first {
-                Some(first) => before_end(checks, first, end, count)?,
-                // A tenth of the shortest time of the material, but not later than a uniform step.
-                None => (0.1 * shortest(end)).min(end / count as f64),
-            };
-            TimeGrid::Logarithmic { end, steps: count, first }
-        }
-    })
+        let first = match self.first {
+            Some(first) => before_end(checks, first, end, 2)?,
+            None => (0.1 * shortest(end)).min(FIRST * end).max(SHORTEST * end),
+        };
+        let tolerance = self.tolerance.map_or(TOLERANCE, |at| at.value.get());
+        let grid = TimeGrid::Adaptive { end, tolerance, first };
+        let place = self.tolerance.map(|at| &at.span).or(self.spacing.map(|at| &at.span))?;
+        checks.core(place, grid.validate().map(|()| grid))
+    }
 }
 
 fn before_end(
@@ -88,7 +184,7 @@ fn before_end(
     if value < end || (steps == 1 && value <= end) {
         return Some(value);
     }
-    checks.wrong(&first.span, &format!("a time before time.end, {} s", words::number(end)), None);
+    checks.wrong(&first.span, &format!("a time before the end, {} s", words::number(end)), None);
     None
 }
 
@@ -123,10 +219,11 @@ pub fn scheme(scheme: raw::Scheme) -> Scheme {
     }
 }
 
-/// Steps of the grid, without the breaks of the history.
+/// Steps of the grid, without the breaks of the history; of an adaptive one about.
 pub fn steps(grid: &TimeGrid) -> usize {
     match grid {
         TimeGrid::Uniform { steps, .. } | TimeGrid::Logarithmic { steps, .. } => *steps,
         TimeGrid::List(times) => times.len(),
+        TimeGrid::Adaptive { .. } => USUAL_STEPS,
     }
 }

@@ -5,17 +5,67 @@ use serde::Deserialize;
 
 use super::{At, Two};
 use crate::case::quantity::range::{NonNegative, Positive};
-use crate::case::quantity::{Frequency, Prescribed, Time as Duration, Whole};
+use crate::case::quantity::{Force, Frequency, Length, Number, Prescribed, Pressure, Time as Duration, Whole};
 
 /// What presses the bodies together.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Load {
+    /// The prescribed quantity; with `history`.
+    pub control: Option<At<Control>>,
+    /// Its value over time, 0 before t = 0; with `control`.
+    #[schemars(example = serde_json::json!({ "kind": "step", "value": "0.5 N" }))]
+    pub history: Option<At<History>>,
+    /// The stages of the run, one after the other, in place of `control` and `history`. The run ends with the last of
+    /// them or at `time.end`, whichever comes first.
+    #[schemars(length(min = 1))]
+    pub stages: Option<At<Vec<At<Stage>>>>,
+}
+
+/// A part of the run under one control.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Stage {
     /// The prescribed quantity.
     pub control: Control,
-    /// Its value over time, 0 before t = 0.
-    #[schemars(example = serde_json::json!({ "kind": "step", "value": "0.5 N" }))]
+    /// Its value; the clock of the history starts with the stage.
+    #[schemars(example = serde_json::json!({ "kind": "hold" }))]
     pub history: At<History>,
+    /// The stage lasts no longer. Only the last stage needs neither `duration` nor `until`.
+    #[schemars(example = "10 s")]
+    pub duration: Option<At<Duration<Positive>>>,
+    /// The stage ends where this happens: a value is crossed, from either side, or the contact is lost. Without
+    /// `duration` it must happen before `time.end`.
+    pub until: Option<At<Until>>,
+    /// Number of steps of the stage, in place of the instants of `[time]`; with `duration`.
+    #[schemars(example = 50)]
+    pub steps: Option<At<Whole<1>>>,
+    /// How these steps are spread, or "adaptive" in place of `steps`; "uniform" if not given.
+    pub spacing: Option<At<Spacing>>,
+    /// First instant of the stage after its start where the spacing is "log" or "adaptive"; as in `[time]` if not
+    /// given.
+    #[schemars(example = "0.1 s")]
+    pub first: Option<At<Duration<Positive>>>,
+    /// Where the spacing is "adaptive": as in `[time]`.
+    #[schemars(example = 1e-3)]
+    pub tolerance: Option<At<Number<Positive>>>,
+}
+
+/// What ends a stage.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum Until {
+    /// Bodies that touched touch no more.
+    ContactLost,
+    /// The approach crosses a value.
+    #[schemars(example = "2 um")]
+    Approach(Length),
+    /// The load crosses a value.
+    #[schemars(example = "0.1 N")]
+    Load(Force<NonNegative>),
+    /// The mean pressure crosses a value.
+    #[schemars(example = "1 MPa")]
+    Pressure(Pressure<NonNegative>),
 }
 
 /// The prescribed quantity.
@@ -39,6 +89,8 @@ pub enum History {
     Step(Step),
     /// Linear rise, then held.
     Ramp(Ramp),
+    /// What the quantity is when the stage starts, held; for stages.
+    Hold(Hold),
     /// Linear rise and fall, then 0.
     Triangle(Triangle),
     /// Linear rise, hold, linear fall, then 0.
@@ -61,10 +113,28 @@ pub struct Step {
 
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
+pub struct Hold {}
+
+/// Where a ramp begins.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum From {
+    /// At 0.
+    #[default]
+    Zero,
+    /// At what the quantity is when the stage starts.
+    Current,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
 pub struct Ramp {
     /// Value reached and held.
     #[schemars(example = "0.5 N")]
     pub value: At<Prescribed>,
+    /// Where the ramp begins; "zero" if not given.
+    #[serde(default)]
+    pub from: From,
     /// Time to reach it.
     #[schemars(example = "10 s")]
     pub duration: Duration<Positive>,
@@ -142,7 +212,7 @@ pub struct File {
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Instants")]
 pub struct Time {
-    /// Last instant; with `steps`.
+    /// Last instant; with `steps`, spacing = "adaptive", or stages that have steps of their own.
     #[schemars(example = "500 s")]
     pub end: Option<At<Duration<Positive>>>,
     /// Number of steps from 0 to `end`; breaks and jumps of the history come on top.
@@ -150,10 +220,15 @@ pub struct Time {
     pub steps: Option<At<Whole<1>>>,
     /// How the steps are spread; "uniform" if not given.
     pub spacing: Option<At<Spacing>>,
-    /// First instant after 0 where the spacing is "log"; if not given, a tenth of the shortest retardation time (of
-    /// fractional models and fitted curves: 1e-4 of the end), but not later than a uniform step.
+    /// First instant after 0 where the spacing is "log" or "adaptive" (then also the first step after each break or
+    /// jump); if not given, a tenth of the shortest retardation time (of fractional models and fitted curves: 1e-4 of
+    /// the end), but not later than a uniform step, or a thousandth of the end where steps are adaptive.
     #[schemars(example = "0.1 s")]
     pub first: Option<At<Duration<Positive>>>,
+    /// Where the spacing is "adaptive": the largest error that the steps may leave, relative to the approach; 1e-3 if not
+    /// given. A single step may add a quarter of it.
+    #[schemars(example = 1e-3)]
+    pub tolerance: Option<At<Number<Positive>>>,
     /// The instants after 0 one by one, in place of `end` and `steps`.
     #[schemars(example = ["1 s", "10 s", "100 s"])]
     pub times: Option<At<Vec<At<Duration<Positive>>>>>,
@@ -170,6 +245,8 @@ pub enum Spacing {
     Uniform,
     /// Steps that grow by a constant factor.
     Log,
+    /// Steps as long as their error allows.
+    Adaptive,
 }
 
 /// How the pressure goes over a step.

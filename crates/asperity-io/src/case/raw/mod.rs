@@ -21,7 +21,7 @@ use serde::de::{Error, IgnoredAny, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
 pub use body::{Body, HardnessFile};
-pub use load::{Control, History, Load, Scheme, Sine, Spacing, Table, Time};
+pub use load::{Control, From, History, Load, Scheme, Sine, Spacing, Stage, Table, Time, Until};
 pub use material::{
     Column, CreepTable, CreepTerm, Dma, Fit, FractionalZener, LongTime, Material, Measure, Prony,
     RelaxationTable,

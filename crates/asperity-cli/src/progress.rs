@@ -93,11 +93,15 @@ impl Teller {
                 if due || progress.finished {
                     let [from, done, all] = course(progress);
                     let rest = all.saturating_sub(done) as f64;
-                    let left = started.elapsed().as_secs_f64() * rest / done.saturating_sub(from).max(1) as f64;
+                    let left =
+                        started.elapsed().as_secs_f64() * rest / done.saturating_sub(from).max(1) as f64;
                     // Time says little of the rows to come.
                     let left = match progress.total {
                         Some(_) => words::duration(left),
-                        None => format!("{} of the time", words::quantity(rest / COURSE as f64 * progress.end, "s", 1)),
+                        None => format!(
+                            "{} of the time",
+                            words::quantity(rest / COURSE as f64 * progress.end, "s", 1)
+                        ),
                     };
                     eprintln!("row {}: {state}, {left} left", rows(progress));
                     *told = Some(Instant::now());

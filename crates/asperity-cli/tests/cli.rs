@@ -429,6 +429,26 @@ fn a_result_is_shown_plotted_and_reported() {
 }
 
 #[test]
+fn the_cycles_of_a_sine_are_shown() {
+    let dir = tempfile::tempdir().unwrap();
+    assert!(asperity(dir.path(), &["new", "cyclic", "cyclic.toml"]).status.success());
+    let run = asperity(dir.path(), &["run", "cyclic.toml", "--quiet", "--set", "domain.cells=[32,32]"]);
+    assert!(run.status.success(), "{}", stderr(&run));
+    let shown = stdout(&asperity(dir.path(), &["show", "cyclic.zarr"]));
+    assert!(shown.contains("cycles at 0.0500 Hz") && shown.contains("loss angle"), "{shown}");
+    let object: Value =
+        serde_json::from_str(&stdout(&asperity(dir.path(), &["show", "cyclic.zarr", "--json"]))).unwrap();
+    let cycles = object["cycles"][0]["cycles"].as_array().unwrap();
+    assert_eq!(cycles.len(), 5);
+    let last = |key: &str| cycles[4][key].as_f64().unwrap();
+    // PMMA at 0.05 Hz, about its retardation times: tan(delta) of the material is 0.029; the contact area, which
+    // changes within the cycle, takes little of it.
+    assert!(last("loss_angle") > 0.01 && last("loss_angle") < 0.05, "{}", last("loss_angle"));
+    assert!(last("dissipated_energy") > 0.0 && last("stiffness") > 0.0);
+    assert_eq!((cycles[4]["start"].as_f64(), cycles[4]["end"].as_f64()), (Some(80.0), Some(100.0)));
+}
+
+#[test]
 fn what_a_result_does_not_hold_is_told() {
     let (dir, _) = small();
     let fields = ["--set", "output.fields=[\"displacement\"]"];

@@ -2,6 +2,7 @@
 
 pub mod case;
 pub mod curve;
+pub mod cycles;
 pub mod export;
 pub mod preparation;
 pub mod session;

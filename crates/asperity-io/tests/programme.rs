@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use asperity_io::case::Case;
 use asperity_io::case::templates::Template;
-use asperity_io::session::{RunOptions, RunError, run};
+use asperity_io::session::{RunError, RunOptions, run};
 use asperity_io::store::{At, FieldKind, Reader, Status};
 
 fn case(more: &[&str]) -> Case {

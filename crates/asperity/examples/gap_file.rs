@@ -84,7 +84,8 @@ fn solve(
         let mut march = March::new(Simulation {
             boundary,
             creep: Creep { instantaneous: 0.125, terms, fluidity: 0.0 },
-            loading: Loading { control: Control::Load, history: History::Step { value: 4.0 * pressure } }.into(),
+            loading: Loading { control: Control::Load, history: History::Step { value: 4.0 * pressure } }
+                .into(),
             times: TimeGrid::Uniform { end: 0.02 * steps as f64, steps },
             solver: options,
             ..Simulation::new(grid, gap)

@@ -23,6 +23,7 @@
 //! the repository. This crate touches no file and prints nothing.
 
 pub mod contact;
+pub mod cycles;
 pub mod error;
 mod field;
 pub mod grid;

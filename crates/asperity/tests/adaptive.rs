@@ -5,9 +5,7 @@ use asperity::march::{Checkpoint, March, Row, Scheme, Simulation};
 use asperity::material::{Creep, CreepTerm};
 use asperity::operator::half_space;
 use asperity::surface::{Part, Shape, undeformed_gap};
-use asperity::{
-    ContactState, Grid, Method, Prescribed, Problem, Solver, SolverOptions, TimeGrid,
-};
+use asperity::{ContactState, Grid, Method, Prescribed, Problem, Solver, SolverOptions, TimeGrid};
 use ndarray::Array2;
 
 /// Three terms over five decades.
@@ -98,7 +96,12 @@ fn eight_decades_of_time_take_at_most_eighty_steps_to_a_thousandth() {
     let unloaded = run(step_down.clone());
     let finer = |times| rows(Simulation { loading: step_down.clone(), times, ..base.clone() });
     let unload_error = beside_finer(&unloaded, finer);
-    println!("{} {} {} rows, {creep_error:e} {load_error:e} {unload_error:e}", crept.len(), relaxed.len(), unloaded.len());
+    println!(
+        "{} {} {} rows, {creep_error:e} {load_error:e} {unload_error:e}",
+        crept.len(),
+        relaxed.len(),
+        unloaded.len()
+    );
     assert!(crept.len() <= 81 && unloaded.len() <= 81, "{} {} rows", crept.len(), unloaded.len());
     // A load that relaxes is harder.
     assert!(relaxed.len() <= 110, "{} rows", relaxed.len());
@@ -118,7 +121,8 @@ fn eight_decades_of_time_take_at_most_eighty_steps_to_a_thousandth() {
 #[test]
 fn a_tighter_tolerance_gives_a_smaller_error_and_breaks_are_hit() {
     let base = sphere(32);
-    let history = History::Table { points: vec![(0.0, 0.0), (3.0, 0.01), (8.0, 0.01), (8.0, 0.02), (40.0, 0.002)] };
+    let history =
+        History::Table { points: vec![(0.0, 0.0), (3.0, 0.01), (8.0, 0.01), (8.0, 0.02), (40.0, 0.002)] };
     let run = |times| rows(Simulation { loading: load(history.clone()), times, ..base.clone() });
     let mut errors = vec![];
     for tolerance in [1e-2, 1e-3, 1e-4] {
@@ -154,7 +158,12 @@ fn states_between_rows_are_second_order_and_disturb_nothing() {
             let state = elastic(&base, creep().value(t), 0.01);
             let view = step.row();
             // The tolerance of the steps.
-            assert!((view.approach / state.approach - 1.0).abs() < 1e-3, "{t}: {} {}", view.approach, state.approach);
+            assert!(
+                (view.approach / state.approach - 1.0).abs() < 1e-3,
+                "{t}: {} {}",
+                view.approach,
+                state.approach
+            );
             assert!((view.load - 0.01).abs() < 1e-12);
             // The gap is closed where the bodies press, up to the change of the contact's rim in a step; and the
             // displacement is that of the gap: h = h0 + u - w.
@@ -187,7 +196,11 @@ fn events_and_adaptive_steps_resumed_from_any_row_give_the_same_bits() {
     let ramp = History::Ramp { value: 0.02, duration: 1.0 };
     let programme = Programme::new(vec![
         Stage { until: Some(Event::Approach(0.05)), ..stage(Control::Load, ramp.into()) },
-        Stage { until: Some(Event::Load(0.005)), duration: Some(9.0), ..stage(Control::Approach, Course::Hold) },
+        Stage {
+            until: Some(Event::Load(0.005)),
+            duration: Some(9.0),
+            ..stage(Control::Approach, Course::Hold)
+        },
         Stage {
             until: Some(Event::ContactLost),
             ..stage(Control::Approach, Course::RampTo { value: -0.05, duration: 1.0 })
@@ -234,7 +247,8 @@ fn a_material_without_instantaneous_compliance_takes_adaptive_steps_too() {
     // Such steps are constant in U; C(t) = 1 - exp(-t), a ramp and a hold, against many steps.
     let terms = vec![CreepTerm { compliance: 1.0, retardation_time: 1.0 }];
     let creep = Creep { instantaneous: 0.0, terms, fluidity: 0.0 };
-    let base = Simulation { creep, loading: load(History::Ramp { value: 0.01, duration: 0.5 }), ..sphere(24) };
+    let base =
+        Simulation { creep, loading: load(History::Ramp { value: 0.01, duration: 0.5 }), ..sphere(24) };
     let fine = rows(Simulation { times: TimeGrid::Uniform { end: 4.0, steps: 4000 }, ..base.clone() });
     let rows = rows(Simulation { times: adaptive(4.0, 0.05, 1e-3), ..base });
     let exact = fine.last().unwrap().approach;

@@ -6,8 +6,8 @@ use asperity::material::{Creep, CreepTerm, Relaxation, RelaxationTerm};
 use asperity::operator::half_space;
 use asperity::surface::{Part, Punch, Roughness, SelfAffine, Shape, undeformed_gap};
 use asperity::{
-    Boundary, ContactState, Control, Error, Grid, History, Loading, Method, Prescribed, Problem, Programme, Solver,
-    SolverOptions, TimeGrid,
+    Boundary, ContactState, Control, Error, Grid, History, Loading, Method, Prescribed, Problem, Programme,
+    Solver, SolverOptions, TimeGrid,
 };
 use ndarray::Array2;
 

@@ -94,7 +94,9 @@ fn beside_springs(simulation: Simulation, relaxation: &Relaxation) -> Vec<(Row, 
         for n in 1..=parts {
             let share = f64::from(n) / f64::from(parts);
             let target = match controls[row.stage] {
-                Control::Approach => MdrTarget::Approach(last.approach + share * (row.approach - last.approach)),
+                Control::Approach => {
+                    MdrTarget::Approach(last.approach + share * (row.approach - last.approach))
+                }
                 _ => MdrTarget::Load(last.load + share * (row.load - last.load)),
             };
             state = Some(springs.step(dt / f64::from(parts), target).unwrap());

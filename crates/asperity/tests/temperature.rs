@@ -5,8 +5,8 @@ use asperity::material::{Creep, CreepTerm, ReducedTime, Shift, ThermalCreep};
 use asperity::operator::half_space;
 use asperity::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
 use asperity::{
-    ContactState, Control, Grid, History, Loading, Method, Prescribed, Problem, Programme, Solver, SolverOptions,
-    TimeGrid,
+    ContactState, Control, Grid, History, Loading, Method, Prescribed, Problem, Programme, Solver,
+    SolverOptions, TimeGrid,
 };
 
 fn rough() -> Simulation {

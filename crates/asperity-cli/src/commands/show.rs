@@ -2,6 +2,7 @@
 
 use asperity::quantities::Quantity;
 use asperity_io::case::quantity::Time;
+use asperity_io::cycles;
 use asperity_io::store::{At, Reader, Status, StoreError};
 use asperity_report::result::contact;
 use serde_json::json;
@@ -44,8 +45,24 @@ fn object(reader: &Reader) -> Result<String, StoreError> {
         "convolutions": work.convolutions,
         "iterations": work.iterations,
         "last": last,
+        "cycles": cycles::of_result(reader)?.iter().map(cycles_json).collect::<Vec<_>>(),
     });
     Ok(format!("{object}\n"))
+}
+
+/// The cycles of a stage, SI.
+fn cycles_json(part: &cycles::Cyclic) -> serde_json::Value {
+    let cycle = |cycle: &asperity::cycles::Cycle| {
+        json!({
+            "start": cycle.span[0],
+            "end": cycle.span[1],
+            "dissipated_energy": cycle.dissipated_energy,
+            "stiffness": cycle.stiffness,
+            "loss_angle": cycle.loss_angle,
+        })
+    };
+    let list: Vec<_> = part.cycles.iter().map(cycle).collect();
+    json!({ "stage": part.stage, "frequency": part.frequency, "cycles": list })
 }
 
 fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
@@ -131,8 +148,24 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
             duration(work.wall_s)
         ),
     );
+    let cyclic = cycles::of_result(reader)?;
     let kept: Vec<_> = header.fields.iter().map(|kind| kind.name()).collect();
     line("fields", format!("{} at {} times", kept.join(", "), reader.field_times().len()));
+    for part in cyclic.iter().filter(|part| !part.cycles.is_empty()) {
+        let stage = if cyclic.len() > 1 { format!(" of stage {}", part.stage + 1) } else { String::new() };
+        text += &format!("\ncycles{stage} at {:.4} Hz\n", part.frequency);
+        text += "      end          energy       stiffness    loss angle   tan\n";
+        for cycle in &part.cycles {
+            text += &format!(
+                "      {:<13}{:<13}{:<13}{:<13}{:.4}\n",
+                quantity(cycle.span[1], "s", 1),
+                quantity(cycle.dissipated_energy, "J", 1),
+                quantity(cycle.stiffness, "N/m", 1),
+                format!("{:.3}°", cycle.loss_angle.to_degrees()),
+                cycle.loss_angle.tan()
+            );
+        }
+    }
     if let Some(states) = contact(reader, at)? {
         let time = reader.field_times()[reader.index(at)?];
         text += &format!("\ncontact at t = {}\n", quantity(time, "s", 1));

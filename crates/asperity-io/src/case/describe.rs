@@ -2,7 +2,7 @@
 
 use asperity::material::Creep;
 use asperity::surface::Part;
-use asperity::{Boundary, Scheme};
+use asperity::{Boundary, Course, History, Scheme};
 use serde::Serialize;
 
 use super::plan::Surface;
@@ -77,6 +77,8 @@ pub struct Description {
     /// Least and largest cut-off of the cells \[Pa\], where a file gives them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hardness_of_cells: Option<[f64; 2]>,
+    /// Stages whose history is a sine.
+    pub sines: Vec<Sine>,
     /// Last instant \[s\].
     pub end: f64,
     /// Rows of the result: the state at 0+, one per step, one more per jump; absent where they are found as the run
@@ -96,6 +98,15 @@ pub struct Description {
     pub memory_bytes: u64,
     /// Stored fields before compression \[bytes\]; absent where not known beforehand.
     pub result_bytes: Option<u64>,
+}
+
+/// A stage whose history is a sine.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Sine {
+    /// Number of the stage, from 0.
+    pub stage: usize,
+    /// Frequency \[Hz\].
+    pub frequency: f64,
 }
 
 /// What was done to a measured surface.
@@ -136,6 +147,7 @@ impl Case {
                 let pick = |f: fn(f64, f64) -> f64| map.iter().copied().reduce(f).unwrap_or(f64::NAN);
                 [pick(f64::min), pick(f64::max)].map(|hardness| hardness.min(self.hardness))
             }),
+            sines: self.sines(),
             end: self.times.end(),
             rows: self.rows,
             usual_rows: self.usual_rows,
@@ -157,6 +169,15 @@ impl Case {
     /// C of the pair, of bodies whose temperature changes at their reference temperature.
     fn reference_creep(&self) -> Creep {
         self.thermal.iter().fold(self.creep.clone(), |sum, body| sum.sum(&body.creep))
+    }
+
+    fn sines(&self) -> Vec<Sine> {
+        let stages = self.loading.stages.iter().enumerate();
+        let sine = |(stage, course): (usize, &asperity::Stage)| match course.course {
+            Course::Given(History::Sine { frequency, .. }) => Some(Sine { stage, frequency }),
+            _ => None,
+        };
+        stages.filter_map(sine).collect()
     }
 
     fn temperature_range(&self) -> Option<[f64; 2]> {

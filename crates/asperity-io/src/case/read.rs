@@ -148,7 +148,9 @@ impl<'t> Reader<'_, 't> {
     fn read<T: DeserializeOwned>(&mut self, value: &Spanned<DeValue<'t>>, tags: &[Tag]) -> Option<T> {
         let mut value = value.clone();
         let lists = [("process", &[][..], "op"), ("stages", &["history"][..], "kind")];
-        let mut moved = lists.into_iter().map(|(list, inside, key)| self.move_list(&mut value, list, Tag { inside, key }));
+        let mut moved = lists
+            .into_iter()
+            .map(|(list, inside, key)| self.move_list(&mut value, list, Tag { inside, key }));
         if let Err(error) = moved.try_for_each(|result| result) {
             self.errors.push(*error);
             return None;
@@ -185,7 +187,12 @@ impl<'t> Reader<'_, 't> {
 
     /// The steps of a measured surface, and the stages of a load, are a list inside of it: of tagged unions, or of
     /// tables that hold one.
-    fn move_list(&self, value: &mut Spanned<DeValue<'t>>, list: &str, tag: Tag) -> Result<(), Box<CaseError>> {
+    fn move_list(
+        &self,
+        value: &mut Spanned<DeValue<'t>>,
+        list: &str,
+        tag: Tag,
+    ) -> Result<(), Box<CaseError>> {
         let DeValue::Table(table) = value.get_mut() else { return Ok(()) };
         let Some(list) = table.get_mut(list) else { return Ok(()) };
         let DeValue::Array(elements) = list.get_mut() else { return Ok(()) }; // serde says what it is

@@ -189,7 +189,9 @@ impl Entry {
     pub(super) fn set(self, row: &mut Row, bytes: [u8; 8]) -> Option<()> {
         match self {
             Entry::Real(entry) => *entry(row) = f64::from_le_bytes(bytes),
-            Entry::Maybe(entry) => *entry(row) = Some(f64::from_le_bytes(bytes)).filter(|number| !number.is_nan()),
+            Entry::Maybe(entry) => {
+                *entry(row) = Some(f64::from_le_bytes(bytes)).filter(|number| !number.is_nan())
+            }
             Entry::Count(entry) => *entry(row) = usize::try_from(i64::from_le_bytes(bytes)).ok()?,
         }
         Some(())

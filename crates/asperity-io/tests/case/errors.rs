@@ -435,7 +435,13 @@ fn stages_and_adaptive_steps() {
     let hold = r#"{ control = "approach", history = { kind = "hold" } }"#;
     let press = r#"{ control = "load", history = { kind = "step", value = "1 N" }, duration = "1 s" }"#;
     says(old, &stages(""), "load.stages", 33, &["one stage at least"]);
-    says("control = \"load\"", &format!("control = \"load\"\nstages = [{hold}]"), "load.control", 33, &["`stages`"]);
+    says(
+        "control = \"load\"",
+        &format!("control = \"load\"\nstages = [{hold}]"),
+        "load.control",
+        33,
+        &["`stages`"],
+    );
     says(old, "", "load.control", 32, &["missing"]);
     says(old, &stages(&format!("{hold},\n{press}")), "load.stages[0]", 34, &["never ends", "until"]);
     let edit = |from: &str, to: &str| stages(&format!("{press},\n{}", hold.replacen(from, to, 1)));
@@ -450,14 +456,32 @@ fn stages_and_adaptive_steps() {
     says(old, &ends("spacing = \"log\""), "load.stages[1].steps", 35, &["missing"]);
     says(old, &ends("steps = 5, tolerance = 1e-3"), "load.stages[1].tolerance", 35, &["adaptive"]);
     let jump = r#"{ control = "load", history = { kind = "step", value = "20 N" } }"#;
-    says(old, &stages(&format!("{press},\n{jump}")), "load.stages[1].history.value", 35, &["20 N", "at most"]);
+    says(
+        old,
+        &stages(&format!("{press},\n{jump}")),
+        "load.stages[1].history.value",
+        35,
+        &["20 N", "at most"],
+    );
     // The grid of the run.
     says("steps = 20", "steps = 20\nspacing = \"adaptive\"", "time.steps", 40, &["does not go with"]);
-    says("steps = 20", "spacing = \"adaptive\"\ntolerance = 0.5", "time.tolerance", 41, &["between 1e-9 and 0.1"]);
+    says(
+        "steps = 20",
+        "spacing = \"adaptive\"\ntolerance = 0.5",
+        "time.tolerance",
+        41,
+        &["between 1e-9 and 0.1"],
+    );
     says("steps = 20", "steps = 20\ntolerance = 1e-3", "time.tolerance", 41, &["adaptive"]);
     says("steps = 20", "spacing = \"adaptive\"\nscheme = \"constant\"", "time", 38, &["linear"]);
     says("steps = 20", "spacing = \"adaptive\"\nfirst = \"11 s\"", "time.first", 41, &["before the end"]);
-    says("control = \"load\"", "control = \"load\"\nhistory = { kind = \"hold\" }\n[load.more]", "load.history", 34, &[]);
+    says(
+        "control = \"load\"",
+        "control = \"load\"\nhistory = { kind = \"hold\" }\n[load.more]",
+        "load.history",
+        34,
+        &[],
+    );
 }
 
 #[test]

@@ -20,7 +20,10 @@ fn every_starter_case_is_read_and_described() {
         let case = Case::parse(template.text, Path::new("."), &[]).unwrap();
         assert_eq!(case.title.as_deref(), Some(template.title()));
         let description = case.describe();
-        assert!(description.usual_rows > 10 && description.stored_rows.is_some_and(|rows| rows >= 2), "{description:?}");
+        assert!(
+            description.usual_rows > 10 && description.stored_rows.is_some_and(|rows| rows >= 2),
+            "{description:?}"
+        );
         assert!(description.memory_bytes < 1 << 30, "{description:?}");
     }
     assert!(Template::find("hertz").is_some() && Template::find("nothing").is_none());

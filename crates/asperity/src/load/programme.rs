@@ -175,9 +175,9 @@ impl Stage {
             Some(Event::Approach(value)) if !value.is_finite() => {
                 Err(Error::invalid("approach of the event", value, "finite"))
             }
-            Some(Event::Load(value) | Event::Pressure(value)) if !(value.is_finite() && value >= 0.0) => Err(
-                Error::invalid("load of the event", value, "finite and not negative (bodies only press)"),
-            ),
+            Some(Event::Load(value) | Event::Pressure(value)) if !(value.is_finite() && value >= 0.0) => {
+                Err(Error::invalid("load of the event", value, "finite and not negative (bodies only press)"))
+            }
             _ => Ok(()),
         }
     }

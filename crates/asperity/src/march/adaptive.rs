@@ -49,14 +49,7 @@ pub(super) struct Pace {
 impl Pace {
     pub(super) fn new(tolerance: f64, first: f64, end: f64, longest: f64) -> Self {
         let first = first.min(longest);
-        Pace {
-            tolerance: SHARE * tolerance,
-            first,
-            shortest: SHORTEST * end,
-            longest,
-            dt: first,
-            last: 0.0,
-        }
+        Pace { tolerance: SHARE * tolerance, first, shortest: SHORTEST * end, longest, dt: first, last: 0.0 }
     }
 
     /// A break: the past says nothing of the steps to come.
@@ -185,12 +178,8 @@ mod tests {
     #[test]
     fn the_curvature_of_a_parabola_is_found_from_uneven_steps() {
         // U = (3 t^2, -t^2) at 0, 0.5, 0.6; the second cell weighs three times the first.
-        let states = Three {
-            older: &[0.0, 0.0],
-            before: &[0.75, -0.25],
-            now: &[1.08, -0.36],
-            lengths: [0.5, 0.1],
-        };
+        let states =
+            Three { older: &[0.0, 0.0], before: &[0.75, -0.25], now: &[1.08, -0.36], lengths: [0.5, 0.1] };
         let found = curvature(&states, [&[1.0, 1.0], &[0.0, 2.0]]);
         assert!((found - (6.0 + 3.0 * 2.0) / 4.0).abs() < 1e-12, "{found}");
         assert_eq!(curvature(&states, [&[0.0, 0.0], &[0.0, 0.0]]), 0.0);

@@ -254,8 +254,7 @@ impl Memory {
             });
             Defect::Curvature(dt * dt * weight.sum::<f64>())
         } else {
-            let weight =
-                self.branches.iter().map(|b| b.rule(&self.lengths, Scheme::Linear).old);
+            let weight = self.branches.iter().map(|b| b.rule(&self.lengths, Scheme::Linear).old);
             Defect::Change(weight.sum())
         }
     }
@@ -499,7 +498,8 @@ mod tests {
             let s = dt * k as f64 / n as f64;
             2.0 * s * creep.value(dt - s)
         };
-        let sum: f64 = (1..n).map(|k| if k % 2 == 1 { 4.0 * f(k) } else { 2.0 * f(k) }).sum::<f64>() + f(0) + f(n);
+        let sum: f64 =
+            (1..n).map(|k| if k % 2 == 1 { 4.0 * f(k) } else { 2.0 * f(k) }).sum::<f64>() + f(0) + f(n);
         let exact = sum * dt / (3.0 * n as f64);
         let Defect::Curvature(weight) = memory.defect(dt) else { panic!() };
         let chord = c * dt * dt + gap[0];

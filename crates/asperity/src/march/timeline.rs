@@ -147,8 +147,11 @@ impl Timeline {
 
     /// The prescribed value at `time`, within the step that led to the last row.
     pub(super) fn value_within(&self, row: Instant, time: f64) -> f64 {
-        let (start, history) =
-            if row.stage == self.stage { (self.start, &self.history) } else { (self.passed.0, &self.passed.1) };
+        let (start, history) = if row.stage == self.stage {
+            (self.start, &self.history)
+        } else {
+            (self.passed.0, &self.passed.1)
+        };
         history.before(time - start)
     }
 
@@ -254,12 +257,18 @@ impl Timeline {
 
     /// Numbers from which [`Timeline::load`] goes on; infinite for none.
     pub(super) fn save(&self) -> Vec<f64> {
-        let last = self.last.map_or([f64::INFINITY; 4], |i| [i.time, i.dt, i.value, f64::from(u8::from(i.jump))]);
+        let last =
+            self.last.map_or([f64::INFINITY; 4], |i| [i.time, i.dt, i.value, f64::from(u8::from(i.jump))]);
         let pace = self.pace.as_ref().map_or([f64::INFINITY; 2], Pace::save);
         let flag = |yes: bool| f64::from(u8::from(yes));
         let missed = self.missed.map_or([f64::INFINITY; 2], |m| [m.reached.approach, m.reached.load]);
         let mut numbers = vec![self.stage as f64, self.start, self.reached, self.next as f64];
-        numbers.extend([self.jump.unwrap_or(f64::INFINITY), flag(self.smooth), self.side, flag(self.finished)]);
+        numbers.extend([
+            self.jump.unwrap_or(f64::INFINITY),
+            flag(self.smooth),
+            self.side,
+            flag(self.finished),
+        ]);
         numbers.extend([self.largest.approach, self.largest.load]);
         numbers.extend(last);
         numbers.extend(pace);

@@ -126,14 +126,8 @@ impl Programme {
             };
             let history = stage.course.resolve(reached);
             let first = history.after(0.0);
-            let instant = |time, dt, value, jump| Instant {
-                time,
-                dt,
-                value,
-                jump,
-                control: stage.control,
-                stage: n,
-            };
+            let instant =
+                |time, dt, value, jump| Instant { time, dt, value, jump, control: stage.control, stage: n };
             let given = matches!(stage.course, Course::Given(_));
             if n == 0 || (given && !agree(first, reached)) {
                 plan.exact &= n == 0 || !reached.is_nan();

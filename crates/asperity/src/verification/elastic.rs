@@ -113,7 +113,8 @@ pub(super) fn westergaard_wave() -> Result<Vec<Check>> {
     for share in [0.1, 0.5, 0.9] {
         let simulation = Simulation {
             boundary: Boundary::Periodic,
-            loading: Loading { control: Control::Pressure, history: History::Step { value: share * full } }.into(),
+            loading: Loading { control: Control::Pressure, history: History::Step { value: share * full } }
+                .into(),
             ..Simulation::new(grid, gap.clone())
         };
         let exact = Westergaard::under_pressure(0.01, 1.0, 1.0, share * full)?;

@@ -35,7 +35,8 @@ fn rough(boundary: Boundary) -> Result<Simulation> {
 
 /// The elastic contact of compliance `c` under a load: its row and pressure.
 fn elastic(base: &Simulation, c: f64, loading: impl Into<Programme>) -> Result<(Row, Vec<f64>)> {
-    let mut march = March::new(Simulation { creep: Creep::elastic(c), loading: loading.into(), ..base.clone() })?;
+    let mut march =
+        March::new(Simulation { creep: Creep::elastic(c), loading: loading.into(), ..base.clone() })?;
     let step = march.advance()?;
     Ok(step.map(|s| (s.row(), s.pressure().iter().copied().collect())).unwrap_or_default())
 }

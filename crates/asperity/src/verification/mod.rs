@@ -8,6 +8,7 @@
 mod elastic;
 mod energy;
 mod invariants;
+mod loads;
 mod springs;
 mod temperature;
 mod viscoelastic;
@@ -45,7 +46,7 @@ impl Check {
 pub type Case = (&'static str, fn() -> Result<Vec<Check>>);
 
 /// All cases, in the order of the documentation.
-pub const CASES: [Case; 22] = [
+pub const CASES: [Case; 28] = [
     ("hertz-sphere", elastic::hertz_sphere),
     ("hertz-ellipse", elastic::hertz_ellipse),
     ("cone", elastic::cone),
@@ -61,6 +62,12 @@ pub const CASES: [Case; 22] = [
     ("springs-cone", springs::cone_under_approach),
     ("temperature-step-load", temperature::temperature_step_load),
     ("temperature-springs", temperature::temperature_springs),
+    ("press-hold", loads::press_and_hold),
+    ("event", loads::event),
+    ("pull-off", loads::pull_off),
+    ("loss-angle", loads::loss_angle),
+    ("adaptive-steps", loads::adaptive),
+    ("dense-output", loads::dense_output),
     ("order-in-time", viscoelastic::order_in_time),
     ("one-elastic-solve", invariants::one_elastic_solve),
     ("long-time-limit", invariants::long_time_limit),

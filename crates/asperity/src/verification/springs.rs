@@ -23,7 +23,8 @@ fn both(
 ) -> Result<Vec<(Row, MdrState)>> {
     let times = TimeGrid::Uniform { end, steps: STEPS };
     let springs = Mdr::march(profile, &zener_relaxation(), &loading, &times.times(), MdrOptions::default())?;
-    let rows = rows(Simulation { creep: zener(), loading: loading.into(), times, ..shape_on(CELLS, size, shape)? })?;
+    let rows =
+        rows(Simulation { creep: zener(), loading: loading.into(), times, ..shape_on(CELLS, size, shape)? })?;
     Ok(rows.into_iter().zip(springs).collect())
 }
 

@@ -37,8 +37,10 @@ pub fn prescription(
     let raw = &load.value;
     let mut files = vec![];
     if let Some(list) = &raw.stages {
-        let beside =
-            [("control", raw.control.as_ref().map(|at| &at.span)), ("history", raw.history.as_ref().map(|at| &at.span))];
+        let beside = [
+            ("control", raw.control.as_ref().map(|at| &at.span)),
+            ("history", raw.history.as_ref().map(|at| &at.span)),
+        ];
         for (key, span) in beside {
             if let Some(span) = span {
                 let message = format!("`{key}` does not go with `stages`, each of which has its own");

@@ -56,7 +56,8 @@ pub fn case(
     });
     let programme = prescription.as_ref().map(|prescription| &prescription.programme);
     let output = output::output(&mut checks, &document.output, times.as_ref(), programme, output);
-    let grids = programme.iter().flat_map(|programme| &programme.stages).filter_map(|stage| stage.times.as_ref());
+    let grids =
+        programme.iter().flat_map(|programme| &programme.stages).filter_map(|stage| stage.times.as_ref());
     let adaptive = times.iter().chain(grids).any(TimeGrid::is_adaptive);
     let include = match output.as_ref().map(|output| &output.rows) {
         // States between adaptive steps are interpolated; other steps end there.
@@ -73,8 +74,7 @@ pub fn case(
         (Some(times), Some(programme)) => programme.plan(times, &[include.as_slice(), breaks].concat()),
         _ => Plan { instants: Vec::new(), exact: true },
     };
-    let course =
-        body::Course { end: times.as_ref().map(TimeGrid::end), plan: &plan, temperatures: points };
+    let course = body::Course { end: times.as_ref().map(TimeGrid::end), plan: &plan, temperatures: points };
     let pair = match temperatures {
         Some(_) => body::pair(&mut checks, &document.body, &samples, &course),
         None => None, // a fault
@@ -89,7 +89,8 @@ pub fn case(
         output::possible(&mut checks, &document.solver, &document.output, scheme, capped);
     }
     if adaptive && scheme != Scheme::Linear {
-        let message = "adaptive steps go with the scheme \"linear\", which their error estimate belongs to".to_owned();
+        let message =
+            "adaptive steps go with the scheme \"linear\", which their error estimate belongs to".to_owned();
         let help = "leave `scheme` out, or take spacing = \"log\" with `steps`";
         checks.fault(&document.time.span, message, "scheme = \"linear\"", Some(help));
     }

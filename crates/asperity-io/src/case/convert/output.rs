@@ -153,7 +153,10 @@ pub fn output(
         }
         (Some(every), None) => Rows::Every(every.value.count()),
         (None, None) => {
-            let own = programme.iter().flat_map(|programme| &programme.stages).filter_map(|stage| stage.times.as_ref());
+            let own = programme
+                .iter()
+                .flat_map(|programme| &programme.stages)
+                .filter_map(|stage| stage.times.as_ref());
             let own: usize = own.map(time::steps).sum();
             let own_only = matches!(times?, TimeGrid::List(end) if end.len() == 1);
             let steps = if own > 0 && own_only { own } else { time::steps(times?) + own };

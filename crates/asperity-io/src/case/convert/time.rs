@@ -87,7 +87,12 @@ pub fn of_stage(
     }
     let Some(duration) = &raw.duration else {
         let message = "steps of a stage need its `duration` (with `until`, the latest end)".to_owned();
-        checks.fault(&stage.span, message, "a duration", Some("add duration = \"10 s\", or leave the steps to [time]"));
+        checks.fault(
+            &stage.span,
+            message,
+            "a duration",
+            Some("add duration = \"10 s\", or leave the steps to [time]"),
+        );
         return None;
     };
     steps.grid(checks, duration.value.get(), shortest).map(Some)
@@ -158,7 +163,8 @@ impl Steps<'_> {
         shortest: impl Fn(f64) -> f64,
     ) -> Option<TimeGrid> {
         if let Some(steps) = self.steps {
-            let message = "`steps` does not go with spacing = \"adaptive\", which finds their number".to_owned();
+            let message =
+                "`steps` does not go with spacing = \"adaptive\", which finds their number".to_owned();
             let help = "leave `steps` out, and set `tolerance`";
             checks.fault(&steps.span, message, "one of the two", Some(help));
             return None;

@@ -5,7 +5,9 @@ use serde::Deserialize;
 
 use super::{At, Two};
 use crate::case::quantity::range::{NonNegative, Positive};
-use crate::case::quantity::{Force, Frequency, Length, Number, Prescribed, Pressure, Time as Duration, Whole};
+use crate::case::quantity::{
+    Force, Frequency, Length, Number, Prescribed, Pressure, Time as Duration, Whole,
+};
 
 /// What presses the bodies together.
 #[derive(Debug, Deserialize, JsonSchema)]

@@ -47,7 +47,8 @@ pub fn run<'py>(
         let heard = Python::attach(|py| {
             let row = PyDict::new(py);
             fill(&row, progress.row)?;
-            told.call1(py, (row, progress.done, progress.total)).map(drop)
+            // Where rows are found as the run goes there are as many as so far.
+            told.call1(py, (row, progress.done, progress.total.unwrap_or(progress.done))).map(drop)
         });
         if let Err(error) = heard {
             // What the caller raises ends the run after this row.

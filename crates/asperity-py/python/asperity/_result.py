@@ -41,6 +41,8 @@ ROW: dict[str, tuple[str, str]] = {
     "convolutions": ("1", "convolutions"),
     "residual": ("1", "KKT residual"),
     "certificate": ("1", "certified relative error in the energy norm"),
+    "time_error": ("1", "estimated error of the step over the approach"),
+    "stage": ("1", "stage of the load"),
 }
 
 #: Quantities that rows have where they are asked for: unit and meaning.
@@ -58,7 +60,8 @@ class Result:
 
     `time` [s], `load` [N], `approach` [m], `contact_area`, `contact_area_corrected`, `capped_area` [m^2],
     `contact_fraction`, `mean_pressure`, `max_pressure` [Pa], `mean_gap` [m], `iterations`, `convolutions`, `residual`,
-    `certificate` are attributes, and so are the quantities that were asked for. The first row is the state right after t = 0.
+    `certificate`, `time_error`, `stage` are attributes, and so are the quantities that were asked for. The first row is
+    the state right after t = 0.
     """
 
     def __init__(

@@ -55,7 +55,8 @@ fn run(simulation: Simulation) -> Vec<State> {
 fn loaded(points: &[(f64, f64)], steps: usize, plasticity: Plasticity) -> Simulation {
     let end = points.last().unwrap().0;
     Simulation {
-        loading: Loading { control: Control::Load, history: History::Table { points: points.to_vec() } },
+        loading: Loading { control: Control::Load, history: History::Table { points: points.to_vec() } }
+            .into(),
         times: TimeGrid::Uniform { end, steps },
         ..capped_sphere(plasticity)
     }

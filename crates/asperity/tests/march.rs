@@ -364,7 +364,7 @@ fn constant_load_never_lets_the_area_shrink() {
 #[test]
 fn a_soft_half_carries_its_hardness() {
     let base = Simulation {
-        loading: Loading { control: Control::Load, history: History::Step { value: 0.5 } },
+        loading: Loading { control: Control::Load, history: History::Step { value: 0.5 } }.into(),
         hardness: 1.5,
         ..rough([48, 48])
     };

@@ -165,8 +165,16 @@ fn random_loads_and_approaches_follow_the_springs() {
                     }
                 };
                 // 48 cells over 1.8, radii of 0.3 to 0.6: dx/a is 0.06 to 0.12. A sphere's error is its square, and that
-                // of the moments when a few cells carry all; a cone's tip is blunt by a share of a cell: first order.
-                let tolerance = if matches!(shape, Shape::Cone { .. }) { 0.1 } else { 0.02 };
+                // of the moments when a few cells carry all.
+                // The cone is lower by up to half a cell's rise; its load goes as the square of the approach, and twice that
+                // where it comes and goes.
+                let blunt = 0.3 * 1.8 / 48.0 / peak(&|row| row.approach);
+                let tolerance = match (shape, control) {
+                    (Shape::Cone { .. }, Control::Approach) => 2.0 * blunt,
+                    (Shape::Cone { .. }, _) => blunt,
+                    _ => 0.02,
+                };
+                println!("{profile:?} {control:?} {seed}: {error:.4} {tolerance:.4}");
                 assert!(error < tolerance, "{profile:?} {control:?} seed {seed}: {error}");
                 compared += 1;
             }

@@ -7,7 +7,7 @@ use asperity::material::{Creep, CreepTerm};
 use asperity::quantities::{Quantities, Quantity};
 use asperity::spots::Spots;
 use asperity::surface::{Part, Punch, Roughness, SelfAffine, Shape, undeformed_gap};
-use asperity::{Boundary, Control, Grid, History, Loading, Plasticity, SolverOptions, TimeGrid};
+use asperity::{Boundary, Control, Grid, History, Loading, Plasticity, Programme, SolverOptions, TimeGrid};
 use ndarray::Array2;
 
 fn burgers() -> Creep {
@@ -26,8 +26,8 @@ fn sphere(n: usize, size: f64) -> Simulation {
     shape(Shape::Sphere { radius: 1.0 }, n, size)
 }
 
-fn load(history: History) -> Loading {
-    Loading { control: Control::Load, history }
+fn load(history: History) -> Programme {
+    Loading { control: Control::Load, history }.into()
 }
 
 /// Every quantity that the simulation can have, at every row: (time, load, approach, values by name).
@@ -109,7 +109,8 @@ fn the_stiffness_is_the_slope_of_load_over_approach() {
             let simulation = Simulation {
                 boundary,
                 creep: Creep::elastic(0.5),
-                loading: Loading { control: Control::Approach, history: History::Step { value: approach } },
+                loading: Loading { control: Control::Approach, history: History::Step { value: approach } }
+                    .into(),
                 solver: SolverOptions { tolerance: 1e-11, ..SolverOptions::default() },
                 ..Simulation::new(grid, gap.clone())
             };

@@ -212,7 +212,7 @@ mod tests {
         assert_eq!(choices("domain.boundary"), ["free", "periodic"]);
         assert_eq!(choices("solver.method"), ["projected-cg", "polonsky-keer"]);
         assert_eq!(choices("surface[3].kind").len(), 7);
-        assert_eq!(choices("time.spacing"), ["uniform", "log"]);
+        assert_eq!(choices("time.spacing"), ["uniform", "log", "adaptive"]);
         assert!(choices("domain.cells").is_empty());
     }
 

@@ -9,9 +9,8 @@ use super::schema;
 use super::text::{Text, join};
 
 /// Names that the format has, or will have, but this version does not know: they are refused, never ignored.
-const NOT_AVAILABLE: &[(&str, &str)] = &[
-    ("array", "is for arrays that a Python program passes; in a case file use kind = \"file\""),
-];
+const NOT_AVAILABLE: &[(&str, &str)] =
+    &[("array", "is for arrays that a Python program passes; in a case file use kind = \"file\"")];
 
 fn not_available(name: &str) -> Option<&'static str> {
     NOT_AVAILABLE.iter().find(|known| known.0 == name).map(|known| known.1)

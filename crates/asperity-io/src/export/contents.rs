@@ -70,6 +70,7 @@ impl<'a> Contents<'a> {
             let data = match scalar.name {
                 "iterations" => Data::Counts(rows.iter().map(|row| count(row.iterations)).collect()),
                 "convolutions" => Data::Counts(rows.iter().map(|row| count(row.convolutions)).collect()),
+                "stage" => Data::Counts(rows.iter().map(|row| count(row.stage)).collect()),
                 _ => Data::Reals(series),
             };
             add(scalar.name, scalar.units, scalar.long_name, &[TIME], data);

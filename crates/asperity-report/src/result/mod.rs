@@ -190,7 +190,18 @@ fn nameless(curves: Curves, x: &[f64], y: Vec<f64>) -> Curves {
 fn caption(reader: &Reader, index: usize) -> Result<String, StoreError> {
     let time = reader.field_times()[index];
     let row = reader.field_steps()[index];
-    let at = |name: &str| Ok::<_, StoreError>(reader.series(name)?.get(row).copied().unwrap_or(f64::NAN));
+    let times = reader.series("time")?;
+    // Fields within a step: between its ends.
+    let share = match (row.checked_sub(1).and_then(|n| times.get(n)), times.get(row)) {
+        (Some(before), Some(after)) if time < *after && after > before => (time - before) / (after - before),
+        _ => 1.0,
+    };
+    let at = |name: &str| {
+        let series = reader.series(name)?;
+        let value = series.get(row).copied().unwrap_or(f64::NAN);
+        let before = if share < 1.0 { series.get(row - 1).copied().unwrap_or(value) } else { value };
+        Ok::<_, StoreError>(before + share * (value - before))
+    };
     Ok(format!(
         "t = {}: load {}, approach {}, contact area {} ({:.2} % of the nominal area).",
         words(time, "s"),

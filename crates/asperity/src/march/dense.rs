@@ -4,11 +4,11 @@
 //! on the part of the step. The approach is the one at which the cells in contact are closed in the pressure-weighted
 //! mean, sum p (h0 + u - w) = 0 over 0 < p < H. Second order, as the steps themselves, which take no notice.
 
-use crate::contact::ContactState;
+use crate::contact::{ContactState, Hardness};
 use crate::field::{minimum, strands, sweep};
 use crate::load::Control;
 use crate::march::record::{Remembered, Step};
-use crate::march::{March, Past};
+use crate::march::{March, Past, cap};
 use crate::time::Instant;
 
 /// A state within the last step of a march; [`March::view`] shows it as a row.
@@ -50,18 +50,22 @@ impl March {
         let before = &self.previous.unit_displacement;
         let compliance = memory.partial(&lengths, before, &rigid, &mut history);
         let mut gap = rigid;
-        gap.copy_from_slice(self.simulation.gap.as_slice().unwrap_or_default());
+        let undeformed = match &self.dents {
+            Some(dents) => dents.gap(),
+            None => self.simulation.gap.as_slice().unwrap_or_default(),
+        };
+        gap.copy_from_slice(undeformed);
         sweep((&mut gap[..], &history[..]), &|(h, g): (&mut [f64], &[f64])| {
             h.iter_mut().zip(g).for_each(|(h, g)| *h += g);
         });
         let prescribed = self.timeline.value_within(row, time);
-        let hardness = self.simulation.hardness;
+        let cells = (&pressure[..], &unit[..], &gap[..], cap(&self.simulation, &self.hardness));
         let [weight, moment, touching] =
-            sweep((&pressure[..], &unit[..], &gap[..]), &|(p, u, h): (&[f64], &[f64], &[f64])| {
+            sweep(cells, &|(p, u, h, hardness): (&[f64], &[f64], &[f64], Hardness)| {
                 let n = p.len();
                 let (u, h) = (&u[..n], &h[..n]);
                 strands(n, |i| {
-                    let free = if p[i] > 0.0 && p[i] < hardness { p[i] } else { 0.0 };
+                    let free = if p[i] > 0.0 && p[i] < hardness.at(i) { p[i] } else { 0.0 };
                     let closed = if free > 0.0 { free * (compliance * u[i] + h[i]) } else { 0.0 };
                     [free, closed, f64::from(u8::from(p[i] > 0.0))]
                 })
@@ -95,6 +99,9 @@ impl March {
             outcome: self.outcome,
             remembered: Remembered::Field(&between.history),
             time_error: None,
+            hardness: cap(&self.simulation, &self.hardness),
+            dents: self.dents.as_ref(),
+            meter: None,
         }
     }
 }

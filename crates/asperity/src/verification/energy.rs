@@ -70,7 +70,7 @@ pub(super) fn balance() -> Result<Vec<Check>> {
         let history = History::Table { points: vec![(0.0, 0.005), (2.0, 0.02)] };
         let sphere = Simulation {
             creep: zener(),
-            loading: Loading { control: Control::Load, history },
+            loading: Loading { control: Control::Load, history }.into(),
             times: TimeGrid::Uniform { end: 2.0, steps },
             ..shape_on(48, 0.5, Shape::Sphere { radius: 1.0 })?
         };
@@ -95,7 +95,7 @@ pub(super) fn dents() -> Result<Vec<Check>> {
             // Tight, so that equal sets are found equal.
             solver: SolverOptions { tolerance: 1e-9, ..SolverOptions::default() },
             plasticity,
-            loading: Loading { control: Control::Load, history },
+            loading: Loading { control: Control::Load, history }.into(),
             times: TimeGrid::Uniform { end: steps as f64, steps },
             ..shape_on(48, 0.5, Shape::Sphere { radius: 1.0 })?
         })

@@ -134,7 +134,8 @@ pub(super) fn dense_output() -> Result<Vec<Check>> {
             for t in at.into_iter().filter(|t| *t > start && *t <= end) {
                 let Some(between) = march.between(t) else { continue };
                 let found = march.view(&between).row().approach;
-                let exact = fine.iter().find(|row| row.time == t).map_or(0.0, |row| row.approach);
+                let exact =
+                    fine.iter().find(|row| (row.time - t).abs() < 1e-9).map_or(0.0, |row| row.approach);
                 worst = worst.max((found / exact - 1.0).abs());
             }
             start = end;

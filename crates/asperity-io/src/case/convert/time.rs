@@ -49,6 +49,7 @@ pub fn times(
         return list(checks, times).filter(|_| alone);
     }
     let steps = Steps {
+        end: "time.end",
         steps: raw.steps.as_ref(),
         spacing: raw.spacing.as_ref(),
         first: raw.first.as_ref(),
@@ -73,6 +74,7 @@ pub fn of_stage(
 ) -> Option<Option<TimeGrid>> {
     let raw = &stage.value;
     let steps = Steps {
+        end: "the duration of the stage",
         steps: raw.steps.as_ref(),
         spacing: raw.spacing.as_ref(),
         first: raw.first.as_ref(),
@@ -101,6 +103,8 @@ pub fn of_stage(
 /// Keys that say how long the steps are.
 #[derive(Clone, Copy)]
 struct Steps<'a> {
+    /// The key of the end.
+    end: &'static str,
     steps: Option<&'a At<Whole<1>>>,
     spacing: Option<&'a At<Spacing>>,
     first: Option<&'a At<Duration<Positive>>>,
@@ -138,7 +142,7 @@ impl Steps<'_> {
         Some(match self.spacing.map_or(Spacing::Uniform, |at| at.value) {
             Spacing::Log => {
                 let first = match self.first {
-                    Some(first) => before_end(checks, first, end, count)?,
+                    Some(first) => before_end(checks, first, self.end, end, count)?,
                     // A tenth of the shortest time of the material, but not later than a uniform step.
                     None => (0.1 * shortest(end)).min(end / count as f64),
                 };
@@ -170,7 +174,7 @@ impl Steps<'_> {
             return None;
         }
         let first = match self.first {
-            Some(first) => before_end(checks, first, end, 2)?,
+            Some(first) => before_end(checks, first, self.end, end, 2)?,
             None => (0.1 * shortest(end)).min(FIRST * end).max(SHORTEST * end),
         };
         let tolerance = self.tolerance.map_or(TOLERANCE, |at| at.value.get());
@@ -183,6 +187,7 @@ impl Steps<'_> {
 fn before_end(
     checks: &mut Checks<'_, '_>,
     first: &At<Duration<Positive>>,
+    key: &str,
     end: f64,
     steps: usize,
 ) -> Option<f64> {
@@ -190,7 +195,7 @@ fn before_end(
     if value < end || (steps == 1 && value <= end) {
         return Some(value);
     }
-    checks.wrong(&first.span, &format!("a time before the end, {} s", words::number(end)), None);
+    checks.wrong(&first.span, &format!("a time before {key}, {} s", words::number(end)), None);
     None
 }
 

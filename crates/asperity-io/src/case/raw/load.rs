@@ -21,6 +21,10 @@ pub struct Load {
     /// The stages of the run, one after the other, in place of `control` and `history`. The run ends with the last of
     /// them or at `time.end`, whichever comes first.
     #[schemars(length(min = 1))]
+    #[schemars(example = serde_json::json!([
+        { "control": "load", "history": { "kind": "step", "value": "0.5 N" }, "duration": "10 s" },
+        { "control": "approach", "history": { "kind": "hold" } },
+    ]))]
     pub stages: Option<At<Vec<At<Stage>>>>,
 }
 
@@ -38,6 +42,7 @@ pub struct Stage {
     pub duration: Option<At<Duration<Positive>>>,
     /// The stage ends where this happens: a value is crossed, from either side, or the contact is lost. Without
     /// `duration` it must happen before `time.end`.
+    #[schemars(example = "contact-lost", example = serde_json::json!({ "approach": "2 um" }))]
     pub until: Option<At<Until>>,
     /// Number of steps of the stage, in place of the instants of `[time]`; with `duration`.
     #[schemars(example = 50)]

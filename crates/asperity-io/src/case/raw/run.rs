@@ -78,11 +78,11 @@ pub struct Output {
     #[schemars(example = serde_json::json!({ "bins": 50, "pressure": "300 MPa" }))]
     pub histogram: Option<At<Histogram>>,
     /// Fields are stored at the first row, at every n-th row after it and at the last row; if not given, n is
-    /// a tenth of the number of steps. This or `times`.
+    /// a tenth of the number of steps (10 where steps are adaptive). This or `times`.
     #[schemars(example = 10)]
     pub every: Option<At<Whole<1>>>,
-    /// Instants at which fields are stored, besides the first and the last row; each becomes a step. This or
-    /// `every`.
+    /// Instants at which fields are stored, besides the first and the last row; each becomes a step, or where steps are
+    /// adaptive the state there is interpolated. This or `every`.
     #[schemars(example = ["1 s", "10 s", "100 s"])]
     pub times: Option<At<Vec<At<Time<NonNegative>>>>>,
     /// Whether a run can be resumed; true if not given.

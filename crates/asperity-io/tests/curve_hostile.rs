@@ -1,6 +1,8 @@
 //! Any file is answered as a curve: by a fit or by a sentence, in time and within memory.
 
-use asperity_io::curve::{Columns, Curves, Kind, Request, ShiftRequest};
+use asperity::indentation::{IndentationOptions, IndentationRecord, fit_indentation};
+use asperity::reference::MdrProfile;
+use asperity_io::curve::{Columns, Curves, Indentation, Kind, Request, ShiftRequest};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -9,6 +11,14 @@ const KINDS: [Kind; 3] = [Kind::Relaxation, Kind::Creep, Kind::Dma];
 
 /// Reads and fits the bytes in every way; nothing may panic.
 fn answer(bytes: &[u8]) {
+    if let Ok(record) = Indentation::parse("any".as_ref(), bytes, &Columns::default()) {
+        let taken = IndentationRecord { times: &record.times, loads: &record.loads, depths: &record.depths };
+        let options = IndentationOptions { springs: 20, terms: Some(1), ..IndentationOptions::default() };
+        match fit_indentation(MdrProfile::Sphere { radius: 1.0 }, &taken, &options) {
+            Ok(fit) => assert!(fit.rms.is_finite()),
+            Err(error) => assert!(!error.to_string().is_empty()),
+        }
+    }
     for kind in KINDS {
         let Ok(curves) = Curves::parse("any".as_ref(), bytes, kind, &Columns::default()) else { continue };
         for shift in [ShiftRequest::None, ShiftRequest::Estimate(300.0)] {
@@ -42,6 +52,7 @@ proptest! {
         let text: Vec<String> = rows.iter().map(|cells| cells.join(",")).collect();
         answer(format!("f [Hz], E' [Pa], E'' [Pa]\n{}", text.join("\n")).as_bytes());
         answer(text.join("\n").as_bytes());
+        answer(format!("t [s], h [m], P [N]\n{}", text.join("\n")).as_bytes());
     }
 
     #[test]

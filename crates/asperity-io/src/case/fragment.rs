@@ -180,7 +180,7 @@ pub fn roughness(keys: &[(&str, &str)]) -> Result<(Grid, Part), Vec<Fault>> {
     let (domain, surfaces) = read::roughness(&text).map_err(faults)?;
     let mut checks = Checks { text: &text, dir: Path::new(""), errors: Vec::new() };
     let grid = convert::domain::grid(&mut checks, &domain, &[]);
-    convert::domain::memory(&mut checks, &domain, grid.as_ref(), 0, asperity::Scheme::Linear);
+    convert::domain::memory(&mut checks, &domain, grid.as_ref(), 0, 0, asperity::Scheme::Linear);
     let part = surfaces.iter().find_map(|surface| match &surface.value {
         raw::Surface::SelfAffine(roughness) => {
             convert::surface::self_affine(&mut checks, roughness, grid.as_ref())

@@ -133,12 +133,12 @@ fn mean_decay(x: f64) -> (f64, f64) {
 fn mean_square_growth(x: f64) -> f64 {
     if x < 0.05 {
         // sum over k >= 3 of (-1)^(k+1) (2^(k-1) - 2)/k! x^(k-2): nine terms leave less than 1e-16 of the first.
-        let (mut power, mut factorial, mut two, mut sum) = (-x, 2.0, 2.0, 0.0);
+        let (mut power, mut factorial, mut two, mut sum) = (-1.0, 2.0, 2.0, 0.0);
         for k in 3..12 {
             power *= -x;
             factorial *= f64::from(k);
             two *= 2.0;
-            sum += power * (two - 2.0) / (factorial * x);
+            sum += power * (two - 2.0) / factorial;
         }
         sum
     } else {

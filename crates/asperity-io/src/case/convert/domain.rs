@@ -85,11 +85,12 @@ pub fn memory(
     domain: &At<raw::Domain>,
     grid: Option<&Grid>,
     fields: usize,
+    extra: usize,
     scheme: Scheme,
 ) -> u128 {
     let written = domain.value.cells.as_ref().map(|at| at.value.map(|count| count.count()));
     let Some(cells) = written.or(grid.map(Grid::cells)) else { return 0 };
-    let (needed, present) = (memory::estimate(cells, fields), memory::physical());
+    let (needed, present) = (memory::estimate(cells, fields.saturating_add(extra)), memory::physical());
     if needed <= present {
         return needed;
     }

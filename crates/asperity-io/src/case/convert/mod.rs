@@ -99,7 +99,8 @@ pub fn case(
         (Scheme::Direct, Some(pair)) => pair.plan.instants.len(),
         (_, Some(pair)) => pair.branches(),
     };
-    let memory = domain::memory(&mut checks, &document.domain, grid.as_ref(), fields, scheme);
+    let extra = output::extra_fields(&document.solver, &document.output);
+    let memory = domain::memory(&mut checks, &document.domain, grid.as_ref(), fields, extra, scheme);
 
     checks.errors.sort_by_key(|error| error.span.as_ref().map_or(usize::MAX, |span| span.start));
     let surfaces = surfaces.zip(hardness);

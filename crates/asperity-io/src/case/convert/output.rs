@@ -82,6 +82,21 @@ pub fn possible(
     }
 }
 
+/// Fields that dents and quantities take besides, in units of 16 bytes per cell: the dented gap and its copy in a
+/// checkpoint; the vectors of the contact stiffness; the forest of contact spots.
+pub fn extra_fields(solver: &raw::Solver, output: &raw::Output) -> usize {
+    let wants = |test: &dyn Fn(raw::Quantity) -> bool| {
+        output.quantities.iter().flatten().any(|at| at.value == raw::Quantity::All || test(at.value))
+    };
+    let stiffness = wants(&|quantity| quantity == raw::Quantity::ContactStiffness);
+    let spots = wants(&|quantity| {
+        use raw::Quantity::{ContactSpots, LargestSpot, MeanSpot, SpotHistogram};
+        matches!(quantity, ContactSpots | LargestSpot | MeanSpot | SpotHistogram)
+    });
+    let dents = plasticity(solver) == Plasticity::Accumulate;
+    usize::from(dents) + 3 * usize::from(stiffness) + usize::from(spots)
+}
+
 /// The quantity of a name; `None` for all.
 fn named(quantity: raw::Quantity) -> Option<Quantity> {
     Some(match quantity {

@@ -41,6 +41,9 @@ const PANELS = [
   ["Pressure", "pressure", [["mean", "mean_pressure"], ["largest", "max_pressure"]]],
 ];
 
+/** A series whose infinite numbers, null in JSON, are gaps. */
+const numbers = (key) => state.series[key].map((value) => value ?? NaN);
+
 function timePanels() {
   const time = state.series.time;
   const axis = { label: "time", unit: "s", log: chosen.log };
@@ -48,7 +51,7 @@ function timePanels() {
     title,
     x: axis,
     y: { label, unit: state.units[names[0][1]] === "1" ? "" : state.units[names[0][1]] },
-    series: names.filter(([, key]) => key !== "capped_area" || state.series[key].some((v) => v > 0)).map(([name, key]) => ({ name, x: time, y: state.series[key] })),
+    series: names.filter(([, key]) => key !== "capped_area" || state.series[key].some((v) => v > 0)).map(([name, key]) => ({ name, x: time, y: numbers(key) })),
   }));
   if (!evolution.length) {
     specs.forEach((spec) => evolution.push(new Chart($("evolution"), spec)));

@@ -4,6 +4,7 @@
 mod contact;
 mod error;
 mod fit;
+mod indentation;
 mod march;
 mod material;
 mod session;
@@ -23,6 +24,8 @@ mod _core {
     use super::error::{CaseError, ConvergenceError};
     #[pymodule_export]
     use super::fit::{fit, fit_file};
+    #[pymodule_export]
+    use super::indentation::fit_indentation;
     #[pymodule_export]
     use super::march::{March, quantities};
     #[pymodule_export]

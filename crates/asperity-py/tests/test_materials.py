@@ -116,6 +116,34 @@ def test_wrong_data_are_named(make, words):
         make()
 
 
+def test_an_indentation_gives_the_material_back():
+    # By the march itself: a sphere pressed, held, and drawn back; then with noise.
+    truth = asp.Prony(equilibrium=1e6, terms=[(2e6, 1.5)], poisson=0.4)
+    sphere = asp.Surface.sphere(cells=(96, 96), size=(3e-3, 3e-3), radius=10e-3)
+    result = asp.solve(
+        sphere, truth, approach=asp.table([(0.0, 0.0), (1.0, 5e-5), (6.0, 5e-5), (7.0, 3e-5), (10.0, 3e-5)]), times=asp.uniform(10.0, 100), fields=[], progress=False
+    )
+    fit = asp.fit_indentation(result.time, result.load, result.approach, radius=10e-3, poisson=0.4, given="depth")
+    # A grid of 33 cells across the contact knows loads to half a percent.
+    assert len(fit.terms) == 1 and fit.equilibrium[0] == pytest.approx(1e6, rel=0.02) and fit.terms[0][1][0] == pytest.approx(1.5, rel=0.02)
+    assert fit.material.relaxation_modulus(0.0) == pytest.approx(3e6, rel=0.02) and fit.given == "depth"
+    noisy = result.load + 0.01 * result.load.max() * np.random.default_rng(3).standard_normal(len(result))
+    known = asp.fit_indentation(result.time, noisy, result.approach, radius=10e-3, poisson=0.4, given="depth", terms=1)
+    low, high = known.equilibrium[1:]
+    assert low < known.equilibrium[0] < high and low < 1.02e6 and high > 0.98e6 and 0.005 < known.relative_rms < 0.02
+    assert "rows" in repr(known) and "<table>" in known._repr_html_() and pickle.loads(pickle.dumps(known)).rms == known.rms
+    t = np.arange(20.0)
+    for change, words in (
+        (dict(radius=None), "one of them"), (dict(slope=0.1), "one of them"), (dict(poisson=0.6), "0.6"), (dict(radius=-1.0), "radius"),
+        (dict(given="both"), "'depth' or 'load'"), (dict(terms=50), "terms"), (dict(springs=1), "springs"), (dict(max_misfit=-1.0), "misfit|limit"),
+    ):
+        with pytest.raises(asp.CaseError, match=words):
+            asp.fit_indentation(t, t, t * 1e-6, **{**dict(radius=0.01, poisson=0.5), **change})
+    for columns, words in (((t[:5], t[:5], t[:5]), "10"), ((t, t[:5], t), "one length"), ((t[::-1], t, t), "time"), ((t, t * np.nan, t), "load")):
+        with pytest.raises(asp.CaseError, match=words):
+            asp.fit_indentation(*columns, radius=0.01, poisson=0.5)
+
+
 def test_fractional_models_keep_their_tolerance():
     # J of a fractional Maxwell element: (1 + (t/tau)^a / Gamma(1 + a)) / G.
     t = np.geomspace(1e-2, 1e2, 9)

@@ -17,6 +17,7 @@ from ._core import CaseError, ConvergenceError, __version__
 from ._contact import ElasticContact, elastic
 from ._fit import Fit, fit_creep, fit_dma, fit_file, fit_relaxation
 from ._histories import History, Times, listed, log, ramp, sine, step, table, trapezoid, triangle, uniform
+from ._indentation import IndentationFit, fit_indentation
 from ._materials import (
     Burgers,
     Creep,
@@ -49,6 +50,7 @@ __all__ = [
     "FractionalMaxwell",
     "FractionalZener",
     "History",
+    "IndentationFit",
     "KelvinVoigt",
     "March",
     "Material",
@@ -69,6 +71,7 @@ __all__ = [
     "fit_creep",
     "fit_dma",
     "fit_file",
+    "fit_indentation",
     "fit_relaxation",
     "listed",
     "log",

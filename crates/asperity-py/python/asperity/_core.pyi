@@ -17,6 +17,7 @@ __all__ = [
     "quantities",
     "fit",
     "fit_file",
+    "fit_indentation",
     "Body",
     "shift_factor",
     "case_text",
@@ -167,6 +168,19 @@ def fit_file(
     kind: str | None,
     columns: list[tuple[str, str | None, int | None, str | None]],
     options: dict[str, Any],
+) -> dict[str, Any]: ...
+def fit_indentation(
+    times: _Floats,
+    loads: _Floats,
+    depths: _Floats,
+    profile: str,
+    number: float,
+    given: str | None,
+    terms: int | None,
+    long_time: str,
+    fit_touch: bool,
+    springs: int,
+    limit: float,
 ) -> dict[str, Any]: ...
 def shift_factor(words: _Shift, temperatures: _Floats) -> _Floats: ...
 def case_text(json: str) -> str: ...

@@ -1,0 +1,168 @@
+"""The material of a half-space from a measured indentation.
+
+Between depth and load stands the exact one-dimensional equivalent of the contact (method of dimensionality reduction), unloading
+and loading again included; one channel is taken as given, the other is met by least squares.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._arrays import Floats, count, line, number
+from ._core import CaseError
+from ._materials import Prony
+
+#: A value, and the lower and upper end of its 95 % confidence interval.
+Interval = tuple[float, float, float]
+
+
+@dataclass(frozen=True, eq=False)
+class IndentationFit:
+    """What a record of load and depth tells of its material; moduli are Young's. Made by :func:`fit_indentation`."""
+
+    #: (modulus [Pa], relaxation time [s]) of each term, each as (value, low, high).
+    terms: list[tuple[Interval, Interval]]
+    #: Modulus after all relaxation and right after a step [Pa], as (value, low, high).
+    equilibrium: Interval
+    instantaneous: Interval
+    #: Depth of first touch [m], as (value, low, high); 0 where it was not fitted.
+    touch: Interval
+    #: "depth" or "load": the channel that was taken as it is.
+    given: str
+    #: Times [s] and model of the other channel [N or m] at the rows that were used.
+    time: Floats
+    predicted: Floats
+    #: Numbers of these rows.
+    rows: npt.NDArray[np.int64]
+    #: Root of the mean square of model less measurement [N or m], and the same over the largest value.
+    rms: float
+    relative_rms: float
+    #: Near 2 for independent errors; well below, and the intervals are too narrow.
+    durbin_watson: float
+    #: Shortest step and length of the record [s].
+    window: tuple[float, float]
+    #: The material.
+    material: Prony
+
+    def __repr__(self) -> str:
+        low, high = self.equilibrium[1:]
+        return (
+            f"<IndentationFit of {len(self.rows)} rows: {len(self.terms)} terms, E(0) {self.instantaneous[0]:.4g} Pa, E(inf) "
+            f"{self.equilibrium[0]:.4g} Pa ({low:.4g} to {high:.4g}), misfit {100 * self.relative_rms:.2g} % of the largest value>"
+        )
+
+    def _repr_html_(self) -> str:
+        lines = [("E(0) [Pa]", self.instantaneous), ("E(inf) [Pa]", self.equilibrium)]
+        for n, (modulus, time) in enumerate(self.terms, 1):
+            lines += [(f"E_{n} [Pa]", modulus), (f"tau_{n} [s]", time)]
+        rows = "".join(f"<tr><th>{name}</th>{''.join(f'<td>{x:.5g}</td>' for x in values)}</tr>" for name, values in lines)
+        return f"<table><tr><th></th><th>value</th><th>95 % from</th><th>to</th></tr>{rows}</table>"
+
+
+def fit_indentation(
+    time: Any,
+    load: Any,
+    depth: Any,
+    /,
+    *,
+    radius: float | None = None,
+    slope: float | None = None,
+    poisson: float,
+    given: str | None = None,
+    terms: int | None = None,
+    long_time: str = "free",
+    fit_touch: bool = False,
+    hardness: float | None = None,
+    name: str | None = None,
+    springs: int = 150,
+    max_misfit: float = 0.1,
+) -> IndentationFit:
+    """Fits the relaxation modulus of a half-space to a record of its indentation by a rigid sphere or cone.
+
+    Parameters
+    ----------
+    time, load, depth : the record [s], [N], [m]; the body is undisturbed before its first row, depths count from first touch
+    radius : of the sphere [m]; or `slope` of the cone, rise per length
+    poisson : Poisson's ratio, constant in time
+    given : "depth" or "load": the channel that is taken as it is; by default the one with less scatter
+    terms : number of terms, 6 at most; by default as many as the record calls for
+    long_time : "free", "solid" or "fluid": what happens at times longer than the record
+    fit_touch : whether the depth of first touch is fitted too
+    hardness, name : of the material
+    springs : of the one-dimensional model
+    max_misfit : largest rms misfit over the largest value before the record is refused
+
+    Raises
+    ------
+    CaseError : columns of different lengths, times that do not increase, more terms than the record determines, no such material
+
+    Examples
+    --------
+    >>> import asperity as asp, numpy as np
+    >>> t = np.linspace(0.0, 20.0, 201)                     # a step of 1 N on a standard solid: w^(3/2) goes as its creep
+    >>> zener = asp.Zener(young=2e6, young_kelvin=2e6, retardation_time=4.0, poisson=0.5)
+    >>> depth = (9 / 16 / 0.01 * zener.contact_compliance(t) ** 2) ** (1 / 3)
+    >>> fit = asp.fit_indentation(t, np.ones_like(t), depth, radius=0.01, poisson=0.5, given="load")
+    >>> round(fit.instantaneous[0] / 2e6, 2), round(fit.equilibrium[0] / 1e6, 2), round(fit.terms[0][1][0], 1)
+    (1.0, 1.0, 2.0)
+    """
+    columns = [line(what, values) for what, values in (("time", time), ("load", load), ("depth", depth))]
+    if len({len(column) for column in columns}) > 1:
+        told = ", ".join(f"{what} {len(column)}" for what, column in zip(("time", "load", "depth"), columns))
+        raise CaseError(f"the columns must be of one length; there are: {told}")
+    if (radius is None) == (slope is None):
+        raise CaseError("give radius or slope, one of them")
+    profile = ("sphere", number("radius", radius)) if slope is None else ("cone", number("slope", slope))
+    nu = number("poisson", poisson)
+    if not -1.0 < nu <= 0.5:
+        raise CaseError(f"poisson is {poisson}, but must be greater than -1 and not greater than 0.5")
+    most = None if terms is None else count("terms", terms, 0)
+    found = _core.fit_indentation(
+        columns[0],
+        columns[1],
+        columns[2],
+        profile[0],
+        profile[1],
+        given,
+        most,
+        long_time,
+        bool(fit_touch),
+        count("springs", springs),
+        number("max_misfit", max_misfit),
+    )
+    # E = E* (1 - nu^2)
+    factor = 1.0 - nu**2
+
+    def young(interval: Interval) -> Interval:
+        value, low, high = interval
+        return factor * value, factor * low, factor * high
+
+    moduli = [(young(modulus), relaxation) for modulus, relaxation in found["terms"]]
+    equilibrium = young(found["equilibrium"])
+    rows = np.asarray(found["rows"], dtype=np.int64)
+    return IndentationFit(
+        terms=moduli,
+        equilibrium=equilibrium,
+        instantaneous=young(found["instantaneous"]),
+        touch=found["touch"],
+        given=found["given"],
+        time=columns[0][rows],
+        predicted=found["predicted"],
+        rows=rows,
+        rms=found["rms"],
+        relative_rms=found["relative_rms"],
+        durbin_watson=found["durbin_watson"],
+        window=found["window"],
+        material=Prony(
+            equilibrium=equilibrium[0],
+            terms=[(modulus[0], relaxation[0]) for modulus, relaxation in moduli],
+            poisson=nu,
+            hardness=hardness,
+            name=name,
+        ),
+    )

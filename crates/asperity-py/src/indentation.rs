@@ -1,0 +1,65 @@
+//! The material of a half-space from a measured indentation.
+
+use asperity::indentation::{Given, IndentationOptions, IndentationRecord, Interval, fit_indentation as fit};
+use asperity::material::LongTime;
+use asperity::reference::MdrProfile;
+use numpy::{IntoPyArray, PyReadonlyArray1};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::error::raised;
+use crate::march::choose;
+use crate::wait::detached;
+
+/// Fits the contact relaxation modulus to a record; `profile` is "sphere" with its radius or "cone" with its slope. Intervals
+/// are (value, low, high).
+#[pyfunction]
+#[pyo3(signature = (times, loads, depths, profile, number, given, terms, long_time, fit_touch, springs, limit))]
+#[allow(clippy::too_many_arguments)]
+pub fn fit_indentation<'py>(
+    py: Python<'py>,
+    times: PyReadonlyArray1<'_, f64>,
+    loads: PyReadonlyArray1<'_, f64>,
+    depths: PyReadonlyArray1<'_, f64>,
+    profile: &str,
+    number: f64,
+    given: Option<&str>,
+    terms: Option<usize>,
+    long_time: &str,
+    fit_touch: bool,
+    springs: usize,
+    limit: f64,
+) -> PyResult<Bound<'py, PyDict>> {
+    let [times, loads, depths] = [times, loads, depths].map(|column| column.as_array().to_vec());
+    let profiles =
+        [("sphere", MdrProfile::Sphere { radius: number }), ("cone", MdrProfile::Cone { slope: number })];
+    let channels = [("depth", Given::Depth), ("load", Given::Load)];
+    let ends = [("free", LongTime::Free), ("solid", LongTime::Solid), ("fluid", LongTime::Fluid)];
+    let options = IndentationOptions {
+        given: given.map(|word| choose("given", word, &channels)).transpose()?,
+        terms,
+        long_time: choose("long_time", long_time, &ends)?,
+        fit_touch,
+        springs,
+        limit,
+    };
+    let profile = choose("profile", profile, &profiles)?;
+    let record = IndentationRecord { times: &times, loads: &loads, depths: &depths };
+    let fit = detached(py, || fit(profile, &record, &options))?.map_err(|error| raised(py, error))?;
+    let interval = |interval: Interval| (interval.value, interval.low, interval.high);
+    let out = PyDict::new(py);
+    out.set_item("equilibrium", interval(fit.equilibrium))?;
+    out.set_item("instantaneous", interval(fit.instantaneous))?;
+    let terms: Vec<_> =
+        fit.terms.iter().map(|[modulus, time]| (interval(*modulus), interval(*time))).collect();
+    out.set_item("terms", terms)?;
+    out.set_item("touch", interval(fit.touch))?;
+    out.set_item("given", if fit.given == Given::Depth { "depth" } else { "load" })?;
+    out.set_item("predicted", fit.predicted.into_pyarray(py))?;
+    out.set_item("rows", fit.rows)?;
+    out.set_item("rms", fit.rms)?;
+    out.set_item("relative_rms", fit.relative_rms)?;
+    out.set_item("durbin_watson", fit.durbin_watson)?;
+    out.set_item("window", (fit.window[0], fit.window[1]))?;
+    Ok(out)
+}

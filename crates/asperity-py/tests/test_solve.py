@@ -112,6 +112,23 @@ def test_a_march_lends_each_row(sphere):
         steps[0].aproach
 
 
+@pytest.mark.parametrize(
+    ("case", "words"),
+    [
+        ({"a": float("nan")}, "nan|NaN|float"),
+        ({"a": None}, "table of keys"),
+        ({"a": np.ones(3)}, "case file cannot"),
+        ({"a": object()}, "case file cannot"),
+        ("\n\0\n", "TOML"),
+        ({"domain": {"cells": [8, 8]}}, "surface"),
+    ],
+)
+def test_cases_as_text_and_keys_are_checked(case, words):
+    for use in (asp.check, asp.run):
+        with pytest.raises(asp.CaseError, match=words):
+            use(case)
+
+
 def test_controls_meet_each_other(sphere):
     material = asp.Elastic(young=1e8, poisson=0.3)
     by_load = asp.solve(sphere, material, load=2.0, times=[1.0])

@@ -79,6 +79,9 @@ def test_holes_and_spikes(rough):
         (lambda s: s.bearing_curve(1), "levels"),
         (lambda s: s.height_distribution(0), "bins"),
         (lambda s: s.statistics(longest=1e-5, shortest=2e-4), "."),
+        (lambda s: s.power_spectrum(2**40), "1000"),
+        (lambda s: asp.Surface.sphere(cells=(10**6, 10**6), size=(1, 1), radius=1.0), "at most"),
+        (lambda s: asp.Surface.self_affine(cells=(8, 8), size=(1, 1), hurst=0.8, rms_height=1e-6, longest=0.5, shortest=0.3, seed=2**70), "seed"),
     ],
 )
 def test_wrong_steps_are_named(rough, make, words):
@@ -105,6 +108,13 @@ def test_statistics_are_those_of_the_command_and_of_numpy(rough):
     shifted = (z * np.roll(z, 3, axis=0)).mean() / (z**2).mean()
     assert correlation.values[35, 24] == pytest.approx(shifted, rel=1e-9)
     assert 0 < correlation.texture_aspect_ratio <= 1 and correlation.length > 0
+
+
+def test_seeds_keep_all_their_digits():
+    kw = dict(cells=(16, 16), size=(1.0, 1.0), hurst=0.8, rms_height=1e-3, longest=0.5, shortest=0.2)
+    # As doubles these two are one number.
+    a, b = (asp.Surface.self_affine(**kw, seed=seed).heights for seed in (2**60, 2**60 + 1))
+    assert not np.array_equal(a, b)
 
 
 def test_a_lay_and_a_height_distribution():

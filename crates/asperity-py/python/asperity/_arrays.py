@@ -25,14 +25,20 @@ def number(what: str, value: Any) -> float:
         raise CaseError(f"{what} is {value!r}, but must be a number in SI units") from None
 
 
-def count(what: str, value: Any, least: int = 1) -> int:
-    """A whole number."""
-    real = number(what, value)
-    if real != int(real) if np.isfinite(real) else True:
-        raise CaseError(f"{what} is {value!r}, but must be a whole number")
-    if real < least:
+def count(what: str, value: Any, least: int = 1, most: int = 2**53) -> int:
+    """A whole number; one that is an integer already keeps all its digits."""
+    if isinstance(value, (int, np.integer)) and not isinstance(value, bool):
+        whole = int(value)
+    else:
+        real = number(what, value)
+        if real != int(real) if np.isfinite(real) else True:
+            raise CaseError(f"{what} is {value!r}, but must be a whole number")
+        whole = int(real)
+    if whole < least:
         raise CaseError(f"{what} is {value!r}, but must be at least {least}")
-    return int(real)
+    if whole > most:
+        raise CaseError(f"{what} is {value!r}, but must be at most {most}")
+    return whole
 
 
 def pair(what: str, value: Any) -> tuple[float, float]:

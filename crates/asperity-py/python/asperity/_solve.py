@@ -409,8 +409,10 @@ def _source(case: str | os.PathLike[str] | Mapping[str, Any]) -> tuple[str, str 
     """The path of a case file; or where the files of a case lie that is given as text or keys, and its text."""
     if isinstance(case, Mapping):
         try:
-            return os.curdir, _core.case_text(json.dumps(case))
-        except TypeError as error:
+            return os.curdir, _core.case_text(json.dumps(case, allow_nan=False))
+        except (TypeError, ValueError) as error:
+            if isinstance(error, CaseError):
+                raise
             raise CaseError(f"the case holds what a case file cannot: {error}; write quantities as text with units") from None
     if isinstance(case, str) and "\n" in case:
         return os.curdir, case

@@ -200,7 +200,7 @@ class Surface:
 
         The surface is taken as periodic, so that the mean of z^2 is the integral of C d^2q / (2 pi)^2.
         """
-        return _core.power_spectrum(self.heights, list(self.size), count("per_decade", per_decade, 0))
+        return _core.power_spectrum(self.heights, list(self.size), count("per_decade", per_decade, 0, 1000))
 
     def bearing_curve(self, levels: int = 200) -> tuple[Floats, Floats]:
         """Heights [m] and the share of the points at or above each (Abbott and Firestone 1933)."""
@@ -329,7 +329,7 @@ class Surface:
             number("longest", longest),
             number("shortest", shortest),
             None if roll_off is None else number("roll_off", roll_off),
-            count("seed", seed, 0),
+            count("seed", seed, 0, 2**64 - 1),
         )
         return Surface(heights, size=extent)
 
@@ -402,7 +402,7 @@ def _roughness(
     """Roughness by the keys of a case file."""
     keys = [(key, repr(number(key, value))) for key, value in numbers.items() if value is not None]
     grid = [("cells", "{},{}".format(*counts("cells", cells))), ("size", "{!r},{!r}".format(*size))]
-    heights, extent = _core.roughness([*grid, *words.items(), *keys, ("seed", str(count("seed", seed, 0)))])
+    heights, extent = _core.roughness([*grid, *words.items(), *keys, ("seed", str(count("seed", seed, 0, 2**64 - 1)))])
     return Surface(heights, size=extent)
 
 

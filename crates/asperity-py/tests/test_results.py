@@ -38,7 +38,7 @@ def test_a_saved_result_is_the_same(result, tmp_path):
 
 def test_xarray_opens_what_was_saved(result, tmp_path):
     xarray = pytest.importorskip("xarray")
-    pytest.importorskip("zarr")
+    pytest.importorskip("zarr", minversion="3")
     result.save(tmp_path / "ball.zarr")
     data = xarray.open_zarr(tmp_path / "ball.zarr")
     assert np.array_equal(data.pressure, result.to_xarray().pressure) and data.approach.attrs["units"] == "m"
@@ -136,7 +136,7 @@ def test_quantities_reach_xarray_and_studies(flattened, tmp_path):
     xarray = pytest.importorskip("xarray")
     ours = flattened.to_xarray()
     assert ours.contact_stiffness.attrs["units"] == "N/m" and ours.pressure_histogram.dims == ("time", "pressure_bin")
-    if pytest.importorskip("zarr"):
+    if pytest.importorskip("zarr", minversion="3"):
         flattened.save(tmp_path / "saved.zarr")
         stored = xarray.open_zarr(tmp_path / "saved.zarr").drop_vars("field_step", errors="ignore")
         for name in ours.variables:

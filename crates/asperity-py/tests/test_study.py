@@ -299,6 +299,7 @@ def test_a_dask_cluster_solves_the_points(case, sphere, tmp_path):
 
 
 def test_datasets_can_be_stored(case, tmp_path):
+    pytest.importorskip("zarr", minversion="3")
     data = asp.study(case, {"load.history.value": ["1 mN", "-1 mN"]})
     data.to_zarr(tmp_path / "data.zarr", zarr_format=3)
     back = xarray.open_zarr(tmp_path / "data.zarr")

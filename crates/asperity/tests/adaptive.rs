@@ -67,7 +67,7 @@ fn elastic(simulation: &Simulation, compliance: f64, load: f64) -> ContactState 
     let problem = Problem {
         gap: simulation.gap.as_slice().unwrap(),
         compliance,
-        hardness: f64::INFINITY,
+        hardness: f64::INFINITY.into(),
         prescribed: Prescribed::Load(load),
     };
     let mut solver = Solver::new(Method::ProjectedCg, &*operator);

@@ -1,5 +1,6 @@
 //! Permanent flattening: what follows from the contact conditions of the dented surface.
 
+use asperity::load::{Course, Event, Programme, Stage};
 use asperity::march::{March, Plasticity, Simulation};
 use asperity::material::{Creep, CreepTerm};
 use asperity::surface::{Part, Shape, undeformed_gap};
@@ -151,4 +152,31 @@ fn cycles_of_a_creeping_body_shake_down() {
     let growth: Vec<f64> = (0..8).map(|n| volume(n + 1) - volume(n)).collect();
     assert!(growth[0] > 0.0 && growth[7] < 0.01 * growth[0], "{growth:?}");
     assert!(states.iter().all(|state| state.pressure.iter().all(|p| *p <= 0.15)));
+}
+
+#[test]
+fn a_step_that_an_event_cuts_dents_once() {
+    // Pressed until the approach reaches a value within a step: that step is solved several times, on the surface as
+    // the row before has left it. As above the dents of a growing elastic load are the overlaps of the reversible
+    // cut-off.
+    let until = |plasticity| {
+        let press = Stage {
+            until: Some(Event::Approach(0.021)),
+            ..Stage::new(Control::Load, History::Ramp { value: 0.03, duration: 1.0 })
+        };
+        let simulation = Simulation {
+            loading: Programme::new(vec![press, Stage::new(Control::Approach, Course::Hold)]),
+            times: TimeGrid::Uniform { end: 1.0, steps: 5 },
+            ..capped_sphere(plasticity)
+        };
+        run(simulation)
+    };
+    let (reversible, lasting) = (until(Plasticity::Cap), until(Plasticity::Accumulate));
+    assert_eq!(reversible.len(), lasting.len());
+    let [a, b] = [&reversible, &lasting].map(|states| states.last().unwrap());
+    assert!((a.approach - 0.021).abs() < 1e-9 && a.capped > 0.0, "{} {}", a.approach, a.capped);
+    let overlap = a.gap.mapv(|gap| (-gap).max(0.0));
+    assert!(largest(&overlap) > 1e-4);
+    // The event is met to a millionth of the approach.
+    assert!(distance(&overlap, &b.flattening) < 1e-7, "{}", distance(&overlap, &b.flattening));
 }

@@ -269,7 +269,10 @@ impl March {
         let instant = self.timeline.inside(&self.simulation, dt);
         self.measure_step(instant);
         let unit = &self.previous.unit_displacement;
-        let rigid = self.simulation.gap.as_slice().unwrap_or_default();
+        let rigid = match &self.dents {
+            Some(dents) => dents.gap(),
+            None => self.simulation.gap.as_slice().unwrap_or_default(),
+        };
         self.compliance = match &mut self.past {
             Past::Memory(m) => m.retry(&self.lengths, unit, rigid, &mut self.gap),
             Past::Direct(d) => d.retry(dt, rigid, &mut self.gap),

@@ -24,6 +24,7 @@ pub struct Body {
     #[schemars(example = "300 MPa")]
     pub hardness: Option<Pressure<Positive>>,
     /// Cut-off for the pressure in each cell, from a file. With `hardness`, or one of the other body, the least holds.
+    #[schemars(example = serde_json::json!({ "path": "hardness.npy", "unit": "1 MPa" }))]
     pub hardness_file: Option<At<HardnessFile>>,
     /// Linear viscoelastic material.
     #[schemars(example = serde_json::json!({ "model": "elastic", "young": "2.1 GPa" }))]

@@ -1,5 +1,6 @@
 //! Steps that follow their error, states between the steps, and marches resumed on the way.
 
+use asperity::contact::Hardness;
 use asperity::load::{Control, Course, Event, History, Loading, Programme, Stage};
 use asperity::march::{Checkpoint, March, Row, Scheme, Simulation};
 use asperity::material::{Creep, CreepTerm};
@@ -67,7 +68,7 @@ fn elastic(simulation: &Simulation, compliance: f64, load: f64) -> ContactState 
     let problem = Problem {
         gap: simulation.gap.as_slice().unwrap(),
         compliance,
-        hardness: f64::INFINITY.into(),
+        hardness: Hardness::Uniform(f64::INFINITY),
         prescribed: Prescribed::Load(load),
     };
     let mut solver = Solver::new(Method::ProjectedCg, &*operator);

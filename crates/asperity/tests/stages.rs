@@ -239,6 +239,26 @@ fn a_jump_that_passes_the_value_ends_the_stage() {
 }
 
 #[test]
+fn an_event_within_the_first_step_of_a_stage_is_found() {
+    // One step over the whole ramp: the approach passes the value within it, the contact is lost within the next.
+    let press = until(Control::Approach, History::Ramp { value: 0.05, duration: 1.0 }, Event::Approach(0.02));
+    let retract =
+        until(Control::Approach, Course::RampTo { value: -0.05, duration: 1.0 }, Event::ContactLost);
+    let simulation = Simulation {
+        loading: Programme::new(vec![press, retract]),
+        times: TimeGrid::Uniform { end: 3.0, steps: 3 },
+        ..rough([24, 24])
+    };
+    let rows = rows(simulation);
+    let shown: Vec<(usize, f64)> = rows.iter().map(|row| (row.stage, row.approach)).collect();
+    assert_eq!(shown.len(), 3, "{shown:?}");
+    assert!((rows[1].time - 0.4).abs() < 1e-6 && (rows[1].approach - 0.02).abs() <= 0.02e-6, "{shown:?}");
+    // Where the surface is still dented the contact is lost below its first touch.
+    assert_eq!(rows[2].load, 0.0);
+    assert!(rows[2].approach > 0.0 && rows[2].approach < 0.02, "{shown:?}");
+}
+
+#[test]
 fn constant_load_never_lets_the_counted_area_shrink() {
     // A theorem for linear viscoelastic, non-adhesive contact, whatever came before; three surfaces, no tolerance.
     for seed in [1, 2, 5] {

@@ -345,15 +345,20 @@ impl March {
     fn find_event(&mut self, instant: &mut Instant) -> Result<bool> {
         let Some(event) = self.timeline.stage(&self.simulation).until else { return Ok(false) };
         let (signal, tolerance) = self.signal(event, self.reached_now(), *instant);
+        if self.timeline.side == 0.0 {
+            // The value must be left before it can be reached, and what never touched is not lost: from the last row on,
+            // else from this one on.
+            self.timeline.side = match event {
+                Event::ContactLost => f64::from(u8::from(self.reached.load > 0.0)),
+                _ => {
+                    let (start, _) = self.signal(event, self.reached, *instant);
+                    if start.abs() > tolerance { start.signum() } else { 0.0 }
+                }
+            };
+        }
         let side = self.timeline.side;
         if side == 0.0 {
-            // The value must be left before it can be reached; what never touched is not lost.
-            let waits = signal > tolerance || (signal < -tolerance && event != Event::ContactLost);
-            self.timeline.side = if waits { signal.signum() } else { 0.0 };
-            // A stage starts from what the one before reached: its first jump may pass the value.
-            let (start, _) = self.signal(event, self.reached, *instant);
-            let passed = instant.jump && event != Event::ContactLost && start * signal < 0.0;
-            return Ok(passed);
+            return Ok(false);
         }
         let met = |signal: f64| match event {
             Event::ContactLost => signal <= 0.0 && -signal <= tolerance,

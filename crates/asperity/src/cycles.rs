@@ -59,7 +59,7 @@ pub fn cycles(
         let lengths = format!("{} loads, {} approaches", load.len(), approach.len());
         return Err(Error::invalid("rows", lengths, format!("as many as times, {}", time.len())));
     }
-    if let Some(n) = time.windows(2).position(|pair| !(pair[1] >= pair[0])) {
+    if let Some(n) = time.windows(2).position(|pair| pair[1] < pair[0] || pair.iter().any(|t| t.is_nan())) {
         return Err(Error::invalid(
             format!("time of row {}", n + 1),
             format!("{} s", time[n + 1]),
@@ -74,7 +74,7 @@ pub fn cycles(
     let last = end + 1e-9 * period;
     for n in 0.. {
         let span = [start + f64::from(n) * period, start + f64::from(n + 1) * period];
-        if !(span[1] <= last) || n == i32::MAX {
+        if span[1] > last || span[1].is_nan() || last.is_nan() || n == i32::MAX {
             break;
         }
         found.extend(rows.period(span, std::f64::consts::TAU * frequency));
@@ -162,7 +162,7 @@ fn solve(mut m: [[f64; 5]; 4]) -> Option<[f64; 4]> {
     for k in 0..4 {
         let pivot = (k..4).max_by(|a, b| m[*a][k].abs().total_cmp(&m[*b][k].abs()))?;
         m.swap(k, pivot);
-        if !(m[k][k].abs() > 1e-12) {
+        if m[k][k].abs() <= 1e-12 || m[k][k].is_nan() {
             return None;
         }
         let row = m[k];

@@ -64,7 +64,7 @@ pub(super) fn start(
 /// The grid of half as many cells along each side.
 fn coarser(grid: &Grid) -> Option<Grid> {
     let [nx, ny] = grid.cells();
-    let fits = |n: usize| n % 2 == 0 && n / 2 >= FEWEST;
+    let fits = |n: usize| n.is_multiple_of(2) && n / 2 >= FEWEST;
     (fits(nx) && fits(ny)).then(|| Grid::new([nx / 2, ny / 2], grid.size()).ok()).flatten()
 }
 

@@ -126,10 +126,11 @@ fn tell(args: &Run, summary: &Summary, error: Option<&RunError>) -> Result<(), F
     line(
         "work",
         format!(
-            "{} rows, {} iterations, {} convolutions in {}{memory}",
+            "{} rows, {} iterations, {} convolutions ({:.1} per row) in {}{memory}",
             summary.rows,
             summary.iterations,
             summary.convolutions,
+            summary.convolutions as f64 / summary.rows.max(1) as f64,
             duration(summary.wall_s)
         ),
     );

@@ -142,9 +142,10 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
     line(
         "work",
         format!(
-            "{} iterations, {} convolutions in {}{memory}",
+            "{} iterations, {} convolutions ({:.1} per row) in {}{memory}",
             work.iterations,
             work.convolutions,
+            work.convolutions as f64 / rows.len().max(1) as f64,
             duration(work.wall_s)
         ),
     );

@@ -122,7 +122,12 @@ fn package(python: &Path) -> Done {
         .arg(&wheel))?;
     run(Command::new(python).args(["-m", "mypy", "--strict", "crates/asperity-py/python/asperity"]))?;
     run(Command::new(python).args(["-m", "mypy.stubtest", "asperity._core"]))?;
-    run(Command::new(python).args(["-m", "pytest", "-q", "crates/asperity-py/tests"]))
+    // Its numbers are those of the command, which must be of the same source.
+    run(&mut cargo(&["build", "-p", "asperity-cli"]))?;
+    let command = root().join("target/debug").join(format!("asperity{}", std::env::consts::EXE_SUFFIX));
+    run(Command::new(python)
+        .args(["-m", "pytest", "-q", "crates/asperity-py/tests"])
+        .env("ASPERITY_COMMAND", std::path::absolute(command).map_err(|error| error.to_string())?))
 }
 
 /// The tables of docs/performance.md: the convolution's forms, where the time of a contact goes in either

@@ -97,6 +97,9 @@ fn times(kind: &str, numbers: &[f64]) -> PyResult<TimeGrid> {
             TimeGrid::Logarithmic { end: *end, steps: count(*steps), first: *first }
         }
         ("list", list) => TimeGrid::List(list.to_vec()),
+        ("adaptive", [end, tolerance, first]) => {
+            TimeGrid::Adaptive { end: *end, tolerance: *tolerance, first: *first }
+        }
         _ => {
             return Err(CaseError::new_err(format!(
                 "there is no time grid '{kind}' of {} numbers",
@@ -229,6 +232,12 @@ impl March {
     fn __len__(&self) -> usize {
         let march = self.locked();
         march.rows_expected().unwrap_or(march.done())
+    }
+
+    /// Rows in all, where they are known beforehand.
+    #[getter]
+    fn rows_expected(&self) -> Option<usize> {
+        self.locked().rows_expected()
     }
 
     /// Rows done.

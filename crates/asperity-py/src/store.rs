@@ -246,5 +246,7 @@ fn rows(columns: &HashMap<String, PyReadonlyArray1<'_, f64>>) -> PyResult<Vec<Ro
     set("convolutions", |row, value| row.convolutions = value as usize)?;
     set("residual", |row, value| row.residual = value)?;
     set("certificate", |row, value| row.certificate = value)?;
+    set("time_error", |row, value| row.time_error = (!value.is_nan()).then_some(value))?;
+    set("stage", |row, value| row.stage = value as usize)?;
     Ok(rows)
 }

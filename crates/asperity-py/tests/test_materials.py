@@ -221,7 +221,7 @@ steps = 10
         temperature=[(0.0, 283.15), (5.0, 303.15)], progress=False,
     )
     for name in asp._result.ROW:
-        assert np.array_equal(getattr(stored, name), getattr(here, name)), name
+        assert np.array_equal(getattr(stored, name), getattr(here, name), equal_nan=True), name
 
 
 def test_fits_shifts_and_materials_are_shown_copied_and_pickled():

@@ -21,7 +21,7 @@ def test_a_saved_result_is_the_same(result, tmp_path):
     result.save(path)
     back = asp.open(path)
     for name in asp._result.ROW:
-        assert np.array_equal(getattr(back, name), getattr(result, name)), name
+        assert np.array_equal(getattr(back, name), getattr(result, name), equal_nan=True), name
     for name in result.fields:
         assert np.array_equal(back._stack(name), result._stack(name)), name
     assert np.array_equal(back.field_times, result.field_times) and np.array_equal(back.initial_gap, result.initial_gap)
@@ -113,7 +113,7 @@ def test_quantities_and_flattening_have_the_bits_of_the_case(flattened, tmp_path
     for other in (stored, asp.open(tmp_path / "saved.zarr")):
         assert other.quantities == flattened.quantities
         for name in [*asp._result.ROW, *ASKED]:
-            assert np.array_equal(getattr(other, name), getattr(flattened, name)), name
+            assert np.array_equal(getattr(other, name), getattr(flattened, name), equal_nan=True), name
         for name in ("spot_histogram", "pressure_histogram"):
             for a, b in zip(other.histogram(name), flattened.histogram(name)):
                 assert np.array_equal(a, b), name
@@ -140,7 +140,7 @@ def test_quantities_reach_xarray_and_studies(flattened, tmp_path):
         flattened.save(tmp_path / "saved.zarr")
         stored = xarray.open_zarr(tmp_path / "saved.zarr").drop_vars("field_step", errors="ignore")
         for name in ours.variables:
-            assert np.allclose(ours[name], stored[name], rtol=1e-15), name
+            assert np.allclose(ours[name], stored[name], rtol=1e-15, equal_nan=True), name
             assert ours[name].dims == stored[name].dims and ours[name].attrs["units"] == stored[name].attrs["units"], name
     data = asp.study(CASE, {"load.history.peak": ["2 mN", "4 mN"]})
     assert np.array_equal(data.external_work.isel({"load.history.peak": 1}), flattened.external_work)

@@ -16,7 +16,7 @@ from . import compat
 from ._core import CaseError, ConvergenceError, __version__
 from ._contact import ElasticContact, elastic
 from ._fit import Fit, fit_creep, fit_dma, fit_file, fit_relaxation
-from ._histories import History, Times, listed, log, ramp, sine, step, table, trapezoid, triangle, uniform
+from ._histories import History, Times, adaptive, listed, log, ramp, sine, step, table, trapezoid, triangle, uniform
 from ._indentation import IndentationFit, fit_indentation
 from ._materials import (
     Burgers,
@@ -64,6 +64,7 @@ __all__ = [
     "Times",
     "Zener",
     "__version__",
+    "adaptive",
     "arrhenius",
     "check",
     "compat",

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ._arrays import count, line, number, points
 
-__all__ = ["History", "Times", "listed", "log", "ramp", "sine", "step", "table", "trapezoid", "triangle", "uniform"]
+__all__ = ["History", "Times", "adaptive", "listed", "log", "ramp", "sine", "step", "table", "trapezoid", "triangle", "uniform"]
 
 
 @dataclass(frozen=True)
@@ -65,6 +65,22 @@ def uniform(end: float, steps: int) -> Times:
 def log(end: float, steps: int, *, first: float) -> Times:
     """`steps` instants in geometric progression from `first` to `end` [s]."""
     return Times("log", (number("end", end), float(count("number of steps", steps)), number("first instant", first)))
+
+
+def adaptive(end: float, *, tolerance: float = 1e-3, first: float) -> Times:
+    """Steps to `end` [s] as long as their local error allows.
+
+    `tolerance` is the largest error that one step may add, relative to the largest approach so far; `first` [s] the length of the
+    first step, after each break of the history as well. Each row has its estimate as `time_error`.
+
+    >>> import asperity as asp
+    >>> sphere = asp.Surface.sphere(cells=(32, 32), size=(1e-3, 1e-3), radius=10e-3)
+    >>> zener = asp.Zener(shear=1e6, shear_kelvin=1e6, retardation_time=1.0, poisson=0.5)
+    >>> result = asp.solve(sphere, zener, load=asp.ramp(1e-3, duration=1.0), times=asp.adaptive(5.0, first=1e-3))
+    >>> float(result.time[-1]), bool(max(result.time_error[1:]) < 1e-3)
+    (5.0, True)
+    """
+    return Times("adaptive", (number("end", end), number("tolerance", tolerance), number("first step", first)))
 
 
 def listed(instants: Sequence[float]) -> Times:

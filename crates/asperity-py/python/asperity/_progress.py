@@ -14,7 +14,7 @@ PAUSE = 0.2
 class Progress:
     """Shows rows done, contact area and time left; nothing unless `on`, or unless stderr is a terminal or notebook."""
 
-    def __init__(self, total: int, on: bool | None) -> None:
+    def __init__(self, total: int | None, on: bool | None) -> None:
         self.total = total
         self.started = time.monotonic()
         self.told = 0.0
@@ -28,14 +28,15 @@ class Progress:
             return
         self.areas.append(row["contact_fraction"])
         now = time.monotonic()
-        if now - self.told < PAUSE and done < self.total:
+        if now - self.told < PAUSE and (self.total is None or done < self.total):
             return
         self.told = now
-        left = (now - self.started) / max(done, 1) * (self.total - done)
-        text = (
-            f"{done}/{self.total} rows  t = {row['time']:.4g} s  contact {100 * row['contact_fraction']:.2f} % "
-            f"{self._sparks()}  {left:.0f} s left"
-        )
+        text = f"t = {row['time']:.4g} s  contact {100 * row['contact_fraction']:.2f} % {self._sparks()}"
+        if self.total is None:
+            text = f"{done} rows  {text}"
+        else:
+            left = (now - self.started) / max(done, 1) * (self.total - done)
+            text = f"{done}/{self.total} rows  {text}  {left:.0f} s left"
         self.show(text)
 
     def end(self) -> None:

@@ -87,12 +87,12 @@ class March:
         self._setup = setup
 
     def __len__(self) -> int:
-        """Rows in all."""
+        """Rows in all, as far as they are known: adaptive steps find theirs as they go."""
         return len(self._core)
 
     @property
     def times(self) -> Floats:
-        """Times of all rows [s]: 0+, the steps, and the breaks and jumps of the history."""
+        """Times of all rows [s], as far as they are known: 0+, the steps, and the breaks and jumps of the history."""
         return np.array(self._core.times())
 
     def __iter__(self) -> Iterator[Step]:
@@ -239,7 +239,7 @@ def solve(
     ----------
     surface : Surface, or heights [m] as array (nx, ny) with `size`, or a SurfaceTopography or xarray array
     material : the deformable body, or a pair of them
-    times : instants that are solved: uniform, log, listed, or a sequence [s]; breaks of the history are added
+    times : instants that are solved: uniform, log, adaptive, listed, or a sequence [s]; breaks of the history are added
     load, pressure, approach : what is prescribed [N], [Pa] or [m]: a history, or a number for a step
     hardness : largest pressure [Pa], of all cells or as array (nx, ny); else that of the materials
     boundary : "free" (half-space) or "periodic"
@@ -297,29 +297,40 @@ def solve(
         largest_gap=largest_gap,
         include=[] if wanted is None else [t for t in wanted.tolist() if t > 0],
     )
-    rows = len(run)
-    instants = run.times
-    stride = count("every", every) if every is not None else max(1, -(-(rows - 1) // 20))
-    if wanted is None:
-        keep = {n for n in range(rows) if n % stride == 0 or n == rows - 1}
-    else:
-        keep = {n for n in range(rows) if n in (0, rows - 1) or np.any(np.abs(wanted - instants[n]) <= 1e-12 * instants[-1])}
+    # Adaptive steps find their rows as they go.
+    rows = run._core.rows_expected
+    stride = count("every", every) if every is not None else max(1, -(-((rows or 1) - 1) // 20))
+
+    def kept_at(step: Step) -> bool:
+        if step.index == 0 or step.index + 1 == rows:
+            return True
+        if wanted is None:
+            return step.index % stride == 0
+        return bool(np.any(np.abs(wanted - step.time) <= 1e-12 * end))
+
+    end = run._core.times()[-1]
     edges = {name: np.array(ends) for name, ends in run._core.columns()}
     table: dict[str, list[Any]] = {name: [] for name in [*ROW, *edges]}
     maps: dict[str, list[Any]] = {name: [] for name in kept}
     steps: list[int] = []
     teller = Progress(rows, progress)
+    last: Step | None = None
     try:
         for step in run:
             for name, values in table.items():
                 values.append(step.row[name])
-            if step.index in keep:
+            if kept_at(step):
                 steps.append(step.index)
                 for name in kept:
                     maps[name].append(step.field(name))
+            last = step
             if on_step is not None:
                 on_step(step)
             teller.tell(step.row, step.index + 1)
+        if last is not None and last.index not in steps:
+            steps.append(last.index)
+            for name in kept:
+                maps[name].append(last.field(name))
     finally:
         teller.end()
     return Result(

@@ -31,6 +31,9 @@ const SHRINK: f64 = 0.2;
 const SAFETY: f64 = 0.9;
 /// Errors of single steps add up while the material remembers them: each may take this share.
 const SHARE: f64 = 0.25;
+/// Errors below this share of the allowed one are alike: where nothing happens they are rounding, whose ups and downs
+/// must not move the steps.
+const QUIET: f64 = 1e-4;
 
 /// How long the next step is.
 #[derive(Clone, Debug, PartialEq)]
@@ -69,7 +72,7 @@ impl Pace {
 
     /// Takes the step `dt`, which may have ended early at a stop, and plans the next.
     pub(super) fn accept(&mut self, dt: f64, error: Option<f64>) {
-        let excess = error.unwrap_or(0.0) / self.tolerance;
+        let excess = error.map_or(0.0, |error| (error / self.tolerance).max(QUIET));
         let factor = if excess > 0.0 {
             let integral = libm::pow(excess, -0.7 / 3.0);
             let proportional = if self.last > 0.0 { libm::pow(self.last, 0.4 / 3.0) } else { 1.0 };
@@ -193,6 +196,13 @@ mod tests {
         assert_eq!(pace.dt, 2e-3);
         pace.accept(2e-3, Some(1e-12));
         assert_eq!(pace.dt, 4e-3);
+        // Rounding that comes and goes holds no step back.
+        let mut still = pace.clone();
+        for (n, error) in [0.0, 1e-16, 1e-30, 1e-15, 0.0, 1e-18].into_iter().enumerate() {
+            let dt = still.dt;
+            still.accept(dt, Some(error));
+            assert_eq!(still.dt, 2.0 * dt, "{n}");
+        }
         // An error 8 times too large: half the step and a margin.
         let shorter = pace.rejects(4e-3, Some(8e-3)).unwrap();
         assert!((shorter - 0.9 * 2e-3).abs() < 1e-12);

@@ -2,6 +2,7 @@
 //! passes errors on with the same words. The interface that users see is in `python/asperity`.
 
 mod contact;
+mod cycles;
 mod error;
 mod fit;
 mod indentation;
@@ -20,6 +21,8 @@ mod _core {
 
     #[pymodule_export]
     use super::contact::elastic;
+    #[pymodule_export]
+    use super::cycles::cycles_of;
     #[pymodule_export]
     use super::error::{CaseError, ConvergenceError};
     #[pymodule_export]

@@ -7,8 +7,8 @@ use asperity::contact::Precision;
 use asperity::march::Plasticity;
 use asperity::quantities::{Quantities, Quantity};
 use asperity::{
-    Boundary, Control, Grid, History, Loading, Method, Scheme, Simulation, SolverOptions, TimeGrid, march,
-    material,
+    Boundary, Control, Course, Event, Grid, History, Method, Programme, Scheme, Simulation, SolverOptions,
+    Stage, TimeGrid, march, material,
 };
 use numpy::{IntoPyArray, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -109,11 +109,44 @@ fn times(kind: &str, numbers: &[f64]) -> PyResult<TimeGrid> {
     })
 }
 
+/// A list of numbers with the word that says what they are.
+type Numbers = (String, Vec<f64>);
+/// A stage: control, history, points of a table, duration, event with its value, time grid.
+type StageParts = (String, Numbers, Vec<(f64, f64)>, Option<f64>, Option<(String, f64)>, Option<Numbers>);
+
+fn stage((control, (kind, numbers), points, duration, until, grid): StageParts) -> PyResult<Stage> {
+    let controls =
+        [("load", Control::Load), ("pressure", Control::Pressure), ("approach", Control::Approach)];
+    let course = match (kind.as_str(), numbers.as_slice()) {
+        ("hold", []) => Course::Hold,
+        ("ramp-to", [value, duration]) => Course::RampTo { value: *value, duration: *duration },
+        _ => Course::Given(history(&kind, &numbers, points)?),
+    };
+    let until = match until {
+        None => None,
+        Some((event, value)) => {
+            let events = [
+                ("approach", Event::Approach(value)),
+                ("load", Event::Load(value)),
+                ("pressure", Event::Pressure(value)),
+                ("contact-lost", Event::ContactLost),
+            ];
+            Some(choose("until", &event, &events)?)
+        }
+    };
+    Ok(Stage {
+        control: choose("control", &control, &controls)?,
+        course,
+        duration,
+        until,
+        times: grid.map(|(kind, numbers)| times(&kind, &numbers)).transpose()?,
+    })
+}
+
 #[pymethods]
 impl March {
     #[new]
-    #[pyo3(signature = (*, gap, size, boundary, bodies, control, history, history_numbers, history_points,
-                        times, times_numbers, include, temperatures, scheme, method, precision, tolerance,
+    #[pyo3(signature = (*, gap, size, boundary, bodies, stages, times, times_numbers, include, temperatures, scheme, method, precision, tolerance,
                         max_iterations, hardness_map, plasticity, quantities, bins, largest_pressure, largest_gap))]
     #[allow(clippy::too_many_arguments)]
     fn new(
@@ -122,10 +155,7 @@ impl March {
         size: [f64; 2],
         boundary: &str,
         bodies: Vec<PyRef<'_, Body>>,
-        control: &str,
-        history: &str,
-        history_numbers: Vec<f64>,
-        history_points: Vec<(f64, f64)>,
+        stages: Vec<StageParts>,
         times: &str,
         times_numbers: Vec<f64>,
         include: Vec<f64>,
@@ -153,23 +183,18 @@ impl March {
         let (creep, thermal) =
             crate::material::pair(&bodies, &temperatures).map_err(|error| raised(py, error))?;
         let bodies: Vec<material::Body> = bodies.iter().map(|body| body.inner.clone()).collect();
-        let controls =
-            [("load", Control::Load), ("pressure", Control::Pressure), ("approach", Control::Approach)];
         let schemes =
             [("linear", Scheme::Linear), ("constant", Scheme::Constant), ("direct", Scheme::Direct)];
         let grid = Grid::new([nx, ny], size).map_err(|error| raised(py, error))?;
         let plasticities = [("cap", Plasticity::Cap), ("accumulate", Plasticity::Accumulate)];
         let list = quantities.iter().map(|name| quantity(name)).collect::<PyResult<Vec<Quantity>>>()?;
-        let loading = Loading {
-            control: choose("control", control, &controls)?,
-            history: self::history(history, &history_numbers, history_points)?,
-        };
+        let stages = stages.into_iter().map(stage).collect::<PyResult<Vec<Stage>>>()?;
         let simulation = Simulation {
             boundary: self::boundary(boundary)?,
             creep,
             thermal,
             hardness: material::pair_hardness(&bodies),
-            loading: loading.into(),
+            loading: Programme::new(stages),
             times: self::times(times, &times_numbers)?,
             include,
             scheme: choose("scheme", scheme, &schemes)?,

@@ -69,6 +69,11 @@ impl Store {
     }
 
     #[getter]
+    fn field_times(&self) -> Vec<f64> {
+        self.reader.field_times().to_vec()
+    }
+
+    #[getter]
     fn fields(&self) -> Vec<&'static str> {
         self.reader.header().fields.iter().map(|kind| kind.name()).collect()
     }
@@ -149,6 +154,7 @@ pub fn save(
     columns: HashMap<String, PyReadonlyArray1<'_, f64>>,
     fields: Vec<(String, Bound<'_, PyAny>)>,
     field_steps: Vec<usize>,
+    field_times: Vec<f64>,
     quantities: Vec<Asked<'_>>,
 ) -> PyResult<()> {
     let (nx, ny) = initial_gap.as_array().dim();
@@ -199,13 +205,23 @@ pub fn save(
         rows_expected: Some(rows.len()),
         setup,
     };
+    if field_times.len() != field_steps.len() {
+        return Err(CaseError::new_err("there must be as many times as rows of the fields"));
+    }
     let gap = initial_gap.as_array();
     detached(py, || {
         let mut writer = Writer::create(&path, &header, gap, force)?;
         for (n, row) in rows.iter().enumerate() {
-            let kept = field_steps.iter().position(|step| *step == n);
-            let fields: Vec<Field> =
-                kept.map_or(vec![], |k| stacks.iter().map(|stack| stack.field(k)).collect());
+            let mut fields: Vec<Field> = vec![];
+            for (k, time) in field_times.iter().enumerate().filter(|(k, _)| field_steps[*k] == n) {
+                let maps: Vec<Field> = stacks.iter().map(|stack| stack.field(k)).collect();
+                // A state between the row before and this one has a time of its own.
+                if *time < row.time {
+                    writer.stage(*time, &maps)?;
+                } else {
+                    fields = maps;
+                }
+            }
             let numbers: Vec<f64> = numbers.iter().flat_map(|values| values.row(n).to_vec()).collect();
             writer.append_with(row, &numbers, &fields)?;
         }

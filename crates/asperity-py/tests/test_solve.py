@@ -439,3 +439,67 @@ def test_examples_in_the_documentation_hold():
         count += tried
     failed, tried = doctest.testmod(asp)
     assert failed == 0 and count + tried >= 60
+
+
+def test_stages_are_those_of_a_case(tmp_path):
+    case = """
+domain = { cells = [32, 32], size = ["1 mm", "1 mm"] }
+surface = [{ kind = "sphere", radius = "10 mm" }]
+body = [{ poisson = 0.5, material = { model = "zener", shear = "1 MPa", shear_kelvin = "1 MPa", retardation_time = "1 s" } }]
+output = { fields = ["pressure"], times = ["0.25 s", "3 s"] }
+
+[time]
+end = "20 s"
+spacing = "adaptive"
+first = "10 ms"
+
+[load]
+stages = [
+  { control = "load", history = { kind = "ramp", value = "2 mN", duration = "1 s" }, until = { approach = "2 um" }, duration = "1 s" },
+  { control = "approach", history = { kind = "hold" }, duration = "5 s", steps = 4 },
+  { control = "approach", history = { kind = "ramp", from = "current", value = "-5 um", duration = "2 s" }, until = "contact-lost" },
+]
+"""
+    stored = asp.run(case, output=tmp_path / "case.zarr")
+    sphere = asp.Surface.sphere(cells=(32, 32), size=(1e-3, 1e-3), radius=10e-3)
+    zener = asp.Zener(shear=1e6, shear_kelvin=1e6, retardation_time=1.0, poisson=0.5)
+    here = asp.solve(
+        sphere,
+        zener,
+        times=asp.adaptive(20.0, first=1e-2),
+        stages=[
+            asp.Stage(load=asp.ramp(2e-3, duration=1.0), until=("approach", 2e-6), duration=1.0),
+            asp.Stage(approach=asp.hold(), duration=5.0, times=asp.uniform(5.0, 4)),
+            asp.Stage(approach=asp.ramp_to(-5e-6, duration=2.0), until="contact-lost"),
+        ],
+        progress=False,
+    )
+    for name in asp._result.ROW:
+        assert np.array_equal(getattr(stored, name), getattr(here, name), equal_nan=True), name
+    assert set(here.stage) == {0, 1, 2} and here.contact_area[-1] == 0.0
+
+    # Fields at output times lie between the rows of adaptive steps, and keep their times through save and study.
+    assert 0.25 in stored.field_times and 0.25 not in stored.time
+    assert stored.to_xarray().field_time.values.tolist() == stored.field_times.tolist()
+    stored.save(tmp_path / "again.zarr")
+    again = asp.open(tmp_path / "again.zarr")
+    assert np.array_equal(again.field_times, stored.field_times)
+    assert np.array_equal(again._stack("pressure"), stored._stack("pressure"))
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        (dict(stages=[]), "one at least"),
+        (dict(stages=[1.0]), "asperity.Stage"),
+        (dict(stages=[asp.Stage(load=1.0)], load=1.0), "one of them"),
+        (dict(stages=[asp.Stage(load=1.0, approach=1.0)]), "one of them"),
+        (dict(stages=[asp.Stage(load=1.0, until="contact-last")]), "contact-lost"),
+        (dict(stages=[asp.Stage(load=1.0, until=("depth", 1.0))]), "'contact-lost'"),
+        (dict(stages=[asp.Stage(load=1.0), asp.Stage(load=2.0)]), "stage 1"),
+    ],
+)
+def test_stages_that_cannot_be_are_refused(wrong, words):
+    sphere = asp.Surface.sphere(cells=(16, 16), size=(1e-3, 1e-3), radius=10e-3)
+    with pytest.raises(asp.CaseError, match=words):
+        asp.solve(sphere, asp.Elastic(young=1e6, poisson=0.5), times=[1.0], progress=False, **wrong)

@@ -16,7 +16,23 @@ from . import compat
 from ._core import CaseError, ConvergenceError, __version__
 from ._contact import ElasticContact, elastic
 from ._fit import Fit, fit_creep, fit_dma, fit_file, fit_relaxation
-from ._histories import History, Times, adaptive, listed, log, ramp, sine, step, table, trapezoid, triangle, uniform
+from ._histories import (
+    History,
+    Stage,
+    Times,
+    adaptive,
+    hold,
+    listed,
+    log,
+    ramp,
+    ramp_to,
+    sine,
+    step,
+    table,
+    trapezoid,
+    triangle,
+    uniform,
+)
 from ._indentation import IndentationFit, fit_indentation
 from ._materials import (
     Burgers,
@@ -31,7 +47,7 @@ from ._materials import (
     Springpot,
     Zener,
 )
-from ._result import Result, open
+from ._result import Cycle, Result, open
 from ._shifts import Shift, arrhenius, shift_table, wlf
 from ._solve import March, Step, check, march, run, solve
 from ._study import study
@@ -44,6 +60,7 @@ __all__ = [
     "CaseError",
     "ConvergenceError",
     "Creep",
+    "Cycle",
     "Elastic",
     "ElasticContact",
     "Fit",
@@ -59,6 +76,7 @@ __all__ = [
     "Result",
     "Shift",
     "Springpot",
+    "Stage",
     "Step",
     "Surface",
     "Times",
@@ -74,11 +92,13 @@ __all__ = [
     "fit_file",
     "fit_indentation",
     "fit_relaxation",
+    "hold",
     "listed",
     "log",
     "march",
     "open",
     "ramp",
+    "ramp_to",
     "run",
     "set_threads",
     "shift_table",

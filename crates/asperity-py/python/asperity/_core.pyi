@@ -8,11 +8,14 @@ import numpy.typing as npt
 
 _Floats = npt.NDArray[np.float64]
 _Shift = tuple[str, list[float], list[tuple[float, float]]]
+_Grid = tuple[str, list[float]]
+_Stage = tuple[str, _Grid, list[tuple[float, float]], float | None, tuple[str, float] | None, _Grid | None]
 
 __all__ = [
     "elastic",
     "CaseError",
     "ConvergenceError",
+    "cycles_of",
     "March",
     "quantities",
     "fit",
@@ -55,6 +58,9 @@ class ConvergenceError(RuntimeError):
     time: float | None
     best: Any
 
+def cycles_of(
+    time: list[float], load: list[float], approach: list[float], frequency: float, start: float
+) -> list[tuple[float, float, float, float, float]]: ...
 @final
 class Body:
     def __new__(
@@ -88,10 +94,7 @@ class March:
         size: list[float],
         boundary: str,
         bodies: list[Body],
-        control: str,
-        history: str,
-        history_numbers: list[float],
-        history_points: list[tuple[float, float]],
+        stages: list[_Stage],
         times: str,
         times_numbers: list[float],
         include: list[float],
@@ -131,6 +134,8 @@ class Store:
     def initial_gap(self) -> _Floats: ...
     @property
     def field_steps(self) -> list[int]: ...
+    @property
+    def field_times(self) -> list[float]: ...
     @property
     def fields(self) -> list[str]: ...
     @property
@@ -198,6 +203,7 @@ def save(
     columns: dict[str, _Floats],
     fields: list[tuple[str, Any]],
     field_steps: list[int],
+    field_times: list[float],
     quantities: list[tuple[str, _Floats, _Floats]],
 ) -> None: ...
 def quantities() -> list[tuple[str, str, str, bool]]: ...

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from . import _core
 from ._arrays import count, line, number, points
+from ._core import CaseError
 
-__all__ = ["History", "Times", "adaptive", "listed", "log", "ramp", "sine", "step", "table", "trapezoid", "triangle", "uniform"]
+__all__ = ["History", "Stage", "Times", "adaptive", "hold", "listed", "log", "ramp", "ramp_to", "sine", "step", "table", "trapezoid", "triangle", "uniform"]
 
 
 @dataclass(frozen=True)
@@ -55,6 +57,84 @@ def sine(*, mean: float, amplitude: float, frequency: float) -> History:
 def table(pairs: Sequence[tuple[float, float]]) -> History:
     """Linear between (time [s], value) points; two points at one time are a jump; held after the last."""
     return History("table", (), tuple(points("points of the table", pairs)))
+
+
+def hold() -> History:
+    """The value that the quantity has when the stage starts; for a :class:`Stage`."""
+    return History("hold", ())
+
+
+def ramp_to(value: float, *, duration: float) -> History:
+    """Linear from the value that the quantity has when the stage starts to `value` during `duration` [s], then held; for a
+    :class:`Stage`."""
+    return History("ramp-to", (number("value of the ramp", value), number("duration", duration)))
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A part of a programme: what is prescribed, on a clock that starts with it, and when it ends.
+
+    Parameters
+    ----------
+    load, pressure, approach : what is prescribed [N], [Pa] or [m], one of them: a history, or a number for a step
+    duration : the stage lasts no longer than this [s]; the last stage may last to the end of the run
+    until : what ends it: ("approach", value [m]), ("load", value [N]) or ("pressure", value [Pa]), crossed from either side, or
+        "contact-lost". Without `duration` it must happen before the run ends.
+    times : its own instants, on its own clock; default those of the run
+
+    Examples
+    --------
+    Press, hold the approach reached, retract until contact is lost:
+
+    >>> import asperity as asp
+    >>> sphere = asp.Surface.sphere(cells=(32, 32), size=(1e-3, 1e-3), radius=10e-3)
+    >>> zener = asp.Zener(shear=1e6, shear_kelvin=1e6, retardation_time=1.0, poisson=0.5)
+    >>> result = asp.solve(sphere, zener, times=asp.adaptive(20.0, first=1e-2), stages=[
+    ...     asp.Stage(load=asp.ramp(2e-3, duration=1.0), until=("approach", 2e-6), duration=1.0),
+    ...     asp.Stage(approach=asp.hold(), duration=5.0),
+    ...     asp.Stage(approach=asp.ramp_to(-5e-6, duration=2.0), until="contact-lost"),
+    ... ])
+    >>> held = result.load[result.stage == 1]
+    >>> bool(held[-1] < held[0]), result.contact_area[-1].item()
+    (True, 0.0)
+    """
+
+    load: History | float | None = None
+    pressure: History | float | None = None
+    approach: History | float | None = None
+    duration: float | None = None
+    until: str | tuple[str, float] | None = None
+    times: Times | Sequence[float] | None = None
+
+    def _parts(self) -> _core._Stage:
+        given = {"load": self.load, "pressure": self.pressure, "approach": self.approach}
+        control, value = one_of(given, "a stage needs load, pressure or approach")
+        history = as_history(control, value)
+        until: tuple[str, float] | None = None
+        if isinstance(self.until, str):
+            until = (self.until, 0.0)
+            if self.until != "contact-lost":
+                raise CaseError(f"until is {self.until!r}, but must be 'contact-lost' or a pair as in ('load', 0.1)")
+        elif self.until is not None:
+            event, limit = self.until
+            until = (str(event), number(f"until {event}", limit))
+        grid = None if self.times is None else as_times(self.times)
+        return (
+            control,
+            (history.kind, list(history.numbers)),
+            list(history.points),
+            None if self.duration is None else number("duration of the stage", self.duration),
+            until,
+            None if grid is None else (grid.kind, list(grid.numbers)),
+        )
+
+
+def one_of(given: dict[str, History | float | None], otherwise: str) -> tuple[str, History | float]:
+    """The one that is given."""
+    named = [(name, value) for name, value in given.items() if value is not None]
+    if len(named) != 1:
+        raise CaseError(f"{otherwise}, one of them; given: {', '.join(name for name, _ in named) or 'none'}")
+    return named[0]
 
 
 def uniform(end: float, steps: int) -> Times:

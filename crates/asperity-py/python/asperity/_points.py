@@ -196,6 +196,7 @@ def trimmed(result: Result, names: tuple[str, ...]) -> Result:
         table={name: np.asarray(values) for name, values in result._table.items()},
         fields={name: result._stack(name) for name in names},
         field_steps=result._field_steps,
+        field_times=result.field_times,
         initial_gap=result.initial_gap if names else np.empty((0, 0)),
         size=result.size,
         attributes=result.attributes,

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from . import _core
 from ._arrays import Floats, count, field, line, number
 from ._core import CaseError
-from ._histories import History, Times, as_history, as_times
+from ._histories import History, Stage, Times, as_history, as_times, one_of
 from ._materials import Material
 from ._progress import Progress
 from ._result import FIELDS, HISTOGRAMS, ROW, Result, open
@@ -112,6 +112,7 @@ def march(
     load: History | float | None = None,
     pressure: History | float | None = None,
     approach: History | float | None = None,
+    stages: Sequence[Stage] | None = None,
     size: Sequence[float] | None = None,
     hardness: float | npt.ArrayLike | None = None,
     temperature: float | Sequence[tuple[float, float]] | None = None,
@@ -149,20 +150,25 @@ def march(
         limit = number("hardness", hardness)
         bodies = [_with_hardness(body, limit) for body in bodies]
     given = {"load": load, "pressure": pressure, "approach": approach}
-    controls = [name for name, value in given.items() if value is not None]
-    if len(controls) != 1:
-        raise CaseError(f"give load, pressure or approach, one of them; given: {', '.join(controls) or 'none'}")
-    history = as_history(controls[0], given[controls[0]])  # type: ignore[arg-type]
+    if stages is not None:
+        if any(value is not None for value in given.values()):
+            raise CaseError("give load, pressure, approach or stages, one of them")
+        programme = list(stages)
+        if not programme or not all(isinstance(stage, Stage) for stage in programme):
+            raise CaseError("stages is a list of asperity.Stage, one at least")
+        control, history = "stages", repr(programme)
+    else:
+        control, value = one_of(given, "give load, pressure, approach or stages")
+        prescribed = as_history(control, value)
+        programme = [Stage(**{control: prescribed})]
+        history = repr(prescribed)
     grid = as_times(times)
     core = _core.March(
         gap=gap,
         size=list(shape.size),
         boundary=boundary,
         bodies=[body._body for body in bodies],
-        control=controls[0],
-        history=history.kind,
-        history_numbers=list(history.numbers),
-        history_points=list(history.points),
+        stages=[stage._parts() for stage in programme],
         times=grid.kind,
         times_numbers=list(grid.numbers),
         include=[float(t) for t in line("include", np.asarray(include, dtype=float))],
@@ -183,8 +189,8 @@ def march(
     setup: dict[str, Any] = {
         "boundary": boundary,
         "bodies": [repr(body) for body in bodies],
-        "control": controls[0],
-        "history": repr(history),
+        "control": control,
+        "history": history,
         "scheme": scheme,
         "method": method,
         "precision": precision,
@@ -212,6 +218,7 @@ def solve(
     load: History | float | None = None,
     pressure: History | float | None = None,
     approach: History | float | None = None,
+    stages: Sequence[Stage] | None = None,
     size: Sequence[float] | None = None,
     hardness: float | npt.ArrayLike | None = None,
     temperature: float | Sequence[tuple[float, float]] | None = None,
@@ -241,6 +248,7 @@ def solve(
     material : the deformable body, or a pair of them
     times : instants that are solved: uniform, log, adaptive, listed, or a sequence [s]; breaks of the history are added
     load, pressure, approach : what is prescribed [N], [Pa] or [m]: a history, or a number for a step
+    stages : instead, a list of :class:`Stage` s: control that switches at a time or an event
     hardness : largest pressure [Pa], of all cells or as array (nx, ny); else that of the materials
     boundary : "free" (half-space) or "periodic"
     temperature : of the run [K], or its (time [s], temperature [K]) points, straight in between and held after the last;
@@ -281,6 +289,7 @@ def solve(
         load=load,
         pressure=pressure,
         approach=approach,
+        stages=stages,
         size=size,
         hardness=hardness,
         temperature=temperature,

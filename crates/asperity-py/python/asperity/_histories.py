@@ -129,6 +129,13 @@ class Stage:
         )
 
 
+def as_stage(control: str, history: History) -> Stage:
+    """One stage to the end of the run."""
+    if control == "load":
+        return Stage(load=history)
+    return Stage(pressure=history) if control == "pressure" else Stage(approach=history)
+
+
 def one_of(given: dict[str, History | float | None], otherwise: str) -> tuple[str, History | float]:
     """The one that is given."""
     named = [(name, value) for name, value in given.items() if value is not None]

@@ -182,8 +182,8 @@ class Result:
         >>> bool(abs(last.loss_angle - np.angle(modulus)) < 2e-3)
         True
         """
-        columns = [self._table[name].tolist() for name in ("time", "load", "approach")]
-        found = _core.cycles_of(*columns, number("frequency", frequency), number("start", start))
+        time, load, approach = (self._table[name].tolist() for name in ("time", "load", "approach"))
+        found = _core.cycles_of(time, load, approach, number("frequency", frequency), number("start", start))
         return [Cycle(*numbers) for numbers in found]
 
     @property

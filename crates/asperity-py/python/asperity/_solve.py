@@ -13,7 +13,7 @@ import numpy.typing as npt
 from . import _core
 from ._arrays import Floats, count, field, line, number
 from ._core import CaseError
-from ._histories import History, Stage, Times, as_history, as_times, one_of
+from ._histories import History, Stage, Times, as_history, as_stage, as_times, one_of
 from ._materials import Material
 from ._progress import Progress
 from ._result import FIELDS, HISTOGRAMS, ROW, Result, open
@@ -160,7 +160,7 @@ def march(
     else:
         control, value = one_of(given, "give load, pressure, approach or stages")
         prescribed = as_history(control, value)
-        programme = [Stage(**{control: prescribed})]
+        programme = [as_stage(control, prescribed)]
         history = repr(prescribed)
     grid = as_times(times)
     core = _core.March(

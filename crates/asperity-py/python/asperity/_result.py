@@ -178,8 +178,8 @@ class Result:
         >>> load = asp.sine(mean=0.02, amplitude=0.01, frequency=0.2)
         >>> result = asp.solve(punch, zener, load=load, times=asp.uniform(20.0, 400), fields=[])
         >>> last = result.cycles(0.2)[-1]
-        >>> modulus = zener.complex(2 * np.pi * 0.2)        # full contact: the loss angle of the material
-        >>> bool(abs(last.loss_angle - np.angle(modulus)) < 2e-3)
+        >>> storage, loss = zener.storage_loss(2 * np.pi * 0.2)        # full contact: the loss angle of the material
+        >>> bool(abs(last.loss_angle - np.arctan2(loss, storage)) < 2e-3)
         True
         """
         time, load, approach = (self._table[name].tolist() for name in ("time", "load", "approach"))

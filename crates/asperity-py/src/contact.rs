@@ -2,6 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
+use asperity::contact::Hardness;
 use asperity::operator::half_space;
 use asperity::{ContactState, Grid, Prescribed, Problem, Solver};
 use numpy::{IntoPyArray, PyReadonlyArray2};
@@ -14,7 +15,7 @@ use crate::wait::without_python;
 
 /// Pressure, displacement and approach of an elastic contact, and how good they are.
 #[pyfunction]
-#[pyo3(signature = (gap, size, contact_modulus, load, approach, hardness, boundary, method, precision, tolerance, max_iterations))]
+#[pyo3(signature = (gap, size, contact_modulus, load, approach, hardness, hardness_map, boundary, method, precision, tolerance, max_iterations))]
 #[allow(clippy::too_many_arguments)]
 pub fn elastic<'py>(
     py: Python<'py>,
@@ -24,6 +25,7 @@ pub fn elastic<'py>(
     load: Option<f64>,
     approach: Option<f64>,
     hardness: f64,
+    hardness_map: Option<PyReadonlyArray2<'_, f64>>,
     boundary: &str,
     method: &str,
     precision: &str,
@@ -47,6 +49,19 @@ pub fn elastic<'py>(
         let words = "finite, or infinite where a cell cannot touch";
         return Err(CaseError::new_err(format!("gap holds {value}, but must be {words}")));
     }
+    let hardnesses: Option<Vec<f64>> = match &hardness_map {
+        Some(map) if map.as_array().dim() != (nx, ny) => {
+            let found = map.as_array().dim();
+            let words = format!("hardness has shape {found:?}, but must have {:?}, one for each cell", (nx, ny));
+            return Err(CaseError::new_err(words));
+        }
+        Some(map) => Some(map.as_array().iter().copied().collect()),
+        None => None,
+    };
+    if let Some(value) = hardnesses.iter().flatten().find(|h| !(h.is_finite() && **h > 0.0)) {
+        let words = format!("hardness holds {value}, but must be finite and greater than 0 Pa in every cell");
+        return Err(CaseError::new_err(words));
+    }
     let boundary = boundary_of(boundary)?;
     let options = solver_of(method, precision, tolerance, max_iterations)?;
     options.validate().map_err(|error| raised(py, error))?;
@@ -55,8 +70,8 @@ pub fn elastic<'py>(
     let solved = without_python(py, &interrupt, || {
         let mut operator = half_space(grid, boundary);
         let mut solver = Solver::with_precision(options.method, options.precision, &*operator);
-        let problem =
-            Problem { gap: &cells, compliance: 1.0 / contact_modulus, hardness: hardness.into(), prescribed };
+        let hardness = hardnesses.as_deref().map_or(hardness.into(), Hardness::Cells);
+        let problem = Problem { gap: &cells, compliance: 1.0 / contact_modulus, hardness, prescribed };
         solver.solve(&mut *operator, &problem, &options, &mut state, Some(&interrupt))
     })?;
     let map = |values: Vec<f64>| {

@@ -503,3 +503,16 @@ def test_stages_that_cannot_be_are_refused(wrong, words):
     sphere = asp.Surface.sphere(cells=(16, 16), size=(1e-3, 1e-3), radius=10e-3)
     with pytest.raises(asp.CaseError, match=words):
         asp.solve(sphere, asp.Elastic(young=1e6, poisson=0.5), times=[1.0], progress=False, **wrong)
+
+
+def test_an_elastic_contact_takes_a_hardness_for_each_cell():
+    sphere = asp.Surface.sphere(cells=(32, 32), size=(1e-3, 1e-3), radius=10e-3)
+    soft = np.full((32, 32), 40e6)
+    soft[:16] = 10e6
+    contact = asp.elastic(sphere, 1e9, load=2.0, hardness=soft)
+    assert contact.pressure[:16].max() == 10e6 and 10e6 < contact.pressure[16:].max() <= 40e6
+    even = asp.elastic(sphere, 1e9, load=2.0, hardness=np.full((32, 32), 12e6))
+    assert np.array_equal(even.pressure, asp.elastic(sphere, 1e9, load=2.0, hardness=12e6).pressure)
+    for wrong, words in ((np.ones((3, 3)), r"\(3, 3\)"), (-soft, "greater than 0")):
+        with pytest.raises(asp.CaseError, match=words):
+            asp.elastic(sphere, 1e9, load=2.0, hardness=wrong)

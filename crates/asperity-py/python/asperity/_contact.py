@@ -7,6 +7,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+import numpy.typing as npt
+
 from . import _core
 from ._arrays import Floats, count, field, number, pair
 from ._surface import as_surface
@@ -63,7 +66,7 @@ def elastic(
     load: float | None = None,
     approach: float | None = None,
     size: Sequence[float] | None = None,
-    hardness: float | None = None,
+    hardness: float | npt.ArrayLike | None = None,
     boundary: str = "free",
     method: str = "projected-cg",
     precision: str = "double",
@@ -78,7 +81,7 @@ def elastic(
     contact_modulus : E* [Pa], (1 - nu1^2)/E1 + (1 - nu2^2)/E2 = 1/E*
     load, approach : normal load [N] or approach [m], one of them
     size : lengths of the domain along x and y [m], where the gap is an array
-    hardness : largest pressure [Pa]
+    hardness : largest pressure [Pa], of all cells or as array (nx, ny)
     boundary : "free" or "periodic"
     method : "projected-cg" or "polonsky-keer"
     precision : "double", or "mixed": the convolutions of iterations in single precision, to the same tolerance
@@ -103,13 +106,15 @@ def elastic(
     elif size is None:
         raise _core.CaseError("the gap is an array, so that its size in m is needed: size=(Lx, Ly)")
     h0 = field("gap", gap)
+    cells = field("hardness", hardness) if hardness is not None and np.ndim(hardness) == 2 else None
     out = _core.elastic(
         h0,
         list(pair("size", size)),
         number("contact_modulus", contact_modulus),
         None if load is None else number("load", load),
         None if approach is None else number("approach", approach),
-        math.inf if hardness is None else number("hardness", hardness),
+        math.inf if hardness is None or cells is not None else number("hardness", hardness),
+        cells,
         boundary,
         method,
         precision,

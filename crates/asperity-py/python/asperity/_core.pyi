@@ -152,6 +152,7 @@ def elastic(
     load: float | None,
     approach: float | None,
     hardness: float,
+    hardness_map: _Floats | None,
     boundary: str,
     method: str,
     precision: str,

@@ -1,0 +1,182 @@
+//! The arguments of `asperity material` and `asperity fit-indentation`.
+
+use std::path::PathBuf;
+
+use clap::Subcommand;
+
+#[derive(Debug, Subcommand)]
+pub enum Material {
+    /// Print relaxation, creep, storage, loss and tan delta over decades
+    Show(Show),
+    /// Fit a Prony series to a relaxation test, a creep test or DMA sweeps
+    Fit(Fit),
+}
+
+#[derive(Debug, clap::Args)]
+pub struct Show {
+    /// A case file, or a file with a `material = { ... }` and nothing else
+    pub file: PathBuf,
+    /// First time, e.g. --from '1 ms' [default: a decade before the material's times]
+    #[arg(long, value_name = "TIME")]
+    pub from: Option<String>,
+    /// Last time [default: a decade after the material's times]
+    #[arg(long, value_name = "TIME")]
+    pub to: Option<String>,
+    /// Lines of the table per decade
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=100))]
+    pub per_decade: u16,
+    /// Set a key of the case, e.g. --set temperature.history.value='60 °C'
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// Print a JSON list with one object per body
+    #[arg(long)]
+    pub json: bool,
+    /// Draw the functions: a path that ends in .svg, .png or .pdf
+    #[arg(long, value_name = "PATH")]
+    pub plot: Option<PathBuf>,
+    /// Replace a picture that is there already
+    #[arg(long)]
+    pub force: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct Fit {
+    /// The text table: one point per line; separator and decimal mark are found, units stand in the header
+    pub data: PathBuf,
+    /// What was measured [default: what the header says]
+    #[arg(long)]
+    pub kind: Option<KindName>,
+    /// Whether the numbers are Young's or shear moduli (or compliances)
+    #[arg(long, default_value = "young")]
+    pub modulus: MeasureName,
+    /// Where a quantity stands, by number from 1 or by header: --column frequency=1 --column storage="E' [MPa]";
+    /// quantities: time, modulus, compliance, frequency, storage, loss, tan_delta, temperature
+    #[arg(long, value_name = "QUANTITY=COLUMN")]
+    pub column: Vec<String>,
+    /// Unit of a quantity, where the header names none: --unit storage=MPa
+    #[arg(long, value_name = "QUANTITY=UNIT")]
+    pub unit: Vec<String>,
+    /// The part of the curve that is fitted: --window '0.1 s, 100 s', of a dma --window '0.1 Hz, 100 Hz'
+    #[arg(long, value_name = "A,B")]
+    pub window: Option<String>,
+    /// Most terms [default: as many as the data call for]
+    #[arg(long, value_name = "N")]
+    pub max_terms: Option<usize>,
+    /// Times per decade that the fit begins with [default: 3]
+    #[arg(long, value_name = "N")]
+    pub per_decade: Option<f64>,
+    /// Decades of times beyond the data [default: 1]
+    #[arg(long, value_name = "DECADES")]
+    pub margin: Option<f64>,
+    /// Largest relative misfit before the data are refused [default: 0.1]
+    #[arg(long, value_name = "SHARE")]
+    pub max_misfit: Option<f64>,
+    /// What comes after the data
+    #[arg(long, default_value = "free")]
+    pub long_time: LongTimeName,
+    /// Shift of several temperatures: --wlf 'C1, C2, REFERENCE', e.g. '8.86, 101.6 K, 20 °C'
+    #[arg(long, value_name = "C1,C2,REF", conflicts_with_all = ["arrhenius", "estimate_shift"])]
+    pub wlf: Option<String>,
+    /// Shift of several temperatures: --arrhenius 'ENERGY, REFERENCE', e.g. '120 kJ/mol, 20 °C'
+    #[arg(long, value_name = "ENERGY,REF", conflicts_with = "estimate_shift")]
+    pub arrhenius: Option<String>,
+    /// Find the shift from the overlap of the sweeps, about this temperature
+    #[arg(long, value_name = "REF")]
+    pub estimate_shift: Option<String>,
+    /// The file to write, with a `material = { ... }` for a case [default: printed]
+    #[arg(short, long, value_name = "PATH")]
+    pub output: Option<PathBuf>,
+    /// Draw data and fit: a path that ends in .svg, .png or .pdf
+    #[arg(long, value_name = "PATH")]
+    pub plot: Option<PathBuf>,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+    /// Replace files that are there already
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// What was measured.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub enum KindName {
+    /// Relaxation modulus over time
+    Relaxation,
+    /// Creep compliance over time
+    Creep,
+    /// Storage and loss modulus over frequency
+    Dma,
+}
+
+/// What a modulus measures.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub enum MeasureName {
+    Young,
+    Shear,
+}
+
+/// What comes after the data.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub enum LongTimeName {
+    /// Whatever fits best
+    Free,
+    /// No flow
+    Solid,
+    /// No modulus is left
+    Fluid,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct FitIndentation {
+    /// The record: a text table with columns of time, load and depth
+    pub record: PathBuf,
+    /// Radius of the sphere, e.g. '5 mm'
+    #[arg(long, value_name = "LENGTH", required_unless_present = "cone", conflicts_with = "cone")]
+    pub radius: Option<String>,
+    /// Slope of a cone instead: rise per length, the cotangent of its half angle
+    #[arg(long, value_name = "SLOPE")]
+    pub cone: Option<String>,
+    /// Poisson's ratio of the body
+    #[arg(long, value_name = "NU", default_value = "0.5")]
+    pub poisson: String,
+    /// The moduli to give
+    #[arg(long, value_enum, default_value = "young")]
+    pub modulus: MeasureName,
+    /// The channel that the instrument controlled, taken as it was measured [default: the one with less scatter]
+    #[arg(long, value_enum)]
+    pub given: Option<GivenName>,
+    /// Number of terms, at most 6 [default: as many as the record calls for]
+    #[arg(long, value_name = "N")]
+    pub terms: Option<usize>,
+    /// What happens at times longer than the record
+    #[arg(long, value_enum, default_value = "free")]
+    pub long_time: LongTimeName,
+    /// Fit the depth of first touch too, instead of taking it as 0
+    #[arg(long)]
+    pub fit_touch: bool,
+    /// Where a quantity stands: QUANTITY=NUMBER or QUANTITY=HEADER, of time, load, depth; may be given several times
+    #[arg(long, value_name = "QUANTITY=COLUMN")]
+    pub column: Vec<String>,
+    /// The unit of a quantity: QUANTITY=UNIT; may be given several times
+    #[arg(long, value_name = "QUANTITY=UNIT")]
+    pub unit: Vec<String>,
+    /// Write the material, ready to paste under a [[body]] of a case file
+    #[arg(short, long, value_name = "PATH")]
+    pub output: Option<PathBuf>,
+    /// Draw record and model as PNG, SVG or PDF
+    #[arg(long, value_name = "PATH")]
+    pub plot: Option<PathBuf>,
+    /// Replace files that are there already
+    #[arg(long)]
+    pub force: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// A channel of an indentation.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub enum GivenName {
+    Depth,
+    Load,
+}

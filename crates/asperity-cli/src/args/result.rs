@@ -1,0 +1,118 @@
+//! The arguments of what is done with results.
+
+use std::path::PathBuf;
+
+#[derive(Debug, clap::Args)]
+pub struct ShowResult {
+    /// The result (a Zarr directory)
+    pub result: PathBuf,
+    /// The instant of the map: the stored one that is nearest, e.g. '500 s' [default: last]
+    #[arg(long, value_name = "T")]
+    pub time: Option<String>,
+    /// Print one JSON object: status, rows, work and every number of the last row
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct Report {
+    /// The result (a Zarr directory)
+    pub result: PathBuf,
+    /// The page to write [default: the result's name with .html]
+    #[arg(short, long, value_name = "PATH")]
+    pub output: Option<PathBuf>,
+    /// Largest size of the maps in the page, in megabytes; larger ones are reduced to means over blocks of cells
+    #[arg(long, value_name = "MB", default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..=2000))]
+    pub megabytes: u32,
+    /// Largest number of instants whose maps are in the page
+    #[arg(long, value_name = "N", default_value_t = 24, value_parser = clap::value_parser!(u32).range(1..=10000))]
+    pub instants: u32,
+    /// Replace a page that is there already
+    #[arg(long)]
+    pub force: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct View {
+    /// The result (a Zarr directory)
+    pub result: PathBuf,
+    /// The port; 0 takes a free one
+    #[arg(long, default_value_t = 0)]
+    pub port: u16,
+    /// The address to listen at: other machines can look at the result where it is not this machine's own
+    #[arg(long, default_value = "127.0.0.1", value_name = "ADDRESS")]
+    pub host: std::net::IpAddr,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct Plot {
+    /// The result (a Zarr directory)
+    pub result: PathBuf,
+    /// evolution, load-displacement, pressure, gap, displacement, contact, flattening, initial-gap, profile,
+    /// histogram, spots, work or quantities
+    pub what: String,
+    /// The file to write; its ending tells the form: png, svg or pdf [default: RESULT-WHAT.png]
+    #[arg(short, long, value_name = "PATH")]
+    pub output: Option<PathBuf>,
+    /// The instant of maps, profiles and distributions: the stored one that is nearest, e.g. '500 s' [default: last]
+    #[arg(long, value_name = "T")]
+    pub time: Option<String>,
+    /// Direction of the line of a profile
+    #[arg(long, value_name = "AXIS", default_value = "x", value_parser = ["x", "y"])]
+    pub along: String,
+    /// Where the line of a profile crosses the other axis, e.g. '20 um' [default: the middle]
+    #[arg(long, value_name = "PLACE")]
+    pub at: Option<String>,
+    /// Time on a logarithmic axis
+    #[arg(long)]
+    pub log_time: bool,
+    /// The title [default: that of the case]
+    #[arg(long)]
+    pub title: Option<String>,
+    /// Replace a file that is there already
+    #[arg(long)]
+    pub force: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct Export {
+    /// The result (a Zarr directory)
+    pub result: PathBuf,
+    /// netcdf, hdf5, npz, vtk, csv or png (a directory of pictures)
+    #[arg(long)]
+    pub to: String,
+    /// The file to write [default: the result's name with the ending of the format]
+    #[arg(short, long, value_name = "PATH")]
+    pub output: Option<PathBuf>,
+    /// Fields to export [default: all that the result holds; none for csv]
+    #[arg(long, value_delimiter = ',')]
+    pub fields: Option<Vec<String>>,
+    /// Replace an output that is there already
+    #[arg(long)]
+    pub force: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct Reproduce {
+    /// Only these figures, 1 to 8
+    #[arg(value_parser = clap::value_parser!(u8).range(1..=8))]
+    pub figures: Vec<u8>,
+    /// The directory to make
+    #[arg(short, long, value_name = "DIR", default_value = "reproduction")]
+    pub output: PathBuf,
+    /// What the figures are written as: png, svg or pdf
+    #[arg(long, value_name = "FORM", default_value = "png", value_parser = ["png", "svg", "pdf"])]
+    pub form: String,
+    /// Cells along a side of every case [default: 256, and 512 for the rough sphere; the paper has 1024]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(16..=8192))]
+    pub cells: Option<u32>,
+    /// Threads to use [default: one per core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Replace figures and results that are there already
+    #[arg(long)]
+    pub force: bool,
+    /// Print a JSON list of {figure, quantity, difference, of}
+    #[arg(long)]
+    pub json: bool,
+}

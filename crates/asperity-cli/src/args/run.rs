@@ -1,0 +1,73 @@
+//! The arguments of runs and their checks.
+
+use std::path::PathBuf;
+
+#[derive(Debug, clap::Args)]
+pub struct Run {
+    /// The case file (TOML)
+    pub case: PathBuf,
+    /// Where the result goes [default: output.path of the case, or the case's name with .zarr]
+    #[arg(short, long, value_name = "PATH")]
+    pub output: Option<PathBuf>,
+    /// Go on with the run of this case that was interrupted or killed
+    #[arg(long, conflicts_with = "force")]
+    pub resume: bool,
+    /// Replace a result that is there already
+    #[arg(long)]
+    pub force: bool,
+    #[command(flatten)]
+    pub common: Common,
+    /// Print one JSON object at the end
+    #[arg(long)]
+    pub json: bool,
+    /// Say nothing but errors and the result
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct Check {
+    /// The case file (TOML)
+    pub case: PathBuf,
+    #[command(flatten)]
+    pub common: Common,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct Common {
+    /// Threads to use [default: one per core]; the numbers are the same for any
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Set a key of the case, e.g. --set domain.cells='[256, 256]' --set body.0.hardness='200 MPa'
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct New {
+    /// The starter case; without it they are listed
+    pub template: Option<String>,
+    /// The file to write [default: TEMPLATE.toml]
+    pub path: Option<PathBuf>,
+    /// Replace a file that is there already
+    #[arg(long)]
+    pub force: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct Verify {
+    /// Run only these cases
+    pub cases: Vec<String>,
+    /// Print a JSON list of {case, quantity, error, tolerance, ok}
+    #[arg(long, conflicts_with = "markdown")]
+    pub json: bool,
+    /// Print the table as Markdown
+    #[arg(long)]
+    pub markdown: bool,
+    /// Threads to use [default: one per core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+}

@@ -1,0 +1,154 @@
+//! The arguments of `asperity surface`.
+
+use std::path::PathBuf;
+
+use clap::Subcommand;
+
+#[derive(Debug, Subcommand)]
+pub enum Surface {
+    /// Print format, size and statistics of the heights as stored
+    Info(SurfaceInfo),
+    /// Make a rough surface: self-affine, with a lay, with a height distribution
+    Generate(Box<SurfaceGenerate>),
+    /// Prepare a surface step by step: level, fill, crop, resample, filter, ...
+    Process(Box<SurfaceProcess>),
+    /// Write the surface as NPZ, GWY, X3P, SDF, NetCDF or text
+    Convert(SurfaceConvert),
+}
+
+#[derive(Debug, clap::Args)]
+pub struct SurfaceInfo {
+    #[command(flatten)]
+    pub file: SurfaceFile,
+    /// The surface repeats beyond its edges: take its spectrum without levelling and window
+    #[arg(long)]
+    pub periodic: bool,
+    /// Fit the Hurst exponent only to waves up to this length
+    #[arg(long, value_name = "LENGTH")]
+    pub longest: Option<String>,
+    /// Fit the Hurst exponent only to waves from this length on
+    #[arg(long, value_name = "LENGTH")]
+    pub shortest: Option<String>,
+    /// Draw height map, power spectrum and height distribution (.png or .svg)
+    #[arg(long, value_name = "PICTURE")]
+    pub plot: Option<PathBuf>,
+    /// Replace a picture that is there already
+    #[arg(long)]
+    pub force: bool,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// The keys of kind = "self-affine" in a case file, as options.
+#[derive(Debug, clap::Args)]
+pub struct SurfaceGenerate {
+    /// Number of cells along x and y, one number for a square
+    #[arg(long, value_name = "NX,NY", default_value = "512")]
+    pub cells: String,
+    /// Length along x and y, one for a square: --size '1 mm,1 mm'
+    #[arg(long, value_name = "A,B")]
+    pub size: Option<String>,
+    /// A known roughness: contact-mechanics-challenge; other options change its numbers
+    #[arg(long, value_name = "NAME")]
+    pub preset: Option<String>,
+    /// Hurst exponent, greater than 0 and at most 1
+    #[arg(long, value_name = "H")]
+    pub hurst: Option<String>,
+    /// Root mean square of the gradient; this or --rms-height
+    #[arg(long, value_name = "G", allow_hyphen_values = true)]
+    pub rms_gradient: Option<String>,
+    /// Root mean square of the height, e.g. '0.2 um'; this or --rms-gradient
+    #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
+    pub rms_height: Option<String>,
+    /// Longest wavelength
+    #[arg(long, value_name = "LENGTH")]
+    pub longest: Option<String>,
+    /// Shortest wavelength, two cells at least
+    #[arg(long, value_name = "LENGTH")]
+    pub shortest: Option<String>,
+    /// Wavelength down to which the spectrum is flat [default: the longest]
+    #[arg(long, value_name = "LENGTH")]
+    pub roll_off: Option<String>,
+    /// Angle of the lay from the x axis, e.g. '30 deg'; needs --lay-ratio
+    #[arg(long, value_name = "ANGLE", allow_hyphen_values = true, requires = "lay_ratio")]
+    pub lay_angle: Option<String>,
+    /// Length along the lay over length across it, 1 or more
+    #[arg(long, value_name = "RATIO")]
+    pub lay_ratio: Option<String>,
+    /// Skewness of the heights, negative for plateaus with valleys
+    #[arg(long, value_name = "SSK", allow_hyphen_values = true)]
+    pub skewness: Option<String>,
+    /// Kurtosis of the heights, 3 for Gaussian ones
+    #[arg(long, value_name = "SKU")]
+    pub kurtosis: Option<String>,
+    /// A measured surface whose heights are distributed as wanted
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["skewness", "kurtosis"])]
+    pub distribution: Option<String>,
+    /// Number that picks the realisation
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u64,
+    #[command(flatten)]
+    pub to: SurfaceOutput,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct SurfaceProcess {
+    #[command(flatten)]
+    pub file: SurfaceFile,
+    /// A step, done in the order given, as in `process` of a case file: --op level=plane --op fill=harmonic --op 'crop
+    /// size=50um,50um' --op 'filter shortest=2um' --op 'resample=bilinear cells=512,512' --op flip=x --op rotate=1
+    /// --op invert --op window=hann --op 'outliers=6 radius=2'
+    #[arg(long, value_name = "STEP", required = true)]
+    pub op: Vec<String>,
+    #[command(flatten)]
+    pub to: SurfaceOutput,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct SurfaceConvert {
+    #[command(flatten)]
+    pub file: SurfaceFile,
+    /// The file to write; its ending tells the format
+    pub output: PathBuf,
+    /// The format, where the ending does not tell it: npz, gwy, x3p, sdf, nc, asc
+    #[arg(long)]
+    pub to: Option<String>,
+    /// Replace a file that is there already
+    #[arg(long)]
+    pub force: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct SurfaceOutput {
+    /// The file to write; its ending tells the format
+    #[arg(short, long, value_name = "PATH")]
+    pub output: PathBuf,
+    /// The format, where the ending does not tell it: npz, gwy, x3p, sdf, nc, asc
+    #[arg(long, value_name = "FORMAT")]
+    pub to: Option<String>,
+    /// Draw height map, power spectrum and height distribution (.png or .svg)
+    #[arg(long, value_name = "PICTURE")]
+    pub plot: Option<PathBuf>,
+    /// Replace files that are there already
+    #[arg(long)]
+    pub force: bool,
+    /// Print the statistics as one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct SurfaceFile {
+    /// The measured surface; its format is found from the content
+    pub file: PathBuf,
+    /// Physical size along x and y, where the file holds none: --size '1 mm,1 mm'
+    #[arg(long, value_name = "A,B")]
+    pub size: Option<String>,
+    /// Unit of the heights, where the file holds none: --height-unit um
+    #[arg(long, value_name = "U")]
+    pub height_unit: Option<String>,
+    /// Name or number (from 0) of the channel, where a file has several
+    #[arg(long)]
+    pub channel: Option<String>,
+}

@@ -52,7 +52,8 @@ pub fn elastic<'py>(
     let hardnesses: Option<Vec<f64>> = match &hardness_map {
         Some(map) if map.as_array().dim() != (nx, ny) => {
             let found = map.as_array().dim();
-            let words = format!("hardness has shape {found:?}, but must have {:?}, one for each cell", (nx, ny));
+            let words =
+                format!("hardness has shape {found:?}, but must have {:?}, one for each cell", (nx, ny));
             return Err(CaseError::new_err(words));
         }
         Some(map) => Some(map.as_array().iter().copied().collect()),

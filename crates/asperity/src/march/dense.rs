@@ -8,7 +8,7 @@ use crate::contact::{ContactState, Hardness};
 use crate::field::{minimum, strands, sweep};
 use crate::load::Control;
 use crate::march::record::{Remembered, Step};
-use crate::march::{March, Past, cap};
+use crate::march::{March, Past, cap, undeformed};
 use crate::time::Instant;
 
 /// A state within the last step of a march; [`March::view`] shows it as a row.
@@ -50,11 +50,7 @@ impl March {
         let before = &self.previous.unit_displacement;
         let compliance = memory.partial(&lengths, before, &rigid, &mut history);
         let mut gap = rigid;
-        let undeformed = match &self.dents {
-            Some(dents) => dents.gap(),
-            None => self.simulation.gap.as_slice().unwrap_or_default(),
-        };
-        gap.copy_from_slice(undeformed);
+        gap.copy_from_slice(undeformed(&self.simulation, &self.dents));
         sweep((&mut gap[..], &history[..]), &|(h, g): (&mut [f64], &[f64])| {
             h.iter_mut().zip(g).for_each(|(h, g)| *h += g);
         });

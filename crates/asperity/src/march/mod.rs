@@ -106,6 +106,14 @@ struct Previous {
     unit_displacement: Vec<f64>,
 }
 
+/// The undeformed gap h0 with its dents.
+fn undeformed<'a>(simulation: &'a Simulation, dents: &'a Option<Dents>) -> &'a [f64] {
+    match dents {
+        Some(dents) => dents.gap(),
+        None => simulation.gap.as_slice().unwrap_or_default(),
+    }
+}
+
 /// The cut-off of each cell.
 fn cap<'a>(simulation: &Simulation, of_cells: &'a Option<Vec<f64>>) -> Hardness<'a> {
     of_cells.as_deref().map_or(Hardness::Uniform(simulation.hardness), Hardness::Cells)
@@ -248,10 +256,7 @@ impl March {
         self.measure_step(instant);
         self.meter.clear();
         let unit = &self.state.unit_displacement;
-        let rigid = match &self.dents {
-            Some(dents) => dents.gap(),
-            None => self.simulation.gap.as_slice().unwrap_or_default(),
-        };
+        let rigid = undeformed(&self.simulation, &self.dents);
         self.compliance = match &mut self.past {
             Past::Memory(m) => {
                 m.history(&self.lengths, &self.previous.unit_displacement, unit, rigid, &mut self.gap)
@@ -269,10 +274,7 @@ impl March {
         let instant = self.timeline.inside(&self.simulation, dt);
         self.measure_step(instant);
         let unit = &self.previous.unit_displacement;
-        let rigid = match &self.dents {
-            Some(dents) => dents.gap(),
-            None => self.simulation.gap.as_slice().unwrap_or_default(),
-        };
+        let rigid = undeformed(&self.simulation, &self.dents);
         self.compliance = match &mut self.past {
             Past::Memory(m) => m.retry(&self.lengths, unit, rigid, &mut self.gap),
             Past::Direct(d) => d.retry(dt, rigid, &mut self.gap),

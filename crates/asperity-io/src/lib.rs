@@ -3,6 +3,7 @@
 pub mod case;
 pub mod curve;
 pub mod cycles;
+mod digest;
 pub mod export;
 pub mod preparation;
 pub mod session;

@@ -33,8 +33,6 @@ mod table;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-use md5::{Digest, Md5};
-
 pub use columns::{Column, Columns, Role, angular_frequency};
 pub use error::CurveError;
 pub use fit::{Fitted, Request, Series, ShiftRequest};
@@ -137,7 +135,7 @@ impl Curves {
     /// # Errors
     /// As [`read`](Self::read).
     pub fn parse(path: &Path, bytes: &[u8], kind: Kind, columns: &Columns) -> Result<Curves, CurveError> {
-        let digest = Md5::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+        let digest = crate::digest::md5(bytes);
         let parsed = Table::parse(bytes).and_then(|table| {
             let (values, notes) = columns::values(&table, kind.into(), columns)?;
             let lines: Vec<usize> = table.rows.iter().map(|row| row.line).collect();

@@ -1,11 +1,11 @@
 //! The hardness of each cell, from a file.
 
 use asperity::Grid;
-use md5::{Digest, Md5};
 use ndarray::Array2;
 
 use super::Checks;
 use crate::case::raw::{At, HardnessFile};
+use crate::digest::md5;
 use crate::topography::{Format, ReadOptions, read};
 
 /// The cut-off of each cell \[Pa\] over all bodies that have one, and the files with their MD5.
@@ -45,7 +45,7 @@ fn one(
     let HardnessFile { path, unit } = &at.value;
     let full = checks.file(path)?;
     let digest = match std::fs::read(&full) {
-        Ok(bytes) => Md5::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect(),
+        Ok(bytes) => md5(&bytes),
         Err(error) => {
             checks.fault(&path.span, format!("{} cannot be read: {error}", full.display()), "a file", None);
             return None;

@@ -9,8 +9,6 @@
 use std::io::Read;
 use std::path::Path;
 
-use md5::{Digest, Md5};
-
 use crate::case::quantity::range::NonNegative;
 use crate::case::quantity::{Prescribed, QuantityError, Time};
 
@@ -42,7 +40,7 @@ pub fn read(
     }
     let text = std::str::from_utf8(&bytes)
         .map_err(|error| format!("the file is not UTF-8 text (byte {})", error.valid_up_to()))?;
-    let digest = Md5::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+    let digest = crate::digest::md5(&bytes);
     Ok(History { points: parse(text, resolve)?, digest })
 }
 

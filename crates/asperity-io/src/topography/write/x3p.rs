@@ -3,20 +3,20 @@
 use std::io::{Cursor, Write};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use md5::{Digest, Md5};
 use quick_xml::escape::escape;
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
 use super::{lines, title};
+use crate::digest::md5;
 use crate::topography::{Format, HISTORY, Problem, Topography};
 
 const DATA: &str = "bindata/data.bin";
 
 pub(super) fn encode(topography: &Topography) -> Result<Vec<u8>, Problem> {
     let data = lines(topography);
-    let xml = main(topography, &checksum(&data));
-    let checksums = format!("{} *main.xml\n", checksum(xml.as_bytes()));
+    let xml = main(topography, &md5(&data));
+    let checksums = format!("{} *main.xml\n", md5(xml.as_bytes()));
     let mut zip = ZipWriter::new(Cursor::new(Vec::with_capacity(data.len() + 4096)));
     let failed = |e: zip::result::ZipError| Problem::Io(std::io::Error::other(e));
     // Little is gained by packing binary64 harder than this.
@@ -28,10 +28,6 @@ pub(super) fn encode(topography: &Topography) -> Result<Vec<u8>, Problem> {
         zip.write_all(content)?;
     }
     Ok(zip.finish().map_err(failed)?.into_inner())
-}
-
-fn checksum(bytes: &[u8]) -> String {
-    Md5::digest(bytes).iter().map(|b| format!("{b:02x}")).collect()
 }
 
 fn main(topography: &Topography, checksum: &str) -> String {

@@ -16,6 +16,7 @@ mod gauss_seidel;
 mod hardness;
 mod motion;
 mod polonsky_keer;
+mod preconditioner;
 mod projected_cg;
 mod residual;
 mod shift;

@@ -19,17 +19,17 @@
 use std::sync::atomic::AtomicBool;
 
 use asperity_convolution::eights::Cell;
-use asperity_convolution::lanes::Lanes;
 
 use super::direction::{Ahead, Turn, centre, products, steepest, turn};
 use super::motion::{Layout, Motion, advance, curvature, lay_out};
+use super::preconditioner::Preconditioner;
 use super::residual::Rating;
 use super::shift::{Shift, Trial};
 use super::start::make_feasible;
 use super::{ContactState, Outcome, Prescribed, Problem, SolverOptions, interrupted, not_converged};
 use crate::error::{Error, Result};
 use crate::grid::{Boundary, Grid};
-use crate::operator::{Operator, approximate_inverse};
+use crate::operator::Operator;
 
 /// Iterations without a halving of the residual before a spacer step.
 const PATIENCE: usize = 10;
@@ -68,9 +68,7 @@ impl Scalar for f32 {
 /// The method's working memory: 16 bytes per cell, 16 for steps in f64 or 8 in f32, sets of one bit, and the
 /// preconditioner's plan.
 pub struct ProjectedCg<T = f64> {
-    inverse: Lanes<f32>,
-    /// Largest of the preconditioner's symbol \[1/m\], which `inverse` has as 1.
-    sharpest: f64,
+    preconditioner: Preconditioner,
     /// Residual on S with its mean removed, in units of `unit`, now and one iteration ago.
     residual: Vec<f32>,
     previous: Vec<f32>,
@@ -126,10 +124,8 @@ impl<T: Scalar> ProjectedCg<T> {
     /// Plans the method for a grid and what surrounds it.
     pub fn new(grid: &Grid, boundary: Boundary) -> Self {
         let n = grid.len();
-        let (inverse, sharpest) = approximate_inverse(grid, boundary);
         ProjectedCg {
-            inverse,
-            sharpest,
+            preconditioner: Preconditioner::new(grid, boundary),
             residual: vec![0.0; n],
             previous: vec![0.0; n],
             image: vec![0.0; n],
@@ -299,13 +295,13 @@ impl<T: Scalar> ProjectedCg<T> {
         if centred {
             centre(&mut self.residual, &self.working, mean_r);
         }
-        self.inverse.apply_into(&self.residual, &mut self.image);
+        self.preconditioner.apply_into(&self.residual, &self.working, &mut self.image);
         let sums = products(&self.image, &self.residual, &self.previous, &self.direction, &self.working);
 
         // <z - mean z, r>, and the same with the residual before; each in its units.
         let mean_z = if sum.is_some() { sums.z / cells } else { 0.0 };
         let left = if centred { 0.0 } else { mean_r * cells };
-        let pressure = self.sharpest * unit / problem.compliance;
+        let pressure = self.preconditioner.sharpest * unit / problem.compliance;
         let product = pressure * unit * (sums.zr - mean_z * left);
         if product <= 0.0 || product.is_nan() {
             return None;

@@ -10,8 +10,8 @@
 use std::hint::black_box;
 use std::time::Instant;
 
+use asperity::contact::ProjectedCg;
 use asperity::convolution::eights::{Eight, Work, vectorize};
-use asperity::convolution::lanes::Lanes;
 use asperity::march::{March, Simulation};
 use asperity::material::{Creep, CreepTerm};
 use asperity::operator::half_space;
@@ -104,11 +104,10 @@ impl Size {
         let (mut output, mut rough) = (vec![0.0; n * n], vec![0.0; n * n]);
         let convolution = timed(|| operator.apply_into(&input, &mut output));
         let single_convolution = timed(|| operator.apply_single_into(&single, &mut rough));
-        // The preconditioner's work does not depend on its symbol.
-        let ones = ndarray::Array2::ones((n / 2 + 1, n / 2 + 1));
-        let mut inverse = Lanes::<f32>::new([n, n], [n, n], ones.view());
-        let preconditioner = timed(|| inverse.apply_into(&single, &mut rough));
-        drop((operator, inverse, input, single, output, rough));
+        let mut solver = ProjectedCg::<f64>::new(&grid, Boundary::Free);
+        let set = vec![0b0101_1100; (n * n).div_ceil(8)];
+        let preconditioner = timed(|| solver.precondition(&single, &set, &mut rough));
+        drop((operator, solver, input, single, output, rough));
         let (elastic, creep) = creep(n, precision, 2, if n > 1024 { 5 } else { 20 });
         Size { n, convolution, single: single_convolution, preconditioner, elastic, creep, precision }
     }

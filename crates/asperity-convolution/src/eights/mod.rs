@@ -153,7 +153,7 @@ pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output
 }
 
 /// What a field holds: `f64` or `f32`.
-pub trait Cell: Copy + Default + Send + Sync + 'static {
+pub trait Cell: Copy + Default + Into<f64> + Send + Sync + 'static {
     /// The nearest.
     fn nearest(x: f64) -> Self;
     /// Eight of them as `f64`, exactly.

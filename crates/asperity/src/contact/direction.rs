@@ -4,10 +4,11 @@
 //! Residual and direction are f32: they say where to go, relative to the largest violation, and the exact
 //! minimisation along the step makes up for their rounding. Groups of eight cells without a cell of S are skipped.
 
-use asperity_convolution::eights::{Eight, Mask, Work, vectorize};
+use asperity_convolution::eights::{Cell, Eight, Mask, Work, vectorize};
 
+use super::Hardness;
+use super::fields::{Fields, as_stored};
 use super::shift::ClippedSum;
-use super::{ContactState, Hardness, Problem};
 use crate::field::{Set, SetMut, sweep};
 
 /// Subtracts `mean` from the residual on S.
@@ -146,11 +147,11 @@ impl<V: Eight> Looking<V> {
 
 /// Turns the direction on S, 0 elsewhere, and looks at the trial point. `before` is the set of the direction that was
 /// there: other cells are zero already.
-pub(super) fn turn(
+pub(super) fn turn<P: Cell>(
     d: &mut [f32],
     z: &[f32],
     (set, before): (&[u8], &[u8]),
-    p: &[f64],
+    p: &[P],
     hardness: Hardness,
     turn: Turn,
 ) -> Ahead {
@@ -160,22 +161,22 @@ pub(super) fn turn(
         &[f32],
         Set,
         Set,
-        &[f64],
+        &[P],
         Hardness,
     )| { vectorize(Turning { d, z, set, before, p, hardness, turn }) }))
 }
 
-struct Turning<'a> {
+struct Turning<'a, P> {
     d: &'a mut [f32],
     z: &'a [f32],
     set: &'a [u8],
     before: &'a [u8],
-    p: &'a [f64],
+    p: &'a [P],
     hardness: Hardness<'a>,
     turn: Turn,
 }
 
-impl Work for Turning<'_> {
+impl<P: Cell> Work for Turning<'_, P> {
     type Yield = [f64; 4];
 
     #[inline(always)]
@@ -194,7 +195,7 @@ impl Work for Turning<'_> {
             d.only(on).store(self.d, n);
             // As it was rounded: later sweeps take the step from the stored direction.
             let d = V::from_singles(d.only(on).to_singles());
-            looking.meet(V::load(self.p, n, 0.0), d, self.hardness.eight(n), on);
+            looking.meet(V::load(self.p, n, 0.0), d, as_stored::<P, V>(self.hardness.eight(n)), on);
         }
         looking.sums.map(V::sum)
     }
@@ -202,61 +203,58 @@ impl Work for Turning<'_> {
 
 /// The direction d = r / scale over all cells that can touch, which become the set; looks at the trial point
 /// p - a d.
-pub(super) fn steepest(
-    problem: &Problem,
-    state: &ContactState,
+pub(super) fn steepest<P: Cell>(
+    fields: &Fields<P>,
+    hardness: Hardness,
     w: f64,
     scale: f64,
     length: f64,
     (d, r, set): (&mut [f32], &mut [f32], &mut [u8]),
 ) -> Ahead {
+    let compliance = fields.compliance;
     Ahead::of(sweep(
-        (
-            (d, r, SetMut(set)),
-            &state.pressure[..],
-            &state.unit_displacement[..],
-            problem.gap,
-            problem.hardness,
-        ),
+        ((d, r, SetMut(set)), &*fields.pressure, &*fields.displacement, fields.gap, hardness),
         &|((d, r, SetMut(set)), p, u, h, hardness): (
             (&mut [f32], &mut [f32], SetMut),
-            &[f64],
-            &[f64],
-            &[f64],
+            &[P],
+            &[P],
+            Option<&[f64]>,
             Hardness,
-        )| { vectorize(Steepest { problem, w, scale, length, d, r, set, p, u, h, hardness }) },
+        )| { vectorize(Steepest { compliance, w, scale, length, d, r, set, p, u, h, hardness }) },
     ))
 }
 
-struct Steepest<'a> {
-    problem: &'a Problem<'a>,
+struct Steepest<'a, P> {
+    compliance: f64,
     w: f64,
     scale: f64,
     length: f64,
     d: &'a mut [f32],
     r: &'a mut [f32],
     set: &'a mut [u8],
-    p: &'a [f64],
-    u: &'a [f64],
-    h: &'a [f64],
+    p: &'a [P],
+    u: &'a [P],
+    h: Option<&'a [f64]>,
     hardness: Hardness<'a>,
 }
 
-impl Work for Steepest<'_> {
+impl<P: Cell> Work for Steepest<'_, P> {
     type Yield = [f64; 4];
 
     #[inline(always)]
     fn run<V: Eight>(self) -> [f64; 4] {
         let mut looking = Looking::<V>::new(self.length);
-        let (c, w, per) = (V::splat(self.problem.compliance), V::splat(self.w), V::splat(1.0 / self.scale));
+        let (c, w, per) = (V::splat(self.compliance), V::splat(self.w), V::splat(1.0 / self.scale));
         for (n, set) in (0..).step_by(8).zip(self.set) {
-            let h = V::load(self.h, n, f64::INFINITY);
-            let on = h.less(V::splat(f64::INFINITY));
-            let r = ((c * V::load(self.u, n, 0.0) + h - w) * per).only(on).to_singles();
+            let h = self.h.map_or(V::splat(0.0), |h| V::load(h, n, f64::INFINITY));
+            let g = c * V::load(self.u, n, f64::INFINITY) + h;
+            let on = g.less(V::splat(f64::INFINITY));
+            let r = ((g - w) * per).only(on).to_singles();
             V::from_singles(r).store(self.d, n);
             V::from_singles(r).store(self.r, n);
             *set = on.bits();
-            looking.meet(V::load(self.p, n, 0.0), V::from_singles(r), self.hardness.eight(n), on);
+            let top = as_stored::<P, V>(self.hardness.eight(n));
+            looking.meet(V::load(self.p, n, 0.0), V::from_singles(r), top, on);
         }
         looking.sums.map(V::sum)
     }

@@ -12,6 +12,7 @@
 
 mod coarse;
 mod direction;
+mod fields;
 mod gauss_seidel;
 mod hardness;
 mod motion;
@@ -23,10 +24,11 @@ mod shift;
 mod start;
 mod state;
 
+pub use fields::Scalar;
 pub use gauss_seidel::gauss_seidel;
 pub use hardness::Hardness;
 pub use polonsky_keer::PolonskyKeer;
-pub use projected_cg::{ProjectedCg, Scalar};
+pub use projected_cg::ProjectedCg;
 pub use state::ContactState;
 
 use std::sync::atomic::AtomicBool;
@@ -75,9 +77,9 @@ pub enum Precision {
     /// Every convolution of a pressure in f64.
     #[default]
     Double,
-    /// The steps of an iteration are convolved in f32, at half the cost; what that leaves undone shows in a convolution
-    /// in f64 before a solution is accepted, and is solved for. The same tolerance holds; the digits beyond it
-    /// differ. For [`Method::ProjectedCg`].
+    /// Iterations in f32, at half the cost of their convolutions and with half the traffic; what they lead to is convolved
+    /// in f64, and what it lacks is solved for with fields in f64. The same tolerance holds; the digits beyond it differ.
+    /// For [`Method::ProjectedCg`].
     Mixed,
 }
 

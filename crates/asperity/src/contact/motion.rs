@@ -6,9 +6,10 @@
 
 use asperity_convolution::eights::{Cell, Eight, Mask, Work, vectorize};
 
+use super::Hardness;
+use super::fields::{Fields, Scalar, as_stored};
 use super::residual::{Gauge, Rating};
 use super::shift::{Mover, Shift, Trial};
-use super::{ContactState, Hardness, Problem};
 use crate::field::{Min, Set, SetMut, sweep};
 
 /// What laying out a step finds. "Inside" are the cells of the set that the full step leaves between the bounds: there
@@ -34,8 +35,8 @@ fn power_of_two(x: f64) -> f64 {
 
 /// s = q - p, q the trial point shifted and clipped, and the cells inside. `laid` is the set of the step that was laid
 /// out before: other cells are zero already, and writing costs more than anything else here.
-pub(super) fn lay_out<T: Cell>(
-    trial: &Trial,
+pub(super) fn lay_out<T: Cell, P: Cell>(
+    trial: &Trial<P>,
     shift: Shift,
     residual: &[f32],
     step: &mut [T],
@@ -55,7 +56,7 @@ pub(super) fn lay_out<T: Cell>(
         ),
         &|((s, SetMut(laid), SetMut(inside)), p, d, r, Set(set), hardness): (
             (&mut [T], SetMut, SetMut),
-            &[f64],
+            &[P],
             Option<&[f32]>,
             &[f32],
             Set,
@@ -68,11 +69,11 @@ pub(super) fn lay_out<T: Cell>(
     Layout { slope, unit, inside: [sum, cells], reach }
 }
 
-struct LayOut<'a, T> {
+struct LayOut<'a, T, P> {
     s: &'a mut [T],
     laid: &'a mut [u8],
     inside: &'a mut [u8],
-    p: &'a [f64],
+    p: &'a [P],
     d: &'a [f32],
     r: &'a [f32],
     set: &'a [u8],
@@ -82,7 +83,7 @@ struct LayOut<'a, T> {
     per: f64,
 }
 
-impl<T: Cell> Work for LayOut<'_, T> {
+impl<T: Cell, P: Cell> Work for LayOut<'_, T, P> {
     type Yield = ([f64; 3], Min);
 
     #[inline(always)]
@@ -104,7 +105,7 @@ impl<T: Cell> Work for LayOut<'_, T> {
             let on = V::Mask::from_bits(*set);
             let p = V::load(self.p, n, 0.0);
             let r = V::load(self.r, n, 0.0);
-            let hardness: V = self.hardness.eight(n);
+            let hardness: V = as_stored::<P, V>(self.hardness.eight(n));
             let q = mover.target(p, V::load(self.d, n, 0.0), hardness);
             let s = (q - p).only(on);
             (s * per).store(self.s, n);
@@ -158,7 +159,7 @@ impl<T: Cell> Work for Curvature<'_, T> {
 /// t s, K s: how far to go along which step.
 pub(super) struct Motion<'a, T> {
     pub t: f64,
-    /// Unit of `image`.
+    /// Unit of `image`, in that of the displacement.
     pub unit: f64,
     /// a and the shift of the step.
     pub length: f64,
@@ -172,31 +173,32 @@ pub(super) struct Motion<'a, T> {
 /// writes r / `scale` on the working set S, 0 elsewhere, and S over the set of the residual that was there.
 ///
 /// A cell that lands within rounding of a bound is put on it.
-pub(super) fn advance<T: Cell>(
-    problem: &Problem,
-    state: &mut ContactState,
+pub(super) fn advance<T: Cell, P: Scalar>(
+    fields: &mut Fields<P>,
+    hardness: Hardness,
     motion: Option<Motion<T>>,
     w: f64,
     scale: f64,
     (residual, set): (&mut [f32], &mut [u8]),
 ) -> Rating {
-    let (numbers, fields) =
+    let (numbers, moving) =
         motion.map(|m| ((m.t, m.unit, m.length, m.shift), (m.direction, Set(m.set), m.image))).unzip();
     let (t, unit, length, shift) = numbers.unwrap_or_default();
+    let compliance = fields.compliance;
     sweep(
         (
-            (&mut state.pressure[..], &mut state.unit_displacement[..], residual, SetMut(set)),
-            problem.gap,
-            fields,
-            problem.hardness,
+            (&mut *fields.pressure, &mut *fields.displacement, residual, SetMut(set)),
+            fields.gap,
+            moving,
+            hardness,
         ),
-        &|((p, u, r, SetMut(set)), h, motion, hardness): (
-            (&mut [f64], &mut [f64], &mut [f32], SetMut),
-            &[f64],
+        &|((p, u, r, SetMut(set)), h, moving, hardness): (
+            (&mut [P], &mut [P], &mut [f32], SetMut),
+            Option<&[f64]>,
             Option<(&[f32], Set, &[T])>,
             Hardness,
         )| {
-            let motion = motion.map(|(direction, Set(set), image)| Motion {
+            let motion = moving.map(|(direction, Set(set), image)| Motion {
                 t,
                 unit,
                 length,
@@ -205,25 +207,25 @@ pub(super) fn advance<T: Cell>(
                 set,
                 image,
             });
-            vectorize(Advance { problem, motion, w, scale, p, u, r, set, h, hardness })
+            vectorize(Advance { compliance, motion, w, scale, p, u, r, set, h, hardness })
         },
     )
 }
 
-struct Advance<'a, T> {
-    problem: &'a Problem<'a>,
+struct Advance<'a, T, P> {
+    compliance: f64,
     motion: Option<Motion<'a, T>>,
     w: f64,
     scale: f64,
-    p: &'a mut [f64],
-    u: &'a mut [f64],
+    p: &'a mut [P],
+    u: &'a mut [P],
     r: &'a mut [f32],
     set: &'a mut [u8],
-    h: &'a [f64],
+    h: Option<&'a [f64]>,
     hardness: Hardness<'a>,
 }
 
-impl<T: Cell> Advance<'_, T> {
+impl<T: Cell, P: Scalar> Advance<'_, T, P> {
     /// The new p and U of eight cells.
     #[inline(always)]
     fn moved<V: Eight>(&self, motion: &Motion<T>, mover: &Mover<V>, n: usize, top: V) -> (V, V) {
@@ -233,23 +235,24 @@ impl<T: Cell> Advance<'_, T> {
         let on = V::Mask::from_bits(motion.set[n / 8]);
         let s = (mover.target(p, V::load(motion.direction, n, 0.0), top) - p).only(on);
         let new = p + t * s;
-        let floor = V::splat(4.0 * f64::EPSILON) * p;
+        let floor = V::splat(4.0 * P::EPSILON) * p;
         let new = V::select(s.less(zero) & new.at_most(floor), zero, new);
-        let below = new.less(top * V::splat(1.0 - 4.0 * f64::EPSILON));
-        (V::select(below, new, top), V::load(self.u, n, 0.0) + far * V::load(motion.image, n, 0.0))
+        let below = new.less(top * V::splat(1.0 - 4.0 * P::EPSILON));
+        let u = V::load(self.u, n, f64::INFINITY) + far * V::load(motion.image, n, 0.0);
+        (as_stored::<P, V>(V::select(below, new, top)), as_stored::<P, V>(u))
     }
 }
 
-impl<T: Cell> Work for Advance<'_, T> {
+impl<T: Cell, P: Scalar> Work for Advance<'_, T, P> {
     type Yield = Rating;
 
     #[inline(always)]
     fn run<V: Eight>(self) -> Rating {
-        let mut gauge = Gauge::<V>::new(self.problem, self.w);
+        let mut gauge = Gauge::<V>::new(self.compliance, self.w);
         let per = V::splat(1.0 / self.scale);
         let mover = self.motion.as_ref().map(|m| Mover::<V>::new(m.length, m.shift));
         for n in (0..self.p.len()).step_by(8) {
-            let top = self.hardness.eight(n);
+            let top = as_stored::<P, V>(self.hardness.eight(n));
             let (p, u) = match (&self.motion, &mover) {
                 (Some(motion), Some(mover)) => {
                     let (p, u) = self.moved(motion, mover, n, top);
@@ -259,9 +262,10 @@ impl<T: Cell> Work for Advance<'_, T> {
                     u.store(self.u, n);
                     (p, u)
                 }
-                _ => (V::load(self.p, n, 0.0), V::load(self.u, n, 0.0)),
+                _ => (V::load(self.p, n, 0.0), V::load(self.u, n, f64::INFINITY)),
             };
-            let (r, works) = gauge.meet(p, u, V::load(self.h, n, f64::INFINITY), top);
+            let h = self.h.map_or(V::splat(0.0), |h| V::load(h, n, f64::INFINITY));
+            let (r, works) = gauge.meet(p, u, h, top);
             let works_before = std::mem::replace(&mut self.set[n / 8], works.bits());
             if works_before | works.bits() != 0 {
                 (r * per).only(works).store(self.r, n);

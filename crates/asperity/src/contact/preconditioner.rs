@@ -224,7 +224,7 @@ static OPEN: [[f32; 8]; 256] = {
     let mut table = [[0.0; 8]; 256];
     let mut n = 0;
     while n < 8 * 256 {
-        table[n / 8][n % 8] = (1 - (n / 8 >> (n % 8) & 1)) as f32;
+        table[n / 8][n % 8] = (1 - (((n / 8) >> (n % 8)) & 1)) as f32;
         n += 1;
     }
     table

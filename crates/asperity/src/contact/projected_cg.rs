@@ -7,27 +7,26 @@
 //! exact minimisation is taken instead: by the spacer-step theorem (Luenberger & Ye, Linear and
 //! Nonlinear Programming, section 7.11) the method converges from any start.
 //!
-//! The preconditioner is the inverse symbol |q|/2, on the grid of a periodic domain and on that of a free one with a
-//! rim. It and the direction are f32, in units of the largest violation: they decide where to go, never what is
-//! found there.
+//! The preconditioner (`preconditioner`) and the direction are f32, in units of the largest violation: they decide where to
+//! go, never what is found there. In mixed precision all fields of an iteration are f32, the gap as what it differs from
+//! the approach (`fields`); what they lead to is evaluated in f64, and what it lacks is found with p and U in f64.
 //!
-//! An iteration is one convolution, one of the preconditioner, and five or six sweeps (`direction`, `shift`,
+//! An iteration is one convolution, the preconditioner, and five or six sweeps (`direction`, `shift`,
 //! `motion`), most of them over the groups of cells that hold one of S. The sweep that advances the state also rates it,
 //! for which it must know the approach w: the new w is foretold from the mean change of the gap over the
 //! cells that stay free, and the sweep's own mean mends it.
 
 use std::sync::atomic::AtomicBool;
 
-use asperity_convolution::eights::Cell;
-
 use super::direction::{Ahead, Turn, centre, products, steepest, turn};
+use super::fields::{Fields, Scalar, Singles};
 use super::motion::{Layout, Motion, advance, curvature, lay_out};
 use super::preconditioner::Preconditioner;
 use super::residual::Rating;
 use super::shift::{Shift, Trial};
 use super::start::make_feasible;
 use super::{ContactState, Outcome, Prescribed, Problem, SolverOptions, interrupted, not_converged};
-use crate::error::{Error, Result};
+use crate::error::{Error, NotConverged, Result};
 use crate::grid::{Boundary, Grid};
 use crate::operator::Operator;
 
@@ -42,31 +41,13 @@ const FORETOLD: f64 = 0.02;
 /// The share of the largest violation below which the mean of the residual over S is left in it.
 const CENTRED: f64 = 1e-4;
 
-/// Scalars of the steps' convolutions.
-pub trait Scalar: Cell {
-    /// Whether U must be evaluated afresh, in f64, before a solution is accepted.
-    const ROUGH: bool;
-    /// u = K p
-    fn apply(operator: &mut dyn Operator, p: &[Self], u: &mut [Self]);
-}
+/// What a residual found in f32 may be off by.
+const OFF: f64 = 3e-8;
+/// Pressures and displacements that f32 holds with all that is small beside them.
+const RANGE: std::ops::Range<f64> = 1e-20..1e20;
 
-impl Scalar for f64 {
-    const ROUGH: bool = false;
-    fn apply(operator: &mut dyn Operator, p: &[f64], u: &mut [f64]) {
-        operator.apply_into(p, u);
-    }
-}
-
-/// Mixed precision: convolutions of steps in f32, where a step's error of 1e-7 is that of a small correction.
-impl Scalar for f32 {
-    const ROUGH: bool = true;
-    fn apply(operator: &mut dyn Operator, p: &[f32], u: &mut [f32]) {
-        operator.apply_single_into(p, u);
-    }
-}
-
-/// The method's working memory: 16 bytes per cell, 16 for steps in f64 or 8 in f32, sets of one bit, and the
-/// preconditioner's plan.
+/// The method's working memory: 16 bytes per cell, 16 for steps in f64 or for all fields in f32, sets of one bit, and
+/// the preconditioner's plan.
 pub struct ProjectedCg<T = f64> {
     preconditioner: Preconditioner,
     /// Residual on S with its mean removed, in units of `unit`, now and one iteration ago.
@@ -86,6 +67,8 @@ pub struct ProjectedCg<T = f64> {
     laid: Vec<u8>,
     /// Cells that the full step leaves between the bounds.
     inside: Vec<u8>,
+    /// Mixed precision iterates on these.
+    singles: Option<Singles>,
 }
 
 /// What a conjugate step needs from the one before.
@@ -136,7 +119,14 @@ impl<T: Scalar> ProjectedCg<T> {
             worked: vec![0; n.div_ceil(8)],
             laid: vec![0; n.div_ceil(8)],
             inside: vec![0; n.div_ceil(8)],
+            singles: T::ROUGH.then(|| Singles::new(n)),
         }
+    }
+
+    /// z, roughly the inverse of K restricted to a set of cells (bits, eight in a byte) times r, which is zero elsewhere; in
+    /// units of the preconditioner's largest value. What is beyond the set means nothing. One iteration takes it once.
+    pub fn precondition(&mut self, r: &[f32], set: &[u8], z: &mut [f32]) {
+        self.preconditioner.apply_into(r, set, z);
     }
 
     /// See [`super::Solver::solve`]; the trivial cases are settled there.
@@ -150,35 +140,122 @@ impl<T: Scalar> ProjectedCg<T> {
     ) -> Result<Outcome> {
         let grid = *operator.grid();
         make_feasible(problem, grid.cell_area(), state, &mut self.working)?;
+        operator.apply_into(&state.pressure, &mut state.unit_displacement);
+        let before = match self.singles.take() {
+            Some(mut singles) => {
+                let before = self.solve_in(&mut singles, operator, problem, options, state, interrupt);
+                self.singles = Some(singles);
+                before?
+            }
+            None => Outcome::default(),
+        };
+        let left = options.max_iterations.saturating_sub(before.iterations);
+        let options = SolverOptions { max_iterations: left, ..*options };
+        let mut fields = Fields::of(problem, state);
+        let outcome = self.iterate(operator, problem, &options, None, &mut fields, interrupt);
+        let (iterations, convolutions) = (before.iterations, before.convolutions + 1);
+        match outcome {
+            Ok(o) => Ok(Outcome {
+                iterations: o.iterations + iterations,
+                convolutions: o.convolutions + convolutions,
+                ..o
+            }),
+            Err(Error::NotConverged(report)) => Err(Error::NotConverged(NotConverged {
+                iterations: report.iterations + iterations,
+                ..report
+            })),
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Iterates with all fields in f32, as far as these lead: `state` comes near the solution, with its U. Returns the work.
+    fn solve_in(
+        &mut self,
+        singles: &mut Singles,
+        operator: &mut dyn Operator,
+        problem: &Problem,
+        options: &SolverOptions,
+        state: &mut ContactState,
+        interrupt: Option<&AtomicBool>,
+    ) -> Result<Outcome> {
+        let grid = *operator.grid();
+        let rating = Rating::of(&Fields::of(problem, state), problem.hardness, 0.0);
+        let w = rating.approach(problem.prescribed);
+        let scale = rating.scale(problem, &grid, options.tolerance);
+        if [scale, rating.peak()].iter().any(|size| !RANGE.contains(size)) {
+            return Ok(Outcome::default());
+        }
+        let options = SolverOptions {
+            tolerance: (options.tolerance - OFF).max(0.5 * options.tolerance),
+            max_iterations: options.max_iterations.min(REFRESH),
+            ..*options
+        };
+        let prescribed = match problem.prescribed {
+            Prescribed::Approach(given) => Prescribed::Approach(given - w),
+            load => load,
+        };
+        let seen = Problem { prescribed, ..*problem };
+        let mut fields = singles.take(problem, state, w);
+        let work = match self.iterate(operator, &seen, &options, Some(scale), &mut fields, interrupt) {
+            Ok(work) => work,
+            Err(Error::NotConverged(report)) => {
+                let done = report.iterations;
+                Outcome { iterations: done, convolutions: done, ..Outcome::default() }
+            }
+            Err(error) => return Err(error),
+        };
+        if work.iterations == 0 {
+            return Ok(work);
+        }
+        singles.give(problem, state);
+        make_feasible(problem, grid.cell_area(), state, &mut self.working)?;
+        operator.apply_into(&state.pressure, &mut state.unit_displacement);
+        Ok(Outcome { convolutions: work.convolutions + 1, ..work })
+    }
+
+    /// Iterates on `fields`, whose displacement is that of their pressure. Violations are measured by `scale`, or by the
+    /// fields themselves where these hold U.
+    fn iterate<P: Scalar>(
+        &mut self,
+        operator: &mut dyn Operator,
+        problem: &Problem,
+        options: &SolverOptions,
+        scale: Option<f64>,
+        fields: &mut Fields<P>,
+        interrupt: Option<&AtomicBool>,
+    ) -> Result<Outcome> {
+        let grid = *operator.grid();
+        let hardness = problem.hardness;
         // Whatever an earlier solve left behind is overwritten, everywhere.
         self.working.fill(u8::MAX);
         self.worked.fill(u8::MAX);
         self.laid.fill(u8::MAX);
-        operator.apply_into(&state.pressure, &mut state.unit_displacement);
-        let mut convolutions = 1;
+        let mut convolutions = 0;
         let mut gradient_length = 1.0 / (problem.compliance * operator.self_influence());
         let mut conjugacy = Conjugacy { product: None, unit: 0.0, pressure: 0.0, length: 1.0 };
         let (mut best, mut stall, mut stuck, mut fresh) = (f64::INFINITY, 0, false, true);
         let mut iteration = 0;
         // Only to find the approach. No guess from the state: it would leave its rounding.
         let mut unit = 0.0;
-        let mut rating = Rating::of(problem, state, 0.0);
+        let mut rating = Rating::of(fields, hardness, 0.0);
         loop {
             let w = rating.approach(problem.prescribed);
             if unit == 0.0 || (w - rating.w).abs() > FORETOLD * rating.violation() {
                 unit = if rating.violation() > 0.0 { rating.violation() } else { 1.0 };
                 let found = (&mut self.residual[..], &mut self.working[..]);
-                rating = advance::<T>(problem, state, None, w, unit, found);
+                rating = advance::<T, P>(fields, hardness, None, w, unit, found);
             }
-            state.approach = rating.approach(problem.prescribed);
-            let rated = rating.rate(problem, &grid, options.tolerance);
+            *fields.approach = rating.approach(problem.prescribed);
+            let rated = match scale {
+                Some(scale) => Outcome { residual: rating.residual(problem, scale), ..Outcome::default() },
+                None => rating.rate(problem, &grid, options.tolerance),
+            };
             let outcome = Outcome { iterations: iteration, convolutions, ..rated };
             if outcome.residual <= options.tolerance || stuck {
-                if T::ROUGH && !fresh {
-                    operator.apply_into(&state.pressure, &mut state.unit_displacement);
+                if T::ROUGH && !fresh && P::refresh(operator, fields.pressure, fields.displacement) {
                     convolutions += 1;
                     (fresh, stuck, unit, conjugacy.product) = (true, false, 0.0, None);
-                    rating = Rating::of(problem, state, 0.0);
+                    rating = Rating::of(fields, hardness, 0.0);
                     continue;
                 }
                 if outcome.residual <= options.tolerance {
@@ -205,14 +282,14 @@ impl<T: Scalar> ProjectedCg<T> {
             let conjugate = if stall >= PATIENCE || rating.nothing_works() {
                 None
             } else {
-                self.conjugate_step(problem, state, sum, &rating, unit, &mut conjugacy)
+                self.conjugate_step(problem, fields, sum, &rating, unit, &mut conjugacy)
             };
             let step = match conjugate {
                 Some(step) => step,
                 None => {
                     conjugacy.product = None;
                     stall = 0;
-                    match self.gradient_step(problem, state, sum, &rating, unit, gradient_length) {
+                    match self.gradient_step(problem, fields, sum, &rating, unit, gradient_length) {
                         Some(step) => step,
                         None => {
                             // Nothing descends any more: rounding has the last word.
@@ -259,7 +336,7 @@ impl<T: Scalar> ProjectedCg<T> {
             std::mem::swap(&mut self.working, &mut self.worked);
             let motion = Motion {
                 t,
-                unit: size,
+                unit: size * (problem.compliance / fields.compliance),
                 length: step.length,
                 shift: step.shift,
                 direction: &self.direction,
@@ -267,23 +344,22 @@ impl<T: Scalar> ProjectedCg<T> {
                 image: &self.moved,
             };
             let found = (&mut self.residual[..], &mut self.working[..]);
-            rating = advance(problem, state, Some(motion), foretold, unit, found);
+            rating = advance(fields, hardness, Some(motion), foretold, unit, found);
             fresh = false;
             iteration += 1;
-            if iteration % REFRESH == 0 {
-                operator.apply_into(&state.pressure, &mut state.unit_displacement);
+            if iteration % REFRESH == 0 && P::refresh(operator, fields.pressure, fields.displacement) {
                 convolutions += 1;
                 (fresh, unit) = (true, 0.0);
-                rating = Rating::of(problem, state, rating.w);
+                rating = Rating::of(fields, hardness, rating.w);
             }
         }
     }
 
     /// The conjugate step on S; `None` where it does not descend.
-    fn conjugate_step(
+    fn conjugate_step<P: Scalar>(
         &mut self,
         problem: &Problem,
-        state: &ContactState,
+        fields: &Fields<P>,
         sum: Option<f64>,
         rating: &Rating,
         unit: f64,
@@ -320,38 +396,38 @@ impl<T: Scalar> ProjectedCg<T> {
             &mut self.direction,
             &self.image,
             (&self.working, &self.laid),
-            &state.pressure,
+            &*fields.pressure,
             problem.hardness,
             Turn { mean, beta, length },
         );
         let kind = if ahead.outside > 0.0 { Kind::Clipped } else { Kind::Straight };
-        self.lay_out(problem, state, sum, ahead, kind, length, if centred { mean_r } else { 0.0 })
+        self.lay_out(problem, fields, sum, ahead, kind, length, if centred { mean_r } else { 0.0 })
     }
 
     /// The projected-gradient step over all cells that can touch; `None` where it does not descend.
-    fn gradient_step(
+    fn gradient_step<P: Scalar>(
         &mut self,
         problem: &Problem,
-        state: &ContactState,
+        fields: &Fields<P>,
         sum: Option<f64>,
         rating: &Rating,
         unit: f64,
         length: f64,
     ) -> Option<Step> {
         let length = length * unit;
-        let fields = (&mut self.direction[..], &mut self.residual[..], &mut self.working[..]);
+        let found = (&mut self.direction[..], &mut self.residual[..], &mut self.working[..]);
         self.laid.fill(u8::MAX);
-        let ahead = steepest(problem, state, rating.w, unit, length, fields);
-        self.lay_out(problem, state, sum, ahead, Kind::Gradient, length, 0.0)
+        let ahead = steepest(fields, problem.hardness, rating.w, unit, length, found);
+        self.lay_out(problem, fields, sum, ahead, Kind::Gradient, length, 0.0)
     }
 
     /// The step from the trial point, where it descends. `sum` is the sum of p that load control prescribes, less
     /// the present one.
     #[allow(clippy::too_many_arguments)] // they are the step's parts
-    fn lay_out(
+    fn lay_out<P: Scalar>(
         &mut self,
         problem: &Problem,
-        state: &ContactState,
+        fields: &Fields<P>,
         sum: Option<f64>,
         ahead: Ahead,
         kind: Kind,
@@ -359,7 +435,7 @@ impl<T: Scalar> ProjectedCg<T> {
         mean: f64,
     ) -> Option<Step> {
         let trial = Trial {
-            pressure: &state.pressure,
+            pressure: fields.pressure,
             direction: Some(&self.direction),
             set: &self.working,
             length,

@@ -8,9 +8,10 @@
 //!
 //! All of it comes from one sweep, taken with a guess of w: the mean of r over the free cells mends the guess.
 
-use asperity_convolution::eights::{Eight, Work, vectorize};
+use asperity_convolution::eights::{Cell, Eight, Work, vectorize};
 
-use super::{ContactState, Hardness, Outcome, Prescribed, Problem};
+use super::fields::{Fields, as_stored};
+use super::{Hardness, Outcome, Prescribed, Problem};
 use crate::field::{Max, Merge, Min, sweep};
 use crate::grid::Grid;
 
@@ -82,10 +83,10 @@ pub(super) struct Gauge<V> {
 
 impl<V: Eight> Gauge<V> {
     #[inline(always)]
-    pub(super) fn new(problem: &Problem, w: f64) -> Self {
+    pub(super) fn new(compliance: f64, w: f64) -> Self {
         let [zero, up, down] = [0.0, f64::INFINITY, f64::NEG_INFINITY].map(V::splat);
         Gauge {
-            compliance: V::splat(problem.compliance),
+            compliance: V::splat(compliance),
             w: V::splat(w),
             guess: w,
             free: [zero; 2],
@@ -114,7 +115,7 @@ impl<V: Eight> Gauge<V> {
         self.free = [self.free[0] + r.only(free), self.free[1] + V::count(free)];
         self.working = [self.working[0] + r.only(works), self.working[1] + V::count(works)];
         let [sum, pu, pr] = self.pressure;
-        self.pressure = [sum + p, pu + p * u, pr + (p * r).only(touches)];
+        self.pressure = [sum + p, pu + (p * u).only(touches), pr + (p * r).only(touches)];
         let distance = V::select(zero.less(r), p, hardness - p);
         self.gamma = self.gamma + (distance * violation).only(works);
         let [up, down] = [f64::INFINITY, f64::NEG_INFINITY].map(V::splat);
@@ -146,14 +147,17 @@ impl<V: Eight> Gauge<V> {
 }
 
 impl Rating {
-    /// Rates a state with a guess of w.
-    pub(super) fn of(problem: &Problem, state: &ContactState, w: f64) -> Self {
-        sweep(
-            (&state.pressure[..], &state.unit_displacement[..], problem.gap, problem.hardness),
-            &|(p, u, h, hardness): (&[f64], &[f64], &[f64], Hardness)| {
-                vectorize(Rate { problem, w, p, u, h, hardness })
-            },
-        )
+    /// Rates fields with a guess of w.
+    pub(super) fn of<P: Cell>(fields: &Fields<P>, hardness: Hardness, w: f64) -> Self {
+        let compliance = fields.compliance;
+        sweep((&*fields.pressure, &*fields.displacement, fields.gap, hardness), &|(p, u, h, hardness): (
+            &[P],
+            &[P],
+            Option<&[f64]>,
+            Hardness,
+        )| {
+            vectorize(Rate { compliance, w, p, u, h, hardness })
+        })
     }
 
     /// The approach: given, or the mean of g over D; where D is empty, the middle of what the cells
@@ -194,6 +198,11 @@ impl Rating {
         self.largest.0
     }
 
+    /// Largest p \[Pa\].
+    pub(super) fn peak(&self) -> f64 {
+        self.peak.0
+    }
+
     /// sum p \[Pa\]
     pub(super) fn pressure(&self) -> f64 {
         self.sums.pressure[0]
@@ -212,13 +221,27 @@ impl Rating {
         16.0 * f64::EPSILON * (self.w.abs() + problem.compliance * peak * lx.max(ly))
     }
 
-    /// Residual and certificate. The violation with the approach that the cells themselves give is at most that with
-    /// the guess and how far they lie apart.
-    pub(super) fn rate(&self, problem: &Problem, grid: &Grid, tolerance: f64) -> Outcome {
+    /// What violations are measured by, so that one of rounding is none for that tolerance \[m\].
+    pub(super) fn scale(&self, problem: &Problem, grid: &Grid, tolerance: f64) -> f64 {
+        self.displacement(problem) + self.rounding(problem, grid) / tolerance
+    }
+
+    /// The largest violation of the contact conditions over `scale`. With the approach that the cells themselves give it is
+    /// at most that with the guess and how far they lie apart.
+    pub(super) fn residual(&self, problem: &Problem, scale: f64) -> f64 {
         let apart = (self.approach(problem.prescribed) - self.w).abs();
-        let scale = self.displacement(problem) + self.rounding(problem, grid) / tolerance;
         let violation = if self.largest.0 > 0.0 { self.largest.0 + apart } else { 0.0 };
-        let residual = if violation > 0.0 { violation / scale } else { 0.0 };
+        if violation > 0.0 { violation / scale } else { 0.0 }
+    }
+
+    /// Residual and certificate of fields that hold U.
+    pub(super) fn rate(&self, problem: &Problem, grid: &Grid, tolerance: f64) -> Outcome {
+        let residual = self.residual(problem, self.scale(problem, grid, tolerance));
+        Outcome { residual, certificate: self.certificate(problem), ..Outcome::default() }
+    }
+
+    /// The bound of the error in energy, of fields that hold U.
+    pub(super) fn certificate(&self, problem: &Problem) -> f64 {
         let [pressure, pu, pr] = self.sums.pressure;
         let gamma = if !problem.hardness.is_infinite() {
             self.sums.gamma
@@ -233,29 +256,29 @@ impl Rating {
             }
         };
         let energy = problem.compliance * pu;
-        let certificate = if gamma > 0.0 && energy > 0.0 { (gamma / energy).sqrt() } else { 0.0 };
-        Outcome { residual, certificate, ..Outcome::default() }
+        if gamma > 0.0 && energy > 0.0 { (gamma / energy).sqrt() } else { 0.0 }
     }
 }
 
-struct Rate<'a> {
-    problem: &'a Problem<'a>,
+struct Rate<'a, P> {
+    compliance: f64,
     w: f64,
-    p: &'a [f64],
-    u: &'a [f64],
-    h: &'a [f64],
+    p: &'a [P],
+    u: &'a [P],
+    h: Option<&'a [f64]>,
     hardness: Hardness<'a>,
 }
 
-impl Work for Rate<'_> {
+impl<P: Cell> Work for Rate<'_, P> {
     type Yield = Rating;
 
     #[inline(always)]
     fn run<V: Eight>(self) -> Rating {
-        let mut gauge = Gauge::<V>::new(self.problem, self.w);
+        let mut gauge = Gauge::<V>::new(self.compliance, self.w);
         for n in (0..self.p.len()).step_by(8) {
-            let h = V::load(self.h, n, f64::INFINITY);
-            gauge.meet(V::load(self.p, n, 0.0), V::load(self.u, n, 0.0), h, self.hardness.eight(n));
+            let h = self.h.map_or(V::splat(0.0), |h| V::load(h, n, f64::INFINITY));
+            let top = as_stored::<P, V>(self.hardness.eight(n));
+            gauge.meet(V::load(self.p, n, 0.0), V::load(self.u, n, f64::INFINITY), h, top);
         }
         gauge.rating()
     }

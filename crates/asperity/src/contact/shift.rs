@@ -4,9 +4,10 @@
 //! The sum is a piecewise linear, non-decreasing function of lambda; Newton's method with a bracket finds
 //! its root in a few sweeps. Neither the trial point nor the step is stored for it.
 
-use asperity_convolution::eights::{Eight, Mask, Work, vectorize};
+use asperity_convolution::eights::{Cell, Eight, Mask, Work, vectorize};
 
 use super::Hardness;
+use super::fields::as_stored;
 use crate::field::{Max, Min, Set, sweep};
 
 /// A sum is met when it misses by this share: the cells inside take the rest back, and so few of them cross a bound
@@ -15,8 +16,8 @@ const CLOSE: f64 = 1e-13;
 
 /// A trial point p - a d of a set of cells; the other cells keep their pressure.
 #[derive(Clone, Copy)]
-pub(super) struct Trial<'a> {
-    pub pressure: &'a [f64],
+pub(super) struct Trial<'a, P> {
+    pub pressure: &'a [P],
     /// d; none is zero.
     pub direction: Option<&'a [f32]>,
     pub set: &'a [u8],
@@ -76,7 +77,7 @@ pub(super) struct ClippedSum {
     pub slope: f64,
 }
 
-impl Trial<'_> {
+impl<P: Cell> Trial<'_, P> {
     /// The shift after which the cells of the set have the sum `target`; `None` where no shift does it.
     /// `first` is the sum without a shift, where it is known.
     pub(super) fn shift_to_sum(&self, target: f64, first: Option<ClippedSum>) -> Option<Shift> {
@@ -121,7 +122,7 @@ impl Trial<'_> {
         let length = self.length;
         let [sum, slope] = sweep(
             (self.pressure, self.direction, Set(self.set), self.hardness),
-            &|(p, d, Set(set), hardness): (&[f64], Option<&[f32]>, Set, Hardness)| {
+            &|(p, d, Set(set), hardness): (&[P], Option<&[f32]>, Set, Hardness)| {
                 vectorize(Clipped { p, d, set, length, lambda, hardness })
             },
         );
@@ -133,11 +134,11 @@ impl Trial<'_> {
         let length = self.length;
         let cells = (self.pressure, self.direction, Set(self.set), self.hardness);
         let (up, down) =
-            sweep(cells, &|(p, d, Set(set), hardness): (&[f64], Option<&[f32]>, Set, Hardness)| {
+            sweep(cells, &|(p, d, Set(set), hardness): (&[P], Option<&[f32]>, Set, Hardness)| {
                 let (mut up, mut down) = (f64::INFINITY, f64::NEG_INFINITY);
                 for (i, p) in p.iter().enumerate().filter(|(i, _)| set[i / 8] >> (i % 8) & 1 == 1) {
-                    let hardness = hardness.at(i);
-                    let y = p - d.map_or(0.0, |d| length * f64::from(d[i]));
+                    let hardness = P::nearest(hardness.at(i)).into();
+                    let y: f64 = (*p).into() - d.map_or(0.0, |d| length * f64::from(d[i]));
                     if !y.is_finite() {
                     } else if y + lambda <= 0.0 {
                         up = up.min(-y);
@@ -154,8 +155,8 @@ impl Trial<'_> {
     }
 }
 
-struct Clipped<'a> {
-    p: &'a [f64],
+struct Clipped<'a, P> {
+    p: &'a [P],
     d: Option<&'a [f32]>,
     set: &'a [u8],
     length: f64,
@@ -163,7 +164,7 @@ struct Clipped<'a> {
     hardness: Hardness<'a>,
 }
 
-impl Work for Clipped<'_> {
+impl<P: Cell> Work for Clipped<'_, P> {
     type Yield = [f64; 2];
 
     #[inline(always)]
@@ -172,7 +173,7 @@ impl Work for Clipped<'_> {
         let (length, lambda) = (V::splat(self.length), V::splat(self.lambda));
         for (n, set) in (0..).step_by(8).zip(self.set).filter(|(_, set)| **set != 0) {
             let on = V::Mask::from_bits(*set);
-            let top = self.hardness.eight(n);
+            let top = as_stored::<P, V>(self.hardness.eight(n));
             let d = self.d.map_or(V::splat(0.0), |d| V::load(d, n, 0.0));
             let moved = V::load(self.p, n, 0.0) - length * d + lambda;
             sum = sum + moved.clip(top).only(on);

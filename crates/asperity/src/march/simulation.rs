@@ -124,8 +124,12 @@ impl Simulation {
         // on the grid, or with a rim around it, see `operator::approximate_inverse`
         let inverse = if self.boundary == Boundary::Free { 7.0 } else { 5.25 };
         let solver = match self.solver.method {
-            // the preconditioner's convolution in f32, four fields in f32, four sets, the step and its image
-            Method::ProjectedCg => inverse + 16.0 + 0.5 + if mixed { 8.0 } else { 16.0 },
+            // the preconditioner's convolution in f32 and, on a free domain, what the ends of the contact need; four fields
+            // in f32, four sets; the step and its image in f64, or these, pressure and gap in f32
+            Method::ProjectedCg => {
+                let ends = if self.boundary == Boundary::Free { 5.5 } else { 0.0 };
+                inverse + ends + 16.0 + 0.5 + 16.0
+            }
             Method::PolonskyKeer => 24.125,
         };
         // pressure and U of two rows, undeformed and remembered gap; the gap with its dents

@@ -226,20 +226,17 @@ struct Advance<'a, T, P> {
 }
 
 impl<T: Cell, P: Scalar> Advance<'_, T, P> {
-    /// The new p and U of eight cells.
+    /// The new p of eight cells.
     #[inline(always)]
-    fn moved<V: Eight>(&self, motion: &Motion<T>, mover: &Mover<V>, n: usize, top: V) -> (V, V) {
+    fn moved<V: Eight>(&self, motion: &Motion<T>, mover: &Mover<V>, n: usize, p: V, top: V) -> V {
         let (zero, t) = (V::splat(0.0), V::splat(motion.t));
-        let far = V::splat(motion.t * motion.unit);
-        let p = V::load(self.p, n, 0.0);
         let on = V::Mask::from_bits(motion.set[n / 8]);
         let s = (mover.target(p, V::load(motion.direction, n, 0.0), top) - p).only(on);
         let new = p + t * s;
         let floor = V::splat(4.0 * P::EPSILON) * p;
         let new = V::select(s.less(zero) & new.at_most(floor), zero, new);
         let below = new.less(top * V::splat(1.0 - 4.0 * P::EPSILON));
-        let u = V::load(self.u, n, f64::INFINITY) + far * V::load(motion.image, n, 0.0);
-        (as_stored::<P, V>(V::select(below, new, top)), as_stored::<P, V>(u))
+        as_stored::<P, V>(V::select(below, new, top))
     }
 }
 
@@ -253,19 +250,28 @@ impl<T: Cell, P: Scalar> Work for Advance<'_, T, P> {
         let mover = self.motion.as_ref().map(|m| Mover::<V>::new(m.length, m.shift));
         for n in (0..self.p.len()).step_by(8) {
             let top = as_stored::<P, V>(self.hardness.eight(n));
-            let (p, u) = match (&self.motion, &mover) {
-                (Some(motion), Some(mover)) => {
-                    let (p, u) = self.moved(motion, mover, n, top);
-                    if motion.set[n / 8] != 0 {
-                        p.store(self.p, n);
-                    }
-                    u.store(self.u, n);
-                    (p, u)
-                }
-                _ => (V::load(self.p, n, 0.0), V::load(self.u, n, f64::INFINITY)),
-            };
             let h = self.h.map_or(V::splat(0.0), |h| V::load(h, n, f64::INFINITY));
-            let (r, works) = gauge.meet(p, u, h, top);
+            let mut u = V::load(self.u, n, f64::INFINITY);
+            if let Some(motion) = &self.motion {
+                u = as_stored::<P, V>(u + V::splat(motion.t * motion.unit) * V::load(motion.image, n, 0.0));
+                u.store(self.u, n);
+            }
+            let mut p = V::load(self.p, n, 0.0);
+            match (&self.motion, &mover) {
+                (Some(motion), Some(mover)) if motion.set[n / 8] != 0 => {
+                    p = self.moved(motion, mover, n, p, top);
+                    p.store(self.p, n);
+                }
+                // Most other cells are apart.
+                _ if gauge.pass(p, u, h) => {
+                    if std::mem::replace(&mut self.set[n / 8], 0) != 0 {
+                        V::splat(0.0).store(self.r, n);
+                    }
+                    continue;
+                }
+                _ => {}
+            }
+            let (r, works) = gauge.meet(p, u, h, top, !P::ROUGH);
             let works_before = std::mem::replace(&mut self.set[n / 8], works.bits());
             if works_before | works.bits() != 0 {
                 (r * per).only(works).store(self.r, n);

@@ -8,7 +8,7 @@
 //!
 //! All of it comes from one sweep, taken with a guess of w: the mean of r over the free cells mends the guess.
 
-use asperity_convolution::eights::{Cell, Eight, Work, vectorize};
+use asperity_convolution::eights::{Cell, Eight, Mask, Work, vectorize};
 
 use super::fields::{Fields, as_stored};
 use super::{Hardness, Outcome, Prescribed, Problem};
@@ -101,9 +101,22 @@ impl<V: Eight> Gauge<V> {
         }
     }
 
-    /// Takes in eight cells, the last their H; returns r and S.
+    /// Takes in eight cells where they are all apart: p = 0 and r >= 0. Else returns false.
     #[inline(always)]
-    pub(super) fn meet(&mut self, p: V, u: V, h: V, hardness: V) -> (V, V::Mask) {
+    pub(super) fn pass(&mut self, p: V, u: V, h: V) -> bool {
+        let zero = V::splat(0.0);
+        let r = self.compliance * u + h - self.w;
+        let apart = (zero.less(p) | r.less(zero)).bits() == 0;
+        if apart {
+            self.empty = r.smaller(self.empty);
+        }
+        apart
+    }
+
+    /// Takes in eight cells, the last their H; returns r and S. What the certificate needs only where it is to be
+    /// `certified`.
+    #[inline(always)]
+    pub(super) fn meet(&mut self, p: V, u: V, h: V, hardness: V, certified: bool) -> (V, V::Mask) {
         let zero = V::splat(0.0);
         let r = self.compliance * u + h - self.w;
         let touches = zero.less(p);
@@ -114,16 +127,19 @@ impl<V: Eight> Gauge<V> {
         let violation = r.abs().only(works);
         self.free = [self.free[0] + r.only(free), self.free[1] + V::count(free)];
         self.working = [self.working[0] + r.only(works), self.working[1] + V::count(works)];
-        let [sum, pu, pr] = self.pressure;
-        self.pressure = [sum + p, pu + (p * u).only(touches), pr + (p * r).only(touches)];
-        let distance = V::select(zero.less(r), p, hardness - p);
-        self.gamma = self.gamma + (distance * violation).only(works);
         let [up, down] = [f64::INFINITY, f64::NEG_INFINITY].map(V::splat);
         self.capped = V::select(below, down, r).larger(self.capped);
         self.empty = V::select(touches, up, r).smaller(self.empty);
-        self.touching = V::select(touches, r, up).smaller(self.touching);
-        self.peak = p.larger(self.peak);
         self.largest = violation.larger(self.largest);
+        self.pressure[0] = self.pressure[0] + p;
+        if certified {
+            let [_, pu, pr] = &mut self.pressure;
+            (*pu, *pr) = (*pu + (p * u).only(touches), *pr + (p * r).only(touches));
+            let distance = V::select(zero.less(r), p, hardness - p);
+            self.gamma = self.gamma + (distance * violation).only(works);
+            self.touching = V::select(touches, r, up).smaller(self.touching);
+            self.peak = p.larger(self.peak);
+        }
         (r, works)
     }
 
@@ -278,7 +294,7 @@ impl<P: Cell> Work for Rate<'_, P> {
         for n in (0..self.p.len()).step_by(8) {
             let h = self.h.map_or(V::splat(0.0), |h| V::load(h, n, f64::INFINITY));
             let top = as_stored::<P, V>(self.hardness.eight(n));
-            gauge.meet(V::load(self.p, n, 0.0), V::load(self.u, n, f64::INFINITY), h, top);
+            gauge.meet(V::load(self.p, n, 0.0), V::load(self.u, n, f64::INFINITY), h, top, true);
         }
         gauge.rating()
     }

@@ -35,6 +35,11 @@ pub fn quantity(value: f64, unit: &str, power: i32) -> String {
     format!("{mantissa:.digits$} {prefix}{unit}")
 }
 
+/// So many of a thing: `1 term`, `2 terms`.
+pub fn counted(count: usize, thing: &str) -> String {
+    if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
+}
+
 /// Bytes in powers of 1024.
 pub fn bytes(count: f64) -> String {
     let units = ["B", "KiB", "MiB", "GiB", "TiB", "PiB"];

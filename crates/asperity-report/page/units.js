@@ -1,7 +1,7 @@
 // Numbers with SI prefixes, ticks at round numbers.
 
 const PREFIXES = { "-4": "p", "-3": "n", "-2": "µ", "-1": "m", 0: "", 1: "k", 2: "M", 3: "G" };
-const PREFIXED = { m: [-4, 0], s: [-3, 0], Pa: [-1, 3], N: [-3, 2], J: [-4, 1] };
+const PREFIXED = { m: [-4, 0], s: [-3, 0], Pa: [-1, 3], N: [-3, 2], J: [-4, 1], W: [-4, 1], Hz: [-2, 3] };
 const superscript = (n) => String(n).replace(/[-0-9]/g, (c) => (c === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[c]));
 
 /** The unit to show numbers in whose largest magnitude is `largest` in the SI unit `unit`. */
@@ -15,7 +15,7 @@ function shown(unit, largest) {
   const exponent = inverse ? -power : power;
   let prefix = 0;
   if (largest > 0 && isFinite(largest)) {
-    const steps = Math.floor((Math.log10(largest) + 1e-9) / (3 * power));
+    const steps = Math.floor((Math.log10(largest) + 2.17e-5) / (3 * power));
     prefix = inverse ? -steps : steps;
   }
   prefix = Math.min(Math.max(prefix, range[0]), range[1]);

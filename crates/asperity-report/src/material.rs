@@ -100,8 +100,8 @@ pub fn fit(title: &str, measured: &Measured, fitted: &Fitted) -> asperity::Resul
         distance = distance.with(Series::new(*name, Style::Points, places.clone(), apart));
     }
     let caption = format!(
-        "{} terms; misfit {:.2} % rms, {:.2} % at most; scatter of the data {:.2} %.",
-        fitted.terms(),
+        "{}; misfit {:.2} % rms, {:.2} % at most; scatter of the data {:.2} %.",
+        counted(fitted.terms()),
         100.0 * fitted.misfit.rms,
         100.0 * fitted.misfit.max,
         100.0 * fitted.noise
@@ -136,8 +136,8 @@ pub fn indentation(title: &str, record: &Indentation, fit: &IndentationFit) -> F
     let apart = Curves::new("Model less measurement", Axis::linear("time", "s"), Axis::linear(name, unit))
         .with(Series::new("", Style::Points, times.clone(), distance));
     let caption = format!(
-        "{} terms; misfit {:.2} % rms of the largest {name}; Durbin-Watson {:.2}.",
-        fit.terms.len(),
+        "{}; misfit {:.2} % rms of the largest {name}; Durbin-Watson {:.2}.",
+        counted(fit.terms.len()),
         100.0 * fit.relative_rms,
         fit.durbin_watson
     );
@@ -171,4 +171,9 @@ fn decades([first, last]: [f64; 2]) -> Vec<f64> {
     }
     let steps = (PER_DECADE * decades).ceil().clamp(1.0, MOST);
     (0..=steps as usize).map(|k| first * 10f64.powf(decades * k as f64 / steps)).collect()
+}
+
+/// So many terms.
+fn counted(terms: usize) -> String {
+    if terms == 1 { "1 term".into() } else { format!("{terms} terms") }
 }

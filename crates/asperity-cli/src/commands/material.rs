@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 
 use crate::args::{Fit, KindName, LongTimeName, Material, MeasureName, Show};
 use crate::failure::Failure;
-use crate::words::quantity;
+use crate::words::{counted, quantity};
 
 /// Shows a material or fits one.
 pub fn run(command: &Material) -> Result<(), Failure> {
@@ -193,17 +193,17 @@ pub fn source(report: &MaterialReport) -> Vec<String> {
         |[first, last]: [f64; 2]| format!("{} to {}", quantity(first, "s", 1), quantity(last, "s", 1));
     if let (Some(error), Some(window)) = (report.error, report.window) {
         lines.push(format!(
-            "Prony sum of {} terms, relative error {error:.1e} at most from {}",
-            report.terms,
+            "Prony sum of {}, relative error {error:.1e} at most from {}",
+            counted(report.terms, "term"),
             times(window)
         ));
     }
     if let (Some(max), Some(rms), Some(window)) = (report.max_misfit, report.rms_misfit, report.window) {
         let file = report.file.as_deref().unwrap_or_default();
         lines.push(format!(
-            "fit of {file}: {} points, {} terms, misfit {:.2} % rms and {:.2} % at most, data from {}",
-            report.points.unwrap_or(0),
-            report.terms,
+            "fit of {file}: {}, {}, misfit {:.2} % rms and {:.2} % at most, data from {}",
+            counted(report.points.unwrap_or(0), "point"),
+            counted(report.terms, "term"),
             100.0 * rms,
             100.0 * max,
             times(window)

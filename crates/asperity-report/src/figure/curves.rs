@@ -184,7 +184,7 @@ impl Curves {
                 Style::Points => {
                     drawing.circle([x + 13.0, middle], 2.4, &format!("fill=\"none\" stroke=\"{colour}\""));
                 }
-                style => drawing.line(from, to, colour, weight(style), dashes(style)),
+                style => drawing.line(from, to, colour, weight(style, 0.0), dashes(style)),
             }
             drawing.text([x + 26.0, middle + 0.36 * SMALL], SMALL, Anchor::Start, "", &series.name);
         }
@@ -247,7 +247,7 @@ fn draw_series(
         style => {
             let pen = format!(
                 "stroke=\"{colour}\" stroke-width=\"{}\" stroke-linejoin=\"round\" {}",
-                weight(style),
+                weight(style, length(points())),
                 dashes(style)
             );
             drawing.path(points(), &pen);
@@ -255,8 +255,26 @@ fn draw_series(
     }
 }
 
-fn weight(style: Style) -> f64 {
-    if style == Style::Reference { 1.0 } else { 1.5 }
+/// Thinner where a line runs to and fro so often that it would cover itself.
+fn weight(style: Style, length: f64) -> f64 {
+    /// Some ten times across a panel.
+    const LONG: f64 = 5000.0;
+    match style {
+        Style::Reference => 1.0,
+        _ if length > LONG => 0.7,
+        _ => 1.5,
+    }
+}
+
+/// Length of a line as it is drawn.
+fn length(points: impl Iterator<Item = Option<[f64; 2]>>) -> f64 {
+    let mut last = None;
+    points
+        .map(|now| {
+            let from = std::mem::replace(&mut last, now);
+            from.zip(now).map_or(0.0, |([a, b], [c, d])| f64::hypot(c - a, d - b))
+        })
+        .sum()
 }
 
 fn dashes(style: Style) -> &'static str {

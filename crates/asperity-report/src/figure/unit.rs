@@ -53,8 +53,8 @@ fn prefix(largest: f64, exponent: i32) -> i32 {
     if !(largest.is_finite() && largest > 0.0) {
         return 0;
     }
-    // A hair above, so that 1e-6, whose logarithm rounds below -6, is one micrometre.
-    let decades = largest.log10() + 1e-9;
+    // Half of the fourth digit above: what four digits show as a thousand is one of the next prefix.
+    let decades = largest.log10() + 2.17e-5;
     let steps = (decades / f64::from(3 * exponent.abs())).floor() as i32;
     if exponent > 0 { steps } else { -steps }
 }
@@ -78,6 +78,8 @@ mod tests {
     #[test]
     fn the_prefix_makes_the_largest_number_lie_between_one_and_a_thousand() {
         assert_eq!(text("m", 1e-6), ("µm".into(), 6));
+        assert_eq!(text("N", 0.999_98), ("N".into(), 0));
+        assert_eq!(text("N", 0.999_9), ("mN".into(), 3));
         assert_eq!(text("m", 0.999e-6), ("nm".into(), 9));
         assert_eq!(text("m", 2e3), ("m".into(), 0));
         assert_eq!(text("Pa", 3e8), ("MPa".into(), -6));

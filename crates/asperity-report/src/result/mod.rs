@@ -241,6 +241,7 @@ mod tests {
     fn numbers_have_four_digits_and_a_prefix() {
         assert_eq!(words(3.9312e-6, "m"), "3.931 µm");
         assert_eq!(words(0.5, "N"), "500 mN");
+        assert_eq!(words(0.999_999_6, "N"), "1 N");
         assert_eq!(words(500.0, "s"), "500 s");
         assert_eq!(words(5.0696e-9, "m2"), "5070 µm²");
         assert_eq!(words(0.0, "m"), "0 m");

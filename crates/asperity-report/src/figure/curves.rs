@@ -257,8 +257,8 @@ fn draw_series(
 
 /// Thinner where a line runs to and fro so often that it would cover itself.
 fn weight(style: Style, length: f64) -> f64 {
-    /// Some ten times across a panel.
-    const LONG: f64 = 5000.0;
+    /// Some five times across a panel.
+    const LONG: f64 = 2000.0;
     match style {
         Style::Reference => 1.0,
         _ if length > LONG => 0.7,

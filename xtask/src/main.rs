@@ -1,4 +1,4 @@
-//! Tasks of the project: `cargo xtask test | bench | peers | figures | verification`.
+//! Tasks of the project: `cargo xtask test | bench | peers | sanitize | figures | verification`.
 
 mod peers;
 mod surfaces;
@@ -13,6 +13,7 @@ cargo xtask TASK
   bench         times convolution, elastic contact, creep and surfaces, and prints tables (a quiet machine, please);
                 with --quick up to 1024 x 1024 cells
   peers         times other programs and this one on the same surfaces, and writes target/peers/peers.md
+  sanitize      tests the crate that holds the unsafe code under the address sanitizer (needs a nightly toolchain)
   figures       draws the pictures of the documentation
   verification  writes docs/verification.md from `asperity verify`
 ";
@@ -42,6 +43,7 @@ fn main() -> ExitCode {
         Some("test") => test(),
         Some("bench") => bench(std::env::args().any(|a| a == "--quick")),
         Some("peers") => peers::peers(std::env::args().any(|a| a == "--quick")),
+        Some("sanitize") => sanitize(),
         Some("figures") => figures(),
         Some("verification") => verification(),
         _ => {
@@ -151,6 +153,17 @@ fn bench(quick: bool) -> Done {
             .arg(root().join(format!("examples/{case}.toml"))))?;
     }
     surfaces::bench()
+}
+
+/// Every instruction set that this processor has, with reads and writes out of bounds told.
+fn sanitize() -> Done {
+    let version = Command::new("rustc").arg("-vV").output().map_err(|error| format!("rustc: {error}"))?;
+    let version = String::from_utf8_lossy(&version.stdout).into_owned();
+    let host = version.lines().find_map(|line| line.strip_prefix("host: ")).ok_or("rustc names no host")?;
+    run(Command::new("rustup")
+        .args(["run", "nightly", "cargo", "test", "-p", "asperity-convolution", "--lib", "--target", host])
+        .env("RUSTFLAGS", "-Zsanitizer=address")
+        .env("CARGO_TARGET_DIR", root().join("target/sanitize")))
 }
 
 fn figures() -> Done {

@@ -7,7 +7,7 @@
 use asperity_convolution::eights::{Cell, Eight, Mask, Work, vectorize};
 
 use super::Hardness;
-use super::fields::{Fields, as_stored};
+use super::fields::{Fields, undeformed};
 use super::shift::ClippedSum;
 use crate::field::{Set, SetMut, sweep};
 
@@ -195,7 +195,7 @@ impl<P: Cell> Work for Turning<'_, P> {
             d.only(on).store(self.d, n);
             // As it was rounded: later sweeps take the step from the stored direction.
             let d = V::from_singles(d.only(on).to_singles());
-            looking.meet(V::load(self.p, n, 0.0), d, as_stored::<P, V>(self.hardness.eight(n)), on);
+            looking.meet(V::load(self.p, n, 0.0), d, self.hardness.stored::<P, V>(n), on);
         }
         looking.sums.map(V::sum)
     }
@@ -246,14 +246,14 @@ impl<P: Cell> Work for Steepest<'_, P> {
         let mut looking = Looking::<V>::new(self.length);
         let (c, w, per) = (V::splat(self.compliance), V::splat(self.w), V::splat(1.0 / self.scale));
         for (n, set) in (0..).step_by(8).zip(self.set) {
-            let h = self.h.map_or(V::splat(0.0), |h| V::load(h, n, f64::INFINITY));
+            let h = undeformed::<V>(self.h, n);
             let g = c * V::load(self.u, n, f64::INFINITY) + h;
             let on = g.less(V::splat(f64::INFINITY));
             let r = ((g - w) * per).only(on).to_singles();
             V::from_singles(r).store(self.d, n);
             V::from_singles(r).store(self.r, n);
             *set = on.bits();
-            let top = as_stored::<P, V>(self.hardness.eight(n));
+            let top = self.hardness.stored::<P, V>(n);
             looking.meet(V::load(self.p, n, 0.0), V::from_singles(r), top, on);
         }
         looking.sums.map(V::sum)

@@ -25,7 +25,7 @@ impl Scalar for f64 {
         operator.apply_into(p, u);
     }
     fn refresh(operator: &mut dyn Operator, p: &[f64], u: &mut [f64]) -> bool {
-        operator.apply_into(p, u);
+        Self::apply(operator, p, u);
         true
     }
 }
@@ -46,6 +46,12 @@ impl Scalar for f32 {
 #[inline(always)]
 pub(super) fn as_stored<P: Cell, V: Eight>(x: V) -> V {
     P::widen(P::narrow(x))
+}
+
+/// h of eight cells: infinite beyond the end, zero where there is none.
+#[inline(always)]
+pub(super) fn undeformed<V: Eight>(h: Option<&[f64]>, cell: usize) -> V {
+    h.map_or(V::splat(0.0), |h| V::load(h, cell, f64::INFINITY))
 }
 
 /// p, and what makes its gap g = c U + h.
@@ -157,7 +163,7 @@ impl Work for Give<'_> {
     fn run<V: Eight>(self) {
         for n in (0..self.p.len()).step_by(8) {
             let (p, top): (V, V) = (V::load(self.p, n, 0.0), self.hardness.eight(n));
-            V::select(p.less(as_stored::<f32, V>(top)), p, top).store(self.to, n);
+            V::select(p.less(self.hardness.stored::<f32, V>(n)), p, top).store(self.to, n);
         }
     }
 }

@@ -7,7 +7,7 @@
 use asperity_convolution::eights::{Cell, Eight, Mask, Work, vectorize};
 
 use super::Hardness;
-use super::fields::{Fields, Scalar, as_stored};
+use super::fields::{Fields, Scalar, as_stored, undeformed};
 use super::residual::{Gauge, Rating};
 use super::shift::{Mover, Shift, Trial};
 use crate::field::{Min, Set, SetMut, sweep};
@@ -105,7 +105,7 @@ impl<T: Cell, P: Cell> Work for LayOut<'_, T, P> {
             let on = V::Mask::from_bits(*set);
             let p = V::load(self.p, n, 0.0);
             let r = V::load(self.r, n, 0.0);
-            let hardness: V = as_stored::<P, V>(self.hardness.eight(n));
+            let hardness: V = self.hardness.stored::<P, V>(n);
             let q = mover.target(p, V::load(self.d, n, 0.0), hardness);
             let s = (q - p).only(on);
             (s * per).store(self.s, n);
@@ -249,8 +249,8 @@ impl<T: Cell, P: Scalar> Work for Advance<'_, T, P> {
         let per = V::splat(1.0 / self.scale);
         let mover = self.motion.as_ref().map(|m| Mover::<V>::new(m.length, m.shift));
         for n in (0..self.p.len()).step_by(8) {
-            let top = as_stored::<P, V>(self.hardness.eight(n));
-            let h = self.h.map_or(V::splat(0.0), |h| V::load(h, n, f64::INFINITY));
+            let top = self.hardness.stored::<P, V>(n);
+            let h = undeformed::<V>(self.h, n);
             let mut u = V::load(self.u, n, f64::INFINITY);
             if let Some(motion) = &self.motion {
                 u = as_stored::<P, V>(u + V::splat(motion.t * motion.unit) * V::load(motion.image, n, 0.0));

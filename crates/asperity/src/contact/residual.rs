@@ -10,7 +10,7 @@
 
 use asperity_convolution::eights::{Cell, Eight, Mask, Work, vectorize};
 
-use super::fields::{Fields, as_stored};
+use super::fields::{Fields, undeformed};
 use super::{Hardness, Outcome, Prescribed, Problem};
 use crate::field::{Max, Merge, Min, sweep};
 use crate::grid::Grid;
@@ -292,8 +292,8 @@ impl<P: Cell> Work for Rate<'_, P> {
     fn run<V: Eight>(self) -> Rating {
         let mut gauge = Gauge::<V>::new(self.compliance, self.w);
         for n in (0..self.p.len()).step_by(8) {
-            let h = self.h.map_or(V::splat(0.0), |h| V::load(h, n, f64::INFINITY));
-            let top = as_stored::<P, V>(self.hardness.eight(n));
+            let h = undeformed::<V>(self.h, n);
+            let top = self.hardness.stored::<P, V>(n);
             gauge.meet(V::load(self.p, n, 0.0), V::load(self.u, n, f64::INFINITY), h, top, true);
         }
         gauge.rating()

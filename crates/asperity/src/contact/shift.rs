@@ -7,7 +7,6 @@
 use asperity_convolution::eights::{Cell, Eight, Mask, Work, vectorize};
 
 use super::Hardness;
-use super::fields::as_stored;
 use crate::field::{Max, Min, Set, sweep};
 
 /// A sum is met when it misses by this share: the cells inside take the rest back, and so few of them cross a bound
@@ -173,7 +172,7 @@ impl<P: Cell> Work for Clipped<'_, P> {
         let (length, lambda) = (V::splat(self.length), V::splat(self.lambda));
         for (n, set) in (0..).step_by(8).zip(self.set).filter(|(_, set)| **set != 0) {
             let on = V::Mask::from_bits(*set);
-            let top = as_stored::<P, V>(self.hardness.eight(n));
+            let top = self.hardness.stored::<P, V>(n);
             let d = self.d.map_or(V::splat(0.0), |d| V::load(d, n, 0.0));
             let moved = V::load(self.p, n, 0.0) - length * d + lambda;
             sum = sum + moved.clip(top).only(on);

@@ -5,8 +5,16 @@
 //! blocks' sums pairwise up the same tree. The tree depends on the length alone, so the same field
 //! gives the same bits on one thread and on many; nothing is allocated.
 
+use rayon::prelude::*;
+
 /// Cells in one block, a multiple of eight: a few arrays of it fit the second-level cache.
 pub(crate) const BLOCK: usize = 8192;
+
+/// A field of zeros, written by all threads: memory that a system hands out as zeros without writing them would be fetched
+/// when it is first used, cell by cell in the middle of a solve, and twice where it is read first.
+pub(crate) fn zeros<T: Default + Send>(cells: usize) -> Vec<T> {
+    (0..cells).into_par_iter().with_min_len(BLOCK).map(|_| T::default()).collect()
+}
 
 /// Arrays that are walked together: slices and tuples of slices of one length.
 pub(crate) trait Cells: Send + Sized {

@@ -3,7 +3,7 @@
 use asperity_convolution::eights::{Cell, Eight, Work, vectorize};
 
 use super::{ContactState, Hardness, Problem};
-use crate::field::sweep;
+use crate::field::{sweep, zeros};
 use crate::operator::Operator;
 
 /// Numbers of an iteration: those of its convolution, and those of its fields.
@@ -89,7 +89,7 @@ pub(super) struct Singles {
 
 impl Singles {
     pub(super) fn new(cells: usize) -> Self {
-        Singles { pressure: vec![0.0; cells], gap: vec![0.0; cells], approach: 0.0 }
+        Singles { pressure: zeros(cells), gap: zeros(cells), approach: 0.0 }
     }
 
     /// The state as f32, the gap less the approach `w`: what rounding leaves of it near contact is small with it.

@@ -5,241 +5,224 @@
 //!
 //! (K_SS)^-1 = M_SS - M_SC (M_CC)^-1 M_CS, C all other cells,
 //!
-//! and what M_SS lacks is what happens at the ends of S, where the pressure is steep. M falls off as the third power of
-//! the distance, so its nine nearest entries m stand for it inside the inverse, and a polynomial p of second degree for
-//! that inverse:
+//! and what M_SS lacks is what happens at the ends of S, where the pressure is steep. One step of steepest descent, itself
+//! preconditioned, stands for the inverse inside: with b = M_CS r,
 //!
-//! z = M_SS r + M_SC x, x = -p(m_CC) M_CS r.
+//! z = M_SS r - a M_SC y, y = D G_CC D b, a = b'y / y'M y.
 //!
-//! 1 - t p(t) = (1 + T_3)/(1 + T_3(0)) with the Chebyshev polynomial T_3 over the spectrum of m: never negative, so that
-//! p(m) stays below the inverse of m and the whole is positive.
+//! G, the symbol 1/(|q|/2 + c), is the compliance screened, for S around the open cells ends its reach; D is less than 1 for
+//! cells beside S, which it holds most.
+//! a b'y never exceeds b'(M_CC)^-1 b, so z'r is positive whatever G is. z is not linear in r; the directions of Polak and
+//! Ribiere do not ask for it.
 //!
-//! It costs a second convolution in f32 on the unpadded grid and a pass over rows, and saves a quarter to a third of the
-//! iterations. That pays where the convolution of a step is the padded one of a free domain; on a periodic one
-//! z = M_SS r.
+//! It costs two more convolutions in f32 on the unpadded grid, and saves half of the iterations.
 
-use asperity_convolution::eights::{Eight, Work, vectorize};
+use asperity_convolution::eights::{Eight, Mask, Work, vectorize};
 use asperity_convolution::lanes::Lanes;
 use rayon::prelude::*;
 
+use crate::field::{Set, sweep, zeros};
 use crate::grid::{Boundary, Grid};
-use crate::kernel::inverse_kernel;
-use crate::operator::approximate_inverse;
+use crate::operator::{approximate_inverse, screened_compliance};
 
-/// Rows of a block, which one thread works on.
-const ROWS: usize = 32;
-/// The degree of p: how often m is applied. The third saves 6 % of the iterations more, and costs more.
-const DEGREE: usize = 2;
-/// Rows of each step that are kept.
-const KEPT: usize = DEGREE + 2;
-/// The eigenvalues of m that p heeds, from this share of the largest.
-const LEAST: f64 = 0.1;
+/// D of an open cell that touches one of S with a side or a corner.
+const BESIDE: f64 = 0.67;
 
 /// z from r on a working set, both f32.
 pub(super) struct Preconditioner {
+    /// M over its largest value.
     inverse: Lanes<f32>,
-    /// Largest of the symbol of M \[1/m\], which `inverse` has as 1.
+    /// That value \[1/m\].
     pub sharpest: f64,
-    ends: Option<Ends>,
-}
-
-/// What the ends of the working set need.
-struct Ends {
+    /// G.
+    screened: Lanes<f32>,
     /// Cells of a row.
-    cells: usize,
-    stencil: Stencil,
-    /// r on S, x elsewhere.
-    folded: Vec<f32>,
-    /// KEPT rows of every step for each block of rows, with a cell more at either end.
-    rows: Vec<f32>,
-}
-
-/// m and p(m), m in units of the largest of the symbol.
-#[derive(Clone, Copy)]
-struct Stencil {
-    /// The entries (0, 0), (1, 0), (0, 1) and (1, 1).
-    nearest: [f32; 4],
-    /// The coefficients of p, the constant first.
-    polynomial: [f32; DEGREE + 1],
+    row: usize,
+    /// The open cells beside S.
+    beside: Vec<u8>,
+    /// D b, then M y.
+    image: Vec<f32>,
+    /// y.
+    lift: Vec<f32>,
 }
 
 impl Preconditioner {
     pub(super) fn new(grid: &Grid, boundary: Boundary) -> Self {
         let (inverse, sharpest) = approximate_inverse(grid, boundary);
-        let ends = (boundary == Boundary::Free).then(|| {
-            let [nx, ny] = grid.cells();
-            Ends {
-                cells: ny,
-                stencil: Stencil::new(grid.spacing(), sharpest),
-                folded: vec![0.0; grid.len()],
-                rows: vec![0.0; nx.div_ceil(ROWS) * (DEGREE + 1) * KEPT * (ny + 2)],
-            }
-        });
-        Preconditioner { inverse, sharpest, ends }
+        let screened = screened_compliance(grid, boundary);
+        let [image, lift] = [(); 2].map(|()| zeros(grid.len()));
+        let beside = zeros(grid.len().div_ceil(8));
+        Preconditioner { inverse, sharpest, screened, row: grid.cells()[1], beside, image, lift }
     }
 
     /// z; what is beyond S means nothing. `r` is zero there.
     pub(super) fn apply_into(&mut self, r: &[f32], set: &[u8], z: &mut [f32]) {
+        find_beside(set, self.row, &mut self.beside);
+        let open = Open { set, beside: &self.beside };
         self.inverse.apply_into(r, z);
-        if let Some(Ends { cells, stencil, folded, rows }) = &mut self.ends {
-            let blocks = folded.par_chunks_mut(ROWS * *cells);
-            let rows = rows.par_chunks_mut((DEGREE + 1) * KEPT * (*cells + 2));
-            blocks.zip(rows).enumerate().for_each(|(block, (folded, rows))| {
-                let first = block * ROWS;
-                vectorize(Fold { r, z, set, folded, rows, first, cells: *cells, stencil: *stencil });
-            });
-            self.inverse.apply_into(folded, z);
+        charge(z, open, &mut self.image);
+        self.screened.apply_into(&self.image, &mut self.lift);
+        let slope = lift(&mut self.lift, z, open);
+        self.inverse.apply_into(&self.lift, &mut self.image);
+        let curvature = product(&self.lift, &self.image);
+        // Where nothing is open, b is zero.
+        if slope > 0.0 && curvature > 0.0 {
+            add(z, set, &self.image, -slope / curvature);
         }
     }
 }
 
-impl Stencil {
-    fn new(spacing: [f64; 2], sharpest: f64) -> Self {
-        let nearest = nearest_entries(spacing).map(|m| m / sharpest);
-        let [m, mx, my, md] = nearest;
-        // Linear in either cosine, the symbol of m is largest in a corner of the Brillouin zone.
-        let corner = |(x, y): (f64, f64)| m + 2.0 * (mx * x + my * y) + 4.0 * md * x * y;
-        let largest =
-            [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)].map(corner).into_iter().fold(0.0, f64::max);
-        Stencil { nearest: nearest.map(|m| m as f32), polynomial: polynomial(largest).map(|c| c as f32) }
-    }
-}
-
-/// The entries (0, 0), (1, 0), (0, 1), (1, 1) of M \[1/m\] on an infinite grid.
-fn nearest_entries([dx, dy]: [f64; 2]) -> [f64; 4] {
-    const SAMPLES: usize = 64;
-    let angle = |k: usize| std::f64::consts::PI * (k as f64 + 0.5) / SAMPLES as f64;
-    let mut entries = [0.0; 4];
-    for (a, b) in (0..SAMPLES * SAMPLES).map(|n| (angle(n / SAMPLES), angle(n % SAMPLES))) {
-        let m = inverse_kernel(a / dx, b / dy, 0.0) / (SAMPLES * SAMPLES) as f64;
-        let (x, y) = (libm::cos(a), libm::cos(b));
-        entries = [entries[0] + m, entries[1] + m * x, entries[2] + m * y, entries[3] + m * x * y];
-    }
-    entries
-}
-
-/// The coefficients of p for a spectrum up to `largest`, the constant first.
-fn polynomial(largest: f64) -> [f64; DEGREE + 1] {
-    // T_3(x) = 4 x^3 - 3 x of x = a + b t.
-    let (a, b) = ((1.0 + LEAST) / (1.0 - LEAST), -2.0 / (largest * (1.0 - LEAST)));
-    let scale = -1.0 / (1.0 + 4.0 * a * a * a - 3.0 * a);
-    [scale * (12.0 * a * a - 3.0) * b, scale * 12.0 * a * b * b, scale * 4.0 * b * b * b]
-}
-
-/// r + x on a block of rows, x = p(m_CC) b with b = -(M r)_C, by Horner's rule.
-struct Fold<'a> {
-    r: &'a [f32],
-    /// M r.
-    z: &'a [f32],
+/// C as bits: what is not of the set, and of that what is beside it.
+#[derive(Clone, Copy)]
+struct Open<'a> {
     set: &'a [u8],
-    folded: &'a mut [f32],
-    /// KEPT rows of: what is open, b, and the steps but for the last.
-    rows: &'a mut [f32],
-    /// The first row of the block.
-    first: usize,
-    cells: usize,
-    stencil: Stencil,
+    beside: &'a [u8],
 }
 
-impl Work for Fold<'_> {
+impl<'a> Open<'a> {
+    fn sets(self) -> (Set<'a>, Set<'a>) {
+        (Set(self.set), Set(self.beside))
+    }
+
+    /// D of eight cells, 0 on S.
+    #[inline(always)]
+    fn weights<V: Eight>(self, eight: usize) -> V {
+        let [beside, open] = [self.beside[eight], !self.set[eight]].map(V::Mask::from_bits);
+        V::select(beside, V::splat(BESIDE), V::splat(1.0)).only(open)
+    }
+}
+
+/// D b, b = z on C.
+fn charge(z: &[f32], open: Open, charge: &mut [f32]) {
+    sweep((charge, z, open.sets()), &|(charge, z, (Set(set), Set(beside))): (
+        &mut [f32],
+        &[f32],
+        (Set, Set),
+    )| { vectorize(Charge { z, open: Open { set, beside }, charge }) });
+}
+
+struct Charge<'a> {
+    z: &'a [f32],
+    open: Open<'a>,
+    charge: &'a mut [f32],
+}
+
+impl Work for Charge<'_> {
     type Yield = ();
 
     #[inline(always)]
     fn run<V: Eight>(self) {
-        let ny = self.cells;
-        let width = ny + 2;
-        let (nx, count) = (self.z.len() / ny, self.folded.len() / ny);
-        let (open, steps) = self.rows.split_at_mut(KEPT * width);
-        // Rows are counted from DEGREE above the block: b there is what the block's first row needs.
-        let row = |n: usize| (self.first + n).checked_sub(DEGREE).filter(|row| *row < nx);
-        for n in 0..count + 2 * DEGREE {
-            let (open_now, b) = (kept(open, width, n), kept(steps, width, n));
-            match row(n) {
-                Some(row) => {
-                    openness(self.set, row * ny, &mut open_now[1..=ny]);
-                    let z = &self.z[row * ny..][..ny];
-                    for ((b, z), open) in b[1..=ny].iter_mut().zip(z).zip(&open_now[1..=ny]) {
-                        *b = -z * open;
-                    }
-                }
-                None => b.fill(0.0),
+        for n in (0..self.z.len()).step_by(8) {
+            (V::load(self.z, n, 0.0) * self.open.weights(n / 8)).store(self.charge, n);
+        }
+    }
+}
+
+/// y = D y, and b'y, b = z on C.
+fn lift(y: &mut [f32], z: &[f32], open: Open) -> f64 {
+    sweep((y, z, open.sets()), &|(y, z, (Set(set), Set(beside))): (&mut [f32], &[f32], (Set, Set))| {
+        vectorize(Lift { y, z, open: Open { set, beside } })
+    })
+}
+
+struct Lift<'a> {
+    y: &'a mut [f32],
+    z: &'a [f32],
+    open: Open<'a>,
+}
+
+impl Work for Lift<'_> {
+    type Yield = f64;
+
+    #[inline(always)]
+    fn run<V: Eight>(self) -> f64 {
+        let mut sum = V::splat(0.0);
+        for n in (0..self.y.len()).step_by(8) {
+            let y = V::load(self.y, n, 0.0) * self.open.weights(n / 8);
+            y.store(self.y, n);
+            sum = sum + y * V::load(self.z, n, 0.0);
+        }
+        sum.sum()
+    }
+}
+
+/// <x, y>
+fn product(x: &[f32], y: &[f32]) -> f64 {
+    sweep((x, y), &|(x, y): (&[f32], &[f32])| vectorize(Product { x, y }))
+}
+
+struct Product<'a> {
+    x: &'a [f32],
+    y: &'a [f32],
+}
+
+impl Work for Product<'_> {
+    type Yield = f64;
+
+    #[inline(always)]
+    fn run<V: Eight>(self) -> f64 {
+        let mut sum = V::splat(0.0);
+        for n in (0..self.x.len()).step_by(8) {
+            sum = sum + V::load(self.x, n, 0.0) * V::load(self.y, n, 0.0);
+        }
+        sum.sum()
+    }
+}
+
+/// z += t x on S.
+fn add(z: &mut [f32], set: &[u8], x: &[f32], t: f64) {
+    sweep((z, x, Set(set)), &|(z, x, Set(set)): (&mut [f32], &[f32], Set)| vectorize(Add { z, x, set, t }));
+}
+
+struct Add<'a> {
+    z: &'a mut [f32],
+    x: &'a [f32],
+    set: &'a [u8],
+    t: f64,
+}
+
+impl Work for Add<'_> {
+    type Yield = ();
+
+    #[inline(always)]
+    fn run<V: Eight>(self) {
+        let t = V::splat(self.t);
+        for (n, _) in (0..).step_by(8).zip(self.set).filter(|(_, set)| **set != 0) {
+            (V::load(self.z, n, 0.0) + t * V::load(self.x, n, 0.0)).store(self.z, n);
+        }
+    }
+}
+
+/// Bytes of a set that are looked at together.
+const WORD: usize = 8;
+
+/// The cells that are not of the set and touch one of it: the eight around each in memory, so that the last cell of a row
+/// counts as a neighbour of the first of the next.
+fn find_beside(set: &[u8], row: usize, beside: &mut [u8]) {
+    let row = row as isize;
+    beside.par_chunks_mut(1024 * WORD).enumerate().for_each(|(chunk, beside)| {
+        for (n, bytes) in (1024 * chunk..).zip(beside.chunks_mut(WORD)) {
+            let at = (8 * WORD * n) as isize;
+            let mut near = 0;
+            for row in [at - row, at, at + row] {
+                near |= sixty_four(set, row - 1) | sixty_four(set, row) | sixty_four(set, row + 1);
             }
-            // A step's row needs the rows around it of the step before.
-            for step in 1..=DEGREE.min(n / 2) {
-                let n = n - step;
-                let (before, now) = steps.split_at_mut(step * KEPT * width);
-                let b = &before[n % KEPT * width..][1..=ny];
-                let last = &before[(step - 1) * KEPT * width..];
-                let around = [n - 1, n, n + 1].map(|n| &last[n % KEPT * width..][..width]);
-                let open = &open[n % KEPT * width..][1..=ny];
-                let own = self.stencil.polynomial[DEGREE - step];
-                let highest = if step == 1 { self.stencil.polynomial[DEGREE] } else { 1.0 };
-                let m = self.stencil.nearest.map(|m| highest * m);
-                if step == DEGREE {
-                    let folded = &mut self.folded[(n - DEGREE) * ny..][..ny];
-                    nine(m, around, folded);
-                    let r = &self.r[(self.first + n - DEGREE) * ny..][..ny];
-                    for (((x, r), b), open) in folded.iter_mut().zip(r).zip(b).zip(open) {
-                        *x = r + (own * b + *x) * open;
-                    }
-                    continue;
-                }
-                let now = kept(now, width, n);
-                match row(n) {
-                    Some(_) => {
-                        nine(m, around, &mut now[1..=ny]);
-                        for ((x, b), open) in now[1..=ny].iter_mut().zip(b).zip(open) {
-                            *x = (own * b + *x) * open;
-                        }
-                    }
-                    None => now.fill(0.0),
-                }
-            }
+            near &= !sixty_four(set, at);
+            bytes.copy_from_slice(&near.to_le_bytes()[..bytes.len()]);
         }
-    }
+    });
 }
 
-/// The place of row n among those that are kept.
-#[inline(always)]
-fn kept(rows: &mut [f32], width: usize, n: usize) -> &mut [f32] {
-    &mut rows[n % KEPT * width..][..width]
-}
-
-/// m on one row; the rows around it have a cell more at either end, and so many that are zero.
-#[inline(always)]
-fn nine([m, mx, my, md]: [f32; 4], [above, here, below]: [&[f32]; 3], to: &mut [f32]) {
-    let n = to.len();
-    let (above, here, below) = (&above[..n + 2], &here[..n + 2], &below[..n + 2]);
-    for j in 0..n {
-        let corners = (above[j] + above[j + 2]) + (below[j] + below[j + 2]);
-        let beside = mx * (above[j + 1] + below[j + 1]) + my * (here[j] + here[j + 2]);
-        to[j] = m * here[j + 1] + (beside + md * corners);
-    }
-}
-
-/// Of eight cells, by the byte of their set: 0 where a cell is in it, else 1.
-static OPEN: [[f32; 8]; 256] = {
-    let mut table = [[0.0; 8]; 256];
-    let mut n = 0;
-    while n < 8 * 256 {
-        table[n / 8][n % 8] = (1 - (((n / 8) >> (n % 8)) & 1)) as f32;
-        n += 1;
-    }
-    table
-};
-
-/// The same for the cells of a row that starts at cell `start`.
-#[inline(always)]
-fn openness(set: &[u8], start: usize, open: &mut [f32]) {
-    if start.is_multiple_of(8) && open.len().is_multiple_of(8) {
-        for (open, bits) in open.chunks_exact_mut(8).zip(&set[start / 8..]) {
-            open.copy_from_slice(&OPEN[usize::from(*bits)]);
-        }
-    } else {
-        for (n, open) in (start..).zip(open) {
-            *open = OPEN[usize::from(set[n / 8])][n % 8];
-        }
-    }
+/// Cells `at`..`at + 64` of a set, as bits; none beyond its ends.
+fn sixty_four(set: &[u8], at: isize) -> u64 {
+    let (byte, shift) = (at.div_euclid(8), at.rem_euclid(8));
+    let nine = usize::try_from(byte).ok().and_then(|byte| set.get(byte..)?.first_chunk().copied());
+    let [first @ .., last]: [u8; 9] = nine.unwrap_or_else(|| {
+        let within = |k| usize::try_from(byte + k).ok().and_then(|byte| set.get(byte).copied());
+        std::array::from_fn(|k| within(k as isize).unwrap_or(0))
+    });
+    // Shifted in two steps: 64 at once is more than there are.
+    u64::from_le_bytes(first) >> shift | u64::from(last) << 1 << (63 - shift)
 }
 
 #[cfg(test)]
@@ -267,70 +250,85 @@ mod tests {
         (x >> 8) as f32 / (1 << 23) as f32 - 1.0
     }
 
+    /// r'z on a set, r as given there.
+    fn rated(preconditioner: &mut Preconditioner, set: &[u8], r: &[f32]) -> f64 {
+        let mut z = vec![0.0; r.len()];
+        preconditioner.apply_into(r, set, &mut z);
+        assert!(z.iter().all(|z| z.is_finite()));
+        dot(r, &z)
+    }
+
+    fn dot(x: &[f32], y: &[f32]) -> f64 {
+        x.iter().zip(y).map(|(x, y)| f64::from(*x) * f64::from(*y)).sum()
+    }
+
+    /// r'z lies between that of the Schur complement and that of M_SS, and most of the way to the former.
     #[test]
-    fn rows_in_blocks_are_the_polynomial_of_the_stencil() {
-        for cells in [[70, 48], [33, 21], [3, 5], [1, 40]] {
-            let [nx, ny] = cells;
-            let set = set(cells);
-            let z: Vec<f32> = (0..nx * ny).map(|n| noise(n, 1)).collect();
-            let r: Vec<f32> = (0..nx * ny).map(|n| if is_in(&set, n) { noise(n, 2) } else { 0.0 }).collect();
-            let stencil = Stencil::new([1.0, 0.8], 3.0);
-            let mut folded = vec![0.0_f32; nx * ny];
-            let mut rows = vec![0.0; (DEGREE + 1) * KEPT * (ny + 2)];
-            for (block, folded) in folded.chunks_mut(ROWS * ny).enumerate() {
-                let first = block * ROWS;
-                let fold =
-                    Fold { r: &r, z: &z, set: &set, folded, rows: &mut rows, first, cells: ny, stencil };
-                vectorize(fold);
-            }
-            // The same, cell by cell in f64.
-            let open = |n: usize| if is_in(&set, n) { 0.0 } else { 1.0 };
-            let times_m = |x: &[f64]| -> Vec<f64> {
-                let entry = |a: usize, b: usize| match (
-                    a.abs_diff(b / ny * ny + a % ny) / ny,
-                    (a % ny).abs_diff(b % ny),
-                ) {
-                    (i @ 0..=1, j @ 0..=1) => f64::from(stencil.nearest[i + 2 * j]),
-                    _ => 0.0,
+    fn it_is_near_the_inverse_on_the_set() {
+        for (cells, boundary) in
+            [([48, 40], Boundary::Free), ([37, 50], Boundary::Free), ([32, 32], Boundary::Periodic)]
+        {
+            let grid = Grid::new(cells, [1.0, 2.0]).unwrap();
+            let (set, n) = (set(cells), grid.len());
+            let mut preconditioner = Preconditioner::new(&grid, boundary);
+            for seed in 0..4 {
+                // Smooth where the seed is even, noise where it is odd.
+                let value = |k: usize| if seed % 2 == 0 { 1.0 } else { noise(k, seed) };
+                let r: Vec<f32> = (0..n).map(|k| if is_in(&set, k) { value(k) } else { 0.0 }).collect();
+                let mut z = vec![0.0; n];
+                preconditioner.inverse.apply_into(&r, &mut z);
+                let whole = dot(&r, &z);
+                // b'(M_CC)^-1 b, by conjugate gradients until nothing is left.
+                let open = |z: &[f32]| -> Vec<f32> {
+                    z.iter().enumerate().map(|(k, z)| if is_in(&set, k) { 0.0 } else { *z }).collect()
                 };
-                (0..nx * ny)
-                    .map(|a| (0..nx * ny).map(|b| entry(a, b) * x[b]).sum::<f64>() * open(a))
-                    .collect()
-            };
-            let b: Vec<f64> = (0..nx * ny).map(|n| -f64::from(z[n]) * open(n)).collect();
-            let mut x: Vec<f64> = b.iter().map(|b| f64::from(stencil.polynomial[DEGREE]) * b).collect();
-            for c in stencil.polynomial[..DEGREE].iter().rev() {
-                x = times_m(&x).iter().zip(&b).map(|(x, b)| x + f64::from(*c) * b).collect();
-            }
-            for n in 0..nx * ny {
-                let exact = f64::from(r[n]) + x[n];
-                // A dozen roundings of f32 in numbers of order one.
-                assert!((f64::from(folded[n]) - exact).abs() < 3e-6, "{cells:?} {n}: {} {exact}", folded[n]);
+                let mut rest = open(&z);
+                let (mut d, mut taken, mut size) = (rest.clone(), 0.0, dot(&rest, &rest));
+                let least = 1e-10 * size;
+                while size > least {
+                    preconditioner.inverse.apply_into(&d, &mut z);
+                    let md = open(&z);
+                    let step = size / dot(&d, &md);
+                    taken += step * size;
+                    rest.iter_mut().zip(&md).for_each(|(rest, md)| *rest -= step as f32 * md);
+                    let next = dot(&rest, &rest);
+                    d.iter_mut().zip(&rest).for_each(|(d, rest)| *d = rest + (next / size) as f32 * *d);
+                    size = next;
+                }
+                let found = rated(&mut preconditioner, &set, &r);
+                let share = (whole - found) / taken;
+                // More than the whole is rounding of f32; 0.89 is the least of these cases.
+                assert!((0.85..1.0 + 1e-4).contains(&share), "{cells:?} {boundary:?} {seed}: {share}");
+                assert!(found > 0.0);
             }
         }
     }
 
     #[test]
-    fn it_is_symmetric_and_positive() {
-        for (cells, boundary) in
-            [([64, 48], Boundary::Free), ([37, 50], Boundary::Free), ([32, 32], Boundary::Periodic)]
-        {
-            let grid = Grid::new(cells, [1.0, 2.0]).unwrap();
-            let set = set(cells);
-            let mut preconditioner = Preconditioner::new(&grid, boundary);
-            let mut of = |seed: u32| {
-                let r: Vec<f32> =
-                    (0..grid.len()).map(|n| if is_in(&set, n) { noise(n, seed) } else { 0.0 }).collect();
-                let mut z = vec![0.0; grid.len()];
-                preconditioner.apply_into(&r, &set, &mut z);
-                (r, z)
-            };
-            let dot = |a: &[f32], b: &[f32]| a.iter().zip(b).map(|(a, b)| f64::from(a * b)).sum::<f64>();
-            let ((r, z), (s, y)) = (of(3), of(4));
-            assert!(dot(&r, &z) > 0.0 && dot(&s, &y) > 0.0);
-            let size = (dot(&r, &z) * dot(&s, &y)).sqrt();
-            assert!((dot(&r, &y) - dot(&s, &z)).abs() < 1e-5 * size, "{} {}", dot(&r, &y), dot(&s, &z));
+    fn open_cells_beside_the_set() {
+        for cells in [[16, 8], [37, 50], [3, 21], [40, 64]] {
+            let ([_, ny], set) = (cells, set(cells));
+            let n = cells[0] * ny;
+            let mut beside = vec![u8::MAX; set.len()];
+            find_beside(&set, ny, &mut beside);
+            for k in 0..n {
+                let around = [0, 1, 2, ny, ny + 2, 2 * ny, 2 * ny + 1, 2 * ny + 2]
+                    .map(|d| (k + d).checked_sub(ny + 1));
+                let near = around.iter().any(|k| k.is_some_and(|k| k < n && is_in(&set, k)));
+                assert_eq!(is_in(&beside, k), near && !is_in(&set, k), "{cells:?} {k}");
+            }
         }
+    }
+
+    #[test]
+    fn all_cells_or_none() {
+        let grid = Grid::new([24, 20], [1.0, 1.0]).unwrap();
+        let mut preconditioner = Preconditioner::new(&grid, Boundary::Free);
+        let r: Vec<f32> = (0..grid.len()).map(|n| noise(n, 1)).collect();
+        let mut z = vec![0.0; grid.len()];
+        preconditioner.inverse.apply_into(&r, &mut z);
+        assert_eq!(rated(&mut preconditioner, &[u8::MAX; 60], &r), dot(&r, &z));
+        assert_eq!(rated(&mut preconditioner, &[0; 60], &[0.0; 480]), 0.0);
     }
 
     /// Where S and C alternate, an even pressure on S is nearly without displacement, and what C takes back is nearly all:
@@ -354,22 +352,9 @@ mod tests {
                     set[k / 8] |= 1 << (k % 8);
                     r[k] = 1.0;
                 }
-                let mut z = vec![0.0; n * n];
-                preconditioner.apply_into(&r, &set, &mut z);
-                let product: f64 = r.iter().zip(&z).map(|(r, z)| f64::from(r * z)).sum();
+                let product = rated(&mut preconditioner, &set, &r);
                 assert!(product > 0.0, "{aspect} {product}");
             }
-        }
-    }
-
-    /// 1 - t p(t) between 0 and 1: what is taken for the inverse of m is never more than it.
-    #[test]
-    fn the_polynomial_stays_below_the_inverse() {
-        let c = polynomial(2.0);
-        for k in 0..=1000 {
-            let t = 2e-3 * f64::from(k);
-            let rest = 1.0 - t * (c[0] + t * (c[1] + t * c[2]));
-            assert!((-1e-12..=1.0 + 1e-12).contains(&rest), "{t}: {rest}");
         }
     }
 }

@@ -27,6 +27,7 @@ use super::shift::{Shift, Trial};
 use super::start::make_feasible;
 use super::{ContactState, Outcome, Prescribed, Problem, SolverOptions, interrupted, not_converged};
 use crate::error::{Error, NotConverged, Result};
+use crate::field::zeros;
 use crate::grid::{Boundary, Grid};
 use crate::operator::Operator;
 
@@ -47,7 +48,7 @@ const OFF: f64 = 3e-8;
 const RANGE: std::ops::Range<f64> = 1e-20..1e20;
 
 /// The method's working memory: 16 bytes per cell, 16 for steps in f64 or for all fields in f32, sets of one bit, and
-/// the preconditioner's plan.
+/// the preconditioner.
 pub struct ProjectedCg<T = f64> {
     preconditioner: Preconditioner,
     /// Residual on S with its mean removed, in units of `unit`, now and one iteration ago.
@@ -109,16 +110,16 @@ impl<T: Scalar> ProjectedCg<T> {
         let n = grid.len();
         ProjectedCg {
             preconditioner: Preconditioner::new(grid, boundary),
-            residual: vec![0.0; n],
-            previous: vec![0.0; n],
-            image: vec![0.0; n],
-            direction: vec![0.0; n],
-            step: vec![T::default(); n],
-            moved: vec![T::default(); n],
-            working: vec![0; n.div_ceil(8)],
-            worked: vec![0; n.div_ceil(8)],
-            laid: vec![0; n.div_ceil(8)],
-            inside: vec![0; n.div_ceil(8)],
+            residual: zeros(n),
+            previous: zeros(n),
+            image: zeros(n),
+            direction: zeros(n),
+            step: zeros(n),
+            moved: zeros(n),
+            working: zeros(n.div_ceil(8)),
+            worked: zeros(n.div_ceil(8)),
+            laid: zeros(n.div_ceil(8)),
+            inside: zeros(n.div_ceil(8)),
             singles: T::ROUGH.then(|| Singles::new(n)),
         }
     }

@@ -1,5 +1,7 @@
 //! The state of a contact: what the solver overwrites and the next solve starts from.
 
+use crate::field::zeros;
+
 /// Pressure, its displacement under unit modulus, and approach.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactState {
@@ -14,7 +16,7 @@ pub struct ContactState {
 impl ContactState {
     /// No contact, on a grid of `cells` cells.
     pub fn new(cells: usize) -> Self {
-        ContactState { pressure: vec![0.0; cells], unit_displacement: vec![0.0; cells], approach: 0.0 }
+        ContactState { pressure: zeros(cells), unit_displacement: zeros(cells), approach: 0.0 }
     }
 
     /// No contact, at the approach `approach`.

@@ -30,7 +30,7 @@ use ndarray::Array2;
 
 use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem, Solver};
 use crate::error::{Error, Result};
-use crate::field::{minimum, sum, sweep};
+use crate::field::{minimum, sum, sweep, zeros};
 use crate::load::{Control, Event};
 use crate::operator::{Operator, half_space};
 use crate::time::Instant;
@@ -188,7 +188,7 @@ impl March {
             done: 0,
             current: None,
             state: ContactState::new(n),
-            previous: Previous { pressure: vec![0.0; n], unit_displacement: vec![0.0; n] },
+            previous: Previous { pressure: zeros(n), unit_displacement: zeros(n) },
             compliance: 0.0,
             outcome: Outcome::default(),
             dents,

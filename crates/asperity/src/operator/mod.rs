@@ -11,6 +11,8 @@ pub use dense::Dense;
 pub use free::Free;
 pub use periodic::Periodic;
 
+use ndarray::Array2;
+
 use crate::convolution::lanes::Lanes;
 use crate::grid::{Boundary, Grid};
 use crate::kernel::inverse_kernel;
@@ -56,9 +58,9 @@ pub(crate) fn wave_spectrum(
     [nx, ny]: [usize; 2],
     [lx, ly]: [f64; 2],
     symbol: impl Fn(f64, f64) -> f64,
-) -> ndarray::Array2<f64> {
+) -> Array2<f64> {
     let tau = std::f64::consts::TAU;
-    ndarray::Array2::from_shape_fn((nx / 2 + 1, ny / 2 + 1), |(kx, ky)| {
+    Array2::from_shape_fn((nx / 2 + 1, ny / 2 + 1), |(kx, ky)| {
         symbol(tau * kx as f64 / lx, tau * ky as f64 / ly)
     })
 }
@@ -72,6 +74,31 @@ const APART: usize = 16;
 /// It falls off as the third power of the distance: a free domain need not be padded to twice its cells, only so far that
 /// its opposite ends do not see each other. A third of a free convolution, and as good a preconditioner as the padded one.
 pub(crate) fn approximate_inverse(grid: &Grid, boundary: Boundary) -> (Lanes<f32>, f64) {
+    let (lengths, mut spectrum) = inverse_spectrum(grid, boundary);
+    let largest = largest(&spectrum);
+    spectrum /= largest;
+    (Lanes::new(grid.cells(), lengths, spectrum.view()), largest)
+}
+
+/// c of [`screened_compliance`], of the largest value of |q|/2: a length of some ten cells.
+const SCREEN: f64 = 0.03;
+
+/// The compliance 1/(|q|/2 + c) in the unit of [`approximate_inverse`] and on its torus: it falls off as the third power of the
+/// distance beyond the length 1/(2 c).
+pub(crate) fn screened_compliance(grid: &Grid, boundary: Boundary) -> Lanes<f32> {
+    let (lengths, mut spectrum) = inverse_spectrum(grid, boundary);
+    let screen = SCREEN * largest(&spectrum);
+    spectrum.mapv_inplace(|s| 1.0 / (s + screen));
+    spectrum /= largest(&spectrum);
+    Lanes::new(grid.cells(), lengths, spectrum.view())
+}
+
+fn largest(spectrum: &Array2<f64>) -> f64 {
+    spectrum.iter().fold(0.0, |m, s| m.max(*s))
+}
+
+/// Lengths of the torus of [`approximate_inverse`] and |q|/2 on it \[1/m\].
+fn inverse_spectrum(grid: &Grid, boundary: Boundary) -> ([usize; 2], Array2<f64>) {
     let lengths = match boundary {
         Boundary::Free => grid.cells().map(|n| Lanes::<f32>::good_length(n + APART)),
         Boundary::Periodic => grid.cells(),
@@ -79,8 +106,5 @@ pub(crate) fn approximate_inverse(grid: &Grid, boundary: Boundary) -> (Lanes<f32
     let [dx, dy] = grid.spacing();
     let size = [dx * lengths[0] as f64, dy * lengths[1] as f64];
     let mean = 0.25 * std::f64::consts::TAU / size[0].max(size[1]);
-    let mut spectrum = wave_spectrum(lengths, size, |qx, qy| inverse_kernel(qx, qy, mean));
-    let largest = spectrum.iter().fold(0.0_f64, |m, s| m.max(*s));
-    spectrum /= largest;
-    (Lanes::new(grid.cells(), lengths, spectrum.view()), largest)
+    (lengths, wave_spectrum(lengths, size, |qx, qy| inverse_kernel(qx, qy, mean)))
 }

@@ -44,7 +44,7 @@ impl<V: Lane> Engine<V> {
         let blocks = spectrum.len() / column_plan.mirrored_length();
         let stride = block_stride::<V>(nx);
         let [packed, half] = row_plan.scratch(V::LANES);
-        let scratch = || Scratch::new(packed.max(column_plan.signal_length()), half.max(mx));
+        let scratch = || Scratch::new(packed.max(column_plan.signal_length()), half.max(mx), V::LANES * ny);
         Engine {
             rows: nx,
             spectrum,
@@ -106,14 +106,22 @@ impl<V: Lane> Kernel for Columns<'_, V> {
     }
 }
 
+/// What is made of a stretch of the input before it is transformed: from its first cell on, into a copy.
+pub type Prepare<'a, T> = dyn Fn(usize, &[T], &mut [T]) + Sync + 'a;
+
 /// A convolution, whatever its lanes.
 pub trait Convolve<T>: Send {
-    /// output = S * input.
-    fn apply_into(&mut self, input: &[T], output: &mut [T]);
+    /// output = S * what is made of the input.
+    fn apply_into(&mut self, input: &[T], prepare: Option<&Prepare<T>>, output: &mut [T]);
 }
 
 impl<V: Lane> Convolve<V::Scalar> for Engine<V> {
-    fn apply_into(&mut self, input: &[V::Scalar], output: &mut [V::Scalar]) {
+    fn apply_into(
+        &mut self,
+        input: &[V::Scalar],
+        prepare: Option<&Prepare<V::Scalar>>,
+        output: &mut [V::Scalar],
+    ) {
         let (nx, ny, stride) = (self.rows, self.row_plan.cells(), self.stride);
         assert!(input.len() == nx * ny && output.len() == nx * ny);
         let block = V::LANES * ny;
@@ -124,7 +132,17 @@ impl<V: Lane> Convolve<V::Scalar> for Engine<V> {
             // SAFETY: every block of rows is visited once, and blocks have no row in common.
             let tiles = unsafe { tiles.of_rows(n * V::LANES, rows.len() / ny) };
             with(scratch, |scratch| {
+                let mut prepared = std::mem::take(&mut scratch.prepared);
+                let rows = match prepare {
+                    Some(prepare) => {
+                        let prepared = &mut prepared[..rows.len()];
+                        prepare(n * block, rows, prepared);
+                        prepared
+                    }
+                    None => rows,
+                };
                 V::vectorize(ForwardRows { plan: &self.row_plan, rows, tiles, scratch });
+                scratch.prepared = prepared;
             });
         });
 
@@ -152,7 +170,7 @@ impl<V: Lane> Convolve<V::Scalar> for Engine<V> {
 }
 
 /// Lends the thread its buffers.
-fn with<V>(scratch: &[Mutex<Scratch<V>>], work: impl FnOnce(&mut Scratch<V>)) {
+fn with<V: Lane>(scratch: &[Mutex<Scratch<V>>], work: impl FnOnce(&mut Scratch<V>)) {
     let mine = rayon::current_thread_index().unwrap_or(0) % scratch.len();
     work(&mut scratch[mine].lock().unwrap_or_else(PoisonError::into_inner));
 }

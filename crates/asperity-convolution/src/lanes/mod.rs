@@ -55,6 +55,7 @@ mod wrap;
 
 use ndarray::ArrayView2;
 
+pub use engine::Prepare;
 use engine::{Convolve, Engine};
 use factors::{Factors, factors};
 pub use lane::Real;
@@ -151,7 +152,16 @@ impl<T: Real> Lanes<T> {
     /// # Panics
     /// Where a length is not nx ny.
     pub fn apply_into(&mut self, input: &[T], output: &mut [T]) {
-        self.engine.apply_into(input, output);
+        self.engine.apply_into(input, None, output);
+    }
+
+    /// `output` = S * what `prepare` makes of `input`, stretch by stretch on its way through the cache:
+    /// `prepare(first, cells, to)` gets the cells from number `first` on, a multiple of four (of eight in f32), and says what to take for them.
+    ///
+    /// # Panics
+    /// Where a length is not nx ny.
+    pub fn apply_prepared_into(&mut self, input: &[T], prepare: &Prepare<T>, output: &mut [T]) {
+        self.engine.apply_into(input, Some(prepare), output);
     }
 }
 

@@ -149,7 +149,7 @@ fn has_the_same_bits_for_any_number_of_lanes() {
         let spectrum = spectrum(lengths);
         let mut engine = Engine::<Portable<f64, N>>::new(cells, lengths, [&x, &y], spectrum.view());
         let mut output = vec![0.0; cells[0] * cells[1]];
-        engine.apply_into(&field(cells), &mut output);
+        engine.apply_into(&field(cells), None, &mut output);
         output.into_iter().map(f64::to_bits).collect()
     }
     for (cells, lengths) in [([33, 31], [80, 64]), ([20, 40], [20, 40])] {
@@ -173,6 +173,33 @@ fn a_plan_can_be_used_again_and_on_more_threads_than_it_was_made_for() {
         output
     });
     assert_eq!(again, apply(Lanes::new(cells, lengths, spectrum.view()), &field(cells)));
+}
+
+#[test]
+fn what_is_prepared_on_the_way_is_what_would_be_prepared_before() {
+    fn check<T: Real + std::ops::Neg<Output = T>>(multiple: usize) {
+        for (cells, lengths) in SHAPES {
+            let spectrum = spectrum(lengths);
+            let input: Vec<T> = field(cells).into_iter().map(T::nearest).collect();
+            let prepared = |first: usize, from: &[T], to: &mut [T]| {
+                assert_eq!(first % multiple, 0);
+                for (n, (x, to)) in (first..).zip(from.iter().zip(to)) {
+                    assert_eq!(*x, input[n]);
+                    *to = if n % 3 == 0 { T::default() } else { -*x };
+                }
+            };
+            let mut before = vec![T::default(); input.len()];
+            prepared(0, &input, &mut before);
+            for instructions in Instructions::available() {
+                let mut convolution = Lanes::on(instructions, cells, lengths, spectrum.view());
+                let mut output = vec![T::default(); input.len()];
+                convolution.apply_prepared_into(&input, &prepared, &mut output);
+                assert!(output == apply(convolution, &before), "{instructions:?} {cells:?} {lengths:?}");
+            }
+        }
+    }
+    check::<f64>(4);
+    check::<f32>(8);
 }
 
 #[test]

@@ -21,18 +21,21 @@ pub fn block_stride<V>(rows: usize) -> usize {
 }
 
 /// The buffers of one thread.
-pub struct Scratch<V> {
+pub struct Scratch<V: Lane> {
+    /// Rows that something was made of.
+    pub prepared: Vec<V::Scalar>,
     numbers: Vec<Complex<V>>,
     /// Where the second buffer starts.
     second: usize,
 }
 
 impl<V: Lane> Scratch<V> {
-    /// A buffer for a signal and one for its transform.
-    pub fn new(signal: usize, transform: usize) -> Self {
+    /// A buffer for a signal and one for its transform, and room for so many prepared cells.
+    pub fn new(signal: usize, transform: usize, prepared: usize) -> Self {
         let size = size_of::<Complex<V>>();
         let second = ((signal * size).next_multiple_of(4096) + STAGGER).div_ceil(size);
-        Scratch { numbers: vec![Complex::zero(); second + transform], second }
+        let prepared = vec![V::Scalar::default(); prepared];
+        Scratch { prepared, numbers: vec![Complex::zero(); second + transform], second }
     }
 
     /// The two, in these lengths.

@@ -40,10 +40,10 @@ pub(super) struct Preconditioner {
     row: usize,
     /// The open cells beside S.
     beside: Vec<u8>,
-    /// D b, then M y.
-    image: Vec<f32>,
-    /// y.
+    /// G D b, y but for D.
     lift: Vec<f32>,
+    /// M y.
+    image: Vec<f32>,
 }
 
 impl Preconditioner {
@@ -60,11 +60,10 @@ impl Preconditioner {
         find_beside(set, self.row, &mut self.beside);
         let open = Open { set, beside: &self.beside };
         self.inverse.apply_into(r, z);
-        charge(z, open, &mut self.image);
-        self.screened.apply_into(&self.image, &mut self.lift);
-        let slope = lift(&mut self.lift, z, open);
-        self.inverse.apply_into(&self.lift, &mut self.image);
-        let curvature = product(&self.lift, &self.image);
+        let weighted = |first: usize, x: &[f32], to: &mut [f32]| weigh(x, open.from(first), to);
+        self.screened.apply_prepared_into(z, &weighted, &mut self.lift);
+        self.inverse.apply_prepared_into(&self.lift, &weighted, &mut self.image);
+        let [slope, curvature] = products(&self.lift, z, &self.image, open);
         // Where nothing is open, b is zero.
         if slope > 0.0 && curvature > 0.0 {
             add(z, set, &self.image, -slope / curvature);
@@ -80,8 +79,9 @@ struct Open<'a> {
 }
 
 impl<'a> Open<'a> {
-    fn sets(self) -> (Set<'a>, Set<'a>) {
-        (Set(self.set), Set(self.beside))
+    /// From a cell on, a multiple of eight.
+    fn from(self, first: usize) -> Self {
+        Open { set: &self.set[first / 8..], beside: &self.beside[first / 8..] }
     }
 
     /// D of eight cells, 0 on S.
@@ -92,80 +92,60 @@ impl<'a> Open<'a> {
     }
 }
 
-/// D b, b = z on C.
-fn charge(z: &[f32], open: Open, charge: &mut [f32]) {
-    sweep((charge, z, open.sets()), &|(charge, z, (Set(set), Set(beside))): (
-        &mut [f32],
-        &[f32],
-        (Set, Set),
-    )| { vectorize(Charge { z, open: Open { set, beside }, charge }) });
+/// D x, 0 on S.
+fn weigh(x: &[f32], open: Open, to: &mut [f32]) {
+    vectorize(Weigh { x, open, to });
 }
 
-struct Charge<'a> {
-    z: &'a [f32],
+struct Weigh<'a> {
+    x: &'a [f32],
     open: Open<'a>,
-    charge: &'a mut [f32],
+    to: &'a mut [f32],
 }
 
-impl Work for Charge<'_> {
+impl Work for Weigh<'_> {
     type Yield = ();
 
     #[inline(always)]
     fn run<V: Eight>(self) {
-        for n in (0..self.z.len()).step_by(8) {
-            (V::load(self.z, n, 0.0) * self.open.weights(n / 8)).store(self.charge, n);
+        for n in (0..self.x.len()).step_by(8) {
+            (V::load(self.x, n, 0.0) * self.open.weights(n / 8)).store(self.to, n);
         }
     }
 }
 
-/// y = D y, and b'y, b = z on C.
-fn lift(y: &mut [f32], z: &[f32], open: Open) -> f64 {
-    sweep((y, z, open.sets()), &|(y, z, (Set(set), Set(beside))): (&mut [f32], &[f32], (Set, Set))| {
-        vectorize(Lift { y, z, open: Open { set, beside } })
+/// b'y and y'M y, y = D `lift` and b = z on C.
+fn products(lift: &[f32], z: &[f32], image: &[f32], Open { set, beside }: Open) -> [f64; 2] {
+    sweep((lift, z, image, Set(set), Set(beside)), &|(lift, z, image, Set(set), Set(beside)): (
+        &[f32],
+        &[f32],
+        &[f32],
+        Set,
+        Set,
+    )| {
+        vectorize(Products { lift, z, image, open: Open { set, beside } })
     })
 }
 
-struct Lift<'a> {
-    y: &'a mut [f32],
+struct Products<'a> {
+    lift: &'a [f32],
     z: &'a [f32],
+    image: &'a [f32],
     open: Open<'a>,
 }
 
-impl Work for Lift<'_> {
-    type Yield = f64;
+impl Work for Products<'_> {
+    type Yield = [f64; 2];
 
     #[inline(always)]
-    fn run<V: Eight>(self) -> f64 {
-        let mut sum = V::splat(0.0);
-        for n in (0..self.y.len()).step_by(8) {
-            let y = V::load(self.y, n, 0.0) * self.open.weights(n / 8);
-            y.store(self.y, n);
-            sum = sum + y * V::load(self.z, n, 0.0);
+    fn run<V: Eight>(self) -> [f64; 2] {
+        let [mut by, mut ymy] = [V::splat(0.0); 2];
+        for n in (0..self.lift.len()).step_by(8) {
+            let y = V::load(self.lift, n, 0.0) * self.open.weights(n / 8);
+            by = by + y * V::load(self.z, n, 0.0);
+            ymy = ymy + y * V::load(self.image, n, 0.0);
         }
-        sum.sum()
-    }
-}
-
-/// <x, y>
-fn product(x: &[f32], y: &[f32]) -> f64 {
-    sweep((x, y), &|(x, y): (&[f32], &[f32])| vectorize(Product { x, y }))
-}
-
-struct Product<'a> {
-    x: &'a [f32],
-    y: &'a [f32],
-}
-
-impl Work for Product<'_> {
-    type Yield = f64;
-
-    #[inline(always)]
-    fn run<V: Eight>(self) -> f64 {
-        let mut sum = V::splat(0.0);
-        for n in (0..self.x.len()).step_by(8) {
-            sum = sum + V::load(self.x, n, 0.0) * V::load(self.y, n, 0.0);
-        }
-        sum.sum()
+        [by.sum(), ymy.sum()]
     }
 }
 

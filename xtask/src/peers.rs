@@ -128,13 +128,16 @@ fn compare(case: &Case, directory: &Path, python: &Path) -> Result<String, Strin
     }
     let (mut tight, mut accurate) = (Vec::new(), Vec::new());
     let mut failures = String::new();
+    let failure = |name: &str, tolerance: f64, message: &str| {
+        format!("| {} | | {name} | | {tolerance:e} | {message} | | |\n", case.title())
+    };
     for (name, run) in &programs {
         let mut tried = |tolerance: f64| -> Option<Entry> {
             match run(tolerance) {
                 Ok(first) => Some(Entry { name, run, tolerance, runs: vec![first] }),
                 Err(message) => {
                     let last = message.lines().last().unwrap_or_default().replace('|', "/");
-                    failures += &format!("| {} | | {name} | | {tolerance:e} | {last} | | |\n", case.title());
+                    failures += &failure(name, tolerance, &last);
                     None
                 }
             }
@@ -152,12 +155,13 @@ fn compare(case: &Case, directory: &Path, python: &Path) -> Result<String, Strin
             }
         }
         let Some(found) = found else { continue };
-        let quick = found.runs[0].seconds < LONG;
+        if found.runs[0].seconds < LONG {
+            tight.extend(tried(TIGHT));
+        }
         if off(&found) <= SAME {
             accurate.push(found);
-        }
-        if quick {
-            tight.extend(tried(TIGHT));
+        } else {
+            failures += &failure(name, found.tolerance, &format!("its area stays {:.1e} off", off(&found)));
         }
     }
     let mut rows = String::new();

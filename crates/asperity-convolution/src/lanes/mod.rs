@@ -156,7 +156,8 @@ impl<T: Real> Lanes<T> {
     }
 
     /// `output` = S * what `prepare` makes of `input`, stretch by stretch on its way through the cache:
-    /// `prepare(first, cells, to)` gets the cells from number `first` on, a multiple of four (of eight in f32), and says what to take for them.
+    /// `prepare(first, cells, to)` gets the cells from number `first` on, a multiple of four (of eight in f32), and
+    /// says what to take for them.
     ///
     /// # Panics
     /// Where a length is not nx ny.

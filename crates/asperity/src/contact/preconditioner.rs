@@ -23,7 +23,7 @@ use rayon::prelude::*;
 
 use crate::field::{Set, sweep, zeros};
 use crate::grid::{Boundary, Grid};
-use crate::operator::{approximate_inverse, screened_compliance};
+use crate::operator::ApproximateInverse;
 
 /// D of an open cell that touches one of S with a side or a corner.
 const BESIDE: f64 = 0.67;
@@ -48,11 +48,19 @@ pub(super) struct Preconditioner {
 
 impl Preconditioner {
     pub(super) fn new(grid: &Grid, boundary: Boundary) -> Self {
-        let (inverse, sharpest) = approximate_inverse(grid, boundary);
-        let screened = screened_compliance(grid, boundary);
+        let approximate = ApproximateInverse::new(grid, boundary);
+        let (inverse, screened) = (approximate.plan(), approximate.screened());
         let [image, lift] = [(); 2].map(|()| zeros(grid.len()));
         let beside = zeros(grid.len().div_ceil(8));
-        Preconditioner { inverse, sharpest, screened, row: grid.cells()[1], beside, image, lift }
+        Preconditioner {
+            inverse,
+            sharpest: approximate.largest,
+            screened,
+            row: grid.cells()[1],
+            beside,
+            image,
+            lift,
+        }
     }
 
     /// z; what is beyond S means nothing. `r` is zero there.

@@ -121,7 +121,7 @@ impl Simulation {
             Boundary::Periodic => 10.5,
         };
         let convolutions = if mixed { 1.5 * convolution } else { convolution };
-        // on the grid, or with a rim around it, see `operator::approximate_inverse`
+        // on the grid, or with a rim around it, see `operator::ApproximateInverse`
         let inverse = if self.boundary == Boundary::Free { 7.0 } else { 5.25 };
         let solver = match self.solver.method {
             // the preconditioner's two convolutions in f32, its two fields and a set; four fields in f32, four sets; the step

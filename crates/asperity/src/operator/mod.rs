@@ -65,46 +65,55 @@ pub(crate) fn wave_spectrum(
     })
 }
 
-/// Cells beyond the domain that keep the ends of a free one apart in [`approximate_inverse`].
+/// Cells beyond the domain that keep the ends of a free one apart in [`ApproximateInverse`].
 const APART: usize = 16;
 
-/// The approximate inverse of K, in f32, over its largest value, and that value \[1/m\]: the symbol |q|/2, the mean like
-/// half the first wave.
+/// c of [`ApproximateInverse::screened`], of the largest value of |q|/2: a length of some ten cells.
+const SCREEN: f64 = 0.03;
+
+/// The approximate inverse of K: the symbol |q|/2, the mean like half the first wave.
 ///
 /// It falls off as the third power of the distance: a free domain need not be padded to twice its cells, only so far that
 /// its opposite ends do not see each other. A third of a free convolution, and as good a preconditioner as the padded one.
-pub(crate) fn approximate_inverse(grid: &Grid, boundary: Boundary) -> (Lanes<f32>, f64) {
-    let (lengths, mut spectrum) = inverse_spectrum(grid, boundary);
-    let largest = largest(&spectrum);
-    spectrum /= largest;
-    (Lanes::new(grid.cells(), lengths, spectrum.view()), largest)
+pub(crate) struct ApproximateInverse {
+    cells: [usize; 2],
+    lengths: [usize; 2],
+    /// |q|/2 \[1/m\].
+    spectrum: Array2<f64>,
+    /// The largest value of it \[1/m\].
+    pub largest: f64,
 }
 
-/// c of [`screened_compliance`], of the largest value of |q|/2: a length of some ten cells.
-const SCREEN: f64 = 0.03;
+impl ApproximateInverse {
+    pub(crate) fn new(grid: &Grid, boundary: Boundary) -> Self {
+        let cells = grid.cells();
+        let lengths = match boundary {
+            Boundary::Free => cells.map(|n| Lanes::<f32>::good_length(n + APART)),
+            Boundary::Periodic => cells,
+        };
+        let [dx, dy] = grid.spacing();
+        let size = [dx * lengths[0] as f64, dy * lengths[1] as f64];
+        let mean = 0.25 * std::f64::consts::TAU / size[0].max(size[1]);
+        let spectrum = wave_spectrum(lengths, size, |qx, qy| inverse_kernel(qx, qy, mean));
+        let largest = largest(&spectrum);
+        ApproximateInverse { cells, lengths, spectrum, largest }
+    }
 
-/// The compliance 1/(|q|/2 + c) in the unit of [`approximate_inverse`] and on its torus: it falls off as the third power of the
-/// distance beyond the length 1/(2 c).
-pub(crate) fn screened_compliance(grid: &Grid, boundary: Boundary) -> Lanes<f32> {
-    let (lengths, mut spectrum) = inverse_spectrum(grid, boundary);
-    let screen = SCREEN * largest(&spectrum);
-    spectrum.mapv_inplace(|s| 1.0 / (s + screen));
-    spectrum /= largest(&spectrum);
-    Lanes::new(grid.cells(), lengths, spectrum.view())
+    /// It, over its largest value.
+    pub(crate) fn plan(&self) -> Lanes<f32> {
+        Lanes::new(self.cells, self.lengths, (&self.spectrum / self.largest).view())
+    }
+
+    /// The compliance 1/(|q|/2 + c) on the same torus, over its largest value: it falls off as the third power of the distance
+    /// beyond the length 1/(2 c).
+    pub(crate) fn screened(&self) -> Lanes<f32> {
+        let screen = SCREEN * self.largest;
+        let mut spectrum = self.spectrum.mapv(|s| 1.0 / (s + screen));
+        spectrum /= largest(&spectrum);
+        Lanes::new(self.cells, self.lengths, spectrum.view())
+    }
 }
 
 fn largest(spectrum: &Array2<f64>) -> f64 {
     spectrum.iter().fold(0.0, |m, s| m.max(*s))
-}
-
-/// Lengths of the torus of [`approximate_inverse`] and |q|/2 on it \[1/m\].
-fn inverse_spectrum(grid: &Grid, boundary: Boundary) -> ([usize; 2], Array2<f64>) {
-    let lengths = match boundary {
-        Boundary::Free => grid.cells().map(|n| Lanes::<f32>::good_length(n + APART)),
-        Boundary::Periodic => grid.cells(),
-    };
-    let [dx, dy] = grid.spacing();
-    let size = [dx * lengths[0] as f64, dy * lengths[1] as f64];
-    let mean = 0.25 * std::f64::consts::TAU / size[0].max(size[1]);
-    (lengths, wave_spectrum(lengths, size, |qx, qy| inverse_kernel(qx, qy, mean)))
 }

@@ -17,7 +17,7 @@ use crate::convolution::lanes::Lanes;
 use crate::error::{Error, NotConverged, Result};
 use crate::field::{strands, sweep};
 use crate::grid::{Boundary, Grid};
-use crate::operator::{Operator, approximate_inverse};
+use crate::operator::{ApproximateInverse, Operator};
 
 /// Iterations end where one adds less than this share of the sum: its relative error is then of that size.
 const SMALLEST_SHARE: f64 = 1e-7;
@@ -40,7 +40,7 @@ impl ContactStiffness {
     pub fn new(grid: &Grid, boundary: Boundary) -> Self {
         let n = grid.len();
         ContactStiffness {
-            inverse: approximate_inverse(grid, boundary).0,
+            inverse: ApproximateInverse::new(grid, boundary).plan(),
             set: vec![false; n],
             residual: vec![0.0; n],
             direction: vec![0.0; n],

@@ -1,13 +1,34 @@
-//! Whatever the text, the answer is a case or an error with a place: never a panic.
+//! Whatever the text, the answer is a case or an error with a place: never a panic, never a hang.
 
 use std::path::Path;
+use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::thread;
+use std::time::Duration;
 
 use asperity_io::case::quantity::{Compliance, Length};
 use asperity_io::case::templates::TEMPLATES;
 use asperity_io::case::{Case, CaseErrors};
 use proptest::prelude::*;
 
+/// Far more than any answer takes: beyond it there is none.
+const PATIENCE: Duration = Duration::from_secs(120);
+
 fn check(text: &str, overrides: &[String]) {
+    let (done, answered) = channel();
+    let question = (text.to_owned(), overrides.to_vec());
+    let answer = thread::spawn(move || {
+        answer(&question.0, &question.1);
+        let _ = done.send(());
+    });
+    if let Err(RecvTimeoutError::Timeout) = answered.recv_timeout(PATIENCE) {
+        panic!("no answer to {overrides:?} and\n{text}");
+    }
+    if let Err(panic) = answer.join() {
+        std::panic::resume_unwind(panic);
+    }
+}
+
+fn answer(text: &str, overrides: &[String]) {
     match Case::parse(text, Path::new("/nowhere"), overrides) {
         Ok(case) => {
             let description = case.describe();
@@ -74,6 +95,20 @@ fn token() -> impl Strategy<Value = String> {
     ]
 }
 
+/// Lines that give a key its value.
+fn values(text: &str) -> Vec<usize> {
+    let gives = |line: &str| line.contains(" = ") && !line.starts_with('#');
+    text.lines().enumerate().filter(|(_, line)| gives(line)).map(|(n, _)| n).collect()
+}
+
+fn replaced(text: &str, chosen: usize, value: &str) -> String {
+    let line = |(n, line): (usize, &str)| match line.split_once(" = ") {
+        Some((key, _)) if n == chosen => format!("{key} = {value}"),
+        _ => line.to_owned(),
+    };
+    text.lines().enumerate().map(line).collect::<Vec<_>>().join("\n")
+}
+
 fn cut(text: &str, at: usize) -> usize {
     let mut at = at % (text.len() + 1);
     while !text.is_char_boundary(at) {
@@ -116,20 +151,8 @@ proptest! {
         pick in any::<usize>(),
         token in token(),
     ) {
-        let lines: Vec<&str> = template.text.lines().collect();
-        let values: Vec<usize> = (0..lines.len())
-            .filter(|n| lines[*n].contains(" = ") && !lines[*n].starts_with('#'))
-            .collect();
-        let chosen = values[pick % values.len()];
-        let text: Vec<String> = lines
-            .iter()
-            .enumerate()
-            .map(|(n, line)| match line.split_once(" = ") {
-                Some((key, _)) if n == chosen => format!("{key} = {token}"),
-                _ => (*line).to_owned(),
-            })
-            .collect();
-        check(&text.join("\n"), &[]);
+        let values = values(template.text);
+        check(&replaced(template.text, values[pick % values.len()], &token), &[]);
     }
 
     #[test]
@@ -144,6 +167,17 @@ proptest! {
             match result {
                 Ok(value) => prop_assert!(value.is_finite()),
                 Err(error) => prop_assert!(!error.expected.is_empty()),
+            }
+        }
+    }
+}
+
+#[test]
+fn every_value_at_its_extremes_is_answered() {
+    for template in TEMPLATES {
+        for line in values(template.text) {
+            for extreme in ["0", "1e-308", "1e-9", "1e308", "9223372036854775807"] {
+                check(&replaced(template.text, line, extreme), &[]);
             }
         }
     }

@@ -15,7 +15,7 @@
 //! All are completely monotone, so Prony series with positive weights come as close as one likes.
 
 use crate::error::{Error, Result, positive};
-use crate::material::mittag_leffler::mittag_leffler;
+use crate::material::mittag_leffler::{LEAST_ORDER, mittag_leffler};
 use crate::material::prony_sum::{self, ColeCole, Exact, PowerLaw};
 use crate::material::{Creep, CreepTerm};
 
@@ -95,9 +95,9 @@ impl Fractional {
             Fractional::Springpot { modulus, time, order } => power(t / time, order) / modulus,
             Fractional::Maxwell { modulus, time, order } => (1.0 + power(t / time, order)) / modulus,
             Fractional::Zener { equilibrium, instantaneous, time, order } => {
-                let x = t / time * (equilibrium / instantaneous).powf(1.0 / order);
+                let ln_power = order * (t / time).ln() + (equilibrium / instantaneous).ln();
                 let retarded = 1.0 / equilibrium - 1.0 / instantaneous;
-                1.0 / instantaneous + retarded * mittag_leffler(order, x).1
+                1.0 / instantaneous + retarded * mittag_leffler(order, ln_power).1
             }
         }
     }
@@ -117,9 +117,11 @@ impl Fractional {
             Fractional::Springpot { modulus, time, order } => {
                 modulus * (t / time).powf(-order) / libm::tgamma(1.0 - order)
             }
-            Fractional::Maxwell { modulus, time, order } => modulus * mittag_leffler(order, t / time).0,
+            Fractional::Maxwell { modulus, time, order } => {
+                modulus * mittag_leffler(order, order * (t / time).ln()).0
+            }
             Fractional::Zener { equilibrium, instantaneous, time, order } => {
-                equilibrium + (instantaneous - equilibrium) * mittag_leffler(order, t / time).0
+                equilibrium + (instantaneous - equilibrium) * mittag_leffler(order, order * (t / time).ln()).0
             }
         }
     }
@@ -180,6 +182,7 @@ impl Fractional {
         if order == 1.0 {
             return Ok(Approximation { creep: self.classical(), error: 0.0, window });
         }
+        let order = order.max(LEAST_ORDER);
         let relaxation = |t| self.relaxation(t);
         let exact = Exact::new(&|t| self.creep(t), &relaxation, window, tolerance)?;
         match *self {
@@ -352,6 +355,40 @@ mod tests {
         let [_, _, nearly] = models(1.0 - 1e-9);
         let [_, _, classical] = models(1.0);
         assert!((nearly.creep(0.3) / classical.creep(0.3) - 1.0).abs() < 1e-7);
+    }
+
+    #[test]
+    fn any_order_above_zero_is_answered() {
+        // From orders whose fit once summed 1/order terms to those whose scales are beyond all doubles.
+        for order in [f64::MIN_POSITIVE, 1e-100, 1e-9, 1e-3, 1.0 - 1e-9, 1.0 - f64::EPSILON] {
+            for model in models(order) {
+                for tolerance in [1e-3, 1e-6] {
+                    let prony = model.to_prony([1e-3, 1e3], tolerance).unwrap();
+                    assert!(prony.error <= tolerance && prony.creep.terms.len() < 70, "{model:?} {prony:?}");
+                }
+            }
+        }
+        // Almost a spring: half of the relaxing part is gone at any time.
+        let [_, _, zener] = models(1e-100);
+        assert!((zener.relaxation(1e-3) / (0.5 * (1e6 + 1e9)) - 1.0).abs() < 1e-12);
+        assert!((zener.creep(1e3) * zener.relaxation(1e3) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_two_ways_to_a_prony_sum_agree() {
+        // Cole and Cole's law by the trapezoidal rule, its tails summed to infinity.
+        for order in [1e-6, 0.01, 0.1, 0.24, 0.5] {
+            let [_, _, model] = models(order);
+            let Fractional::Zener { equilibrium, instantaneous, time, order } = model else { unreachable!() };
+            let law = ColeCole { order, time, equilibrium, relaxing: instantaneous - equilibrium };
+            let relaxation = |t| model.relaxation(t);
+            let exact = Exact::new(&|t| model.creep(t), &relaxation, [1e-3, 1e3], 1e-6).unwrap();
+            let sum = prony_sum::by_quadrature(&exact, &law).unwrap();
+            assert!(sum.error <= 1e-6, "{order} {}", sum.error);
+            // The instantaneous modulus is all weights: the rule for the whole line, exact to 1e-9.
+            let modulus = 1.0 / sum.creep.instantaneous;
+            assert!((modulus / instantaneous - 1.0).abs() < 1e-6, "{order} {modulus:e}");
+        }
     }
 
     #[test]

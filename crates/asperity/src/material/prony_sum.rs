@@ -12,6 +12,7 @@
 use crate::error::{Error, Result};
 use crate::material::fit;
 use crate::material::fractional::Approximation;
+use crate::material::mittag_leffler::{Spread, sine};
 use crate::material::spectrum::{Kernel, Problem, Row};
 use crate::material::{Creep, CreepTerm, Relaxation};
 use std::f64::consts::PI;
@@ -47,6 +48,10 @@ pub(super) struct ColeCole {
     pub equilibrium: f64,
     pub relaxing: f64,
 }
+
+/// Range of ln(rate) beyond the terms over which weights are summed one by one: what is left of them is
+/// below 1e-17, or so even (order below 0.25) that an integral stands for them to 1e-9.
+const SUMMED: f64 = 160.0;
 
 /// Widest window.
 const MOST_DECADES: f64 = 40.0;
@@ -119,7 +124,7 @@ pub(super) fn by_quadrature(exact: &Exact, law: &dyn Trapezoid) -> Result<Approx
 impl Trapezoid for PowerLaw {
     fn sum(&self, nodes: &[f64], step: f64) -> Result<Creep> {
         let a = self.order;
-        let density = self.factor * (PI * a).sin() / PI;
+        let density = self.factor * sine(a) / PI;
         let weight = |y: f64| density * step * (-a * (y + self.time.ln())).exp();
         let [slowest, .., fastest] = nodes else { return Err(too_few(nodes)) };
         // All nodes beyond, to infinity, are geometric series: fast ones have retarded at once, slow ones
@@ -138,18 +143,23 @@ impl Trapezoid for PowerLaw {
 impl Trapezoid for ColeCole {
     fn sum(&self, nodes: &[f64], step: f64) -> Result<Creep> {
         let a = self.order;
-        let weight = |y: f64| {
-            let u = y + self.time.ln();
-            self.relaxing * step * (PI * a).sin() / (2.0 * PI) / ((a * u).cosh() + (PI * a).cos())
-        };
+        let spread = Spread::new(a);
+        let power = |y: f64| a * (y + self.time.ln());
+        let weight = |y: f64| self.relaxing * (a * step) * spread.density(power(y));
         let [slowest, .., fastest] = nodes else { return Err(too_few(nodes)) };
         // All nodes beyond become one term of the same weight (so that the modulus at t = 0 and infinity
         // is kept) at their mean time on the fast side, mean rate on the slow side.
         let beyond = |from: f64, direction: f64| {
-            let last = (40.0 / a / step) as usize;
-            let ys = (1..=last).map(move |k| from + direction * step * k as f64);
-            ys.map(|y| (weight(y), weight(y) * (-direction * (y - from)).exp()))
-                .fold((0.0, 0.0), |sum, term| (sum.0 + term.0, sum.1 + term.1))
+            let last = (SUMMED / step) as usize;
+            let ys = (1..=last).map(|k| from + direction * step * k as f64);
+            let near = ys
+                .map(|y| (weight(y), weight(y) * (-direction * (y - from)).exp()))
+                .fold((0.0, 0.0), |sum, term| (sum.0 + term.0, sum.1 + term.1));
+            // The weights further out are an integral, with the first term of Euler and Maclaurin.
+            let end = power(from + direction * step * (last as f64 + 0.5));
+            let far =
+                spread.below(-direction * end) - (a * step).powi(2) / 24.0 * spread.fall(direction * end);
+            (near.0 + self.relaxing * far, near.1)
         };
         let (fast, slow) = (beyond(*fastest, 1.0), beyond(*slowest, -1.0));
         let term = |y: &f64| (weight(*y), (-y).exp());

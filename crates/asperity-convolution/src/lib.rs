@@ -15,7 +15,7 @@ mod spectrum;
 
 use ndarray::ArrayView2;
 
-use lanes::Lanes;
+use lanes::{Lanes, Sums};
 pub use spectrum::even_spectrum;
 
 /// A planned convolution. Bit-identical for any number of threads; `apply_into` allocates nothing.
@@ -40,11 +40,24 @@ pub struct Convolution {
 trait Engine: Send {
     /// output = S * input; both of length nx ny.
     fn apply_into(&mut self, input: &[f64], output: &mut [f64]);
+
+    /// The same, visited.
+    fn apply_visited_into(&mut self, input: &[f64], output: &mut [f64], visit: &Visit<f64>) -> Sums {
+        self.apply_into(input, output);
+        visit(0, output)
+    }
 }
+
+/// What meets some cells of an output on its way; the number of the first is given.
+pub type Visit<'a, T> = dyn Fn(usize, &[T]) -> Sums + Sync + 'a;
 
 impl Engine for Lanes<f64> {
     fn apply_into(&mut self, input: &[f64], output: &mut [f64]) {
         Lanes::apply_into(self, input, output);
+    }
+
+    fn apply_visited_into(&mut self, input: &[f64], output: &mut [f64], visit: &Visit<f64>) -> Sums {
+        Lanes::apply_visited_into(self, input, output, visit)
     }
 }
 
@@ -78,6 +91,11 @@ impl Convolution {
     /// `output` = S * `input`; both C-order, nx ny cells.
     pub fn apply_into(&mut self, input: &[f64], output: &mut [f64]) {
         self.engine.apply_into(input, output);
+    }
+
+    /// The same; `visit(first, cells)` meets the output, as [`Lanes::apply_visited_into`] says; on rustfft all at once.
+    pub fn apply_visited_into(&mut self, input: &[f64], output: &mut [f64], visit: &Visit<f64>) -> Sums {
+        self.engine.apply_visited_into(input, output, visit)
     }
 }
 

@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use super::complex::Complex;
 use super::factors::Factors;
 use super::lane::{Kernel, Lane, Real};
+use super::leaf::{Energy, Meter, Unmetered};
 use super::prefetch::Ahead;
 use super::rows::{ForwardRows, InverseRows, Rows};
 use super::transform::Transform;
@@ -19,41 +20,83 @@ pub struct Engine<V: Lane> {
     rows: usize,
     row_plan: Rows<V::Scalar>,
     column_plan: Transform<V::Scalar>,
-    /// The multiplier of every block of columns, digit-reversed along x.
-    spectrum: Vec<V>,
+    /// The multipliers of every block of columns, digit-reversed along x.
+    spectra: Vec<Vec<V>>,
     /// The half spectrum, see `work`.
     work: Vec<Complex<V>>,
     stride: usize,
     /// One for each thread; a lock is held while a block is worked on, and never contended.
     scratch: Vec<Mutex<Scratch<V>>>,
+    /// The energy of every column, block by block.
+    energies: Vec<V>,
+    /// Where the column of each frequency ky lies.
+    columns: Vec<usize>,
+    /// What a caller summed over every group of rows.
+    sums: Vec<Sums>,
+}
+
+/// Rows that are handed to a caller together: those of the widest vectors, on narrower ones too, so that his sums do not
+/// depend on them.
+fn group<V: Lane>() -> usize {
+    V::LANES.max(64 / size_of::<V::Scalar>())
 }
 
 impl<V: Lane> Engine<V> {
-    /// See [`super::Lanes::new`]; the factors are those of mx and my/2.
+    /// See [`super::Lanes::with_spectra`]; the factors are those of mx and my/2.
     pub fn new(
         cells: [usize; 2],
         lengths: [usize; 2],
         [along_x, along_y]: [&Factors; 2],
-        spectrum: ArrayView2<f64>,
+        spectra: &[ArrayView2<f64>],
     ) -> Self {
         let [nx, ny] = cells;
         let [mx, my] = lengths;
         let row_plan = Rows::new(ny, Transform::new(along_y, 2 * ny <= my), V::LANES);
         let column_plan = Transform::new(along_x, 2 * nx <= mx);
-        let spectrum = blocked_spectrum(lengths, &row_plan, &column_plan, spectrum);
-        let blocks = spectrum.len() / column_plan.mirrored_length();
+        let blocked =
+            |spectrum: &ArrayView2<f64>| blocked_spectrum(lengths, &row_plan, &column_plan, spectrum.view());
+        let spectra: Vec<Vec<V>> = spectra.iter().map(blocked).collect();
+        let frequencies = row_plan.frequencies(V::LANES);
+        let mut columns = vec![0; my / 2 + 1];
+        frequencies.iter().enumerate().for_each(|(column, ky)| columns[*ky] = column);
+        let blocks = frequencies.len() / V::LANES;
         let stride = block_stride::<V>(nx);
         let [packed, half] = row_plan.scratch(V::LANES);
-        let scratch = || Scratch::new(packed.max(column_plan.signal_length()), half.max(mx), V::LANES * ny);
+        let scratch =
+            || Scratch::new(packed.max(column_plan.signal_length()), half.max(mx), group::<V>() * ny);
         Engine {
             rows: nx,
-            spectrum,
+            spectra,
             work: vec![Complex::zero(); blocks * stride],
             stride,
             scratch: (0..rayon::current_num_threads()).map(|_| Mutex::new(scratch())).collect(),
+            energies: vec![V::splat(V::Scalar::default()); blocks],
+            columns,
+            sums: vec![Sums::default(); nx.div_ceil(group::<V>())],
             row_plan,
             column_plan,
         }
+    }
+
+    /// Every block of columns there and back.
+    fn multiply_with<M: Meter<V> + Send>(
+        &mut self,
+        spectrum: usize,
+        meter: impl Fn(&mut V) -> M + Sync,
+        read: impl Fn(M, &mut V) + Sync,
+    ) {
+        let (nx, stride, scratch) = (self.rows, self.stride, &self.scratch);
+        let spectrum = self.spectra[spectrum].par_chunks(self.column_plan.mirrored_length());
+        let blocks = self.work.par_chunks_mut(stride).zip(spectrum).zip(&mut self.energies);
+        blocks.for_each(|((columns, spectrum), energy)| {
+            let columns = &mut columns[..nx];
+            let mut met = meter(energy);
+            with(scratch, |scratch| {
+                let (plan, meter) = (&self.column_plan, &mut met);
+                V::vectorize(Columns { plan, columns, stride, spectrum, meter, scratch });
+            });
+            read(met, energy);
+        });
     }
 }
 
@@ -85,15 +128,16 @@ fn blocked_spectrum<V: Lane>(
 }
 
 /// One block of columns: transformed, multiplied, transformed back.
-struct Columns<'a, V: Lane> {
+struct Columns<'a, V: Lane, M> {
     plan: &'a Transform<V::Scalar>,
     columns: &'a mut [Complex<V>],
     stride: usize,
     spectrum: &'a [V],
+    meter: &'a mut M,
     scratch: &'a mut Scratch<V>,
 }
 
-impl<V: Lane> Kernel for Columns<'_, V> {
+impl<V: Lane, M: Meter<V>> Kernel for Columns<'_, V, M> {
     #[inline(always)]
     fn run(self) {
         let (margin, transform) = self.scratch.buffers(self.plan.signal_length(), self.plan.length());
@@ -102,74 +146,124 @@ impl<V: Lane> Kernel for Columns<'_, V> {
         // The block that follows is likely the next of this thread.
         let following = self.columns.as_ptr().wrapping_add(self.stride);
         let mut ahead = Ahead::of(following, self.columns.len(), self.plan.steps());
-        self.plan.convolve(self.columns, margin, transform, self.spectrum, &mut ahead);
+        self.plan.convolve(self.columns, margin, transform, self.spectrum, self.meter, &mut ahead);
     }
 }
 
-/// What is made of a stretch of the input before it is transformed: from its first cell on, into a copy.
-pub type Prepare<'a, T> = dyn Fn(usize, &[T], &mut [T]) + Sync + 'a;
+/// As many sums over the cells as a caller may want of one pass.
+pub type Sums = [f64; 5];
 
-/// A convolution, whatever its lanes.
+/// What a caller does with a group of rows, the first of whose cells is given: the convolved rows, and the same cells of
+/// a field of his.
+pub type Visit<'a, T> = dyn Fn(usize, &mut [T], &mut [T]) -> Sums + Sync + 'a;
+
+/// The passes of a convolution, whatever its lanes.
 pub trait Convolve<T>: Send {
-    /// output = S * what is made of the input.
-    fn apply_into(&mut self, input: &[T], prepare: Option<&Prepare<T>>, output: &mut [T]);
+    /// The rows of the input, forward.
+    fn forward(&mut self, input: &[T]);
+
+    /// The columns: times a spectrum.
+    fn multiply(&mut self, spectrum: usize);
+
+    /// The same; yields x'S x of the field x.
+    fn multiply_measured(&mut self, spectrum: usize) -> f64;
+
+    /// The rows back into `output`, and through `visit`, which gets no cells of a field.
+    fn back(&mut self, output: &mut [T], visit: Option<&Visit<T>>) -> Sums;
+
+    /// The rows back, through `visit`, and where it goes `on` forward again. `kept` is empty or a field.
+    fn turn(&mut self, kept: &mut [T], visit: &Visit<T>, on: bool) -> Sums;
 }
 
 impl<V: Lane> Convolve<V::Scalar> for Engine<V> {
-    fn apply_into(
-        &mut self,
-        input: &[V::Scalar],
-        prepare: Option<&Prepare<V::Scalar>>,
-        output: &mut [V::Scalar],
-    ) {
-        let (nx, ny, stride) = (self.rows, self.row_plan.cells(), self.stride);
-        assert!(input.len() == nx * ny && output.len() == nx * ny);
-        let block = V::LANES * ny;
-        let scratch = &self.scratch;
-
-        let tiles = SharedTiles::new(&mut self.work, stride);
-        input.par_chunks(block).enumerate().for_each(|(n, rows)| {
+    fn forward(&mut self, input: &[V::Scalar]) {
+        let (ny, plan, scratch) = (self.row_plan.cells(), &self.row_plan, &self.scratch);
+        assert_eq!(input.len(), self.rows * ny);
+        let tiles = SharedTiles::new(&mut self.work, self.stride);
+        input.par_chunks(V::LANES * ny).enumerate().for_each(|(n, rows)| {
             // SAFETY: every block of rows is visited once, and blocks have no row in common.
             let tiles = unsafe { tiles.of_rows(n * V::LANES, rows.len() / ny) };
+            with(scratch, |scratch| V::vectorize(ForwardRows { plan, rows, tiles, scratch }));
+        });
+    }
+
+    fn multiply(&mut self, spectrum: usize) {
+        self.multiply_with(spectrum, |_| Unmetered, |_, _| ());
+    }
+
+    fn multiply_measured(&mut self, spectrum: usize) -> f64 {
+        let zero = V::splat(V::Scalar::default());
+        self.multiply_with(spectrum, |_| Energy(zero), |found, energy| *energy = found.0);
+        let last = self.columns.len() - 1;
+        let energies = &mut self.energies;
+        // The columns 0 < ky < my/2 stand for -ky too. Their numbers are twice the field's, the spectrum half of it.
+        let both = |ky: usize| if ky == 0 || ky == last { 0.5 } else { 1.0 };
+        let of = |column: usize| energies[column / V::LANES].scalars_mut()[column % V::LANES].widened();
+        self.columns.iter().map(|column| *column).map(of).enumerate().map(|(ky, e)| both(ky) * e).sum()
+    }
+
+    fn back(&mut self, output: &mut [V::Scalar], visit: Option<&Visit<V::Scalar>>) -> Sums {
+        let (ny, plan, scratch) = (self.row_plan.cells(), &self.row_plan, &self.scratch);
+        assert_eq!(output.len(), self.rows * ny);
+        let tiles = SharedTiles::new(&mut self.work, self.stride);
+        let groups = output.par_chunks_mut(group::<V>() * ny).zip(&mut self.sums).enumerate();
+        groups.for_each(|(n, (cells, sums))| {
+            for (rows, first) in cells.chunks_mut(V::LANES * ny).zip((n * group::<V>()..).step_by(V::LANES)) {
+                // SAFETY: every group of rows is visited once, and its blocks have no row in common.
+                let tiles = unsafe { tiles.of_rows(first, rows.len() / ny) };
+                with(scratch, |scratch| V::vectorize(InverseRows { plan, tiles, rows, scratch }));
+            }
+            if let Some(visit) = visit {
+                *sums = visit(n * group::<V>() * ny, cells, &mut []);
+            }
+        });
+        if visit.is_some() { total(&self.sums) } else { Sums::default() }
+    }
+
+    fn turn(&mut self, kept: &mut [V::Scalar], visit: &Visit<V::Scalar>, on: bool) -> Sums {
+        let (nx, ny, plan, scratch) = (self.rows, self.row_plan.cells(), &self.row_plan, &self.scratch);
+        assert!(kept.is_empty() || kept.len() == nx * ny);
+        let tiles = SharedTiles::new(&mut self.work, self.stride);
+        let group = group::<V>();
+        let turn = |n: usize, sums: &mut Sums, kept: &mut [V::Scalar]| {
+            let rows = n * group..nx.min((n + 1) * group);
+            // SAFETY: every group of rows is visited once; its blocks have no row in common, and are read before they are
+            // written.
+            let tiles = |first: usize, cells: &[V::Scalar]| unsafe { tiles.of_rows(first, cells.len() / ny) };
             with(scratch, |scratch| {
-                let mut prepared = std::mem::take(&mut scratch.prepared);
-                let rows = match prepare {
-                    Some(prepare) => {
-                        let prepared = &mut prepared[..rows.len()];
-                        prepare(n * block, rows, prepared);
-                        prepared
+                let mut room = std::mem::take(&mut scratch.rows);
+                let cells = &mut room[..rows.len() * ny];
+                for (rows, first) in cells.chunks_mut(V::LANES * ny).zip(rows.clone().step_by(V::LANES)) {
+                    let tiles = tiles(first, rows);
+                    V::vectorize(InverseRows { plan, tiles, rows, scratch });
+                }
+                *sums = visit(rows.start * ny, cells, kept);
+                if on {
+                    for (rows, first) in cells.chunks(V::LANES * ny).zip(rows.step_by(V::LANES)) {
+                        let tiles = tiles(first, rows);
+                        V::vectorize(ForwardRows { plan, rows, tiles, scratch });
                     }
-                    None => rows,
-                };
-                V::vectorize(ForwardRows { plan: &self.row_plan, rows, tiles, scratch });
-                scratch.prepared = prepared;
+                }
+                scratch.rows = room;
             });
-        });
-
-        let spectrum = self.spectrum.par_chunks(self.column_plan.mirrored_length());
-        self.work.par_chunks_mut(stride).zip(spectrum).for_each(|(columns, spectrum)| {
-            let columns = &mut columns[..nx];
-            with(scratch, |scratch| {
-                V::vectorize(Columns { plan: &self.column_plan, columns, stride, spectrum, scratch });
-            });
-        });
-
-        output.par_chunks_mut(block).enumerate().for_each(|(n, rows)| {
-            with(scratch, |scratch| {
-                V::vectorize(InverseRows {
-                    plan: &self.row_plan,
-                    work: &self.work,
-                    stride,
-                    start: n * V::LANES,
-                    rows,
-                    scratch,
-                });
-            });
-        });
+        };
+        let groups = self.sums.par_iter_mut();
+        if kept.is_empty() {
+            groups.enumerate().for_each(|(n, sums)| turn(n, sums, &mut []));
+        } else {
+            let kept = kept.par_chunks_mut(group * ny);
+            groups.zip(kept).enumerate().for_each(|(n, (sums, kept))| turn(n, sums, kept));
+        }
+        total(&self.sums)
     }
 }
 
-/// Lends the thread its buffers.
+/// Group after group, whoever summed them.
+fn total(sums: &[Sums]) -> Sums {
+    sums.iter().fold(Sums::default(), |total, sums| std::array::from_fn(|k| total[k] + sums[k]))
+}
+
+/// Lends the thread its buffers. What it does with them is its own work alone: no other thread may be asked to help.
 fn with<V: Lane>(scratch: &[Mutex<Scratch<V>>], work: impl FnOnce(&mut Scratch<V>)) {
     let mine = rayon::current_thread_index().unwrap_or(0) % scratch.len();
     work(&mut scratch[mine].lock().unwrap_or_else(PoisonError::into_inner));

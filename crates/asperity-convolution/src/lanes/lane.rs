@@ -24,6 +24,8 @@ pub trait Real: sealed::Sealed + Copy + Debug + Default + PartialEq + Send + Syn
 
     /// The nearest scalar.
     fn nearest(x: f64) -> Self;
+    /// The same number.
+    fn widened(self) -> f64;
 }
 
 mod sealed {
@@ -43,6 +45,11 @@ impl Real for f64 {
     fn nearest(x: f64) -> f64 {
         x
     }
+
+    #[inline(always)]
+    fn widened(self) -> f64 {
+        self
+    }
 }
 
 impl Real for f32 {
@@ -55,6 +62,11 @@ impl Real for f32 {
     #[inline(always)]
     fn nearest(x: f64) -> f32 {
         x as f32
+    }
+
+    #[inline(always)]
+    fn widened(self) -> f64 {
+        self.into()
     }
 }
 

@@ -8,7 +8,7 @@ use super::prefetch::{For, prefetch};
 
 /// The leaves of a block, which starts at position `start` of its part.
 #[inline(always)]
-pub fn run_leaves<V: Lane, const R: usize>(block: &mut [Complex<V>], start: usize, leaf: &impl Leaf<V>)
+pub fn run_leaves<V: Lane, const R: usize>(block: &mut [Complex<V>], start: usize, leaf: &mut impl Leaf<V>)
 where
     Whole<R>: Butterfly<V, R, R>,
 {
@@ -21,7 +21,7 @@ where
 /// What happens at the leaves, where R numbers and their transform are in registers.
 pub trait Leaf<V: Lane> {
     /// With the R numbers x from position `at` of a part on.
-    fn at<const R: usize>(&self, x: [Complex<V>; R], at: usize) -> [Complex<V>; R]
+    fn at<const R: usize>(&mut self, x: [Complex<V>; R], at: usize) -> [Complex<V>; R]
     where
         Whole<R>: Butterfly<V, R, R>;
 }
@@ -31,7 +31,7 @@ pub struct Plain;
 
 impl<V: Lane> Leaf<V> for Plain {
     #[inline(always)]
-    fn at<const R: usize>(&self, x: [Complex<V>; R], _: usize) -> [Complex<V>; R]
+    fn at<const R: usize>(&mut self, x: [Complex<V>; R], _: usize) -> [Complex<V>; R]
     where
         Whole<R>: Butterfly<V, R, R>,
     {
@@ -39,15 +39,39 @@ impl<V: Lane> Leaf<V> for Plain {
     }
 }
 
+/// Sees every number y of a spectrum and its product S y.
+pub trait Meter<V: Lane> {
+    /// With one in each lane.
+    fn meet(&mut self, y: Complex<V>, product: Complex<V>);
+}
+
+/// Looks away.
+pub struct Unmetered;
+
+impl<V: Lane> Meter<V> for Unmetered {
+    #[inline(always)]
+    fn meet(&mut self, _: Complex<V>, _: Complex<V>) {}
+}
+
+/// Sums S |y|^2, lane by lane.
+pub struct Energy<V>(pub V);
+
+impl<V: Lane> Meter<V> for Energy<V> {
+    #[inline(always)]
+    fn meet(&mut self, y: Complex<V>, product: Complex<V>) {
+        self.0 = y.re.mul_add(product.re, y.im.mul_add(product.im, self.0));
+    }
+}
+
 /// The spectrum is asked for so many bytes before it is needed.
 const SPECTRUM_AHEAD: usize = 4096;
 
 /// Transform, times the spectrum, transform back on exchanged parts.
-pub struct Product<'a, V>(pub &'a [V]);
+pub struct Product<'a, V, M>(pub &'a [V], pub &'a mut M);
 
-impl<V: Lane> Leaf<V> for Product<'_, V> {
+impl<V: Lane, M: Meter<V>> Leaf<V> for Product<'_, V, M> {
     #[inline(always)]
-    fn at<const R: usize>(&self, x: [Complex<V>; R], at: usize) -> [Complex<V>; R]
+    fn at<const R: usize>(&mut self, x: [Complex<V>; R], at: usize) -> [Complex<V>; R]
     where
         Whole<R>: Butterfly<V, R, R>,
     {
@@ -55,18 +79,20 @@ impl<V: Lane> Leaf<V> for Product<'_, V> {
         prefetch(For::Reading, spectrum.as_ptr().wrapping_byte_add(SPECTRUM_AHEAD), R);
         let mut y = Whole::<R>::transform(x);
         for k in 0..R {
-            y[k] = y[k].times(spectrum[k]).swapped();
+            let product = y[k].times(spectrum[k]);
+            self.1.meet(y[k], product);
+            y[k] = product.swapped();
         }
         Whole::<R>::transform(y)
     }
 }
 
 /// The same with the spectrum read backwards.
-pub struct MirroredProduct<'a, V>(pub &'a [V]);
+pub struct MirroredProduct<'a, V, M>(pub &'a [V], pub &'a mut M);
 
-impl<V: Lane> Leaf<V> for MirroredProduct<'_, V> {
+impl<V: Lane, M: Meter<V>> Leaf<V> for MirroredProduct<'_, V, M> {
     #[inline(always)]
-    fn at<const R: usize>(&self, x: [Complex<V>; R], at: usize) -> [Complex<V>; R]
+    fn at<const R: usize>(&mut self, x: [Complex<V>; R], at: usize) -> [Complex<V>; R]
     where
         Whole<R>: Butterfly<V, R, R>,
     {
@@ -74,7 +100,9 @@ impl<V: Lane> Leaf<V> for MirroredProduct<'_, V> {
         let spectrum = &self.0[end - R..end];
         let mut y = Whole::<R>::transform(x);
         for k in 0..R {
-            y[k] = y[k].times(spectrum[R - 1 - k]).swapped();
+            let product = y[k].times(spectrum[R - 1 - k]);
+            self.1.meet(y[k], product);
+            y[k] = product.swapped();
         }
         Whole::<R>::transform(y)
     }

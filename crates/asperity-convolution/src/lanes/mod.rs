@@ -53,10 +53,10 @@ mod transform;
 mod work;
 mod wrap;
 
-use ndarray::ArrayView2;
+use ndarray::{Array2, ArrayView2};
 
-pub use engine::Prepare;
 use engine::{Convolve, Engine};
+pub use engine::{Sums, Visit};
 use factors::{Factors, factors};
 pub use lane::Real;
 use wrap::wrapped_spectrum;
@@ -122,10 +122,18 @@ impl<T: Real> Lanes<T> {
     /// # Panics
     /// Where a length is less than its cells, a count is 0, or the spectrum has another shape.
     pub fn new(cells: [usize; 2], lengths: [usize; 2], spectrum: ArrayView2<f64>) -> Self {
-        Self::on(Instructions::available()[0], cells, lengths, spectrum)
+        Self::with_spectra(cells, lengths, &[spectrum])
     }
 
-    /// As [`Self::new`], on chosen instructions.
+    /// As [`Self::new`], with several spectra for a [`Chain`] of convolutions; the first is that of [`Self::apply_into`].
+    ///
+    /// # Panics
+    /// Also where there is none.
+    pub fn with_spectra(cells: [usize; 2], lengths: [usize; 2], spectra: &[ArrayView2<f64>]) -> Self {
+        Self::on(Instructions::available()[0], cells, lengths, spectra)
+    }
+
+    /// As [`Self::with_spectra`], on chosen instructions.
     ///
     /// # Panics
     /// Also where the processor does not have them.
@@ -133,18 +141,23 @@ impl<T: Real> Lanes<T> {
         instructions: Instructions,
         cells: [usize; 2],
         lengths: [usize; 2],
-        spectrum: ArrayView2<f64>,
+        spectra: &[ArrayView2<f64>],
     ) -> Self {
         assert!(Instructions::available().contains(&instructions), "{instructions:?} is not available");
         assert!(cells[0] > 0 && cells[1] > 0 && lengths[0] >= cells[0] && lengths[1] >= cells[1]);
-        assert_eq!(spectrum.dim(), (lengths[0] / 2 + 1, lengths[1] / 2 + 1));
+        assert!(!spectra.is_empty());
+        for spectrum in spectra {
+            assert_eq!(spectrum.dim(), (lengths[0] / 2 + 1, lengths[1] / 2 + 1));
+        }
         let along_y = if lengths[1].is_multiple_of(2) { factors(lengths[1] / 2) } else { None };
         if let (Some(x), Some(y)) = (factors(lengths[0]), along_y) {
-            return Lanes { engine: plan(instructions, cells, lengths, [&x, &y], spectrum) };
+            return Lanes { engine: plan(instructions, cells, lengths, [&x, &y], spectra) };
         }
         let longer = cells.map(|n| Self::good_length(2 * n - 1));
-        let wrapped = wrapped_spectrum(cells, lengths, longer, spectrum);
-        Self::on(instructions, cells, longer, wrapped.view())
+        let wrap = |spectrum: &ArrayView2<f64>| wrapped_spectrum(cells, lengths, longer, spectrum.view());
+        let wrapped: Vec<Array2<f64>> = spectra.iter().map(wrap).collect();
+        let wrapped: Vec<ArrayView2<f64>> = wrapped.iter().map(|spectrum| spectrum.view()).collect();
+        Self::on(instructions, cells, longer, &wrapped)
     }
 
     /// `output` = S * `input`; both C-order, nx ny cells.
@@ -152,17 +165,95 @@ impl<T: Real> Lanes<T> {
     /// # Panics
     /// Where a length is not nx ny.
     pub fn apply_into(&mut self, input: &[T], output: &mut [T]) {
-        self.engine.apply_into(input, None, output);
+        self.engine.forward(input);
+        self.engine.multiply(0);
+        self.engine.back(output, None);
     }
 
-    /// `output` = S * what `prepare` makes of `input`, stretch by stretch on its way through the cache:
-    /// `prepare(first, cells, to)` gets the cells from number `first` on, a multiple of four (of eight in f32), and
-    /// says what to take for them.
+    /// The same; `visit(first, cells)` meets the output on its way through the cache, eight rows (sixteen in f32) at a time, of which `first` is
+    /// the number of the first cell, a multiple of eight. Returns the totals of the sums that it returns, in an order that
+    /// depends on the shape alone. It is to do its work by itself: a thread that it waits for may never come.
     ///
     /// # Panics
     /// Where a length is not nx ny.
-    pub fn apply_prepared_into(&mut self, input: &[T], prepare: &Prepare<T>, output: &mut [T]) {
-        self.engine.apply_into(input, Some(prepare), output);
+    pub fn apply_visited_into(&mut self, input: &[T], output: &mut [T], visit: &crate::Visit<T>) -> Sums {
+        self.engine.forward(input);
+        self.engine.multiply(0);
+        self.engine.back(output, Some(&|first, cells, _| visit(first, cells)))
+    }
+
+    /// Starts several convolutions one after the other, with something done to the field in between.
+    ///
+    /// # Panics
+    /// Where the length is not nx ny.
+    pub fn chain(&mut self, input: &[T]) -> Chain<'_, T> {
+        self.engine.forward(input);
+        Chain { engine: &mut *self.engine }
+    }
+}
+
+/// A field x on its way through several convolutions: what lies between two of them is done to a few rows at a time while
+/// these are in the cache, and only what is asked for is ever written to memory.
+///
+/// ```
+/// use asperity_convolution::lanes::Lanes;
+///
+/// // x -> 3 x, squared -> 5 x.
+/// let [three, five] = [3.0, 5.0].map(|s| ndarray::Array2::from_elem((9, 9), s));
+/// let mut plan = Lanes::<f64>::with_spectra([16, 16], [16, 16], &[three.view(), five.view()]);
+/// let input: Vec<f64> = (0..256).map(f64::from).collect();
+/// let mut output = vec![0.0; 256];
+/// let mut chain = plan.chain(&input);
+/// chain.times(0);
+/// chain.turn(&mut [], &|_, x, _| {
+///     x.iter_mut().for_each(|x| *x *= *x);
+///     [0.0; 5]
+/// });
+/// chain.times(1);
+/// chain.end(&mut output, &|_, x, to| {
+///     to.copy_from_slice(x);
+///     [0.0; 5]
+/// });
+/// assert!(output.iter().zip(&input).all(|(y, x)| (y - 45.0 * x * x).abs() < 1e-8));
+/// ```
+pub struct Chain<'a, T> {
+    engine: &'a mut dyn Convolve<T>,
+}
+
+impl<T: Real> Chain<'_, T> {
+    /// x becomes S * x with the spectrum of that number.
+    ///
+    /// # Panics
+    /// Where there is none.
+    pub fn times(&mut self, spectrum: usize) {
+        self.engine.multiply(spectrum);
+    }
+
+    /// The same; returns x'S x, of the x before.
+    ///
+    /// # Panics
+    /// Where there is none.
+    pub fn times_measured(&mut self, spectrum: usize) -> f64 {
+        self.engine.multiply_measured(spectrum)
+    }
+
+    /// `visit(first, x, kept)` changes x, eight rows (sixteen in f32) at a time; `kept` are the same cells of a field that
+    /// stays, or none where that is empty. `first` is the number of the first cell, a multiple of eight. Returns the totals
+    /// of the sums that it returns, in an order that depends on the shape alone. It is to do its work by itself: a thread
+    /// that it waits for may never come.
+    ///
+    /// # Panics
+    /// Where `kept` has another length.
+    pub fn turn(&mut self, kept: &mut [T], visit: &Visit<T>) -> Sums {
+        self.engine.turn(kept, visit, true)
+    }
+
+    /// The last of these: x goes no further.
+    ///
+    /// # Panics
+    /// Where `kept` has another length.
+    pub fn end(self, kept: &mut [T], visit: &Visit<T>) -> Sums {
+        self.engine.turn(kept, visit, false)
     }
 }
 
@@ -172,13 +263,13 @@ fn plan<T: Real>(
     cells: [usize; 2],
     lengths: [usize; 2],
     factors: [&Factors; 2],
-    spectrum: ArrayView2<f64>,
+    spectra: &[ArrayView2<f64>],
 ) -> Box<dyn Convolve<T>> {
     match instructions {
         #[cfg(target_arch = "x86_64")]
-        Instructions::Avx512 => Box::new(Engine::<T::Avx512>::new(cells, lengths, factors, spectrum)),
+        Instructions::Avx512 => Box::new(Engine::<T::Avx512>::new(cells, lengths, factors, spectra)),
         #[cfg(target_arch = "x86_64")]
-        Instructions::Avx2 => Box::new(Engine::<T::Avx2>::new(cells, lengths, factors, spectrum)),
-        _ => Box::new(Engine::<T::Portable>::new(cells, lengths, factors, spectrum)),
+        Instructions::Avx2 => Box::new(Engine::<T::Avx2>::new(cells, lengths, factors, spectra)),
+        _ => Box::new(Engine::<T::Portable>::new(cells, lengths, factors, spectra)),
     }
 }

@@ -11,7 +11,7 @@
 
 use super::complex::{Complex, Root, scalars, scalars_mut, transpose};
 use super::lane::{Kernel, Lane, MAX_LANES, Real};
-use super::prefetch::{For, prefetch};
+use super::prefetch::For;
 use super::roots::root;
 use super::transform::Transform;
 use super::work::{Scratch, Tiles};
@@ -162,7 +162,7 @@ impl<V: Lane> Kernel for ForwardRows<'_, V> {
             for lane in 0..half {
                 (columns[lane], columns[half + lane]) = pairs[lane].spectra(spectrum);
             }
-            self.tiles.prefetch(block + AHEAD);
+            self.tiles.prefetch(For::Writing, block + AHEAD);
             let tile = self.tiles.tile(block);
             if tile.len() == V::LANES {
                 transpose(&columns, tile);
@@ -175,35 +175,29 @@ impl<V: Lane> Kernel for ForwardRows<'_, V> {
     }
 }
 
-/// One block of rows, back: `rows` from their tiles of the column blocks.
+/// One block of rows, back: `rows` from their `tiles` of the column blocks.
 pub struct InverseRows<'a, V: Lane> {
     pub plan: &'a Rows<V::Scalar>,
-    /// All column blocks, `stride` apart.
-    pub work: &'a [Complex<V>],
-    pub stride: usize,
-    /// The first row of the block.
-    pub start: usize,
+    pub tiles: Tiles<'a, V>,
     pub rows: &'a mut [V::Scalar],
     pub scratch: &'a mut Scratch<V>,
 }
 
 impl<V: Lane> Kernel for InverseRows<'_, V> {
     #[inline(always)]
-    fn run(self) {
+    fn run(mut self) {
         let [signal, spectrum] = self.plan.scratch(V::LANES);
         let (signal, spectrum) = self.scratch.buffers(signal, spectrum);
         let half = V::LANES / 2;
-        let count = self.rows.len() / self.plan.cells;
         let mut columns = [Complex::<V>::zero(); MAX_LANES];
-        let blocks = self.work.chunks_exact(self.stride);
-        for (pairs, block) in self.plan.pairs.chunks_exact(half).zip(blocks) {
-            let tile = &block[self.start..self.start + count];
-            prefetch(For::Reading, tile.as_ptr().wrapping_add(AHEAD * self.stride), count);
-            if count == V::LANES {
+        for (block, pairs) in self.plan.pairs.chunks_exact(half).enumerate() {
+            self.tiles.prefetch(For::Reading, block + AHEAD);
+            let tile = self.tiles.tile(block);
+            if tile.len() == V::LANES {
                 transpose(tile, &mut columns);
             } else {
                 let mut rows = [Complex::<V>::zero(); MAX_LANES];
-                rows[..count].copy_from_slice(tile);
+                rows[..tile.len()].copy_from_slice(tile);
                 transpose(&rows, &mut columns);
             }
             for lane in 0..half {

@@ -99,12 +99,12 @@ fn equals_the_plain_transform_on_any_shape() {
         let (input, spectrum) = (field(cells), spectrum(lengths));
         let exact = plain(cells, lengths, &spectrum, &input);
         for instructions in Instructions::available() {
-            let found = apply(Lanes::on(instructions, cells, lengths, spectrum.view()), &input);
+            let found = apply(Lanes::on(instructions, cells, lengths, &[spectrum.view()]), &input);
             let error = error(&found, &exact);
             // Rounding of a transform: a few 2^-53 per pass, some ten passes in all.
             assert!(error < 4e-15, "{instructions:?} {cells:?} {lengths:?}: {error:e}");
             let single: Vec<f32> = input.iter().map(|x| *x as f32).collect();
-            let found = apply(Lanes::on(instructions, cells, lengths, spectrum.view()), &single);
+            let found = apply(Lanes::on(instructions, cells, lengths, &[spectrum.view()]), &single);
             let found: Vec<f64> = found.into_iter().map(f64::from).collect();
             let error = self::error(&found, &exact);
             // The same with 2^-24.
@@ -119,7 +119,7 @@ fn assert_same_bits<T: Real>(cells: [usize; 2], lengths: [usize; 2], bits: impl 
     let input: Vec<T> = input.into_iter().map(T::nearest).collect();
     let run = |instructions, threads| -> Vec<u64> {
         on_threads(threads, || {
-            let convolution = Lanes::on(instructions, cells, lengths, spectrum.view());
+            let convolution = Lanes::on(instructions, cells, lengths, &[spectrum.view()]);
             apply(convolution, &input).into_iter().map(&bits).collect()
         })
     };
@@ -147,9 +147,11 @@ fn has_the_same_bits_for_any_number_of_lanes() {
     fn run<const N: usize>(cells: [usize; 2], lengths: [usize; 2]) -> Vec<u64> {
         let (x, y) = (factors(lengths[0]).unwrap(), factors(lengths[1] / 2).unwrap());
         let spectrum = spectrum(lengths);
-        let mut engine = Engine::<Portable<f64, N>>::new(cells, lengths, [&x, &y], spectrum.view());
+        let mut engine = Engine::<Portable<f64, N>>::new(cells, lengths, [&x, &y], &[spectrum.view()]);
         let mut output = vec![0.0; cells[0] * cells[1]];
-        engine.apply_into(&field(cells), None, &mut output);
+        engine.forward(&field(cells));
+        engine.multiply(0);
+        engine.back(&mut output, None);
         output.into_iter().map(f64::to_bits).collect()
     }
     for (cells, lengths) in [([33, 31], [80, 64]), ([20, 40], [20, 40])] {
@@ -175,31 +177,102 @@ fn a_plan_can_be_used_again_and_on_more_threads_than_it_was_made_for() {
     assert_eq!(again, apply(Lanes::new(cells, lengths, spectrum.view()), &field(cells)));
 }
 
+/// What a visitor does to a cell on its way, by its number.
+fn weight<T: Real>(n: usize) -> T {
+    T::nearest([0.0, -1.0, 0.5, 2.0][n % 4])
+}
+
+fn weighted<T: Real + std::ops::Mul<Output = T>>(x: &[T]) -> Vec<T> {
+    x.iter().enumerate().map(|(n, x)| *x * weight(n)).collect()
+}
+
 #[test]
-fn what_is_prepared_on_the_way_is_what_would_be_prepared_before() {
-    fn check<T: Real + std::ops::Neg<Output = T>>(multiple: usize) {
+fn a_chain_is_one_convolution_after_the_other() {
+    fn check<T: Real + std::ops::Mul<Output = T>>(rows: usize, rounding: f64) {
         for (cells, lengths) in SHAPES {
-            let spectrum = spectrum(lengths);
+            let spectra = [spectrum(lengths), spectrum(lengths).mapv(|s| 1.0 / (0.2 + s))];
             let input: Vec<T> = field(cells).into_iter().map(T::nearest).collect();
-            let prepared = |first: usize, from: &[T], to: &mut [T]| {
-                assert_eq!(first % multiple, 0);
-                for (n, (x, to)) in (first..).zip(from.iter().zip(to)) {
-                    assert_eq!(*x, input[n]);
-                    *to = if n % 3 == 0 { T::default() } else { -*x };
-                }
+            let plan = |instructions, number: &[usize]| {
+                let views: Vec<_> = number.iter().map(|n| spectra[*n].view()).collect();
+                Lanes::<T>::on(instructions, cells, lengths, &views)
             };
-            let mut before = vec![T::default(); input.len()];
-            prepared(0, &input, &mut before);
+            let dot =
+                |x: &[T], y: &[T]| -> f64 { x.iter().zip(y).map(|(x, y)| x.widened() * y.widened()).sum() };
+            let mut energies = Vec::new();
             for instructions in Instructions::available() {
-                let mut convolution = Lanes::on(instructions, cells, lengths, spectrum.view());
+                let first = apply(plan(instructions, &[0]), &input);
+                let between = weighted(&first);
+                let second = apply(plan(instructions, &[1]), &between);
+                let third = apply(plan(instructions, &[0]), &weighted(&second));
+
+                let mut plan = plan(instructions, &[0, 1]);
+                let mut kept = vec![T::default(); input.len()];
+                let change = |n: usize, x: &mut [T]| {
+                    x.iter_mut().zip(n..).for_each(|(x, n)| *x = *x * weight(n));
+                    [1.0, x.len() as f64, 0.0, 0.0, n as f64]
+                };
+                let mut chain = plan.chain(&input);
+                let before = chain.times_measured(0);
+                let sums = chain.turn(&mut kept, &|n, x, kept| {
+                    kept.copy_from_slice(x);
+                    change(n, x)
+                });
+                // Groups of the same rows on all instructions, each of which begins with a whole byte of a set.
+                let groups = cells[0].div_ceil(rows);
+                let starts = (rows * cells[1] * (groups * (groups - 1) / 2)) as f64;
+                assert_eq!(sums, [groups as f64, input.len() as f64, 0.0, 0.0, starts]);
+                assert!((rows * cells[1]).is_multiple_of(8));
+                let energy = chain.times_measured(1);
+                chain.turn(&mut [], &|n, x, none| {
+                    assert!(none.is_empty());
+                    change(n, x)
+                });
+                chain.times(0);
                 let mut output = vec![T::default(); input.len()];
-                convolution.apply_prepared_into(&input, &prepared, &mut output);
-                assert!(output == apply(convolution, &before), "{instructions:?} {cells:?} {lengths:?}");
+                chain.end(&mut output, &|_, x, output| {
+                    output.copy_from_slice(x);
+                    [0.0; 5]
+                });
+                assert!(kept == first && output == third, "{instructions:?} {cells:?} {lengths:?}");
+
+                // x'S x by Parseval's theorem, and as it is written: a column is a sum of so many terms.
+                for (found, x, y) in [(before, &input, &first), (energy, &between, &second)] {
+                    let error =
+                        (found - dot(x, y)).abs() / dot(y, y).sqrt().max(1e-30) / dot(x, x).sqrt().max(1e-30);
+                    let most = (16 + 2 * lengths[0]) as f64 * rounding;
+                    assert!(error < most, "{instructions:?} {cells:?} {lengths:?}: {error:e}");
+                }
+                energies.push([before.to_bits(), energy.to_bits()]);
             }
+            assert!(energies.windows(2).all(|two| two[0] == two[1]), "{cells:?} {lengths:?}");
         }
     }
-    check::<f64>(4);
-    check::<f32>(8);
+    check::<f64>(8, f64::EPSILON);
+    check::<f32>(16, f64::from(f32::EPSILON));
+}
+
+#[test]
+fn what_visits_the_output_meets_all_of_it() {
+    for (cells, lengths) in SHAPES {
+        let spectrum = spectrum(lengths);
+        let input = field(cells);
+        for threads in [1, 3] {
+            on_threads(threads, || {
+                let mut plan = Lanes::<f64>::new(cells, lengths, spectrum.view());
+                let mut output = vec![0.0; input.len()];
+                let sums = plan.apply_visited_into(&input, &mut output, &|first, cells| {
+                    assert_eq!(first % 8, 0);
+                    [cells.iter().sum(), cells.len() as f64, 0.0, 0.0, 0.0]
+                });
+                let plain = apply(Lanes::new(cells, lengths, spectrum.view()), &input);
+                assert_eq!(output, plain);
+                assert_eq!(sums[1], input.len() as f64);
+                let exact: f64 = plain.iter().sum();
+                let size: f64 = plain.iter().map(|x| x.abs()).sum();
+                assert!((sums[0] - exact).abs() <= 1e-14 * size);
+            });
+        }
+    }
 }
 
 #[test]

@@ -12,7 +12,7 @@
 use super::complex::Complex;
 use super::factors::Factors;
 use super::lane::{Lane, Real};
-use super::leaf::{Leaf, MirroredProduct, Plain, Product, run_leaves};
+use super::leaf::{Leaf, Meter, MirroredProduct, Plain, Product, run_leaves};
 use super::prefetch::Ahead;
 use super::stage::Stage;
 
@@ -89,7 +89,7 @@ impl<T: Real> Transform<T> {
     pub fn forward<V: Lane<Scalar = T>>(&self, signal: &mut [Complex<V>], buffer: &mut [Complex<V>]) {
         self.first.open(self.half, signal, &mut [], buffer);
         for part in buffer.chunks_exact_mut(self.first.part()) {
-            self.descend::<V, true, false>(part, &Plain, &mut Ahead::nothing());
+            self.descend::<V, true, false>(part, &mut Plain, &mut Ahead::nothing());
         }
     }
 
@@ -98,7 +98,7 @@ impl<T: Real> Transform<T> {
     #[inline(always)]
     pub fn inverse<V: Lane<Scalar = T>>(&self, buffer: &mut [Complex<V>], signal: &mut [Complex<V>]) {
         for part in buffer.chunks_exact_mut(self.first.part()) {
-            self.descend::<V, false, true>(part, &Plain, &mut Ahead::nothing());
+            self.descend::<V, false, true>(part, &mut Plain, &mut Ahead::nothing());
         }
         self.first.close(self.half, signal, &mut [], buffer);
     }
@@ -106,8 +106,8 @@ impl<T: Real> Transform<T> {
     /// signal = m times the inverse of (spectrum times transform of signal), in place.
     ///
     /// `signal` may be shorter than `signal_length`; `margin` has that length and takes what is
-    /// missing; `spectrum` is real, even, digit-reversed, of `mirrored_length`; `ahead` is advanced
-    /// meanwhile.
+    /// missing; `spectrum` is real, even, digit-reversed, of `mirrored_length`; `meter` sees it multiplied, and `ahead` is
+    /// advanced meanwhile.
     #[inline(always)]
     pub fn convolve<V: Lane<Scalar = T>>(
         &self,
@@ -115,6 +115,7 @@ impl<T: Real> Transform<T> {
         margin: &mut [Complex<V>],
         buffer: &mut [Complex<V>],
         spectrum: &[V],
+        meter: &mut impl Meter<V>,
         ahead: &mut Ahead<Complex<V>>,
     ) {
         let radix = self.first.radix;
@@ -130,9 +131,9 @@ impl<T: Real> Transform<T> {
             let stored = r.min(radix - r);
             let spectrum = &spectrum[stored * part_length..][..part_length];
             if stored == r {
-                self.descend::<V, true, true>(part, &Product(spectrum), ahead);
+                self.descend::<V, true, true>(part, &mut Product(spectrum, meter), ahead);
             } else {
-                self.descend::<V, true, true>(part, &MirroredProduct(spectrum), ahead);
+                self.descend::<V, true, true>(part, &mut MirroredProduct(spectrum, meter), ahead);
             }
         }
         self.first.close(self.half, signal, margin, buffer);
@@ -151,7 +152,7 @@ impl<T: Real> Transform<T> {
     fn descend<V: Lane<Scalar = T>, const DOWN: bool, const UP: bool>(
         &self,
         part: &mut [Complex<V>],
-        leaf: &impl Leaf<V>,
+        leaf: &mut impl Leaf<V>,
         ahead: &mut Ahead<Complex<V>>,
     ) {
         let deepest = self.deepest();

@@ -22,20 +22,20 @@ pub fn block_stride<V>(rows: usize) -> usize {
 
 /// The buffers of one thread.
 pub struct Scratch<V: Lane> {
-    /// Rows that something was made of.
-    pub prepared: Vec<V::Scalar>,
+    /// Rows that a caller visits.
+    pub rows: Vec<V::Scalar>,
     numbers: Vec<Complex<V>>,
     /// Where the second buffer starts.
     second: usize,
 }
 
 impl<V: Lane> Scratch<V> {
-    /// A buffer for a signal and one for its transform, and room for so many prepared cells.
-    pub fn new(signal: usize, transform: usize, prepared: usize) -> Self {
+    /// A buffer for a signal and one for its transform, and room for rows of so many cells.
+    pub fn new(signal: usize, transform: usize, cells: usize) -> Self {
         let size = size_of::<Complex<V>>();
         let second = ((signal * size).next_multiple_of(4096) + STAGGER).div_ceil(size);
-        let prepared = vec![V::Scalar::default(); prepared];
-        Scratch { prepared, numbers: vec![Complex::zero(); second + transform], second }
+        let rows = vec![V::Scalar::default(); cells];
+        Scratch { rows, numbers: vec![Complex::zero(); second + transform], second }
     }
 
     /// The two, in these lengths.
@@ -46,7 +46,7 @@ impl<V: Lane> Scratch<V> {
     }
 }
 
-/// The tiles of all blocks of rows, to be written by several threads.
+/// The tiles of all blocks of rows, to be used by several threads.
 pub struct SharedTiles<'a, V> {
     start: *mut Complex<V>,
     length: usize,
@@ -92,10 +92,10 @@ impl<V> Tiles<'_, V> {
         unsafe { std::slice::from_raw_parts_mut(self.start.add(offset), self.count) }
     }
 
-    /// Asks for a tile that will be written soon.
+    /// Asks for a tile that will be wanted soon.
     #[inline(always)]
-    pub fn prefetch(&self, block: usize) {
+    pub fn prefetch(&self, what: For, block: usize) {
         let offset = block * self.stride + self.first;
-        prefetch(For::Writing, self.start.wrapping_add(offset), self.count);
+        prefetch(what, self.start.wrapping_add(offset), self.count);
     }
 }

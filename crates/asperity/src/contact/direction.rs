@@ -50,17 +50,19 @@ pub(super) struct Products {
     pub d_old: f64,
 }
 
-/// The products of z = M r with what the last iteration left.
-pub(super) fn products(z: &[f32], r: &[f32], old: &[f32], d: &[f32], set: &[u8]) -> Products {
-    let [z, zr, z_old, r_old, d_old] =
-        sweep((z, r, old, d, Set(set)), &|(z, r, old, d, Set(set)): (
-            &[f32],
-            &[f32],
-            &[f32],
-            &[f32],
-            Set,
-        )| { vectorize(Multiply { z, r, old, d, set }) });
-    Products { z, zr, z_old, r_old, d_old }
+/// The terms of [`Products`] of some cells, from number `first` on: z = M r, and of all cells r, what the last iteration
+/// left, and S.
+pub(super) fn products(first: usize, z: &[f32], [r, old, d]: [&[f32]; 3], set: &[u8]) -> [f64; 5] {
+    let cells = first..first + z.len();
+    let set = &set[first / 8..cells.end.div_ceil(8)];
+    let [r, old, d] = [r, old, d].map(|field| &field[cells.clone()]);
+    vectorize(Multiply { z, r, old, d, set })
+}
+
+impl Products {
+    pub(super) fn of([z, zr, z_old, r_old, d_old]: [f64; 5]) -> Self {
+        Products { z, zr, z_old, r_old, d_old }
+    }
 }
 
 struct Multiply<'a> {

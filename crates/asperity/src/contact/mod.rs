@@ -15,6 +15,7 @@ mod direction;
 mod fields;
 mod gauss_seidel;
 mod hardness;
+mod lengths;
 mod motion;
 mod polonsky_keer;
 mod preconditioner;
@@ -27,6 +28,7 @@ mod state;
 pub use fields::Scalar;
 pub use gauss_seidel::gauss_seidel;
 pub use hardness::Hardness;
+pub(crate) use lengths::REMEMBERED;
 pub use polonsky_keer::PolonskyKeer;
 pub use projected_cg::ProjectedCg;
 pub use state::ContactState;
@@ -178,7 +180,8 @@ impl Solver {
     }
 
     /// Solves `problem`, starting from the pressure in `state`, which becomes the solution; where that is zero
-    /// everywhere, [`Method::ProjectedCg`] starts from the contact on coarser grids.
+    /// everywhere, [`Method::ProjectedCg`] starts from the contact on coarser grids. Otherwise it goes by the step lengths
+    /// that its last solves found: digits beyond the tolerance depend on these.
     ///
     /// # Errors
     /// [`Error::Infeasible`] where W > H times the area that can touch, [`Error::Undetermined`] where
@@ -196,13 +199,38 @@ impl Solver {
             return Ok(outcome);
         }
         let cold = !matches!(self, Solver::PolonskyKeer(_)) && sum(&state.pressure) <= 0.0;
-        let before = if cold { coarse::start(operator, problem, options, state, interrupt)? } else { 0.0 };
+        let before = if cold {
+            self.remember([0.0; REMEMBERED]);
+            coarse::start(operator, problem, options, state, interrupt)?
+        } else {
+            0.0
+        };
         let outcome = match self {
             Solver::ProjectedCg(s) => s.solve(operator, problem, options, state, interrupt),
             Solver::MixedProjectedCg(s) => s.solve(operator, problem, options, state, interrupt),
             Solver::PolonskyKeer(s) => s.solve(operator, problem, options, state, interrupt),
         }?;
         Ok(Outcome { convolutions: outcome.convolutions + before.ceil() as usize, ..outcome })
+    }
+}
+
+impl Solver {
+    /// Step lengths that the next solve goes by, iteration by iteration; 0 for none.
+    pub(crate) fn remembered(&self) -> [f64; REMEMBERED] {
+        match self {
+            Solver::ProjectedCg(s) => s.lengths.save(),
+            Solver::MixedProjectedCg(s) => s.lengths.save(),
+            Solver::PolonskyKeer(_) => [0.0; REMEMBERED],
+        }
+    }
+
+    /// Takes them from another solver.
+    pub(crate) fn remember(&mut self, lengths: [f64; REMEMBERED]) {
+        match self {
+            Solver::ProjectedCg(s) => s.lengths.load(lengths),
+            Solver::MixedProjectedCg(s) => s.lengths.load(lengths),
+            Solver::PolonskyKeer(_) => {}
+        }
     }
 }
 

@@ -122,11 +122,19 @@ impl<T: Cell, P: Cell> Work for LayOut<'_, T, P> {
     }
 }
 
-/// <s, K s>, <s, s> and the sum of K s inside, s in its unit; `laid` is the set on which it is not zero.
-pub(super) fn curvature<T: Cell>(step: &[T], image: &[T], laid: &[u8], inside: &[u8]) -> [f64; 3] {
-    sweep((step, image, Set(laid), Set(inside)), &|(s, k, Set(laid), Set(inside)): (&[T], &[T], Set, Set)| {
-        vectorize(Curvature { s, k, laid, inside })
-    })
+/// The terms of <s, K s>, <s, s> and the sum of K s inside, of some cells from number `first` on: their `image` K s, and of
+/// all cells s in its unit, the set `laid` on which it is not zero, and those inside.
+pub(super) fn curvature<T: Cell>(
+    first: usize,
+    image: &[T],
+    step: &[T],
+    [laid, inside]: [&[u8]; 2],
+) -> [f64; 5] {
+    let cells = first..first + image.len();
+    let bytes = first / 8..cells.end.div_ceil(8);
+    let (s, laid, inside) = (&step[cells], &laid[bytes.clone()], &inside[bytes]);
+    let [curvature, length, change] = vectorize(Curvature { s, k: image, laid, inside });
+    [curvature, length, change, 0.0, 0.0]
 }
 
 struct Curvature<'a, T> {

@@ -15,13 +15,14 @@
 //! a b'y never exceeds b'(M_CC)^-1 b, so z'r is positive whatever G is. z is not linear in r; the directions of Polak and
 //! Ribiere do not ask for it.
 //!
-//! It costs two more convolutions in f32 on the unpadded grid, and saves half of the iterations.
+//! It costs two more convolutions in f32 on the unpadded grid, and saves half of the iterations. The three are one chain:
+//! of what lies between them only z is ever in memory, and both products of a come from the spectra.
 
 use asperity_convolution::eights::{Eight, Mask, Work, vectorize};
-use asperity_convolution::lanes::Lanes;
+use asperity_convolution::lanes::{Lanes, Sums};
 use rayon::prelude::*;
 
-use crate::field::{Set, sweep, zeros};
+use crate::field::zeros;
 use crate::grid::{Boundary, Grid};
 use crate::operator::ApproximateInverse;
 
@@ -30,52 +31,63 @@ const BESIDE: f64 = 0.67;
 
 /// z from r on a working set, both f32.
 pub(super) struct Preconditioner {
-    /// M over its largest value.
-    inverse: Lanes<f32>,
-    /// That value \[1/m\].
+    /// M and G, each over its largest value.
+    plan: Lanes<f32>,
+    /// That of M \[1/m\].
     pub sharpest: f64,
-    /// G.
-    screened: Lanes<f32>,
     /// Cells of a row.
     row: usize,
     /// The open cells beside S.
     beside: Vec<u8>,
-    /// G D b, y but for D.
-    lift: Vec<f32>,
-    /// M y.
-    image: Vec<f32>,
 }
+
+/// The numbers of the spectra in the plan.
+const M: usize = 0;
+const G: usize = 1;
 
 impl Preconditioner {
     pub(super) fn new(grid: &Grid, boundary: Boundary) -> Self {
         let approximate = ApproximateInverse::new(grid, boundary);
-        let (inverse, screened) = (approximate.plan(), approximate.screened());
-        let [image, lift] = [(); 2].map(|()| zeros(grid.len()));
-        let beside = zeros(grid.len().div_ceil(8));
         Preconditioner {
-            inverse,
+            plan: approximate.plan_with_screened(),
             sharpest: approximate.largest,
-            screened,
             row: grid.cells()[1],
-            beside,
-            image,
-            lift,
+            beside: zeros(grid.len().div_ceil(8)),
         }
     }
 
-    /// z; what is beyond S means nothing. `r` is zero there.
-    pub(super) fn apply_into(&mut self, r: &[f32], set: &[u8], z: &mut [f32]) {
+    /// z; what is beyond S means nothing. `r` is zero there. `visit(first, z)` meets some rows of z at a time, of which
+    /// `first` is the number of the first cell; returns the totals of its sums.
+    pub(super) fn apply_into(
+        &mut self,
+        r: &[f32],
+        set: &[u8],
+        z: &mut [f32],
+        visit: &(dyn Fn(usize, &[f32]) -> Sums + Sync),
+    ) -> Sums {
         find_beside(set, self.row, &mut self.beside);
         let open = Open { set, beside: &self.beside };
-        self.inverse.apply_into(r, z);
-        let weighted = |first: usize, x: &[f32], to: &mut [f32]| weigh(x, open.from(first), to);
-        self.screened.apply_prepared_into(z, &weighted, &mut self.lift);
-        self.inverse.apply_prepared_into(&self.lift, &weighted, &mut self.image);
-        let [slope, curvature] = products(&self.lift, z, &self.image, open);
+        let mut chain = self.plan.chain(r);
+        chain.times(M);
+        chain.turn(z, &|first, x, z| {
+            z.copy_from_slice(x);
+            vectorize(Weigh { x, open: open.of(first, z) });
+            Sums::default()
+        });
+        let by = chain.times_measured(G);
+        chain.turn(&mut [], &|first, x, _| {
+            let open = open.of(first, x);
+            vectorize(Weigh { x, open });
+            Sums::default()
+        });
+        let ymy = chain.times_measured(M);
         // Where nothing is open, b is zero.
-        if slope > 0.0 && curvature > 0.0 {
-            add(z, set, &self.image, -slope / curvature);
-        }
+        let a = if by > 0.0 && ymy > 0.0 { by / ymy } else { 0.0 };
+        chain.end(z, &|first, x, z| {
+            let set = open.of(first, z).set;
+            vectorize(Add { z, set, x, t: -a });
+            visit(first, z)
+        })
     }
 }
 
@@ -87,28 +99,17 @@ struct Open<'a> {
 }
 
 impl<'a> Open<'a> {
-    /// From a cell on, a multiple of eight.
-    fn from(self, first: usize) -> Self {
-        Open { set: &self.set[first / 8..], beside: &self.beside[first / 8..] }
-    }
-
-    /// D of eight cells, 0 on S.
-    #[inline(always)]
-    fn weights<V: Eight>(self, eight: usize) -> V {
-        let [beside, open] = [self.beside[eight], !self.set[eight]].map(V::Mask::from_bits);
-        V::select(beside, V::splat(BESIDE), V::splat(1.0)).only(open)
+    /// From a cell on, a multiple of eight, as many as there are `cells`.
+    fn of(self, first: usize, cells: &[f32]) -> Self {
+        let bytes = first / 8..(first + cells.len()).div_ceil(8);
+        Open { set: &self.set[bytes.clone()], beside: &self.beside[bytes] }
     }
 }
 
-/// D x, 0 on S.
-fn weigh(x: &[f32], open: Open, to: &mut [f32]) {
-    vectorize(Weigh { x, open, to });
-}
-
+/// x becomes D x, 0 on S.
 struct Weigh<'a> {
-    x: &'a [f32],
+    x: &'a mut [f32],
     open: Open<'a>,
-    to: &'a mut [f32],
 }
 
 impl Work for Weigh<'_> {
@@ -116,52 +117,15 @@ impl Work for Weigh<'_> {
 
     #[inline(always)]
     fn run<V: Eight>(self) {
-        for n in (0..self.x.len()).step_by(8) {
-            (V::load(self.x, n, 0.0) * self.open.weights(n / 8)).store(self.to, n);
+        for ((n, set), beside) in (0..).step_by(8).zip(self.open.set).zip(self.open.beside) {
+            let [beside, open] = [*beside, !set].map(V::Mask::from_bits);
+            let weights = V::select(beside, V::splat(BESIDE), V::splat(1.0)).only(open);
+            (V::load(self.x, n, 0.0) * weights).store(self.x, n);
         }
-    }
-}
-
-/// b'y and y'M y, y = D `lift` and b = z on C.
-fn products(lift: &[f32], z: &[f32], image: &[f32], Open { set, beside }: Open) -> [f64; 2] {
-    sweep((lift, z, image, Set(set), Set(beside)), &|(lift, z, image, Set(set), Set(beside)): (
-        &[f32],
-        &[f32],
-        &[f32],
-        Set,
-        Set,
-    )| {
-        vectorize(Products { lift, z, image, open: Open { set, beside } })
-    })
-}
-
-struct Products<'a> {
-    lift: &'a [f32],
-    z: &'a [f32],
-    image: &'a [f32],
-    open: Open<'a>,
-}
-
-impl Work for Products<'_> {
-    type Yield = [f64; 2];
-
-    #[inline(always)]
-    fn run<V: Eight>(self) -> [f64; 2] {
-        let [mut by, mut ymy] = [V::splat(0.0); 2];
-        for n in (0..self.lift.len()).step_by(8) {
-            let y = V::load(self.lift, n, 0.0) * self.open.weights(n / 8);
-            by = by + y * V::load(self.z, n, 0.0);
-            ymy = ymy + y * V::load(self.image, n, 0.0);
-        }
-        [by.sum(), ymy.sum()]
     }
 }
 
 /// z += t x on S.
-fn add(z: &mut [f32], set: &[u8], x: &[f32], t: f64) {
-    sweep((z, x, Set(set)), &|(z, x, Set(set)): (&mut [f32], &[f32], Set)| vectorize(Add { z, x, set, t }));
-}
-
 struct Add<'a> {
     z: &'a mut [f32],
     x: &'a [f32],
@@ -191,12 +155,12 @@ fn find_beside(set: &[u8], row: usize, beside: &mut [u8]) {
     beside.par_chunks_mut(1024 * WORD).enumerate().for_each(|(chunk, beside)| {
         for (n, bytes) in (1024 * chunk..).zip(beside.chunks_mut(WORD)) {
             let at = (8 * WORD * n) as isize;
-            let mut near = 0;
-            for row in [at - row, at, at + row] {
-                near |= sixty_four(set, row - 1) | sixty_four(set, row) | sixty_four(set, row + 1);
-            }
-            near &= !sixty_four(set, at);
-            bytes.copy_from_slice(&near.to_le_bytes()[..bytes.len()]);
+            // Any of three rows, at the cells one before and one after these; what lies between is in both.
+            let [before, after] = [at - 1, at + 1]
+                .map(|at| sixty_four(set, at - row) | sixty_four(set, at) | sixty_four(set, at + row));
+            let near = before | before >> 1 | after << 1 | after;
+            let open = near & !sixty_four(set, at);
+            bytes.copy_from_slice(&open.to_le_bytes()[..bytes.len()]);
         }
     });
 }
@@ -241,7 +205,7 @@ mod tests {
     /// r'z on a set, r as given there.
     fn rated(preconditioner: &mut Preconditioner, set: &[u8], r: &[f32]) -> f64 {
         let mut z = vec![0.0; r.len()];
-        preconditioner.apply_into(r, set, &mut z);
+        preconditioner.apply_into(r, set, &mut z, &|_, _| Sums::default());
         assert!(z.iter().all(|z| z.is_finite()));
         dot(r, &z)
     }
@@ -264,7 +228,7 @@ mod tests {
                 let value = |k: usize| if seed % 2 == 0 { 1.0 } else { noise(k, seed) };
                 let r: Vec<f32> = (0..n).map(|k| if is_in(&set, k) { value(k) } else { 0.0 }).collect();
                 let mut z = vec![0.0; n];
-                preconditioner.inverse.apply_into(&r, &mut z);
+                preconditioner.plan.apply_into(&r, &mut z);
                 let whole = dot(&r, &z);
                 // b'(M_CC)^-1 b, by conjugate gradients until nothing is left.
                 let open = |z: &[f32]| -> Vec<f32> {
@@ -274,7 +238,7 @@ mod tests {
                 let (mut d, mut taken, mut size) = (rest.clone(), 0.0, dot(&rest, &rest));
                 let least = 1e-10 * size;
                 while size > least {
-                    preconditioner.inverse.apply_into(&d, &mut z);
+                    preconditioner.plan.apply_into(&d, &mut z);
                     let md = open(&z);
                     let step = size / dot(&d, &md);
                     taken += step * size;
@@ -314,7 +278,7 @@ mod tests {
         let mut preconditioner = Preconditioner::new(&grid, Boundary::Free);
         let r: Vec<f32> = (0..grid.len()).map(|n| noise(n, 1)).collect();
         let mut z = vec![0.0; grid.len()];
-        preconditioner.inverse.apply_into(&r, &mut z);
+        preconditioner.plan.apply_into(&r, &mut z);
         assert_eq!(rated(&mut preconditioner, &[u8::MAX; 60], &r), dot(&r, &z));
         assert_eq!(rated(&mut preconditioner, &[0; 60], &[0.0; 480]), 0.0);
     }

@@ -18,8 +18,11 @@
 
 use std::sync::atomic::AtomicBool;
 
-use super::direction::{Ahead, Turn, centre, products, steepest, turn};
+use asperity_convolution::lanes::Sums;
+
+use super::direction::{Ahead, Products, Turn, centre, products, steepest, turn};
 use super::fields::{Fields, Scalar, Singles};
+use super::lengths::Lengths;
 use super::motion::{Layout, Motion, advance, curvature, lay_out};
 use super::preconditioner::Preconditioner;
 use super::residual::Rating;
@@ -68,6 +71,7 @@ pub struct ProjectedCg<T = f64> {
     laid: Vec<u8>,
     /// Cells that the full step leaves between the bounds.
     inside: Vec<u8>,
+    pub(super) lengths: Lengths,
     /// Mixed precision iterates on these.
     singles: Option<Singles>,
 }
@@ -79,8 +83,6 @@ struct Conjugacy {
     /// Units of the last residual \[m\] and the last direction \[Pa\].
     unit: f64,
     pressure: f64,
-    /// Step length a that the next trial uses.
-    length: f64,
 }
 
 /// The step to take, laid out in `self.step`.
@@ -120,6 +122,7 @@ impl<T: Scalar> ProjectedCg<T> {
             worked: zeros(n.div_ceil(8)),
             laid: zeros(n.div_ceil(8)),
             inside: zeros(n.div_ceil(8)),
+            lengths: Lengths::default(),
             singles: T::ROUGH.then(|| Singles::new(n)),
         }
     }
@@ -127,7 +130,7 @@ impl<T: Scalar> ProjectedCg<T> {
     /// z, roughly the inverse of K restricted to a set of cells (bits, eight in a byte) times r, which is zero elsewhere; in
     /// units of the preconditioner's largest value. What is beyond the set means nothing. One iteration takes it once.
     pub fn precondition(&mut self, r: &[f32], set: &[u8], z: &mut [f32]) {
-        self.preconditioner.apply_into(r, set, z);
+        self.preconditioner.apply_into(r, set, z, &|_, _| Sums::default());
     }
 
     /// See [`super::Solver::solve`]; the trivial cases are settled there.
@@ -140,6 +143,7 @@ impl<T: Scalar> ProjectedCg<T> {
         interrupt: Option<&AtomicBool>,
     ) -> Result<Outcome> {
         let grid = *operator.grid();
+        self.lengths.begin();
         make_feasible(problem, grid.cell_area(), state, &mut self.working)?;
         operator.apply_into(&state.pressure, &mut state.unit_displacement);
         let before = match self.singles.take() {
@@ -233,7 +237,7 @@ impl<T: Scalar> ProjectedCg<T> {
         self.laid.fill(u8::MAX);
         let mut convolutions = 0;
         let mut gradient_length = 1.0 / (problem.compliance * operator.self_influence());
-        let mut conjugacy = Conjugacy { product: None, unit: 0.0, pressure: 0.0, length: 1.0 };
+        let mut conjugacy = Conjugacy { product: None, unit: 0.0, pressure: 0.0 };
         let (mut best, mut stall, mut stuck, mut fresh) = (f64::INFINITY, 0, false, true);
         let mut iteration = 0;
         // Only to find the approach. No guess from the state: it would leave its rounding.
@@ -300,21 +304,21 @@ impl<T: Scalar> ProjectedCg<T> {
                     }
                 }
             };
-            T::apply(operator, &self.step, &mut self.moved);
+            let (laid_out, sets) = (&self.step[..], [&self.laid[..], &self.inside]);
+            let visit = |first: usize, image: &[T]| curvature(first, image, laid_out, sets);
+            let [curvature, length, change, ..] = T::apply(operator, laid_out, &mut self.moved, &visit);
             convolutions += 1;
-            let [curvature, length, change] = curvature(&self.step, &self.moved, &self.laid, &self.inside);
             let size = step.layout.unit;
             let (curvature, length) = (problem.compliance * size * size * curvature, size * size * length);
             let slope = unit * step.layout.slope;
             let exact = if curvature > 0.0 { -slope / curvature } else { 1.0 };
             let t = match step.kind {
                 Kind::Straight => {
-                    conjugacy.length = (conjugacy.length * exact).clamp(0.05, 20.0);
+                    self.lengths.learn(true, exact);
                     exact.min(step.layout.reach)
                 }
                 Kind::Clipped => {
-                    // Half of what this step asks for, in logarithms: the next one is another.
-                    conjugacy.length *= exact.max(0.0).sqrt().clamp(0.3, 1.5);
+                    self.lengths.learn(false, exact);
                     if exact >= WHOLE { 1.0 } else { exact }
                 }
                 Kind::Gradient => {
@@ -372,8 +376,11 @@ impl<T: Scalar> ProjectedCg<T> {
         if centred {
             centre(&mut self.residual, &self.working, mean_r);
         }
-        self.preconditioner.apply_into(&self.residual, &self.working, &mut self.image);
-        let sums = products(&self.image, &self.residual, &self.previous, &self.direction, &self.working);
+        let left_behind = [&self.residual[..], &self.previous, &self.direction];
+        let set = &self.working;
+        let visit = |first: usize, z: &[f32]| products(first, z, left_behind, set);
+        let sums = self.preconditioner.apply_into(&self.residual, set, &mut self.image, &visit);
+        let sums = Products::of(sums);
 
         // <z - mean z, r>, and the same with the residual before; each in its units.
         let mean_z = if sum.is_some() { sums.z / cells } else { 0.0 };
@@ -388,11 +395,10 @@ impl<T: Scalar> ProjectedCg<T> {
             Some(last) => ((product - unlike) / last).max(0.0) * conjugacy.pressure / pressure,
             None => 0.0,
         };
-        let length = conjugacy.length;
-        *conjugacy = Conjugacy { product: Some(product), unit, pressure, length };
+        *conjugacy = Conjugacy { product: Some(product), unit, pressure };
 
         let mean = mean_z + if sum.is_some() { beta * sums.d_old / cells } else { 0.0 };
-        let length = length * pressure;
+        let length = self.lengths.next() * pressure;
         let ahead = turn(
             &mut self.direction,
             &self.image,

@@ -28,7 +28,7 @@ use std::sync::atomic::AtomicBool;
 
 use ndarray::Array2;
 
-use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem, Solver};
+use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem, REMEMBERED, Solver};
 use crate::error::{Error, Result};
 use crate::field::{minimum, sum, sweep, zeros};
 use crate::load::{Control, Event};
@@ -485,6 +485,7 @@ impl March {
         };
         let mut scalars = self.timeline.save();
         scalars.extend([self.reached.approach, self.reached.load]);
+        scalars.extend(self.solver.remembered());
         scalars.extend(memory_scalars);
         scalars.extend(self.meter.save());
         fields.extend(memory.iter().enumerate().map(|(k, cells)| field(&format!("memory_{k}"), cells)));
@@ -501,13 +502,15 @@ impl March {
         let Some((timeline, rest)) = checkpoint.scalars.split_at_checked(Timeline::SAVED) else {
             return Err(foreign(format!("{} numbers", checkpoint.scalars.len())));
         };
-        let [approach, load, scalars @ ..] = rest else {
+        let Some(([approach, load, lengths @ ..], scalars)) = rest.split_first_chunk::<{ 2 + REMEMBERED }>()
+        else {
             return Err(foreign(format!("{} numbers", checkpoint.scalars.len())));
         };
         if !march.timeline.load(&march.simulation, timeline) {
             return Err(foreign("of another programme".into()));
         }
         march.reached = Reached { approach: *approach, load: *load };
+        march.solver.remember(*lengths);
         let mut fields = checkpoint.fields.iter();
         let mut next = |name: &str| -> Result<Vec<f64>> {
             match fields.next() {

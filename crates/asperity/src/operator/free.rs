@@ -5,8 +5,8 @@ use ndarray::Array2;
 use ndarray::parallel::prelude::*;
 
 use super::{Operator, Single};
-use crate::convolution::lanes::Lanes;
-use crate::convolution::{Convolution, even_spectrum};
+use crate::convolution::lanes::{Lanes, Sums};
+use crate::convolution::{Convolution, Visit, even_spectrum};
 use crate::grid::{Boundary, Grid};
 use crate::kernel::love;
 
@@ -28,6 +28,14 @@ impl Free {
         debug_assert!(spectrum.iter().all(|s| *s > 0.0), "the kernel is positive definite");
         let convolution = Convolution::new(grid.cells(), lengths, spectrum.view());
         Free { grid, convolution, single: Single::default(), self_influence }
+    }
+
+    fn single(&mut self) -> &mut Lanes<f32> {
+        let grid = &self.grid;
+        self.single.planned(|| {
+            let lengths = padded(grid);
+            Lanes::new(grid.cells(), lengths, even_spectrum(&influence(grid, lengths), lengths).view())
+        })
     }
 }
 
@@ -63,12 +71,15 @@ impl Operator for Free {
     }
 
     fn apply_single_into(&mut self, p: &[f32], u: &mut [f32]) {
-        let grid = &self.grid;
-        let plan = || {
-            let lengths = padded(grid);
-            Lanes::new(grid.cells(), lengths, even_spectrum(&influence(grid, lengths), lengths).view())
-        };
-        self.single.apply_into(plan, p, u);
+        self.single().apply_into(p, u);
+    }
+
+    fn apply_visited_into(&mut self, p: &[f64], u: &mut [f64], visit: &Visit<f64>) -> Sums {
+        self.convolution.apply_visited_into(p, u, visit)
+    }
+
+    fn apply_single_visited_into(&mut self, p: &[f32], u: &mut [f32], visit: &Visit<f32>) -> Sums {
+        self.single().apply_visited_into(p, u, visit)
     }
 
     fn self_influence(&self) -> f64 {

@@ -13,7 +13,8 @@ pub use periodic::Periodic;
 
 use ndarray::Array2;
 
-use crate::convolution::lanes::Lanes;
+use crate::convolution::Visit;
+use crate::convolution::lanes::{Lanes, Sums};
 use crate::grid::{Boundary, Grid};
 use crate::kernel::inverse_kernel;
 
@@ -30,6 +31,19 @@ pub trait Operator: Send {
 
     /// The same in f32, to about 1e-7 of the largest u.
     fn apply_single_into(&mut self, p: &[f32], u: &mut [f32]);
+
+    /// u = K p; `visit(first, u)` meets some cells of u at a time while they are in the cache, of which `first` is the number
+    /// of the first, a multiple of eight; returns the totals of its sums.
+    fn apply_visited_into(&mut self, p: &[f64], u: &mut [f64], visit: &Visit<f64>) -> Sums {
+        self.apply_into(p, u);
+        visit(0, u)
+    }
+
+    /// The same in f32.
+    fn apply_single_visited_into(&mut self, p: &[f32], u: &mut [f32], visit: &Visit<f32>) -> Sums {
+        self.apply_single_into(p, u);
+        visit(0, u)
+    }
 
     /// Displacement of a cell under its own unit pressure \[m\].
     fn self_influence(&self) -> f64;
@@ -48,8 +62,8 @@ pub fn half_space(grid: Grid, boundary: Boundary) -> Box<dyn Operator> {
 struct Single(Option<Lanes<f32>>);
 
 impl Single {
-    fn apply_into(&mut self, plan: impl FnOnce() -> Lanes<f32>, p: &[f32], u: &mut [f32]) {
-        self.0.get_or_insert_with(plan).apply_into(p, u);
+    fn planned(&mut self, plan: impl FnOnce() -> Lanes<f32>) -> &mut Lanes<f32> {
+        self.0.get_or_insert_with(plan)
     }
 }
 
@@ -68,7 +82,7 @@ pub(crate) fn wave_spectrum(
 /// Cells beyond the domain that keep the ends of a free one apart in [`ApproximateInverse`].
 const APART: usize = 16;
 
-/// c of [`ApproximateInverse::screened`], of the largest value of |q|/2: a length of some ten cells.
+/// c of [`ApproximateInverse::plan_with_screened`], of the largest value of |q|/2: a length of some ten cells.
 const SCREEN: f64 = 0.03;
 
 /// The approximate inverse of K: the symbol |q|/2, the mean like half the first wave.
@@ -101,16 +115,20 @@ impl ApproximateInverse {
 
     /// It, over its largest value.
     pub(crate) fn plan(&self) -> Lanes<f32> {
-        Lanes::new(self.cells, self.lengths, (&self.spectrum / self.largest).view())
+        Lanes::new(self.cells, self.lengths, self.scaled().view())
     }
 
-    /// The compliance 1/(|q|/2 + c) on the same torus, over its largest value: it falls off as the third power of the distance
-    /// beyond the length 1/(2 c).
-    pub(crate) fn screened(&self) -> Lanes<f32> {
+    /// It, and the compliance 1/(|q|/2 + c) on the same torus, each over its largest value. The latter falls off as the third
+    /// power of the distance beyond the length 1/(2 c).
+    pub(crate) fn plan_with_screened(&self) -> Lanes<f32> {
         let screen = SCREEN * self.largest;
-        let mut spectrum = self.spectrum.mapv(|s| 1.0 / (s + screen));
-        spectrum /= largest(&spectrum);
-        Lanes::new(self.cells, self.lengths, spectrum.view())
+        let mut screened = self.spectrum.mapv(|s| 1.0 / (s + screen));
+        screened /= largest(&screened);
+        Lanes::with_spectra(self.cells, self.lengths, &[self.scaled().view(), screened.view()])
+    }
+
+    fn scaled(&self) -> Array2<f64> {
+        &self.spectrum / self.largest
     }
 }
 

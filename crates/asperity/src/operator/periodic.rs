@@ -2,8 +2,8 @@
 //! Tribol. 119, 1997). The mean pressure displaces nothing: displacements have zero mean.
 
 use super::{Operator, Single, wave_spectrum};
-use crate::convolution::Convolution;
-use crate::convolution::lanes::Lanes;
+use crate::convolution::lanes::{Lanes, Sums};
+use crate::convolution::{Convolution, Visit};
 use crate::grid::{Boundary, Grid};
 use crate::kernel::wave_kernel;
 
@@ -26,6 +26,11 @@ impl Periodic {
         convolution.apply_into(&unit, &mut response);
         Periodic { grid, convolution, single: Single::default(), self_influence: response[0] }
     }
+
+    fn single(&mut self) -> &mut Lanes<f32> {
+        let (cells, size) = (self.grid.cells(), self.grid.size());
+        self.single.planned(|| Lanes::new(cells, cells, wave_spectrum(cells, size, wave_kernel).view()))
+    }
 }
 
 impl Operator for Periodic {
@@ -42,15 +47,15 @@ impl Operator for Periodic {
     }
 
     fn apply_single_into(&mut self, p: &[f32], u: &mut [f32]) {
-        let grid = &self.grid;
-        let plan = || {
-            Lanes::new(
-                grid.cells(),
-                grid.cells(),
-                wave_spectrum(grid.cells(), grid.size(), wave_kernel).view(),
-            )
-        };
-        self.single.apply_into(plan, p, u);
+        self.single().apply_into(p, u);
+    }
+
+    fn apply_visited_into(&mut self, p: &[f64], u: &mut [f64], visit: &Visit<f64>) -> Sums {
+        self.convolution.apply_visited_into(p, u, visit)
+    }
+
+    fn apply_single_visited_into(&mut self, p: &[f32], u: &mut [f32], visit: &Visit<f32>) -> Sums {
+        self.single().apply_visited_into(p, u, visit)
     }
 
     fn self_influence(&self) -> f64 {

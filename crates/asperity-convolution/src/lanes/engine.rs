@@ -195,11 +195,13 @@ impl<V: Lane> Convolve<V::Scalar> for Engine<V> {
         let zero = V::splat(V::Scalar::default());
         self.multiply_with(spectrum, |_| Energy(zero), |found, energy| *energy = found.0);
         let last = self.columns.len() - 1;
-        let energies = &mut self.energies;
-        // The columns 0 < ky < my/2 stand for -ky too. Their numbers are twice the field's, the spectrum half of it.
-        let both = |ky: usize| if ky == 0 || ky == last { 0.5 } else { 1.0 };
-        let of = |column: usize| energies[column / V::LANES].scalars_mut()[column % V::LANES].widened();
-        self.columns.iter().map(|column| *column).map(of).enumerate().map(|(ky, e)| both(ky) * e).sum()
+        let mut total = 0.0;
+        for (ky, column) in self.columns.iter().enumerate() {
+            let energy = self.energies[column / V::LANES].scalars_mut()[column % V::LANES].widened();
+            // The columns 0 < ky < my/2 stand for -ky too. Their numbers are twice the field's, the spectrum half of it.
+            total += if ky == 0 || ky == last { 0.5 * energy } else { energy };
+        }
+        total
     }
 
     fn back(&mut self, output: &mut [V::Scalar], visit: Option<&Visit<V::Scalar>>) -> Sums {

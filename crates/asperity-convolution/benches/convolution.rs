@@ -48,7 +48,7 @@ fn main() {
                     if instructions == Instructions::Portable {
                         continue;
                     }
-                    let mut form = Lanes::<f64>::on(instructions, [n, n], lengths, spectrum.view());
+                    let mut form = Lanes::<f64>::on(instructions, [n, n], lengths, &[spectrum.view()]);
                     let (i, e, mut out) = (input.clone(), exact.clone(), vec![0.0; n * n]);
                     forms.push((
                         format!("{instructions:?} f64"),
@@ -58,7 +58,7 @@ fn main() {
                         }),
                         vec![],
                     ));
-                    let mut form = Lanes::<f32>::on(instructions, [n, n], lengths, spectrum.view());
+                    let mut form = Lanes::<f32>::on(instructions, [n, n], lengths, &[spectrum.view()]);
                     let (i, e, mut out) = (single.clone(), exact.clone(), vec![0.0; n * n]);
                     forms.push((
                         format!("{instructions:?} f32"),

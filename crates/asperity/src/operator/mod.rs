@@ -12,6 +12,7 @@ pub use free::Free;
 pub use periodic::Periodic;
 
 use ndarray::Array2;
+use ndarray::parallel::prelude::*;
 
 use crate::convolution::Visit;
 use crate::convolution::lanes::{Lanes, Sums};
@@ -71,12 +72,15 @@ impl Single {
 pub(crate) fn wave_spectrum(
     [nx, ny]: [usize; 2],
     [lx, ly]: [f64; 2],
-    symbol: impl Fn(f64, f64) -> f64,
+    symbol: impl Fn(f64, f64) -> f64 + Sync,
 ) -> Array2<f64> {
     let tau = std::f64::consts::TAU;
-    Array2::from_shape_fn((nx / 2 + 1, ny / 2 + 1), |(kx, ky)| {
-        symbol(tau * kx as f64 / lx, tau * ky as f64 / ly)
-    })
+    let mut spectrum = Array2::zeros((nx / 2 + 1, ny / 2 + 1));
+    spectrum.outer_iter_mut().into_par_iter().enumerate().for_each(|(kx, mut row)| {
+        let qx = tau * kx as f64 / lx;
+        row.iter_mut().enumerate().for_each(|(ky, s)| *s = symbol(qx, tau * ky as f64 / ly));
+    });
+    spectrum
 }
 
 /// Cells beyond the domain that keep the ends of a free one apart in [`ApproximateInverse`].
@@ -96,6 +100,8 @@ pub(crate) struct ApproximateInverse {
     spectrum: Array2<f64>,
     /// The largest value of it \[1/m\].
     pub largest: f64,
+    /// The least.
+    least: f64,
 }
 
 impl ApproximateInverse {
@@ -109,8 +115,9 @@ impl ApproximateInverse {
         let size = [dx * lengths[0] as f64, dy * lengths[1] as f64];
         let mean = 0.25 * std::f64::consts::TAU / size[0].max(size[1]);
         let spectrum = wave_spectrum(lengths, size, |qx, qy| inverse_kernel(qx, qy, mean));
-        let largest = largest(&spectrum);
-        ApproximateInverse { cells, lengths, spectrum, largest }
+        let (least, largest) =
+            spectrum.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), s| (a.min(*s), b.max(*s)));
+        ApproximateInverse { cells, lengths, spectrum, largest, least }
     }
 
     /// It, over its largest value.
@@ -122,16 +129,15 @@ impl ApproximateInverse {
     /// power of the distance beyond the length 1/(2 c).
     pub(crate) fn plan_with_screened(&self) -> Lanes<f32> {
         let screen = SCREEN * self.largest;
-        let mut screened = self.spectrum.mapv(|s| 1.0 / (s + screen));
-        screened /= largest(&screened);
+        let mut screened = self.spectrum.clone();
+        let peak = 1.0 / (screen + self.least);
+        screened.par_mapv_inplace(|s| 1.0 / (s + screen) / peak);
         Lanes::with_spectra(self.cells, self.lengths, &[self.scaled().view(), screened.view()])
     }
 
     fn scaled(&self) -> Array2<f64> {
-        &self.spectrum / self.largest
+        let mut scaled = self.spectrum.clone();
+        scaled.par_mapv_inplace(|s| s / self.largest);
+        scaled
     }
-}
-
-fn largest(spectrum: &Array2<f64>) -> f64 {
-    spectrum.iter().fold(0.0, |m, s| m.max(*s))
 }

@@ -1,6 +1,8 @@
 //! The periodic half-space: 2/|q| on the waves of the domain (Westergaard 1939; Stanley & Kato, J.
 //! Tribol. 119, 1997). The mean pressure displaces nothing: displacements have zero mean.
 
+use ndarray::{ArrayView1, ArrayView2};
+
 use super::{Operator, Single, wave_spectrum};
 use crate::convolution::lanes::{Lanes, Sums};
 use crate::convolution::{Convolution, Visit};
@@ -19,18 +21,23 @@ impl Periodic {
     /// Plans the operator.
     pub fn new(grid: Grid) -> Self {
         let spectrum = wave_spectrum(grid.cells(), grid.size(), wave_kernel);
-        let mut convolution = Convolution::new(grid.cells(), grid.cells(), spectrum.view());
-        let mut unit = vec![0.0; grid.len()];
-        let mut response = vec![0.0; grid.len()];
-        unit[0] = 1.0;
-        convolution.apply_into(&unit, &mut response);
-        Periodic { grid, convolution, single: Single::default(), self_influence: response[0] }
+        let convolution = Convolution::new(grid.cells(), grid.cells(), spectrum.view());
+        let self_influence = mean(grid.cells(), spectrum.view());
+        Periodic { grid, convolution, single: Single::default(), self_influence }
     }
 
     fn single(&mut self) -> &mut Lanes<f32> {
         let (cells, size) = (self.grid.cells(), self.grid.size());
         self.single.planned(|| Lanes::new(cells, cells, wave_spectrum(cells, size, wave_kernel).view()))
     }
+}
+
+/// The mean of an even spectrum over all waves, of which the array has those of a quarter: the response to a unit where it is.
+fn mean([nx, ny]: [usize; 2], spectrum: ArrayView2<f64>) -> f64 {
+    let times = |k: usize, n: usize| if k == 0 || 2 * k == n { 1.0 } else { 2.0 };
+    let row = |row: ArrayView1<f64>| -> f64 { row.iter().enumerate().map(|(ky, s)| times(ky, ny) * s).sum() };
+    let sum: f64 = spectrum.outer_iter().enumerate().map(|(kx, s)| times(kx, nx) * row(s)).sum();
+    sum / (nx as f64 * ny as f64)
 }
 
 impl Operator for Periodic {
@@ -60,5 +67,22 @@ impl Operator for Periodic {
 
     fn self_influence(&self) -> f64 {
         self.self_influence
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_self_influence_is_what_the_convolution_says() {
+        for cells in [[16, 16], [9, 14], [1, 7], [20, 33]] {
+            let mut operator = Periodic::new(Grid::new(cells, [1.0, 2.0]).unwrap());
+            let (mut unit, mut response) = (vec![0.0; cells[0] * cells[1]], vec![0.0; cells[0] * cells[1]]);
+            unit[0] = 1.0;
+            operator.apply_into(&unit, &mut response);
+            // Roundings of a transform, and of a sum of a few hundred terms.
+            assert!((operator.self_influence() / response[0] - 1.0).abs() < 1e-13, "{cells:?}");
+        }
     }
 }

@@ -15,7 +15,7 @@ mod spectrum;
 
 use ndarray::ArrayView2;
 
-use lanes::{Lanes, Sums};
+use lanes::{Lanes, Make, Sums};
 pub use spectrum::even_spectrum;
 
 /// A planned convolution. Bit-identical for any number of threads; `apply_into` allocates nothing.
@@ -41,10 +41,12 @@ trait Engine: Send {
     /// output = S * input; both of length nx ny.
     fn apply_into(&mut self, input: &[f64], output: &mut [f64]);
 
-    /// The same, visited.
-    fn apply_visited_into(&mut self, input: &[f64], output: &mut [f64], visit: &Visit<f64>) -> Sums {
-        self.apply_into(input, output);
-        visit(0, output)
+    /// The same of what is made, visited.
+    fn apply_made_into(&mut self, make: &Make<f64>, output: &mut [f64], visit: &Visit<f64>) -> [Sums; 2] {
+        let mut input = vec![0.0; output.len()];
+        let made = make(0, &mut input);
+        self.apply_into(&input, output);
+        [made, visit(0, output)]
     }
 }
 
@@ -56,8 +58,8 @@ impl Engine for Lanes<f64> {
         Lanes::apply_into(self, input, output);
     }
 
-    fn apply_visited_into(&mut self, input: &[f64], output: &mut [f64], visit: &Visit<f64>) -> Sums {
-        Lanes::apply_visited_into(self, input, output, visit)
+    fn apply_made_into(&mut self, make: &Make<f64>, output: &mut [f64], visit: &Visit<f64>) -> [Sums; 2] {
+        Lanes::apply_made_into(self, make, output, visit)
     }
 }
 
@@ -93,9 +95,9 @@ impl Convolution {
         self.engine.apply_into(input, output);
     }
 
-    /// The same; `visit(first, cells)` meets the output, as [`Lanes::apply_visited_into`] says; on rustfft all at once.
-    pub fn apply_visited_into(&mut self, input: &[f64], output: &mut [f64], visit: &Visit<f64>) -> Sums {
-        self.engine.apply_visited_into(input, output, visit)
+    /// `output` = S * what `make` writes, met by `visit`, as [`Lanes::apply_made_into`] says; on rustfft all at once.
+    pub fn apply_made_into(&mut self, make: &Make<f64>, output: &mut [f64], visit: &Visit<f64>) -> [Sums; 2] {
+        self.engine.apply_made_into(make, output, visit)
     }
 }
 

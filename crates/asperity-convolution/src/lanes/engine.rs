@@ -157,10 +157,16 @@ pub type Sums = [f64; 5];
 /// a field of his.
 pub type Visit<'a, T> = dyn Fn(usize, &mut [T], &mut [T]) -> Sums + Sync + 'a;
 
+/// What writes a group of rows; the number of the first cell is given.
+pub type Make<'a, T> = dyn Fn(usize, &mut [T]) -> Sums + Sync + 'a;
+
 /// The passes of a convolution, whatever its lanes.
 pub trait Convolve<T>: Send {
     /// The rows of the input, forward.
     fn forward(&mut self, input: &[T]);
+
+    /// The same with rows that `make` writes.
+    fn make(&mut self, make: &Make<T>) -> Sums;
 
     /// The columns: times a spectrum.
     fn multiply(&mut self, spectrum: usize);
@@ -185,6 +191,27 @@ impl<V: Lane> Convolve<V::Scalar> for Engine<V> {
             let tiles = unsafe { tiles.of_rows(n * V::LANES, rows.len() / ny) };
             with(scratch, |scratch| V::vectorize(ForwardRows { plan, rows, tiles, scratch }));
         });
+    }
+
+    fn make(&mut self, make: &Make<V::Scalar>) -> Sums {
+        let (nx, ny, plan, scratch) = (self.rows, self.row_plan.cells(), &self.row_plan, &self.scratch);
+        let tiles = SharedTiles::new(&mut self.work, self.stride);
+        let group = group::<V>();
+        self.sums.par_iter_mut().enumerate().for_each(|(n, sums)| {
+            let rows = n * group..nx.min((n + 1) * group);
+            with(scratch, |scratch| {
+                let mut room = std::mem::take(&mut scratch.rows);
+                let cells = &mut room[..rows.len() * ny];
+                *sums = make(rows.start * ny, cells);
+                for (rows, first) in cells.chunks(V::LANES * ny).zip(rows.step_by(V::LANES)) {
+                    // SAFETY: every group of rows is visited once, and its blocks have no row in common.
+                    let tiles = unsafe { tiles.of_rows(first, rows.len() / ny) };
+                    V::vectorize(ForwardRows { plan, rows, tiles, scratch });
+                }
+                scratch.rows = room;
+            });
+        });
+        total(&self.sums)
     }
 
     fn multiply(&mut self, spectrum: usize) {

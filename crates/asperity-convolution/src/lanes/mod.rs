@@ -56,7 +56,7 @@ mod wrap;
 use ndarray::{Array2, ArrayView2};
 
 use engine::{Convolve, Engine};
-pub use engine::{Sums, Visit};
+pub use engine::{Make, Sums, Visit};
 use factors::{Factors, factors};
 pub use lane::Real;
 use wrap::wrapped_spectrum;
@@ -170,16 +170,22 @@ impl<T: Real> Lanes<T> {
         self.engine.back(output, None);
     }
 
-    /// The same; `visit(first, cells)` meets the output on its way through the cache, eight rows (sixteen in f32) at a time, of which `first` is
-    /// the number of the first cell, a multiple of eight. Returns the totals of the sums that it returns, in an order that
-    /// depends on the shape alone. It is to do its work by itself: a thread that it waits for may never come.
+    /// `output` = S * what `make` writes: `make(first, cells)` gets room for eight rows (sixteen in f32) at a time, of which
+    /// `first` is the number of the first cell, a multiple of eight, and `visit(first, cells)` meets as many of the output
+    /// while they are in the cache. Returns the totals of the sums that each returns, in an order that depends on the shape
+    /// alone. They are to do their work by themselves: a thread that they wait for may never come.
     ///
     /// # Panics
-    /// Where a length is not nx ny.
-    pub fn apply_visited_into(&mut self, input: &[T], output: &mut [T], visit: &crate::Visit<T>) -> Sums {
-        self.engine.forward(input);
+    /// Where the length is not nx ny.
+    pub fn apply_made_into(
+        &mut self,
+        make: &Make<T>,
+        output: &mut [T],
+        visit: &crate::Visit<T>,
+    ) -> [Sums; 2] {
+        let made = self.engine.make(make);
         self.engine.multiply(0);
-        self.engine.back(output, Some(&|first, cells, _| visit(first, cells)))
+        [made, self.engine.back(output, Some(&|first, cells, _| visit(first, cells)))]
     }
 
     /// Starts several convolutions one after the other, with something done to the field in between.

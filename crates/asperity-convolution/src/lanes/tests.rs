@@ -252,7 +252,7 @@ fn a_chain_is_one_convolution_after_the_other() {
 }
 
 #[test]
-fn what_visits_the_output_meets_all_of_it() {
+fn what_is_made_is_convolved_and_what_visits_the_output_meets_all_of_it() {
     for (cells, lengths) in SHAPES {
         let spectrum = spectrum(lengths);
         let input = field(cells);
@@ -260,13 +260,18 @@ fn what_visits_the_output_meets_all_of_it() {
             on_threads(threads, || {
                 let mut plan = Lanes::<f64>::new(cells, lengths, spectrum.view());
                 let mut output = vec![0.0; input.len()];
-                let sums = plan.apply_visited_into(&input, &mut output, &|first, cells| {
+                let make = |first: usize, cells: &mut [f64]| {
+                    assert_eq!(first % 8, 0);
+                    cells.copy_from_slice(&input[first..][..cells.len()]);
+                    [0.0, cells.len() as f64, 0.0, 0.0, 0.0]
+                };
+                let [made, sums] = plan.apply_made_into(&make, &mut output, &|first, cells| {
                     assert_eq!(first % 8, 0);
                     [cells.iter().sum(), cells.len() as f64, 0.0, 0.0, 0.0]
                 });
                 let plain = apply(Lanes::new(cells, lengths, spectrum.view()), &input);
                 assert_eq!(output, plain);
-                assert_eq!(sums[1], input.len() as f64);
+                assert_eq!([made[1], sums[1]], [input.len() as f64; 2]);
                 let exact: f64 = plain.iter().sum();
                 let size: f64 = plain.iter().map(|x| x.abs()).sum();
                 assert!((sums[0] - exact).abs() <= 1e-14 * size);

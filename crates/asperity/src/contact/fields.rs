@@ -2,7 +2,7 @@
 
 use asperity_convolution::Visit;
 use asperity_convolution::eights::{Cell, Eight, Work, vectorize};
-use asperity_convolution::lanes::Sums;
+use asperity_convolution::lanes::{Make, Sums};
 
 use super::{ContactState, Hardness, Problem};
 use crate::field::{sweep, zeros};
@@ -14,8 +14,13 @@ pub trait Scalar: Cell {
     const ROUGH: bool;
     /// Of their rounding.
     const EPSILON: f64;
-    /// u = K p, visited.
-    fn apply(operator: &mut dyn Operator, p: &[Self], u: &mut [Self], visit: &Visit<Self>) -> Sums;
+    /// u = K p of what is made, visited.
+    fn apply(
+        operator: &mut dyn Operator,
+        make: &Make<Self>,
+        u: &mut [Self],
+        visit: &Visit<Self>,
+    ) -> [Sums; 2];
     /// U = K p afresh, in f64; false where it is not kept.
     fn refresh(operator: &mut dyn Operator, p: &[Self], u: &mut [Self]) -> bool;
 }
@@ -23,8 +28,8 @@ pub trait Scalar: Cell {
 impl Scalar for f64 {
     const ROUGH: bool = false;
     const EPSILON: f64 = f64::EPSILON;
-    fn apply(operator: &mut dyn Operator, p: &[f64], u: &mut [f64], visit: &Visit<f64>) -> Sums {
-        operator.apply_visited_into(p, u, visit)
+    fn apply(operator: &mut dyn Operator, p: &Make<f64>, u: &mut [f64], visit: &Visit<f64>) -> [Sums; 2] {
+        operator.apply_made_into(p, u, visit)
     }
     fn refresh(operator: &mut dyn Operator, p: &[f64], u: &mut [f64]) -> bool {
         operator.apply_into(p, u);
@@ -36,8 +41,8 @@ impl Scalar for f64 {
 impl Scalar for f32 {
     const ROUGH: bool = true;
     const EPSILON: f64 = f32::EPSILON as f64;
-    fn apply(operator: &mut dyn Operator, p: &[f32], u: &mut [f32], visit: &Visit<f32>) -> Sums {
-        operator.apply_single_visited_into(p, u, visit)
+    fn apply(operator: &mut dyn Operator, p: &Make<f32>, u: &mut [f32], visit: &Visit<f32>) -> [Sums; 2] {
+        operator.apply_single_made_into(p, u, visit)
     }
     fn refresh(_: &mut dyn Operator, _: &[f32], _: &mut [f32]) -> bool {
         false

@@ -1,27 +1,35 @@
-//! Sweeps of an iteration that move: the step s laid out for its convolution, its curvature <s, K s>, and the
+//! What moves in an iteration: the step s on its way through its convolution, with its curvature <s, K s>, and the
 //! advance p += t s, U += t K s, which rates the new state and finds its working set on the way.
 //!
-//! The step is laid out only for the convolution, as f64 or as f32, in a unit of its own that keeps f32 far from its
-//! limits: the advance computes it again, in f64.
+//! The step is written nowhere: what the convolution takes and what meets its image is computed where it is needed, as f64
+//! or as f32, in a unit of its own that keeps f32 far from its limits; the advance computes it again, in f64.
+
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use asperity_convolution::eights::{Cell, Eight, Mask, Work, vectorize};
+use asperity_convolution::lanes::Sums;
 
 use super::Hardness;
 use super::fields::{Fields, Scalar, as_stored, undeformed};
 use super::residual::{Gauge, Rating};
 use super::shift::{Mover, Shift, Trial};
-use crate::field::{Min, Set, SetMut, sweep};
+use crate::field::{Set, SetMut, sweep};
+use crate::operator::Operator;
 
-/// What laying out a step finds. "Inside" are the cells of the set that the full step leaves between the bounds: there
+/// What a step and its image show. "Inside" are the cells of the set that the full step leaves between the bounds: there
 /// the residual will vanish.
 #[derive(Clone, Copy)]
-pub(super) struct Layout {
+pub(super) struct Passage {
     /// <r, s>, in units of r.
     pub slope: f64,
-    /// What the step that was laid out is a multiple of \[Pa\], a power of two.
+    /// What the step that was convolved is a multiple of \[Pa\], a power of two: the unit of what follows.
     pub unit: f64,
-    /// sum of r, and number of cells, inside.
-    pub inside: [f64; 2],
+    /// <s, K s>
+    pub curvature: f64,
+    /// <s, s>
+    pub length: f64,
+    /// sum of r, sum of K s, and number of cells, inside.
+    pub inside: [f64; 3],
     /// The largest multiple of s that stays within the bounds.
     pub reach: f64,
 }
@@ -33,132 +41,108 @@ fn power_of_two(x: f64) -> f64 {
     if power.is_normal() { power } else { 1.0 }
 }
 
-/// s = q - p, q the trial point shifted and clipped, and the cells inside. `laid` is the set of the step that was laid
-/// out before: other cells are zero already, and writing costs more than anything else here.
-pub(super) fn lay_out<T: Cell, P: Cell>(
+/// `image` = K s, s = q - p, q the trial point shifted and clipped.
+pub(super) fn pass<T: Scalar, P: Cell>(
+    operator: &mut dyn Operator,
     trial: &Trial<P>,
     shift: Shift,
     residual: &[f32],
-    step: &mut [T],
-    laid: &mut [u8],
-    inside: &mut [u8],
-) -> Layout {
-    let length = trial.length;
-    let unit = power_of_two(length);
-    let ([slope, sum, cells], Min(reach)) = sweep(
-        (
-            (step, SetMut(laid), SetMut(inside)),
-            trial.pressure,
-            trial.direction,
-            residual,
-            Set(trial.set),
-            trial.hardness,
-        ),
-        &|((s, SetMut(laid), SetMut(inside)), p, d, r, Set(set), hardness): (
-            (&mut [T], SetMut, SetMut),
-            &[P],
-            Option<&[f32]>,
-            &[f32],
-            Set,
-            Hardness,
-        )| {
-            let d = d.unwrap_or_default();
-            vectorize(LayOut { s, laid, inside, p, d, r, set, length, shift, hardness, per: 1.0 / unit })
-        },
-    );
-    Layout { slope, unit, inside: [sum, cells], reach }
+    image: &mut [T],
+) -> Passage {
+    let unit = power_of_two(trial.length);
+    let per = 1.0 / unit;
+    // Numbers that are not negative have the order of their bits.
+    let nearest = AtomicU64::new(f64::INFINITY.to_bits());
+    let make = |first: usize, s: &mut [T]| {
+        let (trial, r) = (trial.part(first, s.len()), &residual[first..][..s.len()]);
+        let ([slope, r, cells], reach) = vectorize(LayOut { s, trial, r, shift, per });
+        nearest.fetch_min(reach.to_bits(), Ordering::Relaxed);
+        [slope, r, cells, 0.0, 0.0]
+    };
+    let visit = |first: usize, k: &[T]| {
+        let trial = trial.part(first, k.len());
+        let [curvature, length, change] = vectorize(Curvature { k, trial, shift, per });
+        [curvature, length, change, 0.0, 0.0]
+    };
+    let [[slope, r, cells, ..], [curvature, length, change, ..]]: [Sums; 2] =
+        T::apply(operator, &make, image, &visit);
+    let reach = f64::from_bits(nearest.into_inner());
+    Passage { slope, unit, curvature, length, inside: [r, change, cells], reach }
 }
 
+/// s in its unit, of some cells; <r, s>, sum of r and number of cells inside, and the reach.
 struct LayOut<'a, T, P> {
     s: &'a mut [T],
-    laid: &'a mut [u8],
-    inside: &'a mut [u8],
-    p: &'a [P],
-    d: &'a [f32],
+    trial: Trial<'a, P>,
     r: &'a [f32],
-    set: &'a [u8],
-    length: f64,
     shift: Shift,
-    hardness: Hardness<'a>,
     per: f64,
 }
 
 impl<T: Cell, P: Cell> Work for LayOut<'_, T, P> {
-    type Yield = ([f64; 3], Min);
+    type Yield = ([f64; 3], f64);
 
     #[inline(always)]
-    fn run<V: Eight>(self) -> ([f64; 3], Min) {
-        let mover = Mover::<V>::new(self.length, self.shift);
+    fn run<V: Eight>(self) -> ([f64; 3], f64) {
+        let trial = self.trial;
+        let d = trial.direction.unwrap_or_default();
+        let mover = Mover::<V>::new(trial.length, self.shift);
         let (zero, per) = (V::splat(0.0), V::splat(self.per));
         let [mut slope, mut sum, mut cells] = [zero; 3];
         let far = V::splat(f64::INFINITY);
         let mut reach = far;
-        for (((n, set), laid), inside) in (0..).step_by(8).zip(self.set).zip(self.laid).zip(self.inside) {
-            let before = std::mem::replace(laid, *set);
+        for (n, set) in (0..).step_by(8).zip(trial.set) {
             if *set == 0 {
-                if before != 0 {
-                    zero.store(self.s, n);
-                }
-                *inside = 0;
+                zero.store(self.s, n);
                 continue;
             }
             let on = V::Mask::from_bits(*set);
-            let p = V::load(self.p, n, 0.0);
+            let p = V::load(trial.pressure, n, 0.0);
             let r = V::load(self.r, n, 0.0);
-            let hardness: V = self.hardness.stored::<P, V>(n);
-            let q = mover.target(p, V::load(self.d, n, 0.0), hardness);
+            let hardness: V = trial.hardness.stored::<P, V>(n);
+            let q = mover.target(p, V::load(d, n, 0.0), hardness);
             let s = (q - p).only(on);
             (s * per).store(self.s, n);
             slope = slope + r * s;
             let stays = Mover::inside(q, hardness) & on;
-            *inside = stays.bits();
             sum = sum + r.only(stays);
             cells = cells + V::count(stays);
             let room = V::select(s.less(zero), p, hardness - p);
             let moves = s.less(zero) | zero.less(s);
             reach = V::select(moves, room / s.abs(), far).smaller(reach);
         }
-        ([slope, sum, cells].map(V::sum), Min(reach.least()))
+        ([slope, sum, cells].map(V::sum), reach.least())
     }
 }
 
-/// The terms of <s, K s>, <s, s> and the sum of K s inside, of some cells from number `first` on: their `image` K s, and of
-/// all cells s in its unit, the set `laid` on which it is not zero, and those inside.
-pub(super) fn curvature<T: Cell>(
-    first: usize,
-    image: &[T],
-    step: &[T],
-    [laid, inside]: [&[u8]; 2],
-) -> [f64; 5] {
-    let cells = first..first + image.len();
-    let bytes = first / 8..cells.end.div_ceil(8);
-    let (s, laid, inside) = (&step[cells], &laid[bytes.clone()], &inside[bytes]);
-    let [curvature, length, change] = vectorize(Curvature { s, k: image, laid, inside });
-    [curvature, length, change, 0.0, 0.0]
-}
-
-struct Curvature<'a, T> {
-    s: &'a [T],
+/// <s, K s>, <s, s> and the sum of K s inside, of some cells, s as it was convolved and `k` its image.
+struct Curvature<'a, T, P> {
     k: &'a [T],
-    laid: &'a [u8],
-    inside: &'a [u8],
+    trial: Trial<'a, P>,
+    shift: Shift,
+    per: f64,
 }
 
-impl<T: Cell> Work for Curvature<'_, T> {
+impl<T: Cell, P: Cell> Work for Curvature<'_, T, P> {
     type Yield = [f64; 3];
 
     #[inline(always)]
     fn run<V: Eight>(self) -> [f64; 3] {
+        let trial = self.trial;
+        let d = trial.direction.unwrap_or_default();
+        let mover = Mover::<V>::new(trial.length, self.shift);
+        let per = V::splat(self.per);
         let [mut sk, mut ss, mut sum] = [V::splat(0.0); 3];
-        for ((n, inside), laid) in (0..).step_by(8).zip(self.inside).zip(self.laid) {
-            if *laid == 0 {
-                continue;
-            }
-            let s = V::load(self.s, n, 0.0);
+        for (n, set) in (0..).step_by(8).zip(trial.set).filter(|(_, set)| **set != 0) {
+            let on = V::Mask::from_bits(*set);
+            let p = V::load(trial.pressure, n, 0.0);
+            let hardness: V = trial.hardness.stored::<P, V>(n);
+            let q = mover.target(p, V::load(d, n, 0.0), hardness);
+            let s = as_stored::<T, V>((q - p).only(on) * per);
             let k = V::load(self.k, n, 0.0);
             sk = sk + s * k;
             ss = ss + s * s;
-            sum = sum + k.only(V::Mask::from_bits(*inside));
+            sum = sum + k.only(Mover::inside(q, hardness) & on);
         }
         [sk, ss, sum].map(V::sum)
     }

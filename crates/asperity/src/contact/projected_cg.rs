@@ -23,7 +23,7 @@ use asperity_convolution::lanes::Sums;
 use super::direction::{Ahead, Products, Turn, centre, products, steepest, turn};
 use super::fields::{Fields, Scalar, Singles};
 use super::lengths::Lengths;
-use super::motion::{Layout, Motion, advance, curvature, lay_out};
+use super::motion::{Motion, Passage, advance, pass};
 use super::preconditioner::Preconditioner;
 use super::residual::Rating;
 use super::shift::{Shift, Trial};
@@ -50,7 +50,7 @@ const OFF: f64 = 3e-8;
 /// Pressures and displacements that f32 holds with all that is small beside them.
 const RANGE: std::ops::Range<f64> = 1e-20..1e20;
 
-/// The method's working memory: 16 bytes per cell, 16 for steps in f64 or for all fields in f32, sets of one bit, and
+/// The method's working memory: 16 bytes per cell, 8 for the image of a step in f64 or 12 for all fields in f32, sets of one bit, and
 /// the preconditioner.
 pub struct ProjectedCg<T = f64> {
     preconditioner: Preconditioner,
@@ -61,16 +61,11 @@ pub struct ProjectedCg<T = f64> {
     image: Vec<f32>,
     /// Search direction d on S.
     direction: Vec<f32>,
-    /// The step s and K s.
-    step: Vec<T>,
+    /// K s, s the step.
     moved: Vec<T>,
-    /// S of the residual now and one iteration ago.
+    /// S of the residual now and one iteration ago: outside the latter the direction is zero.
     working: Vec<u8>,
     worked: Vec<u8>,
-    /// The set on which direction and step were laid out.
-    laid: Vec<u8>,
-    /// Cells that the full step leaves between the bounds.
-    inside: Vec<u8>,
     pub(super) lengths: Lengths,
     /// Mixed precision iterates on these.
     singles: Option<Singles>,
@@ -85,13 +80,12 @@ struct Conjugacy {
     pressure: f64,
 }
 
-/// The step to take, laid out in `self.step`.
+/// The step to take.
 struct Step {
     kind: Kind,
     /// a, in units of the direction, and the shift.
     length: f64,
     shift: Shift,
-    layout: Layout,
     /// What `centre` took from the residual.
     mean: f64,
 }
@@ -116,12 +110,9 @@ impl<T: Scalar> ProjectedCg<T> {
             previous: zeros(n),
             image: zeros(n),
             direction: zeros(n),
-            step: zeros(n),
             moved: zeros(n),
             working: zeros(n.div_ceil(8)),
             worked: zeros(n.div_ceil(8)),
-            laid: zeros(n.div_ceil(8)),
-            inside: zeros(n.div_ceil(8)),
             lengths: Lengths::default(),
             singles: T::ROUGH.then(|| Singles::new(n)),
         }
@@ -234,7 +225,6 @@ impl<T: Scalar> ProjectedCg<T> {
         // Whatever an earlier solve left behind is overwritten, everywhere.
         self.working.fill(u8::MAX);
         self.worked.fill(u8::MAX);
-        self.laid.fill(u8::MAX);
         let mut convolutions = 0;
         let mut gradient_length = 1.0 / (problem.compliance * operator.self_influence());
         let mut conjugacy = Conjugacy { product: None, unit: 0.0, pressure: 0.0 };
@@ -289,33 +279,33 @@ impl<T: Scalar> ProjectedCg<T> {
             } else {
                 self.conjugate_step(problem, fields, sum, &rating, unit, &mut conjugacy)
             };
-            let step = match conjugate {
-                Some(step) => step,
-                None => {
-                    conjugacy.product = None;
-                    stall = 0;
-                    match self.gradient_step(problem, fields, sum, &rating, unit, gradient_length) {
-                        Some(step) => step,
-                        None => {
-                            // Nothing descends any more: rounding has the last word.
-                            stuck = true;
-                            continue;
-                        }
-                    }
-                }
+            let mut taken = conjugate.and_then(|step| {
+                convolutions += 1;
+                self.pass(operator, problem, fields, step)
+            });
+            if taken.is_none() {
+                conjugacy.product = None;
+                stall = 0;
+                taken = self.gradient_step(problem, fields, sum, &rating, unit, gradient_length).and_then(
+                    |step| {
+                        convolutions += 1;
+                        self.pass(operator, problem, fields, step)
+                    },
+                );
+            }
+            let Some((step, passage)) = taken else {
+                // Nothing descends any more: rounding has the last word.
+                stuck = true;
+                continue;
             };
-            let (laid_out, sets) = (&self.step[..], [&self.laid[..], &self.inside]);
-            let visit = |first: usize, image: &[T]| curvature(first, image, laid_out, sets);
-            let [curvature, length, change, ..] = T::apply(operator, laid_out, &mut self.moved, &visit);
-            convolutions += 1;
-            let size = step.layout.unit;
-            let (curvature, length) = (problem.compliance * size * size * curvature, size * size * length);
-            let slope = unit * step.layout.slope;
+            let size = passage.unit;
+            let curvature = problem.compliance * size * size * passage.curvature;
+            let slope = unit * passage.slope;
             let exact = if curvature > 0.0 { -slope / curvature } else { 1.0 };
             let t = match step.kind {
                 Kind::Straight => {
                     self.lengths.learn(true, exact);
-                    exact.min(step.layout.reach)
+                    exact.min(passage.reach)
                 }
                 Kind::Clipped => {
                     self.lengths.learn(false, exact);
@@ -323,12 +313,12 @@ impl<T: Scalar> ProjectedCg<T> {
                 }
                 Kind::Gradient => {
                     if curvature > 0.0 {
-                        gradient_length = length / curvature;
+                        gradient_length = size * size * passage.length / curvature;
                     }
                     exact.min(1.0)
                 }
             };
-            let [r, cells] = step.layout.inside;
+            let [r, change, cells] = passage.inside;
             let foretold = match problem.prescribed {
                 Prescribed::Load(_) if cells > 0.0 => {
                     rating.w + unit * (r / cells + step.mean) + t * size * problem.compliance * change / cells
@@ -402,13 +392,13 @@ impl<T: Scalar> ProjectedCg<T> {
         let ahead = turn(
             &mut self.direction,
             &self.image,
-            (&self.working, &self.laid),
+            (&self.working, &self.worked),
             &*fields.pressure,
             problem.hardness,
             Turn { mean, beta, length },
         );
         let kind = if ahead.outside > 0.0 { Kind::Clipped } else { Kind::Straight };
-        self.lay_out(problem, fields, sum, ahead, kind, length, if centred { mean_r } else { 0.0 })
+        self.shifted(problem, fields, sum, ahead, kind, length, if centred { mean_r } else { 0.0 })
     }
 
     /// The projected-gradient step over all cells that can touch; `None` where it does not descend.
@@ -423,16 +413,17 @@ impl<T: Scalar> ProjectedCg<T> {
     ) -> Option<Step> {
         let length = length * unit;
         let found = (&mut self.direction[..], &mut self.residual[..], &mut self.working[..]);
-        self.laid.fill(u8::MAX);
+        // The direction is written everywhere.
+        self.worked.fill(u8::MAX);
         let ahead = steepest(fields, problem.hardness, rating.w, unit, length, found);
-        self.lay_out(problem, fields, sum, ahead, Kind::Gradient, length, 0.0)
+        self.shifted(problem, fields, sum, ahead, Kind::Gradient, length, 0.0)
     }
 
-    /// The step from the trial point, where it descends. `sum` is the sum of p that load control prescribes, less
-    /// the present one.
+    /// The step from the trial point; `None` where no shift keeps the load. `sum` is the sum of p that load control prescribes,
+    /// less the present one.
     #[allow(clippy::too_many_arguments)] // they are the step's parts
-    fn lay_out<P: Scalar>(
-        &mut self,
+    fn shifted<P: Scalar>(
+        &self,
         problem: &Problem,
         fields: &Fields<P>,
         sum: Option<f64>,
@@ -441,18 +432,37 @@ impl<T: Scalar> ProjectedCg<T> {
         length: f64,
         mean: f64,
     ) -> Option<Step> {
-        let trial = Trial {
-            pressure: fields.pressure,
-            direction: Some(&self.direction),
-            set: &self.working,
-            length,
-            hardness: problem.hardness,
-        };
         let shift = match sum {
-            Some(missing) => trial.shift_to_sum(ahead.pressure + missing, Some(ahead.clipped))?,
+            Some(missing) => {
+                let trial = trial(problem, fields, &self.direction, &self.working, length);
+                trial.shift_to_sum(ahead.pressure + missing, Some(ahead.clipped))?
+            }
             None => Shift::default(),
         };
-        let layout = lay_out(&trial, shift, &self.residual, &mut self.step, &mut self.laid, &mut self.inside);
-        (layout.slope < 0.0).then_some(Step { kind, length, shift, layout, mean })
+        Some(Step { kind, length, shift, mean })
     }
+
+    /// The image of the step in `self.moved`; `None` where the step does not descend.
+    fn pass<P: Scalar>(
+        &mut self,
+        operator: &mut dyn Operator,
+        problem: &Problem,
+        fields: &Fields<P>,
+        step: Step,
+    ) -> Option<(Step, Passage)> {
+        let trial = trial(problem, fields, &self.direction, &self.working, step.length);
+        let passage = pass(operator, &trial, step.shift, &self.residual, &mut self.moved);
+        (passage.slope < 0.0).then_some((step, passage))
+    }
+}
+
+/// The trial point at that length along the direction.
+fn trial<'a, P>(
+    problem: &Problem<'a>,
+    fields: &'a Fields<P>,
+    direction: &'a [f32],
+    set: &'a [u8],
+    length: f64,
+) -> Trial<'a, P> {
+    Trial { pressure: &*fields.pressure, direction: Some(direction), set, length, hardness: problem.hardness }
 }

@@ -124,9 +124,9 @@ impl Simulation {
         // on the grid, or with a rim around it, see `operator::ApproximateInverse`
         let inverse = if self.boundary == Boundary::Free { 7.0 } else { 5.25 };
         let solver = match self.solver.method {
-            // the preconditioner's convolution in f32 with a second multiplier, and its set; four fields in f32, four sets;
-            // the step and its image in f64, or these, pressure and gap in f32
-            Method::ProjectedCg => 1.24 * inverse + 0.125 + 16.0 + 0.5 + 16.0,
+            // the preconditioner's convolution in f32 with a second multiplier, and its set; four fields in f32, two sets;
+            // the image of the step in f64, or that, pressure and gap in f32
+            Method::ProjectedCg => 1.24 * inverse + 0.125 + 16.0 + 0.25 + if mixed { 12.0 } else { 8.0 },
             Method::PolonskyKeer => 24.125,
         };
         // pressure and U of two rows, undeformed and remembered gap; the gap with its dents

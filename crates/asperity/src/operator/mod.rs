@@ -15,7 +15,7 @@ use ndarray::Array2;
 use ndarray::parallel::prelude::*;
 
 use crate::convolution::Visit;
-use crate::convolution::lanes::{Lanes, Sums};
+use crate::convolution::lanes::{Lanes, Make, Sums};
 use crate::grid::{Boundary, Grid};
 use crate::kernel::inverse_kernel;
 
@@ -33,17 +33,22 @@ pub trait Operator: Send {
     /// The same in f32, to about 1e-7 of the largest u.
     fn apply_single_into(&mut self, p: &[f32], u: &mut [f32]);
 
-    /// u = K p; `visit(first, u)` meets some cells of u at a time while they are in the cache, of which `first` is the number
-    /// of the first, a multiple of eight; returns the totals of its sums.
-    fn apply_visited_into(&mut self, p: &[f64], u: &mut [f64], visit: &Visit<f64>) -> Sums {
-        self.apply_into(p, u);
-        visit(0, u)
+    /// u = K p of the pressure that `make(first, p)` writes, some cells at a time, of which `first` is the number of the first,
+    /// a multiple of eight; `visit(first, u)` meets some cells of u at a time while they are in the cache. Returns the totals
+    /// of the sums that each returns.
+    fn apply_made_into(&mut self, make: &Make<f64>, u: &mut [f64], visit: &Visit<f64>) -> [Sums; 2] {
+        let mut p = vec![0.0; u.len()];
+        let made = make(0, &mut p);
+        self.apply_into(&p, u);
+        [made, visit(0, u)]
     }
 
     /// The same in f32.
-    fn apply_single_visited_into(&mut self, p: &[f32], u: &mut [f32], visit: &Visit<f32>) -> Sums {
-        self.apply_single_into(p, u);
-        visit(0, u)
+    fn apply_single_made_into(&mut self, make: &Make<f32>, u: &mut [f32], visit: &Visit<f32>) -> [Sums; 2] {
+        let mut p = vec![0.0; u.len()];
+        let made = make(0, &mut p);
+        self.apply_single_into(&p, u);
+        [made, visit(0, u)]
     }
 
     /// Displacement of a cell under its own unit pressure \[m\].

@@ -4,7 +4,7 @@
 use ndarray::{ArrayView1, ArrayView2};
 
 use super::{Operator, Single, wave_spectrum};
-use crate::convolution::lanes::{Lanes, Sums};
+use crate::convolution::lanes::{Lanes, Make, Sums};
 use crate::convolution::{Convolution, Visit};
 use crate::grid::{Boundary, Grid};
 use crate::kernel::wave_kernel;
@@ -57,12 +57,12 @@ impl Operator for Periodic {
         self.single().apply_into(p, u);
     }
 
-    fn apply_visited_into(&mut self, p: &[f64], u: &mut [f64], visit: &Visit<f64>) -> Sums {
-        self.convolution.apply_visited_into(p, u, visit)
+    fn apply_made_into(&mut self, make: &Make<f64>, u: &mut [f64], visit: &Visit<f64>) -> [Sums; 2] {
+        self.convolution.apply_made_into(make, u, visit)
     }
 
-    fn apply_single_visited_into(&mut self, p: &[f32], u: &mut [f32], visit: &Visit<f32>) -> Sums {
-        self.single().apply_visited_into(p, u, visit)
+    fn apply_single_made_into(&mut self, make: &Make<f32>, u: &mut [f32], visit: &Visit<f32>) -> [Sums; 2] {
+        self.single().apply_made_into(make, u, visit)
     }
 
     fn self_influence(&self) -> f64 {

@@ -18,6 +18,7 @@
 //! It costs two more convolutions in f32 on the unpadded grid, and saves half of the iterations. The three are one chain:
 //! of what lies between them only z is ever in memory, and both products of a come from the spectra.
 
+use asperity_convolution::Visit;
 use asperity_convolution::eights::{Eight, Mask, Work, vectorize};
 use asperity_convolution::lanes::{Lanes, Sums};
 use rayon::prelude::*;
@@ -58,13 +59,7 @@ impl Preconditioner {
 
     /// z; what is beyond S means nothing. `r` is zero there. `visit(first, z)` meets some rows of z at a time, of which
     /// `first` is the number of the first cell; returns the totals of its sums.
-    pub(super) fn apply_into(
-        &mut self,
-        r: &[f32],
-        set: &[u8],
-        z: &mut [f32],
-        visit: &(dyn Fn(usize, &[f32]) -> Sums + Sync),
-    ) -> Sums {
+    pub(super) fn apply_into(&mut self, r: &[f32], set: &[u8], z: &mut [f32], visit: &Visit<f32>) -> Sums {
         find_beside(set, self.row, &mut self.beside);
         let open = Open { set, beside: &self.beside };
         let mut chain = self.plan.chain(r);

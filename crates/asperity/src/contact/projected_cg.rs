@@ -279,19 +279,13 @@ impl<T: Scalar> ProjectedCg<T> {
             } else {
                 self.conjugate_step(problem, fields, sum, &rating, unit, &mut conjugacy)
             };
-            let mut taken = conjugate.and_then(|step| {
-                convolutions += 1;
-                self.pass(operator, problem, fields, step)
-            });
+            let count = &mut convolutions;
+            let mut taken = conjugate.and_then(|step| self.pass(operator, problem, fields, step, count));
             if taken.is_none() {
                 conjugacy.product = None;
                 stall = 0;
-                taken = self.gradient_step(problem, fields, sum, &rating, unit, gradient_length).and_then(
-                    |step| {
-                        convolutions += 1;
-                        self.pass(operator, problem, fields, step)
-                    },
-                );
+                let steepest = self.gradient_step(problem, fields, sum, &rating, unit, gradient_length);
+                taken = steepest.and_then(|step| self.pass(operator, problem, fields, step, count));
             }
             let Some((step, passage)) = taken else {
                 // Nothing descends any more: rounding has the last word.
@@ -442,14 +436,16 @@ impl<T: Scalar> ProjectedCg<T> {
         Some(Step { kind, length, shift, mean })
     }
 
-    /// The image of the step in `self.moved`; `None` where the step does not descend.
+    /// The image of the step in `self.moved`, one convolution more; `None` where the step does not descend.
     fn pass<P: Scalar>(
         &mut self,
         operator: &mut dyn Operator,
         problem: &Problem,
         fields: &Fields<P>,
         step: Step,
+        convolutions: &mut usize,
     ) -> Option<(Step, Passage)> {
+        *convolutions += 1;
         let trial = trial(problem, fields, &self.direction, &self.working, step.length);
         let passage = pass(operator, &trial, step.shift, &self.residual, &mut self.moved);
         (passage.slope < 0.0).then_some((step, passage))

@@ -15,9 +15,8 @@ use crate::operator::{Operator, half_space};
 
 /// Fewest cells along a side of a coarse grid.
 const FEWEST: usize = 64;
-/// Tolerance on a coarse grid: what its cells can tell. Over self-affine surfaces of several kinds, loads and both
-/// boundaries the work of all grids is least here.
-const TOLERANCE: f64 = 3e-2;
+/// Tolerance on a coarse grid: finer than what its cells can tell.
+const TOLERANCE: f64 = 3e-3;
 /// Iterations on a coarse grid at most.
 const ITERATIONS: usize = 30;
 

@@ -210,6 +210,10 @@ impl Solver {
             Solver::MixedProjectedCg(s) => s.solve(operator, problem, options, state, interrupt),
             Solver::PolonskyKeer(s) => s.solve(operator, problem, options, state, interrupt),
         }?;
+        if cold {
+            // What follows is near its solution, and unlike this.
+            self.remember([0.0; REMEMBERED]);
+        }
         Ok(Outcome { convolutions: outcome.convolutions + before.ceil() as usize, ..outcome })
     }
 }

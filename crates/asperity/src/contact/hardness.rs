@@ -44,7 +44,7 @@ impl Hardness<'_> {
 
     /// H of eight cells.
     #[inline(always)]
-    pub(super) fn eight<V: Eight>(&self, cell: usize) -> V {
+    pub(crate) fn eight<V: Eight>(&self, cell: usize) -> V {
         match self {
             Hardness::Uniform(hardness) => V::splat(*hardness),
             Hardness::Cells(cells) => V::load(cells, cell, f64::INFINITY),

@@ -31,6 +31,7 @@ pub use hardness::Hardness;
 pub(crate) use lengths::REMEMBERED;
 pub use polonsky_keer::PolonskyKeer;
 pub use projected_cg::ProjectedCg;
+pub(crate) use start::Start;
 pub use state::ContactState;
 
 use std::sync::atomic::AtomicBool;
@@ -195,19 +196,37 @@ impl Solver {
         state: &mut ContactState,
         interrupt: Option<&AtomicBool>,
     ) -> Result<Outcome> {
+        self.solve_from(Start::Guess, operator, problem, options, state, interrupt)
+    }
+
+    /// See [`Self::solve`]. Polonsky and Keer's method finds U anew.
+    pub(crate) fn solve_from(
+        &mut self,
+        mut start: Start,
+        operator: &mut dyn Operator,
+        problem: &Problem,
+        options: &SolverOptions,
+        state: &mut ContactState,
+        interrupt: Option<&AtomicBool>,
+    ) -> Result<Outcome> {
         if let Some(outcome) = trivial(operator, problem, state)? {
+            self.set_roundings(1.0);
             return Ok(outcome);
         }
-        let cold = !matches!(self, Solver::PolonskyKeer(_)) && sum(&state.pressure) <= 0.0;
+        let total = sum(&state.pressure);
+        let cold = !matches!(self, Solver::PolonskyKeer(_)) && total <= 0.0;
         let before = if cold {
             self.remember([0.0; REMEMBERED]);
+            start = Start::Guess;
             coarse::start(operator, problem, options, state, interrupt)?
         } else {
             0.0
         };
+        let area = operator.grid().cell_area();
+        let mut scaled = || start.scaled(problem, area, total, state);
         let outcome = match self {
-            Solver::ProjectedCg(s) => s.solve(operator, problem, options, state, interrupt),
-            Solver::MixedProjectedCg(s) => s.solve(operator, problem, options, state, interrupt),
+            Solver::ProjectedCg(s) => s.solve(scaled(), operator, problem, options, state, interrupt),
+            Solver::MixedProjectedCg(s) => s.solve(scaled(), operator, problem, options, state, interrupt),
             Solver::PolonskyKeer(s) => s.solve(operator, problem, options, state, interrupt),
         }?;
         if cold {
@@ -225,6 +244,23 @@ impl Solver {
             Solver::ProjectedCg(s) => s.lengths.save(),
             Solver::MixedProjectedCg(s) => s.lengths.save(),
             Solver::PolonskyKeer(_) => [0.0; REMEMBERED],
+        }
+    }
+
+    /// What U of the last solution may be off by, in roundings of a convolution.
+    pub(crate) fn roundings(&self) -> f64 {
+        match self {
+            Solver::ProjectedCg(s) => s.roundings,
+            Solver::MixedProjectedCg(s) => s.roundings,
+            Solver::PolonskyKeer(_) => f64::INFINITY,
+        }
+    }
+
+    fn set_roundings(&mut self, roundings: f64) {
+        match self {
+            Solver::ProjectedCg(s) => s.roundings = roundings,
+            Solver::MixedProjectedCg(s) => s.roundings = roundings,
+            Solver::PolonskyKeer(_) => {}
         }
     }
 

@@ -164,7 +164,8 @@ pub(super) struct Motion<'a, T> {
 /// p += t s, U += t K s where there is a `motion`, on the set of its step; then rates the state with the guess `w`, and
 /// writes r / `scale` on the working set S, 0 elsewhere, and S over the set of the residual that was there.
 ///
-/// A cell that lands within rounding of a bound is put on it.
+/// A cell that lands within rounding of a bound is put on it. Without a motion p may lie beyond its bounds: such cells are
+/// of the set, for the step to lead them back.
 pub(super) fn advance<T: Cell, P: Scalar>(
     fields: &mut Fields<P>,
     hardness: Hardness,
@@ -255,7 +256,7 @@ impl<T: Cell, P: Scalar> Work for Advance<'_, T, P> {
                     p.store(self.p, n);
                 }
                 // Most other cells are apart.
-                _ if gauge.pass(p, u, h) => {
+                (Some(_), _) if gauge.pass(p, u, h) => {
                     if std::mem::replace(&mut self.set[n / 8], 0) != 0 {
                         V::splat(0.0).store(self.r, n);
                     }
@@ -264,8 +265,12 @@ impl<T: Cell, P: Scalar> Work for Advance<'_, T, P> {
                 _ => {}
             }
             let (r, works) = gauge.meet(p, u, h, top, !P::ROUGH);
-            let works_before = std::mem::replace(&mut self.set[n / 8], works.bits());
-            if works_before | works.bits() != 0 {
+            let of_set = match &self.motion {
+                Some(_) => works,
+                None => works | p.less(V::splat(0.0)) | top.less(p),
+            };
+            let works_before = std::mem::replace(&mut self.set[n / 8], of_set.bits());
+            if works_before | of_set.bits() != 0 {
                 (r * per).only(works).store(self.r, n);
             }
         }

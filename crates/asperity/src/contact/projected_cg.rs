@@ -11,6 +11,10 @@
 //! go, never what is found there. In mixed precision all fields of an iteration are f32, the gap as what it differs from
 //! the approach (`fields`); what they lead to is evaluated in f64, and what it lacks is found with p and U in f64.
 //!
+//! Where the march knows U of its guess, for it is a combination of solutions, no convolution comes before the first iteration.
+//! Such a guess lies beyond its bounds here and there: the first step is then taken whole, which ends at a feasible
+//! pressure, whatever it does to f.
+//!
 //! An iteration is one convolution, the preconditioner, and five or six sweeps (`direction`, `shift`,
 //! `motion`), most of them over the groups of cells that hold one of S. The sweep that advances the state also rates it,
 //! for which it must know the approach w: the new w is foretold from the mean change of the gap over the
@@ -27,7 +31,7 @@ use super::motion::{Motion, Passage, advance, pass};
 use super::preconditioner::Preconditioner;
 use super::residual::Rating;
 use super::shift::{Shift, Trial};
-use super::start::make_feasible;
+use super::start::{Start, make_feasible};
 use super::{ContactState, Outcome, Prescribed, Problem, SolverOptions, interrupted, not_converged};
 use crate::error::{Error, NotConverged, Result};
 use crate::field::zeros;
@@ -67,8 +71,29 @@ pub struct ProjectedCg<T = f64> {
     working: Vec<u8>,
     worked: Vec<u8>,
     pub(super) lengths: Lengths,
+    /// What U of the last solution may be off by, in roundings of a convolution.
+    pub(super) roundings: f64,
     /// Mixed precision iterates on these.
     singles: Option<Singles>,
+}
+
+/// What is asked for.
+#[derive(Clone, Copy)]
+struct Task<'a> {
+    problem: &'a Problem<'a>,
+    options: SolverOptions,
+    interrupt: Option<&'a AtomicBool>,
+}
+
+/// What is known of the fields that iterations set out from.
+#[derive(Clone, Copy, Default)]
+struct Outset {
+    /// An approach and the size of a violation \[m\]; found where they are not outset.
+    about: Option<(f64, f64)>,
+    /// The pressure may lie beyond its bounds, and without its load.
+    beyond: bool,
+    /// What violations are measured by, where the fields do not tell.
+    scale: Option<f64>,
 }
 
 /// What a conjugate step needs from the one before.
@@ -114,6 +139,7 @@ impl<T: Scalar> ProjectedCg<T> {
             working: zeros(n.div_ceil(8)),
             worked: zeros(n.div_ceil(8)),
             lengths: Lengths::default(),
+            roundings: f64::INFINITY,
             singles: T::ROUGH.then(|| Singles::new(n)),
         }
     }
@@ -127,35 +153,70 @@ impl<T: Scalar> ProjectedCg<T> {
     /// See [`super::Solver::solve`]; the trivial cases are settled there.
     pub(super) fn solve(
         &mut self,
+        start: Start,
         operator: &mut dyn Operator,
         problem: &Problem,
         options: &SolverOptions,
         state: &mut ContactState,
         interrupt: Option<&AtomicBool>,
     ) -> Result<Outcome> {
-        let grid = *operator.grid();
-        self.lengths.begin();
-        make_feasible(problem, grid.cell_area(), state, &mut self.working)?;
+        let task = Task { problem, options: *options, interrupt };
+        if let Start::Known { roundings, beyond } = start {
+            self.roundings = roundings;
+            match self.solve_known(operator, task, state, beyond) {
+                // It leads nowhere.
+                Err(Error::NotConverged(report)) if report.iterations == 0 => {}
+                solved => return solved,
+            }
+        }
+        self.convolve(operator, problem, state)?;
+        let outcome = self.solve_known(operator, task, state, false)?;
+        Ok(Outcome { convolutions: outcome.convolutions + 1, ..outcome })
+    }
+
+    /// Makes the pressure feasible and finds its U.
+    fn convolve(
+        &mut self,
+        operator: &mut dyn Operator,
+        problem: &Problem,
+        state: &mut ContactState,
+    ) -> Result<()> {
+        make_feasible(problem, operator.grid().cell_area(), state, &mut self.working)?;
         operator.apply_into(&state.pressure, &mut state.unit_displacement);
+        self.roundings = 1.0;
+        Ok(())
+    }
+
+    /// Solves from a state whose U is outset.
+    fn solve_known(
+        &mut self,
+        operator: &mut dyn Operator,
+        task: Task,
+        state: &mut ContactState,
+        beyond: bool,
+    ) -> Result<Outcome> {
+        self.lengths.begin();
+        let mut outset = Outset { beyond, ..Outset::default() };
         let before = match self.singles.take() {
             Some(mut singles) => {
-                let before = self.solve_in(&mut singles, operator, problem, options, state, interrupt);
+                let before = self.solve_in(&mut singles, operator, task, state, &mut outset);
                 self.singles = Some(singles);
                 before?
             }
             None => Outcome::default(),
         };
-        let left = options.max_iterations.saturating_sub(before.iterations);
-        let options = SolverOptions { max_iterations: left, ..*options };
-        let mut fields = Fields::of(problem, state);
-        let outcome = self.iterate(operator, problem, &options, None, &mut fields, interrupt);
-        let (iterations, convolutions) = (before.iterations, before.convolutions + 1);
-        match outcome {
-            Ok(o) => Ok(Outcome {
-                iterations: o.iterations + iterations,
-                convolutions: o.convolutions + convolutions,
-                ..o
-            }),
+        let (iterations, convolutions) = (before.iterations, before.convolutions);
+        let max_iterations = task.options.max_iterations.saturating_sub(iterations);
+        let left = Task { options: SolverOptions { max_iterations, ..task.options }, ..task };
+        match self.iterate(operator, left, outset, &mut Fields::of(task.problem, state)) {
+            Ok(o) => {
+                self.roundings += o.iterations as f64;
+                Ok(Outcome {
+                    iterations: o.iterations + iterations,
+                    convolutions: o.convolutions + convolutions,
+                    ..o
+                })
+            }
             Err(Error::NotConverged(report)) => Err(Error::NotConverged(NotConverged {
                 iterations: report.iterations + iterations,
                 ..report
@@ -164,16 +225,17 @@ impl<T: Scalar> ProjectedCg<T> {
         }
     }
 
-    /// Iterates with all fields in f32, as far as these lead: `state` comes near the solution, with its U. Returns the work.
+    /// Iterates with all fields in f32, as far as these lead: `state` comes near the solution, with its U. Returns the work;
+    /// where there was any, `outset` is what it leads to.
     fn solve_in(
         &mut self,
         singles: &mut Singles,
         operator: &mut dyn Operator,
-        problem: &Problem,
-        options: &SolverOptions,
+        task: Task,
         state: &mut ContactState,
-        interrupt: Option<&AtomicBool>,
+        outset: &mut Outset,
     ) -> Result<Outcome> {
+        let Task { problem, options, .. } = task;
         let grid = *operator.grid();
         let rating = Rating::of(&Fields::of(problem, state), problem.hardness, 0.0);
         let w = rating.approach(problem.prescribed);
@@ -184,7 +246,7 @@ impl<T: Scalar> ProjectedCg<T> {
         let options = SolverOptions {
             tolerance: (options.tolerance - OFF).max(0.5 * options.tolerance),
             max_iterations: options.max_iterations.min(REFRESH),
-            ..*options
+            ..options
         };
         let prescribed = match problem.prescribed {
             Prescribed::Approach(given) => Prescribed::Approach(given - w),
@@ -192,7 +254,9 @@ impl<T: Scalar> ProjectedCg<T> {
         };
         let seen = Problem { prescribed, ..*problem };
         let mut fields = singles.take(problem, state, w);
-        let work = match self.iterate(operator, &seen, &options, Some(scale), &mut fields, interrupt) {
+        let rough = Outset { about: Some((0.0, scale * options.tolerance)), scale: Some(scale), ..*outset };
+        let work = match self.iterate(operator, Task { problem: &seen, options, ..task }, rough, &mut fields)
+        {
             Ok(work) => work,
             Err(Error::NotConverged(report)) => {
                 let done = report.iterations;
@@ -203,23 +267,23 @@ impl<T: Scalar> ProjectedCg<T> {
         if work.iterations == 0 {
             return Ok(work);
         }
+        let found = w + *fields.approach;
         singles.give(problem, state);
-        make_feasible(problem, grid.cell_area(), state, &mut self.working)?;
-        operator.apply_into(&state.pressure, &mut state.unit_displacement);
+        self.convolve(operator, problem, state)?;
+        *outset = Outset { about: Some((found, scale * options.tolerance)), ..Outset::default() };
         Ok(Outcome { convolutions: work.convolutions + 1, ..work })
     }
 
-    /// Iterates on `fields`, whose displacement is that of their pressure. Violations are measured by `scale`, or by the
-    /// fields themselves where these hold U.
+    /// Iterates on `fields`, whose displacement is that of their pressure.
     fn iterate<P: Scalar>(
         &mut self,
         operator: &mut dyn Operator,
-        problem: &Problem,
-        options: &SolverOptions,
-        scale: Option<f64>,
+        task: Task,
+        outset: Outset,
         fields: &mut Fields<P>,
-        interrupt: Option<&AtomicBool>,
     ) -> Result<Outcome> {
+        let Task { problem, options, interrupt } = task;
+        let options = &options;
         let grid = *operator.grid();
         let hardness = problem.hardness;
         // Whatever an earlier solve left behind is overwritten, everywhere.
@@ -230,9 +294,17 @@ impl<T: Scalar> ProjectedCg<T> {
         let mut conjugacy = Conjugacy { product: None, unit: 0.0, pressure: 0.0 };
         let (mut best, mut stall, mut stuck, mut fresh) = (f64::INFINITY, 0, false, true);
         let mut iteration = 0;
-        // Only to find the approach. No guess from the state: it would leave its rounding.
+        let mut beyond = outset.beyond;
         let mut unit = 0.0;
-        let mut rating = Rating::of(fields, hardness, 0.0);
+        let mut rating = match outset.about {
+            Some((w, size)) => {
+                unit = size;
+                let found = (&mut self.residual[..], &mut self.working[..]);
+                advance::<T, P>(fields, hardness, None, w, unit, found)
+            }
+            // Only to find the approach. No guess from the state: it would leave its rounding.
+            None => Rating::of(fields, hardness, 0.0),
+        };
         loop {
             let w = rating.approach(problem.prescribed);
             if unit == 0.0 || (w - rating.w).abs() > FORETOLD * rating.violation() {
@@ -241,12 +313,12 @@ impl<T: Scalar> ProjectedCg<T> {
                 rating = advance::<T, P>(fields, hardness, None, w, unit, found);
             }
             *fields.approach = rating.approach(problem.prescribed);
-            let rated = match scale {
+            let rated = match outset.scale {
                 Some(scale) => Outcome { residual: rating.residual(problem, scale), ..Outcome::default() },
                 None => rating.rate(problem, &grid, options.tolerance),
             };
             let outcome = Outcome { iterations: iteration, convolutions, ..rated };
-            if outcome.residual <= options.tolerance || stuck {
+            if !beyond && (outcome.residual <= options.tolerance || stuck) {
                 if T::ROUGH && !fresh && P::refresh(operator, fields.pressure, fields.displacement) {
                     convolutions += 1;
                     (fresh, stuck, unit, conjugacy.product) = (true, false, 0.0, None);
@@ -263,7 +335,9 @@ impl<T: Scalar> ProjectedCg<T> {
             if interrupted(interrupt) {
                 return Err(Error::Interrupted);
             }
-            if outcome.residual < 0.5 * best {
+            if beyond {
+                // What it says is of no pressure that is allowed.
+            } else if outcome.residual < 0.5 * best {
                 best = outcome.residual;
                 stall = 0;
             } else {
@@ -280,12 +354,13 @@ impl<T: Scalar> ProjectedCg<T> {
                 self.conjugate_step(problem, fields, sum, &rating, unit, &mut conjugacy)
             };
             let count = &mut convolutions;
-            let mut taken = conjugate.and_then(|step| self.pass(operator, problem, fields, step, count));
+            let mut taken =
+                conjugate.and_then(|step| self.pass(operator, problem, fields, step, beyond, count));
             if taken.is_none() {
                 conjugacy.product = None;
                 stall = 0;
                 let steepest = self.gradient_step(problem, fields, sum, &rating, unit, gradient_length);
-                taken = steepest.and_then(|step| self.pass(operator, problem, fields, step, count));
+                taken = steepest.and_then(|step| self.pass(operator, problem, fields, step, beyond, count));
             }
             let Some((step, passage)) = taken else {
                 // Nothing descends any more: rounding has the last word.
@@ -297,6 +372,12 @@ impl<T: Scalar> ProjectedCg<T> {
             let slope = unit * passage.slope;
             let exact = if curvature > 0.0 { -slope / curvature } else { 1.0 };
             let t = match step.kind {
+                _ if beyond => {
+                    if step.kind != Kind::Gradient && slope < 0.0 {
+                        self.lengths.learn(false, exact);
+                    }
+                    1.0
+                }
                 Kind::Straight => {
                     self.lengths.learn(true, exact);
                     exact.min(passage.reach)
@@ -334,7 +415,7 @@ impl<T: Scalar> ProjectedCg<T> {
             };
             let found = (&mut self.residual[..], &mut self.working[..]);
             rating = advance(fields, hardness, Some(motion), foretold, unit, found);
-            fresh = false;
+            (fresh, beyond) = (false, false);
             iteration += 1;
             if iteration % REFRESH == 0 && P::refresh(operator, fields.pressure, fields.displacement) {
                 convolutions += 1;
@@ -436,19 +517,21 @@ impl<T: Scalar> ProjectedCg<T> {
         Some(Step { kind, length, shift, mean })
     }
 
-    /// The image of the step in `self.moved`, one convolution more; `None` where the step does not descend.
+    /// The image of the step in `self.moved`, one convolution more; `None` where the step does not descend, unless it is
+    /// taken from `beyond` the bounds.
     fn pass<P: Scalar>(
         &mut self,
         operator: &mut dyn Operator,
         problem: &Problem,
         fields: &Fields<P>,
         step: Step,
+        beyond: bool,
         convolutions: &mut usize,
     ) -> Option<(Step, Passage)> {
         *convolutions += 1;
         let trial = trial(problem, fields, &self.direction, &self.working, step.length);
         let passage = pass(operator, &trial, step.shift, &self.residual, &mut self.moved);
-        (passage.slope < 0.0).then_some((step, passage))
+        (passage.slope < 0.0 || beyond && passage.slope.is_finite()).then_some((step, passage))
     }
 }
 

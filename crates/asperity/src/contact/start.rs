@@ -1,5 +1,5 @@
-//! The pressure that a solve starts from: the caller's guess made feasible, or a cold start; and the
-//! rescaling of a pressure to its load.
+//! The pressure that a solve starts from: the caller's guess made feasible, a cold start, or a pressure whose displacement
+//! is known; and the rescaling of a pressure to its load.
 
 use asperity_convolution::eights::{Eight, Mask, Work, vectorize};
 
@@ -7,6 +7,55 @@ use super::shift::{Mover, Shift, Trial, clip};
 use super::{ContactState, Hardness, Prescribed, Problem};
 use crate::error::{Error, Result};
 use crate::field::{Set, SetMut, sweep};
+
+/// What a solve starts from besides `state.pressure`.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Start {
+    /// Nothing: the pressure is made feasible, and its U found by a convolution.
+    Guess,
+    /// U = K p too, as linearity makes it from solutions. The pressure may lie `beyond` its bounds: the step of the first
+    /// iteration leads it back.
+    Known {
+        /// What U may be off by, in roundings of a convolution.
+        roundings: f64,
+        beyond: bool,
+    },
+}
+
+/// A known start is scaled to its load by a factor within these.
+const SCALED: std::ops::Range<f64> = 0.8..1.25;
+/// A load is met when the sum of p misses it by this share.
+const MET: f64 = 4e-13;
+
+impl Start {
+    /// The start that is of use for `problem`, with U and `total`, the sum of the pressure, scaled to its load where it is known.
+    pub(super) fn scaled(
+        self,
+        problem: &Problem,
+        cell_area: f64,
+        total: f64,
+        state: &mut ContactState,
+    ) -> Self {
+        let Start::Known { roundings, beyond } = self else { return self };
+        let factor = match problem.prescribed {
+            Prescribed::Load(load) => load / (cell_area * total),
+            Prescribed::Approach(_) => 1.0,
+        };
+        if !SCALED.contains(&factor) {
+            return Start::Guess;
+        }
+        if (factor - 1.0).abs() <= MET {
+            return self;
+        }
+        let fields = (&mut state.pressure[..], &mut state.unit_displacement[..]);
+        sweep(fields, &|(p, u): (&mut [f64], &mut [f64])| {
+            p.iter_mut().for_each(|p| *p *= factor);
+            u.iter_mut().for_each(|u| *u *= factor);
+        });
+        // Cells at the cut-off are there no more.
+        Start::Known { roundings: roundings + 1.0, beyond: beyond || !problem.hardness.is_infinite() }
+    }
+}
 
 /// Makes `state.pressure` feasible: zero where nothing can touch, within \[0, H\], with the load W.
 ///
@@ -160,5 +209,109 @@ impl Work for Move<'_> {
             let p = mover.target(V::load(self.p, n, 0.0), V::splat(0.0), self.hardness.eight(n));
             p.only(V::Mask::from_bits(*set)).store(self.p, n);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::{Method, Outcome, Precision, Solver, SolverOptions};
+    use crate::grid::{Boundary, Grid};
+    use crate::operator::half_space;
+
+    const H: f64 = 0.15;
+
+    fn gap(grid: &Grid) -> Vec<f64> {
+        let ny = grid.cells()[1];
+        let height = |n: usize| {
+            let (x, y) = (grid.x(n / ny) - 0.5, grid.y(n % ny) - 0.5);
+            0.5 * (x * x + y * y) + 3e-3 * (1.0 - (41.0 * x).cos() * (37.0 * y + 0.7).cos())
+        };
+        (0..grid.len()).map(height).collect()
+    }
+
+    /// Two solutions on the way to `prescribed`, prolonged to it: p and U.
+    fn prolonged(grid: &Grid, gap: &[f64], of: impl Fn(f64) -> Prescribed) -> ContactState {
+        let mut operator = half_space(*grid, Boundary::Free);
+        let mut solver = Solver::new(Method::ProjectedCg, &*operator);
+        let mut at = |x: f64| {
+            let problem = Problem { gap, compliance: 1.0, hardness: H.into(), prescribed: of(x) };
+            let mut state = ContactState::new(grid.len());
+            solver.solve(&mut *operator, &problem, &SolverOptions::default(), &mut state, None).unwrap();
+            state
+        };
+        let (before, mut state) = (at(1.1), at(1.0));
+        let along = |x: &mut [f64], before: &[f64]| x.iter_mut().zip(before).for_each(|(x, b)| *x += *x - b);
+        along(&mut state.pressure, &before.pressure);
+        along(&mut state.unit_displacement, &before.unit_displacement);
+        state
+    }
+
+    #[test]
+    fn a_known_start_leads_to_the_same_contact_from_beyond_its_bounds_and_without_its_load() {
+        let grid = Grid::new([48, 40], [1.0, 1.0]).unwrap();
+        let gap = gap(&grid);
+        let programmes: [fn(f64) -> Prescribed; 3] = [
+            |x| Prescribed::Load(0.03 * x),
+            // Its prolongation has another load.
+            |x| Prescribed::Load(0.03 * x * x * x),
+            |x| Prescribed::Approach(0.04 * x),
+        ];
+        for of in programmes {
+            for precision in [Precision::Double, Precision::Mixed] {
+                let start = prolonged(&grid, &gap, of);
+                let beyond = start.pressure.iter().filter(|p| !(0.0..=H).contains(*p)).count();
+                assert!(beyond > 3, "{beyond}");
+                let problem = Problem { gap: &gap, compliance: 1.0, hardness: H.into(), prescribed: of(0.9) };
+                let options = SolverOptions { precision, ..SolverOptions::default() };
+                let mut operator = half_space(grid, Boundary::Free);
+                let mut solve = |from: Start| -> (ContactState, Outcome) {
+                    let mut solver = Solver::with_precision(Method::ProjectedCg, precision, &*operator);
+                    let mut state = start.clone();
+                    let outcome = solver
+                        .solve_from(from, &mut *operator, &problem, &options, &mut state, None)
+                        .unwrap();
+                    (state, outcome)
+                };
+                let (guessed, slow) = solve(Start::Guess);
+                let (known, fast) = solve(Start::Known { roundings: 1.0, beyond: true });
+                assert!(known.pressure.iter().all(|p| (0.0..=H).contains(p)));
+                // Only the check of mixed precision convolves a pressure.
+                let checks = usize::from(precision == Precision::Mixed);
+                assert_eq!(fast.convolutions, fast.iterations + checks, "{fast:?}");
+                assert_eq!(slow.convolutions, slow.iterations + checks + 1, "{slow:?}");
+                if let Prescribed::Load(load) = problem.prescribed {
+                    let found = known.pressure.iter().sum::<f64>() * grid.cell_area();
+                    assert!((found / load - 1.0).abs() < 1e-12, "{found} {load}");
+                }
+                // Each is within its own certificate of the solution, in the energy norm.
+                let (mut energy, mut off) = (0.0, 0.0);
+                for n in 0..grid.len() {
+                    energy += known.pressure[n] * known.unit_displacement[n];
+                    off += (known.pressure[n] - guessed.pressure[n])
+                        * (known.unit_displacement[n] - guessed.unit_displacement[n]);
+                }
+                assert!((off / energy).sqrt() <= fast.certificate + slow.certificate, "{off} {energy}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_known_start_far_from_its_load_is_a_guess() {
+        let problem = |load| Problem {
+            gap: &[0.0; 4],
+            compliance: 1.0,
+            hardness: f64::INFINITY.into(),
+            prescribed: Prescribed::Load(load),
+        };
+        let mut state = ContactState::new(4);
+        state.pressure.fill(1.0);
+        let known = Start::Known { roundings: 3.0, beyond: false };
+        assert!(matches!(known.scaled(&problem(8.0), 1.0, 4.0, &mut state), Start::Guess));
+        assert!(matches!(known.scaled(&problem(4.0), 1.0, 0.0, &mut state), Start::Guess));
+        assert_eq!(state.pressure, [1.0; 4]);
+        let scaled = known.scaled(&problem(4.4), 1.0, 4.0, &mut state);
+        assert!(matches!(scaled, Start::Known { roundings: 4.0, beyond: false }), "{scaled:?}");
+        assert!(state.pressure.iter().all(|p| (p - 1.1).abs() < 1e-15));
     }
 }

@@ -8,17 +8,20 @@
 #![allow(clippy::type_complexity)] // the closures of a sweep spell out the slices that they walk
 
 mod adaptive;
+mod checkpoint;
 mod dense;
 mod dents;
 mod direct;
 mod energy;
 mod event;
+mod guess;
 mod measure;
 mod memory;
 mod record;
 mod simulation;
 mod timeline;
 
+pub use checkpoint::Checkpoint;
 pub use dense::Between;
 pub use record::{Row, Step};
 pub use simulation::{Plasticity, Scheme, Simulation};
@@ -26,11 +29,9 @@ pub use simulation::{Plasticity, Scheme, Simulation};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use ndarray::Array2;
-
-use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem, REMEMBERED, Solver};
+use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem, Solver, Start};
 use crate::error::{Error, Result};
-use crate::field::{minimum, sum, sweep, zeros};
+use crate::field::{minimum, sum, zeros};
 use crate::load::{Control, Event};
 use crate::operator::{Operator, half_space};
 use crate::time::Instant;
@@ -38,6 +39,7 @@ use adaptive::{Defect, Three};
 use dents::Dents;
 use direct::Direct;
 use event::{Enclosure, MET};
+use guess::Roundings;
 use measure::Meter;
 use memory::Memory;
 use record::Remembered;
@@ -80,6 +82,7 @@ pub struct March {
     state: ContactState,
     /// Pressure and U of the row before.
     previous: Previous,
+    roundings: Roundings,
     /// h0 + g of the last step.
     gap: Vec<f64>,
     /// Cut-off of each cell, where it is not the same everywhere.
@@ -142,17 +145,6 @@ impl Past {
     }
 }
 
-/// Everything that the rest of a march depends on; see [`March::checkpoint`].
-#[derive(Clone, Debug, PartialEq)]
-pub struct Checkpoint {
-    /// Rows done.
-    pub step: usize,
-    /// Numbers that belong to the memory.
-    pub scalars: Vec<f64>,
-    /// Named fields of nx x ny cells.
-    pub fields: Vec<(String, Array2<f64>)>,
-}
-
 impl March {
     /// Checks the simulation and plans it: operator, solver, memory, instants.
     ///
@@ -189,6 +181,7 @@ impl March {
             current: None,
             state: ContactState::new(n),
             previous: Previous { pressure: zeros(n), unit_displacement: zeros(n) },
+            roundings: Roundings::UNKNOWN,
             compliance: 0.0,
             outcome: Outcome::default(),
             dents,
@@ -234,8 +227,8 @@ impl March {
             return Ok(None);
         };
         self.outcome = Outcome::default();
-        self.begin(instant);
-        self.solve(instant)?;
+        let start = self.begin(instant);
+        self.solve(instant, start)?;
         let mut error = self.local_error(instant);
         while let Some(dt) = self.timeline.pace().and_then(|pace| pace.rejects(instant.dt, error)) {
             instant = self.try_again(dt)?;
@@ -252,7 +245,7 @@ impl March {
     }
 
     /// Sets the contact of the step that ends at `instant`: its compliance, its gap, its first guess.
-    fn begin(&mut self, instant: Instant) {
+    fn begin(&mut self, instant: Instant) -> Start {
         self.measure_step(instant);
         self.meter.clear();
         let unit = &self.state.unit_displacement;
@@ -263,10 +256,12 @@ impl March {
             }
             Past::Direct(d) => d.history(instant.time, instant.dt, unit, rigid, &mut self.gap),
         };
-        self.extrapolate(instant.dt);
-        // The solver writes U anew: what stands there is U two rows before.
+        std::mem::swap(&mut self.state.pressure, &mut self.previous.pressure);
+        std::mem::swap(&mut self.state.unit_displacement, &mut self.previous.unit_displacement);
+        // What stands there is U two rows before.
         let older = &self.state.unit_displacement[..self.older.len()];
         self.older.copy_from_slice(older);
+        self.guess(instant.dt)
     }
 
     /// The step under way at another length, solved from the last guess.
@@ -279,12 +274,13 @@ impl March {
             Past::Memory(m) => m.retry(&self.lengths, unit, rigid, &mut self.gap),
             Past::Direct(d) => d.retry(dt, rigid, &mut self.gap),
         };
-        self.solve(instant)?;
+        // The state is that of the last trial.
+        self.solve(instant, Start::Known { roundings: self.roundings.of_row, beyond: false })?;
         Ok(instant)
     }
 
     /// Solves the contact that is set.
-    fn solve(&mut self, instant: Instant) -> Result<()> {
+    fn solve(&mut self, instant: Instant, start: Start) -> Result<()> {
         self.current = Some((self.done, instant));
         let area = self.simulation.grid.area();
         let problem = Problem {
@@ -300,8 +296,10 @@ impl March {
         let options = &self.simulation.solver;
         let interrupt = self.interrupt.as_deref();
         let before = self.outcome;
-        match self.solver.solve(&mut *self.operator, &problem, options, &mut self.state, interrupt) {
+        let (operator, state) = (&mut *self.operator, &mut self.state);
+        match self.solver.solve_from(start, operator, &problem, options, state, interrupt) {
             Ok(outcome) => {
+                self.roundings = self.roundings.solved(self.solver.roundings());
                 // The work of all trials of a step is its work.
                 self.outcome = Outcome {
                     iterations: before.iterations + outcome.iterations,
@@ -445,105 +443,5 @@ impl March {
             dents: self.dents.as_ref(),
             meter: Some(&self.meter),
         })
-    }
-
-    /// Starts the next solve from the last two pressures, prolonged linearly in time by `now`; after a jump from
-    /// the last one.
-    fn extrapolate(&mut self, now: f64) {
-        std::mem::swap(&mut self.state.pressure, &mut self.previous.pressure);
-        std::mem::swap(&mut self.state.unit_displacement, &mut self.previous.unit_displacement);
-        let before = self.timeline.last().map_or(0.0, |last| last.dt);
-        let factor = if before > 0.0 { (now / before).min(4.0) } else { 0.0 };
-        // state.pressure holds the row before the last one.
-        sweep((&mut self.state.pressure[..], &self.previous.pressure[..]), &|(p, last): (
-            &mut [f64],
-            &[f64],
-        )| {
-            for (p, last) in p.iter_mut().zip(last) {
-                // A cell at zero stays there, so that the guess spreads no pressure.
-                *p = if *last > 0.0 { last + factor * (last - *p) } else { 0.0 };
-            }
-        });
-    }
-
-    /// Everything that the rest of the march depends on. A march resumed from it gives the same bits.
-    pub fn checkpoint(&self) -> Checkpoint {
-        let shape = self.simulation.grid.shape();
-        let field = |name: &str, cells: &[f64]| (name.to_string(), record::to_array(shape, cells));
-        let mut fields = vec![
-            field("pressure", &self.state.pressure),
-            field("unit_displacement", &self.state.unit_displacement),
-            field("previous_pressure", &self.previous.pressure),
-            field("previous_unit_displacement", &self.previous.unit_displacement),
-        ];
-        if let Some(dents) = &self.dents {
-            fields.push(field("dented_gap", dents.gap()));
-        }
-        let (memory_scalars, memory) = match &self.past {
-            Past::Memory(m) => m.save(),
-            Past::Direct(d) => d.save(),
-        };
-        let mut scalars = self.timeline.save();
-        scalars.extend([self.reached.approach, self.reached.load]);
-        scalars.extend(self.solver.remembered());
-        scalars.extend(memory_scalars);
-        scalars.extend(self.meter.save());
-        fields.extend(memory.iter().enumerate().map(|(k, cells)| field(&format!("memory_{k}"), cells)));
-        Checkpoint { step: self.done, scalars, fields }
-    }
-
-    /// Goes on where a checkpoint of the same simulation was taken.
-    ///
-    /// # Errors
-    /// As [`March::new`]; [`Error::Invalid`] where the checkpoint belongs to another simulation.
-    pub fn resume(simulation: Simulation, checkpoint: &Checkpoint) -> Result<Self> {
-        let mut march = March::new(simulation)?;
-        let foreign = |what: String| Error::invalid("checkpoint", what, "one of this simulation");
-        let Some((timeline, rest)) = checkpoint.scalars.split_at_checked(Timeline::SAVED) else {
-            return Err(foreign(format!("{} numbers", checkpoint.scalars.len())));
-        };
-        let Some(([approach, load, lengths @ ..], scalars)) = rest.split_first_chunk::<{ 2 + REMEMBERED }>()
-        else {
-            return Err(foreign(format!("{} numbers", checkpoint.scalars.len())));
-        };
-        if !march.timeline.load(&march.simulation, timeline) {
-            return Err(foreign("of another programme".into()));
-        }
-        march.reached = Reached { approach: *approach, load: *load };
-        march.solver.remember(*lengths);
-        let mut fields = checkpoint.fields.iter();
-        let mut next = |name: &str| -> Result<Vec<f64>> {
-            match fields.next() {
-                Some((found, cells)) if found == name && cells.dim() == march.simulation.grid.shape() => {
-                    Ok(cells.iter().copied().collect())
-                }
-                Some((found, cells)) => Err(foreign(format!("field {found} of shape {:?}", cells.dim()))),
-                None => Err(foreign(format!("without field {name}"))),
-            }
-        };
-        march.state.pressure = next("pressure")?;
-        march.state.unit_displacement = next("unit_displacement")?;
-        march.previous.pressure = next("previous_pressure")?;
-        march.previous.unit_displacement = next("previous_unit_displacement")?;
-        let mut others = 4;
-        if let Some(dents) = &mut march.dents {
-            dents.restore(next("dented_gap")?);
-            others += 1;
-        }
-        let memory = (0..checkpoint.fields.len().saturating_sub(others))
-            .map(|k| next(&format!("memory_{k}")))
-            .collect::<Result<Vec<_>>>()?;
-        let Some(scalars) = march.meter.load(scalars) else {
-            return Err(foreign("one without the energies asked for".into()));
-        };
-        let restored = match &mut march.past {
-            Past::Memory(m) => m.load(scalars, &memory),
-            Past::Direct(d) => d.load(scalars, memory),
-        };
-        if !restored {
-            return Err(foreign("a memory of another material or scheme".into()));
-        }
-        march.done = checkpoint.step;
-        Ok(march)
     }
 }

@@ -1,0 +1,104 @@
+//! What a march can be resumed from, with the same bits.
+
+use ndarray::Array2;
+
+use super::{March, Past, Reached, Roundings, Simulation, Timeline, record};
+use crate::contact::REMEMBERED;
+use crate::error::{Error, Result};
+
+/// Everything that the rest of a march depends on; see [`March::checkpoint`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Checkpoint {
+    /// Rows done.
+    pub step: usize,
+    /// Numbers that belong to the memory.
+    pub scalars: Vec<f64>,
+    /// Named fields of nx x ny cells.
+    pub fields: Vec<(String, Array2<f64>)>,
+}
+
+impl March {
+    /// Everything that the rest of the march depends on. A march resumed from it gives the same bits.
+    pub fn checkpoint(&self) -> Checkpoint {
+        let shape = self.simulation.grid.shape();
+        let field = |name: &str, cells: &[f64]| (name.to_string(), record::to_array(shape, cells));
+        let mut fields = vec![
+            field("pressure", &self.state.pressure),
+            field("unit_displacement", &self.state.unit_displacement),
+            field("previous_pressure", &self.previous.pressure),
+            field("previous_unit_displacement", &self.previous.unit_displacement),
+        ];
+        if let Some(dents) = &self.dents {
+            fields.push(field("dented_gap", dents.gap()));
+        }
+        let (memory_scalars, memory) = match &self.past {
+            Past::Memory(m) => m.save(),
+            Past::Direct(d) => d.save(),
+        };
+        let mut scalars = self.timeline.save();
+        scalars.extend([self.reached.approach, self.reached.load]);
+        scalars.extend([self.roundings.of_row, self.roundings.change]);
+        scalars.extend(self.solver.remembered());
+        scalars.extend(memory_scalars);
+        scalars.extend(self.meter.save());
+        fields.extend(memory.iter().enumerate().map(|(k, cells)| field(&format!("memory_{k}"), cells)));
+        Checkpoint { step: self.done, scalars, fields }
+    }
+
+    /// Goes on where a checkpoint of the same simulation was taken.
+    ///
+    /// # Errors
+    /// As [`March::new`]; [`Error::Invalid`] where the checkpoint belongs to another simulation.
+    pub fn resume(simulation: Simulation, checkpoint: &Checkpoint) -> Result<Self> {
+        let mut march = March::new(simulation)?;
+        let foreign = |what: String| Error::invalid("checkpoint", what, "one of this simulation");
+        let Some((timeline, rest)) = checkpoint.scalars.split_at_checked(Timeline::SAVED) else {
+            return Err(foreign(format!("{} numbers", checkpoint.scalars.len())));
+        };
+        let Some(([approach, load, of_row, change, lengths @ ..], scalars)) =
+            rest.split_first_chunk::<{ 4 + REMEMBERED }>()
+        else {
+            return Err(foreign(format!("{} numbers", checkpoint.scalars.len())));
+        };
+        if !march.timeline.load(&march.simulation, timeline) {
+            return Err(foreign("of another programme".into()));
+        }
+        march.reached = Reached { approach: *approach, load: *load };
+        march.roundings = Roundings { of_row: *of_row, change: *change };
+        march.solver.remember(*lengths);
+        let mut fields = checkpoint.fields.iter();
+        let mut next = |name: &str| -> Result<Vec<f64>> {
+            match fields.next() {
+                Some((found, cells)) if found == name && cells.dim() == march.simulation.grid.shape() => {
+                    Ok(cells.iter().copied().collect())
+                }
+                Some((found, cells)) => Err(foreign(format!("field {found} of shape {:?}", cells.dim()))),
+                None => Err(foreign(format!("without field {name}"))),
+            }
+        };
+        march.state.pressure = next("pressure")?;
+        march.state.unit_displacement = next("unit_displacement")?;
+        march.previous.pressure = next("previous_pressure")?;
+        march.previous.unit_displacement = next("previous_unit_displacement")?;
+        let mut others = 4;
+        if let Some(dents) = &mut march.dents {
+            dents.restore(next("dented_gap")?);
+            others += 1;
+        }
+        let memory = (0..checkpoint.fields.len().saturating_sub(others))
+            .map(|k| next(&format!("memory_{k}")))
+            .collect::<Result<Vec<_>>>()?;
+        let Some(scalars) = march.meter.load(scalars) else {
+            return Err(foreign("one without the energies asked for".into()));
+        };
+        let restored = match &mut march.past {
+            Past::Memory(m) => m.load(scalars, &memory),
+            Past::Direct(d) => d.load(scalars, memory),
+        };
+        if !restored {
+            return Err(foreign("a memory of another material or scheme".into()));
+        }
+        march.done = checkpoint.step;
+        Ok(march)
+    }
+}

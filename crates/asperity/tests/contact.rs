@@ -50,6 +50,30 @@ fn hertz(n: usize) -> (Grid, Vec<f64>) {
 }
 
 #[test]
+fn the_least_load_is_carried_by_the_cells_that_touch_first() {
+    let (grid, h) = hertz(24);
+    for precision in [Precision::Double, Precision::Mixed] {
+        for load in [1e-9, 1e-12, 1e-15, 1e-18] {
+            let problem = Problem {
+                gap: &h,
+                compliance: 1e-6,
+                hardness: f64::INFINITY.into(),
+                prescribed: Prescribed::Load(load),
+            };
+            let mut operator = half_space(grid, Boundary::Free);
+            let mut solver = Solver::with_precision(Method::ProjectedCg, precision, &*operator);
+            let mut state = ContactState::new(grid.len());
+            solver.solve(&mut *operator, &problem, &SolverOptions::default(), &mut state, None).unwrap();
+            let touching: Vec<f64> = state.pressure.iter().copied().filter(|p| *p > 0.0).collect();
+            // Their gaps differ by rounding, which is more than so small a load displaces.
+            assert!((1..=4).contains(&touching.len()), "{precision:?} {load}: {touching:?}");
+            let carried = touching.iter().sum::<f64>() * grid.cell_area();
+            assert!((carried / load - 1.0).abs() < 1e-12, "{precision:?}: {carried} of {load}");
+        }
+    }
+}
+
+#[test]
 fn hertz_sphere_converges_with_the_square_of_the_cell() {
     // W = R = E* = 1: oracles/hertz_sphere.json.
     let (a, p0, delta) = (0.9085602964160698, 0.5784074490866206, 0.8254818122236567);

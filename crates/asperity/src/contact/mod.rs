@@ -223,10 +223,10 @@ impl Solver {
             0.0
         };
         let area = operator.grid().cell_area();
-        let mut scaled = || start.scaled(problem, area, total, state);
+        let start = start.with_load(problem, area, total);
         let outcome = match self {
-            Solver::ProjectedCg(s) => s.solve(scaled(), operator, problem, options, state, interrupt),
-            Solver::MixedProjectedCg(s) => s.solve(scaled(), operator, problem, options, state, interrupt),
+            Solver::ProjectedCg(s) => s.solve(start, operator, problem, options, state, interrupt),
+            Solver::MixedProjectedCg(s) => s.solve(start, operator, problem, options, state, interrupt),
             Solver::PolonskyKeer(s) => s.solve(operator, problem, options, state, interrupt),
         }?;
         if cold {

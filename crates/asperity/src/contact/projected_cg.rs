@@ -44,6 +44,8 @@ const PATIENCE: usize = 10;
 const REFRESH: usize = 50;
 /// A clipped step is taken whole where the exact minimum lies beyond this share of it.
 const WHOLE: f64 = 0.8;
+/// How often, and by how much, a step is taken shorter where its load is lost in its rounding.
+const SHORTER: (usize, f64) = (8, 1e-3);
 /// The share of the largest violation by which a foretold approach may be wrong.
 const FORETOLD: f64 = 0.02;
 /// The share of the largest violation below which the mean of the residual over S is left in it.
@@ -507,14 +509,21 @@ impl<T: Scalar> ProjectedCg<T> {
         length: f64,
         mean: f64,
     ) -> Option<Step> {
-        let shift = match sum {
-            Some(missing) => {
-                let trial = trial(problem, fields, &self.direction, &self.working, length);
-                trial.shift_to_sum(ahead.pressure + missing, Some(ahead.clipped))?
-            }
-            None => Shift::default(),
+        let Some(missing) = sum else {
+            return Some(Step { kind, length, shift: Shift::default(), mean });
         };
-        Some(Step { kind, length, shift, mean })
+        let (mut length, mut kind, mut clipped) = (length, kind, Some(ahead.clipped));
+        for _ in 0..SHORTER.0 {
+            let trial = trial(problem, fields, &self.direction, &self.working, length);
+            if let Some(shift) = trial.shift_to_sum(ahead.pressure + missing, clipped.take()) {
+                return Some(Step { kind, length, shift, mean });
+            }
+            length *= SHORTER.1;
+            if kind == Kind::Straight {
+                kind = Kind::Clipped;
+            }
+        }
+        None
     }
 
     /// The image of the step in `self.moved`, one convolution more; `None` where the step does not descend, unless it is

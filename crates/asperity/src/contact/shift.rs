@@ -13,6 +13,9 @@ use crate::field::{Cells, Max, Min, Set, sweep};
 /// by it that nothing is left.
 const CLOSE: f64 = 1e-13;
 
+/// A shift that misses the sum by more than this share is none: the trial point is so far away that its rounding hides the sum.
+const MISSED: f64 = 1e-3;
+
 /// A trial point p - a d of a set of cells; the other cells keep their pressure.
 #[derive(Clone, Copy)]
 pub(super) struct Trial<'a, P> {
@@ -89,7 +92,7 @@ impl<P: Cell> Trial<'_, P> {
         }
     }
 
-    /// The shift after which the cells of the set have the sum `target`; `None` where no shift does it.
+    /// The shift after which the cells of the set have the sum `target`; `None` where no shift does it, be it for rounding.
     /// `first` is the sum without a shift, where it is known.
     pub(super) fn shift_to_sum(&self, target: f64, first: Option<ClippedSum>) -> Option<Shift> {
         if target <= 0.0 {
@@ -126,6 +129,9 @@ impl<P: Cell> Trial<'_, P> {
             lambda = next;
         }
         let (lambda, excess, inside) = best;
+        if excess.abs() > MISSED * target {
+            return None;
+        }
         Some(Shift { lambda, rest: if inside > 0.0 { excess / inside } else { 0.0 } })
     }
 
@@ -144,9 +150,9 @@ impl<P: Cell> Trial<'_, P> {
     fn nearest_bend(&self, lambda: f64, above: bool) -> Option<f64> {
         let length = self.length;
         let cells = (self.pressure, self.direction, Set(self.set), self.hardness);
-        let (up, down) =
+        let (up, (down, capped)) =
             sweep(cells, &|(p, d, Set(set), hardness): (&[P], Option<&[f32]>, Set, Hardness)| {
-                let (mut up, mut down) = (f64::INFINITY, f64::NEG_INFINITY);
+                let (mut up, mut down, mut capped) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
                 for (i, p) in p.iter().enumerate().filter(|(i, _)| set[i / 8] >> (i % 8) & 1 == 1) {
                     let hardness = P::nearest(hardness.at(i)).into();
                     let y: f64 = (*p).into() - d.map_or(0.0, |d| length * f64::from(d[i]));
@@ -155,13 +161,15 @@ impl<P: Cell> Trial<'_, P> {
                         up = up.min(-y);
                     } else if y + lambda >= hardness {
                         down = down.max(hardness - y);
+                        capped = capped.max(hardness);
                     }
                 }
-                (Min(up), Max(down))
+                (Min(up), (Max(down), Max(capped)))
             });
         let bend = if above { up.0 } else { down.0 };
-        // Past the bend by a little of the shift or of the pressure there, so that the slope is not zero.
-        let past = 1e-3 * bend.abs().max(f64::MIN_POSITIVE);
+        // Past the bend by a little of the shift, and by what the pressure there can tell, so that the slope is not zero.
+        let least = if above { f64::MIN_POSITIVE } else { 4.0 * f64::EPSILON * capped.0 };
+        let past = (1e-3 * bend.abs()).max(least);
         bend.is_finite().then_some(if above { bend + past } else { bend - past })
     }
 }
@@ -221,6 +229,14 @@ mod tests {
         check(&[-5.0, -7.0], 0b11, f64::INFINITY, 1.0);
         check(&[9.0, 8.0, 7.0], 0b111, 2.0, 1.0);
         check(&[1e-300, 1.0], 0b11, f64::INFINITY, 1e-9);
+        check(&[0.15, 0.15, 0.15, 0.0], 0b1111, 0.15, 0.4);
+    }
+
+    #[test]
+    fn a_sum_that_rounding_hides_is_not_met() {
+        // Next to 1e9 there is nothing below 1e-7.
+        assert_eq!(shift(&[-1e9, -1e9 - 1.0], 0b11, f64::INFINITY, 1e-8), None);
+        check(&[-1e3, -1e3 - 1.0], 0b11, f64::INFINITY, 1e-8);
     }
 
     #[test]

@@ -37,7 +37,7 @@ impl March {
         };
         let mut scalars = self.timeline.save();
         scalars.extend([self.reached.approach, self.reached.load]);
-        scalars.extend([self.roundings.of_row, self.roundings.change]);
+        scalars.extend([self.roundings.here, self.roundings.change]);
         scalars.extend(self.solver.remembered());
         scalars.extend(memory_scalars);
         scalars.extend(self.meter.save());
@@ -55,7 +55,7 @@ impl March {
         let Some((timeline, rest)) = checkpoint.scalars.split_at_checked(Timeline::SAVED) else {
             return Err(foreign(format!("{} numbers", checkpoint.scalars.len())));
         };
-        let Some(([approach, load, of_row, change, lengths @ ..], scalars)) =
+        let Some(([approach, load, here, change, lengths @ ..], scalars)) =
             rest.split_first_chunk::<{ 4 + REMEMBERED }>()
         else {
             return Err(foreign(format!("{} numbers", checkpoint.scalars.len())));
@@ -64,7 +64,7 @@ impl March {
             return Err(foreign("of another programme".into()));
         }
         march.reached = Reached { approach: *approach, load: *load };
-        march.roundings = Roundings { of_row: *of_row, change: *change };
+        march.roundings = Roundings::new(*here, *change);
         march.solver.remember(*lengths);
         let mut fields = checkpoint.fields.iter();
         let mut next = |name: &str| -> Result<Vec<f64>> {

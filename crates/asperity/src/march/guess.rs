@@ -1,16 +1,24 @@
-//! What the solve of a row starts from: the last two rows, prolonged linearly in time.
+//! What the solve of a row starts from: of the combinations of two states that are known, p = a p_n + f (p_n - p'), the one of
+//! least energy p'(cK)p/2 + h'p among those with the load.
 //!
-//! U = K p is linear, so that U of the guess is known without a convolution. Its roundings grow with every row that takes its U
-//! this way; before they are seen, two rows find it afresh.
+//! p' is the row before the last one, p_n, or the last trial of a row that is solved again. In a creep that fades the best f
+//! falls short of one, and it is found for any programme and material. U = K p is linear, so that all this needs no
+//! convolution, and U of the guess is known. Its roundings grow with every row that takes its U this way; before they are
+//! seen, two rows find it afresh.
 
-use asperity_convolution::eights::{Eight, Work, vectorize};
+use asperity_convolution::eights::{Eight, Mask, Work, vectorize};
 
 use super::{March, cap};
-use crate::contact::{Hardness, Start};
+use crate::contact::{Hardness, Prescribed, Start};
 use crate::field::sweep;
+use crate::time::Instant;
 
-/// Largest multiple of the last step that is prolonged.
-const FARTHEST: f64 = 4.0;
+/// Least and largest f.
+const REACH: std::ops::Range<f64> = -4.0..4.0;
+/// The share of the energy below which a change is none.
+const NONE: f64 = 1e-20;
+/// What a may be off by where the load is the same: less than a load is met by.
+const SAME: f64 = 4e-13;
 /// The share of the solver's tolerance that roundings may take.
 const SPARE: f64 = 1e-2;
 /// Rows that a change from row to row is to be small for.
@@ -18,75 +26,245 @@ const AHEAD: f64 = 100.0;
 /// The share of the pressure that may lie beyond its bounds: the first iteration does not see what comes of leading it back.
 const BEYOND: f64 = 1e-4;
 
-/// What U of a row may be off by, and what that has changed by since the row before: in roundings of a convolution.
+/// x = p_n and d = p_n - p', their energies, works against the gap, and sums.
+#[derive(Clone, Copy)]
+struct Pair {
+    /// x'Kx, d'Kx, d'Kd
+    energy: [f64; 3],
+    /// h'x, h'd
+    work: [f64; 2],
+    /// sum x, sum d
+    sum: [f64; 2],
+    /// sum |d|
+    size: f64,
+    /// Cells of x at the cut-off.
+    capped: f64,
+}
+
+/// What is asked of a guess.
+#[derive(Clone, Copy)]
+struct Wanted {
+    compliance: f64,
+    prescribed: Prescribed,
+    cell_area: f64,
+    /// The f that is linear in time.
+    linear: f64,
+    /// Violations that the solver lets pass \[m\], over its displacement; and as they are.
+    tolerance: f64,
+    rounding: f64,
+}
+
+impl Pair {
+    /// \[a, f\] of the best a x + f d; x as it is where nothing can be said.
+    fn best(&self, wanted: &Wanted) -> [f64; 2] {
+        let best = match wanted.prescribed {
+            Prescribed::Load(load) => self.with_sum(wanted, load / wanted.cell_area),
+            Prescribed::Approach(w) => self.at_approach(wanted, w),
+        };
+        if best.iter().all(|x| x.is_finite()) { best } else { [1.0, 0.0] }
+    }
+
+    fn with_sum(&self, wanted: &Wanted, sum: f64) -> [f64; 2] {
+        let ([xx, xd, dd], [hx, hd], [sx, sd]) = (self.energy, self.work, self.sum);
+        if sx == 0.0 {
+            // Only d presses.
+            return [1.0, sum / sd];
+        }
+        if (sum / sx - 1.0).abs() > SAME && self.capped > 0.0 {
+            // Cells at the cut-off take no more: the change from row to row goes on until the load is met.
+            let f = (sum - sx) / sd;
+            return if REACH.contains(&f) { [1.0, f] } else { [sum / sx, 0.0] };
+        }
+        // d without its share of x has no load.
+        let share = sd / sx;
+        let curvature = dd - share * (2.0 * xd - share * xx);
+        let slope = wanted.compliance * sum / sx * (xd - share * xx) + (hd - share * hx);
+        let f = self.along(wanted, curvature, slope);
+        let a = (sum - f * sd) / sx;
+        // Where the load stays the same, so do cells at the cut-off.
+        [if (a - 1.0).abs() <= SAME { 1.0 } else { a }, f]
+    }
+
+    fn at_approach(&self, wanted: &Wanted, w: f64) -> [f64; 2] {
+        let (c, [xx, xd, dd], [hx, hd], [sx, sd]) = (wanted.compliance, self.energy, self.work, self.sum);
+        let (along_x, along_d) = (hx - w * sx, hd - w * sd);
+        if sx == 0.0 {
+            return [1.0, wanted.linear];
+        }
+        if self.capped > 0.0 {
+            return [1.0, self.along(wanted, dd, c * xd + along_d)];
+        }
+        // d without its share of x does no work on x.
+        let share = xd / xx;
+        let f = self.along(wanted, dd - share * xd, along_d - share * along_x);
+        let slope = c * (xx + f * xd) + along_x;
+        [if slope.abs() <= self.noise(wanted) * sx { 1.0 } else { 1.0 - slope / (c * xx) }, f]
+    }
+
+    /// The best f along a direction with that energy over the compliance, and the slope that the energy has at f = 0. The
+    /// linear one where the solver would not tell them apart.
+    fn along(&self, wanted: &Wanted, energy: f64, slope: f64) -> f64 {
+        let curvature = wanted.compliance * energy;
+        let seen = (slope + wanted.linear * curvature).abs() > self.noise(wanted) * self.size;
+        if seen && energy > NONE * self.energy[0] {
+            (-slope / curvature).clamp(REACH.start, REACH.end)
+        } else {
+            wanted.linear
+        }
+    }
+
+    /// Violations that the solver lets pass \[m\].
+    fn noise(&self, wanted: &Wanted) -> f64 {
+        wanted.tolerance * wanted.compliance * self.energy[0] / self.sum[0] + wanted.rounding
+    }
+}
+
+/// What U may be off by, in roundings of a convolution.
 #[derive(Clone, Copy)]
 pub(super) struct Roundings {
-    pub of_row: f64,
+    /// Of the last row, or the guess or trial of the row under way.
+    pub here: f64,
+    /// Of the row before the one under way.
+    last: f64,
+    /// Of the difference of the two.
     pub change: f64,
 }
 
-impl Roundings {
-    /// Nothing is known.
-    pub(super) const UNKNOWN: Self = Roundings { of_row: f64::INFINITY, change: f64::INFINITY };
+/// f x, also where x is infinite.
+fn times(f: f64, x: f64) -> f64 {
+    if f == 0.0 { 0.0 } else { f.abs() * x }
+}
 
-    /// Of U prolonged by `factor` times the last step.
-    fn prolonged(self, factor: f64) -> Self {
-        // A factor of zero leaves nothing of the row before, whatever its roundings.
-        let change = 1.0 + if factor > 0.0 { factor * self.change } else { 0.0 };
-        Roundings { of_row: self.of_row + change, change }
+impl Roundings {
+    /// Of a row.
+    pub(super) fn new(here: f64, change: f64) -> Self {
+        Roundings { here, last: f64::INFINITY, change }
     }
 
-    /// Of the row that was solved from a guess with these; of U the solver says `found`.
+    /// A row begins.
+    fn begin(self) -> Self {
+        Roundings { last: self.here, ..self }
+    }
+
+    /// Of the guess.
+    fn combined(self, [a, f]: [f64; 2]) -> Self {
+        let along = times(f, self.change) + 1.0;
+        Roundings {
+            here: times(a, self.last) + along,
+            last: self.last,
+            change: times(a - 1.0, self.last) + along,
+        }
+    }
+
+    /// Of the row that was solved from a guess with these; of its U the solver says `found`.
     pub(super) fn solved(self, found: f64) -> Self {
-        let change = if found >= self.of_row {
-            self.change + (found - self.of_row)
-        } else if self.of_row < f64::INFINITY {
-            // U was found afresh, beside that of the row before.
-            found + (self.of_row - self.change)
+        let change = if found >= self.here {
+            self.change + (found - self.here)
         } else {
-            f64::INFINITY
+            // U was found afresh, beside that of the row before.
+            found + self.last
         };
-        Roundings { of_row: found, change }
+        Roundings { here: found, change, ..self }
     }
 
     /// Whether nobody will see them.
     fn are_small(self, tolerance: f64) -> bool {
-        f64::EPSILON * self.of_row.max(AHEAD * self.change) <= SPARE * tolerance
+        f64::EPSILON * (self.here + AHEAD * self.change) <= SPARE * tolerance
     }
 }
 
 impl March {
-    /// Makes the guess of a step of length `now` in `self.state`, which holds the row before the last one; after a jump it is the
-    /// last row.
-    pub(super) fn guess(&mut self, now: f64) -> Start {
+    /// Makes the guess for the row that ends at `instant` in `self.state`, which holds the row before the last one.
+    pub(super) fn guess(&mut self, instant: Instant) -> Start {
+        self.roundings = self.roundings.begin();
         let before = self.timeline.last().map_or(0.0, |last| last.dt);
-        let factor = if before > 0.0 { (now / before).min(FARTHEST) } else { 0.0 };
+        self.combine(instant, if before > 0.0 { (instant.dt / before).min(REACH.end) } else { 0.0 })
+    }
+
+    /// The same where `self.state` holds the trial of a step of length `tried`.
+    pub(super) fn guess_again(&mut self, instant: Instant, tried: f64) -> Start {
+        self.combine(instant, -(instant.dt / tried).min(REACH.end))
+    }
+
+    fn combine(&mut self, instant: Instant, linear: f64) -> Start {
+        let prescribed = self.prescribed(instant);
         let hardness = cap(&self.simulation, &self.hardness);
         let (state, last) = (&mut self.state, &self.previous);
-        let [allowed, beyond] = sweep(
-            (
-                (&mut state.pressure[..], &mut state.unit_displacement[..]),
-                &last.pressure[..],
-                &last.unit_displacement[..],
-                hardness,
-            ),
-            &|((p, u), p_last, u_last, hardness): ((&mut [f64], &mut [f64]), &[f64], &[f64], Hardness)| {
-                vectorize(Prolong { factor, p, u, p_last, u_last, hardness })
+        let (p, u) = (&mut state.pressure[..], &mut state.unit_displacement[..]);
+        let (p_last, u_last) = (&last.pressure[..], &last.unit_displacement[..]);
+        let [x0, x1, x2, h0, h1, s0, s1, size, capped] = sweep(
+            (&*p, &*u, p_last, u_last, (&self.gap[..], hardness)),
+            &|(p, u, p_last, u_last, (h, hardness)): (&[f64], &[f64], &[f64], &[f64], (&[f64], Hardness))| {
+                vectorize(Look { p, u, p_last, u_last, h, hardness })
             },
         );
-        self.roundings = self.roundings.prolonged(factor);
+        let pair = Pair { energy: [x0, x1, x2], work: [h0, h1], sum: [s0, s1], size, capped };
+        let best = pair.best(&Wanted {
+            compliance: self.compliance,
+            prescribed,
+            cell_area: self.simulation.grid.cell_area(),
+            linear,
+            tolerance: self.simulation.solver.tolerance,
+            rounding: 16.0 * f64::EPSILON * state.approach.abs(),
+        });
+        let [allowed, beyond, kept] =
+            sweep(((p, u), p_last, u_last, hardness), &|((p, u), p_last, u_last, hardness): (
+                (&mut [f64], &mut [f64]),
+                &[f64],
+                &[f64],
+                Hardness,
+            )| {
+                vectorize(Combine { best, p, u, p_last, u_last, hardness })
+            });
+        self.roundings = self.roundings.combined(best);
         let small = self.roundings.are_small(self.simulation.solver.tolerance);
-        if small && beyond <= BEYOND * allowed {
-            Start::Known { roundings: self.roundings.of_row, beyond: beyond > 0.0 }
+        if small && kept == 0.0 && beyond <= BEYOND * allowed {
+            Start::Known { roundings: self.roundings.here, beyond: beyond > 0.0 }
         } else {
             Start::Guess
         }
     }
 }
 
-/// p and U prolonged by `factor` times the last step; yields the sums of what lies within the bounds and beyond.
-struct Prolong<'a> {
-    factor: f64,
+/// The numbers of [`Pair`].
+struct Look<'a> {
+    p: &'a [f64],
+    u: &'a [f64],
+    p_last: &'a [f64],
+    u_last: &'a [f64],
+    h: &'a [f64],
+    hardness: Hardness<'a>,
+}
+
+impl Work for Look<'_> {
+    type Yield = [f64; 9];
+
+    #[inline(always)]
+    fn run<V: Eight>(self) -> [f64; 9] {
+        let zero = V::splat(0.0);
+        let mut sums = [zero; 9];
+        for n in (0..self.p.len()).step_by(8) {
+            let [p, x] = [self.p, self.p_last].map(|f| V::load(f, n, 0.0));
+            let d = x - p;
+            let touches = zero.less(x.abs()) | zero.less(d.abs());
+            if touches.bits() == 0 {
+                continue;
+            }
+            let [u, ux] = [self.u, self.u_last].map(|f| V::load(f, n, 0.0));
+            // Infinite where a cell cannot touch.
+            let h = V::load(self.h, n, 0.0).only(touches);
+            let capped = touches & !x.less(self.hardness.eight(n));
+            let terms = [x * ux, d * ux, d * (ux - u), x * h, d * h, x, d, d.abs(), V::count(capped)];
+            sums = std::array::from_fn(|k| sums[k] + terms[k]);
+        }
+        sums.map(V::sum)
+    }
+}
+
+/// p = a p_n + f (p_n - p), and U likewise; yields the sums of what lies within the bounds and beyond. Cells at the
+/// cut-off that would leave it are kept there, and counted: their U is another.
+struct Combine<'a> {
+    best: [f64; 2],
     p: &'a mut [f64],
     u: &'a mut [f64],
     p_last: &'a [f64],
@@ -94,21 +272,24 @@ struct Prolong<'a> {
     hardness: Hardness<'a>,
 }
 
-impl Work for Prolong<'_> {
-    type Yield = [f64; 2];
+impl Work for Combine<'_> {
+    type Yield = [f64; 3];
 
     #[inline(always)]
-    fn run<V: Eight>(self) -> [f64; 2] {
-        let (zero, factor) = (V::splat(0.0), V::splat(self.factor));
-        let mut sums = [zero; 2];
+    fn run<V: Eight>(self) -> [f64; 3] {
+        let [a, f] = self.best.map(V::splat);
+        let mut sums = [V::splat(0.0); 3];
         for n in (0..self.p.len()).step_by(8) {
-            let [p, p_last] = [&*self.p, self.p_last].map(|f| V::load(f, n, 0.0));
-            let [u, u_last] = [&*self.u, self.u_last].map(|f| V::load(f, n, 0.0));
-            let p = p_last + factor * (p_last - p);
+            let [p, x] = [&*self.p, self.p_last].map(|field| V::load(field, n, 0.0));
+            let [u, ux] = [&*self.u, self.u_last].map(|field| V::load(field, n, 0.0));
+            let top: V = self.hardness.eight(n);
+            let p = a * x + f * (x - p);
+            let leaves = !x.less(top) & p.less(top);
+            let p = V::select(leaves, top, p);
             p.store(self.p, n);
-            (u_last + factor * (u_last - u)).store(self.u, n);
-            let allowed = p.clip(self.hardness.eight::<V>(n));
-            sums = [sums[0] + allowed, sums[1] + (p - allowed).abs()];
+            (a * ux + f * (ux - u)).store(self.u, n);
+            let allowed = p.clip(top);
+            sums = [sums[0] + allowed, sums[1] + (p - allowed).abs(), sums[2] + V::count(leaves)];
         }
         sums.map(V::sum)
     }
@@ -156,44 +337,45 @@ mod tests {
                 let off = fresh.iter().zip(&march.state.unit_displacement).map(|(a, b)| (a - b).abs());
                 let off = off.fold(0.0, f64::max);
                 // A convolution is off by some roundings itself.
-                let bound = 4.0 * f64::EPSILON * march.roundings.of_row;
+                let bound = 4.0 * f64::EPSILON * march.roundings.here;
                 assert!(off <= bound * largest, "{} s: {off} {bound}", row.time);
             }
             assert!(rows > 110, "{boundary:?}: {rows}");
-            assert!(march.roundings.of_row > 100.0);
+            assert!(march.roundings.here > 100.0);
         }
     }
 
     #[test]
     fn roundings_are_no_larger_than_they_are_said_to_be() {
         for factor in [0.5, 1.0, 1.1] {
-            let mut said = Roundings::UNKNOWN.prolonged(0.0).solved(1.0).prolonged(0.0).solved(3.0);
+            let mut said = Roundings::new(3.0, 2.0);
             let mut errors = [1.0, 3.0];
             for row in 0..40 {
-                said = said.prolonged(factor);
+                said = said.begin().combined([1.0, factor]);
                 let sign = if row % 7 < 4 { 1.0 } else { -1.0 };
                 errors = [errors[1], errors[1] + factor * (errors[1] - errors[0]) + sign * 3.0];
-                said = said.solved(said.of_row + 2.0);
-                assert!(errors[1].abs() <= said.of_row, "{factor} {row}: {errors:?} {}", said.of_row);
+                said = said.solved(said.here + 2.0);
+                assert!(errors[1].abs() <= said.here, "{factor} {row}: {errors:?} {}", said.here);
             }
         }
     }
 
     #[test]
     fn two_rows_found_afresh_leave_none_of_the_roundings() {
-        let mut said = Roundings { of_row: 5.0, change: 1.0 };
+        let linear = |said: Roundings| said.begin().combined([1.0, 1.0]);
+        let mut said = Roundings::new(5.0, 1.0);
         let mut rows = 0;
-        while said.prolonged(1.0).are_small(1e-9) {
-            said = said.prolonged(1.0);
-            said = said.solved(said.of_row + 5.0);
+        while linear(said).are_small(1e-9) {
+            said = linear(said);
+            said = said.solved(said.here + 5.0);
             rows += 1;
         }
         assert!(rows > 20, "{rows}");
-        said = said.prolonged(1.0).solved(6.0);
-        assert!(!said.prolonged(1.0).are_small(1e-9));
-        said = said.prolonged(1.0).solved(6.0);
-        assert!(said.prolonged(1.0).are_small(1e-9));
+        said = linear(said).solved(6.0);
+        assert!(!linear(said).are_small(1e-9));
+        said = linear(said).solved(6.0);
+        assert!(linear(said).are_small(1e-9));
         // A tolerance near rounding leaves nothing to spare.
-        assert!(!said.prolonged(1.0).are_small(1e-13));
+        assert!(!linear(said).are_small(1e-13));
     }
 }

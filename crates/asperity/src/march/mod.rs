@@ -181,7 +181,7 @@ impl March {
             current: None,
             state: ContactState::new(n),
             previous: Previous { pressure: zeros(n), unit_displacement: zeros(n) },
-            roundings: Roundings::UNKNOWN,
+            roundings: Roundings::new(f64::INFINITY, f64::INFINITY),
             compliance: 0.0,
             outcome: Outcome::default(),
             dents,
@@ -261,11 +261,12 @@ impl March {
         // What stands there is U two rows before.
         let older = &self.state.unit_displacement[..self.older.len()];
         self.older.copy_from_slice(older);
-        self.guess(instant.dt)
+        self.guess(instant)
     }
 
     /// The step under way at another length, solved from the last guess.
     fn try_again(&mut self, dt: f64) -> Result<Instant> {
+        let tried = self.current.map_or(0.0, |(_, trial)| trial.dt);
         let instant = self.timeline.inside(&self.simulation, dt);
         self.measure_step(instant);
         let unit = &self.previous.unit_displacement;
@@ -274,24 +275,28 @@ impl March {
             Past::Memory(m) => m.retry(&self.lengths, unit, rigid, &mut self.gap),
             Past::Direct(d) => d.retry(dt, rigid, &mut self.gap),
         };
-        // The state is that of the last trial.
-        self.solve(instant, Start::Known { roundings: self.roundings.of_row, beyond: false })?;
+        let start = self.guess_again(instant, tried);
+        self.solve(instant, start)?;
         Ok(instant)
+    }
+
+    /// What the solver is to meet.
+    fn prescribed(&self, instant: Instant) -> Prescribed {
+        match instant.control {
+            Control::Load => Prescribed::Load(instant.value),
+            Control::Pressure => Prescribed::Load(instant.value * self.simulation.grid.area()),
+            Control::Approach => Prescribed::Approach(instant.value),
+        }
     }
 
     /// Solves the contact that is set.
     fn solve(&mut self, instant: Instant, start: Start) -> Result<()> {
         self.current = Some((self.done, instant));
-        let area = self.simulation.grid.area();
         let problem = Problem {
             gap: &self.gap,
             compliance: self.compliance,
             hardness: cap(&self.simulation, &self.hardness),
-            prescribed: match instant.control {
-                Control::Load => Prescribed::Load(instant.value),
-                Control::Pressure => Prescribed::Load(instant.value * area),
-                Control::Approach => Prescribed::Approach(instant.value),
-            },
+            prescribed: self.prescribed(instant),
         };
         let options = &self.simulation.solver;
         let interrupt = self.interrupt.as_deref();

@@ -122,15 +122,15 @@ impl Singles {
         }
     }
 
-    /// The pressure as f64, at H again where it is at H in f32.
-    pub(super) fn give(&self, problem: &Problem, state: &mut ContactState) {
+    /// The pressure as f64, at H again where it is at H in f32; its sums below H and at H.
+    pub(super) fn give(&self, problem: &Problem, state: &mut ContactState) -> [f64; 2] {
         sweep((&mut state.pressure[..], &self.pressure[..], problem.hardness), &|(to, p, hardness): (
             &mut [f64],
             &[f32],
             Hardness,
         )| {
             vectorize(Give { to, p, hardness })
-        });
+        })
     }
 }
 
@@ -164,13 +164,18 @@ struct Give<'a> {
 }
 
 impl Work for Give<'_> {
-    type Yield = ();
+    type Yield = [f64; 2];
 
     #[inline(always)]
-    fn run<V: Eight>(self) {
+    fn run<V: Eight>(self) -> [f64; 2] {
+        let [mut below, mut capped] = [V::splat(0.0); 2];
         for n in (0..self.p.len()).step_by(8) {
             let (p, top): (V, V) = (V::load(self.p, n, 0.0), self.hardness.eight(n));
-            V::select(p.less(self.hardness.stored::<f32, V>(n)), p, top).store(self.to, n);
+            let free = p.less(self.hardness.stored::<f32, V>(n));
+            V::select(free, p, top).store(self.to, n);
+            below = below + p.only(free);
+            capped = capped + top.only(!free);
         }
+        [below.sum(), capped.sum()]
     }
 }

@@ -31,7 +31,7 @@ use super::motion::{Motion, Passage, advance, pass};
 use super::preconditioner::Preconditioner;
 use super::residual::Rating;
 use super::shift::{Shift, Trial};
-use super::start::{Start, make_feasible};
+use super::start::{Start, make_feasible, scale_to_load};
 use super::{ContactState, Outcome, Prescribed, Problem, SolverOptions, interrupted, not_converged};
 use crate::error::{Error, NotConverged, Result};
 use crate::field::zeros;
@@ -90,7 +90,7 @@ struct Task<'a> {
 /// What is known of the fields that iterations set out from.
 #[derive(Clone, Copy, Default)]
 struct Outset {
-    /// An approach and the size of a violation \[m\]; found where they are not outset.
+    /// An approach and the size of a violation \[m\]; found where they are not known.
     about: Option<(f64, f64)>,
     /// The pressure may lie beyond its bounds, and without its load.
     beyond: bool,
@@ -171,25 +171,19 @@ impl<T: Scalar> ProjectedCg<T> {
                 solved => return solved,
             }
         }
-        self.convolve(operator, problem, state)?;
+        make_feasible(problem, operator.grid().cell_area(), state, &mut self.working)?;
+        self.convolve(operator, state);
         let outcome = self.solve_known(operator, task, state, false)?;
         Ok(Outcome { convolutions: outcome.convolutions + 1, ..outcome })
     }
 
-    /// Makes the pressure feasible and finds its U.
-    fn convolve(
-        &mut self,
-        operator: &mut dyn Operator,
-        problem: &Problem,
-        state: &mut ContactState,
-    ) -> Result<()> {
-        make_feasible(problem, operator.grid().cell_area(), state, &mut self.working)?;
+    /// Finds U afresh.
+    fn convolve(&mut self, operator: &mut dyn Operator, state: &mut ContactState) {
         operator.apply_into(&state.pressure, &mut state.unit_displacement);
         self.roundings = 1.0;
-        Ok(())
     }
 
-    /// Solves from a state whose U is outset.
+    /// Solves from a state whose U is known.
     fn solve_known(
         &mut self,
         operator: &mut dyn Operator,
@@ -270,8 +264,11 @@ impl<T: Scalar> ProjectedCg<T> {
             return Ok(work);
         }
         let found = w + *fields.approach;
-        singles.give(problem, state);
-        self.convolve(operator, problem, state)?;
+        let sums = singles.give(problem, state);
+        if !scale_to_load(problem, grid.cell_area(), &mut state.pressure, sums) {
+            make_feasible(problem, grid.cell_area(), state, &mut self.working)?;
+        }
+        self.convolve(operator, state);
         *outset = Outset { about: Some((found, scale * options.tolerance)), ..Outset::default() };
         Ok(Outcome { convolutions: work.convolutions + 1, ..work })
     }

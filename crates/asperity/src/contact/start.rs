@@ -28,10 +28,11 @@ const MET: f64 = 1e-12;
 impl Start {
     /// The start that is of use for `problem`, for `total` the sum of the pressure.
     pub(super) fn with_load(self, problem: &Problem, cell_area: f64, total: f64) -> Self {
-        match problem.prescribed {
-            Prescribed::Load(load) if !((cell_area * total / load - 1.0).abs() <= MET) => Start::Guess,
-            _ => self,
-        }
+        let met = match problem.prescribed {
+            Prescribed::Load(load) => (cell_area * total / load - 1.0).abs() <= MET,
+            Prescribed::Approach(_) => true,
+        };
+        if met { self } else { Start::Guess }
     }
 }
 
@@ -70,6 +71,20 @@ pub(super) fn make_feasible(
         .ok_or_else(|| Error::Infeasible { load, max: problem.limits().2 * cell_area })
 }
 
+/// Gives a pressure within \[0, H\], which has these sums below H and at H, the load W, by scaling the cells below H; false where
+/// that goes beyond H somewhere.
+pub(super) fn scale_to_load(problem: &Problem, cell_area: f64, p: &mut [f64], sums: [f64; 2]) -> bool {
+    let Prescribed::Load(load) = problem.prescribed else { return true };
+    let ([below, capped], hardness) = (sums, problem.hardness);
+    let factor = (load / cell_area - capped) / below;
+    factor > 0.0 && factor.is_finite() && scale(p, factor, hardness) == 0.0
+}
+
+/// Scales the cells below H, up to H; how many would have gone beyond.
+fn scale(p: &mut [f64], factor: f64, hardness: Hardness) -> f64 {
+    sweep((p, hardness), &|(p, hardness): (&mut [f64], Hardness)| vectorize(Scale { p, factor, hardness }))
+}
+
 /// Gives a pressure within \[0, H\] the sum `target`: by scaling the cells below H, which keeps open
 /// cells open; where those cannot carry it, by a shift of all cells of `set`.
 pub(super) fn set_load(p: &mut [f64], set: &[u8], hardness: Hardness, target: f64) -> Option<()> {
@@ -82,10 +97,7 @@ pub(super) fn set_load(p: &mut [f64], set: &[u8], hardness: Hardness, target: f6
             break;
         }
         let factor = rest / below;
-        let over = sweep((&mut *p, hardness), &|(p, hardness): (&mut [f64], Hardness)| {
-            vectorize(Scale { p, factor, hardness })
-        });
-        if over == 0.0 {
+        if scale(p, factor, hardness) == 0.0 {
             return Some(());
         }
     }

@@ -43,11 +43,21 @@ trait Engine: Send {
 
     /// The same of what is made, visited.
     fn apply_made_into(&mut self, make: &Make<f64>, output: &mut [f64], visit: &Visit<f64>) -> [Sums; 2] {
-        let mut input = vec![0.0; output.len()];
-        let made = make(0, &mut input);
-        self.apply_into(&input, output);
-        [made, visit(0, output)]
+        at_once(make, output, visit, |input, output| self.apply_into(input, output))
     }
+}
+
+/// What is made, applied and visited as whole fields, for what takes no rows on the way: `output` = `apply` of what `make` writes.
+pub fn at_once<T: Clone + Default>(
+    make: &Make<T>,
+    output: &mut [T],
+    visit: &Visit<T>,
+    apply: impl FnOnce(&[T], &mut [T]),
+) -> [Sums; 2] {
+    let mut input = vec![T::default(); output.len()];
+    let made = make(0, &mut input);
+    apply(&input, output);
+    [made, visit(0, output)]
 }
 
 /// What meets some cells of an output on its way; the number of the first is given.

@@ -78,6 +78,47 @@ impl<V: Lane> Engine<V> {
         }
     }
 
+    /// A pass over groups of rows in borrowed room: `back` from the columns, through `visit`, and `on` to the columns. `kept` is
+    /// empty or a field.
+    fn pass(&mut self, kept: &mut [V::Scalar], visit: &Visit<V::Scalar>, [back, on]: [bool; 2]) -> Sums {
+        let (nx, ny, plan, scratch) = (self.rows, self.row_plan.cells(), &self.row_plan, &self.scratch);
+        assert!(kept.is_empty() || kept.len() == nx * ny);
+        let tiles = SharedTiles::new(&mut self.work, self.stride);
+        let group = group::<V>();
+        let pass = |n: usize, sums: &mut Sums, kept: &mut [V::Scalar]| {
+            let rows = n * group..nx.min((n + 1) * group);
+            // SAFETY: every group of rows is visited once; its blocks have no row in common, and are read before they are
+            // written.
+            let tiles = |first: usize, cells: &[V::Scalar]| unsafe { tiles.of_rows(first, cells.len() / ny) };
+            with(scratch, |scratch| {
+                let mut room = std::mem::take(&mut scratch.rows);
+                let cells = &mut room[..rows.len() * ny];
+                if back {
+                    for (rows, first) in cells.chunks_mut(V::LANES * ny).zip(rows.clone().step_by(V::LANES)) {
+                        let tiles = tiles(first, rows);
+                        V::vectorize(InverseRows { plan, tiles, rows, scratch });
+                    }
+                }
+                *sums = visit(rows.start * ny, cells, kept);
+                if on {
+                    for (rows, first) in cells.chunks(V::LANES * ny).zip(rows.step_by(V::LANES)) {
+                        let tiles = tiles(first, rows);
+                        V::vectorize(ForwardRows { plan, rows, tiles, scratch });
+                    }
+                }
+                scratch.rows = room;
+            });
+        };
+        let groups = self.sums.par_iter_mut();
+        if kept.is_empty() {
+            groups.enumerate().for_each(|(n, sums)| pass(n, sums, &mut []));
+        } else {
+            let kept = kept.par_chunks_mut(group * ny);
+            groups.zip(kept).enumerate().for_each(|(n, (sums, kept))| pass(n, sums, kept));
+        }
+        total(&self.sums)
+    }
+
     /// Every block of columns there and back.
     fn multiply_with<M: Meter<V> + Send>(
         &mut self,
@@ -194,24 +235,7 @@ impl<V: Lane> Convolve<V::Scalar> for Engine<V> {
     }
 
     fn make(&mut self, make: &Make<V::Scalar>) -> Sums {
-        let (nx, ny, plan, scratch) = (self.rows, self.row_plan.cells(), &self.row_plan, &self.scratch);
-        let tiles = SharedTiles::new(&mut self.work, self.stride);
-        let group = group::<V>();
-        self.sums.par_iter_mut().enumerate().for_each(|(n, sums)| {
-            let rows = n * group..nx.min((n + 1) * group);
-            with(scratch, |scratch| {
-                let mut room = std::mem::take(&mut scratch.rows);
-                let cells = &mut room[..rows.len() * ny];
-                *sums = make(rows.start * ny, cells);
-                for (rows, first) in cells.chunks(V::LANES * ny).zip(rows.step_by(V::LANES)) {
-                    // SAFETY: every group of rows is visited once, and its blocks have no row in common.
-                    let tiles = unsafe { tiles.of_rows(first, rows.len() / ny) };
-                    V::vectorize(ForwardRows { plan, rows, tiles, scratch });
-                }
-                scratch.rows = room;
-            });
-        });
-        total(&self.sums)
+        self.pass(&mut [], &|first, cells, _| make(first, cells), [false, true])
     }
 
     fn multiply(&mut self, spectrum: usize) {
@@ -250,40 +274,7 @@ impl<V: Lane> Convolve<V::Scalar> for Engine<V> {
     }
 
     fn turn(&mut self, kept: &mut [V::Scalar], visit: &Visit<V::Scalar>, on: bool) -> Sums {
-        let (nx, ny, plan, scratch) = (self.rows, self.row_plan.cells(), &self.row_plan, &self.scratch);
-        assert!(kept.is_empty() || kept.len() == nx * ny);
-        let tiles = SharedTiles::new(&mut self.work, self.stride);
-        let group = group::<V>();
-        let turn = |n: usize, sums: &mut Sums, kept: &mut [V::Scalar]| {
-            let rows = n * group..nx.min((n + 1) * group);
-            // SAFETY: every group of rows is visited once; its blocks have no row in common, and are read before they are
-            // written.
-            let tiles = |first: usize, cells: &[V::Scalar]| unsafe { tiles.of_rows(first, cells.len() / ny) };
-            with(scratch, |scratch| {
-                let mut room = std::mem::take(&mut scratch.rows);
-                let cells = &mut room[..rows.len() * ny];
-                for (rows, first) in cells.chunks_mut(V::LANES * ny).zip(rows.clone().step_by(V::LANES)) {
-                    let tiles = tiles(first, rows);
-                    V::vectorize(InverseRows { plan, tiles, rows, scratch });
-                }
-                *sums = visit(rows.start * ny, cells, kept);
-                if on {
-                    for (rows, first) in cells.chunks(V::LANES * ny).zip(rows.step_by(V::LANES)) {
-                        let tiles = tiles(first, rows);
-                        V::vectorize(ForwardRows { plan, rows, tiles, scratch });
-                    }
-                }
-                scratch.rows = room;
-            });
-        };
-        let groups = self.sums.par_iter_mut();
-        if kept.is_empty() {
-            groups.enumerate().for_each(|(n, sums)| turn(n, sums, &mut []));
-        } else {
-            let kept = kept.par_chunks_mut(group * ny);
-            groups.zip(kept).enumerate().for_each(|(n, (sums, kept))| turn(n, sums, kept));
-        }
-        total(&self.sums)
+        self.pass(kept, visit, [true, on])
     }
 }
 

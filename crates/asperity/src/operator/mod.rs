@@ -14,8 +14,8 @@ pub use periodic::Periodic;
 use ndarray::Array2;
 use ndarray::parallel::prelude::*;
 
-use crate::convolution::Visit;
 use crate::convolution::lanes::{Lanes, Make, Sums};
+use crate::convolution::{Visit, at_once};
 use crate::grid::{Boundary, Grid};
 use crate::kernel::inverse_kernel;
 
@@ -37,18 +37,12 @@ pub trait Operator: Send {
     /// a multiple of eight; `visit(first, u)` meets some cells of u at a time while they are in the cache. Returns the totals
     /// of the sums that each returns.
     fn apply_made_into(&mut self, make: &Make<f64>, u: &mut [f64], visit: &Visit<f64>) -> [Sums; 2] {
-        let mut p = vec![0.0; u.len()];
-        let made = make(0, &mut p);
-        self.apply_into(&p, u);
-        [made, visit(0, u)]
+        at_once(make, u, visit, |p, u| self.apply_into(p, u))
     }
 
     /// The same in f32.
     fn apply_single_made_into(&mut self, make: &Make<f32>, u: &mut [f32], visit: &Visit<f32>) -> [Sums; 2] {
-        let mut p = vec![0.0; u.len()];
-        let made = make(0, &mut p);
-        self.apply_single_into(&p, u);
-        [made, visit(0, u)]
+        at_once(make, u, visit, |p, u| self.apply_single_into(p, u))
     }
 
     /// Displacement of a cell under its own unit pressure \[m\].

@@ -15,6 +15,8 @@ use crate::time::Instant;
 
 /// Least and largest f.
 const REACH: std::ops::Range<f64> = -4.0..4.0;
+/// Least and largest a that an energy may ask for.
+const GROWTH: std::ops::Range<f64> = 0.25..4.0;
 /// The share of the energy below which a change is none.
 const NONE: f64 = 1e-20;
 /// The share of the violations that the solver lets pass below which a slope is not seen: they do not all add up.
@@ -100,7 +102,12 @@ impl Pair {
         let share = xd / xx;
         let f = self.along(wanted, dd - share * xd, along_d - share * along_x);
         let slope = c * (xx + f * xd) + along_x;
-        [if slope.abs() <= self.noise(wanted) * sx { 1.0 } else { 1.0 - slope / (c * xx) }, f]
+        if slope.abs() <= self.noise(wanted) * sx {
+            return [1.0, f];
+        }
+        // Where x costs hardly any energy, as an even pressure on a periodic domain, this says nothing.
+        let a = 1.0 - slope / (c * xx);
+        if GROWTH.contains(&a) { [a, f] } else { [1.0, wanted.linear] }
     }
 
     /// The best f along a direction with that energy over the compliance, and the slope that the energy has at f = 0. The

@@ -82,6 +82,7 @@ pub struct March {
     state: ContactState,
     /// Pressure and U of the row before.
     previous: Previous,
+    /// What U of these two rows may be off by.
     roundings: Roundings,
     /// h0 + g of the last step.
     gap: Vec<f64>,
@@ -264,7 +265,7 @@ impl March {
         self.guess(instant)
     }
 
-    /// The step under way at another length, solved from the last guess.
+    /// The step under way at another length, guessed from the last row and the last trial.
     fn try_again(&mut self, dt: f64) -> Result<Instant> {
         let tried = self.current.map_or(0.0, |(_, trial)| trial.dt);
         let instant = self.timeline.inside(&self.simulation, dt);

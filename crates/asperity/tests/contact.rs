@@ -162,11 +162,13 @@ fn mixed_precision_meets_the_same_tolerance() {
                     assert!(outcome.residual <= tolerance && outcome.certificate < 1e3 * tolerance.sqrt());
                     (state, outcome)
                 });
-                // The displacement that comes back is that of the pressure, in f64.
+                // The displacement that comes back is that of the pressure, to a hundredth of the tolerance.
                 let [(double, other), (mixed, outcome)] = &found;
                 let mut exact = vec![0.0; grid.len()];
                 operator.apply_into(&mixed.pressure, &mut exact);
-                assert_eq!(exact, mixed.unit_displacement);
+                let most = exact.iter().fold(0.0_f64, |most, u| most.max(u.abs()));
+                let off = exact.iter().zip(&mixed.unit_displacement).map(|(a, b)| (a - b).abs());
+                assert!(off.fold(0.0, f64::max) <= 1e-2 * tolerance * most);
                 // Each lies within its certificate of the solution, in the norm of K.
                 let difference: Vec<f64> =
                     double.pressure.iter().zip(&mixed.pressure).map(|(a, b)| a - b).collect();

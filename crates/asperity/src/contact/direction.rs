@@ -4,11 +4,10 @@
 //! Residual and direction are f32: they say where to go, relative to the largest violation, and the exact
 //! minimisation along the step makes up for their rounding. Groups of eight cells without a cell of S are skipped.
 
-use asperity_convolution::eights::{Cell, Eight, Mask, Work, vectorize};
+use asperity_convolution::eights::{Eight, Mask, Work, vectorize};
 
-use super::Hardness;
-use super::fields::{Fields, undeformed};
 use super::shift::ClippedSum;
+use super::{ContactState, Hardness, Problem};
 use crate::field::{Set, SetMut, sweep};
 
 /// Subtracts `mean` from the residual on S.
@@ -149,11 +148,11 @@ impl<V: Eight> Looking<V> {
 
 /// Turns the direction on S, 0 elsewhere, and looks at the trial point. `before` is the set of the direction that was
 /// there: other cells are zero already.
-pub(super) fn turn<P: Cell>(
+pub(super) fn turn(
     d: &mut [f32],
     z: &[f32],
     (set, before): (&[u8], &[u8]),
-    p: &[P],
+    p: &[f64],
     hardness: Hardness,
     turn: Turn,
 ) -> Ahead {
@@ -163,22 +162,22 @@ pub(super) fn turn<P: Cell>(
         &[f32],
         Set,
         Set,
-        &[P],
+        &[f64],
         Hardness,
     )| { vectorize(Turning { d, z, set, before, p, hardness, turn }) }))
 }
 
-struct Turning<'a, P> {
+struct Turning<'a> {
     d: &'a mut [f32],
     z: &'a [f32],
     set: &'a [u8],
     before: &'a [u8],
-    p: &'a [P],
+    p: &'a [f64],
     hardness: Hardness<'a>,
     turn: Turn,
 }
 
-impl<P: Cell> Work for Turning<'_, P> {
+impl Work for Turning<'_> {
     type Yield = [f64; 4];
 
     #[inline(always)]
@@ -197,7 +196,7 @@ impl<P: Cell> Work for Turning<'_, P> {
             d.only(on).store(self.d, n);
             // As it was rounded: later sweeps take the step from the stored direction.
             let d = V::from_singles(d.only(on).to_singles());
-            looking.meet(V::load(self.p, n, 0.0), d, self.hardness.stored::<P, V>(n), on);
+            looking.meet(V::load(self.p, n, 0.0), d, self.hardness.eight(n), on);
         }
         looking.sums.map(V::sum)
     }
@@ -205,28 +204,34 @@ impl<P: Cell> Work for Turning<'_, P> {
 
 /// The direction d = r / scale over all cells that can touch, which become the set; looks at the trial point
 /// p - a d.
-pub(super) fn steepest<P: Cell>(
-    fields: &Fields<P>,
-    hardness: Hardness,
+pub(super) fn steepest(
+    problem: &Problem,
+    state: &ContactState,
     w: f64,
     scale: f64,
     length: f64,
     (d, r, set): (&mut [f32], &mut [f32], &mut [u8]),
 ) -> Ahead {
-    let compliance = fields.compliance;
-    Ahead::of(sweep(
-        ((d, r, SetMut(set)), &*fields.pressure, &*fields.displacement, fields.gap, hardness),
-        &|((d, r, SetMut(set)), p, u, h, hardness): (
-            (&mut [f32], &mut [f32], SetMut),
-            &[P],
-            &[P],
-            Option<&[f64]>,
-            Hardness,
-        )| { vectorize(Steepest { compliance, w, scale, length, d, r, set, p, u, h, hardness }) },
-    ))
+    let compliance = problem.compliance;
+    let (p, u) = (&state.pressure[..], &state.unit_displacement[..]);
+    Ahead::of(sweep(((d, r, SetMut(set)), p, u, problem.gap, problem.hardness), &|(
+        (d, r, SetMut(set)),
+        p,
+        u,
+        h,
+        hardness,
+    ): (
+        (&mut [f32], &mut [f32], SetMut),
+        &[f64],
+        &[f64],
+        &[f64],
+        Hardness,
+    )| {
+        vectorize(Steepest { compliance, w, scale, length, d, r, set, p, u, h, hardness })
+    }))
 }
 
-struct Steepest<'a, P> {
+struct Steepest<'a> {
     compliance: f64,
     w: f64,
     scale: f64,
@@ -234,13 +239,13 @@ struct Steepest<'a, P> {
     d: &'a mut [f32],
     r: &'a mut [f32],
     set: &'a mut [u8],
-    p: &'a [P],
-    u: &'a [P],
-    h: Option<&'a [f64]>,
+    p: &'a [f64],
+    u: &'a [f64],
+    h: &'a [f64],
     hardness: Hardness<'a>,
 }
 
-impl<P: Cell> Work for Steepest<'_, P> {
+impl Work for Steepest<'_> {
     type Yield = [f64; 4];
 
     #[inline(always)]
@@ -248,14 +253,13 @@ impl<P: Cell> Work for Steepest<'_, P> {
         let mut looking = Looking::<V>::new(self.length);
         let (c, w, per) = (V::splat(self.compliance), V::splat(self.w), V::splat(1.0 / self.scale));
         for (n, set) in (0..).step_by(8).zip(self.set) {
-            let h = undeformed::<V>(self.h, n);
-            let g = c * V::load(self.u, n, f64::INFINITY) + h;
+            let g = c * V::load(self.u, n, 0.0) + V::load(self.h, n, f64::INFINITY);
             let on = g.less(V::splat(f64::INFINITY));
             let r = ((g - w) * per).only(on).to_singles();
             V::from_singles(r).store(self.d, n);
             V::from_singles(r).store(self.r, n);
             *set = on.bits();
-            let top = self.hardness.stored::<P, V>(n);
+            let top: V = self.hardness.eight(n);
             looking.meet(V::load(self.p, n, 0.0), V::from_singles(r), top, on);
         }
         looking.sums.map(V::sum)

@@ -1,9 +1,8 @@
 //! The cut-off H of the pressure: one for all cells, or one for each.
 
-use asperity_convolution::eights::{Cell, Eight};
+use asperity_convolution::eights::Eight;
 
 use super::Problem;
-use super::fields::as_stored;
 use crate::field::{Cells, minimum, strands, sweep};
 
 /// Cut-off H of the pressure \[Pa\].
@@ -49,12 +48,6 @@ impl Hardness<'_> {
             Hardness::Uniform(hardness) => V::splat(*hardness),
             Hardness::Cells(cells) => V::load(cells, cell, f64::INFINITY),
         }
-    }
-
-    /// H of eight cells as a field of P holds it: what a pressure in P is compared with.
-    #[inline(always)]
-    pub(super) fn stored<P: Cell, V: Eight>(&self, cell: usize) -> V {
-        as_stored::<P, V>(self.eight(cell))
     }
 }
 

@@ -12,7 +12,6 @@
 
 mod coarse;
 mod direction;
-mod fields;
 mod gauss_seidel;
 mod hardness;
 mod lengths;
@@ -21,17 +20,20 @@ mod polonsky_keer;
 mod preconditioner;
 mod projected_cg;
 mod residual;
+mod roundings;
+mod scalar;
 mod shift;
 mod start;
 mod state;
 
-pub use fields::Scalar;
 pub use gauss_seidel::gauss_seidel;
 pub use hardness::Hardness;
 pub(crate) use lengths::REMEMBERED;
 pub use polonsky_keer::PolonskyKeer;
 pub use projected_cg::ProjectedCg;
-pub(crate) use start::Start;
+pub(crate) use roundings::Roundings;
+pub use scalar::Scalar;
+pub(crate) use start::{MET, Start};
 pub use state::ContactState;
 
 use std::sync::atomic::AtomicBool;
@@ -73,16 +75,15 @@ pub enum Method {
     PolonskyKeer,
 }
 
-/// Floating-point numbers of a solve. Either way the solution, its residual and its certificate are those of a
-/// convolution in f64.
+/// Floating-point numbers of the steps of a solve. Either way pressure and displacement are f64, and so are their residual
+/// and certificate; the displacement is that of the pressure to a hundredth of the tolerance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum Precision {
-    /// Every convolution of a pressure in f64.
+    /// Every convolution in f64.
     #[default]
     Double,
-    /// Iterations in f32, at half the cost of their convolutions and with half the traffic; what they lead to is convolved
-    /// in f64, and what it lacks is solved for with fields in f64. The same tolerance holds; the digits beyond it differ.
-    /// For [`Method::ProjectedCg`].
+    /// Convolutions of steps in f32, at half the cost; what they leave in the displacement is found afresh in f64 before it
+    /// is seen. The same tolerance holds; the digits beyond it differ. For [`Method::ProjectedCg`].
     Mixed,
 }
 
@@ -202,7 +203,7 @@ impl Solver {
     /// See [`Self::solve`]. Polonsky and Keer's method finds U anew.
     pub(crate) fn solve_from(
         &mut self,
-        mut start: Start,
+        start: Start,
         operator: &mut dyn Operator,
         problem: &Problem,
         options: &SolverOptions,
@@ -210,20 +211,18 @@ impl Solver {
         interrupt: Option<&AtomicBool>,
     ) -> Result<Outcome> {
         if let Some(outcome) = trivial(operator, problem, state)? {
-            self.set_roundings(1.0);
+            self.set_roundings(Roundings::of_convolution());
             return Ok(outcome);
         }
-        let total = sum(&state.pressure);
-        let cold = !matches!(self, Solver::PolonskyKeer(_)) && total <= 0.0;
+        let guessed =
+            matches!((&*self, start), (Self::ProjectedCg(_) | Self::MixedProjectedCg(_), Start::Guess));
+        let cold = guessed && sum(&state.pressure) <= 0.0;
         let before = if cold {
             self.remember([0.0; REMEMBERED]);
-            start = Start::Guess;
             coarse::start(operator, problem, options, state, interrupt)?
         } else {
             0.0
         };
-        let area = operator.grid().cell_area();
-        let start = start.with_load(problem, area, total);
         let outcome = match self {
             Solver::ProjectedCg(s) => s.solve(start, operator, problem, options, state, interrupt),
             Solver::MixedProjectedCg(s) => s.solve(start, operator, problem, options, state, interrupt),
@@ -250,13 +249,13 @@ impl Solver {
     /// What U of the last solution may be off by, in roundings of a convolution.
     pub(crate) fn roundings(&self) -> f64 {
         match self {
-            Solver::ProjectedCg(s) => s.roundings,
-            Solver::MixedProjectedCg(s) => s.roundings,
+            Solver::ProjectedCg(s) => s.roundings.here,
+            Solver::MixedProjectedCg(s) => s.roundings.here,
             Solver::PolonskyKeer(_) => f64::INFINITY,
         }
     }
 
-    fn set_roundings(&mut self, roundings: f64) {
+    fn set_roundings(&mut self, roundings: Roundings) {
         match self {
             Solver::ProjectedCg(s) => s.roundings = roundings,
             Solver::MixedProjectedCg(s) => s.roundings = roundings,

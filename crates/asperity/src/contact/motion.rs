@@ -9,10 +9,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use asperity_convolution::eights::{Cell, Eight, Mask, Work, vectorize};
 use asperity_convolution::lanes::Sums;
 
-use super::Hardness;
-use super::fields::{Fields, Scalar, as_stored, undeformed};
 use super::residual::{Gauge, Rating};
+use super::scalar::Scalar;
 use super::shift::{Mover, Shift, Trial};
+use super::{ContactState, Hardness, Problem};
 use crate::field::{Set, SetMut, sweep};
 use crate::operator::Operator;
 
@@ -28,6 +28,8 @@ pub(super) struct Passage {
     pub curvature: f64,
     /// <s, s>
     pub length: f64,
+    /// Largest |K s| on the set, which is the largest anywhere.
+    pub largest: f64,
     /// sum of r, sum of K s, and number of cells, inside.
     pub inside: [f64; 3],
     /// The largest multiple of s that stays within the bounds.
@@ -42,9 +44,9 @@ fn power_of_two(x: f64) -> f64 {
 }
 
 /// `image` = K s, s = q - p, q the trial point shifted and clipped.
-pub(super) fn pass<T: Scalar, P: Cell>(
+pub(super) fn pass<T: Scalar>(
     operator: &mut dyn Operator,
-    trial: &Trial<P>,
+    trial: &Trial,
     shift: Shift,
     residual: &[f32],
     image: &mut [T],
@@ -52,7 +54,7 @@ pub(super) fn pass<T: Scalar, P: Cell>(
     let unit = power_of_two(trial.length);
     let per = 1.0 / unit;
     // Numbers that are not negative have the order of their bits.
-    let nearest = AtomicU64::new(f64::INFINITY.to_bits());
+    let [nearest, largest] = [f64::INFINITY, 0.0].map(|x| AtomicU64::new(x.to_bits()));
     let make = |first: usize, s: &mut [T]| {
         let (trial, r) = (trial.part(first, s.len()), &residual[first..][..s.len()]);
         let ([slope, r, cells], reach) = vectorize(LayOut { s, trial, r, shift, per });
@@ -61,25 +63,26 @@ pub(super) fn pass<T: Scalar, P: Cell>(
     };
     let visit = |first: usize, k: &[T]| {
         let trial = trial.part(first, k.len());
-        let [curvature, length, change] = vectorize(Curvature { k, trial, shift, per });
+        let ([curvature, length, change], most) = vectorize(Curvature { k, trial, shift, per });
+        largest.fetch_max(most.to_bits(), Ordering::Relaxed);
         [curvature, length, change, 0.0, 0.0]
     };
     let [[slope, r, cells, ..], [curvature, length, change, ..]]: [Sums; 2] =
         T::apply(operator, &make, image, &visit);
-    let reach = f64::from_bits(nearest.into_inner());
-    Passage { slope, unit, curvature, length, inside: [r, change, cells], reach }
+    let [reach, largest] = [nearest, largest].map(|x| f64::from_bits(x.into_inner()));
+    Passage { slope, unit, curvature, length, largest, inside: [r, change, cells], reach }
 }
 
 /// s in its unit, of some cells; <r, s>, sum of r and number of cells inside, and the reach.
-struct LayOut<'a, T, P> {
+struct LayOut<'a, T> {
     s: &'a mut [T],
-    trial: Trial<'a, P>,
+    trial: Trial<'a>,
     r: &'a [f32],
     shift: Shift,
     per: f64,
 }
 
-impl<T: Cell, P: Cell> Work for LayOut<'_, T, P> {
+impl<T: Cell> Work for LayOut<'_, T> {
     type Yield = ([f64; 3], f64);
 
     #[inline(always)]
@@ -99,7 +102,7 @@ impl<T: Cell, P: Cell> Work for LayOut<'_, T, P> {
             let on = V::Mask::from_bits(*set);
             let p = V::load(trial.pressure, n, 0.0);
             let r = V::load(self.r, n, 0.0);
-            let hardness: V = trial.hardness.stored::<P, V>(n);
+            let hardness: V = trial.hardness.eight(n);
             let q = mover.target(p, V::load(d, n, 0.0), hardness);
             let s = (q - p).only(on);
             (s * per).store(self.s, n);
@@ -115,43 +118,44 @@ impl<T: Cell, P: Cell> Work for LayOut<'_, T, P> {
     }
 }
 
-/// <s, K s>, <s, s> and the sum of K s inside, of some cells, s as it was convolved and `k` its image.
-struct Curvature<'a, T, P> {
+/// <s, K s>, <s, s> and the sum of K s inside, of some cells, and their largest |K s|; s as it was convolved and `k` its image.
+struct Curvature<'a, T> {
     k: &'a [T],
-    trial: Trial<'a, P>,
+    trial: Trial<'a>,
     shift: Shift,
     per: f64,
 }
 
-impl<T: Cell, P: Cell> Work for Curvature<'_, T, P> {
-    type Yield = [f64; 3];
+impl<T: Cell> Work for Curvature<'_, T> {
+    type Yield = ([f64; 3], f64);
 
     #[inline(always)]
-    fn run<V: Eight>(self) -> [f64; 3] {
+    fn run<V: Eight>(self) -> ([f64; 3], f64) {
         let trial = self.trial;
         let d = trial.direction.unwrap_or_default();
         let mover = Mover::<V>::new(trial.length, self.shift);
         let per = V::splat(self.per);
-        let [mut sk, mut ss, mut sum] = [V::splat(0.0); 3];
+        let [mut sk, mut ss, mut sum, mut most] = [V::splat(0.0); 4];
         for (n, set) in (0..).step_by(8).zip(trial.set).filter(|(_, set)| **set != 0) {
             let on = V::Mask::from_bits(*set);
             let p = V::load(trial.pressure, n, 0.0);
-            let hardness: V = trial.hardness.stored::<P, V>(n);
+            let hardness: V = trial.hardness.eight(n);
             let q = mover.target(p, V::load(d, n, 0.0), hardness);
-            let s = as_stored::<T, V>((q - p).only(on) * per);
+            let s: V = T::widen(T::narrow((q - p).only(on) * per));
             let k = V::load(self.k, n, 0.0);
             sk = sk + s * k;
             ss = ss + s * s;
+            most = k.abs().only(on).larger(most);
             sum = sum + k.only(Mover::inside(q, hardness) & on);
         }
-        [sk, ss, sum].map(V::sum)
+        ([sk, ss, sum].map(V::sum), most.largest())
     }
 }
 
 /// t s, K s: how far to go along which step.
 pub(super) struct Motion<'a, T> {
     pub t: f64,
-    /// Unit of `image`, in that of the displacement.
+    /// Unit of `image`.
     pub unit: f64,
     /// a and the shift of the step.
     pub length: f64,
@@ -166,9 +170,9 @@ pub(super) struct Motion<'a, T> {
 ///
 /// A cell that lands within rounding of a bound is put on it. Without a motion p may lie beyond its bounds: such cells are
 /// of the set, for the step to lead them back.
-pub(super) fn advance<T: Cell, P: Scalar>(
-    fields: &mut Fields<P>,
-    hardness: Hardness,
+pub(super) fn advance<T: Cell>(
+    problem: &Problem,
+    state: &mut ContactState,
     motion: Option<Motion<T>>,
     w: f64,
     scale: f64,
@@ -177,48 +181,46 @@ pub(super) fn advance<T: Cell, P: Scalar>(
     let (numbers, moving) =
         motion.map(|m| ((m.t, m.unit, m.length, m.shift), (m.direction, Set(m.set), m.image))).unzip();
     let (t, unit, length, shift) = numbers.unwrap_or_default();
-    let compliance = fields.compliance;
-    sweep(
-        (
-            (&mut *fields.pressure, &mut *fields.displacement, residual, SetMut(set)),
-            fields.gap,
-            moving,
-            hardness,
-        ),
-        &|((p, u, r, SetMut(set)), h, moving, hardness): (
-            (&mut [P], &mut [P], &mut [f32], SetMut),
-            Option<&[f64]>,
-            Option<(&[f32], Set, &[T])>,
-            Hardness,
-        )| {
-            let motion = moving.map(|(direction, Set(set), image)| Motion {
-                t,
-                unit,
-                length,
-                shift,
-                direction,
-                set,
-                image,
-            });
-            vectorize(Advance { compliance, motion, w, scale, p, u, r, set, h, hardness })
-        },
-    )
+    let compliance = problem.compliance;
+    let (p, u) = (&mut state.pressure[..], &mut state.unit_displacement[..]);
+    sweep(((p, u, residual, SetMut(set)), problem.gap, moving, problem.hardness), &|(
+        (p, u, r, SetMut(set)),
+        h,
+        moving,
+        hardness,
+    ): (
+        (&mut [f64], &mut [f64], &mut [f32], SetMut),
+        &[f64],
+        Option<(&[f32], Set, &[T])>,
+        Hardness,
+    )| {
+        let motion = moving.map(|(direction, Set(set), image)| Motion {
+            t,
+            unit,
+            length,
+            shift,
+            direction,
+            set,
+            image,
+        });
+        vectorize(Advance { compliance, motion, w, scale, p, u, r, set, h, hardness })
+    })
 }
 
-struct Advance<'a, T, P> {
+struct Advance<'a, T> {
     compliance: f64,
     motion: Option<Motion<'a, T>>,
     w: f64,
     scale: f64,
-    p: &'a mut [P],
-    u: &'a mut [P],
+    p: &'a mut [f64],
+    u: &'a mut [f64],
     r: &'a mut [f32],
     set: &'a mut [u8],
-    h: Option<&'a [f64]>,
+    h: &'a [f64],
     hardness: Hardness<'a>,
 }
 
-impl<T: Cell, P: Scalar> Advance<'_, T, P> {
+impl<T: Cell> Advance<'_, T> {
     /// The new p of eight cells.
     #[inline(always)]
     fn moved<V: Eight>(&self, motion: &Motion<T>, mover: &Mover<V>, n: usize, p: V, top: V) -> V {
@@ -226,14 +228,14 @@ impl<T: Cell, P: Scalar> Advance<'_, T, P> {
         let on = V::Mask::from_bits(motion.set[n / 8]);
         let s = (mover.target(p, V::load(motion.direction, n, 0.0), top) - p).only(on);
         let new = p + t * s;
-        let floor = V::splat(4.0 * P::EPSILON) * p;
+        let floor = V::splat(4.0 * f64::EPSILON) * p;
         let new = V::select(s.less(zero) & new.at_most(floor), zero, new);
-        let below = new.less(top * V::splat(1.0 - 4.0 * P::EPSILON));
-        as_stored::<P, V>(V::select(below, new, top))
+        let below = new.less(top * V::splat(1.0 - 4.0 * f64::EPSILON));
+        V::select(below, new, top)
     }
 }
 
-impl<T: Cell, P: Scalar> Work for Advance<'_, T, P> {
+impl<T: Cell> Work for Advance<'_, T> {
     type Yield = Rating;
 
     #[inline(always)]
@@ -242,11 +244,11 @@ impl<T: Cell, P: Scalar> Work for Advance<'_, T, P> {
         let per = V::splat(1.0 / self.scale);
         let mover = self.motion.as_ref().map(|m| Mover::<V>::new(m.length, m.shift));
         for n in (0..self.p.len()).step_by(8) {
-            let top = self.hardness.stored::<P, V>(n);
-            let h = undeformed::<V>(self.h, n);
-            let mut u = V::load(self.u, n, f64::INFINITY);
+            let top: V = self.hardness.eight(n);
+            let h = V::load(self.h, n, f64::INFINITY);
+            let mut u = V::load(self.u, n, 0.0);
             if let Some(motion) = &self.motion {
-                u = as_stored::<P, V>(u + V::splat(motion.t * motion.unit) * V::load(motion.image, n, 0.0));
+                u = u + V::splat(motion.t * motion.unit) * V::load(motion.image, n, 0.0);
                 u.store(self.u, n);
             }
             let mut p = V::load(self.p, n, 0.0);
@@ -264,7 +266,7 @@ impl<T: Cell, P: Scalar> Work for Advance<'_, T, P> {
                 }
                 _ => {}
             }
-            let (r, works) = gauge.meet(p, u, h, top, !P::ROUGH);
+            let (r, works) = gauge.meet(p, u, h, top);
             let of_set = match &self.motion {
                 Some(_) => works,
                 None => works | p.less(V::splat(0.0)) | top.less(p),

@@ -8,7 +8,6 @@
 
 use std::sync::atomic::AtomicBool;
 
-use super::fields::Fields;
 use super::residual::Rating;
 use super::shift::clip;
 use super::start::{make_feasible, set_load};
@@ -63,10 +62,9 @@ impl PolonskyKeer {
         let (mut best, mut stall) = (f64::INFINITY, 0);
         let mut iteration = 0;
         loop {
-            let w =
-                Rating::of(&Fields::of(problem, state), problem.hardness, 0.0).approach(problem.prescribed);
+            let w = Rating::of(problem, state, 0.0).approach(problem.prescribed);
             state.approach = w;
-            let rating = Rating::of(&Fields::of(problem, state), problem.hardness, w);
+            let rating = Rating::of(problem, state, w);
             let rated = rating.rate(problem, &grid, options.tolerance);
             let outcome = Outcome { iterations: iteration, convolutions, ..rated };
             if outcome.residual <= options.tolerance {

@@ -8,8 +8,8 @@
 //! Nonlinear Programming, section 7.11) the method converges from any start.
 //!
 //! The preconditioner (`preconditioner`) and the direction are f32, in units of the largest violation: they decide where to
-//! go, never what is found there. In mixed precision all fields of an iteration are f32, the gap as what it differs from
-//! the approach (`fields`); what they lead to is evaluated in f64, and what it lacks is found with p and U in f64.
+//! go, never what is found there. In mixed precision the image K s of a step is f32 as well: p and U are f64, and what such
+//! images leave in U (`roundings`) is found afresh before it is seen.
 //!
 //! Where the march knows U of its guess, for it is a combination of solutions, no convolution comes before the first iteration.
 //! Such a guess lies beyond its bounds here and there: the first step is then taken whole, which ends at a feasible
@@ -25,23 +25,22 @@ use std::sync::atomic::AtomicBool;
 use asperity_convolution::lanes::Sums;
 
 use super::direction::{Ahead, Products, Turn, centre, products, steepest, turn};
-use super::fields::{Fields, Scalar, Singles};
 use super::lengths::Lengths;
 use super::motion::{Motion, Passage, advance, pass};
 use super::preconditioner::Preconditioner;
 use super::residual::Rating;
+use super::roundings::Roundings;
+use super::scalar::Scalar;
 use super::shift::{Shift, Trial};
-use super::start::{Start, make_feasible, scale_to_load};
+use super::start::{Start, make_feasible};
 use super::{ContactState, Outcome, Prescribed, Problem, SolverOptions, interrupted, not_converged};
-use crate::error::{Error, NotConverged, Result};
+use crate::error::{Error, Result};
 use crate::field::zeros;
 use crate::grid::{Boundary, Grid};
 use crate::operator::Operator;
 
 /// Iterations without a halving of the residual before a spacer step.
 const PATIENCE: usize = 10;
-/// Iterations between fresh evaluations of U = K p, which accumulates rounding.
-const REFRESH: usize = 50;
 /// A clipped step is taken whole where the exact minimum lies beyond this share of it.
 const WHOLE: f64 = 0.8;
 /// How often, and by how much, a step is taken shorter where its load is lost in its rounding.
@@ -51,13 +50,8 @@ const FORETOLD: f64 = 0.02;
 /// The share of the largest violation below which the mean of the residual over S is left in it.
 const CENTRED: f64 = 1e-4;
 
-/// What a residual found in f32 may be off by.
-const OFF: f64 = 3e-8;
-/// Pressures and displacements that f32 holds with all that is small beside them.
-const RANGE: std::ops::Range<f64> = 1e-20..1e20;
-
-/// The method's working memory: 16 bytes per cell, 8 for the image of a step in f64 or 12 for all fields in f32, sets of one bit, and
-/// the preconditioner.
+/// The method's working memory: 16 bytes per cell, 8 for the image of a step in f64 or 4 in f32, sets of one bit, and the
+/// preconditioner.
 pub struct ProjectedCg<T = f64> {
     preconditioner: Preconditioner,
     /// Residual on S with its mean removed, in units of `unit`, now and one iteration ago.
@@ -73,10 +67,8 @@ pub struct ProjectedCg<T = f64> {
     working: Vec<u8>,
     worked: Vec<u8>,
     pub(super) lengths: Lengths,
-    /// What U of the last solution may be off by, in roundings of a convolution.
-    pub(super) roundings: f64,
-    /// Mixed precision iterates on these.
-    singles: Option<Singles>,
+    /// Of U of the last solution.
+    pub(super) roundings: Roundings,
 }
 
 /// What is asked for.
@@ -85,17 +77,6 @@ struct Task<'a> {
     problem: &'a Problem<'a>,
     options: SolverOptions,
     interrupt: Option<&'a AtomicBool>,
-}
-
-/// What is known of the fields that iterations set out from.
-#[derive(Clone, Copy, Default)]
-struct Outset {
-    /// An approach and the size of a violation \[m\]; found where they are not known.
-    about: Option<(f64, f64)>,
-    /// The pressure may lie beyond its bounds, and without its load.
-    beyond: bool,
-    /// What violations are measured by, where the fields do not tell.
-    scale: Option<f64>,
 }
 
 /// What a conjugate step needs from the one before.
@@ -141,8 +122,7 @@ impl<T: Scalar> ProjectedCg<T> {
             working: zeros(n.div_ceil(8)),
             worked: zeros(n.div_ceil(8)),
             lengths: Lengths::default(),
-            roundings: f64::INFINITY,
-            singles: T::ROUGH.then(|| Singles::new(n)),
+            roundings: Roundings::of_convolution(),
         }
     }
 
@@ -165,163 +145,63 @@ impl<T: Scalar> ProjectedCg<T> {
         let task = Task { problem, options: *options, interrupt };
         if let Start::Known { roundings, beyond } = start {
             self.roundings = roundings;
-            match self.solve_known(operator, task, state, beyond) {
+            match self.iterate(operator, task, state, beyond) {
                 // It leads nowhere.
                 Err(Error::NotConverged(report)) if report.iterations == 0 => {}
                 solved => return solved,
             }
         }
         make_feasible(problem, operator.grid().cell_area(), state, &mut self.working)?;
-        self.convolve(operator, state);
-        let outcome = self.solve_known(operator, task, state, false)?;
+        self.roundings = Roundings::of_convolution();
+        operator.apply_into(&state.pressure, &mut state.unit_displacement);
+        let outcome = self.iterate(operator, task, state, false)?;
         Ok(Outcome { convolutions: outcome.convolutions + 1, ..outcome })
     }
 
     /// Finds U afresh.
     fn convolve(&mut self, operator: &mut dyn Operator, state: &mut ContactState) {
         operator.apply_into(&state.pressure, &mut state.unit_displacement);
-        self.roundings = 1.0;
+        self.roundings = self.roundings.afresh();
     }
 
-    /// Solves from a state whose U is known.
-    fn solve_known(
+    /// Iterates from a state whose U is known; its pressure may lie `beyond` its bounds.
+    fn iterate(
         &mut self,
         operator: &mut dyn Operator,
         task: Task,
         state: &mut ContactState,
-        beyond: bool,
-    ) -> Result<Outcome> {
-        self.lengths.begin();
-        let mut outset = Outset { beyond, ..Outset::default() };
-        let before = match self.singles.take() {
-            Some(mut singles) => {
-                let before = self.solve_in(&mut singles, operator, task, state, &mut outset);
-                self.singles = Some(singles);
-                before?
-            }
-            None => Outcome::default(),
-        };
-        let (iterations, convolutions) = (before.iterations, before.convolutions);
-        let max_iterations = task.options.max_iterations.saturating_sub(iterations);
-        let left = Task { options: SolverOptions { max_iterations, ..task.options }, ..task };
-        match self.iterate(operator, left, outset, &mut Fields::of(task.problem, state)) {
-            Ok(o) => {
-                self.roundings += o.iterations as f64;
-                Ok(Outcome {
-                    iterations: o.iterations + iterations,
-                    convolutions: o.convolutions + convolutions,
-                    ..o
-                })
-            }
-            Err(Error::NotConverged(report)) => Err(Error::NotConverged(NotConverged {
-                iterations: report.iterations + iterations,
-                ..report
-            })),
-            Err(error) => Err(error),
-        }
-    }
-
-    /// Iterates with all fields in f32, as far as these lead: `state` comes near the solution, with its U. Returns the work;
-    /// where there was any, `outset` is what it leads to.
-    fn solve_in(
-        &mut self,
-        singles: &mut Singles,
-        operator: &mut dyn Operator,
-        task: Task,
-        state: &mut ContactState,
-        outset: &mut Outset,
-    ) -> Result<Outcome> {
-        let Task { problem, options, .. } = task;
-        let grid = *operator.grid();
-        let rating = Rating::of(&Fields::of(problem, state), problem.hardness, 0.0);
-        let w = rating.approach(problem.prescribed);
-        let scale = rating.scale(problem, &grid, options.tolerance);
-        if [scale, rating.peak()].iter().any(|size| !RANGE.contains(size)) {
-            return Ok(Outcome::default());
-        }
-        let options = SolverOptions {
-            tolerance: (options.tolerance - OFF).max(0.5 * options.tolerance),
-            max_iterations: options.max_iterations.min(REFRESH),
-            ..options
-        };
-        let prescribed = match problem.prescribed {
-            Prescribed::Approach(given) => Prescribed::Approach(given - w),
-            load => load,
-        };
-        let seen = Problem { prescribed, ..*problem };
-        let mut fields = singles.take(problem, state, w);
-        let rough = Outset { about: Some((0.0, scale * options.tolerance)), scale: Some(scale), ..*outset };
-        let work = match self.iterate(operator, Task { problem: &seen, options, ..task }, rough, &mut fields)
-        {
-            Ok(work) => work,
-            Err(Error::NotConverged(report)) => {
-                let done = report.iterations;
-                Outcome { iterations: done, convolutions: done, ..Outcome::default() }
-            }
-            Err(error) => return Err(error),
-        };
-        if work.iterations == 0 {
-            return Ok(work);
-        }
-        let found = w + *fields.approach;
-        let sums = singles.give(problem, state);
-        if !scale_to_load(problem, grid.cell_area(), &mut state.pressure, sums) {
-            make_feasible(problem, grid.cell_area(), state, &mut self.working)?;
-        }
-        self.convolve(operator, state);
-        *outset = Outset { about: Some((found, scale * options.tolerance)), ..Outset::default() };
-        Ok(Outcome { convolutions: work.convolutions + 1, ..work })
-    }
-
-    /// Iterates on `fields`, whose displacement is that of their pressure.
-    fn iterate<P: Scalar>(
-        &mut self,
-        operator: &mut dyn Operator,
-        task: Task,
-        outset: Outset,
-        fields: &mut Fields<P>,
+        mut beyond: bool,
     ) -> Result<Outcome> {
         let Task { problem, options, interrupt } = task;
-        let options = &options;
         let grid = *operator.grid();
-        let hardness = problem.hardness;
+        self.lengths.begin();
         // Whatever an earlier solve left behind is overwritten, everywhere.
         self.working.fill(u8::MAX);
         self.worked.fill(u8::MAX);
         let mut convolutions = 0;
         let mut gradient_length = 1.0 / (problem.compliance * operator.self_influence());
         let mut conjugacy = Conjugacy { product: None, unit: 0.0, pressure: 0.0 };
-        let (mut best, mut stall, mut stuck, mut fresh) = (f64::INFINITY, 0, false, true);
+        let (mut best, mut stall, mut stuck) = (f64::INFINITY, 0, false);
         let mut iteration = 0;
-        let mut beyond = outset.beyond;
         let mut unit = 0.0;
-        let mut rating = match outset.about {
-            Some((w, size)) => {
-                unit = size;
-                let found = (&mut self.residual[..], &mut self.working[..]);
-                advance::<T, P>(fields, hardness, None, w, unit, found)
-            }
-            // Only to find the approach. No guess from the state: it would leave its rounding.
-            None => Rating::of(fields, hardness, 0.0),
-        };
+        // Only to find the approach. No guess from the state: it would leave its rounding.
+        let mut rating = Rating::of(problem, state, 0.0);
         loop {
             let w = rating.approach(problem.prescribed);
             if unit == 0.0 || (w - rating.w).abs() > FORETOLD * rating.violation() {
                 unit = if rating.violation() > 0.0 { rating.violation() } else { 1.0 };
                 let found = (&mut self.residual[..], &mut self.working[..]);
-                rating = advance::<T, P>(fields, hardness, None, w, unit, found);
+                rating = advance::<T>(problem, state, None, w, unit, found);
             }
-            *fields.approach = rating.approach(problem.prescribed);
-            let rated = match outset.scale {
-                Some(scale) => Outcome { residual: rating.residual(problem, scale), ..Outcome::default() },
-                None => rating.rate(problem, &grid, options.tolerance),
-            };
+            state.approach = rating.approach(problem.prescribed);
+            let rated = rating.rate(problem, &grid, options.tolerance);
             let outcome = Outcome { iterations: iteration, convolutions, ..rated };
             if !beyond && (outcome.residual <= options.tolerance || stuck) {
-                if T::ROUGH && !fresh && P::refresh(operator, fields.pressure, fields.displacement) {
+                if !self.roundings.are_small(options.tolerance) && !self.roundings.are_least() {
+                    self.convolve(operator, state);
                     convolutions += 1;
-                    (fresh, stuck, unit, conjugacy.product) = (true, false, 0.0, None);
-                    rating = Rating::of(fields, hardness, 0.0);
+                    (stuck, unit, conjugacy.product) = (false, 0.0, None);
+                    rating = Rating::of(problem, state, 0.0);
                     continue;
                 }
                 if outcome.residual <= options.tolerance {
@@ -329,7 +209,7 @@ impl<T: Scalar> ProjectedCg<T> {
                 }
             }
             if stuck || iteration == options.max_iterations {
-                return Err(not_converged("projected-cg", options, &outcome));
+                return Err(not_converged("projected-cg", &options, &outcome));
             }
             if interrupted(interrupt) {
                 return Err(Error::Interrupted);
@@ -350,16 +230,16 @@ impl<T: Scalar> ProjectedCg<T> {
             let conjugate = if stall >= PATIENCE || rating.nothing_works() {
                 None
             } else {
-                self.conjugate_step(problem, fields, sum, &rating, unit, &mut conjugacy)
+                self.conjugate_step(problem, state, sum, &rating, unit, &mut conjugacy)
             };
             let count = &mut convolutions;
             let mut taken =
-                conjugate.and_then(|step| self.pass(operator, problem, fields, step, beyond, count));
+                conjugate.and_then(|step| self.pass(operator, problem, state, step, beyond, count));
             if taken.is_none() {
                 conjugacy.product = None;
                 stall = 0;
-                let steepest = self.gradient_step(problem, fields, sum, &rating, unit, gradient_length);
-                taken = steepest.and_then(|step| self.pass(operator, problem, fields, step, beyond, count));
+                let steepest = self.gradient_step(problem, state, sum, &rating, unit, gradient_length);
+                taken = steepest.and_then(|step| self.pass(operator, problem, state, step, beyond, count));
             }
             let Some((step, passage)) = taken else {
                 // Nothing descends any more: rounding has the last word.
@@ -405,7 +285,7 @@ impl<T: Scalar> ProjectedCg<T> {
             std::mem::swap(&mut self.working, &mut self.worked);
             let motion = Motion {
                 t,
-                unit: size * (problem.compliance / fields.compliance),
+                unit: size,
                 length: step.length,
                 shift: step.shift,
                 direction: &self.direction,
@@ -413,22 +293,19 @@ impl<T: Scalar> ProjectedCg<T> {
                 image: &self.moved,
             };
             let found = (&mut self.residual[..], &mut self.working[..]);
-            rating = advance(fields, hardness, Some(motion), foretold, unit, found);
-            (fresh, beyond) = (false, false);
+            rating = advance(problem, state, Some(motion), foretold, unit, found);
+            let grown = t.abs() * size * problem.compliance * passage.largest;
+            self.roundings = self.roundings.with_step(grown / rating.displacement(problem), T::EPSILON);
+            beyond = false;
             iteration += 1;
-            if iteration % REFRESH == 0 && P::refresh(operator, fields.pressure, fields.displacement) {
-                convolutions += 1;
-                (fresh, unit) = (true, 0.0);
-                rating = Rating::of(fields, hardness, rating.w);
-            }
         }
     }
 
     /// The conjugate step on S; `None` where it does not descend.
-    fn conjugate_step<P: Scalar>(
+    fn conjugate_step(
         &mut self,
         problem: &Problem,
-        fields: &Fields<P>,
+        state: &ContactState,
         sum: Option<f64>,
         rating: &Rating,
         unit: f64,
@@ -467,19 +344,19 @@ impl<T: Scalar> ProjectedCg<T> {
             &mut self.direction,
             &self.image,
             (&self.working, &self.worked),
-            &*fields.pressure,
+            &state.pressure,
             problem.hardness,
             Turn { mean, beta, length },
         );
         let kind = if ahead.outside > 0.0 { Kind::Clipped } else { Kind::Straight };
-        self.shifted(problem, fields, sum, ahead, kind, length, if centred { mean_r } else { 0.0 })
+        self.shifted(problem, state, sum, ahead, kind, length, if centred { mean_r } else { 0.0 })
     }
 
     /// The projected-gradient step over all cells that can touch; `None` where it does not descend.
-    fn gradient_step<P: Scalar>(
+    fn gradient_step(
         &mut self,
         problem: &Problem,
-        fields: &Fields<P>,
+        state: &ContactState,
         sum: Option<f64>,
         rating: &Rating,
         unit: f64,
@@ -489,17 +366,17 @@ impl<T: Scalar> ProjectedCg<T> {
         let found = (&mut self.direction[..], &mut self.residual[..], &mut self.working[..]);
         // The direction is written everywhere.
         self.worked.fill(u8::MAX);
-        let ahead = steepest(fields, problem.hardness, rating.w, unit, length, found);
-        self.shifted(problem, fields, sum, ahead, Kind::Gradient, length, 0.0)
+        let ahead = steepest(problem, state, rating.w, unit, length, found);
+        self.shifted(problem, state, sum, ahead, Kind::Gradient, length, 0.0)
     }
 
     /// The step from the trial point; `None` where no shift keeps the load. `sum` is the sum of p that load control prescribes,
     /// less the present one.
     #[allow(clippy::too_many_arguments)] // they are the step's parts
-    fn shifted<P: Scalar>(
+    fn shifted(
         &self,
         problem: &Problem,
-        fields: &Fields<P>,
+        state: &ContactState,
         sum: Option<f64>,
         ahead: Ahead,
         kind: Kind,
@@ -511,7 +388,7 @@ impl<T: Scalar> ProjectedCg<T> {
         };
         let (mut length, mut kind, mut clipped) = (length, kind, Some(ahead.clipped));
         for _ in 0..SHORTER.0 {
-            let trial = trial(problem, fields, &self.direction, &self.working, length);
+            let trial = trial(problem, state, &self.direction, &self.working, length);
             if let Some(shift) = trial.shift_to_sum(ahead.pressure + missing, clipped.take()) {
                 return Some(Step { kind, length, shift, mean });
             }
@@ -525,29 +402,29 @@ impl<T: Scalar> ProjectedCg<T> {
 
     /// The image of the step in `self.moved`, one convolution more; `None` where the step does not descend, unless it is
     /// taken from `beyond` the bounds.
-    fn pass<P: Scalar>(
+    fn pass(
         &mut self,
         operator: &mut dyn Operator,
         problem: &Problem,
-        fields: &Fields<P>,
+        state: &ContactState,
         step: Step,
         beyond: bool,
         convolutions: &mut usize,
     ) -> Option<(Step, Passage)> {
         *convolutions += 1;
-        let trial = trial(problem, fields, &self.direction, &self.working, step.length);
+        let trial = trial(problem, state, &self.direction, &self.working, step.length);
         let passage = pass(operator, &trial, step.shift, &self.residual, &mut self.moved);
         (passage.slope < 0.0 || beyond && passage.slope.is_finite()).then_some((step, passage))
     }
 }
 
 /// The trial point at that length along the direction.
-fn trial<'a, P>(
+fn trial<'a>(
     problem: &Problem<'a>,
-    fields: &'a Fields<P>,
+    state: &'a ContactState,
     direction: &'a [f32],
     set: &'a [u8],
     length: f64,
-) -> Trial<'a, P> {
-    Trial { pressure: &*fields.pressure, direction: Some(direction), set, length, hardness: problem.hardness }
+) -> Trial<'a> {
+    Trial { pressure: &state.pressure, direction: Some(direction), set, length, hardness: problem.hardness }
 }

@@ -8,10 +8,9 @@
 //!
 //! All of it comes from one sweep, taken with a guess of w: the mean of r over the free cells mends the guess.
 
-use asperity_convolution::eights::{Cell, Eight, Mask, Work, vectorize};
+use asperity_convolution::eights::{Eight, Mask, Work, vectorize};
 
-use super::fields::{Fields, undeformed};
-use super::{Hardness, Outcome, Prescribed, Problem};
+use super::{ContactState, Hardness, Outcome, Prescribed, Problem};
 use crate::field::{Max, Merge, Min, sweep};
 use crate::grid::Grid;
 
@@ -113,10 +112,9 @@ impl<V: Eight> Gauge<V> {
         apart
     }
 
-    /// Takes in eight cells, the last their H; returns r and S. What the certificate needs only where it is to be
-    /// `certified`.
+    /// Takes in eight cells, the last their H; returns r and S.
     #[inline(always)]
-    pub(super) fn meet(&mut self, p: V, u: V, h: V, hardness: V, certified: bool) -> (V, V::Mask) {
+    pub(super) fn meet(&mut self, p: V, u: V, h: V, hardness: V) -> (V, V::Mask) {
         let zero = V::splat(0.0);
         let r = self.compliance * u + h - self.w;
         let touches = zero.less(p);
@@ -132,14 +130,12 @@ impl<V: Eight> Gauge<V> {
         self.empty = V::select(touches, up, r).smaller(self.empty);
         self.largest = violation.larger(self.largest);
         self.pressure[0] = self.pressure[0] + p;
-        if certified {
-            let [_, pu, pr] = &mut self.pressure;
-            (*pu, *pr) = (*pu + (p * u).only(touches), *pr + (p * r).only(touches));
-            let distance = V::select(zero.less(r), p, hardness - p);
-            self.gamma = self.gamma + (distance * violation).only(works);
-            self.touching = V::select(touches, r, up).smaller(self.touching);
-            self.peak = p.larger(self.peak);
-        }
+        let [_, pu, pr] = &mut self.pressure;
+        (*pu, *pr) = (*pu + (p * u).only(touches), *pr + (p * r).only(touches));
+        let distance = V::select(zero.less(r), p, hardness - p);
+        self.gamma = self.gamma + (distance * violation).only(works);
+        self.touching = V::select(touches, r, up).smaller(self.touching);
+        self.peak = p.larger(self.peak);
         (r, works)
     }
 
@@ -163,13 +159,14 @@ impl<V: Eight> Gauge<V> {
 }
 
 impl Rating {
-    /// Rates fields with a guess of w.
-    pub(super) fn of<P: Cell>(fields: &Fields<P>, hardness: Hardness, w: f64) -> Self {
-        let compliance = fields.compliance;
-        sweep((&*fields.pressure, &*fields.displacement, fields.gap, hardness), &|(p, u, h, hardness): (
-            &[P],
-            &[P],
-            Option<&[f64]>,
+    /// Rates a state with a guess of w.
+    pub(super) fn of(problem: &Problem, state: &ContactState, w: f64) -> Self {
+        let compliance = problem.compliance;
+        let (p, u) = (&state.pressure[..], &state.unit_displacement[..]);
+        sweep((p, u, problem.gap, problem.hardness), &|(p, u, h, hardness): (
+            &[f64],
+            &[f64],
+            &[f64],
             Hardness,
         )| {
             vectorize(Rate { compliance, w, p, u, h, hardness })
@@ -214,18 +211,13 @@ impl Rating {
         self.largest.0
     }
 
-    /// Largest p \[Pa\].
-    pub(super) fn peak(&self) -> f64 {
-        self.peak.0
-    }
-
     /// sum p \[Pa\]
     pub(super) fn pressure(&self) -> f64 {
         self.sums.pressure[0]
     }
 
     /// The displacement that violations are measured by: (p'u)/(sum p), or the overlap before first contact.
-    fn displacement(&self, problem: &Problem) -> f64 {
+    pub(super) fn displacement(&self, problem: &Problem) -> f64 {
         let [pressure, pu, _] = self.sums.pressure;
         if pressure > 0.0 { (problem.compliance * pu / pressure).max(0.0) } else { self.empty.0.abs() }
     }
@@ -237,27 +229,20 @@ impl Rating {
         16.0 * f64::EPSILON * (self.w.abs() + problem.compliance * peak * lx.max(ly))
     }
 
-    /// What violations are measured by, so that one of rounding is none for that tolerance \[m\].
-    pub(super) fn scale(&self, problem: &Problem, grid: &Grid, tolerance: f64) -> f64 {
-        self.displacement(problem) + self.rounding(problem, grid) / tolerance
-    }
-
-    /// The largest violation of the contact conditions over `scale`. With the approach that the cells themselves give it is
-    /// at most that with the guess and how far they lie apart.
-    pub(super) fn residual(&self, problem: &Problem, scale: f64) -> f64 {
+    /// The largest violation of the contact conditions over what violations are measured by, so that one of rounding is none
+    /// for that tolerance; and the certificate.
+    ///
+    /// With the approach that the cells themselves give a violation is at most that with the guess and how far they lie apart.
+    pub(super) fn rate(&self, problem: &Problem, grid: &Grid, tolerance: f64) -> Outcome {
+        let scale = self.displacement(problem) + self.rounding(problem, grid) / tolerance;
         let apart = (self.approach(problem.prescribed) - self.w).abs();
         let violation = if self.largest.0 > 0.0 { self.largest.0 + apart } else { 0.0 };
-        if violation > 0.0 { violation / scale } else { 0.0 }
-    }
-
-    /// Residual and certificate of fields that hold U.
-    pub(super) fn rate(&self, problem: &Problem, grid: &Grid, tolerance: f64) -> Outcome {
-        let residual = self.residual(problem, self.scale(problem, grid, tolerance));
+        let residual = if violation > 0.0 { violation / scale } else { 0.0 };
         Outcome { residual, certificate: self.certificate(problem), ..Outcome::default() }
     }
 
-    /// The bound of the error in energy, of fields that hold U.
-    pub(super) fn certificate(&self, problem: &Problem) -> f64 {
+    /// The bound of the error in energy.
+    fn certificate(&self, problem: &Problem) -> f64 {
         let [pressure, pu, pr] = self.sums.pressure;
         let gamma = if !problem.hardness.is_infinite() {
             self.sums.gamma
@@ -276,25 +261,24 @@ impl Rating {
     }
 }
 
-struct Rate<'a, P> {
+struct Rate<'a> {
     compliance: f64,
     w: f64,
-    p: &'a [P],
-    u: &'a [P],
-    h: Option<&'a [f64]>,
+    p: &'a [f64],
+    u: &'a [f64],
+    h: &'a [f64],
     hardness: Hardness<'a>,
 }
 
-impl<P: Cell> Work for Rate<'_, P> {
+impl Work for Rate<'_> {
     type Yield = Rating;
 
     #[inline(always)]
     fn run<V: Eight>(self) -> Rating {
         let mut gauge = Gauge::<V>::new(self.compliance, self.w);
         for n in (0..self.p.len()).step_by(8) {
-            let h = undeformed::<V>(self.h, n);
-            let top = self.hardness.stored::<P, V>(n);
-            gauge.meet(V::load(self.p, n, 0.0), V::load(self.u, n, f64::INFINITY), h, top, true);
+            let h = V::load(self.h, n, f64::INFINITY);
+            gauge.meet(V::load(self.p, n, 0.0), V::load(self.u, n, 0.0), h, self.hardness.eight(n));
         }
         gauge.rating()
     }

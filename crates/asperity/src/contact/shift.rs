@@ -4,7 +4,7 @@
 //! The sum is a piecewise linear, non-decreasing function of lambda; Newton's method with a bracket finds
 //! its root in a few sweeps. Neither the trial point nor the step is stored for it.
 
-use asperity_convolution::eights::{Cell, Eight, Mask, Work, vectorize};
+use asperity_convolution::eights::{Eight, Mask, Work, vectorize};
 
 use super::Hardness;
 use crate::field::{Cells, Max, Min, Set, sweep};
@@ -18,8 +18,8 @@ const MISSED: f64 = 1e-3;
 
 /// A trial point p - a d of a set of cells; the other cells keep their pressure.
 #[derive(Clone, Copy)]
-pub(super) struct Trial<'a, P> {
-    pub pressure: &'a [P],
+pub(super) struct Trial<'a> {
+    pub pressure: &'a [f64],
     /// d; none is zero.
     pub direction: Option<&'a [f32]>,
     pub set: &'a [u8],
@@ -79,7 +79,7 @@ pub(super) struct ClippedSum {
     pub slope: f64,
 }
 
-impl<P: Cell> Trial<'_, P> {
+impl Trial<'_> {
     /// The same of some cells, from a multiple of eight on.
     pub(super) fn part(&self, first: usize, cells: usize) -> Self {
         let range = first..first + cells;
@@ -139,7 +139,7 @@ impl<P: Cell> Trial<'_, P> {
         let length = self.length;
         let [sum, slope] = sweep(
             (self.pressure, self.direction, Set(self.set), self.hardness),
-            &|(p, d, Set(set), hardness): (&[P], Option<&[f32]>, Set, Hardness)| {
+            &|(p, d, Set(set), hardness): (&[f64], Option<&[f32]>, Set, Hardness)| {
                 vectorize(Clipped { p, d, set, length, lambda, hardness })
             },
         );
@@ -151,11 +151,11 @@ impl<P: Cell> Trial<'_, P> {
         let length = self.length;
         let cells = (self.pressure, self.direction, Set(self.set), self.hardness);
         let (up, (down, capped)) =
-            sweep(cells, &|(p, d, Set(set), hardness): (&[P], Option<&[f32]>, Set, Hardness)| {
+            sweep(cells, &|(p, d, Set(set), hardness): (&[f64], Option<&[f32]>, Set, Hardness)| {
                 let (mut up, mut down, mut capped) = (f64::INFINITY, f64::NEG_INFINITY, 0.0_f64);
                 for (i, p) in p.iter().enumerate().filter(|(i, _)| set[i / 8] >> (i % 8) & 1 == 1) {
-                    let hardness = P::nearest(hardness.at(i)).into();
-                    let y: f64 = (*p).into() - d.map_or(0.0, |d| length * f64::from(d[i]));
+                    let hardness = hardness.at(i);
+                    let y = p - d.map_or(0.0, |d| length * f64::from(d[i]));
                     if !y.is_finite() {
                     } else if y + lambda <= 0.0 {
                         up = up.min(-y);
@@ -174,8 +174,8 @@ impl<P: Cell> Trial<'_, P> {
     }
 }
 
-struct Clipped<'a, P> {
-    p: &'a [P],
+struct Clipped<'a> {
+    p: &'a [f64],
     d: Option<&'a [f32]>,
     set: &'a [u8],
     length: f64,
@@ -183,7 +183,7 @@ struct Clipped<'a, P> {
     hardness: Hardness<'a>,
 }
 
-impl<P: Cell> Work for Clipped<'_, P> {
+impl Work for Clipped<'_> {
     type Yield = [f64; 2];
 
     #[inline(always)]
@@ -192,7 +192,7 @@ impl<P: Cell> Work for Clipped<'_, P> {
         let (length, lambda) = (V::splat(self.length), V::splat(self.lambda));
         for (n, set) in (0..).step_by(8).zip(self.set).filter(|(_, set)| **set != 0) {
             let on = V::Mask::from_bits(*set);
-            let top = self.hardness.stored::<P, V>(n);
+            let top: V = self.hardness.eight(n);
             let d = self.d.map_or(V::splat(0.0), |d| V::load(d, n, 0.0));
             let moved = V::load(self.p, n, 0.0) - length * d + lambda;
             sum = sum + moved.clip(top).only(on);

@@ -25,4 +25,16 @@ impl ContactState {
         self.unit_displacement.fill(0.0);
         self.approach = approach;
     }
+
+    /// How far another state is from this one in the energy norm, of this one's.
+    #[cfg(test)]
+    pub(super) fn apart(&self, other: &Self) -> f64 {
+        let (mut energy, mut off) = (0.0, 0.0);
+        for n in 0..self.pressure.len() {
+            let [p, u] = [self.pressure[n], self.unit_displacement[n]];
+            energy += p * u;
+            off += (p - other.pressure[n]) * (u - other.unit_displacement[n]);
+        }
+        (off / energy).sqrt()
+    }
 }

@@ -2,8 +2,9 @@
 
 use ndarray::Array2;
 
-use super::{March, Past, Reached, Roundings, Simulation, Timeline, record};
+use super::{March, Past, Reached, Simulation, Timeline, record};
 use crate::contact::REMEMBERED;
+use crate::contact::Roundings;
 use crate::error::{Error, Result};
 
 /// Everything that the rest of a march depends on; see [`March::checkpoint`].

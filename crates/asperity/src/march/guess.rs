@@ -4,12 +4,12 @@
 //! p' is the row before the last one, p_n, or the last trial of a row that is solved again. In a creep that fades the best f
 //! falls short of one, and it is found for any programme and material. U = K p is linear, so that all this needs no
 //! convolution, and U of the guess is known. Its roundings grow with every row that takes its U this way; before they are
-//! seen, two rows find it afresh.
+//! seen, the solver finds it afresh.
 
 use asperity_convolution::eights::{Eight, Mask, Work, vectorize};
 
 use super::{March, cap};
-use crate::contact::{Hardness, Prescribed, Start};
+use crate::contact::{Hardness, MET, Prescribed, Start};
 use crate::field::sweep;
 use crate::time::Instant;
 
@@ -23,10 +23,6 @@ const NONE: f64 = 1e-20;
 const FELT: f64 = 0.1;
 /// What a may be off by where the load is the same: less than a load is met by.
 const SAME: f64 = 4e-13;
-/// The share of the solver's tolerance that roundings may take.
-const SPARE: f64 = 1e-2;
-/// Rows that a change from row to row is to be small for.
-const AHEAD: f64 = 100.0;
 /// The share of the pressure that may lie beyond its bounds: the first iteration does not see what comes of leading it back.
 const BEYOND: f64 = 1e-4;
 
@@ -128,60 +124,6 @@ impl Pair {
     }
 }
 
-/// What U may be off by, in roundings of a convolution.
-#[derive(Clone, Copy)]
-pub(super) struct Roundings {
-    /// Of the last row, or the guess or trial of the row under way.
-    pub here: f64,
-    /// Of the row before the one under way.
-    last: f64,
-    /// Of the difference of the two.
-    pub change: f64,
-}
-
-/// f x, also where x is infinite.
-fn times(f: f64, x: f64) -> f64 {
-    if f == 0.0 { 0.0 } else { f.abs() * x }
-}
-
-impl Roundings {
-    /// Of a row.
-    pub(super) fn new(here: f64, change: f64) -> Self {
-        Roundings { here, last: f64::INFINITY, change }
-    }
-
-    /// A row begins.
-    fn begin(self) -> Self {
-        Roundings { last: self.here, ..self }
-    }
-
-    /// Of the guess.
-    fn combined(self, [a, f]: [f64; 2]) -> Self {
-        let along = times(f, self.change) + 1.0;
-        Roundings {
-            here: times(a, self.last) + along,
-            last: self.last,
-            change: times(a - 1.0, self.last) + along,
-        }
-    }
-
-    /// Of the row that was solved from a guess with these; of its U the solver says `found`.
-    pub(super) fn solved(self, found: f64) -> Self {
-        let change = if found >= self.here {
-            self.change + (found - self.here)
-        } else {
-            // U was found afresh, beside that of the row before.
-            found + self.last
-        };
-        Roundings { here: found, change, ..self }
-    }
-
-    /// Whether nobody will see them.
-    fn are_small(self, tolerance: f64) -> bool {
-        f64::EPSILON * (self.here + AHEAD * self.change) <= SPARE * tolerance
-    }
-}
-
 impl March {
     /// Makes the guess for the row that ends at `instant` in `self.state`, which holds the row before the last one.
     pub(super) fn guess(&mut self, instant: Instant) -> Start {
@@ -197,6 +139,7 @@ impl March {
 
     fn combine(&mut self, instant: Instant, linear: f64) -> Start {
         let prescribed = self.prescribed(instant);
+        let cell_area = self.simulation.grid.cell_area();
         let hardness = cap(&self.simulation, &self.hardness);
         let (state, last) = (&mut self.state, &self.previous);
         let (p, u) = (&mut state.pressure[..], &mut state.unit_displacement[..]);
@@ -211,12 +154,12 @@ impl March {
         let best = pair.best(&Wanted {
             compliance: self.compliance,
             prescribed,
-            cell_area: self.simulation.grid.cell_area(),
+            cell_area,
             linear,
             tolerance: self.simulation.solver.tolerance,
             rounding: 16.0 * f64::EPSILON * state.approach.abs(),
         });
-        let [allowed, beyond, kept] =
+        let [total, allowed, beyond, kept] =
             sweep(((p, u), p_last, u_last, hardness), &|((p, u), p_last, u_last, hardness): (
                 (&mut [f64], &mut [f64]),
                 &[f64],
@@ -226,9 +169,14 @@ impl March {
                 vectorize(Combine { best, p, u, p_last, u_last, hardness })
             });
         self.roundings = self.roundings.combined(best);
-        let small = self.roundings.are_small(self.simulation.solver.tolerance);
-        if small && kept == 0.0 && beyond <= BEYOND * allowed {
-            Start::Known { roundings: self.roundings.here, beyond: beyond > 0.0 }
+        let tolerance = self.simulation.solver.tolerance;
+        // The sum is met but for rounding; where nothing presses, the solver starts cold.
+        let meets = match prescribed {
+            Prescribed::Load(load) => (cell_area * total / load - 1.0).abs() <= MET,
+            Prescribed::Approach(_) => allowed > 0.0,
+        };
+        if meets && kept == 0.0 && beyond <= BEYOND * allowed && self.roundings.leave_the_way(tolerance) {
+            Start::Known { roundings: self.roundings, beyond: beyond > 0.0 }
         } else {
             Start::Guess
         }
@@ -270,7 +218,7 @@ impl Work for Look<'_> {
     }
 }
 
-/// p = a p_n + f (p_n - p), and U likewise; yields the sums of what lies within the bounds and beyond. Cells at the
+/// p = a p_n + f (p_n - p), and U likewise; yields the sum, those of what lies within the bounds and beyond. Cells at the
 /// cut-off that would leave it are kept there, and counted: their U is another.
 struct Combine<'a> {
     best: [f64; 2],
@@ -282,12 +230,12 @@ struct Combine<'a> {
 }
 
 impl Work for Combine<'_> {
-    type Yield = [f64; 3];
+    type Yield = [f64; 4];
 
     #[inline(always)]
-    fn run<V: Eight>(self) -> [f64; 3] {
+    fn run<V: Eight>(self) -> [f64; 4] {
         let [a, f] = self.best.map(V::splat);
-        let mut sums = [V::splat(0.0); 3];
+        let mut sums = [V::splat(0.0); 4];
         for n in (0..self.p.len()).step_by(8) {
             let [p, x] = [&*self.p, self.p_last].map(|field| V::load(field, n, 0.0));
             let [u, ux] = [&*self.u, self.u_last].map(|field| V::load(field, n, 0.0));
@@ -298,7 +246,8 @@ impl Work for Combine<'_> {
             p.store(self.p, n);
             (a * ux + f * (ux - u)).store(self.u, n);
             let allowed = p.clip(top);
-            sums = [sums[0] + allowed, sums[1] + (p - allowed).abs(), sums[2] + V::count(leaves)];
+            let terms = [p, allowed, (p - allowed).abs(), V::count(leaves)];
+            sums = std::array::from_fn(|k| sums[k] + terms[k]);
         }
         sums.map(V::sum)
     }
@@ -307,6 +256,7 @@ impl Work for Combine<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::{Precision, SolverOptions};
     use crate::grid::{Boundary, Grid};
     use crate::load::{Control, History};
     use crate::march::Simulation;
@@ -314,7 +264,7 @@ mod tests {
     use crate::time::TimeGrid;
 
     /// A rough gap that creeps under a load, 120 rows of it.
-    fn creep(boundary: Boundary, hardness: f64) -> March {
+    fn creep(boundary: Boundary, hardness: f64, precision: Precision) -> March {
         let grid = Grid::new([48, 40], [1.0, 1.0]).unwrap();
         let gap = ndarray::Array2::from_shape_fn(grid.shape(), |(i, j)| {
             let (x, y) = (grid.x(i) - 0.5, grid.y(j) - 0.5);
@@ -327,6 +277,7 @@ mod tests {
             creep: Creep { instantaneous: 1.0, terms, fluidity: 0.0 },
             loading: crate::Loading { control: Control::Load, history: History::Step { value: 0.02 } }.into(),
             times: TimeGrid::Uniform { end: 4.0, steps: 120 },
+            solver: SolverOptions { precision, ..SolverOptions::default() },
             ..Simulation::new(grid, gap)
         })
         .unwrap()
@@ -334,8 +285,13 @@ mod tests {
 
     #[test]
     fn a_row_takes_no_convolution_but_those_of_its_steps_and_its_displacement_is_that_of_its_pressure() {
-        for (boundary, hardness) in [(Boundary::Free, 0.25), (Boundary::Periodic, f64::INFINITY)] {
-            let mut march = creep(boundary, hardness);
+        for (boundary, hardness, precision) in [
+            (Boundary::Free, 0.25, Precision::Double),
+            (Boundary::Periodic, f64::INFINITY, Precision::Double),
+            (Boundary::Free, 0.25, Precision::Mixed),
+            (Boundary::Periodic, f64::INFINITY, Precision::Mixed),
+        ] {
+            let mut march = creep(boundary, hardness, precision);
             let mut fresh = vec![0.0; march.simulation.grid.len()];
             let mut rows = 0;
             while let Some(step) = march.advance().unwrap() {
@@ -349,7 +305,9 @@ mod tests {
                 let bound = 4.0 * f64::EPSILON * march.roundings.here;
                 assert!(off <= bound * largest, "{} s: {off} {bound}", row.time);
             }
-            assert!(rows > 110, "{boundary:?}: {rows}");
+            // Steps in f32 have U found afresh now and then.
+            let most = if precision == Precision::Mixed { 90 } else { 110 };
+            assert!(rows > most, "{boundary:?}: {rows}");
             assert!(march.roundings.here > 100.0);
         }
     }
@@ -357,7 +315,7 @@ mod tests {
     #[test]
     fn no_other_combination_of_the_load_has_less_energy() {
         for (boundary, hardness) in [(Boundary::Free, f64::INFINITY), (Boundary::Periodic, 0.25)] {
-            let mut march = creep(boundary, hardness);
+            let mut march = creep(boundary, hardness, Precision::Double);
             for _ in 0..12 {
                 march.advance().unwrap();
             }
@@ -408,39 +366,5 @@ mod tests {
         // time leaves 1e-3.
         let relaxed = 0.5 * (1.0 + (-4.0_f64).exp());
         assert!((loads[20] / loads[0] / relaxed - 1.0).abs() < 2e-3, "{}", loads[20] / loads[0]);
-    }
-
-    #[test]
-    fn roundings_are_no_larger_than_they_are_said_to_be() {
-        for factor in [0.5, 1.0, 1.1] {
-            let mut said = Roundings::new(3.0, 2.0);
-            let mut errors = [1.0, 3.0];
-            for row in 0..40 {
-                said = said.begin().combined([1.0, factor]);
-                let sign = if row % 7 < 4 { 1.0 } else { -1.0 };
-                errors = [errors[1], errors[1] + factor * (errors[1] - errors[0]) + sign * 3.0];
-                said = said.solved(said.here + 2.0);
-                assert!(errors[1].abs() <= said.here, "{factor} {row}: {errors:?} {}", said.here);
-            }
-        }
-    }
-
-    #[test]
-    fn two_rows_found_afresh_leave_none_of_the_roundings() {
-        let linear = |said: Roundings| said.begin().combined([1.0, 1.0]);
-        let mut said = Roundings::new(5.0, 1.0);
-        let mut rows = 0;
-        while linear(said).are_small(1e-9) {
-            said = linear(said);
-            said = said.solved(said.here + 5.0);
-            rows += 1;
-        }
-        assert!(rows > 20, "{rows}");
-        said = linear(said).solved(6.0);
-        assert!(!linear(said).are_small(1e-9));
-        said = linear(said).solved(6.0);
-        assert!(linear(said).are_small(1e-9));
-        // A tolerance near rounding leaves nothing to spare.
-        assert!(!linear(said).are_small(1e-13));
     }
 }

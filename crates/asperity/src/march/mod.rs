@@ -29,7 +29,7 @@ pub use simulation::{Plasticity, Scheme, Simulation};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem, Solver, Start};
+use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem, Roundings, Solver, Start};
 use crate::error::{Error, Result};
 use crate::field::{minimum, sum, zeros};
 use crate::load::{Control, Event};
@@ -39,7 +39,6 @@ use adaptive::{Defect, Three};
 use dents::Dents;
 use direct::Direct;
 use event::{Enclosure, MET};
-use guess::Roundings;
 use measure::Meter;
 use memory::Memory;
 use record::Remembered;

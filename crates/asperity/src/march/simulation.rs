@@ -125,8 +125,8 @@ impl Simulation {
         let inverse = if self.boundary == Boundary::Free { 7.0 } else { 5.25 };
         let solver = match self.solver.method {
             // the preconditioner's convolution in f32 with a second multiplier, and its set; four fields in f32, two sets;
-            // the image of the step in f64, or that, pressure and gap in f32
-            Method::ProjectedCg => 1.24 * inverse + 0.125 + 16.0 + 0.25 + if mixed { 12.0 } else { 8.0 },
+            // the image of the step in f64 or f32
+            Method::ProjectedCg => 1.24 * inverse + 0.125 + 16.0 + 0.25 + if mixed { 4.0 } else { 8.0 },
             Method::PolonskyKeer => 24.125,
         };
         // pressure and U of two rows, undeformed and remembered gap; the gap with its dents

@@ -1,7 +1,7 @@
 //! From a kernel in space to its real, even spectrum.
 
 use ndarray::parallel::prelude::*;
-use ndarray::{Array2, Axis};
+use ndarray::{Array2, Axis, Zip};
 use realfft::RealFftPlanner;
 
 /// S(kx, ky) = sum over all i, j of K(i, j) cos(2 pi (kx i/mx + ky j/my)).
@@ -10,8 +10,13 @@ use realfft::RealFftPlanner;
 /// images, as on a torus of `lengths` = \[mx, my\] cells. The result has the same shape.
 pub fn even_spectrum(kernel: &Array2<f64>, lengths: [usize; 2]) -> Array2<f64> {
     let along_y = transform_rows(kernel, lengths[1]);
-    let along_x = transform_rows(&along_y.reversed_axes().as_standard_layout().into_owned(), lengths[0]);
-    along_x.reversed_axes().as_standard_layout().into_owned()
+    transposed(&transform_rows(&transposed(&along_y), lengths[0]))
+}
+
+fn transposed(rows: &Array2<f64>) -> Array2<f64> {
+    let mut columns = Array2::zeros((rows.ncols(), rows.nrows()));
+    Zip::from(&mut columns).and(rows.t()).par_for_each(|to, from| *to = *from);
+    columns
 }
 
 /// The real spectrum of the even extension of every row to `length`.

@@ -171,7 +171,7 @@ fn creep(n: usize, precision: Precision, terms: usize, steps: usize) -> (Counts,
     let gap = gap(&grid);
     let options = SolverOptions { precision, ..SolverOptions::default() };
     let elastic = {
-        let mut operator = half_space(grid, Boundary::Free);
+        let mut operator = precision.half_space(grid, Boundary::Free);
         let mut solver = Solver::with_precision(Method::ProjectedCg, precision, &*operator);
         let mut state = ContactState::new(grid.len());
         let problem = Problem {

@@ -9,7 +9,6 @@ use std::time::Instant;
 
 use asperity::march::{March, Simulation};
 use asperity::material::{Creep, CreepTerm};
-use asperity::operator::half_space;
 use asperity::surface::{Part, Roughness, SelfAffine, undeformed_gap};
 use asperity::{
     Boundary, ContactState, Control, Grid, History, Loading, Method, Precision, Prescribed, Problem, Solver,
@@ -70,7 +69,7 @@ fn solve(
             hardness: f64::INFINITY.into(),
             prescribed: Prescribed::Load(pressure),
         };
-        let mut operator = half_space(grid, boundary);
+        let mut operator = options.precision.half_space(grid, boundary);
         let mut solver = Solver::with_precision(Method::ProjectedCg, options.precision, &*operator);
         let mut state = ContactState::new(grid.len());
         let start = Instant::now();

@@ -216,11 +216,11 @@ fn events_and_adaptive_steps_resumed_from_any_row_give_the_same_bits() {
     for times in [adaptive(50.0, 1e-2, 1e-2), TimeGrid::Uniform { end: 50.0, steps: 200 }] {
         let simulation = Simulation { loading: programme.clone(), times, ..sphere(24) };
         let mut march = March::new(simulation.clone()).unwrap();
-        let mut checkpoints: Vec<Checkpoint> = vec![march.checkpoint()];
+        let mut checkpoints: Vec<Checkpoint> = vec![march.checkpoint().into_owned()];
         let mut rows = vec![];
         while let Some(step) = march.advance().unwrap() {
             rows.push(step.row());
-            checkpoints.push(march.checkpoint());
+            checkpoints.push(march.checkpoint().into_owned());
         }
         println!("{} rows", rows.len());
         assert_eq!(rows.last().unwrap().stage, 4);
@@ -231,7 +231,7 @@ fn events_and_adaptive_steps_resumed_from_any_row_give_the_same_bits() {
                 rest.push(step.row());
             }
             assert_eq!(rest, rows[at..], "from row {at}");
-            assert_eq!(resumed.checkpoint(), *checkpoints.last().unwrap());
+            assert_eq!(resumed.checkpoint().into_owned(), *checkpoints.last().unwrap());
         }
     }
 }

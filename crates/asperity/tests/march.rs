@@ -267,11 +267,11 @@ fn a_march_resumed_from_any_row_gives_the_same_bits() {
             ..rough([20, 26])
         };
         let mut march = March::new(simulation.clone()).unwrap();
-        let mut checkpoints: Vec<Checkpoint> = vec![march.checkpoint()];
+        let mut checkpoints: Vec<Checkpoint> = vec![march.checkpoint().into_owned()];
         let mut rows = vec![];
         while let Some(step) = march.advance().unwrap() {
             rows.push(step.row());
-            checkpoints.push(march.checkpoint());
+            checkpoints.push(march.checkpoint().into_owned());
         }
         for at in [0, 1, 5, 6, 11] {
             let mut resumed = March::resume(simulation.clone(), &checkpoints[at]).unwrap();
@@ -280,7 +280,7 @@ fn a_march_resumed_from_any_row_gives_the_same_bits() {
                 rest.push(step.row());
             }
             assert_eq!(rest, rows[at..], "{scheme:?} from row {at}");
-            assert_eq!(resumed.checkpoint(), *checkpoints.last().unwrap());
+            assert_eq!(resumed.checkpoint().into_owned(), *checkpoints.last().unwrap());
         }
         let other = rough([20, 25]);
         assert!(matches!(March::resume(other, &checkpoints[3]), Err(Error::Invalid { .. })));

@@ -311,7 +311,7 @@ fn a_resumed_march_takes_the_same_bits() {
     for _ in 0..6 {
         march.advance().unwrap();
     }
-    let checkpoint = march.checkpoint();
+    let checkpoint = march.checkpoint().into_owned();
     let mut resumed = March::resume(simulation.clone(), &checkpoint).unwrap();
     let mut flattening = [Array2::zeros((24, 24)), Array2::zeros((24, 24))];
     while let Some(step) = march.advance().unwrap() {

@@ -75,7 +75,7 @@ fn write_file(path: &Path, checkpoint: &Checkpoint) -> std::io::Result<()> {
 }
 
 /// The checkpoint of the result at `root`, or `None` where none was written.
-pub(super) fn read(root: &Path) -> Result<Option<Checkpoint>> {
+pub(super) fn read(root: &Path) -> Result<Option<Checkpoint<'static>>> {
     let path = root.join(DIRECTORY).join(FILE);
     let file = match File::open(&path) {
         Ok(file) => file,
@@ -124,7 +124,7 @@ impl From<std::io::Error> for Unreadable {
     }
 }
 
-fn read_file(file: File, length: u64) -> Result<Checkpoint, Unreadable> {
+fn read_file(file: File, length: u64) -> Result<Checkpoint<'static>, Unreadable> {
     let damaged = |what: &str| Unreadable::Damaged(what.to_owned());
     let mut file = BufReader::with_capacity(1 << 18, file);
     let mut crc = Crc::new();
@@ -162,7 +162,8 @@ fn read_file(file: File, length: u64) -> Result<Checkpoint, Unreadable> {
     let mut fields = Vec::with_capacity(contents.fields.len());
     for FieldShape { name, shape } in contents.fields {
         let field = Array2::from_shape_vec(shape, numbers(shape.0 * shape.1)?);
-        fields.push((name, field.map_err(|error| Unreadable::Damaged(error.to_string()))?));
+        let field = field.map_err(|error| Unreadable::Damaged(error.to_string()))?;
+        fields.push((name, field.into()));
     }
     let mut sum = [0; 4];
     file.read_exact(&mut sum)?;

@@ -27,7 +27,7 @@ impl Writer {
         path: &Path,
         header: &Header,
         initial_gap: ArrayView2<'_, f64>,
-    ) -> Result<(Writer, Option<Checkpoint>)> {
+    ) -> Result<(Writer, Option<Checkpoint<'static>>)> {
         let reader = Reader::open(path)?;
         let held = lock(path)?;
         // Once more: a run that ended meanwhile has changed it.

@@ -100,11 +100,14 @@ impl Case {
         }
     }
 
-    pub(crate) fn checkpoint(&self, step: usize) -> Checkpoint {
+    pub(crate) fn checkpoint(&self, step: usize) -> Checkpoint<'static> {
         Checkpoint {
             step,
             scalars: vec![noise(step), f64::NAN, -0.0],
-            fields: vec![("pressure".into(), self.pressure(step)), ("flow".into(), self.gap(step))],
+            fields: vec![
+                ("pressure".into(), self.pressure(step).into()),
+                ("flow".into(), self.gap(step).into()),
+            ],
         }
     }
 }

@@ -24,7 +24,7 @@ fn a_resumed_run_ends_as_one_that_never_stopped() {
         |c: &asperity_io::store::Checkpoint| c.scalars.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
     assert_eq!(scalars(&state), scalars(&expected));
     for (field, expected) in state.fields.iter().zip(&expected.fields) {
-        assert_eq!((&field.0, bits(&field.1)), (&expected.0, bits(&expected.1)));
+        assert_eq!((&field.0, bits(&field.1.to_owned())), (&expected.0, bits(&expected.1.to_owned())));
     }
     // Rows 5 to 8 and the fields of rows 6 and 8 are taken back.
     let reader = Reader::open(&path).unwrap();

@@ -1,9 +1,9 @@
 //! The cut-off H of the pressure: one for all cells, or one for each.
 
-use asperity_convolution::eights::Eight;
+use asperity_convolution::eights::{Eight, Work, vectorize};
 
 use super::Problem;
-use crate::field::{Cells, minimum, strands, sweep};
+use crate::field::{Cells, Min, sweep};
 
 /// Cut-off H of the pressure \[Pa\].
 ///
@@ -73,16 +73,37 @@ impl Cells for Hardness<'_> {
 impl Problem<'_> {
     /// Where nothing may touch more: least gap, number of cells that can touch, and the sum of H over them.
     pub(super) fn limits(&self) -> (f64, f64, f64) {
-        let [touchable, most] = sweep((self.gap, self.hardness), &|(h, hardness): (&[f64], Hardness)| {
-            strands(h.len(), |i| {
-                let can_touch = h[i] < f64::INFINITY;
-                [f64::from(u8::from(can_touch)), if can_touch { hardness.at(i) } else { 0.0 }]
-            })
-        });
+        let ([touchable, most], Min(first_touch)) =
+            sweep((self.gap, self.hardness), &|(h, hardness): (&[f64], Hardness)| {
+                vectorize(Limits { h, hardness })
+            });
         let most = match self.hardness {
             Hardness::Uniform(hardness) => hardness * touchable,
             Hardness::Cells(_) => most,
         };
-        (minimum(self.gap), touchable, most)
+        (first_touch, touchable, most)
+    }
+}
+
+struct Limits<'a> {
+    h: &'a [f64],
+    hardness: Hardness<'a>,
+}
+
+impl Work for Limits<'_> {
+    type Yield = ([f64; 2], Min);
+
+    #[inline(always)]
+    fn run<V: Eight>(self) -> ([f64; 2], Min) {
+        let [mut touchable, mut most] = [V::splat(0.0); 2];
+        let mut least = V::splat(f64::INFINITY);
+        for n in (0..self.h.len()).step_by(8) {
+            let h = V::load(self.h, n, f64::INFINITY);
+            let can_touch = h.less(V::splat(f64::INFINITY));
+            touchable = touchable + V::count(can_touch);
+            most = most + self.hardness.eight::<V>(n).only(can_touch);
+            least = h.smaller(least);
+        }
+        ([touchable, most].map(V::sum), Min(least.least()))
     }
 }

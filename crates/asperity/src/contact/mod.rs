@@ -40,8 +40,8 @@ use std::sync::atomic::AtomicBool;
 
 use crate::error::{Error, NotConverged, Result};
 use crate::field::{Max, sum, sweep};
-use crate::grid::Boundary;
-use crate::operator::Operator;
+use crate::grid::{Boundary, Grid};
+use crate::operator::{Operator, half_space, half_space_with_single};
 
 /// One elastic contact of unit operator K.
 #[derive(Clone, Copy, Debug)]
@@ -85,6 +85,16 @@ pub enum Precision {
     /// Convolutions of steps in f32, at half the cost; what they leave in the displacement is found afresh in f64 before it
     /// is seen. The same tolerance holds; the digits beyond it differ. For [`Method::ProjectedCg`].
     Mixed,
+}
+
+impl Precision {
+    /// The operator of a grid and its boundary, with all that solves in this precision convolve with.
+    pub fn half_space(self, grid: Grid, boundary: Boundary) -> Box<dyn Operator> {
+        match self {
+            Precision::Double => half_space(grid, boundary),
+            Precision::Mixed => half_space_with_single(grid, boundary),
+        }
+    }
 }
 
 /// When and how to stop.

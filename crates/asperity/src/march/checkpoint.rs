@@ -1,28 +1,35 @@
 //! What a march can be resumed from, with the same bits.
 
-use ndarray::Array2;
+use ndarray::{Array2, CowArray, Ix2};
 
 use super::{March, Past, Reached, Simulation, Timeline, record};
-use crate::contact::REMEMBERED;
-use crate::contact::Roundings;
+use crate::contact::{REMEMBERED, Roundings};
 use crate::error::{Error, Result};
 
 /// Everything that the rest of a march depends on; see [`March::checkpoint`].
 #[derive(Clone, Debug, PartialEq)]
-pub struct Checkpoint {
+pub struct Checkpoint<'a> {
     /// Rows done.
     pub step: usize,
     /// Numbers that belong to the memory.
     pub scalars: Vec<f64>,
-    /// Named fields of nx x ny cells.
-    pub fields: Vec<(String, Array2<f64>)>,
+    /// Named fields of nx x ny cells; those of the march itself are lent.
+    pub fields: Vec<(String, CowArray<'a, f64, Ix2>)>,
+}
+
+impl Checkpoint<'_> {
+    /// With fields of its own, to be kept while the march goes on.
+    pub fn into_owned(self) -> Checkpoint<'static> {
+        let fields = self.fields.into_iter().map(|(name, field)| (name, field.into_owned().into()));
+        Checkpoint { step: self.step, scalars: self.scalars, fields: fields.collect() }
+    }
 }
 
 impl March {
     /// Everything that the rest of the march depends on. A march resumed from it gives the same bits.
-    pub fn checkpoint(&self) -> Checkpoint {
+    pub fn checkpoint(&self) -> Checkpoint<'_> {
         let shape = self.simulation.grid.shape();
-        let field = |name: &str, cells: &[f64]| (name.to_string(), record::to_array(shape, cells));
+        let field = |name: &str, cells| (name.to_string(), CowArray::from(record::to_view(shape, cells)));
         let mut fields = vec![
             field("pressure", &self.state.pressure),
             field("unit_displacement", &self.state.unit_displacement),
@@ -42,7 +49,10 @@ impl March {
         scalars.extend(self.solver.remembered());
         scalars.extend(memory_scalars);
         scalars.extend(self.meter.save());
-        fields.extend(memory.iter().enumerate().map(|(k, cells)| field(&format!("memory_{k}"), cells)));
+        fields.extend(memory.into_iter().enumerate().map(|(k, cells)| {
+            let cells = Array2::from_shape_vec(shape, cells).expect("as many as cells");
+            (format!("memory_{k}"), cells.into())
+        }));
         Checkpoint { step: self.done, scalars, fields }
     }
 

@@ -33,7 +33,7 @@ use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem, Round
 use crate::error::{Error, Result};
 use crate::field::{minimum, sum, zeros};
 use crate::load::{Control, Event};
-use crate::operator::{Operator, half_space};
+use crate::operator::Operator;
 use crate::time::Instant;
 use adaptive::{Defect, Three};
 use dents::Dents;
@@ -154,8 +154,8 @@ impl March {
     pub fn new(simulation: Simulation) -> Result<Self> {
         simulation.validate()?;
         let timeline = Timeline::new(&simulation);
-        let operator = half_space(simulation.grid, simulation.boundary);
         let options = &simulation.solver;
+        let operator = options.precision.half_space(simulation.grid, simulation.boundary);
         let solver = Solver::with_precision(options.method, options.precision, &*operator);
         let n = simulation.grid.len();
         let past = match simulation.scheme {

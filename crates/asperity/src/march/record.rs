@@ -1,9 +1,10 @@
 //! What a row of the result tells: numbers of the contact, and the fields on request.
 
+use asperity_convolution::eights::{Eight, Work, vectorize};
 use ndarray::{Array2, ArrayView2};
 
 use crate::contact::{ContactState, Hardness, Outcome};
-use crate::field::{Max, larger, strands, sweep};
+use crate::field::{Max, sweep};
 use crate::march::dents::Dents;
 use crate::march::measure::Meter;
 use crate::march::{Past, Simulation};
@@ -134,17 +135,7 @@ impl<'a> Step<'a> {
         let ([pressure, touching, capped, gap, touchable], Max(peak)) = sweep(
             (&self.state.pressure[..], &self.state.unit_displacement[..], self.gap, self.hardness),
             &|(p, u, h, hardness): (&[f64], &[f64], &[f64], Hardness)| {
-                let mut peak = 0.0;
-                let n = p.len();
-                let (u, h) = (&u[..n], &h[..n]);
-                let sums = strands(n, |i| {
-                    peak = larger(p[i], peak);
-                    let can_touch = h[i] < f64::INFINITY;
-                    let one = |yes: bool| f64::from(u8::from(yes));
-                    let gap = if can_touch { c * u[i] + h[i] - w } else { 0.0 };
-                    [p[i], one(p[i] > 0.0), one(p[i] >= hardness.at(i)), gap, one(can_touch)]
-                });
-                (sums, Max(peak))
+                vectorize(Survey { p, u, h, hardness, c, w })
             },
         );
         let cell = grid.cell_area();
@@ -203,12 +194,38 @@ impl<'a> Step<'a> {
     }
 }
 
-/// The cells as a field.
-fn to_view(shape: (usize, usize), cells: &[f64]) -> ArrayView2<'_, f64> {
-    ArrayView2::from_shape(shape, cells).expect("fields of a march have the shape of its grid")
+/// The sums of p, of touching cells, of capped ones, of gaps, and of cells that can touch; and the largest p.
+struct Survey<'a> {
+    p: &'a [f64],
+    u: &'a [f64],
+    h: &'a [f64],
+    hardness: Hardness<'a>,
+    c: f64,
+    w: f64,
 }
 
-/// The cells as a field of their own.
-pub(super) fn to_array(shape: (usize, usize), cells: &[f64]) -> Array2<f64> {
-    to_view(shape, cells).to_owned()
+impl Work for Survey<'_> {
+    type Yield = ([f64; 5], Max);
+
+    #[inline(always)]
+    fn run<V: Eight>(self) -> ([f64; 5], Max) {
+        let [zero, c, w] = [0.0, self.c, self.w].map(V::splat);
+        let (mut sums, mut peak) = ([zero; 5], zero);
+        for n in (0..self.p.len()).step_by(8) {
+            let [p, u] = [self.p, self.u].map(|field| V::load(field, n, 0.0));
+            let h = V::load(self.h, n, f64::INFINITY);
+            let can_touch = h.less(V::splat(f64::INFINITY));
+            let capped = self.hardness.eight::<V>(n).at_most(p);
+            let gap = (c * u + h - w).only(can_touch);
+            let terms = [p, V::count(zero.less(p)), V::count(capped), gap, V::count(can_touch)];
+            sums = std::array::from_fn(|k| sums[k] + terms[k]);
+            peak = p.larger(peak);
+        }
+        (sums.map(V::sum), Max(peak.largest()))
+    }
+}
+
+/// The cells as a field.
+pub(super) fn to_view(shape: (usize, usize), cells: &[f64]) -> ArrayView2<'_, f64> {
+    ArrayView2::from_shape(shape, cells).expect("fields of a march have the shape of its grid")
 }

@@ -21,22 +21,32 @@ pub struct Free {
 impl Free {
     /// Plans the operator; the influence coefficients are computed here.
     pub fn new(grid: Grid) -> Self {
-        let lengths = padded(&grid);
-        let kernel = influence(&grid, lengths);
-        let self_influence = kernel[(0, 0)];
-        let spectrum = even_spectrum(&kernel, lengths);
+        Free::planned(grid, false)
+    }
+
+    /// The same, and its form in f32.
+    pub fn with_single(grid: Grid) -> Self {
+        Free::planned(grid, true)
+    }
+
+    fn planned(grid: Grid, single: bool) -> Self {
+        let (self_influence, spectrum) = kernel(&grid);
         debug_assert!(spectrum.iter().all(|s| *s > 0.0), "the kernel is positive definite");
-        let convolution = Convolution::new(grid.cells(), lengths, spectrum.view());
-        Free { grid, convolution, single: Single::default(), self_influence }
+        let convolution = Convolution::new(grid.cells(), padded(&grid), spectrum.view());
+        let single = single.then(|| Lanes::new(grid.cells(), padded(&grid), spectrum.view()));
+        Free { grid, convolution, single: Single(single), self_influence }
     }
 
     fn single(&mut self) -> &mut Lanes<f32> {
         let grid = &self.grid;
-        self.single.planned(|| {
-            let lengths = padded(grid);
-            Lanes::new(grid.cells(), lengths, even_spectrum(&influence(grid, lengths), lengths).view())
-        })
+        self.single.planned(|| Lanes::new(grid.cells(), padded(grid), kernel(grid).1.view()))
     }
+}
+
+/// K of a cell on itself, and the spectrum of K.
+fn kernel(grid: &Grid) -> (f64, Array2<f64>) {
+    let kernel = influence(grid, padded(grid));
+    (kernel[(0, 0)], even_spectrum(&kernel, padded(grid)))
 }
 
 /// Lengths of the transforms.

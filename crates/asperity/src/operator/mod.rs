@@ -57,8 +57,15 @@ pub fn half_space(grid: Grid, boundary: Boundary) -> Box<dyn Operator> {
     }
 }
 
-/// A convolution in f32 beside the one in f64, planned when it is first wanted.
-#[derive(Default)]
+/// The same, with its form in f32 planned at once, from the same kernel.
+pub fn half_space_with_single(grid: Grid, boundary: Boundary) -> Box<dyn Operator> {
+    match boundary {
+        Boundary::Free => Box::new(Free::with_single(grid)),
+        Boundary::Periodic => Box::new(Periodic::with_single(grid)),
+    }
+}
+
+/// A convolution in f32 beside the one in f64, planned with it or when it is first wanted.
 struct Single(Option<Lanes<f32>>);
 
 impl Single {

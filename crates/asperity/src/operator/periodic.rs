@@ -20,10 +20,21 @@ pub struct Periodic {
 impl Periodic {
     /// Plans the operator.
     pub fn new(grid: Grid) -> Self {
-        let spectrum = wave_spectrum(grid.cells(), grid.size(), wave_kernel);
-        let convolution = Convolution::new(grid.cells(), grid.cells(), spectrum.view());
-        let self_influence = mean(grid.cells(), spectrum.view());
-        Periodic { grid, convolution, single: Single::default(), self_influence }
+        Periodic::planned(grid, false)
+    }
+
+    /// The same, and its form in f32.
+    pub fn with_single(grid: Grid) -> Self {
+        Periodic::planned(grid, true)
+    }
+
+    fn planned(grid: Grid, single: bool) -> Self {
+        let cells = grid.cells();
+        let spectrum = wave_spectrum(cells, grid.size(), wave_kernel);
+        let convolution = Convolution::new(cells, cells, spectrum.view());
+        let self_influence = mean(cells, spectrum.view());
+        let single = single.then(|| Lanes::new(cells, cells, spectrum.view()));
+        Periodic { grid, convolution, single: Single(single), self_influence }
     }
 
     fn single(&mut self) -> &mut Lanes<f32> {

@@ -3,8 +3,9 @@
 //! A contour of a grid runs along x and y only. One of random direction is longer by the mean of |cos| + |sin|, 4/π
 //! (V. A. Yastrebov, G. Anciaux & J.-F. Molinari, Tribol. Int. 114 (2017) 161).
 
-use ndarray::parallel::prelude::*;
-use ndarray::{ArrayView2, Axis};
+use asperity_convolution::eights::{Eight, Mask, Work, vectorize};
+use ndarray::ArrayView2;
+use rayon::prelude::*;
 
 use crate::grid::{Boundary, Grid};
 
@@ -44,26 +45,82 @@ impl Edges {
 /// # Ok::<(), asperity::Error>(())
 /// ```
 pub fn contact_edges(pressure: ArrayView2<f64>, boundary: Boundary) -> Edges {
-    let periodic = boundary == Boundary::Periodic;
+    let pressure = pressure.as_standard_layout();
     let (nx, ny) = pressure.dim();
-    let touches = |i: usize, j: usize| pressure[(i, j)] > 0.0;
-    let next = |k: usize, n: usize| if k + 1 < n { Some(k + 1) } else { (periodic && n > 1).then_some(0) };
-    pressure
-        .axis_iter(Axis(0))
+    let cells = pressure.as_slice().unwrap_or_default();
+    let row = |i: usize| &cells[i * ny..][..ny];
+    (0..nx)
         .into_par_iter()
-        .enumerate()
-        .map(|(i, row)| {
-            let below = next(i, nx);
-            let mut edges = Edges::default();
-            for (j, p) in row.iter().enumerate() {
-                let here = *p > 0.0;
-                edges.along_x += usize::from(below.is_some_and(|below| touches(below, j) != here));
-                edges.along_y += usize::from(next(j, ny).is_some_and(|right| touches(i, right) != here));
-            }
-            edges
+        .map(|i| {
+            let here = row(i);
+            // What comes after the last row, and after the last cell of a row.
+            let (below, right) = match boundary {
+                Boundary::Periodic => (row((i + 1) % nx), here.first()),
+                Boundary::Free => (row((i + 1).min(nx - 1)), here.last()),
+            };
+            vectorize(Row { here, below, right: right.copied().unwrap_or_default() })
         })
         .reduce(Edges::default, |a, b| Edges {
             along_x: a.along_x + b.along_x,
             along_y: a.along_y + b.along_y,
         })
+}
+
+/// The edges of a row's cells with the row `below` and with their neighbours to the right.
+struct Row<'a> {
+    here: &'a [f64],
+    below: &'a [f64],
+    /// Right of the last.
+    right: f64,
+}
+
+impl Work for Row<'_> {
+    type Yield = Edges;
+
+    #[inline(always)]
+    fn run<V: Eight>(self) -> Edges {
+        let zero = V::splat(0.0);
+        let mut edges = Edges::default();
+        for n in (0..self.here.len()).step_by(8) {
+            // Beyond the end all are alike.
+            let [here, below, right] = [(self.here, n), (self.below, n), (self.here, n + 1)]
+                .map(|(field, at)| zero.less(V::load(field, at, self.right)).bits());
+            edges.along_x += (here ^ below).count_ones() as usize;
+            edges.along_y += (here ^ right).count_ones() as usize;
+        }
+        edges
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::Array2;
+
+    #[test]
+    fn edges_are_those_that_a_walk_from_cell_to_cell_finds() {
+        for (nx, ny) in [(1, 1), (1, 7), (2, 8), (5, 1), (7, 9), (6, 24), (11, 31)] {
+            let p = Array2::from_shape_fn((nx, ny), |(i, j)| ((i * i * 7 + j * j * 5 + i * j) % 3) as f64);
+            for boundary in [Boundary::Free, Boundary::Periodic] {
+                let differs =
+                    |a: (usize, usize), b: (usize, usize)| usize::from((p[a] > 0.0) != (p[b] > 0.0));
+                let mut walked = Edges::default();
+                for i in 0..nx {
+                    for j in 0..ny {
+                        let (below, right) = ((i + 1) % nx, (j + 1) % ny);
+                        if below > i || boundary == Boundary::Periodic {
+                            walked.along_x += differs((i, j), (below, j));
+                        }
+                        if right > j || boundary == Boundary::Periodic {
+                            walked.along_y += differs((i, j), (i, right));
+                        }
+                    }
+                }
+                assert_eq!(contact_edges(p.view(), boundary), walked, "{nx} {ny} {boundary:?}");
+                let turned = p.t();
+                let found = contact_edges(turned, boundary);
+                assert_eq!((found.along_y, found.along_x), (walked.along_x, walked.along_y));
+            }
+        }
+    }
 }

@@ -60,7 +60,7 @@ mod tests {
                 let flow = usize::from(fluidity > 0.0);
                 let simulation =
                     Simulation { boundary, creep, ..Simulation::new(grid, ndarray::Array2::zeros((4, 4))) };
-                // Five fields more are copied into a checkpoint or staged for the result.
+                // Five fields more are staged for the result, or lie in a checkpoint.
                 let march = 16 * (simulation.bytes_per_cell() + 8 * (terms + flow) + 5 * 8) as u128;
                 let bound = estimate([4, 4], terms + flow);
                 assert!(march <= bound && bound < 2 * march, "{march} {bound}");

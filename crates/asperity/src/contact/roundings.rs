@@ -69,8 +69,8 @@ impl Roundings {
         Roundings { here: found, change, ..self }
     }
 
-    /// Whether U shows where to go.
-    pub(crate) fn leave_the_way(self, tolerance: f64) -> bool {
+    /// Whether U shows where to go, though it may be found afresh.
+    pub(crate) fn are_moderate(self, tolerance: f64) -> bool {
         f64::EPSILON * self.here <= tolerance
     }
 

@@ -175,7 +175,7 @@ impl March {
             Prescribed::Load(load) => (cell_area * total / load - 1.0).abs() <= MET,
             Prescribed::Approach(_) => allowed > 0.0,
         };
-        if meets && kept == 0.0 && beyond <= BEYOND * allowed && self.roundings.leave_the_way(tolerance) {
+        if meets && kept == 0.0 && beyond <= BEYOND * allowed && self.roundings.are_moderate(tolerance) {
             Start::Known { roundings: self.roundings, beyond: beyond > 0.0 }
         } else {
             Start::Guess

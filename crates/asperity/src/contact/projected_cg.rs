@@ -153,7 +153,7 @@ impl<T: Scalar> ProjectedCg<T> {
         }
         make_feasible(problem, operator.grid().cell_area(), state, &mut self.working)?;
         self.roundings = Roundings::of_convolution();
-        operator.apply_into(&state.pressure, &mut state.unit_displacement);
+        self.convolve(operator, state);
         let outcome = self.iterate(operator, task, state, false)?;
         Ok(Outcome { convolutions: outcome.convolutions + 1, ..outcome })
     }

@@ -16,6 +16,7 @@ mod gauss_seidel;
 mod hardness;
 mod lengths;
 mod motion;
+mod neighbours;
 mod polonsky_keer;
 mod preconditioner;
 mod projected_cg;
@@ -25,6 +26,7 @@ mod scalar;
 mod shift;
 mod start;
 mod state;
+mod torus;
 
 pub use gauss_seidel::gauss_seidel;
 pub use hardness::Hardness;

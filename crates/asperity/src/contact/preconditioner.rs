@@ -20,9 +20,10 @@
 
 use asperity_convolution::Visit;
 use asperity_convolution::eights::{Eight, Mask, Work, vectorize};
-use asperity_convolution::lanes::{Lanes, Sums};
-use rayon::prelude::*;
+use asperity_convolution::lanes::Sums;
 
+use super::neighbours::find_beside;
+use super::torus::{G, M, Tori};
 use crate::field::zeros;
 use crate::grid::{Boundary, Grid};
 use crate::operator::ApproximateInverse;
@@ -32,9 +33,9 @@ const BESIDE: f64 = 0.67;
 
 /// z from r on a working set, both f32.
 pub(super) struct Preconditioner {
-    /// M and G, each over its largest value.
-    plan: Lanes<f32>,
-    /// That of M \[1/m\].
+    /// The plans of M and G.
+    tori: Tori,
+    /// The unit of M \[1/m\].
     pub sharpest: f64,
     /// Cells of a row.
     row: usize,
@@ -42,16 +43,11 @@ pub(super) struct Preconditioner {
     beside: Vec<u8>,
 }
 
-/// The numbers of the spectra in the plan.
-const M: usize = 0;
-const G: usize = 1;
-
 impl Preconditioner {
     pub(super) fn new(grid: &Grid, boundary: Boundary) -> Self {
-        let approximate = ApproximateInverse::new(grid, boundary);
         Preconditioner {
-            plan: approximate.plan_with_screened(),
-            sharpest: approximate.largest,
+            tori: Tori::new(grid, boundary),
+            sharpest: ApproximateInverse::sharpest(grid),
             row: grid.cells()[1],
             beside: zeros(grid.len().div_ceil(8)),
         }
@@ -62,11 +58,12 @@ impl Preconditioner {
     pub(super) fn apply_into(&mut self, r: &[f32], set: &[u8], z: &mut [f32], visit: &Visit<f32>) -> Sums {
         find_beside(set, self.row, &mut self.beside);
         let open = Open { set, beside: &self.beside };
-        let mut chain = self.plan.chain(r);
+        let mut chain = self.tori.around(set).chain(r);
         chain.times(M);
         chain.turn(z, &|first, x, z| {
-            z.copy_from_slice(x);
-            vectorize(Weigh { x, open: open.of(first, z) });
+            let open = open.of(first, z);
+            vectorize(Keep { z, set: open.set, x });
+            vectorize(Weigh { x, open });
             Sums::default()
         });
         let by = chain.times_measured(G);
@@ -98,6 +95,24 @@ impl<'a> Open<'a> {
     fn of(self, first: usize, cells: &[f32]) -> Self {
         let bytes = first / 8..(first + cells.len()).div_ceil(8);
         Open { set: &self.set[bytes.clone()], beside: &self.beside[bytes] }
+    }
+}
+
+/// z = x where a group of cells has one of S.
+struct Keep<'a> {
+    z: &'a mut [f32],
+    set: &'a [u8],
+    x: &'a [f32],
+}
+
+impl Work for Keep<'_> {
+    type Yield = ();
+
+    #[inline(always)]
+    fn run<V: Eight>(self) {
+        for (n, _) in (0..).step_by(8).zip(self.set).filter(|(_, set)| **set != 0) {
+            V::load(self.x, n, 0.0).store(self.z, n);
+        }
     }
 }
 
@@ -140,57 +155,10 @@ impl Work for Add<'_> {
     }
 }
 
-/// Bytes of a set that are looked at together.
-const WORD: usize = 8;
-
-/// The cells that are not of the set and touch one of it: the eight around each in memory, so that the last cell of a row
-/// counts as a neighbour of the first of the next.
-fn find_beside(set: &[u8], row: usize, beside: &mut [u8]) {
-    let row = row as isize;
-    beside.par_chunks_mut(1024 * WORD).enumerate().for_each(|(chunk, beside)| {
-        for (n, bytes) in (1024 * chunk..).zip(beside.chunks_mut(WORD)) {
-            let at = (8 * WORD * n) as isize;
-            // Any of three rows, at the cells one before and one after these; what lies between is in both.
-            let [before, after] = [at - 1, at + 1]
-                .map(|at| sixty_four(set, at - row) | sixty_four(set, at) | sixty_four(set, at + row));
-            let near = before | before >> 1 | after << 1 | after;
-            let open = near & !sixty_four(set, at);
-            bytes.copy_from_slice(&open.to_le_bytes()[..bytes.len()]);
-        }
-    });
-}
-
-/// Cells `at`..`at + 64` of a set, as bits; none beyond its ends.
-fn sixty_four(set: &[u8], at: isize) -> u64 {
-    let (byte, shift) = (at.div_euclid(8), at.rem_euclid(8));
-    let nine = usize::try_from(byte).ok().and_then(|byte| set.get(byte..)?.first_chunk().copied());
-    let [first @ .., last]: [u8; 9] = nine.unwrap_or_else(|| {
-        let within = |k| usize::try_from(byte + k).ok().and_then(|byte| set.get(byte).copied());
-        std::array::from_fn(|k| within(k as isize).unwrap_or(0))
-    });
-    // Shifted in two steps: 64 at once is more than there are.
-    u64::from_le_bytes(first) >> shift | u64::from(last) << 1 << (63 - shift)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// A set of blobs on nx x ny cells.
-    fn set([nx, ny]: [usize; 2]) -> Vec<u8> {
-        let mut set = vec![0; (nx * ny).div_ceil(8)];
-        for n in 0..nx * ny {
-            let (x, y) = ((n / ny) as f64, (n % ny) as f64);
-            if (0.31 * x).sin() + (0.23 * y + 0.1 * x).cos() > 0.4 {
-                set[n / 8] |= 1 << (n % 8);
-            }
-        }
-        set
-    }
-
-    fn is_in(set: &[u8], n: usize) -> bool {
-        set[n / 8] >> (n % 8) & 1 == 1
-    }
+    use crate::contact::neighbours::tests::{is_in, set};
 
     fn noise(n: usize, seed: u32) -> f32 {
         let x = (n as u32).wrapping_mul(2_654_435_761).wrapping_add(seed.wrapping_mul(40_503));
@@ -223,7 +191,7 @@ mod tests {
                 let value = |k: usize| if seed % 2 == 0 { 1.0 } else { noise(k, seed) };
                 let r: Vec<f32> = (0..n).map(|k| if is_in(&set, k) { value(k) } else { 0.0 }).collect();
                 let mut z = vec![0.0; n];
-                preconditioner.plan.apply_into(&r, &mut z);
+                preconditioner.tori.around(&set).apply_into(&r, &mut z);
                 let whole = dot(&r, &z);
                 // b'(M_CC)^-1 b, by conjugate gradients until nothing is left.
                 let open = |z: &[f32]| -> Vec<f32> {
@@ -233,7 +201,7 @@ mod tests {
                 let (mut d, mut taken, mut size) = (rest.clone(), 0.0, dot(&rest, &rest));
                 let least = 1e-10 * size;
                 while size > least {
-                    preconditioner.plan.apply_into(&d, &mut z);
+                    preconditioner.tori.around(&set).apply_into(&d, &mut z);
                     let md = open(&z);
                     let step = size / dot(&d, &md);
                     taken += step * size;
@@ -252,28 +220,12 @@ mod tests {
     }
 
     #[test]
-    fn open_cells_beside_the_set() {
-        for cells in [[16, 8], [37, 50], [3, 21], [40, 64]] {
-            let ([_, ny], set) = (cells, set(cells));
-            let n = cells[0] * ny;
-            let mut beside = vec![u8::MAX; set.len()];
-            find_beside(&set, ny, &mut beside);
-            for k in 0..n {
-                let around = [0, 1, 2, ny, ny + 2, 2 * ny, 2 * ny + 1, 2 * ny + 2]
-                    .map(|d| (k + d).checked_sub(ny + 1));
-                let near = around.iter().any(|k| k.is_some_and(|k| k < n && is_in(&set, k)));
-                assert_eq!(is_in(&beside, k), near && !is_in(&set, k), "{cells:?} {k}");
-            }
-        }
-    }
-
-    #[test]
     fn all_cells_or_none() {
         let grid = Grid::new([24, 20], [1.0, 1.0]).unwrap();
         let mut preconditioner = Preconditioner::new(&grid, Boundary::Free);
         let r: Vec<f32> = (0..grid.len()).map(|n| noise(n, 1)).collect();
         let mut z = vec![0.0; grid.len()];
-        preconditioner.plan.apply_into(&r, &mut z);
+        preconditioner.tori.around(&[u8::MAX; 60]).apply_into(&r, &mut z);
         assert_eq!(rated(&mut preconditioner, &[u8::MAX; 60], &r), dot(&r, &z));
         assert_eq!(rated(&mut preconditioner, &[0; 60], &[0.0; 480]), 0.0);
     }

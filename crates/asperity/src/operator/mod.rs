@@ -89,8 +89,8 @@ pub(crate) fn wave_spectrum(
     spectrum
 }
 
-/// Cells beyond the domain that keep the ends of a free one apart in [`ApproximateInverse`].
-const APART: usize = 16;
+/// Cells around a free pressure that keep its opposite ends apart in [`ApproximateInverse`].
+pub(crate) const APART: usize = 16;
 
 /// c of [`ApproximateInverse::plan_with_screened`], of the largest value of |q|/2: a length of some ten cells.
 const SCREEN: f64 = 0.03;
@@ -98,43 +98,59 @@ const SCREEN: f64 = 0.03;
 /// The approximate inverse of K: the symbol |q|/2, the mean like half the first wave.
 ///
 /// It falls off as the third power of the distance: a free domain need not be padded to twice its cells, only so far that
-/// its opposite ends do not see each other. A third of a free convolution, and as good a preconditioner as the padded one.
+/// the opposite ends of a pressure do not see each other. A third of a free convolution, and as good a preconditioner as the
+/// padded one.
 pub(crate) struct ApproximateInverse {
     cells: [usize; 2],
     lengths: [usize; 2],
     /// |q|/2 \[1/m\].
     spectrum: Array2<f64>,
-    /// The largest value of it \[1/m\].
-    pub largest: f64,
-    /// The least.
+    /// That of the grid's shortest wave \[1/m\], which no other exceeds.
+    sharpest: f64,
+    /// The least value of it.
     least: f64,
 }
 
 impl ApproximateInverse {
+    /// For any pressure on the domain.
     pub(crate) fn new(grid: &Grid, boundary: Boundary) -> Self {
-        let cells = grid.cells();
-        let lengths = match boundary {
-            Boundary::Free => cells.map(|n| Lanes::<f32>::good_length(n + APART)),
-            Boundary::Periodic => cells,
-        };
+        Self::on(grid, Self::lengths(grid, boundary, APART))
+    }
+
+    /// The torus that leaves `apart` cells beyond a free domain.
+    pub(crate) fn lengths(grid: &Grid, boundary: Boundary, apart: usize) -> [usize; 2] {
+        match boundary {
+            Boundary::Free => grid.cells().map(|n| Lanes::<f32>::good_length(n + apart)),
+            Boundary::Periodic => grid.cells(),
+        }
+    }
+
+    /// On a torus of these lengths.
+    pub(crate) fn on(grid: &Grid, lengths: [usize; 2]) -> Self {
         let [dx, dy] = grid.spacing();
         let size = [dx * lengths[0] as f64, dy * lengths[1] as f64];
         let mean = 0.25 * std::f64::consts::TAU / size[0].max(size[1]);
         let spectrum = wave_spectrum(lengths, size, |qx, qy| inverse_kernel(qx, qy, mean));
-        let (least, largest) =
-            spectrum.iter().fold((f64::INFINITY, 0.0_f64), |(a, b), s| (a.min(*s), b.max(*s)));
-        ApproximateInverse { cells, lengths, spectrum, largest, least }
+        let least = spectrum.iter().fold(f64::INFINITY, |least, s| least.min(*s));
+        ApproximateInverse { cells: grid.cells(), lengths, spectrum, sharpest: Self::sharpest(grid), least }
     }
 
-    /// It, over its largest value.
+    /// |q|/2 of the grid's shortest wave \[1/m\]: the unit of the plans.
+    pub(crate) fn sharpest(grid: &Grid) -> f64 {
+        let [qx, qy] = grid.spacing().map(|d| std::f64::consts::PI / d);
+        0.5 * (qx * qx + qy * qy).sqrt()
+    }
+
+    /// It, over that of the shortest wave.
     pub(crate) fn plan(&self) -> Lanes<f32> {
         Lanes::new(self.cells, self.lengths, self.scaled().view())
     }
 
-    /// It, and the compliance 1/(|q|/2 + c) on the same torus, each over its largest value. The latter falls off as the third
+    /// It, and the compliance 1/(|q|/2 + c) on the same torus, the former over that of
+    /// the shortest wave, the latter over its largest. It falls off as the third
     /// power of the distance beyond the length 1/(2 c).
     pub(crate) fn plan_with_screened(&self) -> Lanes<f32> {
-        let screen = SCREEN * self.largest;
+        let screen = SCREEN * self.sharpest;
         let mut screened = self.spectrum.clone();
         let peak = 1.0 / (screen + self.least);
         screened.par_mapv_inplace(|s| 1.0 / (s + screen) / peak);
@@ -143,7 +159,7 @@ impl ApproximateInverse {
 
     fn scaled(&self) -> Array2<f64> {
         let mut scaled = self.spectrum.clone();
-        scaled.par_mapv_inplace(|s| s / self.largest);
+        scaled.par_mapv_inplace(|s| s / self.sharpest);
         scaled
     }
 }

@@ -15,7 +15,7 @@ mod spectrum;
 
 use ndarray::ArrayView2;
 
-use lanes::{Lanes, Make, Sums};
+use lanes::{Journey, Lanes, Sums};
 pub use spectrum::even_spectrum;
 
 /// A planned convolution. Bit-identical for any number of threads; `apply_into` allocates nothing.
@@ -41,23 +41,10 @@ trait Engine: Send {
     /// output = S * input; both of length nx ny.
     fn apply_into(&mut self, input: &[f64], output: &mut [f64]);
 
-    /// The same of what is made, visited.
-    fn apply_made_into(&mut self, make: &Make<f64>, output: &mut [f64], visit: &Visit<f64>) -> [Sums; 2] {
-        at_once(make, output, visit, |input, output| self.apply_into(input, output))
+    /// The same on the way.
+    fn carry(&mut self, journey: Journey<f64>) -> Option<Sums> {
+        journey.at_once(|x, u| self.apply_into(x, u))
     }
-}
-
-/// What is made, applied and visited as whole fields, for what takes no rows on the way: `output` = `apply` of what `make` writes.
-pub fn at_once<T: Clone + Default>(
-    make: &Make<T>,
-    output: &mut [T],
-    visit: &Visit<T>,
-    apply: impl FnOnce(&[T], &mut [T]),
-) -> [Sums; 2] {
-    let mut input = vec![T::default(); output.len()];
-    let made = make(0, &mut input);
-    apply(&input, output);
-    [made, visit(0, output)]
 }
 
 /// What meets some cells of an output on its way; the number of the first is given.
@@ -68,8 +55,8 @@ impl Engine for Lanes<f64> {
         Lanes::apply_into(self, input, output);
     }
 
-    fn apply_made_into(&mut self, make: &Make<f64>, output: &mut [f64], visit: &Visit<f64>) -> [Sums; 2] {
-        Lanes::apply_made_into(self, make, output, visit)
+    fn carry(&mut self, journey: Journey<f64>) -> Option<Sums> {
+        Lanes::carry(self, journey)
     }
 }
 
@@ -105,9 +92,9 @@ impl Convolution {
         self.engine.apply_into(input, output);
     }
 
-    /// `output` = S * what `make` writes, met by `visit`, as [`Lanes::apply_made_into`] says; on rustfft all at once.
-    pub fn apply_made_into(&mut self, make: &Make<f64>, output: &mut [f64], visit: &Visit<f64>) -> [Sums; 2] {
-        self.engine.apply_made_into(make, output, visit)
+    /// What a [`Journey`] says; on rustfft all at once.
+    pub fn carry(&mut self, journey: Journey<f64>) -> Option<Sums> {
+        self.engine.carry(journey)
     }
 }
 

@@ -104,7 +104,7 @@ impl Size {
         let (mut output, mut rough) = (vec![0.0; n * n], vec![0.0; n * n]);
         let convolution = timed(|| operator.apply_into(&input, &mut output));
         let single_convolution = timed(|| operator.apply_single_into(&single, &mut rough));
-        let mut solver = ProjectedCg::<f64>::new(&grid, Boundary::Free);
+        let mut solver = ProjectedCg::new(&grid, Boundary::Free, Precision::Double);
         let set = vec![0b0101_1100; (n * n).div_ceil(8)];
         let preconditioner = timed(|| solver.precondition(&single, &set, &mut rough));
         drop((operator, solver, input, single, output, rough));

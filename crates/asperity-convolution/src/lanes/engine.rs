@@ -78,14 +78,24 @@ impl<V: Lane> Engine<V> {
         }
     }
 
-    /// A pass over groups of rows in borrowed room: `back` from the columns, through `visit`, and `on` to the columns. `kept` is
-    /// empty or a field.
-    fn pass(&mut self, kept: &mut [V::Scalar], visit: &Visit<V::Scalar>, [back, on]: [bool; 2]) -> Sums {
+    /// Cells of a group of rows.
+    fn group_cells(&self) -> usize {
+        group::<V>() * self.row_plan.cells()
+    }
+
+    /// A pass over groups of rows in borrowed room: `back` from the columns, through `visit` with what is `beside` the group,
+    /// and `on` to the columns.
+    fn pass<K: Send>(
+        &mut self,
+        beside: impl IndexedParallelIterator<Item = K>,
+        visit: impl Fn(usize, &mut [V::Scalar], K) -> Sums + Sync,
+        [back, on]: [bool; 2],
+    ) -> Sums {
         let (nx, ny, plan, scratch) = (self.rows, self.row_plan.cells(), &self.row_plan, &self.scratch);
-        assert!(kept.is_empty() || kept.len() == nx * ny);
+        assert_eq!(beside.len(), self.sums.len());
         let tiles = SharedTiles::new(&mut self.work, self.stride);
         let group = group::<V>();
-        let pass = |n: usize, sums: &mut Sums, kept: &mut [V::Scalar]| {
+        self.sums.par_iter_mut().zip(beside).enumerate().for_each(|(n, (sums, beside))| {
             let rows = n * group..nx.min((n + 1) * group);
             // SAFETY: every group of rows is visited once; its blocks have no row in common, and are read before they are
             // written.
@@ -99,7 +109,7 @@ impl<V: Lane> Engine<V> {
                         V::vectorize(InverseRows { plan, tiles, rows, scratch });
                     }
                 }
-                *sums = visit(rows.start * ny, cells, kept);
+                *sums = visit(rows.start * ny, cells, beside);
                 if on {
                     for (rows, first) in cells.chunks(V::LANES * ny).zip(rows.step_by(V::LANES)) {
                         let tiles = tiles(first, rows);
@@ -108,14 +118,7 @@ impl<V: Lane> Engine<V> {
                 }
                 scratch.rows = room;
             });
-        };
-        let groups = self.sums.par_iter_mut();
-        if kept.is_empty() {
-            groups.enumerate().for_each(|(n, sums)| pass(n, sums, &mut []));
-        } else {
-            let kept = kept.par_chunks_mut(group * ny);
-            groups.zip(kept).enumerate().for_each(|(n, (sums, kept))| pass(n, sums, kept));
-        }
+        });
         total(&self.sums)
     }
 
@@ -198,16 +201,23 @@ pub type Sums = [f64; 5];
 /// a field of his.
 pub type Visit<'a, T> = dyn Fn(usize, &mut [T], &mut [T]) -> Sums + Sync + 'a;
 
-/// What writes a group of rows; the number of the first cell is given.
-pub type Make<'a, T> = dyn Fn(usize, &mut [T]) -> Sums + Sync + 'a;
+/// Two fields, or some cells of them.
+pub type Fields<'a> = [&'a mut [f64]; 2];
+
+/// What writes a group of rows, beside the same cells of two fields; the number of the first cell is given.
+pub type Make<'a, T> = dyn Fn(usize, &mut [T], Fields) -> Sums + Sync + 'a;
+
+/// What meets a group of convolved rows, beside the same cells of two fields; what was settled on before, and the number of
+/// the first cell, are given.
+pub type Meet<'a, T> = dyn Fn(f64, usize, &[T], Fields) -> Sums + Sync + 'a;
 
 /// The passes of a convolution, whatever its lanes.
 pub trait Convolve<T>: Send {
     /// The rows of the input, forward.
     fn forward(&mut self, input: &[T]);
 
-    /// The same with rows that `make` writes.
-    fn make(&mut self, make: &Make<T>) -> Sums;
+    /// The same with rows that `make` writes beside fields.
+    fn make(&mut self, make: &Make<T>, fields: Fields) -> Sums;
 
     /// The columns: times a spectrum.
     fn multiply(&mut self, spectrum: usize);
@@ -215,8 +225,11 @@ pub trait Convolve<T>: Send {
     /// The same; yields x'S x of the field x.
     fn multiply_measured(&mut self, spectrum: usize) -> f64;
 
-    /// The rows back into `output`, and through `visit`, which gets no cells of a field.
-    fn back(&mut self, output: &mut [T], visit: Option<&Visit<T>>) -> Sums;
+    /// The rows back into `output`.
+    fn back(&mut self, output: &mut [T]);
+
+    /// The rows back to what meets them beside fields.
+    fn met(&mut self, settled: f64, meet: &Meet<T>, fields: Fields) -> Sums;
 
     /// The rows back, through `visit`, and where it goes `on` forward again. `kept` is empty or a field.
     fn turn(&mut self, kept: &mut [T], visit: &Visit<T>, on: bool) -> Sums;
@@ -234,8 +247,11 @@ impl<V: Lane> Convolve<V::Scalar> for Engine<V> {
         });
     }
 
-    fn make(&mut self, make: &Make<V::Scalar>) -> Sums {
-        self.pass(&mut [], &|first, cells, _| make(first, cells), [false, true])
+    fn make(&mut self, make: &Make<V::Scalar>, [a, b]: Fields) -> Sums {
+        assert!([a.len(), b.len()] == [self.rows * self.row_plan.cells(); 2]);
+        let group = self.group_cells();
+        let beside = a.par_chunks_mut(group).zip(b.par_chunks_mut(group));
+        self.pass(beside, |first, cells, (a, b)| make(first, cells, [a, b]), [false, true])
     }
 
     fn multiply(&mut self, spectrum: usize) {
@@ -255,26 +271,32 @@ impl<V: Lane> Convolve<V::Scalar> for Engine<V> {
         total
     }
 
-    fn back(&mut self, output: &mut [V::Scalar], visit: Option<&Visit<V::Scalar>>) -> Sums {
+    fn back(&mut self, output: &mut [V::Scalar]) {
         let (ny, plan, scratch) = (self.row_plan.cells(), &self.row_plan, &self.scratch);
         assert_eq!(output.len(), self.rows * ny);
         let tiles = SharedTiles::new(&mut self.work, self.stride);
-        let groups = output.par_chunks_mut(group::<V>() * ny).zip(&mut self.sums).enumerate();
-        groups.for_each(|(n, (cells, sums))| {
-            for (rows, first) in cells.chunks_mut(V::LANES * ny).zip((n * group::<V>()..).step_by(V::LANES)) {
-                // SAFETY: every group of rows is visited once, and its blocks have no row in common.
-                let tiles = unsafe { tiles.of_rows(first, rows.len() / ny) };
-                with(scratch, |scratch| V::vectorize(InverseRows { plan, tiles, rows, scratch }));
-            }
-            if let Some(visit) = visit {
-                *sums = visit(n * group::<V>() * ny, cells, &mut []);
-            }
+        output.par_chunks_mut(V::LANES * ny).enumerate().for_each(|(n, rows)| {
+            // SAFETY: every block of rows is visited once, and blocks have no row in common.
+            let tiles = unsafe { tiles.of_rows(n * V::LANES, rows.len() / ny) };
+            with(scratch, |scratch| V::vectorize(InverseRows { plan, tiles, rows, scratch }));
         });
-        if visit.is_some() { total(&self.sums) } else { Sums::default() }
+    }
+
+    fn met(&mut self, settled: f64, meet: &Meet<V::Scalar>, [a, b]: Fields) -> Sums {
+        let group = self.group_cells();
+        let beside = a.par_chunks_mut(group).zip(b.par_chunks_mut(group));
+        self.pass(beside, |first, cells, (a, b)| meet(settled, first, cells, [a, b]), [true, false])
     }
 
     fn turn(&mut self, kept: &mut [V::Scalar], visit: &Visit<V::Scalar>, on: bool) -> Sums {
-        self.pass(kept, visit, [true, on])
+        assert!(kept.is_empty() || kept.len() == self.rows * self.row_plan.cells());
+        if kept.is_empty() {
+            let nothing = (0..self.sums.len()).into_par_iter();
+            self.pass(nothing, |first, cells, _| visit(first, cells, &mut []), [true, on])
+        } else {
+            let kept = kept.par_chunks_mut(self.group_cells());
+            self.pass(kept, visit, [true, on])
+        }
     }
 }
 

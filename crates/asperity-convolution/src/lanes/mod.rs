@@ -56,7 +56,7 @@ mod wrap;
 use ndarray::{Array2, ArrayView2};
 
 use engine::{Convolve, Engine};
-pub use engine::{Make, Sums, Visit};
+pub use engine::{Fields, Make, Meet, Sums, Visit};
 use factors::{Factors, factors};
 pub use lane::Real;
 use wrap::wrapped_spectrum;
@@ -167,25 +167,19 @@ impl<T: Real> Lanes<T> {
     pub fn apply_into(&mut self, input: &[T], output: &mut [T]) {
         self.engine.forward(input);
         self.engine.multiply(0);
-        self.engine.back(output, None);
+        self.engine.back(output);
     }
 
-    /// `output` = S * what `make` writes: `make(first, cells)` gets room for eight rows (sixteen in f32) at a time, of which
-    /// `first` is the number of the first cell, a multiple of eight, and `visit(first, cells)` meets as many of the output
-    /// while they are in the cache. Returns the totals of the sums that each returns, in an order that depends on the shape
-    /// alone. They are to do their work by themselves: a thread that they wait for may never come.
+    /// Carries x through the convolution and its image S x to where it is used: neither is ever a field in memory. See
+    /// [`Journey`].
     ///
     /// # Panics
-    /// Where the length is not nx ny.
-    pub fn apply_made_into(
-        &mut self,
-        make: &Make<T>,
-        output: &mut [T],
-        visit: &crate::Visit<T>,
-    ) -> [Sums; 2] {
-        let made = self.engine.make(make);
-        self.engine.multiply(0);
-        [made, self.engine.back(output, Some(&|first, cells, _| visit(first, cells)))]
+    /// Where the length of a field is not nx ny.
+    pub fn carry(&mut self, journey: Journey<T>) -> Option<Sums> {
+        let Journey { make, settle, fields: [a, b], meet } = journey;
+        let made = self.engine.make(make, [&mut *a, &mut *b]);
+        let settled = settle(made, self.engine.multiply_measured(0))?;
+        Some(self.engine.met(settled, meet, [a, b]))
     }
 
     /// Starts several convolutions one after the other, with something done to the field in between.
@@ -195,6 +189,58 @@ impl<T: Real> Lanes<T> {
     pub fn chain(&mut self, input: &[T]) -> Chain<'_, T> {
         self.engine.forward(input);
         Chain { engine: &mut *self.engine }
+    }
+}
+
+/// A field x on its way through a convolution, some rows at a time: `make(first, x, fields)` writes x beside the same cells
+/// of two fields, `settle` is told the totals of what that summed, and x'S x, and says whether to go on and with what number,
+/// and `meet(number, first, u, fields)` gets the image u = S x. Yields the totals of the sums of the latter.
+///
+/// Eight rows at a time (sixteen in f32); `first` is the number of the first cell, a multiple of eight. Totals are taken in an
+/// order that depends on the shape alone. `make` and `meet` are to do their work by themselves: a thread that they wait for may
+/// never come.
+///
+/// ```
+/// use asperity_convolution::lanes::{Journey, Lanes};
+///
+/// // p += x'S x * S x, with S = 3 and x = p.
+/// let three = ndarray::Array2::from_elem((9, 9), 3.0);
+/// let mut plan = Lanes::<f64>::new([16, 16], [16, 16], three.view());
+/// let (mut p, mut unused) = (vec![0.5; 256], vec![0.0; 256]);
+/// plan.carry(Journey {
+///     make: &|_, x, [p, _]| {
+///         x.copy_from_slice(p);
+///         [0.0; 5]
+///     },
+///     settle: &mut |_, energy| Some(energy),
+///     fields: [&mut p, &mut unused],
+///     meet: &|energy, _, u, [p, _]| {
+///         p.iter_mut().zip(u).for_each(|(p, u)| *p += energy * u);
+///         [0.0; 5]
+///     },
+/// });
+/// assert!(p.iter().all(|p| (p - (0.5 + 192.0 * 1.5)).abs() < 1e-9));
+/// ```
+pub struct Journey<'a, T> {
+    /// Writes x.
+    pub make: &'a Make<'a, T>,
+    /// Whether to go on.
+    pub settle: &'a mut dyn FnMut(Sums, f64) -> Option<f64>,
+    /// What goes beside it.
+    pub fields: Fields<'a>,
+    /// Meets S x.
+    pub meet: &'a Meet<'a, T>,
+}
+
+impl<T: Real> Journey<'_, T> {
+    /// The same in fields of its own, for an operator that takes no rows on the way: `apply` it to x, for its image.
+    pub fn at_once(self, apply: impl FnOnce(&[T], &mut [T])) -> Option<Sums> {
+        let Journey { make, settle, fields: [a, b], meet } = self;
+        let [mut x, mut image] = [(); 2].map(|()| vec![T::default(); a.len()]);
+        let made = make(0, &mut x, [&mut *a, &mut *b]);
+        apply(&x, &mut image);
+        let energy = x.iter().zip(&image).map(|(x, u)| x.widened() * u.widened()).sum();
+        Some(meet(settle(made, energy)?, 0, &image, [a, b]))
     }
 }
 

@@ -151,7 +151,7 @@ fn has_the_same_bits_for_any_number_of_lanes() {
         let mut output = vec![0.0; cells[0] * cells[1]];
         engine.forward(&field(cells));
         engine.multiply(0);
-        engine.back(&mut output, None);
+        engine.back(&mut output);
         output.into_iter().map(f64::to_bits).collect()
     }
     for (cells, lengths) in [([33, 31], [80, 64]), ([20, 40], [20, 40])] {
@@ -252,31 +252,56 @@ fn a_chain_is_one_convolution_after_the_other() {
 }
 
 #[test]
-fn what_is_made_is_convolved_and_what_visits_the_output_meets_all_of_it() {
+fn what_is_carried_is_convolved_and_met_beside_its_fields() {
     for (cells, lengths) in SHAPES {
         let spectrum = spectrum(lengths);
         let input = field(cells);
+        let plain = apply(Lanes::new(cells, lengths, spectrum.view()), &input);
+        let dot: f64 = input.iter().zip(&plain).map(|(x, u)| x * u).sum();
+        let size: f64 = input.iter().zip(&plain).map(|(x, u)| (x * u).abs()).sum();
+        let carried = |carry: &mut dyn FnMut(Journey<f64>) -> Option<Sums>, go: bool| {
+            let (mut from, mut image) = (input.clone(), vec![0.0; input.len()]);
+            let mut told = ([0.0; 5], 0.0);
+            let totals = carry(Journey {
+                make: &|first, x, [from, _]| {
+                    assert_eq!(first % 8, 0);
+                    assert_eq!(*from, input[first..][..x.len()]);
+                    x.copy_from_slice(from);
+                    [0.0, x.len() as f64, 0.0, 0.0, 0.0]
+                },
+                settle: &mut |made, energy| {
+                    told = (made, energy);
+                    go.then_some(7.0)
+                },
+                fields: [&mut from, &mut image],
+                meet: &|settled, first, u, [from, image]| {
+                    assert!(first % 8 == 0 && settled == 7.0);
+                    image.copy_from_slice(u);
+                    from.fill(settled);
+                    [u.iter().sum(), u.len() as f64, 0.0, 0.0, 0.0]
+                },
+            });
+            assert_eq!(told.0[1], input.len() as f64);
+            // x'S x by Parseval's theorem, and as it is written.
+            assert!((told.1 - dot).abs() <= 1e-13 * size, "{cells:?}: {} {dot}", told.1);
+            (totals, from, image)
+        };
         for threads in [1, 3] {
             on_threads(threads, || {
                 let mut plan = Lanes::<f64>::new(cells, lengths, spectrum.view());
-                let mut output = vec![0.0; input.len()];
-                let make = |first: usize, cells: &mut [f64]| {
-                    assert_eq!(first % 8, 0);
-                    cells.copy_from_slice(&input[first..][..cells.len()]);
-                    [0.0, cells.len() as f64, 0.0, 0.0, 0.0]
-                };
-                let [made, sums] = plan.apply_made_into(&make, &mut output, &|first, cells| {
-                    assert_eq!(first % 8, 0);
-                    [cells.iter().sum(), cells.len() as f64, 0.0, 0.0, 0.0]
-                });
-                let plain = apply(Lanes::new(cells, lengths, spectrum.view()), &input);
-                assert_eq!(output, plain);
-                assert_eq!([made[1], sums[1]], [input.len() as f64; 2]);
-                let exact: f64 = plain.iter().sum();
-                let size: f64 = plain.iter().map(|x| x.abs()).sum();
-                assert!((sums[0] - exact).abs() <= 1e-14 * size);
+                let (totals, from, image) = carried(&mut |journey| plan.carry(journey), true);
+                let [sum, met, ..] = totals.unwrap();
+                assert!(from.iter().all(|x| *x == 7.0) && image == plain && met == input.len() as f64);
+                let size: f64 = plain.iter().map(|u| u.abs()).sum();
+                assert!((sum - plain.iter().sum::<f64>()).abs() <= 1e-14 * size);
+                // What is not settled leaves everything as it was.
+                let (totals, from, image) = carried(&mut |journey| plan.carry(journey), false);
+                assert!(totals.is_none() && from == input && image.iter().all(|u| *u == 0.0));
             });
         }
+        let mut plan = Lanes::<f64>::new(cells, lengths, spectrum.view());
+        let (totals, _, image) = carried(&mut |journey| journey.at_once(|x, u| plan.apply_into(x, u)), true);
+        assert!(image == plain && totals.unwrap()[1] == input.len() as f64);
     }
 }
 

@@ -27,6 +27,7 @@ mod shift;
 mod start;
 mod state;
 mod torus;
+mod working;
 
 pub use gauss_seidel::gauss_seidel;
 pub use hardness::Hardness;
@@ -34,7 +35,6 @@ pub(crate) use lengths::REMEMBERED;
 pub use polonsky_keer::PolonskyKeer;
 pub use projected_cg::ProjectedCg;
 pub(crate) use roundings::Roundings;
-pub use scalar::Scalar;
 pub(crate) use start::{MET, Start};
 pub use state::ContactState;
 
@@ -167,8 +167,6 @@ pub struct Outcome {
 pub enum Solver {
     /// Preconditioned projected conjugate gradients.
     ProjectedCg(Box<ProjectedCg>),
-    /// The same in mixed precision.
-    MixedProjectedCg(Box<ProjectedCg<f32>>),
     /// Polonsky & Keer.
     PolonskyKeer(Box<PolonskyKeer>),
 }
@@ -182,14 +180,9 @@ impl Solver {
     /// Plans a solver for the operator's grid. [`Method::PolonskyKeer`] knows double precision only.
     pub fn with_precision(method: Method, precision: Precision, operator: &dyn Operator) -> Self {
         let (grid, boundary) = (operator.grid(), operator.boundary());
-        match (method, precision) {
-            (Method::ProjectedCg, Precision::Double) => {
-                Solver::ProjectedCg(Box::new(ProjectedCg::new(grid, boundary)))
-            }
-            (Method::ProjectedCg, Precision::Mixed) => {
-                Solver::MixedProjectedCg(Box::new(ProjectedCg::new(grid, boundary)))
-            }
-            (Method::PolonskyKeer, _) => Solver::PolonskyKeer(Box::new(PolonskyKeer::new(grid))),
+        match method {
+            Method::ProjectedCg => Solver::ProjectedCg(Box::new(ProjectedCg::new(grid, boundary, precision))),
+            Method::PolonskyKeer => Solver::PolonskyKeer(Box::new(PolonskyKeer::new(grid))),
         }
     }
 
@@ -226,8 +219,7 @@ impl Solver {
             self.set_roundings(Roundings::of_convolution());
             return Ok(outcome);
         }
-        let guessed =
-            matches!((&*self, start), (Self::ProjectedCg(_) | Self::MixedProjectedCg(_), Start::Guess));
+        let guessed = matches!((&*self, start), (Self::ProjectedCg(_), Start::Guess));
         let cold = guessed && sum(&state.pressure) <= 0.0;
         let before = if cold {
             self.remember([0.0; REMEMBERED]);
@@ -237,7 +229,6 @@ impl Solver {
         };
         let outcome = match self {
             Solver::ProjectedCg(s) => s.solve(start, operator, problem, options, state, interrupt),
-            Solver::MixedProjectedCg(s) => s.solve(start, operator, problem, options, state, interrupt),
             Solver::PolonskyKeer(s) => s.solve(operator, problem, options, state, interrupt),
         }?;
         if cold {
@@ -253,7 +244,6 @@ impl Solver {
     pub(crate) fn remembered(&self) -> [f64; REMEMBERED] {
         match self {
             Solver::ProjectedCg(s) => s.lengths.save(),
-            Solver::MixedProjectedCg(s) => s.lengths.save(),
             Solver::PolonskyKeer(_) => [0.0; REMEMBERED],
         }
     }
@@ -262,7 +252,6 @@ impl Solver {
     pub(crate) fn roundings(&self) -> f64 {
         match self {
             Solver::ProjectedCg(s) => s.roundings.here,
-            Solver::MixedProjectedCg(s) => s.roundings.here,
             Solver::PolonskyKeer(_) => f64::INFINITY,
         }
     }
@@ -270,7 +259,6 @@ impl Solver {
     fn set_roundings(&mut self, roundings: Roundings) {
         match self {
             Solver::ProjectedCg(s) => s.roundings = roundings,
-            Solver::MixedProjectedCg(s) => s.roundings = roundings,
             Solver::PolonskyKeer(_) => {}
         }
     }
@@ -279,7 +267,6 @@ impl Solver {
     pub(crate) fn remember(&mut self, lengths: [f64; REMEMBERED]) {
         match self {
             Solver::ProjectedCg(s) => s.lengths.load(lengths),
-            Solver::MixedProjectedCg(s) => s.lengths.load(lengths),
             Solver::PolonskyKeer(_) => {}
         }
     }

@@ -15,10 +15,9 @@
 //! Such a guess lies beyond its bounds here and there: the first step is then taken whole, which ends at a feasible
 //! pressure, whatever it does to f.
 //!
-//! An iteration is one convolution, the preconditioner, and five or six sweeps (`direction`, `shift`,
-//! `motion`), most of them over the groups of cells that hold one of S. The sweep that advances the state also rates it,
-//! for which it must know the approach w: the new w is foretold from the mean change of the gap over the
-//! cells that stay free, and the sweep's own mean mends it.
+//! An iteration is one convolution, whose rows take the state with them (`motion`), the preconditioner, and a few sweeps: one
+//! that rates the state and finds S (`working`), the others over the groups of cells that hold one of S (`direction`,
+//! `shift`). The approach w that the rating wants is the mean gap over the free cells, which the moving rows have summed.
 
 use std::sync::atomic::AtomicBool;
 
@@ -26,14 +25,17 @@ use asperity_convolution::lanes::Sums;
 
 use super::direction::{Ahead, Products, Turn, centre, products, steepest, turn};
 use super::lengths::Lengths;
-use super::motion::{Motion, Passage, advance, pass};
+use super::motion::{Course, Landing, Passage, travel};
 use super::preconditioner::Preconditioner;
 use super::residual::Rating;
 use super::roundings::Roundings;
 use super::scalar::Scalar;
 use super::shift::{Shift, Trial};
 use super::start::{Start, make_feasible};
-use super::{ContactState, Outcome, Prescribed, Problem, SolverOptions, interrupted, not_converged};
+use super::working::find_working;
+use super::{
+    ContactState, Outcome, Precision, Prescribed, Problem, SolverOptions, interrupted, not_converged,
+};
 use crate::error::{Error, Result};
 use crate::field::zeros;
 use crate::grid::{Boundary, Grid};
@@ -45,14 +47,14 @@ const PATIENCE: usize = 10;
 const WHOLE: f64 = 0.8;
 /// How often, and by how much, a step is taken shorter where its load is lost in its rounding.
 const SHORTER: (usize, f64) = (8, 1e-3);
-/// The share of the largest violation by which a foretold approach may be wrong.
-const FORETOLD: f64 = 0.02;
+/// The share of the largest violation by which the approach that a state is rated with may be wrong.
+const ASTRAY: f64 = 0.02;
 /// The share of the largest violation below which the mean of the residual over S is left in it.
 const CENTRED: f64 = 1e-4;
 
-/// The method's working memory: 16 bytes per cell, 8 for the image of a step in f64 or 4 in f32, sets of one bit, and the
-/// preconditioner.
-pub struct ProjectedCg<T = f64> {
+/// The method's working memory: 16 bytes per cell, sets of one bit, and the preconditioner.
+pub struct ProjectedCg {
+    precision: Precision,
     preconditioner: Preconditioner,
     /// Residual on S with its mean removed, in units of `unit`, now and one iteration ago.
     residual: Vec<f32>,
@@ -61,12 +63,12 @@ pub struct ProjectedCg<T = f64> {
     image: Vec<f32>,
     /// Search direction d on S.
     direction: Vec<f32>,
-    /// K s, s the step.
-    moved: Vec<T>,
     /// S of the residual now and one iteration ago: outside the latter the direction is zero.
     working: Vec<u8>,
     worked: Vec<u8>,
     pub(super) lengths: Lengths,
+    /// That of a step of steepest descent \[Pa/m\].
+    gradient_length: f64,
     /// Of U of the last solution.
     pub(super) roundings: Roundings,
 }
@@ -94,8 +96,6 @@ struct Step {
     /// a, in units of the direction, and the shift.
     length: f64,
     shift: Shift,
-    /// What `centre` took from the residual.
-    mean: f64,
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -108,20 +108,21 @@ enum Kind {
     Gradient,
 }
 
-impl<T: Scalar> ProjectedCg<T> {
+impl ProjectedCg {
     /// Plans the method for a grid and what surrounds it.
-    pub fn new(grid: &Grid, boundary: Boundary) -> Self {
+    pub fn new(grid: &Grid, boundary: Boundary, precision: Precision) -> Self {
         let n = grid.len();
         ProjectedCg {
+            precision,
             preconditioner: Preconditioner::new(grid, boundary),
             residual: zeros(n),
             previous: zeros(n),
             image: zeros(n),
             direction: zeros(n),
-            moved: zeros(n),
             working: zeros(n.div_ceil(8)),
             worked: zeros(n.div_ceil(8)),
             lengths: Lengths::default(),
+            gradient_length: 0.0,
             roundings: Roundings::of_convolution(),
         }
     }
@@ -170,6 +171,19 @@ impl<T: Scalar> ProjectedCg<T> {
         operator: &mut dyn Operator,
         task: Task,
         state: &mut ContactState,
+        beyond: bool,
+    ) -> Result<Outcome> {
+        match self.precision {
+            Precision::Double => self.iterate_in::<f64>(operator, task, state, beyond),
+            Precision::Mixed => self.iterate_in::<f32>(operator, task, state, beyond),
+        }
+    }
+
+    fn iterate_in<T: Scalar>(
+        &mut self,
+        operator: &mut dyn Operator,
+        task: Task,
+        state: &mut ContactState,
         mut beyond: bool,
     ) -> Result<Outcome> {
         let Task { problem, options, interrupt } = task;
@@ -179,7 +193,7 @@ impl<T: Scalar> ProjectedCg<T> {
         self.working.fill(u8::MAX);
         self.worked.fill(u8::MAX);
         let mut convolutions = 0;
-        let mut gradient_length = 1.0 / (problem.compliance * operator.self_influence());
+        self.gradient_length = 1.0 / (problem.compliance * operator.self_influence());
         let mut conjugacy = Conjugacy { product: None, unit: 0.0, pressure: 0.0 };
         let (mut best, mut stall, mut stuck) = (f64::INFINITY, 0, false);
         let mut iteration = 0;
@@ -188,10 +202,10 @@ impl<T: Scalar> ProjectedCg<T> {
         let mut rating = Rating::of(problem, state, 0.0);
         loop {
             let w = rating.approach(problem.prescribed);
-            if unit == 0.0 || (w - rating.w).abs() > FORETOLD * rating.violation() {
+            if unit == 0.0 || (w - rating.w).abs() > ASTRAY * rating.violation() {
                 unit = if rating.violation() > 0.0 { rating.violation() } else { 1.0 };
                 let found = (&mut self.residual[..], &mut self.working[..]);
-                rating = advance::<T>(problem, state, None, w, unit, found);
+                rating = find_working(problem, state, (w, unit), beyond, found);
             }
             state.approach = rating.approach(problem.prescribed);
             let rated = rating.rate(problem, &grid, options.tolerance);
@@ -232,73 +246,86 @@ impl<T: Scalar> ProjectedCg<T> {
             } else {
                 self.conjugate_step(problem, state, sum, &rating, unit, &mut conjugacy)
             };
-            let count = &mut convolutions;
-            let mut taken =
-                conjugate.and_then(|step| self.pass(operator, problem, state, step, beyond, count));
-            if taken.is_none() {
+            let w = rating.w;
+            let mut take = |this: &mut Self, state: &mut ContactState, step| {
+                convolutions += 1;
+                this.take::<T>(operator, problem, state, step, (unit, w), beyond)
+            };
+            let mut landing = conjugate.and_then(|step| take(self, state, step));
+            if landing.is_none() {
                 conjugacy.product = None;
                 stall = 0;
-                let steepest = self.gradient_step(problem, state, sum, &rating, unit, gradient_length);
-                taken = steepest.and_then(|step| self.pass(operator, problem, state, step, beyond, count));
+                let length = self.gradient_length;
+                let steepest = self.gradient_step(problem, state, sum, &rating, unit, length);
+                landing = steepest.and_then(|step| take(self, state, step));
             }
-            let Some((step, passage)) = taken else {
+            let Some(landing) = landing else {
                 // Nothing descends any more: rounding has the last word.
                 stuck = true;
                 continue;
             };
-            let size = passage.unit;
-            let curvature = problem.compliance * size * size * passage.curvature;
-            let slope = unit * passage.slope;
-            let exact = if curvature > 0.0 { -slope / curvature } else { 1.0 };
-            let t = match step.kind {
-                _ if beyond => {
-                    if step.kind != Kind::Gradient && slope < 0.0 {
-                        self.lengths.learn(false, exact);
-                    }
-                    1.0
-                }
-                Kind::Straight => {
-                    self.lengths.learn(true, exact);
-                    exact.min(passage.reach)
-                }
-                Kind::Clipped => {
-                    self.lengths.learn(false, exact);
-                    if exact >= WHOLE { 1.0 } else { exact }
-                }
-                Kind::Gradient => {
-                    if curvature > 0.0 {
-                        gradient_length = size * size * passage.length / curvature;
-                    }
-                    exact.min(1.0)
-                }
-            };
-            let [r, change, cells] = passage.inside;
-            let foretold = match problem.prescribed {
-                Prescribed::Load(_) if cells > 0.0 => {
-                    rating.w + unit * (r / cells + step.mean) + t * size * problem.compliance * change / cells
-                }
-                _ => rating.w,
+            let w = match problem.prescribed {
+                Prescribed::Load(_) => landing.free_gap.unwrap_or(rating.w),
+                Prescribed::Approach(w) => w,
             };
             // Residuals are measured in the largest violation of the iteration before.
             unit = rating.violation();
             std::mem::swap(&mut self.residual, &mut self.previous);
             std::mem::swap(&mut self.working, &mut self.worked);
-            let motion = Motion {
-                t,
-                unit: size,
-                length: step.length,
-                shift: step.shift,
-                direction: &self.direction,
-                set: &self.worked,
-                image: &self.moved,
-            };
-            let found = (&mut self.residual[..], &mut self.working[..]);
-            rating = advance(problem, state, Some(motion), foretold, unit, found);
-            let grown = t.abs() * size * problem.compliance * passage.largest;
-            self.roundings = self.roundings.with_step(grown / rating.displacement(problem), T::EPSILON);
             beyond = false;
+            let found = (&mut self.residual[..], &mut self.working[..]);
+            rating = find_working(problem, state, (w, unit), beyond, found);
+            let grown = problem.compliance * landing.change;
+            self.roundings = self.roundings.with_step(grown / rating.displacement(problem), T::EPSILON);
             iteration += 1;
         }
+    }
+
+    /// Takes a step as far as f falls along it, one convolution; `None` where it does not descend, unless it is taken from
+    /// `beyond` the bounds. The residual is in that unit and for that approach.
+    fn take<T: Scalar>(
+        &mut self,
+        operator: &mut dyn Operator,
+        problem: &Problem,
+        state: &mut ContactState,
+        step: Step,
+        (unit, w): (f64, f64),
+        beyond: bool,
+    ) -> Option<Landing> {
+        let ProjectedCg { lengths, gradient_length, residual, direction, working, .. } = self;
+        let mut settle = |passage: Passage| {
+            let slope = unit * passage.slope;
+            if !(slope < 0.0 || beyond && slope.is_finite()) {
+                return None;
+            }
+            let curvature = problem.compliance * passage.curvature;
+            let exact = if curvature > 0.0 { -slope / curvature } else { 1.0 };
+            Some(match step.kind {
+                _ if beyond => {
+                    if step.kind != Kind::Gradient && slope < 0.0 {
+                        lengths.learn(false, exact);
+                    }
+                    1.0
+                }
+                Kind::Straight => {
+                    lengths.learn(true, exact);
+                    exact.min(passage.reach)
+                }
+                Kind::Clipped => {
+                    lengths.learn(false, exact);
+                    if exact >= WHOLE { 1.0 } else { exact }
+                }
+                Kind::Gradient => {
+                    if curvature > 0.0 {
+                        *gradient_length = passage.square / curvature;
+                    }
+                    exact.min(1.0)
+                }
+            })
+        };
+        let Step { length, shift, .. } = step;
+        let course = Course { direction, set: working, hardness: problem.hardness, length, shift };
+        travel::<T>(operator, problem, state, (course, residual), w, &mut settle)
     }
 
     /// The conjugate step on S; `None` where it does not descend.
@@ -349,7 +376,7 @@ impl<T: Scalar> ProjectedCg<T> {
             Turn { mean, beta, length },
         );
         let kind = if ahead.outside > 0.0 { Kind::Clipped } else { Kind::Straight };
-        self.shifted(problem, state, sum, ahead, kind, length, if centred { mean_r } else { 0.0 })
+        self.shifted(problem, state, sum, ahead, (kind, length))
     }
 
     /// The projected-gradient step over all cells that can touch; `None` where it does not descend.
@@ -367,30 +394,27 @@ impl<T: Scalar> ProjectedCg<T> {
         // The direction is written everywhere.
         self.worked.fill(u8::MAX);
         let ahead = steepest(problem, state, rating.w, unit, length, found);
-        self.shifted(problem, state, sum, ahead, Kind::Gradient, length, 0.0)
+        self.shifted(problem, state, sum, ahead, (Kind::Gradient, length))
     }
 
     /// The step from the trial point; `None` where no shift keeps the load. `sum` is the sum of p that load control prescribes,
     /// less the present one.
-    #[allow(clippy::too_many_arguments)] // they are the step's parts
     fn shifted(
         &self,
         problem: &Problem,
         state: &ContactState,
         sum: Option<f64>,
         ahead: Ahead,
-        kind: Kind,
-        length: f64,
-        mean: f64,
+        (mut kind, mut length): (Kind, f64),
     ) -> Option<Step> {
         let Some(missing) = sum else {
-            return Some(Step { kind, length, shift: Shift::default(), mean });
+            return Some(Step { kind, length, shift: Shift::default() });
         };
-        let (mut length, mut kind, mut clipped) = (length, kind, Some(ahead.clipped));
+        let mut clipped = Some(ahead.clipped);
         for _ in 0..SHORTER.0 {
             let trial = trial(problem, state, &self.direction, &self.working, length);
             if let Some(shift) = trial.shift_to_sum(ahead.pressure + missing, clipped.take()) {
-                return Some(Step { kind, length, shift, mean });
+                return Some(Step { kind, length, shift });
             }
             length *= SHORTER.1;
             if kind == Kind::Straight {
@@ -398,23 +422,6 @@ impl<T: Scalar> ProjectedCg<T> {
             }
         }
         None
-    }
-
-    /// The image of the step in `self.moved`, one convolution more; `None` where the step does not descend, unless it is
-    /// taken from `beyond` the bounds.
-    fn pass(
-        &mut self,
-        operator: &mut dyn Operator,
-        problem: &Problem,
-        state: &ContactState,
-        step: Step,
-        beyond: bool,
-        convolutions: &mut usize,
-    ) -> Option<(Step, Passage)> {
-        *convolutions += 1;
-        let trial = trial(problem, state, &self.direction, &self.working, step.length);
-        let passage = pass(operator, &trial, step.shift, &self.residual, &mut self.moved);
-        (passage.slope < 0.0 || beyond && passage.slope.is_finite()).then_some((step, passage))
     }
 }
 

@@ -7,7 +7,7 @@
 use asperity_convolution::eights::{Eight, Mask, Work, vectorize};
 
 use super::Hardness;
-use crate::field::{Cells, Max, Min, Set, sweep};
+use crate::field::{Max, Min, Set, sweep};
 
 /// A sum is met when it misses by this share: the cells inside take the rest back, and so few of them cross a bound
 /// by it that nothing is left.
@@ -80,18 +80,6 @@ pub(super) struct ClippedSum {
 }
 
 impl Trial<'_> {
-    /// The same of some cells, from a multiple of eight on.
-    pub(super) fn part(&self, first: usize, cells: usize) -> Self {
-        let range = first..first + cells;
-        Trial {
-            pressure: &self.pressure[range.clone()],
-            direction: self.direction.map(|d| &d[range.clone()]),
-            set: &self.set[first / 8..range.end.div_ceil(8)],
-            length: self.length,
-            hardness: self.hardness.split(first).1,
-        }
-    }
-
     /// The shift after which the cells of the set have the sum `target`; `None` where no shift does it, be it for rounding.
     /// `first` is the sum without a shift, where it is known.
     pub(super) fn shift_to_sum(&self, target: f64, first: Option<ClippedSum>) -> Option<Shift> {

@@ -126,9 +126,8 @@ impl Simulation {
         // contacts that reach the rim and others, see `contact::torus`
         let tori = if self.boundary == Boundary::Free { inverse + 5.25 } else { inverse };
         let solver = match self.solver.method {
-            // the preconditioner's convolutions in f32 with a second multiplier, and its set; four fields in f32, two sets;
-            // the image of the step in f64 or f32
-            Method::ProjectedCg => 1.24 * tori + 0.125 + 16.0 + 0.25 + if mixed { 4.0 } else { 8.0 },
+            // the preconditioner's convolutions in f32 with a second multiplier, and its set; four fields in f32, two sets
+            Method::ProjectedCg => 1.24 * tori + 0.125 + 16.0 + 0.25,
             Method::PolonskyKeer => 24.125,
         };
         // pressure and U of two rows, undeformed and remembered gap; the gap with its dents

@@ -14,8 +14,7 @@ pub use periodic::Periodic;
 use ndarray::Array2;
 use ndarray::parallel::prelude::*;
 
-use crate::convolution::lanes::{Lanes, Make, Sums};
-use crate::convolution::{Visit, at_once};
+use crate::convolution::lanes::{Journey, Lanes, Sums};
 use crate::grid::{Boundary, Grid};
 use crate::kernel::inverse_kernel;
 
@@ -33,16 +32,14 @@ pub trait Operator: Send {
     /// The same in f32, to about 1e-7 of the largest u.
     fn apply_single_into(&mut self, p: &[f32], u: &mut [f32]);
 
-    /// u = K p of the pressure that `make(first, p)` writes, some cells at a time, of which `first` is the number of the first,
-    /// a multiple of eight; `visit(first, u)` meets some cells of u at a time while they are in the cache. Returns the totals
-    /// of the sums that each returns.
-    fn apply_made_into(&mut self, make: &Make<f64>, u: &mut [f64], visit: &Visit<f64>) -> [Sums; 2] {
-        at_once(make, u, visit, |p, u| self.apply_into(p, u))
+    /// A pressure x and its displacement K x on the way, neither of them a field in memory, as [`Journey`] says.
+    fn carry(&mut self, journey: Journey<f64>) -> Option<Sums> {
+        journey.at_once(|x, u| self.apply_into(x, u))
     }
 
     /// The same in f32.
-    fn apply_single_made_into(&mut self, make: &Make<f32>, u: &mut [f32], visit: &Visit<f32>) -> [Sums; 2] {
-        at_once(make, u, visit, |p, u| self.apply_single_into(p, u))
+    fn carry_single(&mut self, journey: Journey<f32>) -> Option<Sums> {
+        journey.at_once(|x, u| self.apply_single_into(x, u))
     }
 
     /// Displacement of a cell under its own unit pressure \[m\].

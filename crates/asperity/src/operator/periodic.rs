@@ -4,8 +4,8 @@
 use ndarray::{ArrayView1, ArrayView2};
 
 use super::{Operator, Single, wave_spectrum};
-use crate::convolution::lanes::{Lanes, Make, Sums};
-use crate::convolution::{Convolution, Visit};
+use crate::convolution::Convolution;
+use crate::convolution::lanes::{Journey, Lanes, Sums};
 use crate::grid::{Boundary, Grid};
 use crate::kernel::wave_kernel;
 
@@ -68,12 +68,12 @@ impl Operator for Periodic {
         self.single().apply_into(p, u);
     }
 
-    fn apply_made_into(&mut self, make: &Make<f64>, u: &mut [f64], visit: &Visit<f64>) -> [Sums; 2] {
-        self.convolution.apply_made_into(make, u, visit)
+    fn carry(&mut self, journey: Journey<f64>) -> Option<Sums> {
+        self.convolution.carry(journey)
     }
 
-    fn apply_single_made_into(&mut self, make: &Make<f32>, u: &mut [f32], visit: &Visit<f32>) -> [Sums; 2] {
-        self.single().apply_made_into(make, u, visit)
+    fn carry_single(&mut self, journey: Journey<f32>) -> Option<Sums> {
+        self.single().carry(journey)
     }
 
     fn self_influence(&self) -> f64 {

@@ -83,8 +83,9 @@ impl Work for Row<'_> {
         let mut edges = Edges::default();
         for n in (0..self.here.len()).step_by(8) {
             // Beyond the end all are alike.
-            let [here, below, right] = [(self.here, n), (self.below, n), (self.here, n + 1)]
-                .map(|(field, at)| zero.less(V::load(field, at, self.right)).bits());
+            let here = zero.less(V::load(self.here, n, self.right)).bits();
+            let below = zero.less(V::load(self.below, n, self.right)).bits();
+            let right = zero.less(V::load(self.here, n + 1, self.right)).bits();
             edges.along_x += (here ^ below).count_ones() as usize;
             edges.along_y += (here ^ right).count_ones() as usize;
         }

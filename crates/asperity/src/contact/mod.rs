@@ -35,7 +35,7 @@ pub(crate) use lengths::REMEMBERED;
 pub use polonsky_keer::PolonskyKeer;
 pub use projected_cg::ProjectedCg;
 pub(crate) use roundings::Roundings;
-pub(crate) use start::{MET, Start};
+pub(crate) use start::{FreeGap, MET, Start};
 pub use state::ContactState;
 
 use std::sync::atomic::AtomicBool;
@@ -65,6 +65,16 @@ pub enum Prescribed {
     Load(f64),
     /// Rigid-body approach w \[m\].
     Approach(f64),
+}
+
+impl Prescribed {
+    /// w, where it is what is given.
+    fn approach(self) -> Option<f64> {
+        match self {
+            Prescribed::Approach(w) => Some(w),
+            Prescribed::Load(_) => None,
+        }
+    }
 }
 
 /// The solver of the contact problem.

@@ -24,6 +24,8 @@ pub(super) struct Course<'a> {
     /// a
     pub length: f64,
     pub shift: Shift,
+    /// Whether the step may be taken further than its end, as far as the bounds.
+    pub beyond_end: bool,
 }
 
 impl Course<'_> {
@@ -48,7 +50,7 @@ pub(super) struct Passage {
     pub square: f64,
     /// <s, K s>
     pub curvature: f64,
-    /// The largest multiple of s that stays within the bounds.
+    /// The largest multiple of s that stays within the bounds, for a course that may go on beyond its end.
     pub reach: f64,
 }
 
@@ -140,9 +142,11 @@ impl<T: Cell> Work for LayOut<'_, T> {
             (s * per).store(self.s, n);
             slope = slope + V::load(self.r, n, 0.0) * s;
             square = square + s * s;
-            let room = V::select(s.less(zero), p, hardness - p);
-            let moves = s.less(zero) | zero.less(s);
-            reach = V::select(moves, room / s.abs(), far).smaller(reach);
+            if course.beyond_end {
+                let room = V::select(s.less(zero), p, hardness - p);
+                let moves = s.less(zero) | zero.less(s);
+                reach = V::select(moves, room / s.abs(), far).smaller(reach);
+            }
         }
         ([slope, square].map(V::sum), reach.least())
     }

@@ -31,7 +31,7 @@ use super::residual::Rating;
 use super::roundings::Roundings;
 use super::scalar::Scalar;
 use super::shift::{Shift, Trial};
-use super::start::{Start, make_feasible};
+use super::start::{FreeGap, Start, make_feasible};
 use super::working::find_working;
 use super::{
     ContactState, Outcome, Precision, Prescribed, Problem, SolverOptions, interrupted, not_converged,
@@ -69,6 +69,8 @@ pub struct ProjectedCg {
     pub(super) lengths: Lengths,
     /// That of a step of steepest descent \[Pa/m\].
     gradient_length: f64,
+    /// Taken in this solve.
+    convolutions: usize,
     /// Of U of the last solution.
     pub(super) roundings: Roundings,
 }
@@ -123,6 +125,7 @@ impl ProjectedCg {
             worked: zeros(n.div_ceil(8)),
             lengths: Lengths::default(),
             gradient_length: 0.0,
+            convolutions: 0,
             roundings: Roundings::of_convolution(),
         }
     }
@@ -144,9 +147,10 @@ impl ProjectedCg {
         interrupt: Option<&AtomicBool>,
     ) -> Result<Outcome> {
         let task = Task { problem, options: *options, interrupt };
-        if let Start::Known { roundings, beyond } = start {
+        self.convolutions = 0;
+        if let Start::Known { roundings, beyond, gap } = start {
             self.roundings = roundings;
-            match self.iterate(operator, task, state, beyond) {
+            match self.iterate(operator, task, state, beyond, gap) {
                 // It leads nowhere.
                 Err(Error::NotConverged(report)) if report.iterations == 0 => {}
                 solved => return solved,
@@ -155,27 +159,28 @@ impl ProjectedCg {
         make_feasible(problem, operator.grid().cell_area(), state, &mut self.working)?;
         self.roundings = Roundings::of_convolution();
         self.convolve(operator, state);
-        let outcome = self.iterate(operator, task, state, false)?;
-        Ok(Outcome { convolutions: outcome.convolutions + 1, ..outcome })
+        self.iterate(operator, task, state, false, None)
     }
 
     /// Finds U afresh.
     fn convolve(&mut self, operator: &mut dyn Operator, state: &mut ContactState) {
         operator.apply_into(&state.pressure, &mut state.unit_displacement);
+        self.convolutions += 1;
         self.roundings = self.roundings.afresh();
     }
 
-    /// Iterates from a state whose U is known; its pressure may lie `beyond` its bounds.
+    /// Iterates from a state whose U is known; its pressure may lie `beyond` its bounds. Its free gap is known or not.
     fn iterate(
         &mut self,
         operator: &mut dyn Operator,
         task: Task,
         state: &mut ContactState,
         beyond: bool,
+        gap: Option<FreeGap>,
     ) -> Result<Outcome> {
         match self.precision {
-            Precision::Double => self.iterate_in::<f64>(operator, task, state, beyond),
-            Precision::Mixed => self.iterate_in::<f32>(operator, task, state, beyond),
+            Precision::Double => self.iterate_in::<f64>(operator, task, state, beyond, gap),
+            Precision::Mixed => self.iterate_in::<f32>(operator, task, state, beyond, gap),
         }
     }
 
@@ -185,6 +190,7 @@ impl ProjectedCg {
         task: Task,
         state: &mut ContactState,
         mut beyond: bool,
+        gap: Option<FreeGap>,
     ) -> Result<Outcome> {
         let Task { problem, options, interrupt } = task;
         let grid = *operator.grid();
@@ -192,14 +198,19 @@ impl ProjectedCg {
         // Whatever an earlier solve left behind is overwritten, everywhere.
         self.working.fill(u8::MAX);
         self.worked.fill(u8::MAX);
-        let mut convolutions = 0;
         self.gradient_length = 1.0 / (problem.compliance * operator.self_influence());
         let mut conjugacy = Conjugacy { product: None, unit: 0.0, pressure: 0.0 };
         let (mut best, mut stall, mut stuck) = (f64::INFINITY, 0, false);
         let mut iteration = 0;
-        let mut unit = 0.0;
-        // Only to find the approach. No guess from the state: it would leave its rounding.
-        let mut rating = Rating::of(problem, state, 0.0);
+        let (mut rating, mut unit) = match gap {
+            Some(FreeGap { mean, size }) => {
+                let w = problem.prescribed.approach().unwrap_or(mean);
+                let found = (&mut self.residual[..], &mut self.working[..]);
+                (find_working(problem, state, (w, size), beyond, found), size)
+            }
+            // Only to find the approach. No guess from the state: it would leave its rounding.
+            None => (Rating::of(problem, state, 0.0), 0.0),
+        };
         loop {
             let w = rating.approach(problem.prescribed);
             if unit == 0.0 || (w - rating.w).abs() > ASTRAY * rating.violation() {
@@ -209,11 +220,10 @@ impl ProjectedCg {
             }
             state.approach = rating.approach(problem.prescribed);
             let rated = rating.rate(problem, &grid, options.tolerance);
-            let outcome = Outcome { iterations: iteration, convolutions, ..rated };
+            let outcome = Outcome { iterations: iteration, convolutions: self.convolutions, ..rated };
             if !beyond && (outcome.residual <= options.tolerance || stuck) {
                 if !self.roundings.are_small(options.tolerance) && !self.roundings.are_least() {
                     self.convolve(operator, state);
-                    convolutions += 1;
                     (stuck, unit, conjugacy.product) = (false, 0.0, None);
                     rating = Rating::of(problem, state, 0.0);
                     continue;
@@ -248,7 +258,6 @@ impl ProjectedCg {
             };
             let w = rating.w;
             let mut take = |this: &mut Self, state: &mut ContactState, step| {
-                convolutions += 1;
                 this.take::<T>(operator, problem, state, step, (unit, w), beyond)
             };
             let mut landing = conjugate.and_then(|step| take(self, state, step));
@@ -264,10 +273,7 @@ impl ProjectedCg {
                 stuck = true;
                 continue;
             };
-            let w = match problem.prescribed {
-                Prescribed::Load(_) => landing.free_gap.unwrap_or(rating.w),
-                Prescribed::Approach(w) => w,
-            };
+            let w = problem.prescribed.approach().or(landing.free_gap).unwrap_or(rating.w);
             // Residuals are measured in the largest violation of the iteration before.
             unit = rating.violation();
             std::mem::swap(&mut self.residual, &mut self.previous);
@@ -292,6 +298,7 @@ impl ProjectedCg {
         (unit, w): (f64, f64),
         beyond: bool,
     ) -> Option<Landing> {
+        self.convolutions += 1;
         let ProjectedCg { lengths, gradient_length, residual, direction, working, .. } = self;
         let mut settle = |passage: Passage| {
             let slope = unit * passage.slope;
@@ -323,8 +330,14 @@ impl ProjectedCg {
                 }
             })
         };
-        let Step { length, shift, .. } = step;
-        let course = Course { direction, set: working, hardness: problem.hardness, length, shift };
+        let course = Course {
+            direction,
+            set: working,
+            hardness: problem.hardness,
+            length: step.length,
+            shift: step.shift,
+            beyond_end: step.kind == Kind::Straight,
+        };
         travel::<T>(operator, problem, state, (course, residual), w, &mut settle)
     }
 

@@ -24,7 +24,7 @@ pub(super) struct Rating {
     capped: Max,
     /// Least r where p = 0.
     empty: Min,
-    /// Least r where p > 0.
+    /// Least r where p > 0, without a cut-off.
     touching: Min,
     /// Largest p.
     peak: Max,
@@ -38,9 +38,9 @@ struct Sums {
     free: [f64; 2],
     /// sum of r, and number of cells, over S = D + {p = 0, r < 0} + {p = H, r > 0}.
     working: [f64; 2],
-    /// sum p, sum p U, sum p r.
-    pressure: [f64; 3],
-    /// Gamma for this w; infinite or NaN without a cut-off.
+    /// sum p, sum p U.
+    pressure: [f64; 2],
+    /// Gamma for this w; without a cut-off sum p r.
     gamma: f64,
 }
 
@@ -71,8 +71,9 @@ pub(super) struct Gauge<V> {
     guess: f64,
     free: [V; 2],
     working: [V; 2],
-    pressure: [V; 3],
+    pressure: [V; 2],
     gamma: V,
+    cut_off: bool,
     capped: V,
     empty: V,
     touching: V,
@@ -81,8 +82,9 @@ pub(super) struct Gauge<V> {
 }
 
 impl<V: Eight> Gauge<V> {
+    /// Of a problem with that compliance, `cut_off` where the hardness is finite, and for a guess of w.
     #[inline(always)]
-    pub(super) fn new(compliance: f64, w: f64) -> Self {
+    pub(super) fn new(compliance: f64, w: f64, cut_off: bool) -> Self {
         let [zero, up, down] = [0.0, f64::INFINITY, f64::NEG_INFINITY].map(V::splat);
         Gauge {
             compliance: V::splat(compliance),
@@ -90,8 +92,9 @@ impl<V: Eight> Gauge<V> {
             guess: w,
             free: [zero; 2],
             working: [zero; 2],
-            pressure: [zero; 3],
+            pressure: [zero; 2],
             gamma: zero,
+            cut_off,
             capped: down,
             empty: up,
             touching: up,
@@ -130,11 +133,14 @@ impl<V: Eight> Gauge<V> {
         self.empty = V::select(touches, up, r).smaller(self.empty);
         self.largest = violation.larger(self.largest);
         self.pressure[0] = self.pressure[0] + p;
-        let [_, pu, pr] = &mut self.pressure;
-        (*pu, *pr) = (*pu + (p * u).only(touches), *pr + (p * r).only(touches));
-        let distance = V::select(zero.less(r), p, hardness - p);
-        self.gamma = self.gamma + (distance * violation).only(works);
-        self.touching = V::select(touches, r, up).smaller(self.touching);
+        self.pressure[1] = self.pressure[1] + (p * u).only(touches);
+        self.gamma = if self.cut_off {
+            let distance = V::select(zero.less(r), p, hardness - p);
+            self.gamma + (distance * violation).only(works)
+        } else {
+            self.touching = V::select(touches, r, up).smaller(self.touching);
+            self.gamma + (p * r).only(touches)
+        };
         self.peak = p.larger(self.peak);
         (r, works)
     }
@@ -161,7 +167,7 @@ impl<V: Eight> Gauge<V> {
 impl Rating {
     /// Rates a state with a guess of w.
     pub(super) fn of(problem: &Problem, state: &ContactState, w: f64) -> Self {
-        let compliance = problem.compliance;
+        let (compliance, cut_off) = (problem.compliance, !problem.hardness.is_infinite());
         let (p, u) = (&state.pressure[..], &state.unit_displacement[..]);
         sweep((p, u, problem.gap, problem.hardness), &|(p, u, h, hardness): (
             &[f64],
@@ -169,7 +175,7 @@ impl Rating {
             &[f64],
             Hardness,
         )| {
-            vectorize(Rate { compliance, w, p, u, h, hardness })
+            vectorize(Rate { compliance, cut_off, w, p, u, h, hardness })
         })
     }
 
@@ -218,7 +224,7 @@ impl Rating {
 
     /// The displacement that violations are measured by: (p'u)/(sum p), or the overlap before first contact.
     pub(super) fn displacement(&self, problem: &Problem) -> f64 {
-        let [pressure, pu, _] = self.sums.pressure;
+        let [pressure, pu] = self.sums.pressure;
         if pressure > 0.0 { (problem.compliance * pu / pressure).max(0.0) } else { self.empty.0.abs() }
     }
 
@@ -243,10 +249,11 @@ impl Rating {
 
     /// The bound of the error in energy.
     fn certificate(&self, problem: &Problem) -> f64 {
-        let [pressure, pu, pr] = self.sums.pressure;
+        let [pressure, pu] = self.sums.pressure;
         let gamma = if !problem.hardness.is_infinite() {
             self.sums.gamma
         } else {
+            let pr = self.sums.gamma;
             let least = self.empty.0.min(self.touching.0);
             match problem.prescribed {
                 Prescribed::Load(_) => pr - least * pressure,
@@ -263,6 +270,7 @@ impl Rating {
 
 struct Rate<'a> {
     compliance: f64,
+    cut_off: bool,
     w: f64,
     p: &'a [f64],
     u: &'a [f64],
@@ -275,7 +283,7 @@ impl Work for Rate<'_> {
 
     #[inline(always)]
     fn run<V: Eight>(self) -> Rating {
-        let mut gauge = Gauge::<V>::new(self.compliance, self.w);
+        let mut gauge = Gauge::<V>::new(self.compliance, self.w, self.cut_off);
         for n in (0..self.p.len()).step_by(8) {
             let h = V::load(self.h, n, f64::INFINITY);
             gauge.meet(V::load(self.p, n, 0.0), V::load(self.u, n, 0.0), h, self.hardness.eight(n));

@@ -16,7 +16,14 @@ pub(crate) enum Start {
     Guess,
     /// U = K p too, as linearity makes it from solutions. The pressure may lie `beyond` its bounds: the step of the first
     /// iteration leads it back.
-    Known { roundings: Roundings, beyond: bool },
+    Known { roundings: Roundings, beyond: bool, gap: Option<FreeGap> },
+}
+
+/// Of the cells between the bounds the mean of g = c U + h, and of |g|, which is not zero \[m\].
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FreeGap {
+    pub mean: f64,
+    pub size: f64,
 }
 
 /// A load is met when the sum of p misses it by this share.
@@ -238,7 +245,7 @@ mod tests {
                 };
                 let (guessed, slow) = solve(Start::Guess);
                 let (known, fast) =
-                    solve(Start::Known { roundings: Roundings::of_convolution(), beyond: true });
+                    solve(Start::Known { roundings: Roundings::of_convolution(), beyond: true, gap: None });
                 assert!(known.pressure.iter().all(|p| (0.0..=H).contains(p)));
                 // Of U, only what steps in f32 leave in it may be found afresh.
                 let afresh = usize::from(precision == Precision::Mixed);

@@ -17,7 +17,7 @@ pub(super) fn find_working(
     beyond: bool,
     (residual, set): (&mut [f32], &mut [u8]),
 ) -> Rating {
-    let compliance = problem.compliance;
+    let (compliance, cut_off) = (problem.compliance, !problem.hardness.is_infinite());
     let (p, u) = (&state.pressure[..], &state.unit_displacement[..]);
     sweep(((residual, SetMut(set)), p, u, problem.gap, problem.hardness), &|(
         (r, SetMut(set)),
@@ -32,12 +32,13 @@ pub(super) fn find_working(
         &[f64],
         Hardness,
     )| {
-        vectorize(Find { compliance, w, scale, beyond, p, u, r, set, h, hardness })
+        vectorize(Find { compliance, cut_off, w, scale, beyond, p, u, r, set, h, hardness })
     })
 }
 
 struct Find<'a> {
     compliance: f64,
+    cut_off: bool,
     w: f64,
     scale: f64,
     beyond: bool,
@@ -54,7 +55,7 @@ impl Work for Find<'_> {
 
     #[inline(always)]
     fn run<V: Eight>(self) -> Rating {
-        let mut gauge = Gauge::<V>::new(self.compliance, self.w);
+        let mut gauge = Gauge::<V>::new(self.compliance, self.w, self.cut_off);
         let per = V::splat(1.0 / self.scale);
         for (n, set) in (0..).step_by(8).zip(self.set) {
             let [p, u] = [self.p, self.u].map(|field| V::load(field, n, 0.0));

@@ -9,7 +9,7 @@
 use asperity_convolution::eights::{Eight, Mask, Work, vectorize};
 
 use super::{March, cap};
-use crate::contact::{Hardness, MET, Prescribed, Start};
+use crate::contact::{FreeGap, Hardness, MET, Prescribed, Start};
 use crate::field::sweep;
 use crate::time::Instant;
 
@@ -159,15 +159,16 @@ impl March {
             tolerance: self.simulation.solver.tolerance,
             rounding: 16.0 * f64::EPSILON * state.approach.abs(),
         });
-        let [total, allowed, beyond, kept] =
-            sweep(((p, u), p_last, u_last, hardness), &|((p, u), p_last, u_last, hardness): (
+        let compliance = self.compliance;
+        let [total, allowed, beyond, kept, free, gap, size] = sweep(
+            ((p, u), p_last, u_last, (&self.gap[..], hardness)),
+            &|((p, u), p_last, u_last, (h, hardness)): (
                 (&mut [f64], &mut [f64]),
                 &[f64],
                 &[f64],
-                Hardness,
-            )| {
-                vectorize(Combine { best, p, u, p_last, u_last, hardness })
-            });
+                (&[f64], Hardness),
+            )| { vectorize(Combine { best, p, u, p_last, u_last, h, hardness, compliance }) },
+        );
         self.roundings = self.roundings.combined(best);
         let tolerance = self.simulation.solver.tolerance;
         // The sum is met but for rounding; where nothing presses, the solver starts cold.
@@ -176,7 +177,8 @@ impl March {
             Prescribed::Approach(_) => allowed > 0.0,
         };
         if meets && kept == 0.0 && beyond <= BEYOND * allowed && self.roundings.are_moderate(tolerance) {
-            Start::Known { roundings: self.roundings, beyond: beyond > 0.0 }
+            let gap = (size > 0.0).then(|| FreeGap { mean: gap / free, size: size / free });
+            Start::Known { roundings: self.roundings, beyond: beyond > 0.0, gap }
         } else {
             Start::Guess
         }
@@ -218,36 +220,48 @@ impl Work for Look<'_> {
     }
 }
 
-/// p = a p_n + f (p_n - p), and U likewise; yields the sum, those of what lies within the bounds and beyond. Cells at the
-/// cut-off that would leave it are kept there, and counted: their U is another.
+/// p = a p_n + f (p_n - p), and U likewise; yields the sum, those of what lies within the bounds and beyond; the number of
+/// cells at the cut-off that would leave it and are kept there, so that their U is another; and of the cells between the bounds
+/// the number and the sums of g = c U + h and |g|.
 struct Combine<'a> {
     best: [f64; 2],
     p: &'a mut [f64],
     u: &'a mut [f64],
     p_last: &'a [f64],
     u_last: &'a [f64],
+    h: &'a [f64],
     hardness: Hardness<'a>,
+    compliance: f64,
 }
 
 impl Work for Combine<'_> {
-    type Yield = [f64; 4];
+    type Yield = [f64; 7];
 
     #[inline(always)]
-    fn run<V: Eight>(self) -> [f64; 4] {
-        let [a, f] = self.best.map(V::splat);
-        let mut sums = [V::splat(0.0); 4];
+    fn run<V: Eight>(self) -> [f64; 7] {
+        let ([a, f], [c, zero]) = (self.best.map(V::splat), [self.compliance, 0.0].map(V::splat));
+        let mut sums = [zero; 7];
         for n in (0..self.p.len()).step_by(8) {
-            let [p, x] = [&*self.p, self.p_last].map(|field| V::load(field, n, 0.0));
-            let [u, ux] = [&*self.u, self.u_last].map(|field| V::load(field, n, 0.0));
+            let (p, x) = (V::load(self.p, n, 0.0), V::load(self.p_last, n, 0.0));
+            let (u, ux) = (V::load(self.u, n, 0.0), V::load(self.u_last, n, 0.0));
+            let u = a * ux + f * (ux - u);
+            u.store(self.u, n);
+            let touches = zero.less(x.abs()) | zero.less(p.abs());
+            if touches.bits() == 0 {
+                continue;
+            }
             let top: V = self.hardness.eight(n);
             let p = a * x + f * (x - p);
             let leaves = !x.less(top) & p.less(top);
             let p = V::select(leaves, top, p);
             p.store(self.p, n);
-            (a * ux + f * (ux - u)).store(self.u, n);
             let allowed = p.clip(top);
-            let terms = [p, allowed, (p - allowed).abs(), V::count(leaves)];
-            sums = std::array::from_fn(|k| sums[k] + terms[k]);
+            let free = zero.less(p) & p.less(top);
+            let g = (c * u + V::load(self.h, n, f64::INFINITY)).only(free);
+            let terms = [p, allowed, (p - allowed).abs(), V::count(leaves), V::count(free), g, g.abs()];
+            for k in 0..terms.len() {
+                sums[k] = sums[k] + terms[k];
+            }
         }
         sums.map(V::sum)
     }

@@ -11,7 +11,7 @@ pub(super) const M: usize = 0;
 pub(super) const G: usize = 1;
 
 /// Plans of M and G. What is free may not see itself around a torus: the ends of a set are to be kept apart. Where its own
-/// margins do that, a torus of little more than the domain's cells will do, a third less work at 1024 x 1024 cells.
+/// margins do that, a torus of little more than the domain's cells will do, of a fifth fewer cells at 1024 x 1024.
 ///
 /// Which torus is used depends on the set alone. Each is planned when it is first wanted.
 pub(super) struct Tori {

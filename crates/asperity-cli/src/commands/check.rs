@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use asperity::operator::half_space;
-use asperity::{Grid, Scheme};
+use asperity::{Grid, Method, Scheme};
 use asperity_io::case::{Case, Description};
 use serde_json::json;
 
@@ -11,10 +11,13 @@ use crate::args::Check;
 use crate::failure::Failure;
 use crate::words::{bytes, duration, quantity};
 
-/// Convolutions per row: 3 to 7 in the examples whose pressure changes.
-const CONVOLUTIONS_PER_ROW: f64 = 5.0;
-/// Time of an iteration over that of its convolution (docs/performance.md).
-const ITERATION: f64 = 3.0;
+/// Convolutions per row, 3 to 7 in the examples whose pressure changes, and time of an iteration over that of its
+/// convolution (docs/performance.md).
+const PROJECTED_CG: [f64; 2] = [5.0, 3.0];
+/// Rows that a first one, from nothing, counts for besides.
+const FIRST: f64 = 2.0;
+/// The same of the method of Polonsky and Keer.
+const POLONSKY_KEER: [f64; 2] = [14.0, 2.5];
 /// Cells along a side on which a convolution is timed.
 const TIMED: usize = 512;
 
@@ -67,7 +70,11 @@ fn seconds(case: &Case, description: &Description) -> Option<f64> {
         Scheme::Direct => 0.1 * rows * rows * convolution,
         _ => 0.0,
     };
-    Some(rows * CONVOLUTIONS_PER_ROW * ITERATION * convolution + past)
+    let [convolutions, iteration] = match case.solver.method {
+        Method::ProjectedCg => PROJECTED_CG,
+        Method::PolonskyKeer => POLONSKY_KEER,
+    };
+    Some((rows + FIRST) * convolutions * iteration * convolution + past)
 }
 
 fn tell(case: &Case, d: &Description, estimate: Option<f64>) -> String {

@@ -49,6 +49,8 @@ const WHOLE: f64 = 0.8;
 const SHORTER: (usize, f64) = (8, 1e-3);
 /// The share of the largest violation by which the approach that a state is rated with may be wrong.
 const ASTRAY: f64 = 0.02;
+/// The share of the gap below which violations are to be measured in the largest of them, for f32 to hold their squares.
+const FAINT: f64 = 1e-8;
 /// The share of the largest violation below which the mean of the residual over S is left in it.
 const CENTRED: f64 = 1e-4;
 
@@ -206,7 +208,8 @@ impl ProjectedCg {
             Some(FreeGap { mean, size }) => {
                 let w = problem.prescribed.approach().unwrap_or(mean);
                 let found = (&mut self.residual[..], &mut self.working[..]);
-                (find_working(problem, state, (w, size), beyond, found), size)
+                let rating = find_working(problem, state, (w, size), beyond, found);
+                (rating, if rating.violation() < FAINT * size { 0.0 } else { size })
             }
             // Only to find the approach. No guess from the state: it would leave its rounding.
             None => (Rating::of(problem, state, 0.0), 0.0),
@@ -302,7 +305,7 @@ impl ProjectedCg {
         let ProjectedCg { lengths, gradient_length, residual, direction, working, .. } = self;
         let mut settle = |passage: Passage| {
             let slope = unit * passage.slope;
-            if !(slope < 0.0 || beyond && slope.is_finite()) {
+            if !(slope < 0.0 || beyond && slope.is_finite()) || !passage.curvature.is_finite() {
                 return None;
             }
             let curvature = problem.compliance * passage.curvature;

@@ -53,7 +53,7 @@ impl<V: Eight> Mover<V> {
 
     /// 0 < p < H
     #[inline(always)]
-    pub(super) fn inside(p: V, hardness: V) -> V::Mask {
+    fn inside(p: V, hardness: V) -> V::Mask {
         V::splat(0.0).less(p) & p.less(hardness)
     }
 

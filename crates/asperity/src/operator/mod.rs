@@ -32,7 +32,8 @@ pub trait Operator: Send {
     /// The same in f32, to about 1e-7 of the largest u.
     fn apply_single_into(&mut self, p: &[f32], u: &mut [f32]);
 
-    /// A pressure x and its displacement K x on the way, neither of them a field in memory, as [`Journey`] says.
+    /// A pressure x and its displacement K x on the way, as [`Journey`] says; where rows are not taken on the way, in fields of
+    /// its own.
     fn carry(&mut self, journey: Journey<f64>) -> Option<Sums> {
         journey.at_once(|x, u| self.apply_into(x, u))
     }
@@ -89,7 +90,7 @@ pub(crate) fn wave_spectrum(
 /// Cells around a free pressure that keep its opposite ends apart in [`ApproximateInverse`].
 pub(crate) const APART: usize = 16;
 
-/// c of [`ApproximateInverse::plan_with_screened`], of the largest value of |q|/2: a length of some ten cells.
+/// c of [`ApproximateInverse::plan_with_screened`], of |q|/2 of the shortest wave: a length of some ten cells.
 const SCREEN: f64 = 0.03;
 
 /// The approximate inverse of K: the symbol |q|/2, the mean like half the first wave.
@@ -139,24 +140,24 @@ impl ApproximateInverse {
     }
 
     /// It, over that of the shortest wave.
-    pub(crate) fn plan(&self) -> Lanes<f32> {
-        Lanes::new(self.cells, self.lengths, self.scaled().view())
+    pub(crate) fn plan(self) -> Lanes<f32> {
+        let (cells, lengths) = (self.cells, self.lengths);
+        Lanes::new(cells, lengths, self.scaled().view())
     }
 
-    /// It, and the compliance 1/(|q|/2 + c) on the same torus, the former over that of
-    /// the shortest wave, the latter over its largest. It falls off as the third
-    /// power of the distance beyond the length 1/(2 c).
-    pub(crate) fn plan_with_screened(&self) -> Lanes<f32> {
+    /// It, over that of the shortest wave, and the compliance 1/(|q|/2 + c) on the same torus, over its largest value. The
+    /// compliance falls off as the third power of the distance beyond the length 1/(2 c).
+    pub(crate) fn plan_with_screened(self) -> Lanes<f32> {
+        let (cells, lengths) = (self.cells, self.lengths);
         let screen = SCREEN * self.sharpest;
         let mut screened = self.spectrum.clone();
         let peak = 1.0 / (screen + self.least);
         screened.par_mapv_inplace(|s| 1.0 / (s + screen) / peak);
-        Lanes::with_spectra(self.cells, self.lengths, &[self.scaled().view(), screened.view()])
+        Lanes::with_spectra(cells, lengths, &[self.scaled().view(), screened.view()])
     }
 
-    fn scaled(&self) -> Array2<f64> {
-        let mut scaled = self.spectrum.clone();
-        scaled.par_mapv_inplace(|s| s / self.sharpest);
-        scaled
+    fn scaled(mut self) -> Array2<f64> {
+        self.spectrum.par_mapv_inplace(|s| s / self.sharpest);
+        self.spectrum
     }
 }

@@ -132,24 +132,21 @@ fn package(python: &Path) -> Done {
         .env("ASPERITY_COMMAND", std::path::absolute(command).map_err(|error| error.to_string())?))
 }
 
-/// The tables of docs/performance.md: the convolution's forms, where the time of a contact goes in either
-/// precision, and whole runs with their files.
+/// The tables of docs/performance.md: the convolution's forms, where the time of a contact goes, and whole runs with their files.
 fn bench(quick: bool) -> Done {
     let sizes: &[&str] =
         if quick { &["256", "512", "1024"] } else { &["256", "512", "1024", "2048", "4096"] };
     let convolution =
         ["bench", "-p", "asperity-convolution", "--bench", "convolution", "--", "20", "256", "1024"];
     run(&mut cargo(&convolution))?;
-    for precision in [&[][..], &["--mixed"]] {
-        run(cargo(&["bench", "-p", "asperity", "--bench", "solver", "--"]).args(precision).args(sizes))?;
-    }
+    run(cargo(&["bench", "-p", "asperity", "--bench", "solver", "--"]).args(sizes))?;
     run(&mut cargo(&["build", "--release", "-p", "asperity-cli"]))?;
     let directory = root().join("target/bench");
     std::fs::create_dir_all(&directory).map_err(|e| format!("{}: {e}", directory.display()))?;
-    for (case, precision) in [("hertz", "double"), ("rough-pmma", "double"), ("rough-pmma", "mixed")] {
+    for case in ["hertz", "rough-pmma"] {
         run(Command::new(root().join("target/release/asperity"))
-            .args(["run", "--quiet", "--force", "--set", &format!("solver.precision={precision}"), "-o"])
-            .arg(directory.join(format!("{case}-{precision}.zarr")))
+            .args(["run", "--quiet", "--force", "-o"])
+            .arg(directory.join(format!("{case}.zarr")))
             .arg(root().join(format!("examples/{case}.toml"))))?;
     }
     surfaces::bench()

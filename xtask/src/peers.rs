@@ -93,7 +93,7 @@ fn environment(directory: &Path) -> Result<PathBuf, String> {
 fn compare(case: &Case, directory: &Path, python: &Path) -> Result<String, String> {
     let gap = directory.join(format!("gap-{}.f64", case.cells));
     run(ours(&["write"]).arg(&gap).arg(case.cells.to_string()))?;
-    let own = |tolerance: f64, precision: &str, steps: usize| {
+    let own = |tolerance: f64, steps: usize| {
         let mut command = ours(&["solve"]);
         command.arg(&gap).args([
             &case.cells.to_string(),
@@ -101,11 +101,10 @@ fn compare(case: &Case, directory: &Path, python: &Path) -> Result<String, Strin
             &PRESSURE.to_string(),
             &tolerance.to_string(),
             &steps.to_string(),
-            precision,
         ]);
         answer(&mut command)
     };
-    let reference = own(1e-10, "double", case.steps)?;
+    let reference = own(1e-10, case.steps)?;
     let peer = |name: &str, tolerance: f64| {
         let description = json!({
             "case": if case.steps == 0 { "elastic" } else { "viscoelastic" },
@@ -117,10 +116,7 @@ fn compare(case: &Case, directory: &Path, python: &Path) -> Result<String, Strin
     };
 
     let mut programs: Vec<(String, Box<Run>)> = Vec::new();
-    for precision in ["double", "mixed"] {
-        let run = move |tolerance| own(tolerance, precision, case.steps);
-        programs.push((format!("asperity, {precision}"), Box::new(run)));
-    }
+    programs.push(("asperity".into(), Box::new(move |tolerance| own(tolerance, case.steps))));
     for (name, package) in PEERS {
         if case.steps == 0 || name == "tamaas" {
             programs.push((package.into(), Box::new(move |tolerance| peer(name, tolerance))));

@@ -8,6 +8,7 @@ mod commands;
 mod failure;
 mod progress;
 mod terminal;
+mod trace;
 mod words;
 
 use std::process::ExitCode;
@@ -19,12 +20,7 @@ use failure::Failure;
 
 fn main() -> ExitCode {
     let args = Args::parse();
-    tracing_subscriber::fmt()
-        .with_max_level(tracing::Level::WARN)
-        .with_writer(std::io::stderr)
-        .with_target(false)
-        .without_time()
-        .init();
+    trace::listen(if let Command::Run(run) = &args.command { run.verbose } else { 0 });
     let done = match args.command {
         Command::Run(run) => commands::run::run(&run),
         Command::Check(check) => commands::check::run(&check),

@@ -23,6 +23,8 @@ pub enum Teller {
         /// Start of the run, and the last line told.
         started: Instant,
         told: Option<Instant>,
+        /// Time between two lines.
+        pause: Duration,
     },
     /// Nobody.
     Silent,
@@ -49,13 +51,14 @@ fn rows(progress: &Progress) -> String {
 }
 
 impl Teller {
-    /// A live line where stderr is a terminal, plain lines elsewhere.
-    pub fn new(quiet: bool) -> Self {
+    /// A live line where stderr is a terminal, plain lines elsewhere; a line for every row where that is asked for.
+    pub fn new(quiet: bool, every_row: bool) -> Self {
         if quiet {
             return Teller::Silent;
         }
-        if !std::io::stderr().is_terminal() {
-            return Teller::Lines { started: Instant::now(), told: None };
+        if every_row || !std::io::stderr().is_terminal() {
+            let pause = if every_row { Duration::ZERO } else { PAUSE };
+            return Teller::Lines { started: Instant::now(), told: None, pause };
         }
         let bar = ProgressBar::with_draw_target(Some(1), ProgressDrawTarget::stderr());
         let template = "{bar:20.cyan/dim} {prefix} rows  {msg}  {elapsed} ({eta} left)";
@@ -88,8 +91,8 @@ impl Teller {
                 bar.set_prefix(rows(progress));
                 bar.set_message(format!("area {}  {state}", terminal::sparkline(areas, SPARKS)));
             }
-            Teller::Lines { started, told } => {
-                let due = told.is_none_or(|told| told.elapsed() > PAUSE);
+            Teller::Lines { started, told, pause } => {
+                let due = told.is_none_or(|told| told.elapsed() >= *pause);
                 if due || progress.finished {
                     let [from, done, all] = course(progress);
                     let rest = all.saturating_sub(done) as f64;

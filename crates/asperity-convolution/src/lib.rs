@@ -15,7 +15,7 @@ mod spectrum;
 
 use ndarray::ArrayView2;
 
-use lanes::{Journey, Lanes, Sums};
+use lanes::Lanes;
 pub use spectrum::even_spectrum;
 
 /// A planned convolution. Bit-identical for any number of threads; `apply_into` allocates nothing.
@@ -40,23 +40,11 @@ pub struct Convolution {
 trait Engine: Send {
     /// output = S * input; both of length nx ny.
     fn apply_into(&mut self, input: &[f64], output: &mut [f64]);
-
-    /// The same on the way.
-    fn carry(&mut self, journey: Journey<f64>) -> Option<Sums> {
-        journey.at_once(|x, u| self.apply_into(x, u))
-    }
 }
-
-/// What meets some cells of an output on its way; the number of the first is given.
-pub type Visit<'a, T> = dyn Fn(usize, &[T]) -> Sums + Sync + 'a;
 
 impl Engine for Lanes<f64> {
     fn apply_into(&mut self, input: &[f64], output: &mut [f64]) {
         Lanes::apply_into(self, input, output);
-    }
-
-    fn carry(&mut self, journey: Journey<f64>) -> Option<Sums> {
-        Lanes::carry(self, journey)
     }
 }
 
@@ -92,9 +80,9 @@ impl Convolution {
         self.engine.apply_into(input, output);
     }
 
-    /// What a [`Journey`] says; on rustfft all at once.
-    pub fn carry(&mut self, journey: Journey<f64>) -> Option<Sums> {
-        self.engine.carry(journey)
+    /// Bytes that [`Self::new`] takes for these cells and lengths.
+    pub fn bytes(cells: [usize; 2], lengths: [usize; 2]) -> usize {
+        Lanes::<f64>::bytes(cells, lengths, 1)
     }
 }
 

@@ -3,6 +3,7 @@
 use std::sync::atomic::AtomicBool;
 
 use asperity::contact::Hardness;
+use asperity::operator::half_space;
 use asperity::{ContactState, Grid, Prescribed, Problem, Solver};
 use numpy::{IntoPyArray, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -68,8 +69,8 @@ pub fn elastic<'py>(
     let interrupt = AtomicBool::new(false);
     let mut state = ContactState::new(grid.len());
     let solved = without_python(py, &interrupt, || {
-        let mut operator = options.precision.half_space(grid, boundary);
-        let mut solver = Solver::with_precision(options.method, options.precision, &*operator);
+        let mut operator = half_space(grid, boundary);
+        let mut solver = Solver::new(options.method, &*operator);
         let hardness = hardnesses.as_deref().map_or(hardness.into(), Hardness::Cells);
         let problem = Problem { gap: &cells, compliance: 1.0 / contact_modulus, hardness, prescribed };
         solver.solve(&mut *operator, &problem, &options, &mut state, Some(&interrupt))

@@ -3,7 +3,6 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use asperity::contact::Precision;
 use asperity::march::Plasticity;
 use asperity::quantities::{Quantities, Quantity};
 use asperity::{
@@ -49,9 +48,8 @@ pub fn solver(
 ) -> PyResult<SolverOptions> {
     let methods = [("projected-cg", Method::ProjectedCg), ("polonsky-keer", Method::PolonskyKeer)];
     let method = choose("method", method, &methods)?;
-    let precisions = [("double", Precision::Double), ("mixed", Precision::Mixed)];
-    let precision = choose("precision", precision, &precisions)?;
-    Ok(SolverOptions { method, precision, tolerance, max_iterations })
+    choose("precision", precision, &[("double", ())])?;
+    Ok(SolverOptions { method, tolerance, max_iterations })
 }
 
 /// The quantity of a name.

@@ -1,6 +1,6 @@
 //! Where the time of a contact goes, and how far it is from what the machine can do.
 //!
-//! `cargo bench -p asperity --bench solver -- [--mixed] N ...` prints tables in Markdown. The case is that of the paper: a
+//! `cargo bench -p asperity --bench solver -- N ...` prints tables in Markdown. The case is that of the paper: a
 //! rough sphere on PMMA with a cut-off (`examples/rough-pmma.toml`), its first steps.
 //!
 //! The phases are timed one by one, outside of the solver, which no clock slows; what is left of a run are its
@@ -17,7 +17,7 @@ use asperity::material::{Creep, CreepTerm};
 use asperity::operator::half_space;
 use asperity::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
 use asperity::{
-    Boundary, ContactState, Control, Grid, History, Loading, Method, Precision, Prescribed, Problem, Solver,
+    Boundary, ContactState, Control, Grid, History, Loading, Method, Prescribed, Problem, Solver,
     SolverOptions, TimeGrid,
 };
 use rayon::prelude::*;
@@ -29,17 +29,15 @@ const COMPLIANCE: f64 = 0.8556 * 4.013744989e-10;
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let mixed = arguments.iter().any(|a| a == "--mixed");
-    let precision = if mixed { Precision::Mixed } else { Precision::Double };
     let mut sizes: Vec<usize> = arguments.iter().filter_map(|a| a.parse().ok()).collect();
     if sizes.is_empty() {
         sizes = vec![256, 1024];
     }
-    println!("{} threads, precision {precision:?}\n", rayon::current_num_threads());
+    println!("{} threads\n", rayon::current_num_threads());
     let bytes = copy_rate();
     let flops = arithmetic_rate();
     println!("copy {:.1} GB/s (read and written), arithmetic {:.1} Gflop/s\n", bytes / 1e9, flops / 1e9);
-    let runs: Vec<Size> = sizes.into_iter().map(|n| Size::run(n, precision)).collect();
+    let runs: Vec<Size> = sizes.into_iter().map(Size::run).collect();
 
     println!("| N | convolution | ns per cell | of the memory bound | of the FP bound | preconditioner |");
     println!("|---|---|---|---|---|---|");
@@ -64,7 +62,7 @@ fn main() {
         run.print(&format!("creep, {} steps", run.creep.rows), &run.creep);
     }
     if let Some(n) = runs.iter().map(|r| r.n).filter(|n| *n <= 1024).max() {
-        let [two, forty] = [2, 40].map(|terms| creep(n, precision, terms, 5).1);
+        let [two, forty] = [2, 40].map(|terms| creep(n, terms, 5).1);
         let per = |c: &Counts| 1e3 * c.seconds / c.convolutions as f64;
         println!(
             "\n{n}: a step of a material of 40 terms takes {:.2} times one of 2 terms ({:.1} and {:.1} ms per convolution)",
@@ -78,13 +76,11 @@ fn main() {
 /// What was measured on N x N cells.
 struct Size {
     n: usize,
-    /// One convolution of each kind.
+    /// One convolution.
     convolution: Timed,
-    single: Timed,
     preconditioner: Timed,
     elastic: Counts,
     creep: Counts,
-    precision: Precision,
 }
 
 #[derive(Default)]
@@ -96,20 +92,19 @@ struct Counts {
 }
 
 impl Size {
-    fn run(n: usize, precision: Precision) -> Self {
+    fn run(n: usize) -> Self {
         let grid = grid(n);
         let mut operator = half_space(grid, Boundary::Free);
         let input: Vec<f64> = (0..n * n).map(|i| (i * 7919 % 1013) as f64).collect();
         let single: Vec<f32> = input.iter().map(|x| *x as f32).collect();
         let (mut output, mut rough) = (vec![0.0; n * n], vec![0.0; n * n]);
         let convolution = timed(|| operator.apply_into(&input, &mut output));
-        let single_convolution = timed(|| operator.apply_single_into(&single, &mut rough));
-        let mut solver = ProjectedCg::new(&grid, Boundary::Free, Precision::Double);
+        let mut solver = ProjectedCg::new(&*operator);
         let set = vec![0b0101_1100; (n * n).div_ceil(8)];
         let preconditioner = timed(|| solver.precondition(&single, &set, &mut rough));
         drop((operator, solver, input, single, output, rough));
-        let (elastic, creep) = creep(n, precision, 2, if n > 1024 { 5 } else { 20 });
-        Size { n, convolution, single: single_convolution, preconditioner, elastic, creep, precision }
+        let (elastic, creep) = creep(n, 2, if n > 1024 { 5 } else { 20 });
+        Size { n, convolution, preconditioner, elastic, creep }
     }
 
     /// Bytes that a convolution moves at least: rows read and half spectrum written, read and written with the
@@ -127,10 +122,7 @@ impl Size {
     }
 
     fn print(&self, what: &str, counts: &Counts) {
-        // In mixed precision each row starts and ends with a convolution in f64.
-        let rough = if self.precision == Precision::Mixed { counts.iterations } else { 0 };
-        let convolutions =
-            self.single.mean * rough as f64 + self.convolution.mean * (counts.convolutions - rough) as f64;
+        let convolutions = self.convolution.mean * counts.convolutions as f64;
         let preconditioner = self.preconditioner.mean * counts.iterations as f64;
         let share = |seconds: f64| 100.0 * seconds / counts.seconds;
         println!(
@@ -166,13 +158,13 @@ fn gap(grid: &Grid) -> ndarray::Array2<f64> {
 }
 
 /// A cold elastic contact, and steps of 5 s of the creep after it.
-fn creep(n: usize, precision: Precision, terms: usize, steps: usize) -> (Counts, Counts) {
+fn creep(n: usize, terms: usize, steps: usize) -> (Counts, Counts) {
     let grid = grid(n);
     let gap = gap(&grid);
-    let options = SolverOptions { precision, ..SolverOptions::default() };
+    let options = SolverOptions::default();
     let elastic = {
-        let mut operator = precision.half_space(grid, Boundary::Free);
-        let mut solver = Solver::with_precision(Method::ProjectedCg, precision, &*operator);
+        let mut operator = half_space(grid, Boundary::Free);
+        let mut solver = Solver::new(Method::ProjectedCg, &*operator);
         let mut state = ContactState::new(grid.len());
         let problem = Problem {
             gap: gap.as_slice().expect("C-order"),

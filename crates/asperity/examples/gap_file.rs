@@ -1,7 +1,7 @@
 //! Contact of a gap from a file, timed: what `cargo xtask peers` compares other programs with.
 //!
 //! `gap_file write FILE N` writes an N x N self-affine gap as little-endian f64; `gap_file solve FILE N BOUNDARY PRESSURE
-//! TOLERANCE STEPS PRECISION` prints one JSON object. The domain has side 1. Without steps: an elastic contact of E* = 1
+//! TOLERANCE STEPS` prints one JSON object. The domain has side 1. Without steps: an elastic contact of E* = 1
 //! at the mean PRESSURE. With steps of 1/50 of the relaxation time: a Zener solid whose E*(t) = 4 + 4 exp(-t), at four
 //! times the PRESSURE. The time is that of the solve; planning is not counted.
 
@@ -9,9 +9,10 @@ use std::time::Instant;
 
 use asperity::march::{March, Simulation};
 use asperity::material::{Creep, CreepTerm};
+use asperity::operator::half_space;
 use asperity::surface::{Part, Roughness, SelfAffine, undeformed_gap};
 use asperity::{
-    Boundary, ContactState, Control, Grid, History, Loading, Method, Precision, Prescribed, Problem, Solver,
+    Boundary, ContactState, Control, Grid, History, Loading, Method, Prescribed, Problem, Solver,
     SolverOptions, TimeGrid,
 };
 
@@ -22,16 +23,12 @@ fn main() -> Result<()> {
     let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match arguments[..] {
         ["write", file, n] => write(file, n.parse()?),
-        ["solve", file, n, boundary, pressure, tolerance, steps, precision] => {
-            let options = SolverOptions {
-                tolerance: tolerance.parse()?,
-                precision: if precision == "mixed" { Precision::Mixed } else { Precision::Double },
-                ..SolverOptions::default()
-            };
+        ["solve", file, n, boundary, pressure, tolerance, steps] => {
+            let options = SolverOptions { tolerance: tolerance.parse()?, ..SolverOptions::default() };
             let boundary = if boundary == "free" { Boundary::Free } else { Boundary::Periodic };
             solve(file, n.parse()?, boundary, pressure.parse()?, steps.parse()?, options)
         }
-        _ => Err("write FILE N, or solve FILE N BOUNDARY PRESSURE TOLERANCE STEPS PRECISION".into()),
+        _ => Err("write FILE N, or solve FILE N BOUNDARY PRESSURE TOLERANCE STEPS".into()),
     }
 }
 
@@ -69,8 +66,8 @@ fn solve(
             hardness: f64::INFINITY.into(),
             prescribed: Prescribed::Load(pressure),
         };
-        let mut operator = options.precision.half_space(grid, boundary);
-        let mut solver = Solver::with_precision(Method::ProjectedCg, options.precision, &*operator);
+        let mut operator = half_space(grid, boundary);
+        let mut solver = Solver::new(Method::ProjectedCg, &*operator);
         let mut state = ContactState::new(grid.len());
         let start = Instant::now();
         let outcome = solver.solve(&mut *operator, &problem, &options, &mut state, None)?;

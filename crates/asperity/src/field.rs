@@ -5,6 +5,7 @@
 //! blocks' sums pairwise up the same tree. The tree depends on the length alone, so the same field
 //! gives the same bits on one thread and on many; nothing is allocated.
 
+use asperity_convolution::eights::{Work, vectorize};
 use rayon::prelude::*;
 
 /// Cells in one block, a multiple of eight: a few arrays of it fit the second-level cache.
@@ -177,6 +178,46 @@ pub(crate) fn sweep<C: Cells, M: Merge>(cells: C, block: &(impl Fn(C) -> M + Syn
     let (first, second) = cells.split((n / 2).next_multiple_of(BLOCK));
     let (a, b) = rayon::join(|| sweep(first, block), || sweep(second, block));
     a.merge(b)
+}
+
+/// Declares a sweep kernel: fields of one number of cells, which are walked together, and numbers that are the same for all
+/// cells. The first field must have all cells. With a [`Work`](asperity_convolution::eights::Work) that handles a part of the
+/// cells, [`run`] applies it to all of them.
+macro_rules! kernel {
+    ($(#[$doc:meta])* $view:vis struct $name:ident<$life:lifetime> {
+        cells { $first:ident: $first_type:ty $(, $field:ident: $type:ty)* $(,)? }
+        $(numbers { $($number:ident: $number_type:ty),* $(,)? })?
+    }) => {
+        $(#[$doc])*
+        $view struct $name<$life> {
+            $view $first: $first_type,
+            $($view $field: $type,)*
+            $($($view $number: $number_type,)*)?
+        }
+        impl<$life> crate::field::Cells for $name<$life> {
+            fn cells(&self) -> usize {
+                crate::field::Cells::cells(&self.$first)
+            }
+            fn split(self, mid: usize) -> (Self, Self) {
+                let $first = crate::field::Cells::split(self.$first, mid);
+                $(let $field = crate::field::Cells::split(self.$field, mid);)*
+                (
+                    $name { $first: $first.0, $($field: $field.0,)* $($($number: self.$number,)*)? },
+                    $name { $first: $first.1, $($field: $field.1,)* $($($number: self.$number,)*)? },
+                )
+            }
+        }
+    };
+}
+pub(crate) use kernel;
+
+/// Runs a kernel over all of its cells, in the widest vectors of the processor and on all threads, and merges what the blocks
+/// yield in a fixed order.
+pub(crate) fn run<K: Cells + Work>(kernel: K) -> K::Yield
+where
+    K::Yield: Merge,
+{
+    sweep(kernel, &|part: K| vectorize(part))
 }
 
 /// Sums over `n` cells in eight interleaved strands: the order that vector units prefer, fixed here.

@@ -35,6 +35,7 @@ pub mod material;
 pub mod operator;
 pub mod quantities;
 pub mod reference;
+mod set;
 pub mod spots;
 pub mod surface;
 pub mod time;
@@ -42,7 +43,7 @@ pub mod verification;
 
 pub use asperity_convolution as convolution;
 
-pub use contact::{ContactState, Method, Outcome, Precision, Prescribed, Problem, Solver, SolverOptions};
+pub use contact::{ContactState, Method, Outcome, Prescribed, Problem, Solver, SolverOptions};
 pub use error::{Error, NotConverged, Result};
 pub use grid::{Boundary, Grid};
 pub use load::{Control, Course, Event, History, Loading, Programme, Stage};

@@ -16,6 +16,11 @@ pub struct Spots {
 }
 
 impl Spots {
+    /// Bytes that finding them takes at most: the forest of cells and its counts.
+    pub(crate) fn bytes(grid: &Grid) -> usize {
+        16 * grid.len()
+    }
+
     /// Spots of the cells where `touches` is true.
     ///
     /// ```

@@ -23,6 +23,9 @@ pub struct Run {
     /// Say nothing but errors and the result
     #[arg(short, long)]
     pub quiet: bool,
+    /// Print every row; given twice (-vv), print every iteration of the solver: residual, working cells, step
+    #[arg(short, long, action = clap::ArgAction::Count, conflicts_with = "quiet")]
+    pub verbose: u8,
 }
 
 #[derive(Debug, clap::Args)]

@@ -25,7 +25,7 @@ pub fn run(args: &Run) -> Result<(), Failure> {
         resume: args.resume,
         interrupt: on_interrupt(),
     };
-    let mut teller = Teller::new(args.quiet);
+    let mut teller = Teller::new(args.quiet, args.verbose > 0);
     let done = run_case(&case, &options, |progress| teller.tell(&progress));
     teller.end();
     match done {

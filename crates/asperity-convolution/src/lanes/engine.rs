@@ -31,12 +31,9 @@ pub struct Engine<V: Lane> {
     energies: Vec<V>,
     /// Where the column of each frequency ky lies.
     columns: Vec<usize>,
-    /// What a caller summed over every group of rows.
-    sums: Vec<Sums>,
 }
 
-/// Rows that are handed to a caller together: those of the widest vectors, on narrower ones too, so that his sums do not
-/// depend on them.
+/// Rows that a caller modifies together: as many as the widest vectors hold, so that a group starts at a multiple of eight cells.
 fn group<V: Lane>() -> usize {
     V::LANES.max(64 / size_of::<V::Scalar>())
 }
@@ -72,7 +69,6 @@ impl<V: Lane> Engine<V> {
             scratch: (0..rayon::current_num_threads()).map(|_| Mutex::new(scratch())).collect(),
             energies: vec![V::splat(V::Scalar::default()); blocks],
             columns,
-            sums: vec![Sums::default(); nx.div_ceil(group::<V>())],
             row_plan,
             column_plan,
         }
@@ -83,43 +79,39 @@ impl<V: Lane> Engine<V> {
         group::<V>() * self.row_plan.cells()
     }
 
-    /// A pass over groups of rows in borrowed room: `back` from the columns, through `visit` with what is `beside` the group,
-    /// and `on` to the columns.
-    fn pass<K: Send>(
+    /// Inverse transform of every group of rows, `modify(first, rows, kept)`, and where `forward` is set the transform back.
+    fn modify_rows<K: Send>(
         &mut self,
-        beside: impl IndexedParallelIterator<Item = K>,
-        visit: impl Fn(usize, &mut [V::Scalar], K) -> Sums + Sync,
-        [back, on]: [bool; 2],
-    ) -> Sums {
+        kept: impl IndexedParallelIterator<Item = K>,
+        modify: impl Fn(usize, &mut [V::Scalar], K) + Sync,
+        forward: bool,
+    ) {
         let (nx, ny, plan, scratch) = (self.rows, self.row_plan.cells(), &self.row_plan, &self.scratch);
-        assert_eq!(beside.len(), self.sums.len());
-        let tiles = SharedTiles::new(&mut self.work, self.stride);
         let group = group::<V>();
-        self.sums.par_iter_mut().zip(beside).enumerate().for_each(|(n, (sums, beside))| {
+        assert_eq!(kept.len(), nx.div_ceil(group));
+        let tiles = SharedTiles::new(&mut self.work, self.stride);
+        kept.enumerate().for_each(|(n, kept)| {
             let rows = n * group..nx.min((n + 1) * group);
             // SAFETY: every group of rows is visited once; its blocks have no row in common, and are read before they are
             // written.
             let tiles = |first: usize, cells: &[V::Scalar]| unsafe { tiles.of_rows(first, cells.len() / ny) };
             with(scratch, |scratch| {
-                let mut room = std::mem::take(&mut scratch.rows);
-                let cells = &mut room[..rows.len() * ny];
-                if back {
-                    for (rows, first) in cells.chunks_mut(V::LANES * ny).zip(rows.clone().step_by(V::LANES)) {
-                        let tiles = tiles(first, rows);
-                        V::vectorize(InverseRows { plan, tiles, rows, scratch });
-                    }
+                let mut buffer = std::mem::take(&mut scratch.rows);
+                let cells = &mut buffer[..rows.len() * ny];
+                for (rows, first) in cells.chunks_mut(V::LANES * ny).zip(rows.clone().step_by(V::LANES)) {
+                    let tiles = tiles(first, rows);
+                    V::vectorize(InverseRows { plan, tiles, rows, scratch });
                 }
-                *sums = visit(rows.start * ny, cells, beside);
-                if on {
+                modify(rows.start * ny, cells, kept);
+                if forward {
                     for (rows, first) in cells.chunks(V::LANES * ny).zip(rows.step_by(V::LANES)) {
                         let tiles = tiles(first, rows);
                         V::vectorize(ForwardRows { plan, rows, tiles, scratch });
                     }
                 }
-                scratch.rows = room;
+                scratch.rows = buffer;
             });
         });
-        total(&self.sums)
     }
 
     /// Every block of columns there and back.
@@ -194,45 +186,26 @@ impl<V: Lane, M: Meter<V>> Kernel for Columns<'_, V, M> {
     }
 }
 
-/// As many sums over the cells as a caller may want of one pass.
-pub type Sums = [f64; 5];
-
-/// What a caller does with a group of rows, the first of whose cells is given: the convolved rows, and the same cells of
-/// a field of his.
-pub type Visit<'a, T> = dyn Fn(usize, &mut [T], &mut [T]) -> Sums + Sync + 'a;
-
-/// Two fields, or some cells of them.
-pub type Fields<'a> = [&'a mut [f64]; 2];
-
-/// What writes a group of rows, beside the same cells of two fields; the number of the first cell is given.
-pub type Make<'a, T> = dyn Fn(usize, &mut [T], Fields) -> Sums + Sync + 'a;
-
-/// What meets a group of convolved rows, beside the same cells of two fields; what was settled on before, and the number of
-/// the first cell, are given.
-pub type Meet<'a, T> = dyn Fn(f64, usize, &[T], Fields) -> Sums + Sync + 'a;
+/// What a caller does with a group of rows: the number of the first cell, the convolved rows, and the same cells of a field
+/// that the caller keeps (empty where there is none).
+pub type Modify<'a, T> = dyn Fn(usize, &mut [T], &mut [T]) + Sync + 'a;
 
 /// The passes of a convolution, whatever its lanes.
 pub trait Convolve<T>: Send {
     /// The rows of the input, forward.
     fn forward(&mut self, input: &[T]);
 
-    /// The same with rows that `make` writes beside fields.
-    fn make(&mut self, make: &Make<T>, fields: Fields) -> Sums;
-
     /// The columns: times a spectrum.
     fn multiply(&mut self, spectrum: usize);
 
-    /// The same; yields x'S x of the field x.
+    /// The same; returns x'S x of the field x.
     fn multiply_measured(&mut self, spectrum: usize) -> f64;
 
     /// The rows back into `output`.
     fn back(&mut self, output: &mut [T]);
 
-    /// The rows back to what meets them beside fields.
-    fn met(&mut self, settled: f64, meet: &Meet<T>, fields: Fields) -> Sums;
-
-    /// The rows back, through `visit`, and where it goes `on` forward again. `kept` is empty or a field.
-    fn turn(&mut self, kept: &mut [T], visit: &Visit<T>, on: bool) -> Sums;
+    /// The rows back, through `modify`, and forward again where that is set. `kept` is empty or a field.
+    fn modify(&mut self, kept: &mut [T], modify: &Modify<T>, forward: bool);
 }
 
 impl<V: Lane> Convolve<V::Scalar> for Engine<V> {
@@ -245,13 +218,6 @@ impl<V: Lane> Convolve<V::Scalar> for Engine<V> {
             let tiles = unsafe { tiles.of_rows(n * V::LANES, rows.len() / ny) };
             with(scratch, |scratch| V::vectorize(ForwardRows { plan, rows, tiles, scratch }));
         });
-    }
-
-    fn make(&mut self, make: &Make<V::Scalar>, [a, b]: Fields) -> Sums {
-        assert!([a.len(), b.len()] == [self.rows * self.row_plan.cells(); 2]);
-        let group = self.group_cells();
-        let beside = a.par_chunks_mut(group).zip(b.par_chunks_mut(group));
-        self.pass(beside, |first, cells, (a, b)| make(first, cells, [a, b]), [false, true])
     }
 
     fn multiply(&mut self, spectrum: usize) {
@@ -282,30 +248,19 @@ impl<V: Lane> Convolve<V::Scalar> for Engine<V> {
         });
     }
 
-    fn met(&mut self, settled: f64, meet: &Meet<V::Scalar>, [a, b]: Fields) -> Sums {
-        let group = self.group_cells();
-        let beside = a.par_chunks_mut(group).zip(b.par_chunks_mut(group));
-        self.pass(beside, |first, cells, (a, b)| meet(settled, first, cells, [a, b]), [true, false])
-    }
-
-    fn turn(&mut self, kept: &mut [V::Scalar], visit: &Visit<V::Scalar>, on: bool) -> Sums {
+    fn modify(&mut self, kept: &mut [V::Scalar], modify: &Modify<V::Scalar>, forward: bool) {
         assert!(kept.is_empty() || kept.len() == self.rows * self.row_plan.cells());
         if kept.is_empty() {
-            let nothing = (0..self.sums.len()).into_par_iter();
-            self.pass(nothing, |first, cells, _| visit(first, cells, &mut []), [true, on])
+            let nothing = (0..self.rows.div_ceil(group::<V>())).into_par_iter();
+            self.modify_rows(nothing, |first, rows, _| modify(first, rows, &mut []), forward);
         } else {
             let kept = kept.par_chunks_mut(self.group_cells());
-            self.pass(kept, visit, [true, on])
+            self.modify_rows(kept, modify, forward);
         }
     }
 }
 
-/// Group after group, whoever summed them.
-fn total(sums: &[Sums]) -> Sums {
-    sums.iter().fold(Sums::default(), |total, sums| std::array::from_fn(|k| total[k] + sums[k]))
-}
-
-/// Lends the thread its buffers. What it does with them is its own work alone: no other thread may be asked to help.
+/// Runs `work` with the buffers of this thread. `work` must not wait for another thread, which could need the same buffers.
 fn with<V: Lane>(scratch: &[Mutex<Scratch<V>>], work: impl FnOnce(&mut Scratch<V>)) {
     let mine = rayon::current_thread_index().unwrap_or(0) % scratch.len();
     work(&mut scratch[mine].lock().unwrap_or_else(PoisonError::into_inner));

@@ -55,8 +55,8 @@ mod wrap;
 
 use ndarray::{Array2, ArrayView2};
 
+pub use engine::Modify;
 use engine::{Convolve, Engine};
-pub use engine::{Fields, Make, Meet, Sums, Visit};
 use factors::{Factors, factors};
 pub use lane::Real;
 use wrap::wrapped_spectrum;
@@ -170,16 +170,15 @@ impl<T: Real> Lanes<T> {
         self.engine.back(output);
     }
 
-    /// Carries x through the convolution and its image S x to where it is used: neither is ever a field in memory. See
-    /// [`Journey`].
-    ///
-    /// # Panics
-    /// Where the length of a field is not nx ny.
-    pub fn carry(&mut self, journey: Journey<T>) -> Option<Sums> {
-        let Journey { make, settle, fields: [a, b], meet } = journey;
-        let made = self.engine.make(make, [&mut *a, &mut *b]);
-        let settled = settle(made, self.engine.multiply_measured(0))?;
-        Some(self.engine.met(settled, meet, [a, b]))
+    /// Bytes that a plan with so many spectra takes, without the buffers of its threads (a few rows and columns).
+    pub fn bytes(cells: [usize; 2], lengths: [usize; 2], spectra: usize) -> usize {
+        let along_y = if lengths[1].is_multiple_of(2) { factors(lengths[1] / 2) } else { None };
+        let [mx, my] = match (factors(lengths[0]), along_y) {
+            (Some(_), Some(_)) => lengths,
+            _ => cells.map(|n| Self::good_length(2 * n - 1)),
+        };
+        let columns = my / 2 + 1;
+        size_of::<T>() * (2 * cells[0] * columns + spectra * (5 * mx).div_ceil(8) * columns)
     }
 
     /// Starts several convolutions one after the other, with something done to the field in between.
@@ -192,60 +191,8 @@ impl<T: Real> Lanes<T> {
     }
 }
 
-/// A field x on its way through a convolution, some rows at a time: `make(first, x, fields)` writes x beside the same cells
-/// of two fields, `settle` is told the totals of what that summed, and x'S x, and says whether to go on and with what number,
-/// and `meet(number, first, u, fields)` gets the image u = S x. Yields the totals of the sums of the latter.
-///
-/// Eight rows at a time (sixteen in f32); `first` is the number of the first cell, a multiple of eight. Totals are taken in an
-/// order that depends on the shape alone. `make` and `meet` are to do their work by themselves: a thread that they wait for may
-/// never come.
-///
-/// ```
-/// use asperity_convolution::lanes::{Journey, Lanes};
-///
-/// // p += x'S x * S x, with S = 3 and x = p.
-/// let three = ndarray::Array2::from_elem((9, 9), 3.0);
-/// let mut plan = Lanes::<f64>::new([16, 16], [16, 16], three.view());
-/// let (mut p, mut unused) = (vec![0.5; 256], vec![0.0; 256]);
-/// plan.carry(Journey {
-///     make: &|_, x, [p, _]| {
-///         x.copy_from_slice(p);
-///         [0.0; 5]
-///     },
-///     settle: &mut |_, energy| Some(energy),
-///     fields: [&mut p, &mut unused],
-///     meet: &|energy, _, u, [p, _]| {
-///         p.iter_mut().zip(u).for_each(|(p, u)| *p += energy * u);
-///         [0.0; 5]
-///     },
-/// });
-/// assert!(p.iter().all(|p| (p - (0.5 + 192.0 * 1.5)).abs() < 1e-9));
-/// ```
-pub struct Journey<'a, T> {
-    /// Writes x.
-    pub make: &'a Make<'a, T>,
-    /// Whether to go on.
-    pub settle: &'a mut dyn FnMut(Sums, f64) -> Option<f64>,
-    /// What goes beside it.
-    pub fields: Fields<'a>,
-    /// Meets S x.
-    pub meet: &'a Meet<'a, T>,
-}
-
-impl<T: Real> Journey<'_, T> {
-    /// The same in fields of its own, for an operator that takes no rows on the way: `apply` it to x, for its image.
-    pub fn at_once(self, apply: impl FnOnce(&[T], &mut [T])) -> Option<Sums> {
-        let Journey { make, settle, fields: [a, b], meet } = self;
-        let [mut x, mut image] = [(); 2].map(|()| vec![T::default(); a.len()]);
-        let made = make(0, &mut x, [&mut *a, &mut *b]);
-        apply(&x, &mut image);
-        let energy = x.iter().zip(&image).map(|(x, u)| x.widened() * u.widened()).sum();
-        Some(meet(settle(made, energy)?, 0, &image, [a, b]))
-    }
-}
-
-/// A field x on its way through several convolutions: what lies between two of them is done to a few rows at a time while
-/// these are in the cache, and only what is asked for is ever written to memory.
+/// Several convolutions of a field, one after the other, with an operation on the cells in between. The operation runs on a few
+/// rows at a time while they are in the cache, and only what it keeps is written to memory.
 ///
 /// ```
 /// use asperity_convolution::lanes::Lanes;
@@ -256,16 +203,10 @@ impl<T: Real> Journey<'_, T> {
 /// let input: Vec<f64> = (0..256).map(f64::from).collect();
 /// let mut output = vec![0.0; 256];
 /// let mut chain = plan.chain(&input);
-/// chain.times(0);
-/// chain.turn(&mut [], &|_, x, _| {
-///     x.iter_mut().for_each(|x| *x *= *x);
-///     [0.0; 5]
-/// });
-/// chain.times(1);
-/// chain.end(&mut output, &|_, x, to| {
-///     to.copy_from_slice(x);
-///     [0.0; 5]
-/// });
+/// chain.multiply(0);
+/// chain.modify(&mut [], &|_, x, _| x.iter_mut().for_each(|x| *x *= *x));
+/// chain.multiply(1);
+/// chain.finish(&mut output, &|_, x, output| output.copy_from_slice(x));
 /// assert!(output.iter().zip(&input).all(|(y, x)| (y - 45.0 * x * x).abs() < 1e-8));
 /// ```
 pub struct Chain<'a, T> {
@@ -277,35 +218,34 @@ impl<T: Real> Chain<'_, T> {
     ///
     /// # Panics
     /// Where there is none.
-    pub fn times(&mut self, spectrum: usize) {
+    pub fn multiply(&mut self, spectrum: usize) {
         self.engine.multiply(spectrum);
     }
 
-    /// The same; returns x'S x, of the x before.
+    /// The same; returns x'S x, of the x before (Parseval's theorem).
     ///
     /// # Panics
     /// Where there is none.
-    pub fn times_measured(&mut self, spectrum: usize) -> f64 {
+    pub fn multiply_measured(&mut self, spectrum: usize) -> f64 {
         self.engine.multiply_measured(spectrum)
     }
 
-    /// `visit(first, x, kept)` changes x, eight rows (sixteen in f32) at a time; `kept` are the same cells of a field that
-    /// stays, or none where that is empty. `first` is the number of the first cell, a multiple of eight. Returns the totals
-    /// of the sums that it returns, in an order that depends on the shape alone. It is to do its work by itself: a thread
-    /// that it waits for may never come.
+    /// `modify(first, x, kept)` changes x, eight rows (sixteen in f32) at a time; `kept` are the same cells of a field of the
+    /// caller, or none where that is empty. `first` is the number of the first cell, a multiple of eight. `modify` must not wait
+    /// for another thread.
     ///
     /// # Panics
     /// Where `kept` has another length.
-    pub fn turn(&mut self, kept: &mut [T], visit: &Visit<T>) -> Sums {
-        self.engine.turn(kept, visit, true)
+    pub fn modify(&mut self, kept: &mut [T], modify: &Modify<T>) {
+        self.engine.modify(kept, modify, true);
     }
 
-    /// The last of these: x goes no further.
+    /// The last operation: x is not convolved again.
     ///
     /// # Panics
     /// Where `kept` has another length.
-    pub fn end(self, kept: &mut [T], visit: &Visit<T>) -> Sums {
-        self.engine.turn(kept, visit, false)
+    pub fn finish(self, kept: &mut [T], modify: &Modify<T>) {
+        self.engine.modify(kept, modify, false);
     }
 }
 

@@ -177,7 +177,7 @@ fn a_plan_can_be_used_again_and_on_more_threads_than_it_was_made_for() {
     assert_eq!(again, apply(Lanes::new(cells, lengths, spectrum.view()), &field(cells)));
 }
 
-/// What a visitor does to a cell on its way, by its number.
+/// The factor of a cell between two convolutions, by its number.
 fn weight<T: Real>(n: usize) -> T {
     T::nearest([0.0, -1.0, 0.5, 2.0][n % 4])
 }
@@ -207,32 +207,27 @@ fn a_chain_is_one_convolution_after_the_other() {
 
                 let mut plan = plan(instructions, &[0, 1]);
                 let mut kept = vec![T::default(); input.len()];
-                let change = |n: usize, x: &mut [T]| {
-                    x.iter_mut().zip(n..).for_each(|(x, n)| *x = *x * weight(n));
-                    [1.0, x.len() as f64, 0.0, 0.0, n as f64]
-                };
+                let change =
+                    |n: usize, x: &mut [T]| x.iter_mut().zip(n..).for_each(|(x, n)| *x = *x * weight(n));
+                let groups = std::sync::atomic::AtomicUsize::new(0);
                 let mut chain = plan.chain(&input);
-                let before = chain.times_measured(0);
-                let sums = chain.turn(&mut kept, &|n, x, kept| {
+                let before = chain.multiply_measured(0);
+                chain.modify(&mut kept, &|n, x, kept| {
+                    // Groups of the same rows on all instructions, each of which begins with a whole byte of a set.
+                    assert!(n.is_multiple_of(8) && n.is_multiple_of(rows * cells[1]));
+                    groups.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
                     kept.copy_from_slice(x);
-                    change(n, x)
+                    change(n, x);
                 });
-                // Groups of the same rows on all instructions, each of which begins with a whole byte of a set.
-                let groups = cells[0].div_ceil(rows);
-                let starts = (rows * cells[1] * (groups * (groups - 1) / 2)) as f64;
-                assert_eq!(sums, [groups as f64, input.len() as f64, 0.0, 0.0, starts]);
-                assert!((rows * cells[1]).is_multiple_of(8));
-                let energy = chain.times_measured(1);
-                chain.turn(&mut [], &|n, x, none| {
+                assert_eq!(groups.into_inner(), cells[0].div_ceil(rows));
+                let energy = chain.multiply_measured(1);
+                chain.modify(&mut [], &|n, x, none| {
                     assert!(none.is_empty());
-                    change(n, x)
+                    change(n, x);
                 });
-                chain.times(0);
+                chain.multiply(0);
                 let mut output = vec![T::default(); input.len()];
-                chain.end(&mut output, &|_, x, output| {
-                    output.copy_from_slice(x);
-                    [0.0; 5]
-                });
+                chain.finish(&mut output, &|_, x, output| output.copy_from_slice(x));
                 assert!(kept == first && output == third, "{instructions:?} {cells:?} {lengths:?}");
 
                 // x'S x by Parseval's theorem, and as it is written: a column is a sum of so many terms.
@@ -249,60 +244,6 @@ fn a_chain_is_one_convolution_after_the_other() {
     }
     check::<f64>(8, f64::EPSILON);
     check::<f32>(16, f64::from(f32::EPSILON));
-}
-
-#[test]
-fn what_is_carried_is_convolved_and_met_beside_its_fields() {
-    for (cells, lengths) in SHAPES {
-        let spectrum = spectrum(lengths);
-        let input = field(cells);
-        let plain = apply(Lanes::new(cells, lengths, spectrum.view()), &input);
-        let dot: f64 = input.iter().zip(&plain).map(|(x, u)| x * u).sum();
-        let size: f64 = input.iter().zip(&plain).map(|(x, u)| (x * u).abs()).sum();
-        let carried = |carry: &mut dyn FnMut(Journey<f64>) -> Option<Sums>, go: bool| {
-            let (mut from, mut image) = (input.clone(), vec![0.0; input.len()]);
-            let mut told = ([0.0; 5], 0.0);
-            let totals = carry(Journey {
-                make: &|first, x, [from, _]| {
-                    assert_eq!(first % 8, 0);
-                    assert_eq!(*from, input[first..][..x.len()]);
-                    x.copy_from_slice(from);
-                    [0.0, x.len() as f64, 0.0, 0.0, 0.0]
-                },
-                settle: &mut |made, energy| {
-                    told = (made, energy);
-                    go.then_some(7.0)
-                },
-                fields: [&mut from, &mut image],
-                meet: &|settled, first, u, [from, image]| {
-                    assert!(first % 8 == 0 && settled == 7.0);
-                    image.copy_from_slice(u);
-                    from.fill(settled);
-                    [u.iter().sum(), u.len() as f64, 0.0, 0.0, 0.0]
-                },
-            });
-            assert_eq!(told.0[1], input.len() as f64);
-            // x'S x by Parseval's theorem, and as it is written.
-            assert!((told.1 - dot).abs() <= 1e-13 * size, "{cells:?}: {} {dot}", told.1);
-            (totals, from, image)
-        };
-        for threads in [1, 3] {
-            on_threads(threads, || {
-                let mut plan = Lanes::<f64>::new(cells, lengths, spectrum.view());
-                let (totals, from, image) = carried(&mut |journey| plan.carry(journey), true);
-                let [sum, met, ..] = totals.unwrap();
-                assert!(from.iter().all(|x| *x == 7.0) && image == plain && met == input.len() as f64);
-                let size: f64 = plain.iter().map(|u| u.abs()).sum();
-                assert!((sum - plain.iter().sum::<f64>()).abs() <= 1e-14 * size);
-                // What is not settled leaves everything as it was.
-                let (totals, from, image) = carried(&mut |journey| plan.carry(journey), false);
-                assert!(totals.is_none() && from == input && image.iter().all(|u| *u == 0.0));
-            });
-        }
-        let mut plan = Lanes::<f64>::new(cells, lengths, spectrum.view());
-        let (totals, _, image) = carried(&mut |journey| journey.at_once(|x, u| plan.apply_into(x, u)), true);
-        assert!(image == plain && totals.unwrap()[1] == input.len() as f64);
-    }
 }
 
 #[test]

@@ -52,17 +52,17 @@ mod tests {
 
     #[test]
     fn the_estimate_bounds_what_the_march_says_of_itself() {
-        let grid = Grid::new([4, 4], [1.0, 1.0]).unwrap();
+        let grid = Grid::new([128, 128], [1.0, 1.0]).unwrap();
         let term = |n: usize| CreepTerm { compliance: 1.0, retardation_time: n as f64 + 1.0 };
         for (terms, fluidity) in [(0, 0.0), (2, 0.0), (40, 1.0)] {
             for boundary in [Boundary::Free, Boundary::Periodic] {
                 let creep = Creep { instantaneous: 1.0, terms: (0..terms).map(term).collect(), fluidity };
                 let flow = usize::from(fluidity > 0.0);
                 let simulation =
-                    Simulation { boundary, creep, ..Simulation::new(grid, ndarray::Array2::zeros((4, 4))) };
+                    Simulation { boundary, creep, ..Simulation::new(grid, ndarray::Array2::zeros((128, 128))) };
                 // Five fields more are staged for the result, or lie in a checkpoint.
-                let march = 16 * (simulation.bytes_per_cell() + 8 * (terms + flow) + 5 * 8) as u128;
-                let bound = estimate([4, 4], terms + flow);
+                let march = (simulation.bytes() + 128 * 128 * (8 * (terms + flow) + 5 * 8)) as u128;
+                let bound = estimate([128, 128], terms + flow);
                 assert!(march <= bound && bound < 2 * march, "{march} {bound}");
             }
         }

@@ -8,10 +8,10 @@ use std::sync::atomic::AtomicBool;
 
 use rayon::prelude::*;
 
-use super::{ContactState, Hardness, Precision, Problem, Solver, SolverOptions};
+use super::{ContactState, Hardness, Problem, Solver, SolverOptions};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
-use crate::operator::{Operator, half_space};
+use crate::operator::Operator;
 
 /// Fewest cells along a side of a coarse grid.
 const FEWEST: usize = 64;
@@ -35,19 +35,21 @@ pub(super) fn start(
     let Some(grid) = coarser(operator.grid()) else {
         return Ok(0.0);
     };
+    let Some(mut coarse_operator) = operator.on_grid(grid) else {
+        return Ok(0.0);
+    };
     let gap = averaged(operator.grid(), problem.gap);
     let of_cells = match problem.hardness {
         Hardness::Cells(cells) => Some(averaged(operator.grid(), cells)),
         Hardness::Uniform(_) => None,
     };
     let hardness = of_cells.as_deref().map_or(problem.hardness, Hardness::Cells);
-    let mut operator = half_space(grid, operator.boundary());
-    let mut solver = Solver::with_precision(options.method, Precision::Double, &*operator);
+    let mut solver = Solver::new(options.method, &*coarse_operator);
     let mut coarse = ContactState::new(grid.len());
     let options =
         SolverOptions { tolerance: options.tolerance.max(TOLERANCE), max_iterations: ITERATIONS, ..*options };
     let problem = Problem { gap: &gap, hardness, ..*problem };
-    match solver.solve(&mut *operator, &problem, &options, &mut coarse, interrupt) {
+    match solver.solve(&mut *coarse_operator, &problem, &options, &mut coarse, interrupt) {
         Ok(outcome) => {
             prolong(&grid, &coarse.pressure, &mut state.pressure);
             Ok(outcome.convolutions as f64 / 4.0)
@@ -98,6 +100,7 @@ mod tests {
     use super::*;
     use crate::contact::{Method, Prescribed};
     use crate::grid::Boundary;
+    use crate::operator::half_space;
 
     /// Bumps of several lengths, one of them that of four cells; a corner cannot touch.
     fn gap(grid: &Grid) -> Vec<f64> {

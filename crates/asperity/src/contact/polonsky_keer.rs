@@ -8,9 +8,9 @@
 
 use std::sync::atomic::AtomicBool;
 
-use super::residual::Rating;
-use super::shift::clip;
-use super::start::{make_feasible, set_load};
+use super::bounds::clip;
+use super::rating::Rating;
+use super::start::{make_feasible, set_sum};
 use super::{
     ContactState, Hardness, Outcome, Prescribed, Problem, SolverOptions, interrupted, not_converged,
 };
@@ -42,6 +42,11 @@ impl PolonskyKeer {
         }
     }
 
+    /// Bytes that the method takes on that grid.
+    pub(super) fn bytes(grid: &Grid) -> usize {
+        24 * grid.len() + grid.len() / 8
+    }
+
     /// See [`super::Solver::solve`]; the trivial cases are settled there.
     pub(super) fn solve(
         &mut self,
@@ -55,6 +60,7 @@ impl PolonskyKeer {
         let fallback = 1.0 / (problem.compliance * operator.self_influence());
         make_feasible(problem, grid.cell_area(), state, &mut self.touchable)?;
         operator.apply_into(&state.pressure, &mut state.unit_displacement);
+        state.rounding = 1.0;
         let mut convolutions = 1;
         self.direction.fill(0.0);
         // theta / G_old: zero after a change of the contact.
@@ -65,9 +71,10 @@ impl PolonskyKeer {
             let w = Rating::of(problem, state, 0.0).approach(problem.prescribed);
             state.approach = w;
             let rating = Rating::of(problem, state, w);
-            let rated = rating.rate(problem, &grid, options.tolerance);
+            let rated = rating.outcome(problem, &grid, options.tolerance);
             let outcome = Outcome { iterations: iteration, convolutions, ..rated };
             if outcome.residual <= options.tolerance {
+                state.rounding = 1.0 + iteration as f64;
                 return Ok(outcome);
             }
             if iteration == options.max_iterations {
@@ -97,7 +104,7 @@ impl PolonskyKeer {
                 if let Prescribed::Load(load) = problem.prescribed {
                     let target = load / grid.cell_area();
                     let p = &mut state.pressure;
-                    if set_load(p, &self.touchable, problem.hardness, target).is_none() {
+                    if set_sum(p, &self.touchable, problem.hardness, target).is_none() {
                         return Err(not_converged("polonsky-keer", options, &outcome));
                     }
                 }

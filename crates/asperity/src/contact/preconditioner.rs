@@ -1,164 +1,87 @@
 //! The preconditioner of the working set S: roughly the inverse of K restricted to S.
 //!
-//! M, the symbol |q|/2, inverts K on all cells. Restricted to S it does not: the inverse of the restriction is the Schur
-//! complement
+//! M, the inverse of K's symbol, inverts K on all cells. Restricted to S it does not: the inverse of the restriction is the
+//! Schur complement
 //!
 //! (K_SS)^-1 = M_SS - M_SC (M_CC)^-1 M_CS, C all other cells,
 //!
-//! and what M_SS lacks is what happens at the ends of S, where the pressure is steep. One step of steepest descent, itself
+//! and what M_SS lacks is what happens at the edges of S, where the pressure is steep. One step of steepest descent, itself
 //! preconditioned, stands for the inverse inside: with b = M_CS r,
 //!
 //! z = M_SS r - a M_SC y, y = D G_CC D b, a = b'y / y'M y.
 //!
-//! G, the symbol 1/(|q|/2 + c), is the compliance screened, for S around the open cells ends its reach; D is less than 1 for
-//! cells beside S, which it holds most.
-//! a b'y never exceeds b'(M_CC)^-1 b, so z'r is positive whatever G is. z is not linear in r; the directions of Polak and
-//! Ribiere do not ask for it.
+//! G, the symbol 1/(M + c), is the screened compliance (S around the open cells screens it); D is less than 1 for cells
+//! adjacent to S. a b'y never exceeds b'(M_CC)^-1 b, so z'r is positive whatever G is. z is not linear in r; the directions of
+//! Polak and Ribiere do not need that.
 //!
-//! It costs two more convolutions in f32 on the unpadded grid, and saves half of the iterations. The three are one chain:
-//! of what lies between them only z is ever in memory, and both products of a come from the spectra.
+//! It costs three convolutions in f32 on the unpadded grid, and saves half of the iterations. The three are one chain: of what
+//! lies between them only z is written to memory, and both products of a come from the spectra (Parseval).
 
-use asperity_convolution::Visit;
-use asperity_convolution::eights::{Eight, Mask, Work, vectorize};
-use asperity_convolution::lanes::Sums;
+use asperity_convolution::eights::vectorize;
 
-use super::neighbours::find_beside;
-use super::torus::{G, M, Tori};
+use super::sweeps::preconditioner::{Add, Keep, Weigh};
 use crate::field::zeros;
 use crate::grid::{Boundary, Grid};
-use crate::operator::ApproximateInverse;
-
-/// D of an open cell that touches one of S with a side or a corner.
-const BESIDE: f64 = 0.67;
+use crate::operator::{ApproximateInverse, INVERSE, Operator, SCREENED};
+use crate::set::find_adjacent;
 
 /// z from r on a working set, both f32.
 pub(super) struct Preconditioner {
-    /// The plans of M and G.
-    tori: Tori,
-    /// The unit of M \[1/m\].
-    pub sharpest: f64,
-    /// Cells of a row.
-    row: usize,
-    /// The open cells beside S.
-    beside: Vec<u8>,
+    inverse: ApproximateInverse,
+    /// The open cells adjacent to S.
+    adjacent: Vec<u8>,
 }
 
 impl Preconditioner {
-    pub(super) fn new(grid: &Grid, boundary: Boundary) -> Self {
-        Preconditioner {
-            tori: Tori::new(grid, boundary),
-            sharpest: ApproximateInverse::sharpest(grid),
-            row: grid.cells()[1],
-            beside: zeros(grid.len().div_ceil(8)),
-        }
+    pub(super) fn new(operator: &dyn Operator) -> Self {
+        let inverse = operator.approximate_inverse();
+        let cells = inverse.grid().len();
+        Preconditioner { inverse, adjacent: zeros(cells.div_ceil(8)) }
     }
 
-    /// z; what is beyond S means nothing. `r` is zero there. `visit(first, z)` meets some rows of z at a time, of which
-    /// `first` is the number of the first cell; returns the totals of its sums.
-    pub(super) fn apply_into(&mut self, r: &[f32], set: &[u8], z: &mut [f32], visit: &Visit<f32>) -> Sums {
-        find_beside(set, self.row, &mut self.beside);
-        let open = Open { set, beside: &self.beside };
-        let mut chain = self.tori.around(set).chain(r);
-        chain.times(M);
-        chain.turn(z, &|first, x, z| {
-            let open = open.of(first, z);
-            vectorize(Keep { z, set: open.set, x });
-            vectorize(Weigh { x, open });
-            Sums::default()
+    /// Bytes that it takes at most.
+    pub(super) fn bytes(grid: &Grid, boundary: Boundary) -> usize {
+        ApproximateInverse::bytes(grid, boundary) + grid.len() / 8
+    }
+
+    /// The unit of z, that of M, over the unit of r \[1/m\].
+    pub(super) fn unit(&self) -> f64 {
+        self.inverse.unit()
+    }
+
+    /// z from r, which is zero outside of S; what z holds there means nothing.
+    pub(super) fn apply_into(&mut self, r: &[f32], set: &[u8], z: &mut [f32]) {
+        find_adjacent(set, self.inverse.grid().cells()[1], &mut self.adjacent);
+        let adjacent = &self.adjacent[..];
+        let part = |bits: &'_ [u8], first: usize, cells: usize| -> std::ops::Range<usize> {
+            first / 8..(first + cells).div_ceil(8).min(bits.len())
+        };
+        let weigh = |first: usize, x: &mut [f32]| {
+            let bytes = part(set, first, x.len());
+            vectorize(Weigh { x, set: &set[bytes.clone()], adjacent: &adjacent[bytes] });
+        };
+        let mut chain = self.inverse.around(set).chain(r);
+        chain.multiply(INVERSE);
+        chain.modify(z, &|first, x, z| {
+            vectorize(Keep { z, set: &set[part(set, first, x.len())], x });
+            weigh(first, x);
         });
-        let by = chain.times_measured(G);
-        chain.turn(&mut [], &|first, x, _| {
-            let open = open.of(first, x);
-            vectorize(Weigh { x, open });
-            Sums::default()
-        });
-        let ymy = chain.times_measured(M);
+        let by = chain.multiply_measured(SCREENED);
+        chain.modify(&mut [], &|first, x, _| weigh(first, x));
+        let ymy = chain.multiply_measured(INVERSE);
         // Where nothing is open, b is zero.
         let a = if by > 0.0 && ymy > 0.0 { by / ymy } else { 0.0 };
-        chain.end(z, &|first, x, z| {
-            let set = open.of(first, z).set;
-            vectorize(Add { z, set, x, t: -a });
-            visit(first, z)
-        })
-    }
-}
-
-/// C as bits: what is not of the set, and of that what is beside it.
-#[derive(Clone, Copy)]
-struct Open<'a> {
-    set: &'a [u8],
-    beside: &'a [u8],
-}
-
-impl<'a> Open<'a> {
-    /// From a cell on, a multiple of eight, as many as there are `cells`.
-    fn of(self, first: usize, cells: &[f32]) -> Self {
-        let bytes = first / 8..(first + cells.len()).div_ceil(8);
-        Open { set: &self.set[bytes.clone()], beside: &self.beside[bytes] }
-    }
-}
-
-/// z = x where a group of cells has one of S.
-struct Keep<'a> {
-    z: &'a mut [f32],
-    set: &'a [u8],
-    x: &'a [f32],
-}
-
-impl Work for Keep<'_> {
-    type Yield = ();
-
-    #[inline(always)]
-    fn run<V: Eight>(self) {
-        for (n, _) in (0..).step_by(8).zip(self.set).filter(|(_, set)| **set != 0) {
-            V::load(self.x, n, 0.0).store(self.z, n);
-        }
-    }
-}
-
-/// x becomes D x, 0 on S.
-struct Weigh<'a> {
-    x: &'a mut [f32],
-    open: Open<'a>,
-}
-
-impl Work for Weigh<'_> {
-    type Yield = ();
-
-    #[inline(always)]
-    fn run<V: Eight>(self) {
-        for ((n, set), beside) in (0..).step_by(8).zip(self.open.set).zip(self.open.beside) {
-            let [beside, open] = [*beside, !set].map(V::Mask::from_bits);
-            let weights = V::select(beside, V::splat(BESIDE), V::splat(1.0)).only(open);
-            (V::load(self.x, n, 0.0) * weights).store(self.x, n);
-        }
-    }
-}
-
-/// z += t x on S.
-struct Add<'a> {
-    z: &'a mut [f32],
-    x: &'a [f32],
-    set: &'a [u8],
-    t: f64,
-}
-
-impl Work for Add<'_> {
-    type Yield = ();
-
-    #[inline(always)]
-    fn run<V: Eight>(self) {
-        let t = V::splat(self.t);
-        for (n, _) in (0..).step_by(8).zip(self.set).filter(|(_, set)| **set != 0) {
-            (V::load(self.z, n, 0.0) + t * V::load(self.x, n, 0.0)).store(self.z, n);
-        }
+        chain.finish(z, &|first, x, z| {
+            vectorize(Add { z, set: &set[part(set, first, x.len())], x, t: -a });
+        });
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::neighbours::tests::{is_in, set};
+    use crate::operator::half_space;
+    use crate::set::tests::{is_in, set};
 
     fn noise(n: usize, seed: u32) -> f32 {
         let x = (n as u32).wrapping_mul(2_654_435_761).wrapping_add(seed.wrapping_mul(40_503));
@@ -168,7 +91,7 @@ mod tests {
     /// r'z on a set, r as given there.
     fn rated(preconditioner: &mut Preconditioner, set: &[u8], r: &[f32]) -> f64 {
         let mut z = vec![0.0; r.len()];
-        preconditioner.apply_into(r, set, &mut z, &|_, _| Sums::default());
+        preconditioner.apply_into(r, set, &mut z);
         assert!(z.iter().all(|z| z.is_finite()));
         dot(r, &z)
     }
@@ -185,13 +108,13 @@ mod tests {
         {
             let grid = Grid::new(cells, [1.0, 2.0]).unwrap();
             let (set, n) = (set(cells), grid.len());
-            let mut preconditioner = Preconditioner::new(&grid, boundary);
+            let mut preconditioner = Preconditioner::new(&*half_space(grid, boundary));
             for seed in 0..4 {
                 // Smooth where the seed is even, noise where it is odd.
                 let value = |k: usize| if seed % 2 == 0 { 1.0 } else { noise(k, seed) };
                 let r: Vec<f32> = (0..n).map(|k| if is_in(&set, k) { value(k) } else { 0.0 }).collect();
                 let mut z = vec![0.0; n];
-                preconditioner.tori.around(&set).apply_into(&r, &mut z);
+                preconditioner.inverse.around(&set).apply_into(&r, &mut z);
                 let whole = dot(&r, &z);
                 // b'(M_CC)^-1 b, by conjugate gradients until nothing is left.
                 let open = |z: &[f32]| -> Vec<f32> {
@@ -201,7 +124,7 @@ mod tests {
                 let (mut d, mut taken, mut size) = (rest.clone(), 0.0, dot(&rest, &rest));
                 let least = 1e-10 * size;
                 while size > least {
-                    preconditioner.tori.around(&set).apply_into(&d, &mut z);
+                    preconditioner.inverse.around(&set).apply_into(&d, &mut z);
                     let md = open(&z);
                     let step = size / dot(&d, &md);
                     taken += step * size;
@@ -222,10 +145,10 @@ mod tests {
     #[test]
     fn all_cells_or_none() {
         let grid = Grid::new([24, 20], [1.0, 1.0]).unwrap();
-        let mut preconditioner = Preconditioner::new(&grid, Boundary::Free);
+        let mut preconditioner = Preconditioner::new(&*half_space(grid, Boundary::Free));
         let r: Vec<f32> = (0..grid.len()).map(|n| noise(n, 1)).collect();
         let mut z = vec![0.0; grid.len()];
-        preconditioner.tori.around(&[u8::MAX; 60]).apply_into(&r, &mut z);
+        preconditioner.inverse.around(&[u8::MAX; 60]).apply_into(&r, &mut z);
         assert_eq!(rated(&mut preconditioner, &[u8::MAX; 60], &r), dot(&r, &z));
         assert_eq!(rated(&mut preconditioner, &[0; 60], &[0.0; 480]), 0.0);
     }
@@ -237,7 +160,7 @@ mod tests {
         let n = 128;
         for aspect in [1.0, 3.0] {
             let grid = Grid::new([n, n], [1.0, aspect]).unwrap();
-            let mut preconditioner = Preconditioner::new(&grid, Boundary::Free);
+            let mut preconditioner = Preconditioner::new(&*half_space(grid, Boundary::Free));
             let patterns: [fn(usize, usize) -> bool; 4] = [
                 |i, _| i % 2 == 0,
                 |_, j| j % 2 == 0,

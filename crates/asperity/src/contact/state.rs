@@ -11,12 +11,14 @@ pub struct ContactState {
     pub unit_displacement: Vec<f64>,
     /// w \[m\].
     pub approach: f64,
+    /// A bound of the rounding error of U, in those of one convolution: each is some 1e-16 of the largest U.
+    pub(crate) rounding: f64,
 }
 
 impl ContactState {
     /// No contact, on a grid of `cells` cells.
     pub fn new(cells: usize) -> Self {
-        ContactState { pressure: zeros(cells), unit_displacement: zeros(cells), approach: 0.0 }
+        ContactState { pressure: zeros(cells), unit_displacement: zeros(cells), approach: 0.0, rounding: 0.0 }
     }
 
     /// No contact, at the approach `approach`.
@@ -24,6 +26,7 @@ impl ContactState {
         self.pressure.fill(0.0);
         self.unit_displacement.fill(0.0);
         self.approach = approach;
+        self.rounding = 0.0;
     }
 
     /// How far another state is from this one in the energy norm, of this one's.

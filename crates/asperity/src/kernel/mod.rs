@@ -1,9 +1,52 @@
-//! Influence functions of the half-space, for unit contact modulus E* = 1.
+//! Influence functions for unit contact modulus E* = 1: what a pressure on the surface displaces.
 //!
-//! Pure functions of geometry: no grid, no material.
+//! Pure functions of geometry: no grid, no material, no time.
 
 mod boussinesq;
 mod periodic;
 
 pub use boussinesq::love;
-pub use periodic::{inverse_kernel, wave_kernel};
+pub use periodic::wave_kernel;
+
+use ndarray::Array2;
+use ndarray::parallel::prelude::*;
+
+/// The elastic response of a body's surface, from which an [`Operator`](crate::operator::Operator) is planned.
+///
+/// A free domain takes it by its influence coefficients, a periodic one by its symbol; the two describe the same body:
+/// the symbol is the Fourier transform of the response to a point load.
+pub trait Kernel: Send + Sync {
+    /// Displacements K(i dx, j dy) \[m\] at distances of i < `count[0]` and j < `count[1]` cells from the centre of a
+    /// cell of sides `cell` = \[dx, dy\] \[m\] under unit pressure.
+    fn influence(&self, cell: [f64; 2], count: [usize; 2]) -> Array2<f64>;
+
+    /// Amplitude of the displacement \[m\] under a pressure wave cos(q.x) of unit amplitude; `q` = (qx, qy) \[rad/m\] is not
+    /// zero. Positive.
+    fn symbol(&self, qx: f64, qy: f64) -> f64;
+
+    /// Displacement \[m\] under a uniform unit pressure on a periodic domain; `None` where it is not determined, as on a
+    /// half-space: displacements are then measured from their mean.
+    fn uniform(&self) -> Option<f64> {
+        None
+    }
+}
+
+/// The elastic half-space: [`love`] and [`wave_kernel`].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct HalfSpace;
+
+impl Kernel for HalfSpace {
+    fn influence(&self, [dx, dy]: [f64; 2], count: [usize; 2]) -> Array2<f64> {
+        let mut kernel = Array2::zeros((count[0], count[1]));
+        kernel.outer_iter_mut().into_par_iter().enumerate().for_each(|(i, mut row)| {
+            for (j, k) in row.iter_mut().enumerate() {
+                *k = love(i as f64 * dx, j as f64 * dy, [dx, dy]);
+            }
+        });
+        kernel
+    }
+
+    fn symbol(&self, qx: f64, qy: f64) -> f64 {
+        wave_kernel(qx, qy)
+    }
+}

@@ -13,9 +13,3 @@ pub fn wave_kernel(qx: f64, qy: f64) -> f64 {
     let q = libm::hypot(qx, qy);
     if q > 0.0 { 2.0 / q } else { 0.0 }
 }
-
-/// |q|/2, the inverse of [`wave_kernel`] \[1/m\]; the mean takes `mean`.
-pub fn inverse_kernel(qx: f64, qy: f64, mean: f64) -> f64 {
-    let q = libm::hypot(qx, qy);
-    if q > 0.0 { 0.5 * q } else { mean }
-}

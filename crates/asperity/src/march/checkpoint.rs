@@ -3,7 +3,6 @@
 use ndarray::{Array2, CowArray, Ix2};
 
 use super::{March, Past, Reached, Simulation, Timeline, record};
-use crate::contact::{REMEMBERED, Roundings};
 use crate::error::{Error, Result};
 
 /// Everything that the rest of a march depends on; see [`March::checkpoint`].
@@ -45,8 +44,8 @@ impl March {
         };
         let mut scalars = self.timeline.save();
         scalars.extend([self.reached.approach, self.reached.load]);
-        scalars.extend([self.roundings.here, self.roundings.change]);
-        scalars.extend(self.solver.remembered());
+        scalars.extend([self.state.approach, self.previous.approach]);
+        scalars.extend([self.state.rounding, self.previous.rounding]);
         scalars.extend(memory_scalars);
         scalars.extend(self.meter.save());
         fields.extend(memory.into_iter().enumerate().map(|(k, cells)| {
@@ -66,8 +65,8 @@ impl March {
         let Some((timeline, rest)) = checkpoint.scalars.split_at_checked(Timeline::SAVED) else {
             return Err(foreign(format!("{} numbers", checkpoint.scalars.len())));
         };
-        let Some(([approach, load, here, change, lengths @ ..], scalars)) =
-            rest.split_first_chunk::<{ 4 + REMEMBERED }>()
+        let Some(([approach, load, approaches @ .., rounding, rounding_before], scalars)) =
+            rest.split_first_chunk::<6>()
         else {
             return Err(foreign(format!("{} numbers", checkpoint.scalars.len())));
         };
@@ -75,8 +74,8 @@ impl March {
             return Err(foreign("of another programme".into()));
         }
         march.reached = Reached { approach: *approach, load: *load };
-        march.roundings = Roundings::new(*here, *change);
-        march.solver.remember(*lengths);
+        (march.state.rounding, march.previous.rounding) = (*rounding, *rounding_before);
+        (march.state.approach, march.previous.approach) = (approaches[0], approaches[1]);
         let mut fields = checkpoint.fields.iter();
         let mut next = |name: &str| -> Result<Vec<f64>> {
             match fields.next() {

@@ -75,7 +75,7 @@ impl March {
         };
         Some(Between {
             instant: Instant { time, dt: time - start, value: prescribed, ..row },
-            state: ContactState { pressure, unit_displacement: unit, approach },
+            state: ContactState { pressure, unit_displacement: unit, approach, rounding: f64::INFINITY },
             gap,
             history,
             compliance,

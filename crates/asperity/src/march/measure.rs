@@ -5,7 +5,7 @@ use super::{March, Past, Step};
 use crate::contact::Hardness;
 use crate::error::Result;
 use crate::field::{strands, sweep};
-use crate::grid::{Boundary, Grid};
+use crate::operator::Operator;
 use crate::quantities::{Column, ContactStiffness, Quantity, contact_edges, densities, spot_classes};
 use crate::spots::Spots;
 
@@ -21,12 +21,11 @@ pub(super) struct Meter {
 
 impl Meter {
     /// For these columns, of bodies with `branches` branches.
-    pub(super) fn new(columns: Vec<Column>, grid: &Grid, boundary: Boundary, branches: usize) -> Self {
+    pub(super) fn new(columns: Vec<Column>, operator: &dyn Operator, branches: usize) -> Self {
         let has = |test: &dyn Fn(Quantity) -> bool| columns.iter().any(|column| test(column.quantity));
         Meter {
             values: vec![f64::NAN; columns.iter().map(Column::width).sum()],
-            stiffness: has(&|q| q == Quantity::ContactStiffness)
-                .then(|| ContactStiffness::new(grid, boundary)),
+            stiffness: has(&|q| q == Quantity::ContactStiffness).then(|| ContactStiffness::new(operator)),
             energy: has(&Quantity::is_energy).then(|| Energy::new(branches)),
             columns,
         }

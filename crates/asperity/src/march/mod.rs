@@ -14,12 +14,12 @@ mod dents;
 mod direct;
 mod energy;
 mod event;
-mod guess;
 mod measure;
 mod memory;
 mod record;
 mod simulation;
 mod timeline;
+mod warm_start;
 
 pub use checkpoint::Checkpoint;
 pub use dense::Between;
@@ -29,11 +29,11 @@ pub use simulation::{Plasticity, Scheme, Simulation};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem, Roundings, Solver, Start};
+use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem, Solver, Start};
 use crate::error::{Error, Result};
-use crate::field::{minimum, sum, zeros};
+use crate::field::{minimum, sum};
 use crate::load::{Control, Event};
-use crate::operator::Operator;
+use crate::operator::{Operator, half_space};
 use crate::time::Instant;
 use adaptive::{Defect, Three};
 use dents::Dents;
@@ -79,10 +79,8 @@ pub struct March {
     /// The row that `state` belongs to, and its instant.
     current: Option<(usize, Instant)>,
     state: ContactState,
-    /// Pressure and U of the row before.
-    previous: Previous,
-    /// What U of these two rows may be off by.
-    roundings: Roundings,
+    /// The row before.
+    previous: ContactState,
     /// h0 + g of the last step.
     gap: Vec<f64>,
     /// Cut-off of each cell, where it is not the same everywhere.
@@ -102,11 +100,6 @@ pub struct March {
     /// What the last row reached, where stages ask for it.
     reached: Reached,
     interrupt: Option<Arc<AtomicBool>>,
-}
-
-struct Previous {
-    pressure: Vec<f64>,
-    unit_displacement: Vec<f64>,
 }
 
 /// The undeformed gap h0 with its dents.
@@ -155,15 +148,15 @@ impl March {
         simulation.validate()?;
         let timeline = Timeline::new(&simulation);
         let options = &simulation.solver;
-        let operator = options.precision.half_space(simulation.grid, simulation.boundary);
-        let solver = Solver::with_precision(options.method, options.precision, &*operator);
+        let operator = half_space(simulation.grid, simulation.boundary);
+        let solver = Solver::new(options.method, &*operator);
         let n = simulation.grid.len();
         let past = match simulation.scheme {
             Scheme::Direct => Past::Direct(Direct::new(&simulation.creep, &simulation.thermal)),
             scheme => Past::Memory(Memory::new(simulation.parts(), scheme, n)),
         };
         let branches = if let Past::Memory(memory) = &past { memory.branches() } else { 0 };
-        let meter = Meter::new(simulation.columns()?, &simulation.grid, simulation.boundary, branches);
+        let meter = Meter::new(simulation.columns()?, &*operator, branches);
         let dents = Dents::new(&simulation);
         Ok(March {
             gap: simulation.gap.iter().copied().collect(),
@@ -180,8 +173,7 @@ impl March {
             done: 0,
             current: None,
             state: ContactState::new(n),
-            previous: Previous { pressure: zeros(n), unit_displacement: zeros(n) },
-            roundings: Roundings::new(f64::INFINITY, f64::INFINITY),
+            previous: ContactState::new(n),
             compliance: 0.0,
             outcome: Outcome::default(),
             dents,
@@ -256,8 +248,7 @@ impl March {
             }
             Past::Direct(d) => d.history(instant.time, instant.dt, unit, rigid, &mut self.gap),
         };
-        std::mem::swap(&mut self.state.pressure, &mut self.previous.pressure);
-        std::mem::swap(&mut self.state.unit_displacement, &mut self.previous.unit_displacement);
+        std::mem::swap(&mut self.state, &mut self.previous);
         // What stands there is U two rows before.
         let older = &self.state.unit_displacement[..self.older.len()];
         self.older.copy_from_slice(older);
@@ -304,7 +295,6 @@ impl March {
         let (operator, state) = (&mut *self.operator, &mut self.state);
         match self.solver.solve_from(start, operator, &problem, options, state, interrupt) {
             Ok(outcome) => {
-                self.roundings = self.roundings.solved(self.solver.roundings());
                 // The work of all trials of a step is its work.
                 self.outcome = Outcome {
                     iterations: before.iterations + outcome.iterations,

@@ -2,12 +2,14 @@
 
 use ndarray::Array2;
 
-use crate::contact::{Method, Precision, SolverOptions};
+use crate::contact::{Solver, SolverOptions};
 use crate::error::{Error, Result};
 use crate::grid::{Boundary, Grid};
 use crate::load::{Control, Course, History, Loading, Programme, of_stage};
 use crate::material::{Creep, ThermalCreep};
-use crate::quantities::{Column, Quantities, Quantity};
+use crate::operator;
+use crate::quantities::{Column, ContactStiffness, Quantities, Quantity};
+use crate::spots::Spots;
 use crate::time::{Plan, TimeGrid};
 
 /// How the hereditary integral is taken over a step.
@@ -112,40 +114,24 @@ impl Simulation {
         self.parts().map(|creep| creep.instantaneous).sum()
     }
 
-    /// Memory that a march takes, in bytes per cell: its operator, solver, fields and history (docs/performance.md).
-    pub fn bytes_per_cell(&self) -> usize {
-        let mixed = self.solver.precision == Precision::Mixed;
-        let convolution = match self.boundary {
-            // half spectrum and multiplier, see `asperity_convolution::lanes`
-            Boundary::Free => 26.0,
-            Boundary::Periodic => 10.5,
-        };
-        let convolutions = if mixed { 1.5 * convolution } else { convolution };
-        // on the grid, or with a rim around it, see `operator::ApproximateInverse`
-        let inverse = if self.boundary == Boundary::Free { 7.0 } else { 5.25 };
-        // contacts that reach the rim and others, see `contact::torus`
-        let tori = if self.boundary == Boundary::Free { inverse + 5.25 } else { inverse };
-        let solver = match self.solver.method {
-            // the preconditioner's convolutions in f32 with a second multiplier, and its set; four fields in f32, two sets
-            Method::ProjectedCg => 1.24 * tori + 0.125 + 16.0 + 0.25,
-            Method::PolonskyKeer => 24.125,
-        };
-        // pressure and U of two rows, undeformed and remembered gap; the gap with its dents
-        let dents = if self.plasticity == Plasticity::Accumulate { 8.0 } else { 0.0 };
-        // the set, residual, direction and its image, two fields and a plan in f32; the forest of spots and its counts
-        let stiffness = if self.quantities.has(Quantity::ContactStiffness) {
-            1.0 + 3.0 * 8.0 + 8.0 + inverse
-        } else {
-            0.0
-        };
-        let spots = if self.quantities.list.iter().any(|q| q.is_of_spots()) { 16.0 } else { 0.0 };
-        let older = if self.is_adaptive() { 8.0 } else { 0.0 };
-        let march = 6.0 * 8.0 + dents + stiffness + spots + older;
-        let memory = match self.scheme {
+    /// Memory that a march takes at most \[bytes\]: its operator, solver, fields, history, and what its quantities need.
+    pub fn bytes(&self) -> usize {
+        let (grid, n) = (&self.grid, self.grid.len());
+        let has = |wanted: bool, bytes: usize| if wanted { bytes } else { 0 };
+        let history = match self.scheme {
             Scheme::Direct => self.plan().instants.len(),
             _ => self.parts().map(|creep| creep.terms.len() + usize::from(creep.fluidity > 0.0)).sum(),
         };
-        f64::ceil(convolutions + solver + march) as usize + 8 * memory
+        operator::bytes(grid, self.boundary)
+            + Solver::bytes(self.solver.method, grid, self.boundary)
+            // pressure and U of two rows, undeformed and remembered gap
+            + 6 * 8 * n
+            + 8 * n * history
+            + has(self.is_adaptive(), 8 * n)
+            // the gap with its dents
+            + has(self.plasticity == Plasticity::Accumulate, 8 * n)
+            + has(self.quantities.has(Quantity::ContactStiffness), ContactStiffness::bytes(grid, self.boundary))
+            + has(self.quantities.list.iter().any(|q| q.is_of_spots()), Spots::bytes(grid))
     }
 
     /// The quantities of each row, with the ends of their bins.

@@ -1,52 +1,38 @@
-//! The free half-space: Love's coefficients, zero-padded to at least twice the cells (DC-FFT; Liu,
-//! Wang & Liu, Wear 243, 2000).
+//! The free domain: no pressure outside, by influence coefficients and zero-padded convolution (DC-FFT: Liu, Wang & Liu, Wear
+//! 243, 2000).
+
+use std::sync::Arc;
 
 use ndarray::Array2;
-use ndarray::parallel::prelude::*;
 
-use super::{Operator, Single};
-use crate::convolution::lanes::{Journey, Lanes, Sums};
+use super::{ApproximateInverse, Operator};
 use crate::convolution::{Convolution, even_spectrum};
 use crate::grid::{Boundary, Grid};
-use crate::kernel::love;
+use crate::kernel::Kernel;
 
 /// u(i, j) = sum K(i - i', j - j') p(i', j'), with no pressure outside the domain.
 pub struct Free {
     grid: Grid,
+    kernel: Arc<dyn Kernel>,
     convolution: Convolution,
-    single: Single,
     self_influence: f64,
 }
 
 impl Free {
     /// Plans the operator; the influence coefficients are computed here.
-    pub fn new(grid: Grid) -> Self {
-        Free::planned(grid, false)
-    }
-
-    /// The same, and its form in f32.
-    pub fn with_single(grid: Grid) -> Self {
-        Free::planned(grid, true)
-    }
-
-    fn planned(grid: Grid, single: bool) -> Self {
-        let (self_influence, spectrum) = kernel(&grid);
+    pub fn new(grid: Grid, kernel: Arc<dyn Kernel>) -> Self {
+        let lengths = padded(&grid);
+        let influence = influence(&grid, &*kernel);
+        let spectrum = even_spectrum(&influence, lengths);
         debug_assert!(spectrum.iter().all(|s| *s > 0.0), "the kernel is positive definite");
-        let convolution = Convolution::new(grid.cells(), padded(&grid), spectrum.view());
-        let single = single.then(|| Lanes::new(grid.cells(), padded(&grid), spectrum.view()));
-        Free { grid, convolution, single: Single(single), self_influence }
+        let convolution = Convolution::new(grid.cells(), lengths, spectrum.view());
+        Free { grid, kernel, convolution, self_influence: influence[(0, 0)] }
     }
 
-    fn single(&mut self) -> &mut Lanes<f32> {
-        let grid = &self.grid;
-        self.single.planned(|| Lanes::new(grid.cells(), padded(grid), kernel(grid).1.view()))
+    /// Bytes that the operator takes on that grid.
+    pub(super) fn bytes(grid: &Grid) -> usize {
+        Convolution::bytes(grid.cells(), padded(grid))
     }
-}
-
-/// K of a cell on itself, and the spectrum of K.
-fn kernel(grid: &Grid) -> (f64, Array2<f64>) {
-    let kernel = influence(grid, padded(grid));
-    (kernel[(0, 0)], even_spectrum(&kernel, padded(grid)))
 }
 
 /// Lengths of the transforms.
@@ -56,15 +42,8 @@ fn padded(grid: &Grid) -> [usize; 2] {
 
 /// K on the quadrant of the padded torus. Beyond the domain the true coefficients go on: no output
 /// of the domain reads them, and the kernel stays smooth and its spectrum positive.
-fn influence(grid: &Grid, lengths: [usize; 2]) -> Array2<f64> {
-    let [dx, dy] = grid.spacing();
-    let mut kernel = Array2::zeros((lengths[0] / 2 + 1, lengths[1] / 2 + 1));
-    kernel.outer_iter_mut().into_par_iter().enumerate().for_each(|(i, mut row)| {
-        for (j, k) in row.iter_mut().enumerate() {
-            *k = love(i as f64 * dx, j as f64 * dy, [dx, dy]);
-        }
-    });
-    kernel
+fn influence(grid: &Grid, kernel: &dyn Kernel) -> Array2<f64> {
+    kernel.influence(grid.spacing(), padded(grid).map(|length| length / 2 + 1))
 }
 
 impl Operator for Free {
@@ -80,26 +59,27 @@ impl Operator for Free {
         self.convolution.apply_into(p, u);
     }
 
-    fn apply_single_into(&mut self, p: &[f32], u: &mut [f32]) {
-        self.single().apply_into(p, u);
-    }
-
-    fn carry(&mut self, journey: Journey<f64>) -> Option<Sums> {
-        self.convolution.carry(journey)
-    }
-
-    fn carry_single(&mut self, journey: Journey<f32>) -> Option<Sums> {
-        self.single().carry(journey)
-    }
-
     fn self_influence(&self) -> f64 {
         self.self_influence
+    }
+
+    fn determines_mean(&self) -> bool {
+        true
+    }
+
+    fn approximate_inverse(&self) -> ApproximateInverse {
+        ApproximateInverse::new(self.grid, Boundary::Free, self.kernel.clone())
+    }
+
+    fn on_grid(&self, grid: Grid) -> Option<Box<dyn Operator>> {
+        Some(Box::new(Free::new(grid, self.kernel.clone())))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kernel::HalfSpace;
 
     #[test]
     fn the_spectrum_is_positive_for_any_shape() {
@@ -111,8 +91,7 @@ mod tests {
             ([65, 129], [3.0, 2.0]),
         ] {
             let grid = Grid::new(cells, size).unwrap();
-            let lengths = cells.map(|n: usize| Convolution::good_length(2 * n - 1));
-            let spectrum = even_spectrum(&influence(&grid, lengths), lengths);
+            let spectrum = even_spectrum(&influence(&grid, &HalfSpace), padded(&grid));
             assert!(spectrum.iter().all(|s| *s > 0.0), "{cells:?} {size:?}");
         }
     }

@@ -1,45 +1,37 @@
-//! The periodic half-space: 2/|q| on the waves of the domain (Westergaard 1939; Stanley & Kato, J.
-//! Tribol. 119, 1997). The mean pressure displaces nothing: displacements have zero mean.
+//! The periodic domain: the symbol of the kernel on the waves of the domain (Stanley & Kato, J. Tribol. 119, 1997).
+
+use std::sync::Arc;
 
 use ndarray::{ArrayView1, ArrayView2};
 
-use super::{Operator, Single, wave_spectrum};
+use super::{ApproximateInverse, Operator, wave_spectrum};
 use crate::convolution::Convolution;
-use crate::convolution::lanes::{Journey, Lanes, Sums};
 use crate::grid::{Boundary, Grid};
-use crate::kernel::wave_kernel;
+use crate::kernel::Kernel;
 
-/// u = F^-1 \[ (2/|q|) F p \].
+/// u = F^-1 \[ K^(q) F p \]. Where the kernel leaves a uniform displacement undetermined, u has zero mean.
 pub struct Periodic {
     grid: Grid,
+    kernel: Arc<dyn Kernel>,
     convolution: Convolution,
-    single: Single,
     self_influence: f64,
 }
 
 impl Periodic {
     /// Plans the operator.
-    pub fn new(grid: Grid) -> Self {
-        Periodic::planned(grid, false)
-    }
-
-    /// The same, and its form in f32.
-    pub fn with_single(grid: Grid) -> Self {
-        Periodic::planned(grid, true)
-    }
-
-    fn planned(grid: Grid, single: bool) -> Self {
+    pub fn new(grid: Grid, kernel: Arc<dyn Kernel>) -> Self {
         let cells = grid.cells();
-        let spectrum = wave_spectrum(cells, grid.size(), wave_kernel);
+        let spectrum = wave_spectrum(cells, grid.size(), kernel.uniform().unwrap_or(0.0), |qx, qy| {
+            kernel.symbol(qx, qy)
+        });
         let convolution = Convolution::new(cells, cells, spectrum.view());
         let self_influence = mean(cells, spectrum.view());
-        let single = single.then(|| Lanes::new(cells, cells, spectrum.view()));
-        Periodic { grid, convolution, single: Single(single), self_influence }
+        Periodic { grid, kernel, convolution, self_influence }
     }
 
-    fn single(&mut self) -> &mut Lanes<f32> {
-        let (cells, size) = (self.grid.cells(), self.grid.size());
-        self.single.planned(|| Lanes::new(cells, cells, wave_spectrum(cells, size, wave_kernel).view()))
+    /// Bytes that the operator takes on that grid.
+    pub(super) fn bytes(grid: &Grid) -> usize {
+        Convolution::bytes(grid.cells(), grid.cells())
     }
 }
 
@@ -64,31 +56,33 @@ impl Operator for Periodic {
         self.convolution.apply_into(p, u);
     }
 
-    fn apply_single_into(&mut self, p: &[f32], u: &mut [f32]) {
-        self.single().apply_into(p, u);
-    }
-
-    fn carry(&mut self, journey: Journey<f64>) -> Option<Sums> {
-        self.convolution.carry(journey)
-    }
-
-    fn carry_single(&mut self, journey: Journey<f32>) -> Option<Sums> {
-        self.single().carry(journey)
-    }
-
     fn self_influence(&self) -> f64 {
         self.self_influence
+    }
+
+    fn determines_mean(&self) -> bool {
+        self.kernel.uniform().is_some()
+    }
+
+    fn approximate_inverse(&self) -> ApproximateInverse {
+        ApproximateInverse::new(self.grid, Boundary::Periodic, self.kernel.clone())
+    }
+
+    fn on_grid(&self, grid: Grid) -> Option<Box<dyn Operator>> {
+        Some(Box::new(Periodic::new(grid, self.kernel.clone())))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kernel::HalfSpace;
 
     #[test]
     fn the_self_influence_is_what_the_convolution_says() {
         for cells in [[16, 16], [9, 14], [1, 7], [20, 33]] {
-            let mut operator = Periodic::new(Grid::new(cells, [1.0, 2.0]).unwrap());
+            let grid = Grid::new(cells, [1.0, 2.0]).unwrap();
+            let mut operator = Periodic::new(grid, Arc::new(HalfSpace));
             let (mut unit, mut response) = (vec![0.0; cells[0] * cells[1]], vec![0.0; cells[0] * cells[1]]);
             unit[0] = 1.0;
             operator.apply_into(&unit, &mut response);

@@ -13,7 +13,6 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::convolution::lanes::Lanes;
 use crate::error::{Error, NotConverged, Result};
 use crate::field::{strands, sweep};
 use crate::grid::{Boundary, Grid};
@@ -24,9 +23,9 @@ const SMALLEST_SHARE: f64 = 1e-7;
 /// More than any contact needs; some ten are usual.
 const MOST_ITERATIONS: usize = 1000;
 
-/// Solves for the stiffness of contacts on one grid, with its own working memory (38 bytes per cell).
+/// Solves for the stiffness of contacts on one grid, with its own working memory.
 pub struct ContactStiffness {
-    inverse: Lanes<f32>,
+    inverse: ApproximateInverse,
     set: Vec<bool>,
     residual: Vec<f64>,
     direction: Vec<f64>,
@@ -36,11 +35,11 @@ pub struct ContactStiffness {
 }
 
 impl ContactStiffness {
-    /// Plans the solve for a grid and what surrounds it.
-    pub fn new(grid: &Grid, boundary: Boundary) -> Self {
-        let n = grid.len();
+    /// Plans the solve for an operator.
+    pub fn new(operator: &dyn Operator) -> Self {
+        let n = operator.grid().len();
         ContactStiffness {
-            inverse: ApproximateInverse::new(grid, boundary).plan(),
+            inverse: operator.approximate_inverse(),
             set: vec![false; n],
             residual: vec![0.0; n],
             direction: vec![0.0; n],
@@ -48,6 +47,11 @@ impl ContactStiffness {
             single: vec![0.0; n],
             image: vec![0.0; n],
         }
+    }
+
+    /// Bytes that it takes on that grid, without the operator.
+    pub(crate) fn bytes(grid: &Grid, boundary: Boundary) -> usize {
+        ApproximateInverse::bytes(grid, boundary) + 33 * grid.len()
     }
 
     /// dW/dw \[N/m\] of the cells that `bears` names, for a compliance \[1/Pa\], and the applications of K that it took.
@@ -60,7 +64,7 @@ impl ContactStiffness {
     /// let grid = Grid::new([64, 64], [2.0, 2.0])?;
     /// let mut operator = half_space(grid, Boundary::Free);
     /// let inside = |k: usize| f64::hypot(grid.x(k / 64) - 1.0, grid.y(k % 64) - 1.0) < 0.7;
-    /// let (stiffness, _) = ContactStiffness::new(&grid, Boundary::Free).of(&mut *operator, 1e-9, inside, None)?;
+    /// let (stiffness, _) = ContactStiffness::new(&*operator).of(&mut *operator, 1e-9, inside, None)?;
     /// assert!((stiffness / (2.0 * 0.7 * 1e9) - 1.0).abs() < 0.02);
     /// # Ok::<(), asperity::Error>(())
     /// ```
@@ -83,7 +87,7 @@ impl ContactStiffness {
         if cells == 0 {
             return Ok((0.0, 0));
         }
-        if compliance <= 0.0 || (operator.boundary() == Boundary::Periodic && cells == self.set.len()) {
+        if compliance <= 0.0 || (!operator.determines_mean() && cells == self.set.len()) {
             return Ok((f64::INFINITY, 0));
         }
         self.direction.fill(0.0);
@@ -197,7 +201,7 @@ mod tests {
             let exact: f64 =
                 (0..n).map(|k| matrix[k][n] / matrix[k][k]).sum::<f64>() * grid.cell_area() / 0.25;
             let (found, convolutions) =
-                ContactStiffness::new(&grid, boundary).of(&mut *operator, 0.25, on, None).unwrap();
+                ContactStiffness::new(&*operator).of(&mut *operator, 0.25, on, None).unwrap();
             // The last iteration added less than 1e-7.
             assert!((found / exact - 1.0).abs() < 1e-6, "{boundary:?}: {found} {exact}");
             assert!(convolutions <= 25, "{convolutions}");
@@ -207,8 +211,8 @@ mod tests {
     #[test]
     fn limits_are_answered() {
         let grid = Grid::new([4, 4], [1.0, 1.0]).unwrap();
-        let mut stiffness = ContactStiffness::new(&grid, Boundary::Periodic);
         let mut periodic = half_space(grid, Boundary::Periodic);
+        let mut stiffness = ContactStiffness::new(&*periodic);
         assert_eq!(stiffness.of(&mut *periodic, 1.0, |_| false, None).unwrap(), (0.0, 0));
         assert_eq!(stiffness.of(&mut *periodic, 1.0, |_| true, None).unwrap(), (f64::INFINITY, 0));
         assert_eq!(stiffness.of(&mut *periodic, 0.0, |k| k == 1, None).unwrap(), (f64::INFINITY, 0));

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use asperity::quantities::{Quantities, Quantity};
-use asperity::{Method, Plasticity, Precision, Programme, Scheme, SolverOptions, TimeGrid};
+use asperity::{Method, Plasticity, Programme, Scheme, SolverOptions, TimeGrid};
 
 use super::Checks;
 use super::time;
@@ -20,10 +20,6 @@ pub fn solver(solver: &raw::Solver) -> SolverOptions {
         method: match solver.method {
             raw::Method::ProjectedCg => Method::ProjectedCg,
             raw::Method::PolonskyKeer => Method::PolonskyKeer,
-        },
-        precision: match solver.precision {
-            raw::Precision::Double => Precision::Double,
-            raw::Precision::Mixed => Precision::Mixed,
         },
         tolerance: solver.tolerance.map_or(default.tolerance, |tolerance| tolerance.get()),
         max_iterations: solver.max_iterations.map_or(default.max_iterations, |most| most.count()),

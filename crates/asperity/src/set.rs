@@ -1,4 +1,4 @@
-//! Where the cells of a set lie to each other, eight of them in a byte.
+//! Sets of cells as bits, eight cells in a byte: adjacent cells, and empty lines at the rim.
 
 use rayon::prelude::*;
 
@@ -7,10 +7,10 @@ const WORD: usize = 8;
 
 /// The cells that are not of the set and touch one of it: the eight around each in memory, so that the last cell of a row
 /// counts as a neighbour of the first of the next.
-pub(super) fn find_beside(set: &[u8], row: usize, beside: &mut [u8]) {
+pub(crate) fn find_adjacent(set: &[u8], row: usize, adjacent: &mut [u8]) {
     let row = row as isize;
-    beside.par_chunks_mut(1024 * WORD).enumerate().for_each(|(chunk, beside)| {
-        for (n, bytes) in (1024 * chunk..).zip(beside.chunks_mut(WORD)) {
+    adjacent.par_chunks_mut(1024 * WORD).enumerate().for_each(|(chunk, adjacent)| {
+        for (n, bytes) in (1024 * chunk..).zip(adjacent.chunks_mut(WORD)) {
             let at = (8 * WORD * n) as isize;
             // Any of three rows, at the cells one before and one after these; what lies between is in both.
             let [before, after] = [at - 1, at + 1]
@@ -36,7 +36,7 @@ fn sixty_four(set: &[u8], at: isize) -> u64 {
 
 /// Lines of cells without one of the set at both ends of each direction together, of which no more than `most` (at most 64)
 /// are counted at one end.
-pub(super) fn margins(set: &[u8], [nx, ny]: [usize; 2], most: usize) -> [usize; 2] {
+pub(crate) fn margins(set: &[u8], [nx, ny]: [usize; 2], most: usize) -> [usize; 2] {
     let empty = |i: usize| (0..ny).step_by(64).all(|j| some(set, i * ny + j, ny - j) == 0);
     let above = (0..nx.min(most)).take_while(|i| empty(*i)).count();
     let below = (0..nx.min(most)).take_while(|i| empty(nx - 1 - i)).count();
@@ -57,7 +57,7 @@ fn some(set: &[u8], at: usize, cells: usize) -> u64 {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+pub(crate) mod tests {
     use super::*;
 
     /// A set of blobs on nx x ny cells.
@@ -77,17 +77,17 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn open_cells_beside_the_set() {
+    fn open_cells_adjacent_to_the_set() {
         for cells in [[16, 8], [37, 50], [3, 21], [40, 64]] {
             let ([_, ny], set) = (cells, set(cells));
             let n = cells[0] * ny;
-            let mut beside = vec![u8::MAX; set.len()];
-            find_beside(&set, ny, &mut beside);
+            let mut adjacent = vec![u8::MAX; set.len()];
+            find_adjacent(&set, ny, &mut adjacent);
             for k in 0..n {
                 let around = [0, 1, 2, ny, ny + 2, 2 * ny, 2 * ny + 1, 2 * ny + 2]
                     .map(|d| (k + d).checked_sub(ny + 1));
                 let near = around.iter().any(|k| k.is_some_and(|k| k < n && is_in(&set, k)));
-                assert_eq!(is_in(&beside, k), near && !is_in(&set, k), "{cells:?} {k}");
+                assert_eq!(is_in(&adjacent, k), near && !is_in(&set, k), "{cells:?} {k}");
             }
         }
     }

@@ -1,0 +1,90 @@
+//! What an iteration of projected conjugate gradients tells the next, in one solve.
+
+use super::step::Kind;
+use super::{ContactState, Problem};
+use crate::operator::Operator;
+
+/// The length a of the first trial step.
+const FIRST_LENGTH: f64 = 0.75;
+
+/// The share of the tolerance that rounding errors of U may take before U = K p is computed afresh.
+const SPARE: f64 = 1e-2;
+
+/// One solve: what is asked for, and what an iteration tells the next.
+pub(super) struct Search<'a> {
+    pub operator: &'a mut dyn Operator,
+    pub problem: &'a Problem<'a>,
+    pub state: &'a mut ContactState,
+    /// Sum of p that the load asks for.
+    pub sum: Option<f64>,
+    /// Mean of g over the free cells, where it is known \[m\].
+    pub free_gap: Option<f64>,
+    /// Unit of residuals: the largest violation at the start \[m\]; 0 before.
+    pub unit: f64,
+    /// Length a of trial steps, in units of the preconditioned residual, and of gradient steps \[Pa/m\].
+    pub length: f64,
+    pub gradient_length: f64,
+    /// <z, r> of the last conjugate direction; `None` forgets it.
+    pub product: Option<f64>,
+    pub best: f64,
+    pub stalled: usize,
+    pub iterations: usize,
+    pub convolutions: usize,
+}
+
+impl<'a> Search<'a> {
+    /// A search from a state that is feasible, or soon will be.
+    pub(super) fn new(
+        operator: &'a mut dyn Operator,
+        problem: &'a Problem<'a>,
+        state: &'a mut ContactState,
+    ) -> Self {
+        Search {
+            sum: problem.sum(operator.grid().cell_area()),
+            free_gap: None,
+            unit: 0.0,
+            length: FIRST_LENGTH,
+            gradient_length: 1.0 / (problem.compliance * operator.self_influence()),
+            product: None,
+            best: f64::INFINITY,
+            stalled: 0,
+            iterations: 0,
+            convolutions: 0,
+            operator,
+            problem,
+            state,
+        }
+    }
+
+    /// Computes U = K p afresh.
+    pub(super) fn convolve(&mut self) {
+        self.operator.apply_into(&self.state.pressure, &mut self.state.unit_displacement);
+        self.convolutions += 1;
+        self.state.rounding = 1.0;
+        self.product = None;
+        self.free_gap = None;
+    }
+
+    /// Whether rounding errors of U are below what the tolerance shows, or as small as they can be.
+    pub(super) fn is_precise(&self, tolerance: f64) -> bool {
+        self.state.rounding <= 1.0 || f64::EPSILON * self.state.rounding <= SPARE * tolerance
+    }
+
+    /// Counts the iterations in which the residual has not halved.
+    pub(super) fn watch(&mut self, residual: f64) {
+        self.stalled += 1;
+        if residual < 0.5 * self.best {
+            (self.best, self.stalled) = (residual, 0);
+        }
+    }
+
+    /// The next length of trial steps, from the multiple of the last one at which f was least.
+    pub(super) fn learn(&mut self, kind: Kind, exact: f64, inverse_curvature: f64) {
+        match kind {
+            Kind::Straight => self.length = (self.length * exact).clamp(0.05, 20.0),
+            Kind::Clipped => self.length *= exact.max(0.0).sqrt().clamp(0.3, 1.5),
+            Kind::Gradient if inverse_curvature.is_finite() => self.gradient_length = inverse_curvature,
+            Kind::Gradient => {}
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! Kernels that make a pressure feasible: within its bounds, zero where nothing can touch, with a given sum.
+
+use asperity_convolution::eights::{Eight, Mask, Work};
+
+use crate::contact::Hardness;
+use crate::contact::projection::Shift;
+use crate::field::{Min, Set, SetMut, kernel};
+
+kernel! {
+    /// Number of cells that can touch, the sum of H over them, and the least gap.
+    pub(in crate::contact) struct Limits<'a> {
+        cells { gap: &'a [f64], hardness: Hardness<'a> }
+    }
+}
+
+impl Work for Limits<'_> {
+    type Yield = ([f64; 2], Min);
+
+    #[inline(always)]
+    fn run<V: Eight>(self) -> Self::Yield {
+        let [mut touchable, mut most] = [V::splat(0.0); 2];
+        let mut least = V::splat(f64::INFINITY);
+        for n in (0..self.gap.len()).step_by(8) {
+            let h = V::load(self.gap, n, f64::INFINITY);
+            let can_touch = h.less(V::splat(f64::INFINITY));
+            touchable = touchable + V::count(can_touch);
+            most = most + self.hardness.eight::<V>(n).only(can_touch);
+            least = h.smaller(least);
+        }
+        ([touchable, most].map(V::sum), Min(least.least()))
+    }
+}
+
+kernel! {
+    /// p projected onto its bounds, zero where nothing can touch; yields its sum and the number of cells that can touch, which
+    /// become the set.
+    pub(in crate::contact) struct Clip<'a> {
+        cells { p: &'a mut [f64], gap: &'a [f64], touchable: SetMut<'a>, hardness: Hardness<'a> }
+    }
+}
+
+impl Work for Clip<'_> {
+    type Yield = [f64; 2];
+
+    #[inline(always)]
+    fn run<V: Eight>(self) -> [f64; 2] {
+        let (mut sum, mut cells) = (V::splat(0.0), V::splat(0.0));
+        for (n, set) in (0..).step_by(8).zip(self.touchable.0) {
+            let can_touch = V::load(self.gap, n, f64::INFINITY).less(V::splat(f64::INFINITY));
+            let p = self.hardness.interval(n).project(V::load(self.p, n, 0.0)).only(can_touch);
+            p.store(self.p, n);
+            *set = can_touch.bits();
+            sum = sum + p;
+            cells = cells + V::count(can_touch);
+        }
+        [sum.sum(), cells.sum()]
+    }
+}
+
+kernel! {
+    /// The sums of p below H and at it.
+    pub(in crate::contact) struct BelowAndCapped<'a> {
+        cells { p: &'a [f64], hardness: Hardness<'a> }
+    }
+}
+
+impl Work for BelowAndCapped<'_> {
+    type Yield = [f64; 2];
+
+    #[inline(always)]
+    fn run<V: Eight>(self) -> [f64; 2] {
+        let (mut sum, mut capped) = (V::splat(0.0), V::splat(0.0));
+        for n in (0..self.p.len()).step_by(8) {
+            let p = V::load(self.p, n, 0.0);
+            let below = p.less(self.hardness.eight(n));
+            sum = sum + p.only(below);
+            capped = capped + p.only(!below);
+        }
+        [sum.sum(), capped.sum()]
+    }
+}
+
+kernel! {
+    /// Cells below H times a factor, up to H; yields how many reach H by it.
+    pub(in crate::contact) struct Scale<'a> {
+        cells { p: &'a mut [f64], hardness: Hardness<'a> }
+        numbers { factor: f64 }
+    }
+}
+
+impl Work for Scale<'_> {
+    type Yield = f64;
+
+    #[inline(always)]
+    fn run<V: Eight>(self) -> f64 {
+        let mut over = V::splat(0.0);
+        for n in (0..self.p.len()).step_by(8) {
+            let p = V::load(self.p, n, 0.0);
+            let hardness = self.hardness.eight(n);
+            let scaled = V::select(p.less(hardness), p * V::splat(self.factor), p);
+            scaled.smaller(hardness).store(self.p, n);
+            over = over + V::count(hardness.less(scaled));
+        }
+        over.sum()
+    }
+}
+
+kernel! {
+    /// p shifted and projected on a set, zero elsewhere.
+    pub(in crate::contact) struct ShiftAll<'a> {
+        cells { p: &'a mut [f64], set: Set<'a>, hardness: Hardness<'a> }
+        numbers { shift: Shift }
+    }
+}
+
+impl Work for ShiftAll<'_> {
+    type Yield = ();
+
+    #[inline(always)]
+    fn run<V: Eight>(self) {
+        for (n, set) in (0..).step_by(8).zip(self.set.0) {
+            let p = self.shift.project(V::load(self.p, n, 0.0), self.hardness.interval(n));
+            p.only(V::Mask::from_bits(*set)).store(self.p, n);
+        }
+    }
+}

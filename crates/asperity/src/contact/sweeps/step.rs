@@ -1,0 +1,104 @@
+//! Kernels of a step: the step s to the projected trial point, its curvature, and the state moved along it.
+
+use asperity_convolution::eights::{Eight, Mask, Work};
+
+use crate::contact::Hardness;
+use crate::contact::projection::Shift;
+use crate::field::{Min, Set, kernel};
+
+kernel! {
+    /// s = clip(p - a d + lambda) - p on the set, 0 elsewhere; yields <r, s> and <s, s>, and the largest t for which p + t s
+    /// is feasible. The step that was there is zero outside of `set_old`.
+    pub(in crate::contact) struct FindStep<'a> {
+        cells {
+            p: &'a [f64], d: &'a [f32], r: &'a [f32], set: Set<'a>, set_old: Set<'a>, hardness: Hardness<'a>,
+            s: &'a mut [f64],
+        }
+        numbers { length: f64, shift: Shift }
+    }
+}
+
+impl Work for FindStep<'_> {
+    type Yield = ([f64; 2], Min);
+
+    #[inline(always)]
+    fn run<V: Eight>(self) -> Self::Yield {
+        let (zero, length) = (V::splat(0.0), V::splat(self.length));
+        let [mut slope, mut square] = [zero; 2];
+        let mut reach = V::splat(f64::INFINITY);
+        for ((n, set), old) in (0..).step_by(8).zip(self.set.0).zip(self.set_old.0) {
+            if *set == 0 {
+                if *old != 0 {
+                    zero.store(self.s, n);
+                }
+                continue;
+            }
+            let p = V::load(self.p, n, 0.0);
+            let bounds = self.hardness.interval::<V>(n);
+            let q = self.shift.project(p - length * V::load(self.d, n, 0.0), bounds);
+            let s = (q - p).only(V::Mask::from_bits(*set));
+            s.store(self.s, n);
+            slope = slope + V::load(self.r, n, 0.0) * s;
+            square = square + s * s;
+            reach = bounds.reach(p, s).smaller(reach);
+        }
+        ([slope, square].map(V::sum), Min(reach.least()))
+    }
+}
+
+kernel! {
+    /// <s, K s> over the set.
+    pub(in crate::contact) struct Curvature<'a> {
+        cells { s: &'a [f64], image: &'a [f64], set: Set<'a> }
+    }
+}
+
+impl Work for Curvature<'_> {
+    type Yield = f64;
+
+    #[inline(always)]
+    fn run<V: Eight>(self) -> f64 {
+        let mut sum = V::splat(0.0);
+        for (n, _) in (0..).step_by(8).zip(self.set.0).filter(|(_, set)| **set != 0) {
+            sum = sum + V::load(self.s, n, 0.0) * V::load(self.image, n, 0.0);
+        }
+        sum.sum()
+    }
+}
+
+kernel! {
+    /// p += t s on the set, U += t K s everywhere. A cell that ends within rounding error of a bound is put on it. Yields the
+    /// sum of g = c U + h over the cells of the set that are free then, and their number.
+    pub(in crate::contact) struct Advance<'a> {
+        cells {
+            p: &'a mut [f64], u: &'a mut [f64], s: &'a [f64], image: &'a [f64], gap: &'a [f64], set: Set<'a>,
+            hardness: Hardness<'a>,
+        }
+        numbers { t: f64, compliance: f64 }
+    }
+}
+
+impl Work for Advance<'_> {
+    type Yield = [f64; 2];
+
+    #[inline(always)]
+    fn run<V: Eight>(self) -> [f64; 2] {
+        let (t, c) = (V::splat(self.t), V::splat(self.compliance));
+        let (mut sum, mut cells) = (V::splat(0.0), V::splat(0.0));
+        for (n, set) in (0..).step_by(8).zip(self.set.0) {
+            let u = V::load(self.u, n, 0.0) + t * V::load(self.image, n, 0.0);
+            u.store(self.u, n);
+            if *set != 0 {
+                let (p, s) = (V::load(self.p, n, 0.0), V::load(self.s, n, 0.0));
+                let (on, bounds) = (V::Mask::from_bits(*set), self.hardness.interval::<V>(n));
+                let new = bounds.snap(p, s, p + t * s);
+                V::select(on, new, p).store(self.p, n);
+                let free = bounds.is_free(new) & on;
+                let g = c * u + V::load(self.gap, n, f64::INFINITY);
+                sum = sum + g.only(free);
+                cells = cells + V::count(free);
+            }
+        }
+        [sum.sum(), cells.sum()]
+    }
+}

@@ -1,0 +1,112 @@
+//! Operators of bodies that are no half-spaces: the solver, its preconditioner and its start from coarser grids stand on the
+//! kernel alone.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use asperity::kernel::{HalfSpace, Kernel};
+use asperity::operator::plan;
+use asperity::{Boundary, ContactState, Grid, Method, Prescribed, Problem, Solver, SolverOptions};
+use ndarray::Array2;
+
+/// A body whose response to long waves is bounded, as that of a layer on a rigid base: (2/|q|) tanh(|q| t), 2 t for a uniform
+/// pressure. Periodic domains only.
+struct Bounded {
+    thickness: f64,
+}
+
+impl Kernel for Bounded {
+    fn influence(&self, _: [f64; 2], _: [usize; 2]) -> Array2<f64> {
+        unreachable!("periodic domains take the symbol")
+    }
+
+    fn symbol(&self, qx: f64, qy: f64) -> f64 {
+        let q = qx.hypot(qy);
+        2.0 / q * (q * self.thickness).tanh()
+    }
+
+    fn uniform(&self) -> Option<f64> {
+        Some(2.0 * self.thickness)
+    }
+}
+
+/// A half-space under a bed of independent springs: every cell yields by `spring` more under its own pressure.
+struct OnSprings {
+    spring: f64,
+}
+
+impl Kernel for OnSprings {
+    fn influence(&self, cell: [f64; 2], count: [usize; 2]) -> Array2<f64> {
+        let mut influence = HalfSpace.influence(cell, count);
+        influence[(0, 0)] += self.spring;
+        influence
+    }
+
+    fn symbol(&self, qx: f64, qy: f64) -> f64 {
+        HalfSpace.symbol(qx, qy) + self.spring
+    }
+}
+
+fn solve(
+    grid: Grid,
+    boundary: Boundary,
+    kernel: Arc<dyn Kernel>,
+    gap: &[f64],
+    prescribed: Prescribed,
+) -> ContactState {
+    let mut operator = plan(grid, boundary, kernel);
+    let mut solver = Solver::new(Method::ProjectedCg, &*operator);
+    let mut state = ContactState::new(grid.len());
+    let problem = Problem { gap, compliance: 0.5, hardness: f64::INFINITY.into(), prescribed };
+    let options = SolverOptions { tolerance: 1e-11, ..SolverOptions::default() };
+    let outcome = solver.solve(&mut *operator, &problem, &options, &mut state, None).unwrap();
+    // The preconditioner is that of this kernel: a wrong one takes hundreds.
+    assert!(outcome.convolutions < 40, "{outcome:?}");
+    state
+}
+
+#[test]
+fn full_contact_under_an_approach_is_determined_where_a_uniform_pressure_has_a_displacement() {
+    let (amplitude, thickness, approach) = (0.01, 0.1, 0.1);
+    // 256 cells start from coarser grids, of the same body.
+    for n in [24, 256] {
+        let grid = Grid::new([n, n], [1.0, 1.0]).unwrap();
+        let wave = |k: usize| (TAU * grid.x(k / n)).cos();
+        let gap: Vec<f64> = (0..n * n).map(|k| amplitude * (1.0 + wave(k))).collect();
+        let state = solve(
+            grid,
+            Boundary::Periodic,
+            Arc::new(Bounded { thickness }),
+            &gap,
+            Prescribed::Approach(approach),
+        );
+        // c K p = w - h, wave by wave.
+        let symbol = Bounded { thickness }.symbol(TAU, 0.0);
+        let mean = (approach - amplitude) / (0.5 * 2.0 * thickness);
+        for (k, p) in state.pressure.iter().enumerate() {
+            let exact = mean - amplitude * wave(k) / (0.5 * symbol);
+            // The tolerance of the solve, times the condition of the shortest wave, n/4.
+            assert!((p - exact).abs() < 1e-8 * mean, "{n} {k}: {p} {exact}");
+        }
+    }
+}
+
+#[test]
+fn soft_springs_under_a_half_space_take_the_whole_overlap() {
+    // Springs 1e9 times softer than the half-space: p = (w - h)/(c spring) where that is positive.
+    let grid = Grid::new([40, 32], [1.0, 1.0]).unwrap();
+    let gap: Vec<f64> = (0..grid.len())
+        .map(|k| {
+            let (x, y) = (grid.x(k / 32) - 0.5, grid.y(k % 32) - 0.5);
+            0.5 * (x * x + y * y)
+        })
+        .collect();
+    let (spring, approach) = (1e9, 0.03);
+    let state =
+        solve(grid, Boundary::Free, Arc::new(OnSprings { spring }), &gap, Prescribed::Approach(approach));
+    for (p, h) in state.pressure.iter().zip(&gap) {
+        let exact = (approach - h).max(0.0) / (0.5 * spring);
+        // A displacement of the half-space is 1e-9 of that of the springs.
+        assert!((p - exact).abs() <= 1e-8 * approach / spring, "{p} {exact}");
+    }
+}

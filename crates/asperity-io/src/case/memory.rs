@@ -58,8 +58,11 @@ mod tests {
             for boundary in [Boundary::Free, Boundary::Periodic] {
                 let creep = Creep { instantaneous: 1.0, terms: (0..terms).map(term).collect(), fluidity };
                 let flow = usize::from(fluidity > 0.0);
-                let simulation =
-                    Simulation { boundary, creep, ..Simulation::new(grid, ndarray::Array2::zeros((128, 128))) };
+                let simulation = Simulation {
+                    boundary,
+                    creep,
+                    ..Simulation::new(grid, ndarray::Array2::zeros((128, 128)))
+                };
                 // Five fields more are staged for the result, or lie in a checkpoint.
                 let march = (simulation.bytes() + 128 * 128 * (8 * (terms + flow) + 5 * 8)) as u128;
                 let bound = estimate([128, 128], terms + flow);

@@ -23,15 +23,16 @@ mod start;
 mod state;
 mod step;
 mod sweeps;
+mod workspace;
 
 pub use bounds::Hardness;
 pub use gauss_seidel::gauss_seidel;
 pub use polonsky_keer::PolonskyKeer;
 pub(crate) use problem::SAME_LOAD;
 pub use problem::{Prescribed, Problem};
-pub use projected_cg::ProjectedCg;
 pub(crate) use start::Start;
 pub use state::ContactState;
+pub use workspace::ProjectedCg;
 
 use std::sync::atomic::AtomicBool;
 

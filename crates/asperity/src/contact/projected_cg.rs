@@ -9,7 +9,6 @@
 use std::sync::atomic::AtomicBool;
 
 use super::direction::{Fields, make_conjugate};
-use super::preconditioner::Preconditioner;
 use super::projection::Trial;
 use super::rating::{Rating, find_approach};
 use super::search::Search;
@@ -18,53 +17,17 @@ use super::step::{Kind, Slope, Step};
 use super::sweeps::direction::{Centre, Steepest};
 use super::sweeps::rate::FindWorking;
 use super::sweeps::step::{Advance, Curvature, FindStep};
-use super::{ContactState, Outcome, Prescribed, Problem, SolverOptions, interrupted, not_converged};
+use super::{
+    ContactState, Outcome, Prescribed, Problem, ProjectedCg, SolverOptions, interrupted, not_converged,
+};
 use crate::error::{Error, Result};
-use crate::field::{Min, Set, SetMut, run, zeros};
-use crate::grid::{Boundary, Grid};
+use crate::field::{Min, Set, SetMut, run};
 use crate::operator::Operator;
 
 /// Iterations without a halving of the residual before a gradient step.
 const PATIENCE: usize = 10;
-/// The method's working memory: the preconditioner, 32 bytes per cell, and two sets.
-pub struct ProjectedCg {
-    pub(super) preconditioner: Preconditioner,
-    /// Residual on S over `unit`, now and one iteration ago.
-    pub(super) residual: Vec<f32>,
-    pub(super) residual_old: Vec<f32>,
-    /// Preconditioned residual z and direction d.
-    pub(super) preconditioned: Vec<f32>,
-    pub(super) direction: Vec<f32>,
-    /// Step s and its image K s.
-    pub(super) step: Vec<f64>,
-    pub(super) image: Vec<f64>,
-    /// S, now and one iteration ago.
-    pub(super) working: Vec<u8>,
-    pub(super) working_old: Vec<u8>,
-}
 
 impl ProjectedCg {
-    /// Plans the method for an operator.
-    pub fn new(operator: &dyn Operator) -> Self {
-        let n = operator.grid().len();
-        ProjectedCg {
-            preconditioner: Preconditioner::new(operator),
-            residual: zeros(n),
-            residual_old: zeros(n),
-            preconditioned: zeros(n),
-            direction: zeros(n),
-            step: zeros(n),
-            image: zeros(n),
-            working: zeros(n.div_ceil(8)),
-            working_old: zeros(n.div_ceil(8)),
-        }
-    }
-
-    /// Bytes that the method takes at most, without the operator.
-    pub(crate) fn bytes(grid: &Grid, boundary: Boundary) -> usize {
-        Preconditioner::bytes(grid, boundary) + 32 * grid.len() + grid.len() / 4
-    }
-
     /// See [`super::Solver::solve`]; [`Problem::settle`] has settled the trivial cases.
     pub(super) fn solve(
         &mut self,

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::complex::Complex;
 use super::factors::Factors;
 use super::lane::{Kernel, Lane, Real};
-use super::leaf::{Energy, Meter, Unmetered};
+use super::leaf::Energy;
 use super::prefetch::Ahead;
 use super::rows::{ForwardRows, InverseRows, Rows};
 use super::transform::Transform;
@@ -113,30 +113,9 @@ impl<V: Lane> Engine<V> {
             });
         });
     }
-
-    /// Every block of columns there and back.
-    fn multiply_with<M: Meter<V> + Send>(
-        &mut self,
-        spectrum: usize,
-        meter: impl Fn(&mut V) -> M + Sync,
-        read: impl Fn(M, &mut V) + Sync,
-    ) {
-        let (nx, stride, scratch) = (self.rows, self.stride, &self.scratch);
-        let spectrum = self.spectra[spectrum].par_chunks(self.column_plan.mirrored_length());
-        let blocks = self.work.par_chunks_mut(stride).zip(spectrum).zip(&mut self.energies);
-        blocks.for_each(|((columns, spectrum), energy)| {
-            let columns = &mut columns[..nx];
-            let mut met = meter(energy);
-            with(scratch, |scratch| {
-                let (plan, meter) = (&self.column_plan, &mut met);
-                V::vectorize(Columns { plan, columns, stride, spectrum, meter, scratch });
-            });
-            read(met, energy);
-        });
-    }
 }
 
-/// The multiplier as the columns meet it.
+/// The multiplier in the order in which the columns need it.
 ///
 /// Both passes over rows leave their result doubled, and both transforms lack their 1/m.
 fn blocked_spectrum<V: Lane>(
@@ -164,16 +143,16 @@ fn blocked_spectrum<V: Lane>(
 }
 
 /// One block of columns: transformed, multiplied, transformed back.
-struct Columns<'a, V: Lane, M> {
+struct Columns<'a, V: Lane> {
     plan: &'a Transform<V::Scalar>,
     columns: &'a mut [Complex<V>],
     stride: usize,
     spectrum: &'a [V],
-    meter: &'a mut M,
+    energy: &'a mut Energy<V>,
     scratch: &'a mut Scratch<V>,
 }
 
-impl<V: Lane, M: Meter<V>> Kernel for Columns<'_, V, M> {
+impl<V: Lane> Kernel for Columns<'_, V> {
     #[inline(always)]
     fn run(self) {
         let (margin, transform) = self.scratch.buffers(self.plan.signal_length(), self.plan.length());
@@ -182,7 +161,7 @@ impl<V: Lane, M: Meter<V>> Kernel for Columns<'_, V, M> {
         // The block that follows is likely the next of this thread.
         let following = self.columns.as_ptr().wrapping_add(self.stride);
         let mut ahead = Ahead::of(following, self.columns.len(), self.plan.steps());
-        self.plan.convolve(self.columns, margin, transform, self.spectrum, self.meter, &mut ahead);
+        self.plan.convolve(self.columns, margin, transform, self.spectrum, self.energy, &mut ahead);
     }
 }
 
@@ -195,11 +174,8 @@ pub trait Convolve<T>: Send {
     /// The rows of the input, forward.
     fn forward(&mut self, input: &[T]);
 
-    /// The columns: times a spectrum.
-    fn multiply(&mut self, spectrum: usize);
-
-    /// The same; returns x'S x of the field x.
-    fn multiply_measured(&mut self, spectrum: usize) -> f64;
+    /// The columns: times a spectrum S. Returns x'S x of the field x.
+    fn multiply(&mut self, spectrum: usize) -> f64;
 
     /// The rows back into `output`.
     fn back(&mut self, output: &mut [T]);
@@ -220,21 +196,26 @@ impl<V: Lane> Convolve<V::Scalar> for Engine<V> {
         });
     }
 
-    fn multiply(&mut self, spectrum: usize) {
-        self.multiply_with(spectrum, |_| Unmetered, |_, _| ());
-    }
-
-    fn multiply_measured(&mut self, spectrum: usize) -> f64 {
-        let zero = V::splat(V::Scalar::default());
-        self.multiply_with(spectrum, |_| Energy(zero), |found, energy| *energy = found.0);
+    fn multiply(&mut self, spectrum: usize) -> f64 {
+        let (nx, stride, scratch, plan) = (self.rows, self.stride, &self.scratch, &self.column_plan);
+        let spectrum = self.spectra[spectrum].par_chunks(plan.mirrored_length());
+        let blocks = self.work.par_chunks_mut(stride).zip(spectrum).zip(&mut self.energies);
+        blocks.for_each(|((columns, spectrum), total)| {
+            let columns = &mut columns[..nx];
+            let mut energy = Energy::zero();
+            with(scratch, |scratch| {
+                V::vectorize(Columns { plan, columns, stride, spectrum, energy: &mut energy, scratch });
+            });
+            *total = energy.total();
+        });
         let last = self.columns.len() - 1;
-        let mut total = 0.0;
+        let mut sum = 0.0;
         for (ky, column) in self.columns.iter().enumerate() {
             let energy = self.energies[column / V::LANES].scalars_mut()[column % V::LANES].widened();
             // The columns 0 < ky < my/2 stand for -ky too. Their numbers are twice the field's, the spectrum half of it.
-            total += if ky == 0 || ky == last { 0.5 * energy } else { energy };
+            sum += if ky == 0 || ky == last { 0.5 * energy } else { energy };
         }
-        total
+        sum
     }
 
     fn back(&mut self, output: &mut [V::Scalar]) {

@@ -3,7 +3,7 @@
 /// A length as a product of radices: m = first * inner * leaf.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Factors {
-    /// The radix of the pass that meets the zero padding: 8, 4, 2, 5 or 3, the first that divides.
+    /// The radix of the first pass, which skips the zero padding: 8, 4, 2, 5 or 3, the first that divides.
     pub first: usize,
     /// The passes after it, longest blocks first: 3, 4, 5, 8.
     pub inner: Vec<usize>,

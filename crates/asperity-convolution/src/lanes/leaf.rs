@@ -1,5 +1,4 @@
-//! The leaves of a transform: R numbers whose transform is taken in registers, and where the spectrum
-//! meets its multiplier.
+//! The leaves of a transform: R numbers whose transform is taken in registers, and there multiplied by the spectrum.
 
 use super::butterfly::{Butterfly, Whole};
 use super::complex::Complex;
@@ -39,37 +38,40 @@ impl<V: Lane> Leaf<V> for Plain {
     }
 }
 
-/// Sees every number y of a spectrum and its product S y.
-pub trait Meter<V: Lane> {
-    /// With one in each lane.
-    fn meet(&mut self, y: Complex<V>, product: Complex<V>);
+/// Sum of S |y|^2 over the numbers y of a spectrum, lane by lane; real and imaginary parts are summed apart.
+#[derive(Clone, Copy)]
+pub struct Energy<V> {
+    re: V,
+    im: V,
 }
 
-/// Looks away.
-pub struct Unmetered;
-
-impl<V: Lane> Meter<V> for Unmetered {
+impl<V: Lane> Energy<V> {
     #[inline(always)]
-    fn meet(&mut self, _: Complex<V>, _: Complex<V>) {}
-}
+    pub fn zero() -> Self {
+        let zero = V::splat(V::Scalar::default());
+        Energy { re: zero, im: zero }
+    }
 
-/// Sums S |y|^2, lane by lane.
-pub struct Energy<V>(pub V);
-
-impl<V: Lane> Meter<V> for Energy<V> {
     #[inline(always)]
-    fn meet(&mut self, y: Complex<V>, product: Complex<V>) {
-        self.0 = y.re.mul_add(product.re, y.im.mul_add(product.im, self.0));
+    fn add(&mut self, y: Complex<V>, product: Complex<V>) {
+        self.re = y.re.mul_add(product.re, self.re);
+        self.im = y.im.mul_add(product.im, self.im);
+    }
+
+    /// The sum of each lane.
+    #[inline(always)]
+    pub fn total(self) -> V {
+        self.re + self.im
     }
 }
 
-/// The spectrum is asked for so many bytes before it is needed.
+/// The spectrum is prefetched so many bytes before it is needed.
 const SPECTRUM_AHEAD: usize = 4096;
 
 /// Transform, times the spectrum, transform back on exchanged parts.
-pub struct Product<'a, V, M>(pub &'a [V], pub &'a mut M);
+pub struct Product<'a, V>(pub &'a [V], pub &'a mut Energy<V>);
 
-impl<V: Lane, M: Meter<V>> Leaf<V> for Product<'_, V, M> {
+impl<V: Lane> Leaf<V> for Product<'_, V> {
     #[inline(always)]
     fn at<const R: usize>(&mut self, x: [Complex<V>; R], at: usize) -> [Complex<V>; R]
     where
@@ -80,7 +82,7 @@ impl<V: Lane, M: Meter<V>> Leaf<V> for Product<'_, V, M> {
         let mut y = Whole::<R>::transform(x);
         for k in 0..R {
             let product = y[k].times(spectrum[k]);
-            self.1.meet(y[k], product);
+            self.1.add(y[k], product);
             y[k] = product.swapped();
         }
         Whole::<R>::transform(y)
@@ -88,9 +90,9 @@ impl<V: Lane, M: Meter<V>> Leaf<V> for Product<'_, V, M> {
 }
 
 /// The same with the spectrum read backwards.
-pub struct MirroredProduct<'a, V, M>(pub &'a [V], pub &'a mut M);
+pub struct MirroredProduct<'a, V>(pub &'a [V], pub &'a mut Energy<V>);
 
-impl<V: Lane, M: Meter<V>> Leaf<V> for MirroredProduct<'_, V, M> {
+impl<V: Lane> Leaf<V> for MirroredProduct<'_, V> {
     #[inline(always)]
     fn at<const R: usize>(&mut self, x: [Complex<V>; R], at: usize) -> [Complex<V>; R]
     where
@@ -101,7 +103,7 @@ impl<V: Lane, M: Meter<V>> Leaf<V> for MirroredProduct<'_, V, M> {
         let mut y = Whole::<R>::transform(x);
         for k in 0..R {
             let product = y[k].times(spectrum[R - 1 - k]);
-            self.1.meet(y[k], product);
+            self.1.add(y[k], product);
             y[k] = product.swapped();
         }
         Whole::<R>::transform(y)

@@ -10,8 +10,8 @@
 //!    transformed back while it is in the cache;
 //! 3. `rows` again, backwards.
 //!
-//! The transforms (`transform`) leave the spectrum in digit-reversed order, where the multiplier waits
-//! for it. Zero padding is never stored: the first pass of a transform takes the second half of its
+//! The transforms (`transform`) leave the spectrum in digit-reversed order; the multiplier is stored in the same
+//! order. Zero padding is never stored: the first pass of a transform takes the second half of its
 //! input as zero, the last one back computes the first half only.
 //!
 //! Every lane does the same IEEE 754 operations in the same order on all processors, fused
@@ -214,20 +214,12 @@ pub struct Chain<'a, T> {
 }
 
 impl<T: Real> Chain<'_, T> {
-    /// x becomes S * x with the spectrum of that number.
+    /// x becomes S * x with the spectrum of that number; returns x'S x, of the x before (Parseval's theorem).
     ///
     /// # Panics
     /// Where there is none.
-    pub fn multiply(&mut self, spectrum: usize) {
-        self.engine.multiply(spectrum);
-    }
-
-    /// The same; returns x'S x, of the x before (Parseval's theorem).
-    ///
-    /// # Panics
-    /// Where there is none.
-    pub fn multiply_measured(&mut self, spectrum: usize) -> f64 {
-        self.engine.multiply_measured(spectrum)
+    pub fn multiply(&mut self, spectrum: usize) -> f64 {
+        self.engine.multiply(spectrum)
     }
 
     /// `modify(first, x, kept)` changes x, eight rows (sixteen in f32) at a time; `kept` are the same cells of a field of the

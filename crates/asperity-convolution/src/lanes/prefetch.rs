@@ -31,7 +31,7 @@ pub fn prefetch<T>(what: For, start: *const T, count: usize) {
     let _ = (what, start, count);
 }
 
-/// A stretch of memory that is asked for in steps, to be read later.
+/// A range of memory that is prefetched in steps, to be read later.
 pub struct Ahead<T> {
     next: *const T,
     step: usize,

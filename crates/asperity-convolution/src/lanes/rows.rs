@@ -16,7 +16,7 @@ use super::roots::root;
 use super::transform::Transform;
 use super::work::{Scratch, Tiles};
 
-/// Tiles are asked for so many blocks before they are needed.
+/// Tiles are prefetched so many blocks before they are needed.
 const AHEAD: usize = 4;
 
 /// A planned pass over rows.

@@ -211,7 +211,7 @@ fn a_chain_is_one_convolution_after_the_other() {
                     |n: usize, x: &mut [T]| x.iter_mut().zip(n..).for_each(|(x, n)| *x = *x * weight(n));
                 let groups = std::sync::atomic::AtomicUsize::new(0);
                 let mut chain = plan.chain(&input);
-                let before = chain.multiply_measured(0);
+                let before = chain.multiply(0);
                 chain.modify(&mut kept, &|n, x, kept| {
                     // Groups of the same rows on all instructions, each of which begins with a whole byte of a set.
                     assert!(n.is_multiple_of(8) && n.is_multiple_of(rows * cells[1]));
@@ -220,7 +220,7 @@ fn a_chain_is_one_convolution_after_the_other() {
                     change(n, x);
                 });
                 assert_eq!(groups.into_inner(), cells[0].div_ceil(rows));
-                let energy = chain.multiply_measured(1);
+                let energy = chain.multiply(1);
                 chain.modify(&mut [], &|n, x, none| {
                     assert!(none.is_empty());
                     change(n, x);

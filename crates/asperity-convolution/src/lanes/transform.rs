@@ -12,7 +12,7 @@
 use super::complex::Complex;
 use super::factors::Factors;
 use super::lane::{Lane, Real};
-use super::leaf::{Leaf, Meter, MirroredProduct, Plain, Product, run_leaves};
+use super::leaf::{Energy, Leaf, MirroredProduct, Plain, Product, run_leaves};
 use super::prefetch::Ahead;
 use super::stage::Stage;
 
@@ -106,8 +106,8 @@ impl<T: Real> Transform<T> {
     /// signal = m times the inverse of (spectrum times transform of signal), in place.
     ///
     /// `signal` may be shorter than `signal_length`; `margin` has that length and takes what is
-    /// missing; `spectrum` is real, even, digit-reversed, of `mirrored_length`; `meter` sees it multiplied, and `ahead` is
-    /// advanced meanwhile.
+    /// missing; `spectrum` is real, even, digit-reversed, of `mirrored_length`; `energy` sums S |y|^2 over
+    /// the transform y, and `ahead` prefetches meanwhile.
     #[inline(always)]
     pub fn convolve<V: Lane<Scalar = T>>(
         &self,
@@ -115,7 +115,7 @@ impl<T: Real> Transform<T> {
         margin: &mut [Complex<V>],
         buffer: &mut [Complex<V>],
         spectrum: &[V],
-        meter: &mut impl Meter<V>,
+        energy: &mut Energy<V>,
         ahead: &mut Ahead<Complex<V>>,
     ) {
         let radix = self.first.radix;
@@ -131,9 +131,9 @@ impl<T: Real> Transform<T> {
             let stored = r.min(radix - r);
             let spectrum = &spectrum[stored * part_length..][..part_length];
             if stored == r {
-                self.descend::<V, true, true>(part, &mut Product(spectrum, meter), ahead);
+                self.descend::<V, true, true>(part, &mut Product(spectrum, energy), ahead);
             } else {
-                self.descend::<V, true, true>(part, &mut MirroredProduct(spectrum, meter), ahead);
+                self.descend::<V, true, true>(part, &mut MirroredProduct(spectrum, energy), ahead);
             }
         }
         self.first.close(self.half, signal, margin, buffer);

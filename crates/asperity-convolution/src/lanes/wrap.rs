@@ -1,6 +1,6 @@
 //! Any cyclic convolution as a padded one of a length that the engine likes.
 //!
-//! On n cells a cyclic convolution of length m >= n only meets the distances |d| < n. Its kernel
+//! On n cells a cyclic convolution of length m >= n only uses the distances |d| < n. Its kernel
 //! K(d mod m), laid out for a linear convolution on L >= 2 n - 1 cells, gives the same sums:
 //!
 //! u(i) = sum over j < n of K((i - j) mod m) p(j).

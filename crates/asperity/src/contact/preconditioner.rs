@@ -66,9 +66,9 @@ impl Preconditioner {
             vectorize(Keep { z, set: &set[part(set, first, x.len())], x });
             weigh(first, x);
         });
-        let by = chain.multiply_measured(SCREENED);
+        let by = chain.multiply(SCREENED);
         chain.modify(&mut [], &|first, x, _| weigh(first, x));
-        let ymy = chain.multiply_measured(INVERSE);
+        let ymy = chain.multiply(INVERSE);
         // Where nothing is open, b is zero.
         let a = if by > 0.0 && ymy > 0.0 { by / ymy } else { 0.0 };
         chain.finish(z, &|first, x, z| {

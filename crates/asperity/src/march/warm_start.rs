@@ -10,7 +10,7 @@ use asperity_convolution::eights::{Eight, Mask, Work};
 
 use super::{March, cap};
 use crate::contact::{Hardness, Prescribed, SAME_LOAD, Start};
-use crate::field::{kernel, run};
+use crate::field::{Merge, kernel, run};
 use crate::time::Instant;
 
 /// Least and largest f.
@@ -46,6 +46,13 @@ struct Pair {
     capped: f64,
 }
 
+/// The guess a x + f d.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Combination {
+    a: f64,
+    f: f64,
+}
+
 /// What is asked of a guess.
 #[derive(Clone, Copy)]
 struct Wanted {
@@ -60,29 +67,26 @@ struct Wanted {
 }
 
 impl Pair {
-    fn of([x0, x1, x2, h0, h1, s0, s1, size, capped]: [f64; 9]) -> Self {
-        Pair { energy: [x0, x1, x2], work: [h0, h1], sum: [s0, s1], size, capped }
-    }
-
-    /// \[a, f\] of the best a x + f d; x as it is where nothing can be said.
-    fn best(&self, wanted: &Wanted) -> [f64; 2] {
+    /// The best a x + f d; x as it is where nothing can be said.
+    fn best(&self, wanted: &Wanted) -> Combination {
         let best = match wanted.prescribed {
             Prescribed::Load(load) => self.with_sum(wanted, load / wanted.cell_area),
             Prescribed::Approach(w) => self.at_approach(wanted, w),
         };
-        if best.iter().all(|x| x.is_finite()) { best } else { [1.0, 0.0] }
+        if best.a.is_finite() && best.f.is_finite() { best } else { Combination { a: 1.0, f: 0.0 } }
     }
 
-    fn with_sum(&self, wanted: &Wanted, sum: f64) -> [f64; 2] {
+    fn with_sum(&self, wanted: &Wanted, sum: f64) -> Combination {
         let ([xx, xd, dd], [hx, hd], [sx, sd]) = (self.energy, self.work, self.sum);
         if sx == 0.0 {
             // Only d presses.
-            return [1.0, sum / sd];
+            return Combination { a: 1.0, f: sum / sd };
         }
         if (sum / sx - 1.0).abs() > SAME && self.capped > 0.0 {
             // Cells at the cut-off take no more: the change from row to row goes on until the load is met.
             let f = (sum - sx) / sd;
-            return if REACH.contains(&f) { [1.0, f] } else { [sum / sx, 0.0] };
+            let goes_on = Combination { a: 1.0, f };
+            return if REACH.contains(&f) { goes_on } else { Combination { a: sum / sx, f: 0.0 } };
         }
         // d without its share of x has no load.
         let share = sd / sx;
@@ -91,28 +95,29 @@ impl Pair {
         let f = self.along(wanted, curvature, slope);
         let a = (sum - f * sd) / sx;
         // Where the load stays the same, so do cells at the cut-off.
-        [if (a - 1.0).abs() <= SAME { 1.0 } else { a }, f]
+        Combination { a: if (a - 1.0).abs() <= SAME { 1.0 } else { a }, f }
     }
 
-    fn at_approach(&self, wanted: &Wanted, w: f64) -> [f64; 2] {
+    fn at_approach(&self, wanted: &Wanted, w: f64) -> Combination {
         let (c, [xx, xd, dd], [hx, hd], [sx, sd]) = (wanted.compliance, self.energy, self.work, self.sum);
         let (along_x, along_d) = (hx - w * sx, hd - w * sd);
+        let one_and = |f| Combination { a: 1.0, f };
         if sx == 0.0 {
-            return [1.0, wanted.linear];
+            return one_and(wanted.linear);
         }
         if self.capped > 0.0 {
-            return [1.0, self.along(wanted, dd, c * xd + along_d)];
+            return one_and(self.along(wanted, dd, c * xd + along_d));
         }
         // d without its share of x does no work on x.
         let share = xd / xx;
         let f = self.along(wanted, dd - share * xd, along_d - share * along_x);
         let slope = c * (xx + f * xd) + along_x;
         if slope.abs() <= self.noise(wanted) * sx {
-            return [1.0, f];
+            return one_and(f);
         }
         // Where x costs hardly any energy, as an even pressure on a periodic domain, this says nothing.
         let a = 1.0 - slope / (c * xx);
-        if GROWTH.contains(&a) { [a, f] } else { [1.0, wanted.linear] }
+        if GROWTH.contains(&a) { Combination { a, f } } else { one_and(wanted.linear) }
     }
 
     /// The best f along a direction with that energy over the compliance, and the slope that the energy has at f = 0. The
@@ -154,9 +159,9 @@ impl March {
         let (p, u) = (&mut state.pressure[..], &mut state.unit_displacement[..]);
         let (p_last, u_last) = (&last.pressure[..], &last.unit_displacement[..]);
         let gap = &self.gap[..];
-        let sums = run(Products { p: &*p, u: &*u, p_last, u_last, gap, hardness });
+        let pair = run(Products { p: &*p, u: &*u, p_last, u_last, gap, hardness });
         let tolerance = self.simulation.solver.tolerance;
-        let [a, f] = Pair::of(sums).best(&Wanted {
+        let combination = pair.best(&Wanted {
             compliance: self.compliance,
             prescribed,
             cell_area,
@@ -166,9 +171,9 @@ impl March {
         });
         // After a row whose U was computed afresh the next one is, too: the error of the row before it is still in f.
         let refreshed = state.rounding > REFRESHED * last.rounding;
+        let Combination { a, f } = combination;
         state.rounding = (a + f).abs() * last.rounding + f.abs() * state.rounding + 1.0;
-        let [total, feasible, outside, kept] =
-            run(Combine { p, u, p_last, u_last, hardness, coefficients: [a, f] });
+        let [total, feasible, outside, kept] = run(Combine { p, u, p_last, u_last, hardness, combination });
         // The load is met but for rounding; where nothing presses, the solver starts cold.
         let has_load = match prescribed {
             Prescribed::Load(load) => (cell_area * total / load - 1.0).abs() <= SAME_LOAD,
@@ -194,27 +199,48 @@ kernel! {
 }
 
 impl Work for Products<'_> {
-    type Yield = [f64; 9];
+    type Yield = Pair;
 
     #[inline(always)]
-    fn run<V: Eight>(self) -> [f64; 9] {
+    fn run<V: Eight>(self) -> Pair {
         let zero = V::splat(0.0);
-        let mut sums = [zero; 9];
+        let (mut energy, mut work, mut sum) = ([zero; 3], [zero; 2], [zero; 2]);
+        let (mut size, mut at_cut_off) = (zero, zero);
         for n in (0..self.p.len()).step_by(8) {
-            let [p, x] = [self.p, self.p_last].map(|f| V::load(f, n, 0.0));
+            let (p, x) = (V::load(self.p, n, 0.0), V::load(self.p_last, n, 0.0));
             let d = x - p;
             let touches = zero.less(x.abs()) | zero.less(d.abs());
             if touches.bits() == 0 {
                 continue;
             }
-            let [u, ux] = [self.u, self.u_last].map(|f| V::load(f, n, 0.0));
+            let (u, ux) = (V::load(self.u, n, 0.0), V::load(self.u_last, n, 0.0));
             // Infinite where a cell cannot touch.
             let h = V::load(self.gap, n, 0.0).only(touches);
-            let capped = touches & !x.less(self.hardness.eight(n));
-            let terms = [x * ux, d * ux, d * (ux - u), x * h, d * h, x, d, d.abs(), V::count(capped)];
-            sums = std::array::from_fn(|k| sums[k] + terms[k]);
+            energy = [energy[0] + x * ux, energy[1] + d * ux, energy[2] + d * (ux - u)];
+            work = [work[0] + x * h, work[1] + d * h];
+            sum = [sum[0] + x, sum[1] + d];
+            size = size + d.abs();
+            at_cut_off = at_cut_off + V::count(touches & !x.less(self.hardness.eight(n)));
         }
-        sums.map(V::sum)
+        Pair {
+            energy: energy.map(V::sum),
+            work: work.map(V::sum),
+            sum: sum.map(V::sum),
+            size: size.sum(),
+            capped: at_cut_off.sum(),
+        }
+    }
+}
+
+impl Merge for Pair {
+    fn merge(self, next: Self) -> Self {
+        Pair {
+            energy: self.energy.merge(next.energy),
+            work: self.work.merge(next.work),
+            sum: self.sum.merge(next.sum),
+            size: self.size + next.size,
+            capped: self.capped + next.capped,
+        }
     }
 }
 
@@ -225,7 +251,7 @@ kernel! {
         cells {
             p: &'a mut [f64], u: &'a mut [f64], p_last: &'a [f64], u_last: &'a [f64], hardness: Hardness<'a>,
         }
-        numbers { coefficients: [f64; 2] }
+        numbers { combination: Combination }
     }
 }
 
@@ -234,7 +260,8 @@ impl Work for Combine<'_> {
 
     #[inline(always)]
     fn run<V: Eight>(self) -> [f64; 4] {
-        let ([a, f], zero) = (self.coefficients.map(V::splat), V::splat(0.0));
+        let Combination { a, f } = self.combination;
+        let (a, f, zero) = (V::splat(a), V::splat(f), V::splat(0.0));
         let mut sums = [zero; 4];
         for n in (0..self.p.len()).step_by(8) {
             let (p, x) = (V::load(self.p, n, 0.0), V::load(self.p_last, n, 0.0));

@@ -37,6 +37,7 @@ pub mod quantities;
 pub mod reference;
 mod set;
 pub mod spots;
+pub mod stress;
 pub mod surface;
 pub mod time;
 pub mod verification;

@@ -1,0 +1,71 @@
+//! The stress under a uniformly loaded rectangle, and under a wave of pressure: closed forms.
+
+use super::Component;
+
+/// Stress at (x, y, `depth`) under unit pressure on the rectangle |x'| <= a, |y'| <= b, `half` = \[a, b\].
+///
+/// The second mixed difference of G(x, y) over the corners, divided by 2 pi (derived from Love's potentials, G_xy their
+/// integrand). (x, y) must not lie on the lines x = +-a, y = +-b where the depth is 0. Absolute error below 1e-12.
+///
+/// ```
+/// use asperity::stress::{Component, rectangle};
+/// // Under the middle of a square at a depth of half its side.
+/// let zz = rectangle(Component::Zz, [0.0, 0.0], 1.0, [1.0, 1.0], 0.3);
+/// assert!((zz + 0.7008859302811946).abs() < 1e-14);
+/// ```
+pub fn rectangle(component: Component, [x, y]: [f64; 2], depth: f64, half: [f64; 2], poisson: f64) -> f64 {
+    let g = |x: f64, y: f64| corner(component, x, y, depth, poisson);
+    let [a, b] = half;
+    (g(x + a, y + b) - g(x - a, y + b) - g(x + a, y - b) + g(x - a, y - b)) / std::f64::consts::TAU
+}
+
+/// G of a corner at (x, y) from the point at depth z; neither x nor y is 0 where z is.
+pub(super) fn corner(component: Component, x: f64, y: f64, z: f64, poisson: f64) -> f64 {
+    let (x2, y2, z2) = (x * x, y * y, z * z);
+    let r = (x2 + y2 + z2).sqrt();
+    // R - z without cancellation.
+    let below = (x2 + y2) / (r + z);
+    let solid_angle =
+        || libm::atan2(x * y, z * r).clamp(-std::f64::consts::FRAC_PI_2, std::f64::consts::FRAC_PI_2);
+    let along = |u2: f64, v2: f64| libm::atan2(x * y * below, u2 * r + z * v2);
+    match component {
+        Component::Zz => -solid_angle() - x * y * z / r * (1.0 / (x2 + z2) + 1.0 / (y2 + z2)),
+        Component::Xx => {
+            -2.0 * poisson * solid_angle() - (1.0 - 2.0 * poisson) * along(x2, y2)
+                + x * y * z / (r * (x2 + z2))
+        }
+        Component::Yy => {
+            -2.0 * poisson * solid_angle() - (1.0 - 2.0 * poisson) * along(y2, x2)
+                + x * y * z / (r * (y2 + z2))
+        }
+        Component::Xy => -(1.0 - 2.0 * poisson) * libm::log(r + z) - z / r,
+        Component::Xz => y * z2 / (r * (x2 + z2)),
+        Component::Yz => x * z2 / (r * (y2 + z2)),
+    }
+}
+
+/// Amplitude of the stress at `depth` under the pressure wave exp(i q.x) of unit amplitude, without the factor i that it has
+/// for each direction in which the component is odd (xz and yz: i, xy: i^2).
+///
+/// With n = q/|q| and t = |q| z, for zz: -(1 + t) exp(-t). A uniform pressure (q = 0) gives zz = -1 and
+/// xx = yy = -nu/(1 - nu): no mean lateral strain, the consistent choice on a periodic domain.
+pub fn wave(component: Component, [qx, qy]: [f64; 2], depth: f64, poisson: f64) -> f64 {
+    let q = libm::hypot(qx, qy);
+    if q == 0.0 {
+        return match component {
+            Component::Zz => -1.0,
+            Component::Xx | Component::Yy => -poisson / (1.0 - poisson),
+            Component::Xy | Component::Xz | Component::Yz => 0.0,
+        };
+    }
+    let (nx, ny, t) = (qx / q, qy / q, q * depth);
+    let amplitude = match component {
+        Component::Zz => -(1.0 + t),
+        Component::Xx => -(nx * nx * (1.0 - t) + 2.0 * poisson * ny * ny),
+        Component::Yy => -(ny * ny * (1.0 - t) + 2.0 * poisson * nx * nx),
+        Component::Xy => nx * ny * (1.0 - 2.0 * poisson - t),
+        Component::Xz => nx * t,
+        Component::Yz => ny * t,
+    };
+    amplitude * libm::exp(-t)
+}

@@ -1,0 +1,283 @@
+//! The stress against closed forms and quadrature that share no code with it.
+
+use std::f64::consts::TAU;
+
+use super::*;
+use crate::grid::{Boundary, Grid};
+
+/// A row of reference numbers; components in the order of [`Component::ALL`].
+type Rectangle = ([f64; 2], f64, [f64; 3], [f64; 6]);
+type Sinusoid = (f64, [f64; 2], f64, [f64; 6]);
+/// r, z, (rr, tt, zz, rz), von Mises, Tresca.
+type Hertz = (f64, f64, [f64; 4], f64, f64);
+
+/// Unit pressure on a rectangle of these half sides, by Gauss quadrature of the point load with 192 x 192 points.
+#[rustfmt::skip]
+const RECTANGLES: [Rectangle; 16] = [
+    ([1.0, 1.0], 0.3, [0.0, 0.0, 0.5], [-0.30250230385003146, -0.30250230385003146, -0.9298650158644431, 0.0, 0.0, 0.0]),
+    ([1.0, 1.0], 0.3, [0.0, 0.0, 1.0], [-0.08289036819273597, -0.08289036819273597, -0.7008859302811946, 0.0, 0.0, 0.0]),
+    ([1.0, 1.0], 0.3, [1.0, 0.7, 0.25], [-0.2470143099847649, -0.2152469993738257, -0.4671958378562249, -0.01763183867917435, -0.277788489919835, -0.06146303414509693]),
+    ([1.0, 1.0], 0.3, [1.7, -0.6, 0.35], [-0.07982280055611995, -0.055251037241641765, -0.014529979915294871, 0.002285713235379485, -0.0413650895728531, 0.009391756743510105]),
+    ([1.0, 1.0], 0.5, [0.0, 0.0, 0.5], [-0.420569197970378, -0.420569197970378, -0.9298650158644431, 0.0, 0.0, 0.0]),
+    ([1.0, 1.0], 0.5, [0.0, 0.0, 1.0], [-0.14955703485940264, -0.14955703485940264, -0.7008859302811946, 0.0, 0.0, 0.0]),
+    ([1.0, 1.0], 0.5, [1.0, 0.7, 0.25], [-0.3419705501362773, -0.263284166486131, -0.4671958378562249, -0.07429679599475521, -0.277788489919835, -0.06146303414509693]),
+    ([1.0, 1.0], 0.5, [1.7, -0.6, 0.35], [-0.1304703723265194, -0.027619437427097163, -0.014529979915294871, 0.029500566473787706, -0.0413650895728531, 0.009391756743510105]),
+    ([1.0, 0.7], 0.3, [0.0, 0.0, 0.5], [-0.265704061410669, -0.20119629486932106, -0.8823376735579772, 0.0, 0.0, 0.0]),
+    ([1.0, 0.7], 0.3, [0.0, 0.0, 1.0], [-0.06747651031991282, -0.027070032341266537, -0.5965452403826805, 0.0, 0.0, 0.0]),
+    ([1.0, 0.7], 0.3, [1.0, 0.7, 0.25], [-0.15257492657656774, -0.15887537094439533, -0.24929028657738964, -0.06205748329949769, -0.15527967558372263, -0.15391769368550198]),
+    ([1.0, 0.7], 0.3, [1.7, -0.6, 0.35], [-0.057580292936685734, -0.0410099998169492, -0.01053907673811336, 0.006221729473403029, -0.030075081844225523, 0.010612330402495746]),
+    ([1.0, 0.7], 0.5, [0.0, 0.0, 0.5], [-0.3838040466818907, -0.29067139111163276, -0.8823376735579772, 0.0, 0.0, 0.0]),
+    ([1.0, 0.7], 0.5, [0.0, 0.0, 1.0], [-0.1246000461004979, -0.07626830933665991, -0.5965452403826805, 0.0, 0.0, 0.0]),
+    ([1.0, 0.7], 0.5, [1.0, 0.7, 0.25], [-0.20449474202706475, -0.1932233376628757, -0.24929028657738964, -0.1276495647489505, -0.15527967558372263, -0.15391769368550198]),
+    ([1.0, 0.7], 0.5, [1.7, -0.6, 0.35], [-0.09509518573044062, -0.0202842407911556, -0.01053907673811336, 0.031908921603838084, -0.030075081844225523, 0.010612330402495746]),
+];
+
+/// p = 1 + 0.6 cos(2 pi x) cos(4 pi y), closed form.
+#[rustfmt::skip]
+const SINUSOID: [Sinusoid; 6] = [
+    (0.3, [0.1, 0.07], 0.0, [-0.6389716594256493, -0.7132305644330212, -1.3094121041973832, 0.04347804679676727, 0.0, 0.0]),
+    (0.3, [0.1, 0.07], 0.05, [-0.5112604597742717, -0.4834438946032816, -1.2609371210023874, -0.016286395848545982, -0.034983590866282506, -0.11640859385098444]),
+    (0.3, [0.1, 0.07], 0.2, [-0.4307699896916898, -0.4038325120002512, -1.0709771436374593, -0.015771696546548496, -0.01700876944859757, -0.05659701836254713]),
+    (0.5, [0.1, 0.07], 0.0, [-1.3094121041973834, -1.3094121041973834, -1.3094121041973832, 0.0, 0.0, 0.0]),
+    (0.5, [0.1, 0.07], 0.05, [-1.1317350149858687, -1.0671339619776095, -1.2609371210023874, -0.03782344495296164, -0.034983590866282506, -0.11640859385098444]),
+    (0.5, [0.1, 0.07], 0.2, [-1.0081600119739895, -0.9767514461422547, -1.0709771436374593, -0.018389486014047038, -0.01700876944859757, -0.05659701836254713]),
+];
+
+/// Hertz, a = p0 = 1, nu = 0.3: Hankel integrals by adaptive quadrature.
+#[rustfmt::skip]
+const HERTZ: [Hertz; 4] = [
+    (0.5, 0.25, [-0.32045744327007236, -0.3258124394719697, -0.7929590344741535, -0.11923536846788377], 0.5132323106834162, 0.2646346755742134),
+    (0.5, 0.5, [-0.16294716161087586, -0.1423096536356295, -0.6508508260346444, -0.15364503815606598], 0.5651242354643835, 0.2883041695666476),
+    (1.0, 0.5, [-0.15909143638968454, -0.06410036578834265, -0.23663586024436462, -0.18475969658801242], 0.35328586931258216, 0.18878408275337455),
+    (1.5, 0.5, [-0.09025550577736913, -0.029019164901613888, -0.03267342917179179, -0.061050860855906594], 0.12133050792134305, 0.06749912220021763),
+];
+
+#[test]
+fn a_loaded_rectangle_is_that_of_the_quadrature() {
+    for (half, poisson, [x, y, z], expected) in RECTANGLES {
+        for (component, expected) in Component::ALL.into_iter().zip(expected) {
+            let found = rectangle(component, [x, y], z, half, poisson);
+            assert!(
+                (found - expected).abs() < 1e-12,
+                "{component:?} {half:?} {poisson} {x} {y} {z}: {found} {expected}"
+            );
+        }
+    }
+}
+
+fn all(stress: &mut SubsurfaceStress, p: &[f64], depth: f64) -> [Vec<f64>; 6] {
+    let mut fields = std::array::from_fn(|_| Vec::new());
+    stress.set_pressure(p).unwrap();
+    stress.at(depth, &mut fields).unwrap();
+    fields
+}
+
+#[test]
+fn a_wave_is_that_of_the_closed_form() {
+    // (0.1, 0.07) is a cell centre of it.
+    let grid = Grid::new([25, 50], [1.0, 1.0]).unwrap();
+    let p: Vec<f64> = (0..grid.len())
+        .map(|n| 1.0 + 0.6 * (TAU * grid.x(n / 50)).cos() * (2.0 * TAU * grid.y(n % 50)).cos())
+        .collect();
+    for (poisson, [x, y], depth, expected) in SINUSOID {
+        let mut stress = SubsurfaceStress::new(grid, Boundary::Periodic, poisson).unwrap();
+        let cell = (0..grid.len())
+            .find(|n| (grid.x(n / 50) - x).abs() < 1e-9 && (grid.y(n % 50) - y).abs() < 1e-9)
+            .unwrap();
+        let fields = all(&mut stress, &p, depth);
+        for (k, expected) in expected.into_iter().enumerate() {
+            // Rounding of transforms of a thousand cells.
+            assert!(
+                (fields[k][cell] - expected).abs() < 1e-13,
+                "{k} {poisson} {depth}: {} {expected}",
+                fields[k][cell]
+            );
+        }
+    }
+}
+
+/// Some pressure on any grid.
+fn pressure(grid: &Grid) -> Vec<f64> {
+    (0..grid.len()).map(|n| ((n * 37 % 11) as f64 - 3.0).max(0.0) / 7.0).collect()
+}
+
+#[test]
+fn the_convolution_is_the_sum_over_the_loaded_cells() {
+    let grid = Grid::new([12, 20], [6.0, 5.0]).unwrap();
+    let ([dx, dy], p) = (grid.spacing(), pressure(&grid));
+    let mut stress = SubsurfaceStress::new(grid, Boundary::Free, 0.3).unwrap();
+    for depth in [0.0, 0.3, 2.0, 40.0] {
+        let fields = all(&mut stress, &p, depth);
+        for (component, field) in Component::ALL.into_iter().zip(&fields) {
+            for (n, found) in field.iter().enumerate() {
+                let direct: f64 = p
+                    .iter()
+                    .enumerate()
+                    .map(|(m, p)| {
+                        let x = (n / 20) as f64 - (m / 20) as f64;
+                        let y = (n % 20) as f64 - (m % 20) as f64;
+                        p * rectangle(component, [x * dx, y * dy], depth, [0.5 * dx, 0.5 * dy], 0.3)
+                    })
+                    .sum();
+                // A few hundred terms of size one.
+                assert!((found - direct).abs() < 1e-13, "{component:?} {depth} {n}: {found} {direct}");
+            }
+        }
+    }
+}
+
+#[test]
+fn identities_at_the_surface_and_in_the_mean() {
+    for (boundary, cells) in
+        [(Boundary::Free, [9, 14]), (Boundary::Periodic, [9, 14]), (Boundary::Periodic, [16, 15])]
+    {
+        let grid = Grid::new(cells, [1.0, 2.0]).unwrap();
+        let (p, poisson) = (pressure(&grid), 0.2);
+        let mut stress = SubsurfaceStress::new(grid, boundary, poisson).unwrap();
+        let [xx, yy, zz, _, xz, yz] = all(&mut stress, &p, 0.0);
+        let mean = p.iter().sum::<f64>() / p.len() as f64;
+        // The uniform part of a periodic pressure has no lateral strain: xx + yy = -2 nu/(1 - nu) of it instead.
+        let lateral = if boundary == Boundary::Periodic {
+            2.0 * poisson / (1.0 - poisson)
+        } else {
+            1.0 + 2.0 * poisson
+        };
+        for n in 0..p.len() {
+            assert!((zz[n] + p[n]).abs() < 1e-13, "{boundary:?} {n}");
+            assert!(xz[n].abs() < 1e-13 && yz[n].abs() < 1e-13);
+            let expected = -(1.0 + 2.0 * poisson) * (p[n] - mean) - lateral * mean;
+            let expected = if boundary == Boundary::Free { -(1.0 + 2.0 * poisson) * p[n] } else { expected };
+            assert!(
+                (xx[n] + yy[n] - expected).abs() < 2e-13,
+                "{boundary:?} {n}: {} {expected}",
+                xx[n] + yy[n]
+            );
+        }
+        if boundary == Boundary::Periodic {
+            let [_, _, zz, ..] = all(&mut stress, &p, 0.3);
+            let sum: f64 = zz.iter().sum::<f64>() + p.iter().sum::<f64>();
+            assert!(sum.abs() < 1e-12, "the load is carried at any depth: {sum}");
+        }
+    }
+}
+
+#[test]
+fn exchanging_the_axes_exchanges_the_components() {
+    let grid = Grid::new([10, 7], [2.0, 1.0]).unwrap();
+    let turned = Grid::new([7, 10], [1.0, 2.0]).unwrap();
+    let p = pressure(&grid);
+    let transposed = |field: &[f64]| -> Vec<f64> { (0..70).map(|n| field[n % 10 * 7 + n / 10]).collect() };
+    for boundary in [Boundary::Free, Boundary::Periodic] {
+        let mut stress = SubsurfaceStress::new(grid, boundary, 0.4).unwrap();
+        let [xx, _, _, xy, xz, _] = all(&mut stress, &p, 0.15);
+        let mut stress = SubsurfaceStress::new(turned, boundary, 0.4).unwrap();
+        let [_, yy, _, yx, _, yz] = all(&mut stress, &transposed(&p), 0.15);
+        for (a, b) in [(&xx, &yy), (&xy, &yx), (&xz, &yz)] {
+            for (a, b) in transposed(a).iter().zip(b) {
+                assert!((a - b).abs() < 1e-13, "{boundary:?}");
+            }
+        }
+    }
+}
+
+/// The Hertz pressure on cells of a/n, the mean over each by 4 x 4 points.
+fn hertz(n: usize) -> (Grid, Vec<f64>) {
+    let cells = 4 * n;
+    let grid = Grid::new([cells, cells], [4.0, 4.0]).unwrap();
+    let dx = grid.spacing()[0];
+    let p = (0..grid.len())
+        .map(|k| {
+            let (x, y) = (grid.x(k / cells) - 2.0, grid.y(k % cells) - 2.0);
+            let points = (0..16).map(|m| {
+                let (u, v) = (x + dx * ((m / 4) as f64 - 1.5) / 4.0, y + dx * ((m % 4) as f64 - 1.5) / 4.0);
+                (1.0 - u * u - v * v).max(0.0).sqrt()
+            });
+            points.sum::<f64>() / 16.0
+        })
+        .collect();
+    (grid, p)
+}
+
+#[test]
+fn hertz_off_the_axis() {
+    let (grid, p) = hertz(32);
+    let cells = grid.cells()[0];
+    let mut stress = SubsurfaceStress::new(grid, Boundary::Free, 0.3).unwrap();
+    for (r, depth, [rr, tt, zz, rz], mises, tresca) in HERTZ {
+        let fields = all(&mut stress, &p, depth);
+        // The point (r, 0) is a corner of four cells: their mean, to second order.
+        let i = (cells / 2) as f64 + r / grid.spacing()[0];
+        let at = |field: &[f64]| {
+            let (i, j) = (i.round() as usize, cells / 2);
+            [(i - 1, j - 1), (i - 1, j), (i, j - 1), (i, j)]
+                .iter()
+                .map(|(i, j)| field[i * cells + j])
+                .sum::<f64>()
+                / 4.0
+        };
+        let found: [f64; 6] = std::array::from_fn(|k| at(&fields[k]));
+        // 1e-3 of p0 at 32 cells per radius.
+        for (found, expected) in [(found[0], rr), (found[1], tt), (found[2], zz), (found[4], rz)] {
+            assert!((found - expected).abs() < 1e-3, "{r} {depth}: {found} {expected}");
+        }
+        let whole = invariants(found);
+        assert!(
+            (whole.mises - mises).abs() < 2e-3 && (whole.tresca - tresca).abs() < 1e-3,
+            "{r} {depth}: {whole:?}"
+        );
+    }
+}
+
+#[test]
+fn the_largest_shear_under_a_sphere_is_where_hertz_has_it() {
+    // 0.3100205 p0 at 0.4808645 a for nu = 0.3 (Johnson 1985, eq. 4.24 and its extreme).
+    let mut errors = vec![];
+    for n in [8, 16] {
+        let (grid, p) = hertz(n);
+        let mut stress = SubsurfaceStress::new(grid, Boundary::Free, 0.3).unwrap();
+        stress.set_pressure(&p).unwrap();
+        let depths = automatic_depths(&grid, Boundary::Free, &p);
+        assert!(depths[0] == 0.0 && depths.len() == 25 && depths[24] > 2.0);
+        let found = survey(&mut stress, &depths, Some(0.5)).unwrap();
+        errors.push((found.tresca.value - 0.310_020_5).abs());
+        assert!((found.mises.value - 2.0 * found.tresca.value).abs() < 1e-3, "{found:?}");
+        assert!((found.tresca.depth - 0.4808645).abs() < 0.03, "{found:?}");
+        assert!(!found.at_the_deepest && !found.unresolved);
+        let middle = [n * 2 - 1, n * 2];
+        assert!(
+            middle.contains(&(found.tresca.cell / (4 * n)))
+                && middle.contains(&(found.tresca.cell % (4 * n)))
+        );
+        // On the axis alone mises > 0.5 from 0.2 to 0.95 a; the volume is a body about as wide as that.
+        let volume = found.stressed_volume.unwrap();
+        assert!(volume > 0.2 && volume < 1.5, "{volume}");
+    }
+    // Second order.
+    assert!(errors[1] < 4e-3 && errors[0] / errors[1] > 3.0, "{errors:?}");
+}
+
+#[test]
+fn invariants_do_not_depend_on_the_axes() {
+    // diag(3, 1, -2), turned about z by 30 degrees and as it is.
+    let (c, s) = (0.75_f64.sqrt(), 0.5);
+    let turned = [3.0 * c * c + s * s, 3.0 * s * s + c * c, -2.0, (3.0 - 1.0) * s * c, 0.0, 0.0];
+    for tensor in [[3.0, 1.0, -2.0, 0.0, 0.0, 0.0], turned] {
+        let found = invariants(tensor);
+        assert!((found.tension - 3.0).abs() < 1e-14 && (found.tresca - 2.5).abs() < 1e-14, "{found:?}");
+        assert!((found.mises - 19.0_f64.sqrt()).abs() < 1e-14 && (found.pressure + 2.0 / 3.0).abs() < 1e-15);
+    }
+    let even = invariants([-4.0, -4.0, -4.0, 0.0, 0.0, 0.0]);
+    assert_eq!((even.mises, even.tresca, even.tension, even.pressure), (0.0, 0.0, -4.0, 4.0));
+}
+
+#[test]
+fn what_makes_no_sense_is_refused() {
+    let grid = Grid::new([4, 4], [4.0, 4.0]).unwrap();
+    assert!(SubsurfaceStress::new(grid, Boundary::Free, 0.6).is_err());
+    let mut stress = SubsurfaceStress::new(grid, Boundary::Free, 0.3).unwrap();
+    assert!(stress.set_pressure(&[0.0; 15]).is_err() && stress.set_pressure(&[f64::NAN; 16]).is_err());
+    for depth in [-1.0, 0.1, f64::INFINITY, f64::NAN] {
+        assert!(stress.component_into(Component::Zz, depth, &mut [0.0; 16]).is_err(), "{depth}");
+    }
+    assert!(survey(&mut stress, &[1.0, 0.5], None).is_err() && survey(&mut stress, &[], None).is_err());
+}

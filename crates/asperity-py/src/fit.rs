@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use asperity::material::FitOptions;
 use asperity_io::curve::{
-    Column, Columns, CurveError, Curves, Fitted, Kind, Request, Role, Series, ShiftRequest, Sweep,
+    Column, Columns, CurveError, Curves, Fitted, Request, Role, Series, ShiftRequest, Sweep,
 };
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;

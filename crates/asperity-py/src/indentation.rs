@@ -1,6 +1,6 @@
 //! The material of a half-space from a measured indentation.
 
-use asperity::indentation::{Given, IndentationOptions, IndentationRecord, Interval, fit_indentation as fit};
+use asperity::indentation::{IndentationOptions, IndentationRecord, Interval, fit_indentation as fit};
 use asperity::reference::MdrProfile;
 use asperity_io::choice;
 use numpy::{IntoPyArray, PyReadonlyArray1};

@@ -74,7 +74,7 @@ impl Teller {
         let row = progress.row;
         let state = format!(
             "t = {}, contact {:.2} %, {} iterations",
-            words::quantity(row.time, "s", 1),
+            words::quantity(row.time, "s"),
             100.0 * row.contact_fraction,
             row.iterations
         );
@@ -103,7 +103,7 @@ impl Teller {
                         Some(_) => words::duration(left),
                         None => format!(
                             "{} of the time",
-                            words::quantity(rest / COURSE as f64 * progress.end, "s", 1)
+                            words::quantity(rest / COURSE as f64 * progress.end, "s")
                         ),
                     };
                     eprintln!("row {}: {state}, {left} left", rows(progress));

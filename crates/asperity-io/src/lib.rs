@@ -1,11 +1,13 @@
 //! The files of asperity: case files in, measured topographies and curves in, results out.
 
 pub mod case;
+pub mod choice;
 pub mod curve;
 pub mod cycles;
 mod digest;
 pub mod export;
 pub mod preparation;
+pub mod readable;
 pub mod session;
 pub mod store;
 pub mod topography;

@@ -4,8 +4,8 @@ use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use asperity_examples::Template;
 use asperity_io::case::Case;
-use asperity_io::case::templates::Template;
 use asperity_io::session::{RunError, RunOptions, run};
 use asperity_io::store::{At, FieldKind, Reader, Status};
 

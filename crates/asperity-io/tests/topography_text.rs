@@ -231,6 +231,17 @@ fn points_come_in_any_order_and_may_be_missing() {
 }
 
 #[test]
+fn points_without_a_unit_ask_for_it() {
+    let text = "0 0 1\n0 1 1\n1 0 1\n1 1 2\n";
+    let error = read(text).unwrap_err().to_string();
+    assert!(error.contains("--height-unit"), "{error}");
+    // Read as a matrix, the same text has no size either.
+    let options = ReadOptions { format: Some(Format::Text), height_unit: Some(UM), ..Default::default() };
+    let error = read_bytes(text.as_bytes(), &options).unwrap_err().to_string();
+    assert!(error.contains("--size"), "{error}");
+}
+
+#[test]
 fn rounded_coordinates_are_one_position() {
     // 30 x 20 points of spacing 1/3, written with five digits: 9.6667, not 9.666666...
     let text: String = (0..600)

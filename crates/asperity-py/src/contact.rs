@@ -10,12 +10,12 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::{CaseError, raised};
-use crate::march::{boundary as boundary_of, solver as solver_of};
+use crate::march::{choose, solver as solver_of};
 use crate::wait::without_python;
 
 /// Pressure, displacement and approach of an elastic contact, and how good they are.
 #[pyfunction]
-#[pyo3(signature = (gap, size, contact_modulus, load, approach, hardness, hardness_map, boundary, method, precision, tolerance, max_iterations))]
+#[pyo3(signature = (gap, size, contact_modulus, load, approach, hardness, hardness_map, boundary, method, tolerance, max_iterations))]
 #[allow(clippy::too_many_arguments)]
 pub fn elastic<'py>(
     py: Python<'py>,
@@ -28,7 +28,6 @@ pub fn elastic<'py>(
     hardness_map: Option<PyReadonlyArray2<'_, f64>>,
     boundary: &str,
     method: &str,
-    precision: &str,
     tolerance: f64,
     max_iterations: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
@@ -63,8 +62,8 @@ pub fn elastic<'py>(
         let words = format!("hardness holds {value}, but must be finite and greater than 0 Pa in every cell");
         return Err(CaseError::new_err(words));
     }
-    let boundary = boundary_of(boundary)?;
-    let options = solver_of(method, precision, tolerance, max_iterations)?;
+    let boundary = choose("boundary", boundary)?;
+    let options = solver_of(method, tolerance, max_iterations)?;
     options.validate().map_err(|error| raised(py, error))?;
     let interrupt = AtomicBool::new(false);
     let mut state = ContactState::new(grid.len());

@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use asperity::material::{FitOptions, LongTime, Modulus};
+use asperity::material::FitOptions;
 use asperity_io::curve::{
-    Column, Columns, CurveError, Curves, Fitted, Kind, Request, Role, Series, ShiftRequest, Sweep,
+    Column, Columns, CurveError, Curves, Fitted, Request, Role, Series, ShiftRequest, Sweep,
 };
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -34,31 +34,24 @@ pub struct Options {
 
 impl Options {
     fn request(self) -> PyResult<Request> {
-        let measures = [("young", Modulus::Young), ("shear", Modulus::Shear)];
-        let ends = [("free", LongTime::Free), ("solid", LongTime::Solid), ("fluid", LongTime::Fluid)];
         let shift = match (self.shift, self.estimate) {
             (Some(words), _) => ShiftRequest::Given(shift(words)?),
             (None, Some(reference)) => ShiftRequest::Estimate(reference),
             (None, None) => ShiftRequest::None,
         };
         Ok(Request {
-            measure: choose("modulus", &self.measure, &measures)?,
+            measure: choose("modulus", &self.measure)?,
             shift,
             window: self.window,
             options: FitOptions {
                 per_decade: self.per_decade,
                 margin: self.margin,
-                long_time: choose("long_time", &self.long_time, &ends)?,
+                long_time: choose("long_time", &self.long_time)?,
                 limit: self.limit,
                 max_terms: self.max_terms.unwrap_or(usize::MAX),
             },
         })
     }
-}
-
-fn kind(word: &str) -> PyResult<Kind> {
-    let kinds = [("relaxation", Kind::Relaxation), ("creep", Kind::Creep), ("dma", Kind::Dma)];
-    choose("kind", word, &kinds)
 }
 
 /// Fits sweeps of (temperature, times or angular frequencies, curves), in SI, one per temperature.
@@ -81,7 +74,7 @@ pub fn fit<'py>(
     });
     let curves = Curves {
         path: PathBuf::from("the data"),
-        kind: self::kind(kind)?,
+        kind: choose("kind", kind)?,
         sweeps: sweeps.collect(),
         notes: vec![],
         digest: String::new(),
@@ -123,7 +116,7 @@ pub fn fit_file<'py>(
     }
     let request = options.request()?;
     let found = match kind {
-        Some(word) => Some(self::kind(&word)?),
+        Some(word) => Some(choose("kind", &word)?),
         None => Curves::kind_of(&path).map_err(file)?,
     };
     let Some(found) = found else {

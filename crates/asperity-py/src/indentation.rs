@@ -1,14 +1,14 @@
 //! The material of a half-space from a measured indentation.
 
-use asperity::indentation::{Given, IndentationOptions, IndentationRecord, Interval, fit_indentation as fit};
-use asperity::material::LongTime;
+use asperity::indentation::{IndentationOptions, IndentationRecord, Interval, fit_indentation as fit};
 use asperity::reference::MdrProfile;
+use asperity_io::choice;
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::raised;
-use crate::march::choose;
+use crate::march::{choose, choose_among};
 use crate::wait::detached;
 
 /// Fits the contact relaxation modulus to a record; `profile` is "sphere" with its radius or "cone" with its slope. Intervals
@@ -33,17 +33,15 @@ pub fn fit_indentation<'py>(
     let [times, loads, depths] = [times, loads, depths].map(|column| column.as_array().to_vec());
     let profiles =
         [("sphere", MdrProfile::Sphere { radius: number }), ("cone", MdrProfile::Cone { slope: number })];
-    let channels = [("depth", Given::Depth), ("load", Given::Load)];
-    let ends = [("free", LongTime::Free), ("solid", LongTime::Solid), ("fluid", LongTime::Fluid)];
     let options = IndentationOptions {
-        given: given.map(|word| choose("given", word, &channels)).transpose()?,
+        given: given.map(|word| choose("given", word)).transpose()?,
         terms,
-        long_time: choose("long_time", long_time, &ends)?,
+        long_time: choose("long_time", long_time)?,
         fit_touch,
         springs,
         limit,
     };
-    let profile = choose("profile", profile, &profiles)?;
+    let profile = choose_among("profile", profile, &profiles)?;
     let record = IndentationRecord { times: &times, loads: &loads, depths: &depths };
     let fit = detached(py, || fit(profile, &record, &options))?.map_err(|error| raised(py, error))?;
     let interval = |interval: Interval| (interval.value, interval.low, interval.high);
@@ -54,7 +52,7 @@ pub fn fit_indentation<'py>(
         fit.terms.iter().map(|[modulus, time]| (interval(*modulus), interval(*time))).collect();
     out.set_item("terms", terms)?;
     out.set_item("touch", interval(fit.touch))?;
-    out.set_item("given", if fit.given == Given::Depth { "depth" } else { "load" })?;
+    out.set_item("given", choice::word(&fit.given))?;
     out.set_item("predicted", fit.predicted.into_pyarray(py))?;
     out.set_item("rows", fit.rows)?;
     out.set_item("rms", fit.rms)?;

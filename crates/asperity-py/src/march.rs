@@ -3,17 +3,15 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use asperity::march::Plasticity;
 use asperity::quantities::{Quantities, Quantity};
 use asperity::{
-    Boundary, Control, Course, Event, Grid, History, Method, Programme, Scheme, Simulation, SolverOptions,
-    Stage, TimeGrid, march, material,
+    Course, Event, Grid, History, Programme, Simulation, SolverOptions, Stage, TimeGrid, march, material,
 };
+use asperity_io::choice::{self, Choice};
+use asperity_io::store::FieldKind;
 use numpy::{IntoPyArray, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-
-use asperity_io::store::FieldKind;
 
 use crate::error::{CaseError, raised};
 use crate::material::Body;
@@ -27,35 +25,26 @@ pub struct March {
     interrupt: Arc<AtomicBool>,
 }
 
-/// What a keyword says, or an error with the words that it may be.
-pub fn choose<T: Copy>(what: &str, word: &str, words: &[(&str, T)]) -> PyResult<T> {
-    let found = words.iter().find(|(name, _)| *name == word);
-    found.map(|(_, value)| *value).ok_or_else(|| {
-        let names: Vec<_> = words.iter().map(|(name, _)| format!("'{name}'")).collect();
-        CaseError::new_err(format!("{what} is '{word}', but must be {}", names.join(" or ")))
-    })
+/// The choice that a keyword names, or an error with the words that it takes.
+pub fn choose<T: Choice>(what: &str, word: &str) -> PyResult<T> {
+    choice::parse(word).ok_or_else(|| no_choice(what, word, choice::words::<T>()))
 }
 
-pub fn boundary(word: &str) -> PyResult<Boundary> {
-    choose("boundary", word, &[("free", Boundary::Free), ("periodic", Boundary::Periodic)])
+/// The choice that a keyword names, out of a list of names and values.
+pub fn choose_among<T: Copy>(what: &str, word: &str, choices: &[(&str, T)]) -> PyResult<T> {
+    let found = choices.iter().find(|(name, _)| *name == word);
+    let names = || choices.iter().map(|(name, _)| *name).collect::<Vec<_>>();
+    found.map(|(_, value)| *value).ok_or_else(|| no_choice(what, word, &names()))
 }
 
-pub fn solver(
-    method: &str,
-    precision: &str,
-    tolerance: f64,
-    max_iterations: usize,
-) -> PyResult<SolverOptions> {
-    let methods = [("projected-cg", Method::ProjectedCg), ("polonsky-keer", Method::PolonskyKeer)];
-    let method = choose("method", method, &methods)?;
-    choose("precision", precision, &[("double", ())])?;
+fn no_choice(what: &str, word: &str, words: &[&str]) -> PyErr {
+    let words: Vec<_> = words.iter().map(|word| format!("'{word}'")).collect();
+    CaseError::new_err(format!("{what} is '{word}', but must be {}", words.join(" or ")))
+}
+
+pub fn solver(method: &str, tolerance: f64, max_iterations: usize) -> PyResult<SolverOptions> {
+    let method = choose("method", method)?;
     Ok(SolverOptions { method, tolerance, max_iterations })
-}
-
-/// The quantity of a name.
-pub fn quantity(name: &str) -> PyResult<Quantity> {
-    let names = Quantity::ALL.map(|quantity| (quantity.name(), quantity));
-    choose("quantity", name, &names)
 }
 
 /// (name, unit, meaning, whether it is a histogram) of all quantities.
@@ -113,8 +102,6 @@ type Numbers = (String, Vec<f64>);
 type StageParts = (String, Numbers, Vec<(f64, f64)>, Option<f64>, Option<(String, f64)>, Option<Numbers>);
 
 fn stage((control, (kind, numbers), points, duration, until, grid): StageParts) -> PyResult<Stage> {
-    let controls =
-        [("load", Control::Load), ("pressure", Control::Pressure), ("approach", Control::Approach)];
     let course = match (kind.as_str(), numbers.as_slice()) {
         ("hold", []) => Course::Hold,
         ("ramp-to", [value, duration]) => Course::RampTo { value: *value, duration: *duration },
@@ -129,11 +116,11 @@ fn stage((control, (kind, numbers), points, duration, until, grid): StageParts) 
                 ("pressure", Event::Pressure(value)),
                 ("contact-lost", Event::ContactLost),
             ];
-            Some(choose("until", &event, &events)?)
+            Some(choose_among("until", &event, &events)?)
         }
     };
     Ok(Stage {
-        control: choose("control", &control, &controls)?,
+        control: choose("control", &control)?,
         course,
         duration,
         until,
@@ -144,7 +131,7 @@ fn stage((control, (kind, numbers), points, duration, until, grid): StageParts) 
 #[pymethods]
 impl March {
     #[new]
-    #[pyo3(signature = (*, gap, size, boundary, bodies, stages, times, times_numbers, include, temperatures, scheme, method, precision, tolerance,
+    #[pyo3(signature = (*, gap, size, boundary, bodies, stages, times, times_numbers, include, temperatures, scheme, method, tolerance,
                         max_iterations, hardness_map, plasticity, quantities, bins, largest_pressure, largest_gap))]
     #[allow(clippy::too_many_arguments)]
     fn new(
@@ -160,7 +147,6 @@ impl March {
         temperatures: Vec<(f64, f64)>,
         scheme: &str,
         method: &str,
-        precision: &str,
         tolerance: f64,
         max_iterations: usize,
         hardness_map: Option<PyReadonlyArray2<'_, f64>>,
@@ -181,24 +167,22 @@ impl March {
         let (creep, thermal) =
             crate::material::pair(&bodies, &temperatures).map_err(|error| raised(py, error))?;
         let bodies: Vec<material::Body> = bodies.iter().map(|body| body.inner.clone()).collect();
-        let schemes =
-            [("linear", Scheme::Linear), ("constant", Scheme::Constant), ("direct", Scheme::Direct)];
         let grid = Grid::new([nx, ny], size).map_err(|error| raised(py, error))?;
-        let plasticities = [("cap", Plasticity::Cap), ("accumulate", Plasticity::Accumulate)];
-        let list = quantities.iter().map(|name| quantity(name)).collect::<PyResult<Vec<Quantity>>>()?;
+        let list =
+            quantities.iter().map(|name| choose("quantity", name)).collect::<PyResult<Vec<Quantity>>>()?;
         let stages = stages.into_iter().map(stage).collect::<PyResult<Vec<Stage>>>()?;
         let simulation = Simulation {
-            boundary: self::boundary(boundary)?,
+            boundary: choose("boundary", boundary)?,
             creep,
             thermal,
             hardness: material::pair_hardness(&bodies),
             loading: Programme::new(stages),
             times: self::times(times, &times_numbers)?,
             include,
-            scheme: choose("scheme", scheme, &schemes)?,
-            solver: solver(method, precision, tolerance, max_iterations)?,
+            scheme: choose("scheme", scheme)?,
+            solver: solver(method, tolerance, max_iterations)?,
             hardness_map: hardness_map.map(|map| map.as_array().as_standard_layout().into_owned()),
-            plasticity: choose("plasticity", plasticity, &plasticities)?,
+            plasticity: choose("plasticity", plasticity)?,
             quantities: Quantities { list, bins, largest_pressure, largest_gap },
             ..Simulation::new(grid, gap)
         };
@@ -301,8 +285,7 @@ impl March {
 
     /// A field of the last row, by its name in results.
     fn field<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
-        let names = FieldKind::ALL.map(|kind| (kind.name(), kind));
-        let kind = choose("field", name, &names)?;
+        let kind = choose("field", name)?;
         let found = detached(py, || {
             let march = self.locked();
             let step = march.last()?;

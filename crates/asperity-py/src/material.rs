@@ -8,6 +8,7 @@ use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
 use crate::error::{CaseError, raised};
+use crate::march::choose;
 
 /// One deformable body: its creep function, Poisson's ratio or bulk modulus, hardness, and how warm it is.
 #[pyclass(frozen)]
@@ -123,15 +124,7 @@ impl Body {
         shift: Option<ShiftWords>,
         temperature: Option<f64>,
     ) -> PyResult<Body> {
-        let measure = match measure {
-            "young" => Modulus::Young,
-            "shear" => Modulus::Shear,
-            other => {
-                return Err(CaseError::new_err(format!(
-                    "measure is {other:?}, but must be 'young' or 'shear'"
-                )));
-            }
-        };
+        let measure = choose("measure", measure)?;
         let lateral = match (poisson, bulk_modulus) {
             (Some(nu), None) => Lateral::Poisson(nu),
             (None, Some(modulus)) => Lateral::BulkModulus(modulus),

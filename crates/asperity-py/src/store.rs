@@ -11,7 +11,7 @@ use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2,
 use pyo3::prelude::*;
 
 use crate::error::{CaseError, file, raised};
-use crate::march::quantity;
+use crate::march::choose;
 use crate::wait::detached;
 
 /// The ends of the bins, and the numbers of all rows.
@@ -43,7 +43,7 @@ impl Store {
 
     /// A histogram: the ends of its bins, and its rows.
     fn histogram<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Histogram<'py>> {
-        let (edges, rows) = self.reader.histogram(quantity(name)?).map_err(file)?;
+        let (edges, rows) = self.reader.histogram(choose("quantity", name)?).map_err(file)?;
         Ok((edges.into_pyarray(py), rows.into_pyarray(py)))
     }
 
@@ -184,7 +184,7 @@ pub fn save(
     }
     let mut asked = Vec::new();
     for (name, edges, values) in &quantities {
-        let column = Column { quantity: quantity(name)?, edges: edges.as_array().to_vec() };
+        let column = Column { quantity: choose("quantity", name)?, edges: edges.as_array().to_vec() };
         let (found, width) = (values.as_array().dim(), column.width());
         if found != (rows.len(), width) {
             let expected = format!("({}, {width})", rows.len());

@@ -405,17 +405,6 @@ def test_any_number_of_threads_gives_the_same_bits(sphere, number):
             asp.set_threads(wrong)
 
 
-def test_mixed_precision_meets_the_same_tolerance(sphere):
-    double = asp.elastic(sphere, 1e9, load=20.0)
-    mixed = asp.elastic(sphere, 1e9, load=20.0, precision="mixed")
-    assert mixed.residual <= 1e-6 and mixed.approach == pytest.approx(double.approach, rel=1e-5)
-    assert not np.array_equal(mixed.pressure, double.pressure)
-    result = asp.solve(sphere, asp.Zener(**ZENER), load=1.0, times=[1.0], precision="mixed", progress=False)
-    assert np.all(result.residual <= 1e-6)
-    with pytest.raises(asp.CaseError, match="'double' or 'mixed'"):
-        asp.elastic(sphere, 1e9, load=20.0, precision="single")
-
-
 def test_the_import_brings_nothing_heavy():
     # What only some of it needs is loaded when it is used: 0.15 s are promised for the import, most of them numpy's.
     heavy = ("matplotlib", "xarray", "IPython", "pandas", "distributed", "dask", "cloudpickle", "zarr", "SurfaceTopography", "scipy")

@@ -3,6 +3,7 @@
 use asperity::indentation::{Given, IndentationFit};
 use asperity::material::{Creep, MasterCurve, Material, Modulus, Relaxation};
 use asperity_io::curve::{Curves as Measured, Fitted, Indentation, Kind};
+use asperity_io::readable::counted;
 
 use crate::figure::{Axis, Curves, Figure, Series, Style};
 
@@ -101,7 +102,7 @@ pub fn fit(title: &str, measured: &Measured, fitted: &Fitted) -> asperity::Resul
     }
     let caption = format!(
         "{}; misfit {:.2} % rms, {:.2} % at most; scatter of the data {:.2} %.",
-        counted(fitted.terms()),
+        counted(fitted.terms(), "term"),
         100.0 * fitted.misfit.rms,
         100.0 * fitted.misfit.max,
         100.0 * fitted.noise
@@ -137,7 +138,7 @@ pub fn indentation(title: &str, record: &Indentation, fit: &IndentationFit) -> F
         .with(Series::new("", Style::Points, times.clone(), distance));
     let caption = format!(
         "{}; misfit {:.2} % rms of the largest {name}; Durbin-Watson {:.2}.",
-        counted(fit.terms.len()),
+        counted(fit.terms.len(), "term"),
         100.0 * fit.relative_rms,
         fit.durbin_watson
     );
@@ -171,9 +172,4 @@ fn decades([first, last]: [f64; 2]) -> Vec<f64> {
     }
     let steps = (PER_DECADE * decades).ceil().clamp(1.0, MOST);
     (0..=steps as usize).map(|k| first * 10f64.powf(decades * k as f64 / steps)).collect()
-}
-
-/// So many terms.
-fn counted(terms: usize) -> String {
-    if terms == 1 { "1 term".into() } else { format!("{terms} terms") }
 }

@@ -20,11 +20,14 @@ pub struct Grid {
 }
 
 /// What surrounds the domain.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub enum Boundary {
-    /// A half-space that is free of pressure outside the domain.
+    /// A half-space without pressure outside the domain (zero-padded convolution).
+    #[default]
     Free,
-    /// The domain repeats in x and y.
+    /// The domain repeats along x and y.
     Periodic,
 }
 

@@ -12,12 +12,14 @@ use crate::error::{Error, Result, non_negative, positive};
 
 /// The prescribed quantity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub enum Control {
-    /// Normal load W \[N\].
+    /// Normal load W, in N.
     Load,
-    /// Mean pressure W / (Lx Ly) \[Pa\].
+    /// Mean pressure over the domain, W / (Lx Ly), in Pa.
     Pressure,
-    /// Rigid-body approach w \[m\].
+    /// Rigid-body approach w, in m, 0 at first touch.
     Approach,
 }
 

@@ -17,23 +17,27 @@ fn pairs(most: usize) -> impl Strategy<Value = Vec<(f64, f64)>> {
 
 #[test]
 fn pmma_creeps_as_the_reference_says() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/oracles/pmma_creep.json");
-    let Ok(text) = std::fs::read_to_string(path) else {
-        println!("skipped: no reference numbers at {path}");
-        return;
-    };
-    let oracle: serde_json::Value = serde_json::from_str(&text).unwrap();
+    // D(t) of SC17 eq. (23) in 1/MPa, converted with more digits by another program.
+    let terms = [(4.4740623274467175e-05, 9.936295903145377), (6.0727249803689646e-05, 133.87048745620586)];
+    let rows = [
+        (0.0, 0.0004013744989441442),
+        (10.0, 0.0004341321352071854),
+        (50.0, 0.00046475038622793364),
+        (100.0, 0.0004780684899735997),
+        (200.0, 0.0004932104906804132),
+        (500.0, 0.000505392552089546),
+        (1000.0, 0.0005068077586017327),
+    ];
     let pmma = Relaxation::absolute(1973.0, &[(254.776, 8.93), (263.6628, 117.96)]).unwrap();
     let creep = Material::prony(Modulus::Young, pmma).unwrap().creep().clone();
-    let number = |value: &serde_json::Value| value.as_f64().unwrap();
     // All are given with 16 digits; the weights lose the digit by which root and pole agree.
-    assert!((creep.instantaneous / number(&oracle["J0"]) - 1.0).abs() < 1e-14);
-    for (term, reference) in creep.terms.iter().zip(oracle["terms"].as_array().unwrap()) {
-        assert!((term.compliance / number(&reference[0]) - 1.0).abs() < 1e-14);
-        assert!((term.retardation_time / number(&reference[1]) - 1.0).abs() < 1e-14);
+    let same = |found: f64, given: f64| (found / given - 1.0).abs() < 1e-14;
+    assert_eq!(creep.terms.len(), terms.len());
+    for (term, (compliance, time)) in creep.terms.iter().zip(terms) {
+        assert!(same(term.compliance, compliance) && same(term.retardation_time, time), "{term:?}");
     }
-    for row in oracle["rows"].as_array().unwrap() {
-        assert!((creep.value(number(&row["t"])) / number(&row["D"]) - 1.0).abs() < 1e-14);
+    for (t, compliance) in rows {
+        assert!(same(creep.value(t), compliance), "{t}");
     }
 }
 

@@ -2,7 +2,12 @@
 
 use std::path::PathBuf;
 
+use asperity::indentation::Given;
+use asperity::material::{LongTime, Modulus};
+use asperity_io::curve::Kind;
 use clap::Subcommand;
+
+use super::choice;
 
 #[derive(Debug, Subcommand)]
 pub enum Material {
@@ -43,12 +48,13 @@ pub struct Show {
 pub struct Fit {
     /// The text table: one point per line; separator and decimal mark are found, units stand in the header
     pub data: PathBuf,
-    /// What was measured [default: what the header says]
-    #[arg(long)]
-    pub kind: Option<KindName>,
+    /// What was measured: relaxation modulus over time, creep compliance over time, or storage and loss modulus over
+    /// frequency (dma) [default: what the header says]
+    #[arg(long, value_parser = choice::<Kind>())]
+    pub kind: Option<Kind>,
     /// Whether the numbers are Young's or shear moduli (or compliances)
-    #[arg(long, default_value = "young")]
-    pub modulus: MeasureName,
+    #[arg(long, value_parser = choice::<Modulus>(), default_value = "young")]
+    pub modulus: Modulus,
     /// Where a quantity stands, by number from 1 or by header: --column frequency=1 --column storage="E' [MPa]";
     /// quantities: time, modulus, compliance, frequency, storage, loss, tan_delta, temperature
     #[arg(long, value_name = "QUANTITY=COLUMN")]
@@ -71,9 +77,9 @@ pub struct Fit {
     /// Largest relative misfit before the data are refused [default: 0.1]
     #[arg(long, value_name = "SHARE")]
     pub max_misfit: Option<f64>,
-    /// What comes after the data
-    #[arg(long, default_value = "free")]
-    pub long_time: LongTimeName,
+    /// What comes after the data: whatever fits best (free), no flow (solid), or no modulus left (fluid)
+    #[arg(long, value_parser = choice::<LongTime>(), default_value = "free")]
+    pub long_time: LongTime,
     /// Shift of several temperatures: --wlf 'C1, C2, REFERENCE', e.g. '8.86, 101.6 K, 20 °C'
     #[arg(long, value_name = "C1,C2,REF", conflicts_with_all = ["arrhenius", "estimate_shift"])]
     pub wlf: Option<String>,
@@ -97,35 +103,6 @@ pub struct Fit {
     pub force: bool,
 }
 
-/// What was measured.
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-pub enum KindName {
-    /// Relaxation modulus over time
-    Relaxation,
-    /// Creep compliance over time
-    Creep,
-    /// Storage and loss modulus over frequency
-    Dma,
-}
-
-/// What a modulus measures.
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-pub enum MeasureName {
-    Young,
-    Shear,
-}
-
-/// What comes after the data.
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-pub enum LongTimeName {
-    /// Whatever fits best
-    Free,
-    /// No flow
-    Solid,
-    /// No modulus is left
-    Fluid,
-}
-
 #[derive(Debug, clap::Args)]
 pub struct FitIndentation {
     /// The record: a text table with columns of time, load and depth
@@ -140,17 +117,17 @@ pub struct FitIndentation {
     #[arg(long, value_name = "NU", default_value = "0.5")]
     pub poisson: String,
     /// The moduli to give
-    #[arg(long, value_enum, default_value = "young")]
-    pub modulus: MeasureName,
+    #[arg(long, value_parser = choice::<Modulus>(), default_value = "young")]
+    pub modulus: Modulus,
     /// The channel that the instrument controlled, taken as it was measured [default: the one with less scatter]
-    #[arg(long, value_enum)]
-    pub given: Option<GivenName>,
+    #[arg(long, value_parser = choice::<Given>())]
+    pub given: Option<Given>,
     /// Number of terms, at most 6 [default: as many as the record calls for]
     #[arg(long, value_name = "N")]
     pub terms: Option<usize>,
-    /// What happens at times longer than the record
-    #[arg(long, value_enum, default_value = "free")]
-    pub long_time: LongTimeName,
+    /// What happens at times longer than the record: whatever fits best (free), no flow (solid), or no modulus left (fluid)
+    #[arg(long, value_parser = choice::<LongTime>(), default_value = "free")]
+    pub long_time: LongTime,
     /// Fit the depth of first touch too, instead of taking it as 0
     #[arg(long)]
     pub fit_touch: bool,
@@ -172,11 +149,4 @@ pub struct FitIndentation {
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
-}
-
-/// A channel of an indentation.
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-pub enum GivenName {
-    Depth,
-    Load,
 }

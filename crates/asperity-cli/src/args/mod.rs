@@ -5,15 +5,23 @@ mod result;
 mod run;
 mod surface;
 
+use asperity_io::choice::{self as choices, Choice};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
 
-pub use material::{Fit, FitIndentation, GivenName, KindName, LongTimeName, Material, MeasureName, Show};
+pub use material::{Fit, FitIndentation, Material, Show};
 pub use result::{Export, Plot, Report, Reproduce, ShowResult, View};
 pub use run::{Check, New, Run, Verify};
 pub use surface::{
     Surface, SurfaceConvert, SurfaceFile, SurfaceGenerate, SurfaceInfo, SurfaceOutput, SurfaceProcess,
 };
+
+/// A parser of the words of a choice; help and completions list them.
+fn choice<T: Choice + Clone + Send + Sync + 'static>() -> impl TypedValueParser<Value = T> {
+    PossibleValuesParser::new(choices::words::<T>().iter().copied())
+        .try_map(|word| choices::parse::<T>(&word).ok_or("no such choice"))
+}
 
 /// Contact of rough, linear viscoelastic bodies: pressure, gap, contact area and approach over time,
 /// from a case file.

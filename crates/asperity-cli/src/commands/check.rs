@@ -40,7 +40,7 @@ pub fn run(args: &Check) -> Result<(), Failure> {
 /// The retardation times, or how many and from where to where.
 fn retardation(times: &[f64]) -> String {
     const SHOWN: usize = 6;
-    let shown: Vec<String> = times.iter().map(|t| quantity(*t, "s", 1)).collect();
+    let shown: Vec<String> = times.iter().map(|t| quantity(*t, "s")).collect();
     match shown.as_slice() {
         [first, .., last] if shown.len() > SHOWN => {
             format!("{} retardation times from {first} to {last}", shown.len())
@@ -86,10 +86,10 @@ fn tell(case: &Case, d: &Description, estimate: Option<f64>) -> String {
         "domain",
         format!(
             "{nx} x {ny} cells of {} x {}, {} x {}, {}",
-            quantity(d.spacing[0], "m", 1),
-            quantity(d.spacing[1], "m", 1),
-            quantity(d.size[0], "m", 1),
-            quantity(d.size[1], "m", 1),
+            quantity(d.spacing[0], "m"),
+            quantity(d.spacing[1], "m"),
+            quantity(d.size[0], "m"),
+            quantity(d.size[1], "m"),
             d.boundary
         ),
     );
@@ -102,16 +102,16 @@ fn tell(case: &Case, d: &Description, estimate: Option<f64>) -> String {
     }
     let modulus = match d.instantaneous_modulus {
         Some(e) if d.retardation_times.is_empty() && d.relaxed_modulus > 0.0 => {
-            format!("contact modulus {}", quantity(e, "Pa", 1))
+            format!("contact modulus {}", quantity(e, "Pa"))
         }
         Some(e) => {
             format!(
                 "contact modulus {} at once, {} at last",
-                quantity(e, "Pa", 1),
-                quantity(d.relaxed_modulus, "Pa", 1)
+                quantity(e, "Pa"),
+                quantity(d.relaxed_modulus, "Pa")
             )
         }
-        None => format!("contact modulus {} at last, rigid at once", quantity(d.relaxed_modulus, "Pa", 1)),
+        None => format!("contact modulus {} at last, rigid at once", quantity(d.relaxed_modulus, "Pa")),
     };
     line("bodies", format!("{}; {modulus}", d.bodies.join(", ")));
     if !d.retardation_times.is_empty() {
@@ -133,12 +133,12 @@ fn tell(case: &Case, d: &Description, estimate: Option<f64>) -> String {
         line("warning", warning.clone());
     }
     if let Some(hardness) = d.hardness {
-        line("hardness", quantity(hardness, "Pa", 1));
+        line("hardness", quantity(hardness, "Pa"));
     }
     if let Some([least, most]) = d.hardness_of_cells {
-        line("hardness", format!("{} to {}, by cell", quantity(least, "Pa", 1), quantity(most, "Pa", 1)));
+        line("hardness", format!("{} to {}, by cell", quantity(least, "Pa"), quantity(most, "Pa")));
     }
-    let end = quantity(d.end, "s", 1);
+    let end = quantity(d.end, "s");
     line(
         "time",
         match d.rows {

@@ -5,15 +5,15 @@ use std::fmt::Write as _;
 use asperity::indentation::{
     Given, IndentationFit, IndentationOptions, IndentationRecord, Interval, fit_indentation,
 };
-use asperity::material::{LongTime, Modulus};
+use asperity::material::Modulus;
 use asperity::reference::MdrProfile;
 use asperity_io::case::quantity::{Length, Number, range};
-use asperity_io::curve::{Column, Columns, Indentation, MaterialOf, indentation_block};
+use asperity_io::curve::{Indentation, MaterialOf, indentation_block};
 use asperity_report::material::indentation as picture;
 use serde_json::{Value, json};
 
-use super::material::{pairs, parsed, told, write};
-use crate::args::{FitIndentation, GivenName, LongTimeName, MeasureName};
+use super::material::{columns, parsed, told, write};
+use crate::args::FitIndentation;
 use crate::failure::Failure;
 use crate::words::quantity;
 
@@ -33,34 +33,12 @@ pub fn run(args: &FitIndentation) -> Result<(), Failure> {
         let message = format!("--poisson is {poisson}, but must be greater than -1 and not greater than 0.5");
         return Err(Failure::input(message));
     }
-    let of = MaterialOf {
-        modulus: match args.modulus {
-            MeasureName::Young => Modulus::Young,
-            MeasureName::Shear => Modulus::Shear,
-        },
-        poisson,
-    };
-    let columns = Columns {
-        columns: pairs("--column", &args.column)?
-            .into_iter()
-            .map(|(role, text)| {
-                let column = text.parse().map_or_else(|_| Column::Name(text), Column::Number);
-                (role, column)
-            })
-            .collect(),
-        units: pairs("--unit", &args.unit)?,
-    };
+    let of = MaterialOf { modulus: args.modulus, poisson };
+    let columns = columns(&args.column, &args.unit)?;
     let options = IndentationOptions {
-        given: args.given.map(|given| match given {
-            GivenName::Depth => Given::Depth,
-            GivenName::Load => Given::Load,
-        }),
+        given: args.given,
         terms: args.terms,
-        long_time: match args.long_time {
-            LongTimeName::Free => LongTime::Free,
-            LongTimeName::Solid => LongTime::Solid,
-            LongTimeName::Fluid => LongTime::Fluid,
-        },
+        long_time: args.long_time,
         fit_touch: args.fit_touch,
         ..IndentationOptions::default()
     };
@@ -114,19 +92,15 @@ fn report(args: &FitIndentation, record: &Indentation, fit: &IndentationFit, of:
     line("rows", format!("{}{every}", fit.rows.len()));
     line("given", format!("{taken}; the {fitted} is fitted"));
     let [step, length] = fit.window;
-    line("times", format!("steps from {}, {} in all", quantity(step, "s", 1), quantity(length, "s", 1)));
+    line("times", format!("steps from {}, {} in all", quantity(step, "s"), quantity(length, "s")));
     line(
         "misfit",
-        format!(
-            "{} rms, {:.3} % of the largest {fitted}",
-            quantity(fit.rms, unit, 1),
-            100.0 * fit.relative_rms
-        ),
+        format!("{} rms, {:.3} % of the largest {fitted}", quantity(fit.rms, unit), 100.0 * fit.relative_rms),
     );
     let symbol = if of.modulus == Modulus::Young { "E" } else { "G" };
     let pascal = |x: Interval| {
         let x = of.of(x);
-        let [value, low, high] = [x.value, x.low, x.high].map(|p| quantity(p, "Pa", 1));
+        let [value, low, high] = [x.value, x.low, x.high].map(|p| quantity(p, "Pa"));
         format!("{value:<12}{low} to {high}")
     };
     line("", format!("{:<12}95 % confidence", "value"));
@@ -138,12 +112,11 @@ fn report(args: &FitIndentation, record: &Indentation, fit: &IndentationFit, of:
     }
     for (k, [modulus, time]) in fit.terms.iter().enumerate() {
         line(&format!("{symbol}_{}", k + 1), pascal(*modulus));
-        let [value, low, high] = [time.value, time.low, time.high].map(|t| quantity(t, "s", 1));
+        let [value, low, high] = [time.value, time.low, time.high].map(|t| quantity(t, "s"));
         line(&format!("tau_{}", k + 1), format!("{value:<12}{low} to {high}"));
     }
     if args.fit_touch {
-        let [value, low, high] =
-            [fit.touch.value, fit.touch.low, fit.touch.high].map(|d| quantity(d, "m", 1));
+        let [value, low, high] = [fit.touch.value, fit.touch.low, fit.touch.high].map(|d| quantity(d, "m"));
         line("touch", format!("{value:<12}{low} to {high}"));
     }
     record.notes.iter().for_each(|note| line("note", note.clone()));
@@ -173,7 +146,7 @@ fn json_of(fit: &IndentationFit, of: MaterialOf) -> Value {
         "given": taken,
         "rows": fit.rows.len(),
         "window": fit.window,
-        "modulus": if of.modulus == Modulus::Young { "young" } else { "shear" },
+        "modulus": of.modulus,
         "poisson": of.poisson,
         "instantaneous": modulus(fit.instantaneous),
         "equilibrium": modulus(fit.equilibrium),

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
 
-use asperity::material::{FitOptions, LongTime, Modulus, Shift};
+use asperity::material::{FitOptions, Modulus, Shift};
 use asperity_io::case::quantity::{MolarEnergy, Number, Temperature, TemperatureDifference, Time, range};
 use asperity_io::case::{MaterialReport, Specimen, specimens};
 use asperity_io::curve::{
@@ -14,7 +14,7 @@ use asperity_io::curve::{
 use asperity_report::material as pictures;
 use serde_json::{Value, json};
 
-use crate::args::{Fit, KindName, LongTimeName, Material, MeasureName, Show};
+use crate::args::{Fit, Material, Show};
 use crate::failure::Failure;
 use crate::words::{counted, quantity};
 
@@ -155,7 +155,7 @@ impl Table {
             self.loss.iter().zip(&self.storage).map(|(loss, storage)| loss / storage).collect();
         json!({
             "name": specimen.name,
-            "modulus": measure_name(material.measure()),
+            "modulus": material.measure(),
             "report": specimen.report,
             "warnings": specimen.warnings,
             "creep_terms": creep.terms.iter().map(|t| json!([t.compliance, t.retardation_time])).collect::<Vec<_>>(),
@@ -172,13 +172,6 @@ impl Table {
     }
 }
 
-fn measure_name(measure: Modulus) -> &'static str {
-    match measure {
-        Modulus::Young => "young",
-        Modulus::Shear => "shear",
-    }
-}
-
 fn symbols(measure: Modulus) -> (&'static str, &'static str, &'static str) {
     match measure {
         Modulus::Young => ("Young's modulus", "E", "D"),
@@ -189,8 +182,7 @@ fn symbols(measure: Modulus) -> (&'static str, &'static str, &'static str) {
 /// Where a material comes from and how well it is known, in lines.
 pub fn source(report: &MaterialReport) -> Vec<String> {
     let mut lines = Vec::new();
-    let times =
-        |[first, last]: [f64; 2]| format!("{} to {}", quantity(first, "s", 1), quantity(last, "s", 1));
+    let times = |[first, last]: [f64; 2]| format!("{} to {}", quantity(first, "s"), quantity(last, "s"));
     if let (Some(error), Some(window)) = (report.error, report.window) {
         lines.push(format!(
             "Prony sum of {}, relative error {error:.1e} at most from {}",
@@ -231,9 +223,7 @@ pub fn source(report: &MaterialReport) -> Vec<String> {
 
 fn fit(args: &Fit) -> Result<(), Failure> {
     let kind = match args.kind {
-        Some(KindName::Relaxation) => Kind::Relaxation,
-        Some(KindName::Creep) => Kind::Creep,
-        Some(KindName::Dma) => Kind::Dma,
+        Some(kind) => kind,
         None => Curves::kind_of(&args.data).map_err(told)?.ok_or_else(|| {
             let path = args.data.display();
             Failure::input(format!(
@@ -241,21 +231,9 @@ fn fit(args: &Fit) -> Result<(), Failure> {
             ))
         })?,
     };
-    let columns = Columns {
-        columns: pairs("--column", &args.column)?
-            .into_iter()
-            .map(|(role, text)| {
-                let column = text.parse().map_or_else(|_| Column::Name(text), Column::Number);
-                (role, column)
-            })
-            .collect(),
-        units: pairs("--unit", &args.unit)?,
-    };
+    let columns = columns(&args.column, &args.unit)?;
     let request = Request {
-        measure: match args.modulus {
-            MeasureName::Young => Modulus::Young,
-            MeasureName::Shear => Modulus::Shear,
-        },
+        measure: args.modulus,
         shift: shift(args)?,
         window: args.window.as_deref().map(|text| ends(kind, text)).transpose()?,
         options: options(args),
@@ -298,16 +276,19 @@ fn options(args: &Fit) -> FitOptions {
         margin: args.margin.unwrap_or(default.margin),
         limit: args.max_misfit.unwrap_or(default.limit),
         max_terms: args.max_terms.unwrap_or(default.max_terms),
-        long_time: match args.long_time {
-            LongTimeName::Free => LongTime::Free,
-            LongTimeName::Solid => LongTime::Solid,
-            LongTimeName::Fluid => LongTime::Fluid,
-        },
+        long_time: args.long_time,
     }
 }
 
+/// The columns and units that are told.
+pub(super) fn columns(columns: &[String], units: &[String]) -> Result<Columns, Failure> {
+    let column = |text: String| text.parse().map_or_else(|_| Column::Name(text), Column::Number);
+    let columns = pairs("--column", columns)?.into_iter().map(|(role, text)| (role, column(text))).collect();
+    Ok(Columns { columns, units: pairs("--unit", units)? })
+}
+
 /// "frequency=1", "storage=E' [MPa]".
-pub(super) fn pairs(option: &str, texts: &[String]) -> Result<BTreeMap<Role, String>, Failure> {
+fn pairs(option: &str, texts: &[String]) -> Result<BTreeMap<Role, String>, Failure> {
     let pair = |text: &String| {
         let (role, value) = text.split_once('=').ok_or_else(|| {
             Failure::input(format!("{option} is \"{text}\", but must be QUANTITY=..., e.g. {option} time=1"))
@@ -452,7 +433,7 @@ fn json_of(curves: &Curves, fitted: &Fitted) -> Value {
     });
     json!({
         "kind": curves.kind.name(),
-        "modulus": measure_name(fitted.material.measure()),
+        "modulus": fitted.material.measure(),
         "points": fitted.data.x.len(),
         "temperatures": fitted.temperatures,
         "shift": shift,

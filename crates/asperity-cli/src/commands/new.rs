@@ -4,7 +4,7 @@ use std::fs::OpenOptions;
 use std::io::{ErrorKind, Write};
 use std::path::PathBuf;
 
-use asperity_io::case::templates::{TEMPLATES, Template};
+use asperity_examples::{TEMPLATES, Template};
 
 use crate::args::New;
 use crate::failure::Failure;

@@ -80,11 +80,11 @@ fn on_interrupt() -> Arc<AtomicBool> {
 fn best_state(best: &Row) -> String {
     format!(
         "  best state at t = {}: load {}, approach {}, contact {:.4} %, largest pressure {}",
-        quantity(best.time, "s", 1),
-        quantity(best.load, "N", 1),
-        quantity(best.approach, "m", 1),
+        quantity(best.time, "s"),
+        quantity(best.load, "N"),
+        quantity(best.approach, "m"),
         100.0 * best.contact_fraction,
-        quantity(best.max_pressure, "Pa", 1),
+        quantity(best.max_pressure, "Pa"),
     )
 }
 
@@ -98,27 +98,27 @@ fn tell(args: &Run, summary: &Summary, error: Option<&RunError>) -> Result<(), F
     let mut text = String::new();
     let mut line = |name: &str, value: String| text += &format!("{name:<13}{value}\n");
     if let Some(last) = &summary.last {
-        line("time", quantity(last.time, "s", 1));
-        line("load", quantity(last.load, "N", 1));
-        line("approach", quantity(last.approach, "m", 1));
+        line("time", quantity(last.time, "s"));
+        line("load", quantity(last.load, "N"));
+        line("approach", quantity(last.approach, "m"));
         line(
             "contact area",
             format!(
                 "{} ({:.3} % of the domain; corrected for its perimeter {})",
-                quantity(last.contact_area, "m²", 2),
+                quantity(last.contact_area, "m2"),
                 100.0 * last.contact_fraction,
-                quantity(last.contact_area_corrected, "m²", 2),
+                quantity(last.contact_area_corrected, "m2"),
             ),
         );
         if last.capped_area > 0.0 {
-            line("at hardness", quantity(last.capped_area, "m²", 2));
+            line("at hardness", quantity(last.capped_area, "m2"));
         }
         line(
             "pressure",
             format!(
                 "mean {}, largest {}",
-                quantity(last.mean_pressure, "Pa", 1),
-                quantity(last.max_pressure, "Pa", 1)
+                quantity(last.mean_pressure, "Pa"),
+                quantity(last.max_pressure, "Pa")
             ),
         );
     }

@@ -86,7 +86,7 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
     }
     let [nx, ny] = header.grid.cells();
     let [lx, ly] = header.grid.size();
-    line("domain", format!("{nx} x {ny} cells, {} x {}", quantity(lx, "m", 1), quantity(ly, "m", 1)));
+    line("domain", format!("{nx} x {ny} cells, {} x {}", quantity(lx, "m"), quantity(ly, "m")));
     let rows = reader.rows()?;
     let Some(last) = rows.last() else { return Ok(text) };
     // A curve over the rows, with its ends.
@@ -99,40 +99,28 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
         format!("{}  {ends}", sparkline(&values, SPARKS))
     };
     let percent = |share: f64| format!("{:.3} %", 100.0 * share);
-    line("time", quantity(last.time, "s", 1));
-    line(
-        "load",
-        format!("{:<14}{}", quantity(last.load, "N", 1), curve(|row| row.load, &|v| quantity(v, "N", 1))),
-    );
+    line("time", quantity(last.time, "s"));
+    line("load", format!("{:<14}{}", quantity(last.load, "N"), curve(|row| row.load, &|v| quantity(v, "N"))));
     line(
         "approach",
-        format!(
-            "{:<14}{}",
-            quantity(last.approach, "m", 1),
-            curve(|row| row.approach, &|v| quantity(v, "m", 1))
-        ),
+        format!("{:<14}{}", quantity(last.approach, "m"), curve(|row| row.approach, &|v| quantity(v, "m"))),
     );
     line(
         "contact",
         format!("{:<14}{}", percent(last.contact_fraction), curve(|row| row.contact_fraction, &percent)),
     );
-    line("area", quantity(last.contact_area, "m²", 2));
-    line("corrected", quantity(last.contact_area_corrected, "m²", 2));
+    line("area", quantity(last.contact_area, "m2"));
+    line("corrected", quantity(last.contact_area_corrected, "m2"));
     if last.capped_area > 0.0 {
-        line("at hardness", quantity(last.capped_area, "m²", 2));
+        line("at hardness", quantity(last.capped_area, "m2"));
     }
-    let pressure = [last.mean_pressure, last.max_pressure].map(|p| quantity(p, "Pa", 1));
+    let pressure = [last.mean_pressure, last.max_pressure].map(|p| quantity(p, "Pa"));
     line("pressure", format!("mean {}, largest {}", pressure[0], pressure[1]));
     let asked = reader.scalars().into_iter().filter(|s| Quantity::from_name(s.name).is_some());
     for (n, series) in asked.enumerate() {
         let values = reader.series(series.name)?;
         let value = values.last().copied().unwrap_or(f64::NAN);
-        let unit = series.units.replace("m2", "m²");
-        let words = if unit == "1" {
-            format!("{value}")
-        } else {
-            quantity(value, &unit, if unit == "m²" { 2 } else { 1 })
-        };
+        let words = if series.units == "1" { format!("{value}") } else { quantity(value, series.units) };
         line(if n == 0 { "quantities" } else { "" }, format!("{:<20}{words}", series.name));
     }
     let worst = rows.iter().map(|row| row.certificate).fold(0.0, f64::max);
@@ -159,9 +147,9 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
         for cycle in &part.cycles {
             text += &format!(
                 "      {:<13}{:<13}{:<13}{:<13}{:.4}\n",
-                quantity(cycle.span[1], "s", 1),
-                quantity(cycle.dissipated_energy, "J", 1),
-                quantity(cycle.stiffness, "N/m", 1),
+                quantity(cycle.span[1], "s"),
+                quantity(cycle.dissipated_energy, "J"),
+                quantity(cycle.stiffness, "N/m"),
                 format!("{:.3}°", cycle.loss_angle.to_degrees()),
                 cycle.loss_angle.tan()
             );
@@ -169,7 +157,7 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
     }
     if let Some(states) = contact(reader, at)? {
         let time = reader.field_times()[reader.index(at)?];
-        text += &format!("\ncontact at t = {}\n", quantity(time, "s", 1));
+        text += &format!("\ncontact at t = {}\n", quantity(time, "s"));
         text += &shares(states.mapv(|state| state > 0).view(), COLUMNS, ly / lx);
     }
     Ok(text)

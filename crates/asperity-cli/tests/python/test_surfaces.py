@@ -1,6 +1,6 @@
 """Surfaces against independent programs: their files read by `asperity surface info`, ours read by them.
 
-NumPy is needed; h5py, netCDF4, gwyfile, surfalize and SurfaceTopography are used where they are installed. Prints the
+NumPy, h5py and netCDF4 are needed; gwyfile, surfalize and SurfaceTopography are used where they are installed. Prints the
 names of those that were used. ASPERITY_COMMAND names the command, the working directory is empty.
 """
 

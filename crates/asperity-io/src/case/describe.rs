@@ -2,11 +2,12 @@
 
 use asperity::material::Creep;
 use asperity::surface::Part;
-use asperity::{Boundary, Course, History, Scheme};
+use asperity::{Course, History};
 use serde::Serialize;
 
 use super::plan::Surface;
 use super::{Case, Rows};
+use crate::choice;
 
 /// Where the material of a body comes from, and how well it is known.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -129,10 +130,7 @@ impl Case {
             cells: self.grid.cells(),
             size: self.grid.size(),
             spacing: self.grid.spacing(),
-            boundary: match self.boundary {
-                Boundary::Free => "free",
-                Boundary::Periodic => "periodic",
-            },
+            boundary: choice::word(&self.boundary),
             surfaces: self.surfaces.iter().map(name).collect(),
             preparation: self.surfaces.iter().filter_map(preparation).collect(),
             bodies: self.bodies.iter().map(|body| body.name.clone()).collect(),
@@ -152,11 +150,7 @@ impl Case {
             rows: self.rows,
             usual_rows: self.usual_rows,
             stages: self.loading.stages.len(),
-            scheme: match self.scheme {
-                Scheme::Linear => "linear",
-                Scheme::Constant => "constant",
-                Scheme::Direct => "direct",
-            },
+            scheme: choice::word(&self.scheme),
             stored_rows,
             fields: self.output.fields.iter().map(|field| field.name()).collect(),
             memory_bytes: u64::try_from(self.memory).unwrap_or(u64::MAX),

@@ -7,7 +7,7 @@
 //!
 //! A fault is reported with its key, line and value, what was expected and what to do: see [`CaseErrors`].
 //! The format is described by its JSON [`schema`], which is made from the same structs that read it, and by
-//! the commented [`templates`].
+//! the commented examples of the crate `asperity-examples`.
 //!
 //! ```
 //! use asperity_io::case::Case;
@@ -52,7 +52,6 @@ mod raw;
 mod read;
 mod schema;
 mod specimen;
-pub mod templates;
 mod text;
 mod words;
 
@@ -69,7 +68,7 @@ use ndarray::Array2;
 pub use describe::{Description, MaterialReport, Preparation};
 pub use error::{CaseError, CaseErrors};
 pub use measured::Measured;
-pub use plan::{Field, Output, Rows, Surface};
+pub use plan::{Output, Rows, Surface};
 pub use schema::schema;
 pub use specimen::{Specimen, specimens};
 

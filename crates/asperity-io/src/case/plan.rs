@@ -3,11 +3,11 @@
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
+use asperity::quantities::Quantities;
 use asperity::surface::Part;
 
 use super::measured::Measured;
-pub use super::raw::Field;
-use asperity::quantities::Quantities;
+use crate::store::FieldKind;
 
 /// One part of the undeformed gap.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,7 +24,7 @@ pub struct Output {
     /// Directory of the result.
     pub path: PathBuf,
     /// The fields that are stored.
-    pub fields: BTreeSet<Field>,
+    pub fields: BTreeSet<FieldKind>,
     /// The rows whose fields are stored.
     pub rows: Rows,
     /// The quantities of each row; with `all_quantities` those that the case allows are added.
@@ -80,23 +80,5 @@ impl Rows {
         let first = times.partition_point(|t| *t <= start * (1.0 + SAME));
         let last = times.partition_point(|t| *t < end * (1.0 - SAME));
         times.get(first..last).unwrap_or_default()
-    }
-}
-
-impl Field {
-    /// Name in case files and results.
-    pub fn name(self) -> &'static str {
-        match self {
-            Field::Pressure => "pressure",
-            Field::Gap => "gap",
-            Field::Displacement => "displacement",
-            Field::Contact => "contact",
-            Field::Flattening => "flattening",
-        }
-    }
-
-    /// Bytes per cell.
-    pub(super) fn bytes(self) -> u64 {
-        if self == Field::Contact { 1 } else { 8 }
     }
 }

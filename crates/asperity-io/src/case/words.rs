@@ -16,6 +16,10 @@ fn not_available(name: &str) -> Option<&'static str> {
     NOT_AVAILABLE.iter().find(|known| known.0 == name).map(|known| known.1)
 }
 
+/// Keys of earlier versions: what became of them, and what to do.
+const RETIRED: &[(&str, &str)] =
+    &[("solver.precision", "is retired: the solver works in double precision throughout; delete the line")];
+
 /// A fault that serde found while it read the section at `section`.
 pub fn translate(text: &Text<'_>, error: &toml::de::Error, section: Range<usize>) -> CaseError {
     let message = error.message();
@@ -61,6 +65,9 @@ pub fn unknown_key(text: &Text<'_>, span: &Range<usize>, name: &str, known: &[&s
         [] => "no key".to_owned(),
         _ => format!("one of {}", known.join(", ")),
     };
+    if let Some((_, reason)) = RETIRED.iter().find(|retired| retired.0 == key) {
+        return text.error(span, key.clone(), None, "no such key", None, format!("{key} {reason}"));
+    }
     let (message, help) = match (not_available(name), nearest(name, known)) {
         (Some(reason), _) => (format!("{key} {reason}"), None),
         (None, Some(near)) => {

@@ -2,9 +2,10 @@
 
 use std::fmt::Write;
 
-use asperity::material::{Creep, Modulus, Relaxation, Shift};
+use asperity::material::{Creep, Relaxation, Shift};
 
 use super::{Curves, Fitted, Series};
+use crate::choice;
 
 impl Fitted {
     /// `material = { ... }` in full precision, to stand under a `[[body]]` of a case file or in a file of its own,
@@ -24,10 +25,7 @@ impl Fitted {
             100.0 * self.misfit.rms,
             100.0 * self.misfit.max,
         );
-        let measure = match self.material.measure() {
-            Modulus::Young => "young",
-            Modulus::Shear => "shear",
-        };
+        let measure = choice::word(&self.material.measure());
         match &self.series {
             Series::Relaxation(relaxation) => prony(&mut text, measure, relaxation, &self.uncertainty),
             Series::Creep(function) => creep(&mut text, measure, function, &self.uncertainty),

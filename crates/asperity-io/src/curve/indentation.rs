@@ -18,6 +18,7 @@ use super::bytes;
 use super::columns::{self, Columns, Form, Role};
 use super::error::CurveError;
 use super::table::Table;
+use crate::choice;
 
 /// The columns of a record.
 const FORM: Form = Form { name: "indentation", roles: &[Role::Time, Role::Load, Role::Depth], t: Role::Time };
@@ -97,10 +98,7 @@ pub fn indentation_block(record: &Indentation, fit: &IndentationFit, of: Materia
         fit.rows.len(),
         100.0 * fit.relative_rms,
     );
-    let measure = match of.modulus {
-        Modulus::Young => "young",
-        Modulus::Shear => "shear",
-    };
+    let measure = choice::word(&of.modulus);
     let interval = |x: Interval, unit: &str| format!("{:.3e} to {:.3e} {unit}", x.low, x.high);
     let equilibrium = of.of(fit.equilibrium);
     let _ = writeln!(text, "poisson = {:?}", of.poisson);

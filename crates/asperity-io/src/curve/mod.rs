@@ -38,12 +38,16 @@ pub use error::CurveError;
 pub use fit::{Fitted, Request, Series, ShiftRequest};
 pub use indentation::{Indentation, MaterialOf, indentation_block};
 
+use serde::Deserialize;
+
+use crate::choice;
 use columns::Values;
 use error::{Fault, fault};
 use table::Table;
 
 /// What was measured.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Kind {
     /// Relaxation modulus over time.
     #[default]
@@ -57,11 +61,7 @@ pub enum Kind {
 impl Kind {
     /// "relaxation", "creep" or "dma".
     pub fn name(self) -> &'static str {
-        match self {
-            Kind::Relaxation => "relaxation",
-            Kind::Creep => "creep",
-            Kind::Dma => "dma",
-        }
+        choice::word(&self)
     }
 
     /// The quantities that a file has or may have, in the order of its columns.

@@ -65,6 +65,15 @@ impl From<io::Error> for WriteError {
     }
 }
 
+impl From<rust_hdf5::Hdf5Error> for WriteError {
+    fn from(error: rust_hdf5::Hdf5Error) -> Self {
+        match error {
+            rust_hdf5::Hdf5Error::Io(error) => WriteError::Io(error),
+            other => WriteError::Io(io::Error::other(other)),
+        }
+    }
+}
+
 impl From<StoreError> for WriteError {
     fn from(error: StoreError) -> Self {
         WriteError::Other(error.into())

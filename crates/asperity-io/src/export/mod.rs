@@ -128,7 +128,7 @@ pub fn export(reader: &Reader, format: Format, path: &Path, options: &Options) -
     let force = options.force;
     match format {
         Format::NetCdf => output::file(path, force, |file| netcdf::write(&contents, file)),
-        Format::Hdf5 => output::file(path, force, |file| hdf5::write(&contents, file)),
+        Format::Hdf5 => output::replace(path, force, |path| hdf5::write(&contents, path)),
         Format::Npz => output::file(path, force, |file| npz::write(&contents, file)),
         Format::Vtk => vtk::export(&contents, path, force),
         Format::Csv => csv::export(&contents, path, force),

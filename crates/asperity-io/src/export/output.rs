@@ -15,12 +15,22 @@ pub(super) fn file(
     force: bool,
     write: impl FnOnce(&mut Output) -> Result<(), WriteError>,
 ) -> Result<Vec<PathBuf>> {
+    replace(path, force, |partial| {
+        let mut output = BufWriter::with_capacity(1 << 18, File::create_new(partial)?);
+        write(&mut output)?;
+        Ok(output.flush()?)
+    })
+}
+
+/// Lets `write` make a file at the path that it is given, which then appears at `path`.
+pub(super) fn replace(
+    path: &Path,
+    force: bool,
+    write: impl FnOnce(&Path) -> Result<(), WriteError>,
+) -> Result<Vec<PathBuf>> {
     check(path, force)?;
     let partial = partial(path)?;
-    let file = File::create_new(&partial).map_err(|error| WriteError::Io(error).at(path))?;
-    let mut output = BufWriter::with_capacity(1 << 18, file);
-    let written =
-        write(&mut output).and_then(|()| Ok(output.flush()?)).and_then(|()| Ok(fs::rename(&partial, path)?));
+    let written = write(&partial).and_then(|()| Ok(fs::rename(&partial, path)?));
     written.map_err(|error| {
         let _ = fs::remove_file(&partial);
         error.at(path)

@@ -16,7 +16,7 @@ use ndarray::Array2;
 use serde_json::{Map, Value, json};
 use thiserror::Error;
 
-use crate::case::{self, Case, CaseErrors};
+use crate::case::{Case, CaseErrors};
 use crate::store::{Field, FieldKind, Header, Outcome, Status, StoreError, Work, Writer};
 
 pub use memory::peak_memory_bytes;
@@ -202,10 +202,10 @@ impl<'a> Maps<'a> {
         let map = |kept: bool| Array2::zeros(if kept { shape } else { (0, 0) });
         Maps {
             case,
-            gap: map(keeps(case::Field::Gap)),
-            displacement: map(keeps(case::Field::Displacement)),
-            flattening: map(keeps(case::Field::Flattening)),
-            contact: Array2::zeros(if keeps(case::Field::Contact) { shape } else { (0, 0) }),
+            gap: map(keeps(FieldKind::Gap)),
+            displacement: map(keeps(FieldKind::Displacement)),
+            flattening: map(keeps(FieldKind::Flattening)),
+            contact: Array2::zeros(if keeps(FieldKind::Contact) { shape } else { (0, 0) }),
         }
     }
 
@@ -214,22 +214,22 @@ impl<'a> Maps<'a> {
         let output = &self.case.output;
         let keeps = |field| output.fields.contains(&field);
         let mut fields = vec![];
-        if keeps(case::Field::Pressure) {
+        if keeps(FieldKind::Pressure) {
             fields.push(Field::Pressure(step.pressure()));
         }
-        if keeps(case::Field::Gap) {
+        if keeps(FieldKind::Gap) {
             step.gap_into(&mut self.gap);
             fields.push(Field::Gap(self.gap.view()));
         }
-        if keeps(case::Field::Displacement) {
+        if keeps(FieldKind::Displacement) {
             step.displacement_into(&mut self.displacement);
             fields.push(Field::Displacement(self.displacement.view()));
         }
-        if keeps(case::Field::Contact) {
+        if keeps(FieldKind::Contact) {
             step.contact_into(&mut self.contact);
             fields.push(Field::Contact(self.contact.view()));
         }
-        if keeps(case::Field::Flattening) {
+        if keeps(FieldKind::Flattening) {
             step.flattening_into(&mut self.flattening);
             fields.push(Field::Flattening(self.flattening.view()));
         }
@@ -239,19 +239,12 @@ impl<'a> Maps<'a> {
 
 /// What the result says of the run before it starts.
 fn header(case: &Case, simulation: &Simulation) -> Header {
-    let field = |field: &case::Field| match field {
-        case::Field::Pressure => FieldKind::Pressure,
-        case::Field::Gap => FieldKind::Gap,
-        case::Field::Displacement => FieldKind::Displacement,
-        case::Field::Contact => FieldKind::Contact,
-        case::Field::Flattening => FieldKind::Flattening,
-    };
     Header {
         title: case.title.clone().unwrap_or_default(),
         case_text: case.source.clone(),
         version: env!("CARGO_PKG_VERSION").to_owned(),
         grid: simulation.grid,
-        fields: case.output.fields.iter().map(field).collect(),
+        fields: case.output.fields.iter().copied().collect(),
         // Checked with the simulation.
         quantities: simulation.columns().unwrap_or_default(),
         rows_expected: Some(simulation.plan()).filter(|plan| plan.exact).map(|plan| plan.instants.len()),

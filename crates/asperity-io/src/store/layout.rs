@@ -2,9 +2,12 @@
 
 use asperity::march::Row;
 use asperity::quantities::{Column as Quantity, Quantity as Kind};
+use schemars::JsonSchema;
+use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::header::Header;
+use crate::choice;
 
 /// Rows per chunk of the per-step arrays: 32 KiB, one file each for all but the longest runs.
 pub(super) const ROWS_PER_CHUNK: usize = 4096;
@@ -14,17 +17,18 @@ const HISTOGRAMS_PER_CHUNK: usize = 256;
 const LONGEST_SIDE: usize = 256;
 
 /// A field on the grid that a result may keep over time.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
 pub enum FieldKind {
-    /// Pressure p \[Pa\], positive in compression.
+    /// Contact pressure p, in Pa, positive in compression.
     Pressure,
-    /// Gap h \[m\] of the deformed surfaces.
+    /// Gap h between the deformed surfaces, in m.
     Gap,
-    /// Normal displacement u \[m\].
+    /// Normal displacement u, in m.
     Displacement,
     /// Contact state: 0 out of contact, 1 in contact, 2 at the hardness.
     Contact,
-    /// Permanent flattening \[m\]: what the undeformed gap has gained.
+    /// Permanent flattening, in m: what the undeformed gap has gained; with plasticity = "accumulate".
     Flattening,
 }
 
@@ -40,18 +44,12 @@ impl FieldKind {
 
     /// Its name in case files and results.
     pub fn name(self) -> &'static str {
-        match self {
-            FieldKind::Pressure => "pressure",
-            FieldKind::Gap => "gap",
-            FieldKind::Displacement => "displacement",
-            FieldKind::Contact => "contact",
-            FieldKind::Flattening => "flattening",
-        }
+        choice::word(&self)
     }
 
     /// The kind of that name.
     pub fn from_name(name: &str) -> Option<FieldKind> {
-        FieldKind::ALL.into_iter().find(|kind| kind.name() == name)
+        choice::parse(name)
     }
 
     /// Its unit; "1" where it has none.
@@ -61,6 +59,11 @@ impl FieldKind {
             FieldKind::Gap | FieldKind::Displacement | FieldKind::Flattening => "m",
             FieldKind::Contact => "1",
         }
+    }
+
+    /// Bytes per cell.
+    pub(crate) fn bytes(self) -> u64 {
+        if self == FieldKind::Contact { 1 } else { 8 }
     }
 
     /// What it is, for axes and legends.

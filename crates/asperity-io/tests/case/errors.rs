@@ -167,6 +167,14 @@ fn keys_and_words() {
 }
 
 #[test]
+fn a_retired_key_says_what_to_do() {
+    let words = ["solver.precision is retired", "delete the line"];
+    says("tolerance = 1e-6", "precision = \"mixed\"", "solver.precision", 43, &words);
+    let overridden = Case::parse(GOOD, Path::new("."), &["solver.precision=double".into()]).unwrap_err();
+    assert!(words.iter().all(|word| overridden.to_string().contains(word)), "{overridden}");
+}
+
+#[test]
 fn a_missing_section_is_named_with_its_header() {
     for (start, end, words) in [
         ("[domain]", "[[surface]]", "the section [domain] is missing"),

@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use asperity::March;
-use asperity_io::case::templates::{TEMPLATES, Template};
-use asperity_io::case::{Case, Field, Rows};
+use asperity_examples::{TEMPLATES, Template};
+use asperity_io::case::{Case, Rows};
+use asperity_io::store::FieldKind;
 
 fn examples() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples")
@@ -64,16 +65,7 @@ fn every_starter_case_is_solved_on_a_coarse_grid() {
 }
 
 #[test]
-fn the_examples_of_the_repository_are_the_starter_cases() {
-    if !examples().exists() {
-        eprintln!("skipped: the package without its repository has no examples");
-        return;
-    }
-    for template in TEMPLATES {
-        let path = examples().join(format!("{}.toml", template.name));
-        let text = std::fs::read_to_string(&path).unwrap();
-        assert!(text == template.text, "{} differs from its template; copy it", path.display());
-    }
+fn every_example_is_read() {
     for entry in std::fs::read_dir(examples()).unwrap() {
         let path = entry.unwrap().path();
         if path.extension().is_some_and(|extension| extension == "toml") {
@@ -99,20 +91,18 @@ fn the_case_of_the_paper_is_the_paper_s() {
     assert_eq!((description.rows, description.stored_rows), (Some(101), Some(11)));
     assert_eq!(description.memory_bytes, (1 << 20) * 232);
     assert_eq!(case.output.path, Path::new("rough_pmma.zarr"));
-    assert_eq!(case.output.fields.iter().copied().collect::<Vec<_>>(), [Field::Pressure, Field::Gap]);
+    assert_eq!(case.output.fields.iter().copied().collect::<Vec<_>>(), [FieldKind::Pressure, FieldKind::Gap]);
     assert_eq!(case.output.rows, Rows::Every(10));
     assert!(case.output.checkpoint);
 }
 
 #[test]
 fn the_rubber_that_warms_up_is_solved_on_a_coarse_grid() {
-    let path = examples().join("rubber-dma.toml");
-    if !path.exists() {
-        eprintln!("skipped: the package without its repository has no examples");
-        return;
-    }
-    let case = Case::read(&path, &["domain.cells=[48, 48]".into(), "time.steps=22".into()])
-        .unwrap_or_else(|errors| panic!("{errors}"));
+    let case = Case::read(
+        &examples().join("rubber-dma.toml"),
+        &["domain.cells=[48, 48]".into(), "time.steps=22".into()],
+    )
+    .unwrap_or_else(|errors| panic!("{errors}"));
     let description = case.describe();
     let report = &description.materials[0];
     // Eight sweeps of 13 points with 2 % of scatter, met to the scatter.

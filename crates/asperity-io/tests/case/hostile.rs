@@ -5,8 +5,8 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::Duration;
 
+use asperity_examples::TEMPLATES;
 use asperity_io::case::quantity::{Compliance, Length};
-use asperity_io::case::templates::TEMPLATES;
 use asperity_io::case::{Case, CaseErrors};
 use proptest::prelude::*;
 

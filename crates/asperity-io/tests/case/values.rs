@@ -5,10 +5,9 @@ use std::path::Path;
 use asperity::material::Lateral;
 use asperity::quantities::{Quantities, Quantity};
 use asperity::surface::{Part, Punch, Roughness, Shape};
-use asperity::{
-    Boundary, Control, Course, Event, History, Method, Plasticity, Precision, Scheme, Stage, TimeGrid,
-};
-use asperity_io::case::{Case, Field, Rows, Surface};
+use asperity::{Boundary, Control, Course, Event, History, Method, Plasticity, Scheme, Stage, TimeGrid};
+use asperity_io::case::{Case, Rows, Surface};
+use asperity_io::store::FieldKind;
 
 const FRAME: &str = r#"
 domain = { cells = [40, 20], size = ["2 mm", "1 mm"], boundary = "periodic" }
@@ -239,7 +238,10 @@ fn times_schemes_and_solver() {
     assert_eq!((plain.solver.method, plain.solver.tolerance), (Method::ProjectedCg, 1e-6));
     assert_eq!(plain.output.rows, Rows::Every(1)); // 10 steps: about ten fields
     assert_eq!(plain.output.path, Path::new("result.zarr"));
-    assert_eq!(plain.output.fields.iter().copied().collect::<Vec<_>>(), [Field::Pressure, Field::Gap]);
+    assert_eq!(
+        plain.output.fields.iter().copied().collect::<Vec<_>>(),
+        [FieldKind::Pressure, FieldKind::Gap]
+    );
 
     let listed = case(Parts { time: r#"{ times = ["1 s", 5], scheme = "constant" }"#, ..PARTS });
     assert_eq!((listed.times, listed.scheme), (TimeGrid::List(vec![1.0, 5.0]), Scheme::Constant));
@@ -258,7 +260,7 @@ fn times_schemes_and_solver() {
     assert_eq!(first(r#"{ end = 100, steps = 1000, spacing = "log" }"#), log(1000));
 
     let more = r#"
-solver = { method = "polonsky-keer", tolerance = 1e-8, max_iterations = 77, precision = "double", plasticity = "cap" }
+solver = { method = "polonsky-keer", tolerance = 1e-8, max_iterations = 77, plasticity = "cap" }
 output = { path = "a/b.zarr", fields = ["contact", "contact"], times = ["0 s", "7 s", "12 s"], checkpoint = false }
 "#;
     let case = case(Parts { more, ..PARTS });
@@ -358,22 +360,14 @@ fn quantities_are_those_named_or_all_that_the_case_allows() {
     let dented = "solver = { plasticity = \"accumulate\" }\noutput = { fields = [\"flattening\"] }";
     let case = case(Parts { more: dented, body: hard, ..PARTS });
     assert_eq!(case.plasticity, Plasticity::Accumulate);
-    assert_eq!(case.output.fields.iter().copied().collect::<Vec<_>>(), [Field::Flattening]);
-}
-
-#[test]
-fn the_precision_of_the_iterations_is_chosen() {
-    let precision = |more: &'static str| case(Parts { more, ..PARTS }).solver.precision;
-    assert_eq!(precision(""), Precision::Double);
-    assert_eq!(precision("solver = { precision = \"double\" }"), Precision::Double);
-    assert_eq!(precision("solver = { precision = \"mixed\" }"), Precision::Mixed);
+    assert_eq!(case.output.fields.iter().copied().collect::<Vec<_>>(), [FieldKind::Flattening]);
 }
 
 #[test]
 fn the_result_lies_beside_the_user_under_the_case_s_name() {
     let dir = tempfile::tempdir().unwrap();
     let path = dir.path().join("run.v2.toml");
-    std::fs::write(&path, asperity_io::case::templates::Template::find("hertz").unwrap().text).unwrap();
+    std::fs::write(&path, asperity_examples::Template::find("hertz").unwrap().text).unwrap();
     assert_eq!(Case::read(&path, &[]).unwrap().output.path, Path::new("run.v2.zarr"));
 }
 

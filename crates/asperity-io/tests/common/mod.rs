@@ -149,12 +149,18 @@ pub(crate) fn le_bytes(map: &Array2<f64>) -> Vec<u8> {
 }
 
 /// The Python interpreter `ASPERITY_PYTHON` (default `python3`), if it has these modules; says so if not.
+///
+/// Where everything is installed that tests need (under `cargo xtask test`, which sets the variable, and where `CI` is
+/// set), a Python without them is a failure.
 pub(crate) fn python(modules: &str) -> Option<std::ffi::OsString> {
-    let python = std::env::var_os("ASPERITY_PYTHON").unwrap_or("python3".into());
+    let named = std::env::var_os("ASPERITY_PYTHON");
+    let must_run = named.is_some() || std::env::var_os("CI").is_some();
+    let python = named.unwrap_or("python3".into());
     let probe = std::process::Command::new(&python).args(["-c", &format!("import {modules}")]).output();
     if probe.is_ok_and(|probe| probe.status.success()) {
         return Some(python);
     }
+    assert!(!must_run, "{} does not import {modules}", python.display());
     eprintln!("skipped: {} does not import {modules}", python.display());
     None
 }

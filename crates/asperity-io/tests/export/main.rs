@@ -222,7 +222,7 @@ fn what_the_result_does_not_hold_is_said_with_what_it_holds() {
 
 #[test]
 fn other_programs_read_the_bits() {
-    let Some(python) = python("numpy") else { return };
+    let Some(python) = python("numpy, xarray, h5py, netCDF4, h5netcdf, scipy") else { return };
     let (directory, path, case) = result([37, 11]);
     let reader = Reader::open(&path).unwrap();
     for format in Format::ALL {

@@ -1,5 +1,5 @@
-//! xarray, zarr-python and NetCDF read what Rust wrote. Skips with a message where they are not installed;
-//! `ASPERITY_PYTHON` names the interpreter to use (default `python3`).
+//! xarray, zarr-python and NetCDF read what Rust wrote. Skipped with a message where they are not installed, but not
+//! under `cargo xtask test`; `ASPERITY_PYTHON` names the interpreter to use (default `python3`).
 
 use std::fs;
 
@@ -9,7 +9,7 @@ use crate::{Case, le_bytes, place, python, run_python};
 
 #[test]
 fn xarray_reads_the_bits_without_a_warning() {
-    let Some(python) = python("numpy, xarray, zarr") else { return };
+    let Some(python) = python("numpy, xarray, zarr, scipy") else { return };
     let case = Case::new([300, 257], &FieldKind::ALL);
     let (directory, path) = place();
     let mut writer = Writer::create(&path, &case.header, case.gap.view(), false).unwrap();

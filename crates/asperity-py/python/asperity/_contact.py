@@ -69,7 +69,6 @@ def elastic(
     hardness: float | npt.ArrayLike | None = None,
     boundary: str = "free",
     method: str = "projected-cg",
-    precision: str = "double",
     tolerance: float = 1e-6,
     max_iterations: int = 5000,
 ) -> ElasticContact:
@@ -84,7 +83,6 @@ def elastic(
     hardness : largest pressure [Pa], of all cells or as array (nx, ny)
     boundary : "free" or "periodic"
     method : "projected-cg" or "polonsky-keer"
-    precision : "double", or "mixed": the convolutions of iterations in single precision, to the same tolerance
 
     Raises
     ------
@@ -117,7 +115,6 @@ def elastic(
         cells,
         boundary,
         method,
-        precision,
         number("tolerance", tolerance),
         count("max_iterations", max_iterations),
     )

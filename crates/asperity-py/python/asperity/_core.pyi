@@ -101,7 +101,6 @@ class March:
         temperatures: list[tuple[float, float]],
         scheme: str,
         method: str,
-        precision: str,
         tolerance: float,
         max_iterations: int,
         hardness_map: _Floats | None,
@@ -155,7 +154,6 @@ def elastic(
     hardness_map: _Floats | None,
     boundary: str,
     method: str,
-    precision: str,
     tolerance: float,
     max_iterations: int,
 ) -> dict[str, Any]: ...

@@ -119,7 +119,6 @@ def march(
     boundary: str = "free",
     scheme: str = "linear",
     method: str = "projected-cg",
-    precision: str = "double",
     tolerance: float = 1e-6,
     max_iterations: int = 5000,
     plasticity: str = "cap",
@@ -175,7 +174,6 @@ def march(
         temperatures=temperatures(temperature),
         scheme=scheme,
         method=method,
-        precision=precision,
         tolerance=number("tolerance", tolerance),
         max_iterations=count("max_iterations", max_iterations),
         hardness_map=cells,
@@ -193,7 +191,6 @@ def march(
         "history": history,
         "scheme": scheme,
         "method": method,
-        "precision": precision,
         "plasticity": plasticity,
         "solver_tolerance": float(tolerance),
         "end": core.times()[-1],
@@ -225,7 +222,6 @@ def solve(
     boundary: str = "free",
     scheme: str = "linear",
     method: str = "projected-cg",
-    precision: str = "double",
     tolerance: float = 1e-6,
     max_iterations: int = 5000,
     plasticity: str = "cap",
@@ -255,7 +251,6 @@ def solve(
         of every material that has a shift and no temperature of its own
     scheme : "linear" (second order), "constant" (SC17) or "direct" (full hereditary sum)
     method : "projected-cg" or "polonsky-keer"
-    precision : "double", or "mixed": the convolutions of iterations in single precision, to the same tolerance
     plasticity : what flattening at the hardness leaves: "cap" (nothing) or "accumulate" (it stays, as the field "flattening")
     quantities : numbers of each row besides: "contact_stiffness", "contact_spots", "largest_spot", "mean_spot",
         "contact_perimeter", "rms_gap", "elastic_energy", "dissipated_energy", "flattening_work", "external_work", and
@@ -296,7 +291,6 @@ def solve(
         boundary=boundary,
         scheme=scheme,
         method=method,
-        precision=precision,
         tolerance=tolerance,
         max_iterations=max_iterations,
         plasticity=plasticity,

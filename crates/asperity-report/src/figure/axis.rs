@@ -1,6 +1,6 @@
 //! Axes: from values to places, with ticks at round numbers.
 
-use super::unit::{Shown, shown, superscript};
+use asperity_io::readable::{Shown, shown, superscript};
 
 /// How values become places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,7 +16,7 @@ pub enum Scale {
 pub struct Axis {
     /// The quantity, `time`.
     pub label: String,
-    /// Its SI unit, see [`shown`](super::shown()); empty for a plain number.
+    /// Its SI unit, see [`shown`](shown()); empty for a plain number.
     pub unit: String,
     /// How values become places.
     pub scale: Scale,

@@ -1,5 +1,6 @@
 //! A panel of a map: values over the area in colours, with colour bar and scale bar.
 
+use asperity_io::readable::shown;
 use ndarray::{Array2, ArrayView2};
 
 use super::axis::{Axis, Ruler};
@@ -8,7 +9,6 @@ use super::curves::frame;
 use super::font;
 use super::raster::{self, BLANK};
 use super::svg::{Anchor, Drawing, INK};
-use super::unit::shown;
 use super::{Place, SMALL, TEXT};
 
 /// What the values of a map are.
@@ -18,7 +18,7 @@ pub enum Values {
     Quantity {
         /// The quantity, `height`.
         label: String,
-        /// Its SI unit, see [`shown`](super::shown()).
+        /// Its SI unit, see [`shown`](shown()).
         unit: String,
         /// The colours.
         colours: Colours,

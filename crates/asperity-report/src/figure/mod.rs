@@ -18,7 +18,6 @@ mod font;
 mod map;
 mod raster;
 mod svg;
-mod unit;
 mod write;
 
 pub use axis::{Axis, Scale};
@@ -26,7 +25,6 @@ pub use colours::Colours;
 pub use curves::{Curves, Series, Style};
 pub use map::{Map, UNDEFINED, Values};
 pub(crate) use raster::{means, states};
-pub use unit::{Shown, shown};
 pub use write::{FigureError, Form};
 
 use svg::{Anchor, Drawing};

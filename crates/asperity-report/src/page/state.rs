@@ -1,5 +1,6 @@
 //! What a page knows besides its maps.
 
+use asperity_io::readable::quantity;
 use asperity_io::store::{FieldKind, Reader, Status, StoreError};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -8,7 +9,6 @@ use serde_json::{Map, Value, json};
 use super::maps::Maps;
 use super::material;
 use crate::figure::Colours;
-use crate::result::words;
 
 /// The result's title, or its file name.
 pub(super) fn title(reader: &Reader) -> String {
@@ -114,20 +114,20 @@ fn status(reader: &Reader) -> String {
 fn headline(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
     let rows = reader.rows()?;
     let Some(last) = rows.last() else { return Ok(vec![]) };
-    let corrected = words(last.contact_area_corrected, "m2");
+    let corrected = quantity(last.contact_area_corrected, "m2");
     let mut lines = vec![
-        [format!("at time (last of {} rows)", rows.len()), words(last.time, "s")],
-        ["load".into(), words(last.load, "N")],
-        ["approach".into(), words(last.approach, "m")],
-        [format!("contact area, {} corrected", corrected), words(last.contact_area, "m2")],
+        [format!("at time (last of {} rows)", rows.len()), quantity(last.time, "s")],
+        ["load".into(), quantity(last.load, "N")],
+        ["approach".into(), quantity(last.approach, "m")],
+        [format!("contact area, {} corrected", corrected), quantity(last.contact_area, "m2")],
         ["of the nominal area".into(), format!("{:.2} %", 100.0 * last.contact_fraction)],
         [
-            format!("largest pressure, mean {}", words(last.mean_pressure, "Pa")),
-            words(last.max_pressure, "Pa"),
+            format!("largest pressure, mean {}", quantity(last.mean_pressure, "Pa")),
+            quantity(last.max_pressure, "Pa"),
         ],
     ];
     if last.capped_area > 0.0 {
-        lines.push(["at the hardness".into(), words(last.capped_area, "m2")]);
+        lines.push(["at the hardness".into(), quantity(last.capped_area, "m2")]);
     }
     Ok(lines)
 }
@@ -138,8 +138,10 @@ fn facts(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
     let setup = &header.setup;
     let [nx, ny] = header.grid.cells();
     let [lx, ly] = header.grid.size();
-    let mut lines =
-        vec![["Domain".to_owned(), format!("{nx} × {ny} cells, {} × {}", words(lx, "m"), words(ly, "m"))]];
+    let mut lines = vec![[
+        "Domain".to_owned(),
+        format!("{nx} × {ny} cells, {} × {}", quantity(lx, "m"), quantity(ly, "m")),
+    ]];
     let mut line =
         |name: &str, value: Option<String>| lines.extend(value.map(|value| [name.to_owned(), value]));
     let text = |key: &str| setup.get(key).and_then(Value::as_str);
@@ -149,7 +151,7 @@ fn facts(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
             .map(|list| list.filter_map(Value::as_str).collect::<Vec<_>>().join(", "))
             .filter(|s| !s.is_empty())
     };
-    let number = |key: &str, unit: &str| setup.get(key).and_then(Value::as_f64).map(|v| words(v, unit));
+    let number = |key: &str, unit: &str| setup.get(key).and_then(Value::as_f64).map(|v| quantity(v, unit));
     line(
         "Boundary",
         text("boundary").map(|word| match word {
@@ -166,9 +168,9 @@ fn facts(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
         match times[..] {
             [] => "none (elastic)".to_owned(),
             [first, .., last] if times.len() > 4 => {
-                format!("{} from {} to {}", times.len(), words(first, "s"), words(last, "s"))
+                format!("{} from {} to {}", times.len(), quantity(first, "s"), quantity(last, "s"))
             }
-            _ => times.iter().map(|t| words(*t, "s")).collect::<Vec<_>>().join(", "),
+            _ => times.iter().map(|t| quantity(*t, "s")).collect::<Vec<_>>().join(", "),
         }
     });
     line("Retardation times", times);
@@ -188,7 +190,7 @@ fn facts(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
             "{} convolutions, {per_row:.1} per row; {} iterations; {}{threads}",
             work.convolutions,
             work.iterations,
-            words(work.wall_s, "s"),
+            quantity(work.wall_s, "s"),
         )),
     );
     line("Peak memory", work.peak_memory_bytes.map(|bytes| format!("{:.1} MiB", bytes as f64 / 1048576.0)));

@@ -4,11 +4,12 @@ use asperity::Boundary;
 use asperity::surface::process::{Window, window};
 use asperity::surface::statistics::{HeightStatistics, RadialSpectrum, Rings, SlopeStatistics};
 use asperity::surface::{Level, Surface, level};
+use asperity_io::readable::quantity;
 use asperity_io::store::{Reader, StoreError};
 use ndarray::Array2;
 use serde_json::{Value, json};
 
-use crate::result::{boundary, words};
+use crate::result::boundary;
 
 /// Roughness below this share of the gap's range is rounding.
 const SMOOTH: f64 = 1e-9;
@@ -25,15 +26,15 @@ pub(super) fn surface(reader: &Reader) -> Result<Option<(Array2<f64>, Value)>, S
         return Ok(None);
     }
     let mut lines = vec![
-        ("Sq, rms height", words(statistics.sq, "m")),
-        ("Sa, mean height", words(statistics.sa, "m")),
-        ("Sz, height range", words(statistics.sz, "m")),
-        ("Ssk, skewness", words(statistics.ssk, "")),
-        ("Sku, kurtosis", words(statistics.sku, "")),
+        ("Sq, rms height", quantity(statistics.sq, "m")),
+        ("Sa, mean height", quantity(statistics.sa, "m")),
+        ("Sz, height range", quantity(statistics.sz, "m")),
+        ("Ssk, skewness", quantity(statistics.ssk, "")),
+        ("Sku, kurtosis", quantity(statistics.sku, "")),
     ];
     if let Ok(slopes) = SlopeStatistics::of(&map) {
-        lines.push(("Sdq, rms slope", words(slopes.sdq, "")));
-        lines.push(("Sdr, area in excess", format!("{} %", words(100.0 * slopes.sdr, ""))));
+        lines.push(("Sdq, rms slope", quantity(slopes.sdq, "")));
+        lines.push(("Sdr, area in excess", format!("{} %", quantity(100.0 * slopes.sdr, ""))));
     }
     let periodic = boundary(reader) == Boundary::Periodic;
     let spectrum = match (map.undefined(), periodic) {

@@ -4,11 +4,12 @@ use asperity::operator::half_space;
 use asperity::surface::statistics::rms_gradient;
 use asperity::{ContactState, Grid, Method, Prescribed, Problem, Solver};
 use asperity_io::case::Case;
+use asperity_io::readable::quantity;
 use asperity_io::store::{At, FieldKind, Reader};
 
 use super::{Difference, Options, Reproduction, Result};
 use crate::figure::{Axis, Curves, Figure, Series, Style};
-use crate::result::{Options as Show, Plot, figure, words};
+use crate::result::{Options as Show, Plot, figure};
 
 const CASE: &str = include_str!("../../../../examples/paper/fig5-8-rough-pmma.toml");
 
@@ -120,7 +121,7 @@ fn evolution(case: &Case, ours: &Reader, theirs: &Reader) -> Result<Reproduction
         "From {:.2} % to {:.2} % of the nominal area; SC17's method is of first order in time. Load {}, limit 300 MPa.",
         100.0 * sizes.first().copied().unwrap_or(f64::NAN),
         100.0 * sizes.last().copied().unwrap_or(f64::NAN),
-        words(0.5, "N")
+        quantity(0.5, "N")
     );
     Ok(Reproduction::new(8, "contact area and approach over time", figure, differences, &more))
 }

@@ -4,11 +4,11 @@ use std::f64::consts::PI;
 
 use asperity::History;
 use asperity::reference::{CappedHertz, HertzSphere, Ting};
+use asperity_io::readable::quantity;
 use asperity_io::store::{At, FieldKind, Reader};
 
 use super::{Difference, Options, Reproduction, Result};
 use crate::figure::{Axis, Curves, Figure, Series, Style};
-use crate::result::words;
 
 const FIGURE_1: &str = include_str!("../../../../examples/paper/fig1-zener-step.toml");
 const FIGURE_2: &str = include_str!("../../../../examples/paper/fig2-capped-sphere.toml");
@@ -78,7 +78,7 @@ pub(super) fn zener_step(options: &Options) -> Result<Reproduction> {
         }
         let points: Vec<_> = computed.iter().step_by(3).filter(|[r, _]| *r < 1.4 * a0).collect();
         panel = panel.with(Series::new(
-            format!("t = {}", words(*t, "s")),
+            format!("t = {}", quantity(*t, "s")),
             Style::Points,
             points.iter().map(|[r, _]| r / a0).collect::<Vec<_>>(),
             points.iter().map(|[_, p]| p / p0).collect::<Vec<_>>(),

@@ -1,9 +1,10 @@
 //! Distributions over the area: pressure, gap, sizes of contact spots.
 
 use asperity::spots::Spots;
+use asperity_io::readable::quantity;
 use asperity_io::store::{At, FieldKind, Reader, StoreError};
 
-use super::{boundary, caption, contact_states, words};
+use super::{boundary, caption, contact_states};
 use crate::figure::{Axis, Curves, Figure, Series, Style};
 
 const BINS: usize = 60;
@@ -57,8 +58,8 @@ pub(super) fn spots(reader: &Reader, at: At) -> Result<Figure, StoreError> {
     let sizes = format!(
         "{} spots, mean area {}, largest {}. {}",
         spots.len(),
-        words(spots.mean_area(), "m2"),
-        words(largest, "m2"),
+        quantity(spots.mean_area(), "m2"),
+        quantity(largest, "m2"),
         caption(reader, reader.index(at)?)?
     );
     let mut figure = Figure::new("").with(panel).caption(sizes);

@@ -16,13 +16,15 @@ mod fields;
 mod profile;
 
 use asperity::Boundary;
+use asperity_io::choice;
+use asperity_io::readable::quantity;
 use asperity_io::store::{At, FieldKind, Reader, StoreError};
 use serde_json::Value;
 
 pub(crate) use evolution::quantity_panels;
 pub(crate) use fields::contact_states;
 
-use crate::figure::{Curves, Figure, Series, shown};
+use crate::figure::{Curves, Figure, Series};
 
 /// A figure of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -204,48 +206,15 @@ fn caption(reader: &Reader, index: usize) -> Result<String, StoreError> {
     };
     Ok(format!(
         "t = {}: load {}, approach {}, contact area {} ({:.2} % of the nominal area).",
-        words(time, "s"),
-        words(at("load")?, "N"),
-        words(at("approach")?, "m"),
-        words(at("contact_area")?, "m2"),
+        quantity(time, "s"),
+        quantity(at("load")?, "N"),
+        quantity(at("approach")?, "m"),
+        quantity(at("contact_area")?, "m2"),
         100.0 * at("contact_fraction")?,
     ))
 }
 
-/// A number with four digits and its unit.
-pub(crate) fn words(value: f64, unit: &str) -> String {
-    let shown = shown(unit, value.abs());
-    let number = value * shown.factor;
-    let digits =
-        if number == 0.0 { 0 } else { (3.0 - number.abs().log10().floor()).clamp(0.0, 12.0) as usize };
-    let text = format!("{number:.digits$}");
-    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    let text =
-        if number.is_finite() && number.abs() >= 1e6 { format!("{number:.3e}") } else { text.to_owned() };
-    if shown.text.is_empty() { text } else { format!("{text} {}", shown.text) }
-}
-
 /// The boundary of the domain that the result was computed on.
 pub(crate) fn boundary(reader: &Reader) -> Boundary {
-    match reader.header().setup.get("boundary").and_then(Value::as_str) {
-        Some("periodic") => Boundary::Periodic,
-        _ => Boundary::Free,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::words;
-
-    #[test]
-    fn numbers_have_four_digits_and_a_prefix() {
-        assert_eq!(words(3.9312e-6, "m"), "3.931 µm");
-        assert_eq!(words(0.5, "N"), "500 mN");
-        assert_eq!(words(0.999_999_6, "N"), "1 N");
-        assert_eq!(words(500.0, "s"), "500 s");
-        assert_eq!(words(5.0696e-9, "m2"), "5070 µm²");
-        assert_eq!(words(0.0, "m"), "0 m");
-        assert_eq!(words(f64::NAN, "m"), "NaN m");
-        assert_eq!(words(3e8, "s"), "3.000e8 s");
-    }
+    reader.header().setup.get("boundary").and_then(Value::as_str).and_then(choice::parse).unwrap_or_default()
 }

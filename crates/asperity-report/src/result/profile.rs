@@ -1,9 +1,10 @@
 //! Pressure and gap along a line.
 
+use asperity_io::readable::quantity;
 use asperity_io::store::{FieldKind, Reader};
 use ndarray::{ArrayView1, ArrayView2, Axis as Side};
 
-use super::{Line, Options, PlotError, caption, nameless, words};
+use super::{Line, Options, PlotError, caption, nameless};
 use crate::figure::{Axis, Curves, Figure, Series, Style};
 
 pub(super) fn profile(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
@@ -53,7 +54,7 @@ pub(super) fn profile(reader: &Reader, options: &Options) -> Result<Figure, Plot
         "Along {} at {} = {}. {}",
         name[0],
         name[1],
-        words(exact, "m"),
+        quantity(exact, "m"),
         caption(reader, index)?
     )))
 }

@@ -43,6 +43,8 @@ use crate::operator::Operator;
 
 /// The solver of the contact problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub enum Method {
     /// Preconditioned projected conjugate gradients, one convolution per iteration.
     #[default]

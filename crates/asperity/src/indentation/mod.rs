@@ -49,6 +49,8 @@ pub struct IndentationRecord<'a> {
 
 /// The channel that is taken as it was measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub enum Given {
     /// The depth; the model meets the load.
     Depth,

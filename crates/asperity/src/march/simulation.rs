@@ -12,26 +12,33 @@ use crate::quantities::{Column, ContactStiffness, Quantities, Quantity};
 use crate::spots::Spots;
 use crate::time::{Plan, TimeGrid};
 
-/// How the hereditary integral is taken over a step.
+/// How the pressure varies over a time step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub enum Scheme {
-    /// Pressure linear in each step: second order. Steps of a material without (or almost without)
-    /// instantaneous compliance, where this would ring, take the constant form.
+    /// Linear in time: second order.
+    ///
+    /// Steps of a material without (or almost without) instantaneous compliance, where this would ring, take the
+    /// constant form.
     #[default]
     Linear,
-    /// Pressure constant in each step: first order, L-stable; SC17's assumption.
+    /// Constant over each step: first order, L-stable; the assumption of SC17.
     Constant,
-    /// SC17's full hereditary sum, pressure constant in each step: every past state is kept.
+    /// The full hereditary sum of SC17 over all steps, pressure constant in each: slow, keeps every pressure field.
     Direct,
 }
 
 /// What flattening at the hardness leaves behind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub enum Plasticity {
-    /// Nothing: the cut-off is reversible, the overlap heals on unloading (SC17).
+    /// Nothing: the pressure is cut off at the hardness, and the overlap heals on unloading (SC17).
     #[default]
     Cap,
-    /// A dent: after each row the overlap of the cells at the hardness is added to their undeformed gap and stays.
+    /// A dent: after each row the overlap of the cells at the hardness is added to their undeformed gap and stays. Needs a
+    /// hardness.
     Accumulate,
 }
 

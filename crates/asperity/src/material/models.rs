@@ -6,10 +6,12 @@
 use crate::error::{Result, positive};
 use crate::material::{Creep, CreepTerm, Relaxation};
 
-/// The measure in which moduli and compliances are given.
+/// The kind of deformation that a modulus or compliance belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub enum Modulus {
-    /// Uniaxial: Young's modulus E(t), creep compliance D(t).
+    /// Uniaxial tension: Young's modulus E(t), creep compliance D(t).
     Young,
     /// Shear: modulus G(t), creep compliance J(t).
     Shear,

@@ -34,39 +34,47 @@ pub use stiffness::ContactStiffness;
 
 /// A quantity that each row may have; see the table of [`self`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub enum Quantity {
-    /// dW/dw \[N/m\]: what a small, sudden change of the approach would change the load by. The bodies answer with
-    /// their instantaneous compliance C(0+), as at the onset of unloading; infinite where that is 0, and in the full
-    /// contact of a periodic body. Cells at the hardness carry no more, unless flattening stays: then they answer
-    /// elastically to unloading and count. A linear solve per row: some ten applications of K.
+    /// Slope of load over approach under a small, sudden change, in N/m; some ten convolutions a row.
+    ///
+    /// The bodies respond with their instantaneous compliance C(0+), as at the onset of unloading; infinite where that
+    /// is 0, and in the full contact of a periodic body. Cells at the hardness carry no more, unless flattening stays:
+    /// then they respond elastically to unloading and count.
     ContactStiffness,
-    /// Number of contact spots. Cells that share an edge belong to one spot; on a periodic domain opposite borders
-    /// are neighbours.
+    /// Number of contact spots.
+    ///
+    /// Cells that share an edge belong to one spot; on a periodic domain opposite borders are neighbours.
     ContactSpots,
-    /// Area of the largest spot \[m²\]; 0 without contact.
+    /// Area of the largest contact spot, in m2; 0 without contact.
     LargestSpot,
-    /// Mean area of a spot \[m²\]; 0 without contact.
+    /// Mean area of a contact spot, in m2; 0 without contact.
     MeanSpot,
-    /// Length of the edges between cells in and out of contact \[m\]; the border of a free domain is none. A smooth
-    /// contour without preferred direction is shorter by π/4 (Yastrebov, Anciaux & Molinari 2017).
+    /// Length of the edges between cells in and out of contact, in m.
+    ///
+    /// The border of a free domain does not count. A smooth contour without preferred direction is shorter by π/4
+    /// (Yastrebov, Anciaux & Molinari 2017).
     ContactPerimeter,
-    /// Root of the mean square of the gap over the cells that can touch \[m\].
+    /// Root of the mean square of the gap over the cells that can touch, in m.
     RmsGap,
-    /// Energy stored in the springs of both bodies \[J\].
+    /// Energy stored in the springs of both bodies, in J.
     ElasticEnergy,
-    /// Energy that the dashpots of both bodies have turned into heat since t = 0 \[J\].
+    /// Energy that the dashpots of both bodies have turned into heat since t = 0, in J.
     DissipatedEnergy,
-    /// Work on the cells at the hardness \[J\], hardness times overlap: given back on unloading where the cut-off is
-    /// reversible, summed up where flattening stays.
+    /// Work on the cells at the hardness, hardness times overlap, in J.
+    ///
+    /// Given back on unloading where the cut-off is reversible, summed up where flattening stays.
     FlatteningWork,
-    /// Work of the load since t = 0 \[J\], ∫ W dw by the trapezoidal rule, jumps exact. It is the sum of the three
-    /// energies, up to the error of the steps.
+    /// Work of the load since t = 0, in J.
+    ///
+    /// ∫ W dw by the trapezoidal rule, jumps exact. It is the sum of the three energies, up to the error of the steps.
     ExternalWork,
-    /// Number of spots per class of area; class k holds spots of 2^k to 2^(k+1) - 1 cells.
+    /// Number of contact spots per class of area: 1 cell, 2 to 3, 4 to 7, and so on.
     SpotHistogram,
-    /// Probability density of the pressure over the cells in contact \[1/Pa\].
+    /// Probability density of the pressure of the cells in contact, in 1/Pa.
     PressureHistogram,
-    /// Probability density of the gap over the open cells \[1/m\].
+    /// Probability density of the gap of the open cells, in 1/m.
     GapHistogram,
 }
 

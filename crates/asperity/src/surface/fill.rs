@@ -13,15 +13,17 @@ use super::spectrum::check_shape;
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 
-/// How undefined points are filled.
+/// What is done about undefined points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub enum Fill {
-    /// Not at all: an undefined point is an error.
+    /// Refuse the surface: an undefined point is an error.
     Error,
-    /// Smoothly, by Laplace's equation.
+    /// Solve Laplace's equation over the holes.
     #[default]
     Harmonic,
-    /// With the height of the nearest defined point.
+    /// Take the height of the nearest defined point.
     Nearest,
 }
 

@@ -8,17 +8,19 @@ use ndarray::{Array2, ArrayView2};
 
 use crate::error::{Error, Result};
 
-/// The form that is removed.
+/// The form that is subtracted from measured heights.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub enum Level {
     /// Nothing.
     #[default]
     None,
     /// The mean.
     Mean,
-    /// The plane a + b x + c y.
+    /// The least-squares plane a + b x + c y.
     Plane,
-    /// a + b x + c y + d x^2 + e x y + f y^2.
+    /// The least-squares polynomial a + b x + c y + d x^2 + e x y + f y^2.
     Quadratic,
 }
 

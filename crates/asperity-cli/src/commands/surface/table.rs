@@ -131,7 +131,7 @@ impl<'a> Portrait<'a> {
         };
         let (nx, ny) = topography.heights.dim();
         let [lx, ly] = topography.size;
-        let metres = |value: f64| quantity(value, "m", 1);
+        let metres = |value: f64| quantity(value, "m");
         line("format", topography.format.to_string(), "");
         line("points", format!("{nx} x {ny}, {} undefined", topography.undefined()), "");
         line("size", format!("{} x {}", metres(lx), metres(ly)), "");

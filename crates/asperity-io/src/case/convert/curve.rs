@@ -2,10 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use asperity::material::{FitOptions, LongTime, Modulus};
+use asperity::material::{FitOptions, Modulus};
 
 use super::Checks;
-use super::material::measure;
 use crate::case::quantity::range::Positive;
 use crate::case::quantity::{Prescribed, QuantityError, dimension};
 use crate::case::raw::{self, At, Two};
@@ -37,7 +36,7 @@ pub fn relaxation(checks: &mut Checks<'_, '_>, m: &raw::RelaxationTable, shift: 
             (Role::Temperature, units.and_then(|u| u.temperature.as_ref())),
         ],
     );
-    fit(checks, Kind::Relaxation, measure(m.modulus), &m.path, &columns, m.fit.as_ref(), shift)
+    fit(checks, Kind::Relaxation, m.modulus, &m.path, &columns, m.fit.as_ref(), shift)
 }
 
 pub fn creep(checks: &mut Checks<'_, '_>, m: &raw::CreepTable, shift: ShiftRequest) -> Option<Fit> {
@@ -55,7 +54,7 @@ pub fn creep(checks: &mut Checks<'_, '_>, m: &raw::CreepTable, shift: ShiftReque
             (Role::Temperature, units.and_then(|u| u.temperature.as_ref())),
         ],
     );
-    fit(checks, Kind::Creep, measure(m.compliance), &m.path, &columns, m.fit.as_ref(), shift)
+    fit(checks, Kind::Creep, m.compliance, &m.path, &columns, m.fit.as_ref(), shift)
 }
 
 pub fn dma(checks: &mut Checks<'_, '_>, m: &raw::Dma, shift: ShiftRequest) -> Option<Fit> {
@@ -84,7 +83,7 @@ pub fn dma(checks: &mut Checks<'_, '_>, m: &raw::Dma, shift: ShiftRequest) -> Op
             (Role::Temperature, units.and_then(|u| u.temperature.as_ref())),
         ],
     );
-    fit(checks, Kind::Dma, measure(m.modulus), &m.path, &columns, m.fit.as_ref(), shift)
+    fit(checks, Kind::Dma, m.modulus, &m.path, &columns, m.fit.as_ref(), shift)
 }
 
 fn said(columns: &[Choice<'_>], units: &[Unit<'_>]) -> Columns {
@@ -131,11 +130,7 @@ fn options(raw: &raw::Fit) -> FitOptions {
         margin: raw.margin.map_or(default.margin, |v| v.get()),
         limit: raw.max_misfit.map_or(default.limit, |v| v.get()),
         max_terms: raw.max_terms.map_or(default.max_terms, |n| n.count()),
-        long_time: match raw.long_time {
-            raw::LongTime::Free => LongTime::Free,
-            raw::LongTime::Solid => LongTime::Solid,
-            raw::LongTime::Fluid => LongTime::Fluid,
-        },
+        long_time: raw.long_time.unwrap_or_default(),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use asperity::{Boundary, Grid, Scheme};
+use asperity::{Grid, Scheme};
 
 use super::Checks;
 use crate::case::measured::Measured;
@@ -70,13 +70,6 @@ pub fn grid(
 /// Where the number of cells stands, or the domain that leaves it out.
 fn cells_place(domain: &At<raw::Domain>) -> &Range<usize> {
     domain.value.cells.as_ref().map_or(&domain.span, |at| &at.span)
-}
-
-pub fn boundary(boundary: raw::Boundary) -> Boundary {
-    match boundary {
-        raw::Boundary::Free => Boundary::Free,
-        raw::Boundary::Periodic => Boundary::Periodic,
-    }
 }
 
 /// Bytes that the problem takes, whose bodies remember `fields` fields; more than the machine has are refused.

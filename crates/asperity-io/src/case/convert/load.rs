@@ -73,7 +73,7 @@ pub fn prescription(
             checks.push(|text| missing_key(text, &load.span, key));
         }
     }
-    let (control, at) = (control(raw.control.as_ref()?.value), raw.history.as_ref()?);
+    let (control, at) = (raw.control.as_ref()?.value, raw.history.as_ref()?);
     if let raw::History::Hold(_) = at.value {
         let help = "kind = \"hold\" belongs to a stage; to press from the start use kind = \"step\"";
         checks.fault(&at.span, "nothing is there to be held".to_owned(), "another kind", Some(help));
@@ -83,14 +83,6 @@ pub fn prescription(
     let programme = Programme::new(vec![Stage::new(control, course)]);
     let programme = checks.core(&at.span, programme.validate().map(|()| programme))?;
     Some(Prescription { programme, places: vec![place], files, span: at.span.clone() })
-}
-
-fn control(control: raw::Control) -> Control {
-    match control {
-        raw::Control::Load => Control::Load,
-        raw::Control::Pressure => Control::Pressure,
-        raw::Control::Approach => Control::Approach,
-    }
 }
 
 fn stage(
@@ -107,7 +99,7 @@ fn stage(
         checks.fault(&at.span, message, "`duration` or `until`", Some(help));
         return None;
     }
-    let control = control(raw.control);
+    let control = raw.control;
     let (course, place) = course(checks, control, &raw.history, files)?;
     let stage = Stage {
         duration: raw.duration.as_ref().map(|at| at.value.get()),

@@ -195,7 +195,7 @@ fn known(checks: &mut Checks<'_, '_>, span: &Range<usize>, material: &raw::Mater
         raw::Material::Prony(m) => {
             let relaxation = relaxation(checks, span, m)?;
             let relaxation = checks.core(span, relaxation)?;
-            Material::prony(measure(m.modulus), relaxation)
+            Material::prony(m.modulus, relaxation)
         }
         raw::Material::Creep(m) => {
             few_terms(checks, span, m.terms.len())?;
@@ -204,7 +204,7 @@ fn known(checks: &mut Checks<'_, '_>, span: &Range<usize>, material: &raw::Mater
                 retardation_time: term.time.get(),
             };
             Material::generalised_kelvin(
-                measure(m.compliance),
+                m.compliance,
                 Creep {
                     instantaneous: m.instantaneous.get(),
                     terms: m.terms.iter().map(term).collect(),
@@ -221,13 +221,6 @@ fn known(checks: &mut Checks<'_, '_>, span: &Range<usize>, material: &raw::Mater
         | raw::Material::Dma(_) => return None,
     };
     checks.core(span, made)
-}
-
-pub fn measure(measure: raw::Measure) -> Modulus {
-    match measure {
-        raw::Measure::Young => Modulus::Young,
-        raw::Measure::Shear => Modulus::Shear,
-    }
 }
 
 type Given = Option<Pressure<Positive>>;

@@ -82,7 +82,7 @@ pub fn case(
     if let (Some(times), Some(prescription), Some(pair)) = (&times, &prescription, &pair) {
         load::possible(&mut checks, prescription, times, grid.as_ref(), pair);
     }
-    let scheme = time::scheme(document.time.value.scheme);
+    let scheme = document.time.value.scheme.unwrap_or_default();
     if let Some(pair) = &pair {
         let capped =
             pair.hardness.is_finite() || hardness.as_ref().is_some_and(|hardness| hardness.map.is_some());
@@ -118,7 +118,7 @@ pub fn case(
             name: String::new(),
             source: text.source.to_owned(),
             grid,
-            boundary: domain::boundary(document.domain.value.boundary),
+            boundary: document.domain.value.boundary.unwrap_or_default(),
             surfaces,
             bodies: pair.bodies,
             creep: pair.creep,

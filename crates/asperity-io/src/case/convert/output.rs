@@ -3,13 +3,14 @@
 use std::path::PathBuf;
 
 use asperity::quantities::{Quantities, Quantity};
-use asperity::{Method, Plasticity, Programme, Scheme, SolverOptions, TimeGrid};
+use asperity::{Plasticity, Programme, Scheme, SolverOptions, TimeGrid};
 
 use super::Checks;
 use super::time;
 use crate::case::plan::{Output, Rows};
-use crate::case::raw::{self, Field};
+use crate::case::raw;
 use crate::case::words::number;
+use crate::store::FieldKind;
 
 /// Most bins of a histogram.
 const MOST_BINS: usize = 10_000;
@@ -17,20 +18,14 @@ const MOST_BINS: usize = 10_000;
 pub fn solver(solver: &raw::Solver) -> SolverOptions {
     let default = SolverOptions::default();
     SolverOptions {
-        method: match solver.method {
-            raw::Method::ProjectedCg => Method::ProjectedCg,
-            raw::Method::PolonskyKeer => Method::PolonskyKeer,
-        },
+        method: solver.method.unwrap_or_default(),
         tolerance: solver.tolerance.map_or(default.tolerance, |tolerance| tolerance.get()),
         max_iterations: solver.max_iterations.map_or(default.max_iterations, |most| most.count()),
     }
 }
 
 pub fn plasticity(solver: &raw::Solver) -> Plasticity {
-    match solver.plasticity.as_ref().map(|at| at.value).unwrap_or_default() {
-        raw::Plasticity::Cap => Plasticity::Cap,
-        raw::Plasticity::Accumulate => Plasticity::Accumulate,
-    }
+    solver.plasticity.as_ref().map(|at| at.value).unwrap_or_default()
 }
 
 /// What solver and output ask for, where the case does not allow it.
@@ -52,14 +47,14 @@ pub fn possible(
             Some("give a body its `hardness`"),
         );
     }
-    let flattening = output.fields.iter().flatten().find(|at| at.value == Field::Flattening);
+    let flattening = output.fields.iter().flatten().find(|at| at.value == FieldKind::Flattening);
     if let Some(at) = flattening.filter(|_| !lasting) {
         let message = "the flattening does not stay with plasticity = \"cap\"".to_owned();
         checks.fault(&at.span, message, "another field", Some("set solver.plasticity = \"accumulate\""));
     }
     let top = output.histogram.as_ref().is_some_and(|histogram| histogram.value.pressure.is_some());
     for at in output.quantities.iter().flatten() {
-        let Some(quantity) = named(at.value) else { continue };
+        let raw::Quantities::One(quantity) = at.value else { continue };
         if quantity == Quantity::PressureHistogram && !capped && !top {
             let message = "the histogram of the pressure has no upper end: no body has a hardness".to_owned();
             let help = "add histogram = { pressure = \"...\" }";
@@ -81,44 +76,26 @@ pub fn possible(
 /// Fields that dents and quantities take besides, in units of 16 bytes per cell: the dented gap and its copy in a
 /// checkpoint; the vectors of the contact stiffness; the forest of contact spots.
 pub fn extra_fields(solver: &raw::Solver, output: &raw::Output) -> usize {
-    let wants = |test: &dyn Fn(raw::Quantity) -> bool| {
-        output.quantities.iter().flatten().any(|at| at.value == raw::Quantity::All || test(at.value))
+    use Quantity::{ContactSpots, ContactStiffness, LargestSpot, MeanSpot, SpotHistogram};
+    let wants = |list: &[Quantity]| {
+        output.quantities.iter().flatten().any(|at| match at.value {
+            raw::Quantities::All => true,
+            raw::Quantities::One(quantity) => list.contains(&quantity),
+        })
     };
-    let stiffness = wants(&|quantity| quantity == raw::Quantity::ContactStiffness);
-    let spots = wants(&|quantity| {
-        use raw::Quantity::{ContactSpots, LargestSpot, MeanSpot, SpotHistogram};
-        matches!(quantity, ContactSpots | LargestSpot | MeanSpot | SpotHistogram)
-    });
+    let stiffness = wants(&[ContactStiffness]);
+    let spots = wants(&[ContactSpots, LargestSpot, MeanSpot, SpotHistogram]);
     let dents = plasticity(solver) == Plasticity::Accumulate;
     usize::from(dents) + 3 * usize::from(stiffness) + usize::from(spots)
-}
-
-/// The quantity of a name; `None` for all.
-fn named(quantity: raw::Quantity) -> Option<Quantity> {
-    Some(match quantity {
-        raw::Quantity::All => return None,
-        raw::Quantity::ContactStiffness => Quantity::ContactStiffness,
-        raw::Quantity::ContactSpots => Quantity::ContactSpots,
-        raw::Quantity::LargestSpot => Quantity::LargestSpot,
-        raw::Quantity::MeanSpot => Quantity::MeanSpot,
-        raw::Quantity::ContactPerimeter => Quantity::ContactPerimeter,
-        raw::Quantity::RmsGap => Quantity::RmsGap,
-        raw::Quantity::ElasticEnergy => Quantity::ElasticEnergy,
-        raw::Quantity::DissipatedEnergy => Quantity::DissipatedEnergy,
-        raw::Quantity::FlatteningWork => Quantity::FlatteningWork,
-        raw::Quantity::ExternalWork => Quantity::ExternalWork,
-        raw::Quantity::SpotHistogram => Quantity::SpotHistogram,
-        raw::Quantity::PressureHistogram => Quantity::PressureHistogram,
-        raw::Quantity::GapHistogram => Quantity::GapHistogram,
-    })
 }
 
 /// The quantities that are named, each once, and their bins.
 fn quantities(checks: &mut Checks<'_, '_>, output: &raw::Output) -> Option<Quantities> {
     let mut list: Vec<Quantity> = vec![];
-    for quantity in output.quantities.iter().flatten().filter_map(|at| named(at.value)) {
-        if !list.contains(&quantity) {
-            list.push(quantity);
+    for at in output.quantities.iter().flatten() {
+        match at.value {
+            raw::Quantities::One(quantity) if !list.contains(&quantity) => list.push(quantity),
+            _ => {}
         }
     }
     let mut quantities = Quantities::of(list);
@@ -154,7 +131,7 @@ pub fn output(
     };
     let fields = match &output.fields {
         Some(fields) => fields.iter().map(|at| at.value).collect(),
-        None => [Field::Pressure, Field::Gap].into_iter().collect(),
+        None => [FieldKind::Pressure, FieldKind::Gap].into_iter().collect(),
     };
     let rows = match (&output.every, &output.times) {
         (Some(_), Some(times)) => {
@@ -192,7 +169,7 @@ pub fn output(
         fields,
         rows,
         quantities: quantities(checks, output)?,
-        all_quantities: output.quantities.iter().flatten().any(|at| at.value == raw::Quantity::All),
+        all_quantities: output.quantities.iter().flatten().any(|at| at.value == raw::Quantities::All),
         checkpoint: output.checkpoint.unwrap_or(true),
     })
 }

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use asperity::surface::process::{Axis, Band, Edge, Outliers, Resampling, Window};
-use asperity::surface::{Fill, Level, Operation};
+use asperity::surface::process::{Band, Outliers, Window};
+use asperity::surface::{Level, Operation};
 
 use super::Checks;
 use crate::case::raw::prepare as raw;
@@ -59,7 +59,7 @@ fn plain(checks: &mut Checks<'_, '_>, file: &File) -> Option<Vec<Step>> {
         push(crop(checks, at));
     }
     if let Some(at) = &file.flip {
-        push(Some(Step::Operation(Operation::Flip(axis(at.value)))));
+        push(Some(Step::Operation(Operation::Flip(at.value))));
     }
     if let Some(at) = &file.rotate {
         push(Some(Step::Operation(Operation::Rotate { quarter_turns: at.value.get() })));
@@ -67,7 +67,7 @@ fn plain(checks: &mut Checks<'_, '_>, file: &File) -> Option<Vec<Step>> {
     if file.invert.as_ref().is_some_and(|at| at.value) {
         push(Some(Step::Operation(Operation::Invert)));
     }
-    let form = level(file.level.as_ref().map(|at| at.value).unwrap_or_default());
+    let form = file.level.as_ref().map_or(Level::Plane, |at| at.value);
     let levelling = (form != Level::None).then_some(Step::Operation(Operation::Level(form)));
     if let Some(step) = levelling.clone() {
         push(Some(step));
@@ -79,7 +79,7 @@ fn plain(checks: &mut Checks<'_, '_>, file: &File) -> Option<Vec<Step>> {
             push(Some(step));
         }
     }
-    let method = fill(file.fill.as_ref().map(|at| at.value).unwrap_or_default());
+    let method = file.fill.as_ref().map(|at| at.value).unwrap_or_default();
     let largest_share = file.fill_share.as_ref().map_or(FILL_SHARE, |at| at.value.get());
     push(Some(Step::Operation(Operation::Fill { method, largest_share })));
     if let Some(at) = &file.filter {
@@ -89,7 +89,7 @@ fn plain(checks: &mut Checks<'_, '_>, file: &File) -> Option<Vec<Step>> {
         push(window(checks, at));
     }
     if let Some(at) = &file.resample {
-        push(Some(Step::Resample { cells: None, method: resampling(at.value) }));
+        push(Some(Step::Resample { cells: None, method: at.value }));
     }
     whole.then_some(steps)
 }
@@ -97,18 +97,18 @@ fn plain(checks: &mut Checks<'_, '_>, file: &File) -> Option<Vec<Step>> {
 /// One step of `process`.
 pub fn operation(checks: &mut Checks<'_, '_>, at: &At<raw::Operation>) -> Option<Step> {
     Some(match &at.value {
-        raw::Operation::Level(step) => Step::Operation(Operation::Level(level(step.form))),
+        raw::Operation::Level(step) => Step::Operation(Operation::Level(step.form.unwrap_or(Level::Plane))),
         raw::Operation::Fill(step) => Step::Operation(Operation::Fill {
-            method: fill(step.method),
+            method: step.method.unwrap_or_default(),
             largest_share: step.share.map_or(FILL_SHARE, |share| share.get()),
         }),
         raw::Operation::Crop(at) => return crop(checks, at),
         raw::Operation::Resample(step) => Step::Resample {
             cells: step.cells.map(|cells| cells.map(|count| count.count())),
-            method: resampling(step.method),
+            method: step.method.unwrap_or_default(),
         },
         raw::Operation::Filter(at) => return filter(checks, at),
-        raw::Operation::Flip(step) => Step::Operation(Operation::Flip(axis(step.axis))),
+        raw::Operation::Flip(step) => Step::Operation(Operation::Flip(step.axis)),
         raw::Operation::Rotate(step) => Step::Operation(Operation::Rotate {
             quarter_turns: step.quarter_turns.map_or(1, |turns| turns.get()),
         }),
@@ -162,11 +162,8 @@ fn filter(checks: &mut Checks<'_, '_>, at: &At<raw::Filter>) -> Option<Step> {
         }
         _ => {}
     }
-    let edge = match raw.edge {
-        raw::Edge::Sharp => Edge::Sharp,
-        raw::Edge::Gaussian => Edge::Gaussian,
-    };
-    Some(Step::Operation(Operation::Filter(Band { longest, shortest, edge })))
+    let band = Band { longest, shortest, edge: raw.edge.unwrap_or_default() };
+    Some(Step::Operation(Operation::Filter(band)))
 }
 
 fn window(checks: &mut Checks<'_, '_>, at: &At<raw::Window>) -> Option<Step> {
@@ -189,35 +186,4 @@ fn outliers(raw: &raw::Outliers) -> Step {
         threshold: raw.threshold.map_or(default.threshold, |threshold| threshold.get()),
         radius: raw.radius.map_or(default.radius, |radius| radius.count()),
     }))
-}
-
-fn level(raw: raw::Level) -> Level {
-    match raw {
-        raw::Level::None => Level::None,
-        raw::Level::Mean => Level::Mean,
-        raw::Level::Plane => Level::Plane,
-        raw::Level::Quadratic => Level::Quadratic,
-    }
-}
-
-fn fill(raw: raw::Fill) -> Fill {
-    match raw {
-        raw::Fill::Error => Fill::Error,
-        raw::Fill::Harmonic => Fill::Harmonic,
-        raw::Fill::Nearest => Fill::Nearest,
-    }
-}
-
-fn resampling(raw: raw::Resample) -> Resampling {
-    match raw {
-        raw::Resample::BandLimited => Resampling::BandLimited,
-        raw::Resample::Bilinear => Resampling::Bilinear,
-    }
-}
-
-fn axis(raw: raw::Axis) -> Axis {
-    match raw {
-        raw::Axis::X => Axis::X,
-        raw::Axis::Y => Axis::Y,
-    }
 }

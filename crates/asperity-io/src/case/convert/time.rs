@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use asperity::{Scheme, TimeGrid};
+use asperity::TimeGrid;
 
 use super::Checks;
 use crate::case::quantity::range::Positive;
@@ -220,14 +220,6 @@ pub fn increasing<T>(
     let expected = format!("later than the time before it, {} s", words::number(instants[n]));
     checks.wrong(span, &expected, Some("list the times in increasing order, each once"));
     None
-}
-
-pub fn scheme(scheme: raw::Scheme) -> Scheme {
-    match scheme {
-        raw::Scheme::Linear => Scheme::Linear,
-        raw::Scheme::Constant => Scheme::Constant,
-        raw::Scheme::Direct => Scheme::Direct,
-    }
 }
 
 /// Steps of the grid, without the breaks of the history; of an adaptive one about.

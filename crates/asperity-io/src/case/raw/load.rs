@@ -1,5 +1,6 @@
 //! `[load]` and `[time]`: what is prescribed, and the instants of the solution.
 
+use asperity::{Control, Scheme};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -73,18 +74,6 @@ pub enum Until {
     /// The mean pressure crosses a value.
     #[schemars(example = "1 MPa")]
     Pressure(Pressure<NonNegative>),
-}
-
-/// The prescribed quantity.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Control {
-    /// Normal load, in N.
-    Load,
-    /// Mean pressure over the domain, in Pa.
-    Pressure,
-    /// Rigid-body approach, in m, 0 at first touch.
-    Approach,
 }
 
 /// A value over time.
@@ -240,8 +229,7 @@ pub struct Time {
     #[schemars(example = ["1 s", "10 s", "100 s"])]
     pub times: Option<At<Vec<At<Duration<Positive>>>>>,
     /// How the pressure goes over a step; "linear" if not given.
-    #[serde(default)]
-    pub scheme: Scheme,
+    pub scheme: Option<Scheme>,
 }
 
 /// How the steps are spread.
@@ -254,17 +242,4 @@ pub enum Spacing {
     Log,
     /// Steps as long as their error allows.
     Adaptive,
-}
-
-/// How the pressure goes over a step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Scheme {
-    /// Linear in time: second order.
-    #[default]
-    Linear,
-    /// Constant over each step: first order, very stable.
-    Constant,
-    /// The full hereditary sum over all steps; slow, keeps every pressure field.
-    Direct,
 }

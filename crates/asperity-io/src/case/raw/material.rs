@@ -1,5 +1,6 @@
 //! `material`: the models of a body.
 
+use asperity::material::{LongTime, Modulus};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -160,7 +161,7 @@ models! {
 
     Prony {
         /// What the moduli measure: uniaxial tension or shear.
-        modulus: Measure,
+        modulus: Modulus,
         /// Modulus after all relaxation, with absolute terms (`modulus`, `time`; 0 for a fluid) or with terms
         /// relative to it (`ratio`, `time`).
         #[schemars(example = "1973 MPa")]
@@ -175,7 +176,7 @@ models! {
 
     Creep {
         /// What the compliances measure: uniaxial tension or shear.
-        compliance: Measure,
+        compliance: Modulus,
         /// Compliance at once.
         #[schemars(example = "4e-4 1/MPa")]
         instantaneous: Compliance<NonNegative>,
@@ -250,7 +251,7 @@ models! {
 
     RelaxationTable {
         /// What the moduli measure: uniaxial tension or shear.
-        modulus: Measure,
+        modulus: Modulus,
         /// The text table, relative to the case file: one point per line, columns for time and modulus. Separator
         /// and decimal mark are found; units stand in the header, as in "time [s]; E [MPa]".
         #[schemars(example = "relaxation.csv")]
@@ -268,7 +269,7 @@ models! {
 
     CreepTable {
         /// What the compliances measure: uniaxial tension or shear.
-        compliance: Measure,
+        compliance: Modulus,
         /// The text table, relative to the case file: one point per line, columns for time and compliance.
         /// Separator and decimal mark are found; units stand in the header, as in "time [s]; D [1/MPa]".
         #[schemars(example = "creep.csv")]
@@ -286,7 +287,7 @@ models! {
 
     Dma {
         /// What the moduli measure: uniaxial tension or shear.
-        modulus: Measure,
+        modulus: Modulus,
         /// The text table, relative to the case file: one point per line, columns for frequency, storage modulus,
         /// loss modulus or tan delta, and, where there are several temperatures, temperature. Separator and decimal
         /// mark are found; units stand in the header, as in "f [Hz]; E' [MPa]; E'' [MPa]; T [°C]".
@@ -332,16 +333,6 @@ pub struct CreepTerm {
     /// Retardation time.
     #[schemars(example = "9.94 s")]
     pub time: Time<Positive>,
-}
-
-/// The kind of deformation that a modulus or compliance belongs to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Measure {
-    /// Uniaxial tension: Young's modulus.
-    Young,
-    /// Shear modulus.
-    Shear,
 }
 
 /// A column of a text table: its number, from 1, or its header with or without the unit.
@@ -422,23 +413,9 @@ pub struct Fit {
     #[schemars(example = 0.1)]
     pub max_misfit: Option<Number<Share>>,
     /// What comes after the data; "free" if not given.
-    #[serde(default)]
-    pub long_time: LongTime,
+    pub long_time: Option<LongTime>,
     /// The part of the curve that is fitted: two times or, of a dma, two frequencies (after the shift, where there
     /// are several temperatures); all of it if not given.
     #[schemars(example = ["0.1 s", "1000 s"])]
     pub window: Option<Two<At<Prescribed>>>,
-}
-
-/// What comes after the data.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum LongTime {
-    /// Whatever fits best.
-    #[default]
-    Free,
-    /// No flow.
-    Solid,
-    /// No modulus is left.
-    Fluid,
 }

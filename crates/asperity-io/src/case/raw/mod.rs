@@ -16,17 +16,17 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::ops::Range;
 
+use asperity::Boundary;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, IgnoredAny, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
 pub use body::{Body, HardnessFile};
-pub use load::{Control, From, History, Load, Scheme, Sine, Spacing, Stage, Table, Time, Until};
+pub use load::{From, History, Load, Sine, Spacing, Stage, Table, Time, Until};
 pub use material::{
-    Column, CreepTable, CreepTerm, Dma, Fit, FractionalZener, LongTime, Material, Measure, Prony,
-    RelaxationTable,
+    Column, CreepTable, CreepTerm, Dma, Fit, FractionalZener, Material, Prony, RelaxationTable,
 };
-pub use run::{Field, Method, Output, Plasticity, Precision, Quantity, Solver};
+pub use run::{Output, Quantities, Solver};
 pub use surface::{Distribution, File, Preset, SelfAffine, Surface};
 pub use thermal::{Shift, Temperature, TemperatureHistory, TemperaturePoint};
 
@@ -75,19 +75,7 @@ pub struct Domain {
     #[schemars(example = ["0.1 mm", "0.1 mm"])]
     pub size: Option<At<Two<Length<Positive>>>>,
     /// What surrounds the domain; "free" if not given.
-    #[serde(default)]
-    pub boundary: Boundary,
-}
-
-/// What surrounds the domain.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Boundary {
-    /// A half-space without pressure outside the domain (zero-padded convolution).
-    #[default]
-    Free,
-    /// The domain repeats along x and y.
-    Periodic,
+    pub boundary: Option<Boundary>,
 }
 
 /// A list of two values: along x and y, or time and value.

@@ -1,5 +1,7 @@
 //! The steps that prepare a measured surface: `process = [...]`, and the same steps as keys of a `[[surface]]`.
 
+use asperity::surface::process::{Axis, Edge, Resampling};
+use asperity::surface::{Fill, Level};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -38,16 +40,14 @@ pub enum Operation {
 #[serde(deny_unknown_fields)]
 pub struct LevelStep {
     /// What is taken off; "plane" if not given.
-    #[serde(default)]
-    pub form: Level,
+    pub form: Option<Level>,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FillStep {
     /// How; "harmonic" if not given.
-    #[serde(default)]
-    pub method: Fill,
+    pub method: Option<Fill>,
     /// Largest share of undefined points that is filled; 0.25 if not given.
     #[schemars(example = 0.25)]
     pub share: Option<Number<Share>>,
@@ -78,22 +78,10 @@ pub struct Crop {
 #[serde(deny_unknown_fields)]
 pub struct ResampleStep {
     /// How; "band-limited" if not given.
-    #[serde(default)]
-    pub method: Resample,
+    pub method: Option<Resampling>,
     /// Number of cells along x and y; those of the domain if not given.
     #[schemars(example = [512, 512])]
     pub cells: Option<Two<Whole<1>>>,
-}
-
-/// How heights at new points come from old ones.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Resample {
-    /// By waves: exact for a surface that is smooth on its grid and repeats; needs every point.
-    #[default]
-    BandLimited,
-    /// Linear between neighbours: no new extremes.
-    Bilinear,
 }
 
 /// The wavelengths that are kept; one of `longest` and `shortest` at least.
@@ -107,19 +95,7 @@ pub struct Filter {
     #[schemars(example = "2.5 um")]
     pub shortest: Option<Length<Positive>>,
     /// How the band ends; "sharp" if not given.
-    #[serde(default)]
-    pub edge: Edge,
-}
-
-/// How a filter ends its band.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Edge {
-    /// Waves inside are kept whole, others dropped.
-    #[default]
-    Sharp,
-    /// Gaussian, half of the amplitude at the cut-off (ISO 16610-61).
-    Gaussian,
+    pub edge: Option<Edge>,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -127,16 +103,6 @@ pub enum Edge {
 pub struct FlipStep {
     /// The axis that changes its direction.
     pub axis: Axis,
-}
-
-/// An axis of the surface.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Axis {
-    /// x, axis 0 of the heights.
-    X,
-    /// y, axis 1 of the heights.
-    Y,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -184,32 +150,4 @@ pub struct Outliers {
     /// Cells of the neighbourhood to each side, 1 to 10; 2 if not given.
     #[schemars(example = 2)]
     pub radius: Option<Whole<1>>,
-}
-
-/// What is taken off measured heights.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Level {
-    /// Nothing.
-    None,
-    /// The mean.
-    Mean,
-    /// The least-squares plane.
-    #[default]
-    Plane,
-    /// The least-squares polynomial of second order.
-    Quadratic,
-}
-
-/// What is done about undefined points.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Fill {
-    /// Refuse the file.
-    Error,
-    /// Solve Laplace's equation over the holes.
-    #[default]
-    Harmonic,
-    /// Take the nearest defined height.
-    Nearest,
 }

@@ -1,64 +1,35 @@
 //! `[solver]` and `[output]`.
 
-use schemars::JsonSchema;
-use serde::Deserialize;
+use std::borrow::Cow;
+use std::fmt;
+use std::sync::OnceLock;
+
+use asperity::quantities::Quantity;
+use asperity::{Method, Plasticity};
+use schemars::{JsonSchema, Schema, SchemaGenerator};
+use serde::de::{Error, Visitor};
+use serde::{Deserialize, Deserializer};
+use serde_json::{Value, json};
 
 use super::At;
 use crate::case::quantity::range::{NonNegative, Positive, Tolerance};
 use crate::case::quantity::{Length, Number, Pressure, Time, Whole};
+use crate::store::FieldKind;
 
 /// How each step is solved.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Solver {
     /// Method; "projected-cg" if not given.
-    #[serde(default)]
-    pub method: Method,
+    pub method: Option<Method>,
     /// Largest residual of a converged step, relative to the mean displacement; 1e-6 if not given.
     #[schemars(example = 1e-6)]
     pub tolerance: Option<Number<Tolerance>>,
     /// Most iterations of one step.
     #[schemars(example = 1000)]
     pub max_iterations: Option<Whole<1>>,
-    /// Floating-point numbers of the iterations; "double" if not given.
-    #[serde(default)]
-    pub precision: Precision,
     /// What flattening at the hardness leaves behind; "cap" if not given.
     pub plasticity: Option<At<Plasticity>>,
-}
-
-/// Solver of one step.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Method {
-    /// Preconditioned projected conjugate gradients.
-    #[default]
-    ProjectedCg,
-    /// The conjugate gradients of Polonsky and Keer (1999).
-    PolonskyKeer,
-}
-
-/// Floating-point numbers of the iterations.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Precision {
-    /// 64 bits.
-    #[default]
-    Double,
-    /// The steps of the iterations in 32 bits, their sum and every check in 64: the same tolerance in less time. With
-    /// "projected-cg".
-    Mixed,
-}
-
-/// What flattening leaves behind.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Plasticity {
-    /// Nothing: the pressure is cut off at the hardness, the flattening heals on unloading.
-    #[default]
-    Cap,
-    /// A dent: what a cell is flattened by is added to the undeformed gap after every row and stays. Needs a hardness.
-    Accumulate,
 }
 
 /// What is stored, and where.
@@ -70,10 +41,10 @@ pub struct Output {
     pub path: Option<At<String>>,
     /// The fields that are stored; ["pressure", "gap"] if not given, [] for none.
     #[schemars(example = ["pressure", "gap"])]
-    pub fields: Option<Vec<At<Field>>>,
+    pub fields: Option<Vec<At<FieldKind>>>,
     /// Quantities that each row has besides load, approach and areas; ["all"] for all that the case allows.
     #[schemars(example = ["contact_stiffness", "contact_spots", "dissipated_energy"])]
-    pub quantities: Option<Vec<At<Quantity>>>,
+    pub quantities: Option<Vec<At<Quantities>>>,
     /// Bins of the histograms among the quantities.
     #[schemars(example = serde_json::json!({ "bins": 50, "pressure": "300 MPa" }))]
     pub histogram: Option<At<Histogram>>,
@@ -90,54 +61,58 @@ pub struct Output {
     pub checkpoint: Option<bool>,
 }
 
-/// A field over the domain.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum Field {
-    /// Contact pressure, in Pa.
-    Pressure,
-    /// Gap between the deformed surfaces, in m.
-    Gap,
-    /// Normal displacement, in m.
-    Displacement,
-    /// Contact state: 0 out of contact, 1 in contact, 2 at the hardness.
-    Contact,
-    /// Permanent flattening, in m; with plasticity = "accumulate".
-    Flattening,
+/// A quantity of each row, or all that the case allows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantities {
+    All,
+    One(Quantity),
 }
 
-/// A quantity of each row.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Quantity {
-    /// All that the case allows.
-    All,
-    /// Slope of load over approach under a small, sudden change, in N/m; some ten convolutions a row.
-    ContactStiffness,
-    /// Number of contact spots.
-    ContactSpots,
-    /// Area of the largest contact spot, in m2.
-    LargestSpot,
-    /// Mean area of a contact spot, in m2.
-    MeanSpot,
-    /// Length of the border of the contact, counted along the edges of cells, in m.
-    ContactPerimeter,
-    /// Root of the mean square of the gap, in m.
-    RmsGap,
-    /// Energy in the springs of the bodies, in J.
-    ElasticEnergy,
-    /// Heat since the start, in J.
-    DissipatedEnergy,
-    /// Work on the cells at the hardness, in J.
-    FlatteningWork,
-    /// Work of the load since the start, in J.
-    ExternalWork,
-    /// Number of contact spots per class of area: 1 cell, 2 to 3, 4 to 7, and so on.
-    SpotHistogram,
-    /// Probability density of the pressure of the cells in contact, in 1/Pa.
-    PressureHistogram,
-    /// Probability density of the gap of the open cells, in 1/m.
-    GapHistogram,
+impl Quantities {
+    /// The words of this choice: "all" and the names of the quantities.
+    fn words() -> &'static [&'static str] {
+        static WORDS: OnceLock<Vec<&'static str>> = OnceLock::new();
+        WORDS.get_or_init(|| std::iter::once("all").chain(Quantity::ALL.map(Quantity::name)).collect())
+    }
+}
+
+impl<'de> Deserialize<'de> for Quantities {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Word;
+
+        impl Visitor<'_> for Word {
+            type Value = Quantities;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("\"all\" or the name of a quantity")
+            }
+
+            fn visit_str<E: Error>(self, word: &str) -> Result<Quantities, E> {
+                let one = |word| Quantity::from_name(word).map(Quantities::One);
+                let chosen = if word == "all" { Some(Quantities::All) } else { one(word) };
+                chosen.ok_or_else(|| E::unknown_variant(word, Quantities::words()))
+            }
+        }
+
+        deserializer.deserialize_str(Word)
+    }
+}
+
+impl JsonSchema for Quantities {
+    fn schema_name() -> Cow<'static, str> {
+        Quantity::schema_name()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let mut schema = Quantity::json_schema(generator);
+        if let Some(Value::Array(members)) = schema.get_mut("oneOf") {
+            members.insert(
+                0,
+                json!({ "type": "string", "const": "all", "description": "All that the case allows." }),
+            );
+        }
+        schema
+    }
 }
 
 /// Bins of the histograms of pressure and gap; they begin at 0 and have one width.

@@ -1,9 +1,11 @@
 //! `[[surface]]`: the parts of the undeformed gap.
 
+use asperity::surface::process::{Axis, Resampling};
+use asperity::surface::{Fill, Level};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::prepare::{Axis, Crop, Fill, Filter, Level, Operation, Outliers, Resample, Window};
+use super::prepare::{Crop, Filter, Operation, Outliers, Window};
 use super::{At, Two};
 use crate::case::quantity::range::{Hurst, Positive, PositiveOrInfinite, Share};
 use crate::case::quantity::{Angle, Label, Length, Number, Signed, Whole};
@@ -208,7 +210,7 @@ pub struct File {
     #[schemars(example = serde_json::json!({ "shape": "tukey", "share": 0.1 }))]
     pub window: Option<At<Window>>,
     /// How the heights come onto the cells of the domain, where it has others; without it they must agree.
-    pub resample: Option<At<Resample>>,
+    pub resample: Option<At<Resampling>>,
     /// The preparation as a list of steps in the order in which they are done, instead of the keys from `crop` to
     /// `resample`: then exactly these steps are done, no levelling or filling besides.
     #[schemars(example = serde_json::json!([{ "op": "level", "form": "plane" }, { "op": "fill", "method": "nearest" }]))]

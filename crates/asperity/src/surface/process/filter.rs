@@ -17,11 +17,13 @@ use crate::error::{Error, Result, positive};
 
 /// How a filter ends its band.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub enum Edge {
     /// Waves inside are kept whole, others dropped.
     #[default]
     Sharp,
-    /// Gaussian, half the amplitude at the cut-off (ISO 16610-61).
+    /// Gaussian, half of the amplitude at the cut-off (ISO 16610-61).
     Gaussian,
 }
 

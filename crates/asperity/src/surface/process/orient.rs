@@ -13,6 +13,8 @@ use crate::grid::Grid;
 
 /// An axis of the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub enum Axis {
     /// x, axis 0 of the heights.
     X,

@@ -21,11 +21,13 @@ use crate::grid::Grid;
 
 /// How heights at new points come from old ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub enum Resampling {
-    /// By waves.
+    /// By waves: exact for a surface that is smooth on its grid and repeats; needs every point.
     #[default]
     BandLimited,
-    /// Linear between neighbours.
+    /// Linear between neighbours: no new extremes.
     Bilinear,
 }
 

@@ -1,4 +1,7 @@
-//! Commented starter cases, as `asperity new` writes them.
+//! The commented case files that `asperity new` writes: the examples of the repository themselves.
+//!
+//! This crate stands in the folder of the examples because a published crate cannot hold files from outside of its
+//! own folder; so each case exists once.
 
 /// A starter case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,7 +16,7 @@ macro_rules! templates {
     ($($name:literal),*) => {
         /// All starter cases, the simplest first.
         pub const TEMPLATES: &[Template] =
-            &[$(Template { name: $name, text: include_str!(concat!("templates/", $name, ".toml")) }),*];
+            &[$(Template { name: $name, text: include_str!(concat!($name, ".toml")) }),*];
     };
 }
 
@@ -36,7 +39,7 @@ impl Template {
     /// The starter case of that name.
     ///
     /// ```
-    /// use asperity_io::case::templates::Template;
+    /// use asperity_examples::Template;
     /// assert!(Template::find("hertz").is_some_and(|hertz| hertz.text.contains("kind = \"sphere\"")));
     /// ```
     pub fn find(name: &str) -> Option<&'static Template> {

@@ -1,4 +1,4 @@
-//! Units as they stand on an axis: SI values with the prefix that suits them.
+//! Numbers for people: SI values with the prefix that suits them, counts, bytes, durations.
 
 /// A unit with its prefix: the number shown is `factor` times the SI value.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,16 +14,24 @@ const PREFIXES: [(i32, &str); 8] =
     [(-4, "p"), (-3, "n"), (-2, "µ"), (-1, "m"), (0, ""), (1, "k"), (2, "M"), (3, "G")];
 
 /// Units that take prefixes, with the smallest and the largest that is in use.
-const PREFIXED: [(&str, i32, i32); 7] =
-    [("m", -4, 0), ("s", -3, 0), ("Pa", -1, 3), ("N", -3, 2), ("J", -4, 1), ("W", -4, 1), ("Hz", -2, 3)];
+const PREFIXED: [(&str, i32, i32); 8] = [
+    ("m", -4, 0),
+    ("s", -3, 0),
+    ("Pa", -1, 3),
+    ("N", -3, 2),
+    ("N/m", -3, 3),
+    ("J", -4, 1),
+    ("W", -4, 1),
+    ("Hz", -2, 3),
+];
 
 /// The unit to show numbers in whose largest magnitude is `largest` in the SI unit `unit`.
 ///
-/// `unit` is one of m, s, Pa, N, J, W, Hz with an exponent (`m2`) or below one (`1/Pa`, `1/m2`), or any other
+/// `unit` is one of m, s, Pa, N, N/m, J, W, Hz with an exponent (`m2`) or below one (`1/Pa`, `1/m2`), or any other
 /// text, which is shown as it is.
 ///
 /// ```
-/// use asperity_report::figure::shown;
+/// use asperity_io::readable::shown;
 ///
 /// assert_eq!(shown("m", 3e-7).text, "nm");
 /// assert_eq!(shown("m2", 3e-10).text, "µm²");
@@ -60,10 +68,56 @@ fn prefix(largest: f64, exponent: i32) -> i32 {
 }
 
 /// A whole number in superscript digits.
-pub(super) fn superscript(number: i32) -> String {
+pub fn superscript(number: i32) -> String {
     const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     let digit = |c: char| if c == '-' { '⁻' } else { DIGITS[c.to_digit(10).unwrap_or(0) as usize] };
     number.to_string().chars().map(digit).collect()
+}
+
+/// An SI value with four digits, its prefix and its unit: "12.3 mm", "5070 µm²".
+///
+/// ```
+/// use asperity_io::readable::quantity;
+/// assert_eq!(quantity(3e8, "Pa"), "300 MPa");
+/// assert_eq!(quantity(5.07e-9, "m2"), "5070 µm²");
+/// ```
+pub fn quantity(value: f64, unit: &str) -> String {
+    let shown = shown(unit, value.abs());
+    let number = value * shown.factor;
+    let digits =
+        if number == 0.0 { 0 } else { (3.0 - number.abs().log10().floor()).clamp(0.0, 12.0) as usize };
+    let text = format!("{number:.digits$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    let text =
+        if number.is_finite() && number.abs() >= 1e6 { format!("{number:.3e}") } else { text.to_owned() };
+    if shown.text.is_empty() { text } else { format!("{text} {}", shown.text) }
+}
+
+/// So many of a thing: "1 term", "2 terms".
+pub fn counted(count: usize, thing: &str) -> String {
+    if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
+}
+
+/// Bytes in powers of 1024: "1.5 KiB".
+pub fn bytes(count: f64) -> String {
+    const UNITS: [&str; 7] = ["B", "KiB", "MiB", "GiB", "TiB", "PiB", "EiB"];
+    let step = (count.max(1.0).log2() / 10.0).floor().clamp(0.0, 6.0);
+    let value = count / 1024f64.powf(step);
+    let unit = UNITS[step as usize];
+    if value >= 1e5 { format!("{value:.1e} {unit}") } else { format!("{value:.1} {unit}") }
+}
+
+/// A time on the clock \[s\] as hours, minutes or seconds: "1 h 02 min".
+pub fn duration(seconds: f64) -> String {
+    if seconds >= 3600.0 {
+        format!("{:.0} h {:02.0} min", (seconds / 3600.0).floor(), ((seconds % 3600.0) / 60.0).floor())
+    } else if seconds >= 60.0 {
+        format!("{:.0} min {:02.0} s", (seconds / 60.0).floor(), (seconds % 60.0).floor())
+    } else if seconds >= 0.9995 {
+        format!("{seconds:.1} s")
+    } else {
+        quantity(seconds, "s")
+    }
 }
 
 #[cfg(test)]
@@ -99,5 +153,30 @@ mod tests {
         assert_eq!(text("", 1e-9), (String::new(), 0));
         assert_eq!(text("m", 0.0), ("m".into(), 0));
         assert_eq!(text("m", f64::INFINITY), ("m".into(), 0));
+    }
+
+    #[test]
+    fn numbers_have_four_digits_and_a_prefix() {
+        assert_eq!(quantity(3.9312e-6, "m"), "3.931 µm");
+        assert_eq!(quantity(0.5, "N"), "500 mN");
+        assert_eq!(quantity(0.999_999_6, "N"), "1 N");
+        assert_eq!(quantity(500.0, "s"), "500 s");
+        assert_eq!(quantity(5.0696e-9, "m2"), "5070 µm²");
+        assert_eq!(quantity(4.2e6, "N/m"), "4.2 MN/m");
+        assert_eq!(quantity(0.0, "m"), "0 m");
+        assert_eq!(quantity(f64::NAN, "m"), "NaN m");
+        assert_eq!(quantity(3e8, "s"), "3.000e8 s");
+        assert_eq!(quantity(3e-4, "Pa"), "0.3 mPa");
+    }
+
+    #[test]
+    fn counts_bytes_and_durations_read_well() {
+        assert_eq!(counted(1, "term") + " of " + &counted(0, "point"), "1 term of 0 points");
+        assert_eq!(bytes(999.0), "999.0 B");
+        assert_eq!(bytes(1536.0), "1.5 KiB");
+        assert_eq!(bytes(2f64.powi(128)), "3.0e20 EiB");
+        assert_eq!(duration(0.25), "250 ms");
+        assert_eq!(duration(12.34), "12.3 s");
+        assert_eq!(duration(3725.0), "1 h 02 min");
     }
 }

@@ -1,0 +1,98 @@
+//! HDF5, with dimension scales: h5py and MATLAB open it, and NetCDF-4 readers (xarray) find its dimensions.
+//!
+//! Data sets are in one piece and maps go to the file one after the other: memory holds one of them, whatever their
+//! number.
+
+use std::path::Path;
+
+use rust_hdf5::{H5Dataset, H5File, H5Type, Hdf5Error, VarLenUnicode};
+
+use super::contents::{Attribute, Contents, Data, Map, Variable};
+use super::error::WriteError;
+use crate::store::FieldKind;
+
+/// Fills the file at `path`, which is made anew.
+pub(super) fn write(contents: &Contents<'_>, path: &Path) -> Result<(), WriteError> {
+    // Nobody else knows the path yet; and some network file systems have no locks.
+    let file = H5File::options().no_locking().create(path)?;
+    for (name, attribute) in &contents.attributes {
+        match attribute {
+            Attribute::Text(text) => file.set_attr_string(name, text)?,
+            Attribute::Reals(reals) => numbers(&file, name, reals)?,
+            Attribute::Counts(counts) => numbers(&file, name, counts)?,
+        }
+    }
+    let mut data_sets = Vec::with_capacity(contents.variables.len());
+    for variable in &contents.variables {
+        let data_set = create(&file, contents, variable)?;
+        data_set.new_attr::<VarLenUnicode>().create("units")?.write_string(variable.units)?;
+        data_set.new_attr::<VarLenUnicode>().create("long_name")?.write_string(variable.long_name)?;
+        write_data(contents, &variable.data, &data_set)?;
+        data_sets.push((variable, data_set));
+    }
+    // The dimensions are the variables of their names.
+    let scales: Vec<_> = contents
+        .dimensions
+        .iter()
+        .map(|(name, _)| data_sets.iter().find(|(variable, _)| variable.name == *name))
+        .collect();
+    for (scale, data_set) in scales.iter().flatten() {
+        data_set.set_scale(Some(scale.name))?;
+    }
+    for (variable, data_set) in &data_sets {
+        if contents.dimensions.iter().any(|(name, _)| *name == variable.name) {
+            continue;
+        }
+        for (axis, dimension) in variable.dimensions.iter().enumerate() {
+            if let Some((_, scale)) = scales[*dimension] {
+                data_set.attach_scale(axis, scale)?;
+            }
+        }
+    }
+    Ok(file.close()?)
+}
+
+/// An attribute of numbers: a single one without dimension.
+fn numbers<T: H5Type>(file: &H5File, name: &str, values: &[T]) -> Result<(), Hdf5Error> {
+    match values {
+        [one] => file.set_attr_numeric(name, one),
+        many => file.set_attr_array_numeric(name, many),
+    }
+}
+
+fn create(file: &H5File, contents: &Contents<'_>, variable: &Variable) -> Result<H5Dataset, Hdf5Error> {
+    let shape = variable.shape(contents);
+    match &variable.data {
+        Data::Counts(_) => file.new_dataset::<i64>().shape(shape).create(variable.name),
+        Data::Field(FieldKind::Contact) => file.new_dataset::<u8>().shape(shape).create(variable.name),
+        _ => file.new_dataset::<f64>().shape(shape).create(variable.name),
+    }
+}
+
+fn write_data(contents: &Contents<'_>, data: &Data, data_set: &H5Dataset) -> Result<(), WriteError> {
+    match data {
+        Data::Reals(reals) => data_set.write_raw(reals)?,
+        Data::Counts(counts) => data_set.write_raw(counts)?,
+        data => {
+            for n in 0..contents.maps(data) {
+                match contents.map(data, n)? {
+                    Some(Map::Real(map)) => write_map(data_set, n, map.as_slice().unwrap_or_default())?,
+                    Some(Map::Byte(map)) => write_map(data_set, n, map.as_slice().unwrap_or_default())?,
+                    None => {}
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Writes the `n`th map of a data set: all of it, or its part at index `n` of the first of three axes.
+fn write_map<T: H5Type>(data_set: &H5Dataset, n: usize, map: &[T]) -> Result<(), Hdf5Error> {
+    let mut starts = vec![0; data_set.ndims()];
+    let mut counts = data_set.shape();
+    if let ([_, _, _], [first, ..]) = (counts.as_slice(), starts.as_mut_slice()) {
+        *first = n;
+        counts[0] = 1;
+    }
+    data_set.write_slice(&starts, &counts, map)
+}

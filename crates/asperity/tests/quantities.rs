@@ -285,7 +285,7 @@ fn spots_perimeter_and_histograms_agree_with_the_fields() {
         let square = gap.iter().map(|gap| gap * gap).sum::<f64>() / gap.len() as f64;
         assert!((one(Quantity::RmsGap) / square.sqrt() - 1.0).abs() < 1e-12);
         convolutions += row.convolutions;
-        assert_eq!(step.quantities().len(), step.columns().iter().map(|c| c.width()).sum());
+        assert_eq!(step.quantities().len(), step.columns().iter().map(|c| c.width()).sum::<usize>());
     }
     // The stiffness costs convolutions, which are counted.
     let plain = Simulation { quantities: Quantities::default(), ..march.simulation().clone() };

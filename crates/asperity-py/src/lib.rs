@@ -10,6 +10,7 @@ mod march;
 mod material;
 mod session;
 mod store;
+mod stress;
 mod surface;
 mod wait;
 
@@ -37,6 +38,8 @@ mod _core {
     use super::session::{case_text, check, report, run};
     #[pymodule_export]
     use super::store::{Store, save};
+    #[pymodule_export]
+    use super::stress::{stress_depths, stress_field, stress_survey};
     #[pymodule_export]
     use super::surface::{
         autocorrelation, bearing_curve, describe, gap, height_distribution, power_spectrum, process,

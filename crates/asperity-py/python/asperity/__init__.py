@@ -50,6 +50,7 @@ from ._materials import (
 from ._result import Cycle, Result, open
 from ._shifts import Shift, arrhenius, shift_table, wlf
 from ._solve import March, Step, check, march, run, solve
+from ._stress import Stress, stress
 from ._study import study
 from ._surface import Autocorrelation, Surface
 from ._threads import set_threads, threads
@@ -78,6 +79,7 @@ __all__ = [
     "Springpot",
     "Stage",
     "Step",
+    "Stress",
     "Surface",
     "Times",
     "Zener",
@@ -105,6 +107,7 @@ __all__ = [
     "sine",
     "solve",
     "step",
+    "stress",
     "study",
     "table",
     "threads",

@@ -29,6 +29,9 @@ __all__ = [
     "run",
     "Store",
     "save",
+    "stress_depths",
+    "stress_field",
+    "stress_survey",
     "autocorrelation",
     "bearing_curve",
     "describe",
@@ -156,6 +159,18 @@ def elastic(
     method: str,
     tolerance: float,
     max_iterations: int,
+) -> dict[str, Any]: ...
+def stress_depths(pressure: _Floats, size: list[float], boundary: str) -> list[float]: ...
+def stress_field(
+    name: str, pressure: _Floats, size: list[float], boundary: str, poisson: float, depths: list[float]
+) -> _Floats: ...
+def stress_survey(
+    pressure: _Floats,
+    size: list[float],
+    boundary: str,
+    poisson: float,
+    depths: list[float],
+    threshold: float | None,
 ) -> dict[str, Any]: ...
 def run(
     path: str,

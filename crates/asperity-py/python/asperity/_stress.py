@@ -1,0 +1,172 @@
+"""The stress below the surface."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from . import _core
+from ._arrays import Floats, field, number, pair
+
+
+class Stress:
+    """Stress below a pressure: fields of shape (depth, x, y) in Pa, tension positive, z into the body.
+
+    A field is computed when it is first asked for, and kept.
+    """
+
+    def __init__(
+        self, pressure: Floats, size: tuple[float, float], depths: Floats, poisson: float, boundary: str
+    ) -> None:
+        self._pressure = pressure
+        self._size = size
+        self._poisson = poisson
+        self._boundary = boundary
+        #: Depths [m].
+        self.depths = depths
+        # The first field checks all numbers, so that errors come here and not later.
+        _core.stress_field("zz", pressure, list(size), boundary, poisson, list(depths[:1]))
+
+    def _field(self, name: str) -> Floats:
+        return _core.stress_field(
+            name, self._pressure, list(self._size), self._boundary, self._poisson, [float(d) for d in self.depths]
+        )
+
+    @cached_property
+    def xx(self) -> Floats:
+        """Normal stress along x."""
+        return self._field("xx")
+
+    @cached_property
+    def yy(self) -> Floats:
+        """Normal stress along y."""
+        return self._field("yy")
+
+    @cached_property
+    def zz(self) -> Floats:
+        """Normal stress along z; minus the pressure at the surface."""
+        return self._field("zz")
+
+    @cached_property
+    def xy(self) -> Floats:
+        """Shear stress in the plane."""
+        return self._field("xy")
+
+    @cached_property
+    def xz(self) -> Floats:
+        """Shear stress on planes parallel to the surface, along x."""
+        return self._field("xz")
+
+    @cached_property
+    def yz(self) -> Floats:
+        """Shear stress on planes parallel to the surface, along y."""
+        return self._field("yz")
+
+    @cached_property
+    def mises(self) -> Floats:
+        """von Mises stress."""
+        return self._field("mises")
+
+    @cached_property
+    def tresca(self) -> Floats:
+        """Largest shear stress, half the difference of the largest and the least principal stress."""
+        return self._field("tresca")
+
+    @cached_property
+    def tension(self) -> Floats:
+        """Largest principal stress."""
+        return self._field("tension")
+
+    @cached_property
+    def pressure(self) -> Floats:
+        """Minus the mean of the normal stresses."""
+        return self._field("pressure")
+
+    def survey(self, threshold: float | None = None) -> dict[str, Any]:
+        """Maxima, refined between the depths, with their places: `max_mises`, `max_mises_depth`, `max_mises_x`, `max_mises_y`,
+        the same for `tresca` and `tension`; `mises_by_depth`; and with a threshold [Pa] the `stressed_volume` [m^3] in which
+        the von Mises stress exceeds it.
+
+        Warns where the maximum lies at the deepest depth, or nearer to the surface than two cells.
+        """
+        found: dict[str, Any] = _core.stress_survey(
+            self._pressure,
+            list(self._size),
+            self._boundary,
+            self._poisson,
+            [float(d) for d in self.depths],
+            None if threshold is None else number("threshold", threshold),
+        )
+        if found.pop("at_the_deepest"):
+            warnings.warn("the largest von Mises stress lies at the deepest depth: give deeper ones", stacklevel=2)
+        if found.pop("unresolved"):
+            warnings.warn(
+                "the largest von Mises stress lies less than two cells below the surface: the grid is too coarse for it",
+                stacklevel=2,
+            )
+        found["mises_by_depth"] = np.asarray(found["mises_by_depth"])
+        return found
+
+    def __repr__(self) -> str:
+        nx, ny = self._pressure.shape
+        deepest = self.depths[-1]
+        return f"<Stress: {nx} x {ny} cells, {len(self.depths)} depths to {deepest:.4g} m, Poisson's ratio {self._poisson:g}>"
+
+
+def stress(
+    pressure: Any,
+    *,
+    size: Sequence[float],
+    poisson: float,
+    depths: str | Sequence[float] = "auto",
+    boundary: str = "free",
+) -> Stress:
+    """The stress below a pressure on a half-space.
+
+    With a Poisson's ratio that is constant in time the stress of a viscoelastic body depends on the pressure of the moment
+    alone, so any pressure of a result will do. The modulus does not enter.
+
+    Parameters
+    ----------
+    pressure : pressure [Pa], array (nx, ny)
+    size : lengths of the domain along x and y [m]
+    poisson : Poisson's ratio of the body, 0 to 0.5
+    depths : depths below the surface [m], rising, each 0 or at least a quarter of a cell; "auto" takes 0 and 24 depths from
+        half a cell to the width of the contact (periodic: to half of the shorter side)
+    boundary : "free" or "periodic" (uniform pressure without lateral strain)
+
+    Raises
+    ------
+    CaseError : the input is wrong
+
+    Examples
+    --------
+    Under a Hertz contact the largest shear stress is 0.31 p0 at a depth of 0.48 a, for a Poisson's ratio of 0.3.
+
+    >>> import asperity as asp
+    >>> sphere = asp.Surface.sphere(cells=(64, 64), size=(1e-3, 1e-3), radius=5e-3)
+    >>> hertz = asp.elastic(sphere, 1e9, load=1.0)
+    >>> below = asp.stress(hertz.pressure, size=(1e-3, 1e-3), poisson=0.3)
+    >>> found = below.survey()
+    >>> p0 = hertz.pressure.max()
+    >>> abs(found["max_tresca"] / p0 - 0.31) < 0.01
+    True
+    >>> below.zz.shape
+    (25, 64, 64)
+    """
+    p = field("pressure", pressure)
+    lengths = pair("size", size)
+    nu = number("poisson", poisson)
+    if isinstance(depths, str):
+        if depths != "auto":
+            raise _core.CaseError(f'depths is {depths!r}, but must be "auto" or numbers in m')
+        below = np.asarray(_core.stress_depths(p, list(lengths), boundary))
+    else:
+        below = np.atleast_1d(np.asarray(depths, dtype=float))
+        if below.ndim != 1 or below.size == 0:
+            raise _core.CaseError("depths must be one row of numbers in m, at least one")
+    return Stress(p, lengths, below, nu, boundary)

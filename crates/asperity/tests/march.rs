@@ -159,7 +159,7 @@ fn at_long_times_the_contact_is_the_relaxed_elastic_one_capped_or_not() {
 
 #[test]
 fn a_flat_punch_follows_the_creep_integral_through_jumps_and_unloading() {
-    // oracles/flat_punch_history.json: W jumps by 1 at 0, ramps by 1 over [1, 2], jumps by -1 at 3.
+    // W jumps by 1 at 0, ramps by 1 over [1, 2], jumps by -1 at 3; the approach of a unit punch is (1/2) int C(t - s) dW(s).
     let grid = Grid::new([48, 48], [2.4, 2.4]).unwrap();
     let punch = Part::Shape { shape: Shape::FlatPunch(Punch::Circle { radius: 1.0 }), center: [0.0, 0.0] };
     let gap = undeformed_gap(&grid, &[punch]).unwrap();
@@ -199,7 +199,7 @@ fn a_flat_punch_follows_the_creep_integral_through_jumps_and_unloading() {
 
 #[test]
 fn triangular_load_follows_ting_while_the_contact_shrinks() {
-    // oracles/ting_ramp_zener_t0eq_tau.json: R = W0 = t0 = 1.
+    // Ting's solution in high precision (t, a, approach, largest pressure) for R = W0 = t0 = 1.
     let oracle = [
         (0.5, 0.4844898432716986, 0.23473040823343505, 0.927664608905338),
         (1.0, 0.6353548723995163, 0.4036758138818056, 1.040995764935268),

@@ -1,45 +1,33 @@
 //! The slow truth: projected Gauss-Seidel on the influence matrix, for small grids.
 
-use ndarray::Array2;
-
 use super::{ContactState, Prescribed, Problem};
-use crate::grid::Boundary;
-use crate::operator::Operator;
+use crate::operator::{Dense, Operator};
 
 /// Solves a contact cell by cell: p_i <- clip(p_i - r_i/(c K_ii), 0, H), swept until nothing moves.
 ///
-/// Under load control the approach is found by bisection around it. The matrix is read off the
-/// operator column by column: O(N^2) memory, grids of a few hundred cells. Independent of the
-/// methods that it checks (Bortz; Vollebregt, Comput. Mech. 54, 2014, gives the history).
-pub fn gauss_seidel(operator: &mut dyn Operator, problem: &Problem) -> ContactState {
+/// Under load control the approach is found by bisection around it. O(N^2) memory: grids of a few hundred cells. It shares
+/// neither method nor influence coefficients with the solvers that it checks (Bortz; Vollebregt, Comput. Mech. 54, 2014,
+/// gives the history).
+pub fn gauss_seidel(operator: &mut Dense, problem: &Problem) -> ContactState {
     let n = operator.grid().len();
-    let mut matrix = Array2::zeros((n, n));
-    let mut unit = vec![0.0; n];
-    for (i, mut row) in matrix.outer_iter_mut().enumerate() {
-        unit[i] = 1.0;
-        if let Some(row) = row.as_slice_mut() {
-            operator.apply_into(&unit, row);
-        }
-        unit[i] = 0.0;
-    }
     let mut state = ContactState::new(n);
     match problem.prescribed {
-        Prescribed::Approach(w) => relax(&matrix, problem, w, &mut state),
+        Prescribed::Approach(w) => relax(operator, problem, w, &mut state),
         Prescribed::Load(load) => {
             let target = load / operator.grid().cell_area();
             let mut low = problem.gap.iter().copied().fold(f64::INFINITY, f64::min);
-            let mut high = if operator.boundary() == Boundary::Periodic && problem.hardness.is_infinite() {
+            let mut high = if !operator.determines_mean() && problem.hardness.is_infinite() {
                 // Beyond the mean gap a periodic pressure has no bound.
                 problem.gap.iter().sum::<f64>() / n as f64
             } else {
-                carrying(&matrix, problem, target, low, &mut state)
+                carrying(operator, problem, target, low, &mut state)
             };
             while high - low > 4.0 * f64::EPSILON * high.abs() {
                 let w = 0.5 * (low + high);
                 if w <= low || w >= high {
                     break;
                 }
-                relax(&matrix, problem, w, &mut state);
+                relax(operator, problem, w, &mut state);
                 if state.pressure.iter().sum::<f64>() < target { low = w } else { high = w }
             }
         }
@@ -49,18 +37,18 @@ pub fn gauss_seidel(operator: &mut dyn Operator, problem: &Problem) -> ContactSt
 }
 
 /// An approach above `low` at which the bodies carry `target` at least.
-fn carrying(matrix: &Array2<f64>, problem: &Problem, target: f64, low: f64, state: &mut ContactState) -> f64 {
-    let mut overlap = problem.compliance * target * matrix[(0, 0)];
+fn carrying(operator: &Dense, problem: &Problem, target: f64, low: f64, state: &mut ContactState) -> f64 {
+    let mut overlap = problem.compliance * target * operator.self_influence();
     loop {
         overlap *= 2.0;
-        relax(matrix, problem, low + overlap, state);
+        relax(operator, problem, low + overlap, state);
         if state.pressure.iter().sum::<f64>() >= target {
             return low + overlap;
         }
     }
 }
 
-fn relax(matrix: &Array2<f64>, problem: &Problem, w: f64, state: &mut ContactState) {
+fn relax(operator: &Dense, problem: &Problem, w: f64, state: &mut ContactState) {
     state.approach = w;
     let p = &mut state.pressure;
     for _ in 0..20_000 {
@@ -70,9 +58,10 @@ fn relax(matrix: &Array2<f64>, problem: &Problem, w: f64, state: &mut ContactSta
             if problem.gap[i] == f64::INFINITY {
                 continue;
             }
-            let u: f64 = matrix.row(i).iter().zip(p.iter()).map(|(k, p)| k * p).sum();
+            let row = operator.row(i);
+            let u: f64 = row.iter().zip(p.iter()).map(|(k, p)| k * p).sum();
             let r = problem.compliance * u + problem.gap[i] - w;
-            let new = (p[i] - r / (problem.compliance * matrix[(i, i)])).clamp(0.0, problem.hardness.at(i));
+            let new = (p[i] - r / (problem.compliance * row[i])).clamp(0.0, problem.hardness.at(i));
             change = change.max((new - p[i]).abs());
             largest = largest.max(new);
             p[i] = new;

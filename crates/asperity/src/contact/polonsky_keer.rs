@@ -1,12 +1,16 @@
-//! The method of Polonsky & Keer (Wear 231, 1999) with a cut-off of the pressure, as SC17 section 3
-//! has it, with its misprints mended (docs/theory.md): the direction is d <- r + theta (G/G_old) d,
-//! means run over D = {0 < p < H}, capped cells with a positive gap are released, and only cells
-//! below the hardness carry the correction of the load. A safeguard makes it finish with a cap and under
-//! approach control: where no cell is free, or the residual stalls, the direction is r on all cells that
-//! may move, those to be released with them. Close to saturation (W -> H A) it can still stall; that is
-//! told as an error, and `projected-cg` solves such problems.
+//! The method of Polonsky & Keer (Wear 231, 1999) with a cut-off H of the pressure, as SC17 section 3 has it, with its
+//! misprints corrected (docs/theory.md): conjugate gradients on the free cells D = {0 < p < H}, d <- r + theta (G/G_old) d;
+//! then cells beyond a bound are clipped, cells that must leave a bound are released, and the cells below H are scaled to
+//! the load.
+//!
+//! Clipping, releasing and scaling can raise the energy f, so that these steps alone can cycle where most of the contact is
+//! at H. After a stall the solver takes gradient steps, which converge by themselves: see the file `gradient.rs`.
+
+mod gradient;
 
 use std::sync::atomic::AtomicBool;
+
+use gradient::Progress;
 
 use super::bounds::clip;
 use super::rating::Rating;
@@ -18,9 +22,6 @@ use crate::error::{Error, Result};
 use crate::field::{strands, sweep};
 use crate::grid::Grid;
 use crate::operator::Operator;
-
-/// Iterations without a halving of the residual before a step along r on all cells that may move.
-const PATIENCE: usize = 20;
 
 /// The method's working memory: 24 bytes per cell and a set of cells.
 pub struct PolonskyKeer {
@@ -57,15 +58,16 @@ impl PolonskyKeer {
         interrupt: Option<&AtomicBool>,
     ) -> Result<Outcome> {
         let grid = *operator.grid();
-        let fallback = 1.0 / (problem.compliance * operator.self_influence());
+        let stiffness = 1.0 / (problem.compliance * operator.self_influence());
         make_feasible(problem, grid.cell_area(), state, &mut self.touchable)?;
         operator.apply_into(&state.pressure, &mut state.unit_displacement);
         state.rounding = 1.0;
         let mut convolutions = 1;
+        let mut progress = Progress::new();
+        let mut gradient_length = stiffness;
         self.direction.fill(0.0);
-        // theta / G_old: zero after a change of the contact.
+        // 1 / G_old: zero after a change of the contact.
         let mut memory = 0.0;
-        let (mut best, mut stall) = (f64::INFINITY, 0);
         let mut iteration = 0;
         loop {
             let w = Rating::of(problem, state, 0.0).approach(problem.prescribed);
@@ -83,26 +85,26 @@ impl PolonskyKeer {
             if interrupted(interrupt) {
                 return Err(Error::Interrupted);
             }
+            iteration += 1;
 
-            stall += 1;
-            if outcome.residual < 0.5 * best {
-                (best, stall) = (outcome.residual, 0);
+            if progress.has_stalled(outcome.residual) || rating.no_cell_is_free() {
+                if !self.gradient_step(operator, problem, state, &mut gradient_length) {
+                    // Nothing descends: rounding is all that is left.
+                    return Err(not_converged("polonsky-keer", options, &outcome));
+                }
+                convolutions += 1;
+                memory = 0.0;
+                continue;
             }
-            let all = rating.no_cell_is_free() || stall >= PATIENCE;
-            if all {
-                stall = 0;
-            }
-            let product = self.residual_on_free(problem, state, w, all);
-            self.turn(problem, state, if all { 0.0 } else { product * memory }, all);
+            let product = self.residual_on_free(problem, state);
+            self.turn(problem, state, product * memory);
             operator.apply_into(&self.direction, &mut self.image);
             convolutions += 1;
             let [rd, curvature] = self.products();
             let curvature = problem.compliance * curvature;
-            let length = if curvature > 0.0 { rd / curvature } else { fallback };
-            let changed = self.step(problem, state, w, length, if all { 0.0 } else { length.min(fallback) });
-            if changed {
-                if let Prescribed::Load(load) = problem.prescribed {
-                    let target = load / grid.cell_area();
+            let length = if curvature > 0.0 { rd / curvature } else { stiffness };
+            if self.step(problem, state, length, length.min(stiffness)) {
+                if let Some(target) = problem.sum(grid.cell_area()) {
                     let p = &mut state.pressure;
                     if set_sum(p, &self.touchable, problem.hardness, target).is_none() {
                         return Err(not_converged("polonsky-keer", options, &outcome));
@@ -112,21 +114,15 @@ impl PolonskyKeer {
                 convolutions += 1;
                 memory = 0.0;
             } else {
-                sweep((&mut state.unit_displacement[..], &self.image[..]), &|(u, k): (
-                    &mut [f64],
-                    &[f64],
-                )| {
-                    u.iter_mut().zip(k).for_each(|(u, k)| *u -= length * k)
-                });
+                add(&mut state.unit_displacement, -length, &self.image);
                 memory = if product > 0.0 { 1.0 / product } else { 0.0 };
             }
-            iteration += 1;
         }
     }
 
-    /// r on D = {0 < p < H} (with `all`, on the cells to be released too), 0 elsewhere; returns G = <r, r>.
-    fn residual_on_free(&mut self, problem: &Problem, state: &ContactState, w: f64, all: bool) -> f64 {
-        let c = problem.compliance;
+    /// r on D = {0 < p < H}, 0 elsewhere; returns G = <r, r>.
+    fn residual_on_free(&mut self, problem: &Problem, state: &ContactState) -> f64 {
+        let (c, w) = (problem.compliance, state.approach);
         sweep(
             (
                 &mut self.residual[..],
@@ -137,10 +133,7 @@ impl PolonskyKeer {
             ),
             &|(r, p, u, h, hardness): (&mut [f64], &[f64], &[f64], &[f64], Hardness)| {
                 strands(r.len(), |i| {
-                    let hardness = hardness.at(i);
-                    let gap = c * u[i] + h[i] - w;
-                    let free = p[i] > 0.0 && p[i] < hardness;
-                    r[i] = if free || (all && released(p[i], gap, hardness)) { gap } else { 0.0 };
+                    r[i] = if is_free(p[i], hardness.at(i)) { c * u[i] + h[i] - w } else { 0.0 };
                     [r[i] * r[i]]
                 })
             },
@@ -148,30 +141,29 @@ impl PolonskyKeer {
     }
 
     /// d <- r + beta d on D; under load control with its mean over D removed.
-    fn turn(&mut self, problem: &Problem, state: &ContactState, beta: f64, all: bool) {
+    fn turn(&mut self, problem: &Problem, state: &ContactState, beta: f64) {
         let hardness = problem.hardness;
-        // With `all`, the residual itself tells which cells may move.
-        let moves = |p: f64, r: f64, hardness: f64| (p > 0.0 && p < hardness) || (all && r != 0.0);
         let [sum, cells] = sweep(
             (&mut self.direction[..], &self.residual[..], &state.pressure[..], hardness),
             &|(d, r, p, hardness): (&mut [f64], &[f64], &[f64], Hardness)| {
                 strands(d.len(), |i| {
-                    let moves = moves(p[i], r[i], hardness.at(i));
-                    d[i] = if moves { r[i] + beta * d[i] } else { 0.0 };
-                    [d[i], f64::from(u8::from(moves))]
+                    let free = is_free(p[i], hardness.at(i));
+                    d[i] = if free { r[i] + beta * d[i] } else { 0.0 };
+                    [d[i], f64::from(u8::from(free))]
                 })
             },
         );
         if cells > 0.0 && matches!(problem.prescribed, Prescribed::Load(_)) {
             let mean = sum / cells;
-            sweep(
-                (&mut self.direction[..], &self.residual[..], &state.pressure[..], hardness),
-                &|(d, r, p, hardness): (&mut [f64], &[f64], &[f64], Hardness)| {
-                    for i in 0..d.len() {
-                        d[i] -= if moves(p[i], r[i], hardness.at(i)) { mean } else { 0.0 };
-                    }
-                },
-            );
+            sweep((&mut self.direction[..], &state.pressure[..], hardness), &|(d, p, hardness): (
+                &mut [f64],
+                &[f64],
+                Hardness,
+            )| {
+                for i in 0..d.len() {
+                    d[i] -= if is_free(p[i], hardness.at(i)) { mean } else { 0.0 };
+                }
+            });
         }
     }
 
@@ -186,10 +178,9 @@ impl PolonskyKeer {
         })
     }
 
-    /// p <- clip(p - a d); cells that must leave their bound move by `release` r besides. True where the
-    /// set changed.
-    fn step(&self, problem: &Problem, state: &mut ContactState, w: f64, length: f64, release: f64) -> bool {
-        let c = problem.compliance;
+    /// p <- clip(p - a d); cells that must leave their bound move by -`release` r. True where the set changed.
+    fn step(&self, problem: &Problem, state: &mut ContactState, length: f64, release: f64) -> bool {
+        let (c, w) = (problem.compliance, state.approach);
         let [changes] = sweep(
             (
                 &mut state.pressure[..],
@@ -202,7 +193,7 @@ impl PolonskyKeer {
                 strands(p.len(), |i| {
                     let hardness = hardness.at(i);
                     let r = c * u[i] + h[i] - w;
-                    let released = released(p[i], r, hardness);
+                    let released = is_released(p[i], r, hardness);
                     let new = p[i] - length * d[i] - if released { release * r } else { 0.0 };
                     let clipped = clip(new, hardness);
                     p[i] = if h[i] < f64::INFINITY { clipped } else { 0.0 };
@@ -214,8 +205,19 @@ impl PolonskyKeer {
     }
 }
 
+/// u <- u + t k
+fn add(u: &mut [f64], t: f64, k: &[f64]) {
+    sweep((u, k), &|(u, k): (&mut [f64], &[f64])| u.iter_mut().zip(k).for_each(|(u, k)| *u += t * k));
+}
+
+/// True in D.
+#[inline(always)]
+fn is_free(p: f64, hardness: f64) -> bool {
+    p > 0.0 && p < hardness
+}
+
 /// True where a cell at a bound must leave it.
 #[inline(always)]
-fn released(p: f64, r: f64, hardness: f64) -> bool {
+fn is_released(p: f64, r: f64, hardness: f64) -> bool {
     if p <= 0.0 { r < 0.0 } else { p >= hardness && r > 0.0 }
 }

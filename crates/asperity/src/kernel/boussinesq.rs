@@ -10,7 +10,7 @@
 /// Distance, in longest sides of the cell, from which the Gauss rule is the more accurate form.
 const FAR: f64 = 6.0;
 
-/// Mean-free coefficient K(x, y) \[m\]: displacement at (x, y) from the centre of a cell of sides
+/// Influence coefficient K(x, y) \[m\]: the displacement at (x, y) from the centre of a cell of sides
 /// `side` = \[dx, dy\] under unit pressure, for unit contact modulus.
 ///
 /// Relative error below 1e-13 at any distance (compared with 60-digit arithmetic in the tests).

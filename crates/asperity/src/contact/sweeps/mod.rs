@@ -6,6 +6,7 @@
 
 pub(super) mod direction;
 pub(super) mod feasible;
+pub(super) mod gradient;
 pub(super) mod preconditioner;
 pub(super) mod projection;
 pub(super) mod rate;

@@ -50,6 +50,15 @@ fn the_example_gives_its_material_back() {
     let case = Case::parse(&case, dir.path(), &[]).unwrap_or_else(|errors| panic!("{errors}"));
     let young = 1.0 / case.creep.instantaneous * 0.75;
     assert!((young / found["instantaneous"][0].as_f64().unwrap() - 1.0).abs() < 1e-12);
+    // And `material show` reads it as it is: E at once and relaxed.
+    let mut show = Command::new(env!("CARGO_BIN_EXE_asperity"));
+    let shown =
+        show.args(["material", "show", "pad.toml", "--json"]).current_dir(dir.path()).output().unwrap();
+    assert!(shown.status.success(), "{}", text(&shown.stderr));
+    let shown: Value = serde_json::from_str(&text(&shown.stdout)).unwrap();
+    let relaxed = shown[0]["relaxation_modulus"].as_array().unwrap().last().unwrap().as_f64().unwrap();
+    // The table ends a decade after the longest time: e^-10 is left.
+    assert!((relaxed / found["equilibrium"][0].as_f64().unwrap() - 1.0).abs() < 1e-4, "{shown}");
     // Shear moduli are a third of Young's where nu = 0.5.
     let output =
         fit(dir.path(), &record(), &["--radius", "5 mm", "--json", "--modulus", "shear", "--terms", "2"]);
@@ -59,7 +68,7 @@ fn the_example_gives_its_material_back() {
     // In words.
     let output = fit(dir.path(), &record(), &["--radius", "5 mm"]);
     let words = text(&output.stdout);
-    for word in ["E(inf)", "tau_2", "95 % confidence", "depth; the load is fitted", "model = \"prony\""] {
+    for word in ["E(inf)", "tau_2", "95 % interval", "depth; the load is fitted", "model = \"prony\""] {
         assert!(words.contains(word), "{words}");
     }
 }

@@ -12,7 +12,7 @@ use crate::march::{choose, choose_among};
 use crate::wait::detached;
 
 /// Fits the contact relaxation modulus to a record; `profile` is "sphere" with its radius or "cone" with its slope. Intervals
-/// are (value, low, high).
+/// are (value, low, high, determined).
 #[pyfunction]
 #[pyo3(signature = (times, loads, depths, profile, number, given, terms, long_time, fit_touch, springs, limit))]
 #[allow(clippy::too_many_arguments)]
@@ -44,7 +44,7 @@ pub fn fit_indentation<'py>(
     let profile = choose_among("profile", profile, &profiles)?;
     let record = IndentationRecord { times: &times, loads: &loads, depths: &depths };
     let fit = detached(py, || fit(profile, &record, &options))?.map_err(|error| raised(py, error))?;
-    let interval = |interval: Interval| (interval.value, interval.low, interval.high);
+    let interval = |x: Interval| (x.value, x.low, x.high, x.determined);
     let out = PyDict::new(py);
     out.set_item("equilibrium", interval(fit.equilibrium))?;
     out.set_item("instantaneous", interval(fit.instantaneous))?;
@@ -58,6 +58,8 @@ pub fn fit_indentation<'py>(
     out.set_item("rms", fit.rms)?;
     out.set_item("relative_rms", fit.relative_rms)?;
     out.set_item("durbin_watson", fit.durbin_watson)?;
+    out.set_item("numbers_of_terms", fit.numbers)?;
+    out.set_item("notes", fit.notes)?;
     out.set_item("window", (fit.window[0], fit.window[1]))?;
     Ok(out)
 }

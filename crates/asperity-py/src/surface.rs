@@ -239,6 +239,9 @@ pub fn describe<'py>(
         out.set_item("m2", waves.moments.m2)?;
         out.set_item("m4", waves.moments.m4)?;
         out.set_item("bandwidth", waves.moments.bandwidth())?;
+        out.set_item("lay", waves.lay.is_clear())?;
+        out.set_item("lay_ratio", waves.lay.ratio)?;
+        out.set_item("lay_angle", waves.lay.angle)?;
         let fit = match band {
             Some([longest, shortest]) => Some(
                 SelfAffineFit::of(&waves.spectrum, longest, shortest).map_err(|error| raised(py, error))?,

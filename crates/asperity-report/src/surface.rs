@@ -62,12 +62,16 @@ fn spectrum(waves: &asperity::surface::statistics::Waves) -> Curves {
         (0..spectrum.power.len()).filter(|n| spectrum.power[*n] > ROUNDING * largest).collect();
     let pick = |values: &[f64]| kept.iter().map(|n| values[*n]).collect::<Vec<f64>>();
     let (q, power) = (pick(&spectrum.wave_number), pick(&spectrum.power));
-    let mut curves = Curves::new(
-        "Power spectrum, radial average",
-        Axis::log("wave number", "1/m"),
-        Axis::log("power", "m4"),
-    )
-    .with(Series::new("", Style::Points, q.clone(), power));
+    let (title, along) = match waves.lay.is_clear() {
+        true => ("Power spectrum, average over ellipses", "wave number across the lay"),
+        false => ("Power spectrum, radial average", "wave number"),
+    };
+    let mut curves = Curves::new(title, Axis::log(along, "1/m"), Axis::log("power", "m4")).with(Series::new(
+        "",
+        Style::Points,
+        q.clone(),
+        power,
+    ));
     if let (Some(fit), Some(first), Some(last)) = (&waves.fit, q.first(), q.last()) {
         let bend = TAU / fit.roll_off;
         let at = |q: f64| fit.plateau * (q / bend).max(1.0).powf(-2.0 * (1.0 + fit.hurst));

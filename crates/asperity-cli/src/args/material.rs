@@ -19,7 +19,7 @@ pub enum Material {
 
 #[derive(Debug, clap::Args)]
 pub struct Show {
-    /// A case file, or a file with a `material = { ... }` and nothing else
+    /// A case file, or a file with the `material = { ... }` of a body, as the fits write it
     pub file: PathBuf,
     /// First time, e.g. --from '1 ms' [default: a decade before the material's times]
     #[arg(long, value_name = "TIME")]
@@ -119,7 +119,7 @@ pub struct FitIndentation {
     /// The moduli to give
     #[arg(long, value_parser = choice::<Modulus>(), default_value = "young")]
     pub modulus: Modulus,
-    /// The channel that the instrument controlled, taken as it was measured [default: the one with less scatter]
+    /// The channel that the test controlled [default: the one that fewer straight pieces describe, ramps and holds]
     #[arg(long, value_parser = choice::<Given>())]
     pub given: Option<Given>,
     /// Number of terms, at most 6 [default: as many as the record calls for]

@@ -60,7 +60,7 @@ pub fn run(args: &FitIndentation) -> Result<(), Failure> {
     }
     if args.json {
         let mut object = json_of(&fit, of);
-        object["notes"] = json!(record.notes);
+        object["notes"] = json!(record.notes.iter().chain(&fit.notes).collect::<Vec<_>>());
         object["output"] = json!(args.output);
         object["material"] = json!(block);
         return crate::print(&format!("{object}\n"));
@@ -93,53 +93,39 @@ fn report(args: &FitIndentation, record: &Indentation, fit: &IndentationFit, of:
     line("given", format!("{taken}; the {fitted} is fitted"));
     let [step, length] = fit.window;
     line("times", format!("steps from {}, {} in all", quantity(step, "s"), quantity(length, "s")));
+    line("terms", format!("{} (probability {:.2})", fit.terms.len(), fit.numbers[fit.terms.len()]));
     line(
         "misfit",
         format!("{} rms, {:.3} % of the largest {fitted}", quantity(fit.rms, unit), 100.0 * fit.relative_rms),
     );
     let symbol = if of.modulus == Modulus::Young { "E" } else { "G" };
-    let pascal = |x: Interval| {
-        let x = of.of(x);
-        let [value, low, high] = [x.value, x.low, x.high].map(|p| quantity(p, "Pa"));
-        format!("{value:<12}{low} to {high}")
-    };
-    line("", format!("{:<12}95 % confidence", "value"));
+    let pascal = |x: Interval| interval_in_words(of.of(x), "Pa");
+    line("", format!("{:<12}95 % interval", "value"));
     line(&format!("{symbol}(0)"), pascal(fit.instantaneous));
-    if fit.equilibrium.value > 0.0 {
-        line(&format!("{symbol}(inf)"), pascal(fit.equilibrium));
-    } else {
-        line(&format!("{symbol}(inf)"), "0 (a fluid over the record)".to_owned());
-    }
+    line(&format!("{symbol}(inf)"), pascal(fit.equilibrium));
     for (k, [modulus, time]) in fit.terms.iter().enumerate() {
         line(&format!("{symbol}_{}", k + 1), pascal(*modulus));
-        let [value, low, high] = [time.value, time.low, time.high].map(|t| quantity(t, "s"));
-        line(&format!("tau_{}", k + 1), format!("{value:<12}{low} to {high}"));
+        line(&format!("tau_{}", k + 1), interval_in_words(*time, "s"));
     }
     if args.fit_touch {
-        let [value, low, high] = [fit.touch.value, fit.touch.low, fit.touch.high].map(|d| quantity(d, "m"));
-        line("touch", format!("{value:<12}{low} to {high}"));
+        line("touch", interval_in_words(fit.touch, "m"));
     }
-    record.notes.iter().for_each(|note| line("note", note.clone()));
-    if fit.durbin_watson < 1.5 {
-        line(
-            "note",
-            format!(
-                "the residuals follow each other (Durbin-Watson {:.2}, 2 where they are independent): the intervals are \
-                 too narrow",
-                fit.durbin_watson
-            ),
-        );
-    }
-    for (k, [_, time]) in fit.terms.iter().enumerate() {
-        if time.value < step || time.value > length {
-            line("note", format!("tau_{} lies outside of the times of the record", k + 1));
-        }
-    }
+    record.notes.iter().chain(&fit.notes).for_each(|note| line("note", note.clone()));
     text
 }
 
+fn interval_in_words(x: Interval, unit: &str) -> String {
+    let [value, low, high] = [x.value, x.low, x.high].map(|x| quantity(x, unit));
+    match x.determined {
+        true => format!("{value:<12}{low} to {high}"),
+        false => format!("not determined by this record ({low} to {high})"),
+    }
+}
+
 fn json_of(fit: &IndentationFit, of: MaterialOf) -> Value {
-    let interval = |x: Interval| json!([x.value, x.low, x.high]);
+    // What is not determined has no value, and JSON no infinity: null.
+    let finite = |x: f64| x.is_finite().then_some(x);
+    let interval = |x: Interval| json!([x.determined.then_some(x.value), finite(x.low), finite(x.high)]);
     let modulus = |x: Interval| interval(of.of(x));
     let (taken, ..) = given(fit);
     json!({
@@ -153,6 +139,7 @@ fn json_of(fit: &IndentationFit, of: MaterialOf) -> Value {
         "terms": fit.terms.iter().map(|[m, t]| json!({ "modulus": modulus(*m), "time": interval(*t) })).collect::<Vec<_>>(),
         "touch": interval(fit.touch),
         "confidence": 0.95,
+        "numbers_of_terms": fit.numbers,
         "rms": fit.rms,
         "relative_rms": fit.relative_rms,
         "durbin_watson": fit.durbin_watson,

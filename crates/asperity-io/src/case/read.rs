@@ -9,6 +9,8 @@ use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue, ValueDeserializer};
 
 use super::error::CaseError;
+use super::quantity::range::{Poisson, Positive};
+use super::quantity::{Number, Pressure};
 use super::raw::{At, Document, Domain, Material, Surface};
 use super::text::{MOST_ERRORS, Text};
 use super::words;
@@ -77,13 +79,22 @@ const MATERIAL: &[Tag] =
     &[Tag { inside: &["material", "shift"], key: "model" }, Tag { inside: &["material"], key: "model" }];
 const HISTORY: &[Tag] = &[Tag { inside: &["history"], key: "kind" }];
 
-/// The material of a file that holds nothing else, `material = { ... }`, or the faults that it has.
+/// Keys of a `[[body]]` that may stand next to a material of its own file: `fit-indentation` writes `poisson`.
+const OF_A_BODY: &[&str] = &["material", "name", "poisson", "bulk_modulus", "hardness"];
+
+/// The material of a file that holds the lines of a body, `material = { ... }` at least, or the faults that it has.
 pub fn material(text: &Text<'_>) -> Result<At<Material>, Vec<CaseError>> {
     let mut reader = Reader { text, errors: Vec::new(), misspelt: Vec::new() };
     for key in text.root.keys().take(MOST_ERRORS) {
-        if key.get_ref() != "material" {
-            reader.errors.push(words::unknown_key(text, &key.span(), key.get_ref(), &["material"]));
+        if !OF_A_BODY.contains(&key.get_ref().as_ref()) {
+            reader.errors.push(words::unknown_key(text, &key.span(), key.get_ref(), OF_A_BODY));
         }
+    }
+    // The other keys do not change the functions of a material, but a slip in them is an error all the same.
+    let _: Option<String> = reader.optional("name", &[]);
+    let _: Option<Number<Poisson>> = reader.optional("poisson", &[]);
+    for key in ["bulk_modulus", "hardness"] {
+        let _: Option<Pressure<Positive>> = reader.optional(key, &[]);
     }
     const ALONE: &[Tag] = &[Tag { inside: &["shift"], key: "model" }, Tag { inside: &[], key: "model" }];
     let material = reader.optional("material", ALONE);

@@ -1,4 +1,5 @@
-//! Materials to look at: those of a case, or of a file that holds a `material = { ... }` and nothing else.
+//! Materials to look at: those of a case, or of a file that holds the lines of a `[[body]]`, as the fits
+//! write them.
 
 use std::path::Path;
 
@@ -22,8 +23,8 @@ pub struct Specimen {
     pub warnings: Vec<String>,
 }
 
-/// The materials of a case file, or the one of a file that holds a `material` and nothing else. Fractional models
-/// are Prony sums over the times of the run; in a file of their own over `window` \[s\], or else eight decades about
+/// The materials of a case file, or the one of a file that holds `material = { ... }` and other lines of a `[[body]]`. Fractional
+/// models are Prony sums over the times of the run; in a file of their own over `window` \[s\], or else eight decades about
 /// their time.
 ///
 /// # Errors

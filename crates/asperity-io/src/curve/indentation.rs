@@ -82,7 +82,12 @@ impl MaterialOf {
     /// The modulus and its interval that belong to a contact modulus.
     pub fn of(self, contact: Interval) -> Interval {
         let factor = self.factor();
-        Interval { value: factor * contact.value, low: factor * contact.low, high: factor * contact.high }
+        Interval {
+            value: factor * contact.value,
+            low: factor * contact.low,
+            high: factor * contact.high,
+            determined: contact.determined,
+        }
     }
 }
 
@@ -94,12 +99,15 @@ pub fn indentation_block(record: &Indentation, fit: &IndentationFit, of: Materia
     let [step, length] = fit.window;
     let mut text = format!(
         "# From the indentation {name}: {} rows, misfit {:.2} % rms of the largest value; steps from {step:.3e} s, {length:.3e} s in \
-         all.\n# Behind each line: 95 % confidence intervals.\n",
+         all.\n# Behind each line: 95 % intervals.\n",
         fit.rows.len(),
         100.0 * fit.relative_rms,
     );
     let measure = choice::word(&of.modulus);
-    let interval = |x: Interval, unit: &str| format!("{:.3e} to {:.3e} {unit}", x.low, x.high);
+    let interval = |x: Interval, unit: &str| {
+        let open = if x.determined { "" } else { "not determined by this record, " };
+        format!("{open}{:.3e} to {:.3e} {unit}", x.low, x.high)
+    };
     let equilibrium = of.of(fit.equilibrium);
     let _ = writeln!(text, "poisson = {:?}", of.poisson);
     if fit.terms.is_empty() {
@@ -111,10 +119,7 @@ pub fn indentation_block(record: &Indentation, fit: &IndentationFit, of: Materia
         );
         return text;
     }
-    let known = match equilibrium.value > 0.0 {
-        true => format!("  # equilibrium {}", interval(equilibrium, "Pa")),
-        false => String::new(),
-    };
+    let known = format!("  # equilibrium {}", interval(equilibrium, "Pa"));
     let _ = write!(
         text,
         "material = {{ model = \"prony\", modulus = \"{measure}\", equilibrium = \"{:e} Pa\", terms = [{known}",

@@ -1,7 +1,8 @@
 """The material of a half-space from a measured indentation.
 
 Between depth and load stands the exact one-dimensional equivalent of the contact (method of dimensionality reduction), unloading
-and loading again included; one channel is taken as given, the other is met by least squares.
+and loading again included; one channel is taken as given, the other is met by least squares. Intervals are an average over the
+numbers of terms that the record allows.
 """
 
 from __future__ import annotations
@@ -17,7 +18,8 @@ from ._arrays import Floats, count, line, number
 from ._core import CaseError
 from ._materials import Prony
 
-#: A value, and the lower and upper end of its 95 % confidence interval.
+#: A value, and the lower and upper end of its 95 % interval. The value is NaN where the record does not determine it: the ends
+#: are more than a factor of 10 apart.
 Interval = tuple[float, float, float]
 
 
@@ -32,7 +34,7 @@ class IndentationFit:
     instantaneous: Interval
     #: Depth of first touch [m], as (value, low, high); 0 where it was not fitted.
     touch: Interval
-    #: "depth" or "load": the channel that was taken as it is.
+    #: "depth" or "load": the channel that the test controlled.
     given: str
     #: Times [s] and model of the other channel [N or m] at the rows that were used.
     time: Floats
@@ -42,11 +44,15 @@ class IndentationFit:
     #: Root of the mean square of model less measurement [N or m], and the same over the largest value.
     rms: float
     relative_rms: float
-    #: Near 2 for independent errors; well below, and the intervals are too narrow.
+    #: Near 2 for independent errors; well below where the model bends away from the record or the noise is not white.
     durbin_watson: float
-    #: Shortest step and length of the record [s].
+    #: Probability of each number of terms, from 0 on.
+    numbers_of_terms: list[float]
+    #: Step and length of the record [s].
     window: tuple[float, float]
-    #: The material.
+    #: What should be known before the numbers are believed.
+    notes: list[str]
+    #: The material of the best fit, what is not determined included.
     material: Prony
 
     def __repr__(self) -> str:
@@ -57,10 +63,12 @@ class IndentationFit:
         )
 
     def _repr_html_(self) -> str:
+        open_ = "not determined"
         lines = [("E(0) [Pa]", self.instantaneous), ("E(inf) [Pa]", self.equilibrium)]
         for n, (modulus, time) in enumerate(self.terms, 1):
             lines += [(f"E_{n} [Pa]", modulus), (f"tau_{n} [s]", time)]
-        rows = "".join(f"<tr><th>{name}</th>{''.join(f'<td>{x:.5g}</td>' for x in values)}</tr>" for name, values in lines)
+        cells = [(name, [f"{x:.5g}" if x == x else open_ for x in values]) for name, values in lines]
+        rows = "".join(f"<tr><th>{name}</th>{''.join(f'<td>{x}</td>' for x in values)}</tr>" for name, values in cells)
         return f"<table><tr><th></th><th>value</th><th>95 % from</th><th>to</th></tr>{rows}</table>"
 
 
@@ -89,7 +97,8 @@ def fit_indentation(
     time, load, depth : the record [s], [N], [m]; the body is undisturbed before its first row, depths count from first touch
     radius : of the sphere [m]; or `slope` of the cone, rise per length
     poisson : Poisson's ratio, constant in time
-    given : "depth" or "load": the channel that is taken as it is; by default the one with less scatter
+    given : "depth" or "load": the channel that the test controlled; by default the one that fewer straight pieces (ramps and
+        holds) describe
     terms : number of terms, 6 at most; by default as many as the record calls for
     long_time : "free", "solid" or "fluid": what happens at times longer than the record
     fit_touch : whether the depth of first touch is fitted too
@@ -138,18 +147,16 @@ def fit_indentation(
     # E = E* (1 - nu^2)
     factor = 1.0 - nu**2
 
-    def young(interval: Interval) -> Interval:
-        value, low, high = interval
-        return factor * value, factor * low, factor * high
+    def interval(told: tuple[float, float, float, bool], factor: float = 1.0) -> Interval:
+        value, low, high, determined = told
+        return (factor * value if determined else float("nan"), factor * low, factor * high)
 
-    moduli = [(young(modulus), relaxation) for modulus, relaxation in found["terms"]]
-    equilibrium = young(found["equilibrium"])
     rows = np.asarray(found["rows"], dtype=np.int64)
     return IndentationFit(
-        terms=moduli,
-        equilibrium=equilibrium,
-        instantaneous=young(found["instantaneous"]),
-        touch=found["touch"],
+        terms=[(interval(modulus, factor), interval(relaxation)) for modulus, relaxation in found["terms"]],
+        equilibrium=interval(found["equilibrium"], factor),
+        instantaneous=interval(found["instantaneous"], factor),
+        touch=interval(found["touch"]),
         given=found["given"],
         time=columns[0][rows],
         predicted=found["predicted"],
@@ -157,10 +164,12 @@ def fit_indentation(
         rms=found["rms"],
         relative_rms=found["relative_rms"],
         durbin_watson=found["durbin_watson"],
+        numbers_of_terms=found["numbers_of_terms"],
         window=found["window"],
+        notes=found["notes"],
         material=Prony(
-            equilibrium=equilibrium[0],
-            terms=[(modulus[0], relaxation[0]) for modulus, relaxation in moduli],
+            equilibrium=factor * found["equilibrium"][0],
+            terms=[(factor * modulus[0], relaxation[0]) for modulus, relaxation in found["terms"]],
             poisson=nu,
             hardness=hardness,
             name=name,

@@ -182,8 +182,10 @@ class Surface:
         Returns
         -------
         dict : sa, sq, sz, sp, sv, min, max, mean [m], ssk, sku, sdq, sdr (ISO 25178-2); undefined (number of points);
-            m0 [m^2], m2, m4 [1/m^2], bandwidth m0 m4/m2^2 (Nayak 1971); hurst, hurst_error, roll_off [m], plateau [m^4],
-            spectrum_misfit of a self-affine spectrum, where one can be fitted
+            m0 [m^2], m2, m4 [1/m^2], bandwidth m0 m4/m2^2 (Nayak 1971); lay (whether there is a clear one),
+            lay_ratio (rms slope across it over that along it), lay_angle [rad] from x; hurst, hurst_error (one standard
+            error), roll_off [m], plateau [m^4], spectrum_misfit of a self-affine spectrum, where one can be fitted (with a
+            clear lay: across it)
         """
         band = None
         if longest is not None or shortest is not None:

@@ -1,8 +1,10 @@
-//! Levenberg-Marquardt on the parameters of a record, and the covariance of what it finds.
+//! Levenberg-Marquardt on the parameters of a record (D. W. Marquardt, J. SIAM 11 (1963) 431), and how well it knows them to
+//! first order.
 
 use rayon::prelude::*;
 
-use super::model::{Model, Parameters};
+use super::model::Model;
+use super::parameters::Parameters;
 use crate::error::{Error, Result};
 
 /// Steps of the central differences, in logarithms: the model's own steps are 1e-5 of its values.
@@ -19,11 +21,10 @@ const MOST_ITERATIONS: usize = 60;
 /// The parameters that fit best.
 pub(super) struct Solution {
     pub(super) at: Vec<f64>,
-    /// Over the largest measured value.
+    /// Weighted, over the largest measured value.
     pub(super) residuals: Vec<f64>,
-    /// Standard deviations of the parameters; infinite where the record shows nothing of one.
+    /// Standard deviations of the parameters to first order; infinite where the record shows nothing of one.
     pub(super) deviations: Vec<f64>,
-    pub(super) covariance: Vec<Vec<f64>>,
 }
 
 impl Solution {
@@ -80,16 +81,11 @@ pub(super) fn solve(model: &Model, parameters: &Parameters, start: Vec<f64>) -> 
         }
     }
     let columns = jacobian(model, parameters, &at)?;
-    let covariance = covariance(&columns, &residuals);
-    let deviations = (0..at.len())
-        .map(|k| match &covariance {
-            Some(covariance) => covariance[k][k].max(0.0).sqrt(),
-            None => f64::INFINITY,
-        })
-        .collect();
-    let k = at.len();
-    let covariance = covariance.unwrap_or_else(|| vec![vec![f64::INFINITY; k]; k]);
-    Ok(Solution { at, residuals, deviations, covariance })
+    let deviations = match covariance(&columns, &residuals) {
+        Some(covariance) => (0..at.len()).map(|k| covariance[k][k].max(0.0).sqrt()).collect(),
+        None => vec![f64::INFINITY; at.len()],
+    };
+    Ok(Solution { at, residuals, deviations })
 }
 
 /// Columns of dr/dx by one-sided differences, to go on with.
@@ -145,27 +141,11 @@ fn damped_step(normal: &[Vec<f64>], gradient: &[f64], damping: f64) -> Option<Ve
     step.iter().all(|s| s.is_finite()).then_some(step)
 }
 
-/// (J'J)⁻¹ (Σ r² J J'/(1 - h)²) (J'J)⁻¹ over the rows, h their leverages (HC3); `None` where J'J is singular.
+/// (J'J)⁻¹ Σ r²/(n - k) over the n rows and k parameters; `None` where J'J is singular.
 fn covariance(columns: &[Vec<f64>], residuals: &[f64]) -> Option<Vec<Vec<f64>>> {
-    let (normal, _) = system(columns, residuals);
-    let inverse = invert(normal)?;
-    let n = columns.len();
-    let mut middle = vec![vec![0.0; n]; n];
-    for (row, r) in residuals.iter().enumerate() {
-        let j: Vec<f64> = columns.iter().map(|column| column[row]).collect();
-        let leverage: f64 = inverse.iter().zip(&j).map(|(line, a)| a * dot(line, &j)).sum();
-        let weight = (r / (1.0 - leverage.min(0.99))).powi(2);
-        for a in 0..n {
-            for b in 0..n {
-                middle[a][b] += weight * j[a] * j[b];
-            }
-        }
-    }
-    let half: Vec<Vec<f64>> = inverse
-        .iter()
-        .map(|line| (0..n).map(|b| (0..n).map(|a| line[a] * middle[a][b]).sum()).collect())
-        .collect();
-    Some(half.iter().map(|line| inverse.iter().map(|other| dot(line, other)).collect()).collect())
+    let inverse = invert(system(columns, residuals).0)?;
+    let variance = squares(residuals) / (residuals.len() - columns.len()) as f64;
+    Some(inverse.into_iter().map(|line| line.into_iter().map(|x| variance * x).collect()).collect())
 }
 
 /// The inverse of a symmetric, positive definite matrix by Gauss-Jordan on its scaled form; `None` where it is singular.
@@ -200,15 +180,6 @@ pub(super) fn invert(mut matrix: Vec<Vec<f64>>) -> Option<Vec<Vec<f64>>> {
             .map(|(i, row)| (0..n).map(|j| row[n + j] / (scale[i] * scale[j])).collect())
             .collect(),
     )
-}
-
-/// The 97.5 % quantile of Student's distribution (Cornish-Fisher expansion about the normal one: 1e-3 from 8 degrees of
-/// freedom on).
-pub(super) fn quantile(freedom: usize) -> f64 {
-    let (z, v): (f64, f64) = (1.959_963_984_540_054, freedom.max(1) as f64);
-    z + (z.powi(3) + z) / (4.0 * v)
-        + (5.0 * z.powi(5) + 16.0 * z.powi(3) + 3.0 * z) / (96.0 * v * v)
-        + (3.0 * z.powi(7) + 19.0 * z.powi(5) + 17.0 * z.powi(3) - 15.0 * z) / (384.0 * v.powi(3))
 }
 
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {

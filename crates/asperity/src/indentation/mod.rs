@@ -2,11 +2,11 @@
 //!
 //! A rigid sphere (or cone) is pressed into the body, held, retracted, in any order. Between depth and load stands the
 //! exact one-dimensional equivalent of [`crate::reference::Mdr`], unloading and loading again included. One channel is
-//! taken as given, the other is what the model has to meet by least squares:
+//! taken as given, the one that the test controlled; the model has to meet the other by least squares:
 //!
 //! ```text
 //! E*(t) = E∞ + Σ E_i exp(-t/τ_i)        unknown: ln E∞, ln E_i, ln τ_i (and the depth of first touch)
-//! minimise Σ (model - measured)²          Levenberg-Marquardt; D. W. Marquardt, J. SIAM 11 (1963) 431
+//! minimise Σ (model - measured)²/v      v: variance of the noise of both channels
 //! ```
 //!
 //! **Start.** While the contact grows the problem is linear (E. H. Lee & J. R. M. Radok, J. Appl. Mech. 27 (1960) 438):
@@ -18,23 +18,34 @@
 //!
 //! so that the best times of a logarithmic grid are found without a march.
 //!
-//! **Intervals.** 95 % from the covariance of the least squares, (J'J)⁻¹ (Σ r_k² J_k J_k'/(1 - h_k)²) (J'J)⁻¹ with the
-//! leverages h_k: it asks for independent errors but not for equal ones (HC3; J. G. MacKinnon & H. White, J. Econometrics
-//! 29 (1985) 305), so that noise relative to the value does no harm. Parameters enter by their logarithms, so the
-//! intervals are factors. [`IndentationFit::durbin_watson`] tells whether the errors look independent.
+//! **Intervals.** 95 %, from an average over all numbers of terms, for solids and fluids, each with its probability
+//! (nested sampling on a record that is linear in the moduli near the best fit). So they do not ask whether the number of terms
+//! is right, nor whether the record knows each parameter to a few percent. The seed is fixed: the same record gives the same
+//! intervals. An interval that spans more than a factor of 10 is told as "not determined by this record".
 
+mod average;
+mod check;
+mod control;
 mod least_squares;
 mod model;
+mod nested;
+mod noise;
+mod notes;
+mod parameters;
+mod select;
+mod spectrum;
 mod start;
 #[cfg(test)]
 mod tests;
 
 use crate::error::{Error, Result};
-use crate::material::{LongTime, Relaxation};
+use crate::material::{LongTime, Relaxation, RelaxationTerm};
 use crate::reference::MdrProfile;
 
-use least_squares::{Solution, solve};
-use model::{Model, Parameters};
+use average::Average;
+use least_squares::Solution;
+use model::Model;
+use parameters::Parameters;
 
 /// A record of an indentation; three columns of one length. The body is undisturbed before the first row.
 #[derive(Clone, Copy, Debug)]
@@ -47,7 +58,7 @@ pub struct IndentationRecord<'a> {
     pub depths: &'a [f64],
 }
 
-/// The channel that is taken as it was measured.
+/// The channel that the test controlled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
@@ -61,7 +72,8 @@ pub enum Given {
 /// How to fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct IndentationOptions {
-    /// The channel taken as it is; by default the one with less scatter.
+    /// The channel that the test controlled; by default the one whose history a few straight pieces describe better, and
+    /// where neither is straighter the one with less noise.
     pub given: Option<Given>,
     /// Number of terms, at most 6; by default as many as the record calls for (least Bayesian information criterion).
     pub terms: Option<usize>,
@@ -89,16 +101,24 @@ impl Default for IndentationOptions {
     }
 }
 
-/// A value with its 95 % confidence interval.
+/// A value with its 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Interval {
-    /// The value.
+    /// The value of the best fit.
     pub value: f64,
-    /// Lower end.
+    /// Lower end; 0 where there is none.
     pub low: f64,
-    /// Upper end.
+    /// Upper end; infinite where there is none.
     pub high: f64,
+    /// Whether the record determines it: the ends are no more than a factor of 10 apart (or an equilibrium modulus is less
+    /// than a twentieth of E*(0) at most). Otherwise `value` is one of many that fit as well.
+    pub determined: bool,
 }
+
+/// Largest ratio of the ends of an interval of what is determined.
+const DETERMINED: f64 = 10.0;
+/// An equilibrium modulus below this share of E*(0) is as good as 0.
+const NEGLIGIBLE: f64 = 0.05;
 
 impl Interval {
     /// Whether a value lies within.
@@ -106,12 +126,8 @@ impl Interval {
         self.low <= value && value <= self.high
     }
 
-    fn exact(value: f64) -> Self {
-        Interval { value, low: value, high: value }
-    }
-
-    fn factor(logarithm: f64, half: f64) -> Self {
-        Interval { value: logarithm.exp(), low: (logarithm - half).exp(), high: (logarithm + half).exp() }
+    fn new(value: f64, [low, high]: [f64; 2]) -> Self {
+        Interval { value, low, high, determined: high <= DETERMINED * low }
     }
 }
 
@@ -120,7 +136,7 @@ impl Interval {
 pub struct IndentationFit {
     /// Contact relaxation modulus E*(t) \[Pa\]: E(t)/(1 - ν²), 2 G(t)/(1 - ν).
     pub relaxation: Relaxation,
-    /// E∞ \[Pa\]; 0 without an interval for a fluid.
+    /// E∞ \[Pa\]; 0 for a fluid, with what it may be at most.
     pub equilibrium: Interval,
     /// E*(0) \[Pa\].
     pub instantaneous: Interval,
@@ -140,27 +156,18 @@ pub struct IndentationFit {
     /// The same over the largest measured value.
     pub relative_rms: f64,
     /// Σ (r_k - r_(k-1))²/Σ r_k² of the residuals r: near 2 for independent errors; well below where the model bends away
-    /// from the record or the noise is not white, and the intervals are too narrow.
+    /// from the record or the noise is not white. The intervals are wider by the correlation of neighbours then.
     pub durbin_watson: f64,
-    /// Shortest step and length of the record \[s\]: terms beyond are extrapolation.
+    /// Probability of each number of terms, from 0 on.
+    pub numbers: Vec<f64>,
+    /// Step and length of the record \[s\]; one step in ten may be shorter. Terms beyond are extrapolation.
     pub window: [f64; 2],
+    /// What should be known before the numbers are believed, in sentences.
+    pub notes: Vec<String>,
 }
 
-/// Fewer rows tell nothing.
-const FEWEST: usize = 10;
 /// More rows are thinned to about this number.
 const MANY: usize = 2000;
-const MOST: usize = 10_000_000;
-/// Larger numbers, and a load or depth less than one over it, nobody measures.
-const LARGEST: f64 = 1e30;
-/// More terms no single record determines.
-const MOST_TERMS: usize = 6;
-/// Loads below minus this share of the largest are no noise.
-const PULL: f64 = 0.05;
-/// A term whose standard deviation (of a logarithm) is larger is not determined: its 95 % interval spans a factor of 50.
-const UNKNOWN: f64 = 1.0;
-/// Misfit that the model itself has, over the largest value.
-const MODEL_ERROR: f64 = 2e-5;
 
 /// Fits the contact relaxation modulus of a half-space to a record of its indentation by a rigid body of revolution.
 ///
@@ -195,247 +202,88 @@ pub fn fit_indentation(
     record: &IndentationRecord,
     options: &IndentationOptions,
 ) -> Result<IndentationFit> {
-    check_options(options)?;
-    check(record)?;
-    let kept = thinned(record.times.len());
-    let pick = |column: &[f64]| kept.iter().map(|row| column[*row]).collect::<Vec<f64>>();
+    check::options(options)?;
+    check::record(record)?;
+    let rows = thinned(record.times.len());
+    let pick = |column: &[f64]| rows.iter().map(|row| column[*row]).collect::<Vec<f64>>();
     let [times, loads, depths] = [record.times, record.loads, record.depths].map(pick);
-    let given = options.given.unwrap_or_else(|| quieter(&times, &loads, &depths));
+    let given = options.given.unwrap_or_else(|| control::controlled(&times, &loads, &depths));
     let model = Model::new(profile, times, loads, depths, given, options)?;
-    let (solution, parameters) = match options.terms {
-        Some(terms) => best_of(&model, terms, options.long_time)?,
-        None => as_many_as_needed(&model, options.long_time)?,
+    let (best, parameters) = select::select(&model, options.terms, options.long_time)?;
+    let predicted = model.predict(&parameters, &best.at)?.values;
+    let apart = predicted.iter().zip(model.measured()).map(|(model, measured)| model - measured);
+    let apart = model.of_compared(&apart.collect::<Vec<f64>>());
+    let rms = (apart.iter().map(|x| x * x).sum::<f64>() / apart.len() as f64).sqrt();
+    require_fit(rms / model.scale(), options.limit)?;
+    if options.terms.is_some() {
+        require_known(&parameters, &best)?;
+    }
+    let average = Average::new(&model, &parameters, &best, options)?;
+
+    let relaxation = parameters.relaxation(&best.at);
+    let instantaneous = average.instantaneous(relaxation.instantaneous());
+    let mut equilibrium = average.equilibrium(relaxation.equilibrium);
+    equilibrium.determined |= equilibrium.high <= NEGLIGIBLE * instantaneous.value;
+    let term = |(k, term): (usize, &RelaxationTerm)| {
+        [average.term(term.modulus, k, 0), average.term(term.relaxation_time, k, 1)]
     };
-    let relative_rms = solution.rms();
-    if relative_rms > options.limit {
-        return Err(Error::invalid(
-            "misfit of the record",
-            format!("{:.1} % of the largest value (rms)", 100.0 * relative_rms),
-            format!(
-                "at most {:.1} %: check radius, units and the depth of first touch, and whether the body is a half-space",
-                100.0 * options.limit
-            ),
-        ));
-    }
-    if let Some(worst) = parameters.worst(&solution.deviations).filter(|(_, deviation)| *deviation > UNKNOWN)
-    {
-        let (name, deviation) = worst;
-        return Err(Error::invalid(
-            format!("number of terms ({})", parameters.terms),
-            format!(
-                "too large for the record: {name} is known to {}",
-                if deviation.is_finite() && deviation < 20.0 {
-                    format!("a factor of {:.0} only", (1.96 * deviation).exp())
-                } else {
-                    "nothing".to_owned()
-                }
-            ),
-            "smaller, or a record that is longer or has more points in the beginning",
-        ));
-    }
-    let predicted = model.predict(&parameters, &solution.at)?;
-    Ok(report(&model, solution, &parameters, kept, predicted))
-}
-
-/// Fits with `terms` terms: a solid, a fluid, or the better of both.
-fn best_of(model: &Model, terms: usize, long_time: LongTime) -> Result<(Solution, Parameters)> {
-    let solids = match (long_time, terms) {
-        (LongTime::Solid, _) | (_, 0) => &[true][..],
-        (LongTime::Fluid, _) => &[false],
-        (LongTime::Free, _) => &[true, false],
-    };
-    let mut best: Option<(Solution, Parameters)> = None;
-    let mut refused = None;
-    for solid in solids {
-        // An equilibrium modulus that is known to 30 % and bears a share of the load is not 0.
-        let known = |(solution, of): &(Solution, Parameters)| {
-            let share = solution.at[0].exp() / of.relaxation(&solution.at).instantaneous();
-            of.solid && solution.deviations[0] < 0.3 && share > 1e-3
-        };
-        if best.as_ref().is_some_and(known) {
-            break;
-        }
-        let parameters = Parameters { solid: *solid, terms, touch: model.fits_touch() };
-        let found = start::start(model, &parameters).and_then(|start| solve(model, &parameters, start));
-        match found {
-            Err(error) => refused = Some(error),
-            Ok(solution) => {
-                let better = best
-                    .as_ref()
-                    .is_none_or(|(other, of)| information(&solution, &parameters) < information(other, of));
-                if better {
-                    best = Some((solution, parameters));
-                }
-            }
-        }
-    }
-    match (best, refused) {
-        (Some(best), _) => Ok(best),
-        (None, Some(error)) => Err(error),
-        (None, None) => Err(Error::invalid("number of terms", terms, "one that can be fitted")),
-    }
-}
-
-/// Adds terms while that lowers the information criterion and each is determined.
-fn as_many_as_needed(model: &Model, long_time: LongTime) -> Result<(Solution, Parameters)> {
-    let mut best = best_of(model, usize::from(long_time == LongTime::Fluid), long_time)?;
-    let first = best.1.terms;
-    for terms in first + 1..=MOST_TERMS {
-        let Ok(next) = best_of(model, terms, long_time) else { break };
-        let known = next.1.worst(&next.0.deviations).is_none_or(|(_, deviation)| deviation <= UNKNOWN);
-        if !known || information(&next.0, &next.1) >= information(&best.0, &best.1) {
-            break;
-        }
-        best = next;
-    }
-    Ok(best)
-}
-
-/// Bayesian information criterion, n ln(Σ r²/n) + k ln n.
-fn information(solution: &Solution, parameters: &Parameters) -> f64 {
-    let n = solution.residuals.len() as f64;
-    let mean = solution.rms().powi(2).max(MODEL_ERROR * MODEL_ERROR);
-    n * mean.ln() + parameters.len() as f64 * n.ln()
-}
-
-fn report(
-    model: &Model,
-    solution: Solution,
-    parameters: &Parameters,
-    rows: Vec<usize>,
-    predicted: Vec<f64>,
-) -> IndentationFit {
-    let half = |k: usize| {
-        let freedom = solution.residuals.len() - parameters.len();
-        least_squares::quantile(freedom) * solution.deviations[k]
-    };
-    let at = |k: usize| Interval::factor(solution.at[k], half(k));
-    let equilibrium = if parameters.solid { at(0) } else { Interval::exact(0.0) };
-    let first = usize::from(parameters.solid);
-    let n = parameters.terms;
-    let mut terms: Vec<[Interval; 2]> = (0..n).map(|k| [at(first + k), at(first + n + k)]).collect();
-    terms.sort_by(|a, b| a[1].value.total_cmp(&b[1].value));
-    let relaxation = parameters.relaxation(&solution.at);
-    // ln E(0) = ln sum exp(ln E_k): its gradient is the share of each modulus.
-    let whole = relaxation.instantaneous();
-    let share = |k: usize| if k < first + n { solution.at[k].exp() / whole } else { 0.0 };
-    let variance: f64 = (0..parameters.len())
-        .flat_map(|i| (0..parameters.len()).map(move |j| (i, j)))
-        .map(|(i, j)| share(i) * share(j) * solution.covariance[i][j])
-        .sum();
-    let freedom = solution.residuals.len() - parameters.len();
-    let spread = least_squares::quantile(freedom) * variance.max(0.0).sqrt();
+    let depth = |x: f64| model.depth_scale() * x;
     let touch = match parameters.touch {
-        true => {
-            let (value, half) =
-                (model.depth_scale() * solution.at[first + 2 * n], model.depth_scale() * half(first + 2 * n));
-            Interval { value, low: value - half, high: value + half }
-        }
-        false => Interval::exact(0.0),
+        true => average.touch(best.at[parameters.len() - 1]),
+        false => Interval::new(0.0, [0.0, 0.0]),
     };
-    let squares: f64 = solution.residuals.iter().map(|r| r * r).sum();
-    let jumps: f64 = solution.residuals.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum();
-    IndentationFit {
+    let mut fit = IndentationFit {
+        terms: relaxation.terms.iter().enumerate().map(term).collect(),
         relaxation,
         equilibrium,
-        instantaneous: Interval::factor(whole.ln(), spread),
-        terms,
-        touch,
-        given: model.given(),
+        instantaneous,
+        touch: Interval {
+            value: depth(touch.value),
+            low: depth(touch.low),
+            high: depth(touch.high),
+            determined: true,
+        },
+        given,
         predicted,
         rows,
-        rms: solution.rms() * model.scale(),
-        relative_rms: solution.rms(),
-        durbin_watson: if squares > 0.0 { jumps / squares } else { 2.0 },
+        rms,
+        relative_rms: rms / model.scale(),
+        durbin_watson: spectrum::durbin_watson(&best.residuals),
+        numbers: average.numbers(),
         window: model.window(),
-    }
+        notes: vec![],
+    };
+    fit.notes = notes::notes(&fit, options);
+    Ok(fit)
 }
 
-fn check_options(options: &IndentationOptions) -> Result<()> {
-    if options.terms.is_some_and(|terms| terms > MOST_TERMS) {
-        let terms = options.terms.unwrap_or_default();
-        return Err(Error::invalid("number of terms", terms, format!("at most {MOST_TERMS}")));
+fn require_fit(relative_rms: f64, limit: f64) -> Result<()> {
+    if relative_rms <= limit {
+        return Ok(());
     }
-    if !(20..=10_000).contains(&options.springs) {
-        return Err(Error::invalid("number of springs", options.springs, "between 20 and 10000"));
-    }
-    if !(options.limit > 0.0 && options.limit.is_finite()) {
-        return Err(Error::invalid("largest misfit", options.limit, "finite and greater than 0"));
-    }
-    if options.terms == Some(0) && options.long_time == LongTime::Fluid {
-        return Err(Error::invalid("number of terms", 0, "at least 1 for a fluid"));
-    }
-    Ok(())
+    Err(Error::invalid(
+        "misfit of the record",
+        format!("{:.1} % of the largest value (rms)", 100.0 * relative_rms),
+        format!(
+            "at most {:.1} %: check radius, units and the depth of first touch, and whether the body is a half-space",
+            100.0 * limit
+        ),
+    ))
 }
 
-/// What no record of an indentation is.
-fn check(record: &IndentationRecord) -> Result<()> {
-    let n = record.times.len();
-    for (name, column) in [("loads", record.loads), ("depths", record.depths)] {
-        if column.len() != n {
-            return Err(Error::invalid(
-                format!("number of {name}"),
-                column.len(),
-                format!("{n}, that of the times"),
-            ));
-        }
-    }
-    if !(FEWEST..=MOST).contains(&n) {
-        return Err(Error::invalid(
-            "number of rows of the record",
-            n,
-            format!("between {FEWEST} and {MOST}"),
-        ));
-    }
-    let columns = [("time", "s", record.times), ("load", "N", record.loads), ("depth", "m", record.depths)];
-    for (name, unit, column) in columns {
-        if let Some((row, value)) =
-            column.iter().enumerate().find(|(_, value)| value.is_nan() || value.abs() > LARGEST)
-        {
-            return Err(Error::invalid(
-                format!("{name} of row {}", row + 1),
-                value,
-                format!("a number, at most {LARGEST:e} {unit}"),
-            ));
-        }
-    }
-    if let Some(row) = record.times.windows(2).position(|pair| pair[1] <= pair[0]) {
-        return Err(Error::invalid(
-            format!("time of row {}", row + 2),
-            format!("{} s", record.times[row + 1]),
-            format!("later than the row before, {} s", record.times[row]),
-        ));
-    }
-    let largest = |column: &[f64]| column.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    for (name, unit, column) in [("load", "N", record.loads), ("depth", "m", record.depths)] {
-        if largest(column) < 1.0 / LARGEST {
-            return Err(Error::invalid(
-                format!("largest {name}"),
-                format!("{} {unit}", largest(column)),
-                "greater than 0: pressing is positive (turn the sign of the column)",
-            ));
-        }
-    }
-    let most = largest(record.loads);
-    if let Some((row, load)) = record.loads.iter().enumerate().find(|(_, load)| **load < -PULL * most) {
-        return Err(Error::invalid(
-            format!("load of row {}", row + 1),
-            format!("{load} N"),
-            format!(
-                "above -{:.0} % of the largest ({most:e} N): adhesion is not part of the model",
-                100.0 * PULL
-            ),
-        ));
-    }
-    let pressed = record.loads.iter().filter(|load| **load > 0.02 * most).count();
-    if pressed < FEWEST {
-        return Err(Error::invalid(
-            "number of rows in contact",
-            pressed,
-            format!("at least {FEWEST} with more than 2 % of the largest load"),
-        ));
-    }
-    Ok(())
+/// Refuses more terms than the record knows anything of.
+fn require_known(parameters: &Parameters, best: &Solution) -> Result<()> {
+    let worst = parameters.worst(&best.deviations).filter(|(_, deviation)| *deviation > select::UNKNOWN);
+    let Some((name, deviation)) = worst else { return Ok(()) };
+    let known = match deviation < 20.0 {
+        true => format!("a factor of {:.0} only", (1.96 * deviation).exp()),
+        false => "nothing".to_owned(),
+    };
+    Err(Error::invalid(
+        format!("number of terms ({})", parameters.terms),
+        format!("too large for the record: {name} is known to {known}"),
+        "smaller, or a record that is longer or has more points in the beginning",
+    ))
 }
 
 /// Rows of a record that are used: all, or every k-th and the last.
@@ -446,22 +294,4 @@ fn thinned(rows: usize) -> Vec<usize> {
         kept.push(rows - 1);
     }
     kept
-}
-
-/// The channel with less scatter over its range: the one that the instrument controls.
-fn quieter(times: &[f64], loads: &[f64], depths: &[f64]) -> Given {
-    if scatter(times, depths) <= scatter(times, loads) { Given::Depth } else { Given::Load }
-}
-
-/// Median distance of a value from the line between its neighbours, over the largest value.
-fn scatter(times: &[f64], values: &[f64]) -> f64 {
-    let largest = values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-    let mut distances: Vec<f64> = (1..values.len() - 1)
-        .map(|k| {
-            let share = (times[k] - times[k - 1]) / (times[k + 1] - times[k - 1]);
-            (values[k] - values[k - 1] - share * (values[k + 1] - values[k - 1])).abs() / largest
-        })
-        .collect();
-    let middle = distances.len() / 2;
-    *distances.select_nth_unstable_by(middle, f64::total_cmp).1
 }

@@ -1,8 +1,21 @@
 //! The record as a function of the parameters.
+//!
+//! Both channels are noisy. Noise δ of the given channel moves the model by its slope S = d model/d given, so that the
+//! residual of a row has the variance ("effective variance"; J. Orear, Am. J. Phys. 50 (1982) 912)
+//!
+//! ```text
+//! v_k = σ_fitted² + S_k² σ_given²
+//! ```
+//!
+//! S_k = 2 a_k ∫ E* over the step under a given depth, one over it under a given load; a_k is the radius of the contact. It moves
+//! with the parameters: with a fixed one, the noise of the given channel would make the body seem softer than it is.
 
-use super::{Given, IndentationOptions, LARGEST};
+use super::check::LARGEST;
+use super::noise;
+use super::parameters::Parameters;
+use super::{Given, IndentationOptions};
 use crate::error::{Error, Result, positive};
-use crate::material::{Relaxation, RelaxationTerm};
+use crate::material::Relaxation;
 use crate::reference::{Mdr, MdrProfile, MdrTarget};
 
 /// Steps between two rows where the load is given: its response is of second order in them (under a given depth one
@@ -11,6 +24,11 @@ const SUBSTEPS: usize = 2;
 
 /// Loads below this share of the largest are none, where the load is given.
 const LOADED: f64 = 0.02;
+
+/// Least noise of the fitted channel that is believed, over its largest value: the error of the model and of the digits.
+const LEAST_NOISE: f64 = 1e-4;
+/// Least noise (squared) of a row, over the largest of all rows: noise never quite vanishes with the value.
+const LEAST_SHARE: f64 = 0.01;
 
 /// A record, and the rule that predicts one of its channels from the other.
 pub(super) struct Model {
@@ -27,66 +45,16 @@ pub(super) struct Model {
     scale: f64,
     /// Rows where model and measurement are compared.
     compared: Vec<bool>,
+    /// Variance of the noise at each row: of the fitted channel, and of the given one.
+    fitted_noise: Vec<f64>,
+    given_noise: Vec<f64>,
 }
 
-/// Which numbers are sought: \[ln E∞\], ln E_i, ln τ_i, \[depth of first touch over the largest depth\].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Parameters {
-    pub(super) solid: bool,
-    pub(super) terms: usize,
-    pub(super) touch: bool,
-}
-
-impl Parameters {
-    pub(super) fn len(&self) -> usize {
-        usize::from(self.solid) + 2 * self.terms + usize::from(self.touch)
-    }
-
-    pub(super) fn relaxation(&self, at: &[f64]) -> Relaxation {
-        let first = usize::from(self.solid);
-        let term = |k: usize| RelaxationTerm {
-            modulus: at[first + k].exp(),
-            relaxation_time: at[first + self.terms + k].exp(),
-        };
-        let mut terms: Vec<RelaxationTerm> = (0..self.terms).map(term).collect();
-        terms.sort_by(|a, b| a.relaxation_time.total_cmp(&b.relaxation_time));
-        Relaxation { equilibrium: if self.solid { at[0].exp() } else { 0.0 }, terms, viscosity: 0.0 }
-    }
-
-    /// The parameters of a relaxation function; `None` where it has another form.
-    pub(super) fn of(&self, relaxation: &Relaxation) -> Option<Vec<f64>> {
-        let positive = |x: f64| (x > 0.0 && x.is_finite()).then(|| x.ln());
-        let mut at = vec![];
-        if relaxation.viscosity > 0.0 || relaxation.terms.len() != self.terms {
-            return None;
-        }
-        match self.solid {
-            true => at.push(positive(relaxation.equilibrium)?),
-            false if relaxation.equilibrium == 0.0 => {}
-            false => return None,
-        }
-        for term in &relaxation.terms {
-            at.push(positive(term.modulus)?);
-        }
-        for term in &relaxation.terms {
-            at.push(positive(term.relaxation_time)?);
-        }
-        at.extend(self.touch.then_some(0.0));
-        Some(at)
-    }
-
-    /// The modulus or time that is known least, with its standard deviation.
-    pub(super) fn worst(&self, deviations: &[f64]) -> Option<(String, f64)> {
-        let first = usize::from(self.solid);
-        let name = |k: usize| match k {
-            0 if self.solid => "the equilibrium modulus".to_owned(),
-            k if k < first + self.terms => format!("the modulus of term {}", k - first + 1),
-            k => format!("the time of term {}", k - first - self.terms + 1),
-        };
-        let known = deviations.iter().take(first + 2 * self.terms).enumerate();
-        let worst = known.max_by(|a, b| a.1.total_cmp(b.1))?;
-        Some((name(worst.0), *worst.1))
-    }
+/// The fitted channel as the model has it.
+pub(super) struct Prediction {
+    pub(super) values: Vec<f64>,
+    /// How far a value moves with the given channel of its row.
+    slopes: Vec<f64>,
 }
 
 impl Model {
@@ -129,8 +97,30 @@ impl Model {
         // Without load a depth tells nothing: the indenter may be anywhere above the surface.
         let least = LOADED * largest(&loads);
         let compared = loads.iter().map(|load| given == Given::Depth || *load > least).collect();
+        let (fitted, taken) = match given {
+            Given::Depth => (&loads, &depths),
+            Given::Load => (&depths, &loads),
+        };
+        let mut fitted_noise = noise::variances(&times, fitted);
+        let given_noise = noise::variances(&times, taken);
+        let most = fitted_noise.iter().copied().fold((LEAST_NOISE * scale).powi(2), f64::max);
+        let least = (LEAST_NOISE * scale).powi(2).max(LEAST_SHARE * most);
+        fitted_noise.iter_mut().for_each(|variance| *variance = variance.max(least));
         let (fit_touch, springs) = (options.fit_touch, options.springs);
-        Ok(Model { profile, times, loads, depths, given, fit_touch, springs, reach, scale, compared })
+        Ok(Model {
+            profile,
+            times,
+            loads,
+            depths,
+            given,
+            fit_touch,
+            springs,
+            reach,
+            scale,
+            compared,
+            fitted_noise,
+            given_noise,
+        })
     }
 
     pub(super) fn given(&self) -> Given {
@@ -157,10 +147,20 @@ impl Model {
         }
     }
 
-    /// Shortest step and length of the record \[s\].
+    /// The channel that is taken as measured.
+    pub(super) fn taken(&self) -> &[f64] {
+        match self.given {
+            Given::Depth => &self.depths,
+            Given::Load => &self.loads,
+        }
+    }
+
+    /// Step and length of the record \[s\]: nine of ten steps are longer.
     pub(super) fn window(&self) -> [f64; 2] {
-        let steps = self.times.windows(2).map(|pair| pair[1] - pair[0]);
-        [steps.fold(f64::INFINITY, f64::min), self.times[self.times.len() - 1]]
+        let mut steps: Vec<f64> = self.times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let tenth = steps.len() / 10;
+        let step = *steps.select_nth_unstable_by(tenth, f64::total_cmp).1;
+        [step, self.times[self.times.len() - 1]]
     }
 
     /// phi(d) = 2 int_0^a (d - g) dx, the load at the depth d for E* = 1 \[m²\], and its slope 2 a \[m\].
@@ -175,12 +175,28 @@ impl Model {
         }
     }
 
-    /// Model less measurement over the largest measured value, at each row where they are compared.
+    /// Model less measurement at each row where they are compared, over the largest measured value, and weighted: rows of
+    /// more noise than the mean of the fitted channel's count less.
     pub(super) fn residuals(&self, parameters: &Parameters, at: &[f64]) -> Result<Vec<f64>> {
         let predicted = self.predict(parameters, at)?;
-        let rows =
-            predicted.iter().zip(self.measured()).zip(&self.compared).filter(|(_, compared)| **compared);
-        Ok(rows.map(|((model, measured), _)| (model - measured) / self.scale).collect())
+        let apart = predicted.values.iter().zip(self.measured()).map(|(model, measured)| model - measured);
+        let weighted: Vec<f64> = apart.zip(self.weights(&predicted)).map(|(apart, w)| apart * w).collect();
+        Ok(self.of_compared(&weighted))
+    }
+
+    /// Weights of the residuals of all rows.
+    pub(super) fn weights(&self, predicted: &Prediction) -> Vec<f64> {
+        let mean = self.fitted_noise.iter().sum::<f64>() / self.fitted_noise.len() as f64;
+        let rows = predicted.slopes.iter().zip(&self.fitted_noise).zip(&self.given_noise);
+        rows.map(|((slope, fitted), given)| {
+            (mean / (fitted + slope.min(1e100).powi(2) * given)).sqrt() / self.scale
+        })
+        .collect()
+    }
+
+    /// The rows where model and measurement are compared.
+    pub(super) fn of_compared(&self, column: &[f64]) -> Vec<f64> {
+        column.iter().zip(&self.compared).filter(|(_, compared)| **compared).map(|(x, _)| *x).collect()
     }
 
     /// Number of rows where model and measurement are compared.
@@ -189,35 +205,59 @@ impl Model {
     }
 
     /// The channel that is not given, at each row.
-    pub(super) fn predict(&self, parameters: &Parameters, at: &[f64]) -> Result<Vec<f64>> {
-        let relaxation = parameters.relaxation(at);
+    pub(super) fn predict(&self, parameters: &Parameters, at: &[f64]) -> Result<Prediction> {
         let touch = if parameters.touch { self.depth_scale() * at[parameters.len() - 1] } else { 0.0 };
-        let mut springs = Mdr::new(self.profile, &relaxation, self.reach, self.springs)?;
-        let mut predicted = Vec::with_capacity(self.times.len());
+        self.respond(&parameters.relaxation(at), touch, self.taken(), self.springs)
+    }
+
+    /// The answer of a body to a history of the given channel, the surface being at the depth `touch`.
+    pub(super) fn respond(
+        &self,
+        relaxation: &Relaxation,
+        touch: f64,
+        history: &[f64],
+        springs: usize,
+    ) -> Result<Prediction> {
+        let mut row = Mdr::new(self.profile, relaxation, self.reach, springs)?;
+        let mut prediction = Prediction { values: vec![], slopes: vec![] };
         for n in 0..self.times.len() {
             let dt = if n == 0 { 0.0 } else { self.times[n] - self.times[n - 1] };
-            let value = match self.given {
-                Given::Depth => springs.step(dt, MdrTarget::Approach(self.depths[n] - touch))?.load,
+            // Load over depth, both moved within the step.
+            let stiffness = |radius: f64| 2.0 * radius * step_modulus(relaxation, dt);
+            let (value, slope) = match self.given {
+                Given::Depth => {
+                    let state = row.step(dt, MdrTarget::Approach(history[n] - touch))?;
+                    (state.load, stiffness(state.contact_radius))
+                }
                 Given::Load => {
-                    let load = self.loads[n].max(0.0);
-                    let before = if n == 0 { load } else { self.loads[n - 1].max(0.0) };
+                    let load = history[n].max(0.0);
+                    let before = if n == 0 { load } else { history[n - 1].max(0.0) };
                     let substeps = if n == 0 { 1 } else { SUBSTEPS };
-                    let mut depth = 0.0;
+                    let (mut depth, mut radius) = (0.0, 0.0);
                     for k in 1..=substeps {
                         let share = k as f64 / substeps as f64;
                         let target = MdrTarget::Load(before + share * (load - before));
-                        depth = springs.step(dt / substeps as f64, target)?.approach;
+                        let state = row.step(dt / substeps as f64, target)?;
+                        (depth, radius) = (state.approach, state.contact_radius);
                     }
-                    depth + touch
+                    (depth + touch, if radius > 0.0 { 1.0 / stiffness(radius) } else { 0.0 })
                 }
             };
-            predicted.push(value);
+            prediction.values.push(value);
+            prediction.slopes.push(slope);
         }
-        match predicted.iter().all(|value| (value / self.scale).abs() < 1e100) {
-            true => Ok(predicted),
+        match prediction.values.iter().all(|value| (value / self.scale).abs() < 1e100) {
+            true => Ok(prediction),
             false => {
                 Err(Error::invalid("model of the record", "not finite", "finite (check units and radius)"))
             }
         }
     }
+}
+
+/// Mean of E*(t) over a step: what a ramp within it is met with.
+fn step_modulus(relaxation: &Relaxation, dt: f64) -> f64 {
+    let share = |x: f64| if x > 1e-9 { -(-x).exp_m1() / x } else { 1.0 };
+    let terms = relaxation.terms.iter().map(|term| term.modulus * share(dt / term.relaxation_time));
+    relaxation.equilibrium + terms.sum::<f64>()
 }

@@ -3,7 +3,8 @@
 
 use super::Given;
 use super::least_squares::{dot, invert};
-use super::model::{Model, Parameters};
+use super::model::Model;
+use super::parameters::Parameters;
 use crate::error::{Error, Result};
 use crate::material::{Creep, CreepTerm, Relaxation, RelaxationTerm};
 

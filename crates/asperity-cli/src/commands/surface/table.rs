@@ -107,6 +107,11 @@ impl<'a> Portrait<'a> {
                 "m4": w.moments.m4,
                 "bandwidth": w.moments.bandwidth(),
             })),
+            "lay": waves.map(|w| json!({
+                "clear": w.lay.is_clear(),
+                "ratio": w.lay.ratio,
+                "angle": w.lay.angle,
+            })),
             "fit": waves.and_then(|w| w.fit).map(|fit| json!({
                 "hurst": fit.hurst,
                 "error": fit.error,
@@ -158,6 +163,14 @@ impl<'a> Portrait<'a> {
             line("m2", format!("{:.4e}", m.m2), "mean square slope of a profile");
             line("m4", format!("{:.4e} 1/m\u{b2}", m.m4), "mean square curvature of a profile");
             line("alpha", format!("{:.2}", m.bandwidth()), "m0 m4/m2\u{b2}, Nayak's bandwidth");
+            if waves.lay.is_clear() {
+                let words = format!(
+                    "at {:.0}\u{b0} from x: the slope across it is so many times that along it; roll-off and H are those across \
+                     it, and m2, m4 and alpha mean little",
+                    waves.lay.angle.to_degrees()
+                );
+                line("lay", format!("{:.2}", waves.lay.ratio), &words);
+            }
             if let Some(fit) = &waves.fit {
                 let words = format!(
                     "Hurst exponent fitted to the spectrum, roll-off {}, rms misfit {:.2} of ln C",

@@ -21,7 +21,8 @@ use crate::error::{Error, Result};
 pub struct SelfAffineFit {
     /// Hurst exponent H; outside (0, 1] the surface is not self-affine over the range.
     pub hurst: f64,
-    /// Standard error of H from the scatter about the fit.
+    /// Standard error of H: the slopes, for every place of the bend, that fit within one standard deviation of the scatter.
+    /// Of synthetic surfaces the errors are 0.8 to 1.3 times as large on average.
     pub error: f64,
     /// Wavelength at which the flat part ends \[m\]; the longest of the range where there is none.
     pub roll_off: f64,
@@ -77,24 +78,33 @@ impl SelfAffineFit {
             ));
         }
         // Three rings at least determine the slope. Of equal fits the one with the shortest flat part.
-        let fits = points[..points.len() - 3].iter().map(|p| bend(&points, p.x));
-        let best = fits.reduce(|best, fit| if fit.squares < best.squares { fit } else { best });
+        let fits: Vec<Bend> = points[..points.len() - 3].iter().map(|p| bend(&points, p.x)).collect();
+        let best = fits.iter().reduce(|best, fit| if fit.squares < best.squares { fit } else { best });
         let Some(best) = best.filter(|fit| fit.squares.is_finite()) else {
             return Err(Error::invalid("power spectrum", "not finite", "finite"));
         };
         let total: f64 = points.iter().map(|p| p.weight).sum();
         let variance = best.squares / total;
-        // The scatter per ring, of a unit weight, over the spread of the sloping part.
-        let scatter = best.squares / (points.len() - 3) as f64;
+        // The scatter per ring, of a unit weight.
+        let scatter = ALIKE * best.squares / (points.len() - 3) as f64;
+        let allowed = best.squares + scatter;
+        let furthest = fits
+            .iter()
+            .filter(|fit| fit.squares <= allowed)
+            .map(|fit| (fit.slope - best.slope).abs() + ((allowed - fit.squares) / fit.spread).sqrt());
         Ok(SelfAffineFit {
             hurst: 0.5 * best.slope - 1.0,
-            error: 0.5 * (scatter / best.spread).sqrt(),
+            error: 0.5 * furthest.fold(0.0, f64::max),
             roll_off: TAU / best.bend.exp(),
             plateau: best.level.exp(),
             misfit: variance.sqrt(),
         })
     }
 }
+
+/// Variance of a slope over that from the scatter of independent rings, calibrated on synthetic surfaces: a window spreads
+/// each wave over neighbouring rings, so that they are alike.
+const ALIKE: f64 = 2.0;
 
 struct Point {
     x: f64,

@@ -6,6 +6,7 @@
 //! | Sdq, Sdr | [`SlopeStatistics`] | left out with their neighbours |
 //! | bearing-area curve, height distribution | [`BearingCurve`], [`height_distribution`] | left out |
 //! | spectral moments, Nayak's parameter | [`SpectralMoments`] | refused |
+//! | lay | [`SpectralLay`] | refused |
 //! | radially averaged power spectrum | [`RadialSpectrum`] | refused |
 //! | autocorrelation, Sal, Str | [`Autocorrelation`] | refused |
 //! | Hurst exponent | [`SelfAffineFit`] | refused |
@@ -26,6 +27,6 @@ pub use bearing::{BearingCurve, height_distribution};
 pub use correlation::{Autocorrelation, Extent};
 pub use fit::SelfAffineFit;
 pub use heights::{HeightStatistics, mean, rms_height};
-pub use power::{PowerSpectrum, RadialSpectrum, Rings, SpectralMoments, rms_gradient};
+pub use power::{PowerSpectrum, RadialSpectrum, Rings, SpectralLay, SpectralMoments, rms_gradient};
 pub use slopes::SlopeStatistics;
 pub use summary::{Summary, Waves};

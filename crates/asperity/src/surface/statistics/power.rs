@@ -16,7 +16,7 @@
 //!
 //! The surface is taken as periodic; level and window a measured one first.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 use ndarray::{Array2, ArrayView2, Zip};
 use rayon::prelude::*;
@@ -96,6 +96,24 @@ impl PowerSpectrum {
     /// # Errors
     /// [`Error::Invalid`] where the rings are not between 1 and 1000 to a decade.
     pub fn radial(&self, rings: Rings) -> Result<RadialSpectrum> {
+        self.averaged(rings, [[1.0, 0.0], [0.0, 1.0]])
+    }
+
+    /// Spectrum averaged over ellipses of the axes of a lay, over the wave number across it: that of the isotropic surface
+    /// which the lay has stretched.
+    ///
+    /// # Errors
+    /// As [`radial`](Self::radial).
+    pub fn along(&self, lay: &SpectralLay, rings: Rings) -> Result<RadialSpectrum> {
+        let (sin, cos) = libm::sincos(lay.angle);
+        // Wave vectors along the lay are stretched by its ratio.
+        let [a, b] = [lay.ratio * lay.ratio, 1.0];
+        let mixed = (a - b) * sin * cos;
+        self.averaged(rings, [[a * cos * cos + b * sin * sin, mixed], [mixed, a * sin * sin + b * cos * cos]])
+    }
+
+    /// Averaged over rings of (q.M q)^(1/2).
+    fn averaged(&self, rings: Rings, m: [[f64; 2]; 2]) -> Result<RadialSpectrum> {
         if let Rings::PerDecade(n) = rings
             && !(1..=1000).contains(&n)
         {
@@ -105,7 +123,10 @@ impl PowerSpectrum {
         let ([nx, ny], [lx, ly]) = (grid.cells(), grid.size());
         let width = (TAU / lx).max(TAU / ly);
         let smallest = (TAU / lx).min(TAU / ly);
-        let nyquist = (TAU * nx as f64 / (2.0 * lx)).min(TAU * ny as f64 / (2.0 * ly));
+        // The ellipse of q reaches q (M^-1)_xx^(1/2) along x.
+        let determinant = m[0][0] * m[1][1] - m[0][1] * m[1][0];
+        let reach = [m[1][1], m[0][0]].map(|minor| (minor / determinant).sqrt());
+        let nyquist = (TAU * nx as f64 / (2.0 * lx) / reach[0]).min(TAU * ny as f64 / (2.0 * ly) / reach[1]);
         // Which ring a wave number falls in; rings of a decade start at the domain's longest wave.
         let ring = |q: f64| match rings {
             Rings::Linear => (q / width).round() as usize,
@@ -122,7 +143,7 @@ impl PowerSpectrum {
                 });
                 for (i, j, power) in rows {
                     let [qx, qy] = wave_vector(grid, (i, j));
-                    let q = (qx * qx + qy * qy).sqrt();
+                    let q = (m[0][0] * qx * qx + 2.0 * m[0][1] * qx * qy + m[1][1] * qy * qy).sqrt();
                     if q > 0.0 && q <= nyquist * (1.0 + 1e-9) {
                         let times = count(grid, j);
                         let sum = &mut sums[ring(q).min(last)];
@@ -158,6 +179,32 @@ impl PowerSpectrum {
         SpectralMoments { m0, m2: 0.5 * gradient, m4: 0.375 * laplace }
     }
 
+    /// The lay, from the mean products of slopes <z_x^2>, <z_x z_y>, <z_y^2>: their principal axes.
+    pub fn lay(&self) -> SpectralLay {
+        let [nx, ny] = self.grid.cells();
+        let rows: Vec<[f64; 3]> = (0..nx)
+            .into_par_iter()
+            .map(|i| {
+                let mut sums = [0.0; 3];
+                for (j, power) in self.power.row(i).iter().enumerate() {
+                    // Waves on the Nyquist frequency of an axis have no slope along it.
+                    let [qx, qy] = wave_vector(&self.grid, (i, j));
+                    let [qx, qy] = [if 2 * i == nx { 0.0 } else { qx }, if 2 * j == ny { 0.0 } else { qy }];
+                    let power = count(&self.grid, j) * power;
+                    [qx * qx, qx * qy, qy * qy].iter().zip(&mut sums).for_each(|(q, s)| *s += q * power);
+                }
+                sums
+            })
+            .collect();
+        let [xx, xy, yy] = rows.iter().fold([0.0; 3], |sum, row| std::array::from_fn(|n| sum[n] + row[n]));
+        let (mean, half) = (0.5 * (xx + yy), (0.25 * (xx - yy) * (xx - yy) + xy * xy).sqrt());
+        // The steepest direction is across the lay.
+        let across = 0.5 * libm::atan2(2.0 * xy, xx - yy);
+        let along = if across > 0.0 { across - FRAC_PI_2 } else { across + FRAC_PI_2 };
+        let ratio = ((mean + half) / (mean - half).max(2e-6 * mean)).sqrt();
+        SpectralLay { ratio: if ratio.is_finite() { ratio } else { 1.0 }, angle: along }
+    }
+
     /// Sums of |A|^2, |q|^2 |A|^2 and |q|^4 |A|^2, without the mean.
     fn even_moments(&self) -> [f64; 3] {
         let grid = &self.grid;
@@ -176,6 +223,23 @@ impl PowerSpectrum {
             })
             .collect();
         rows.iter().fold([0.0; 3], |sum, row| std::array::from_fn(|n| sum[n] + row[n]))
+    }
+}
+
+/// The direction in which a surface is smoothest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpectralLay {
+    /// Rms slope across the lay over that along it: 1 for an isotropic surface, the ratio of lengths along and across the lay
+    /// for one that is stretched; 1000 at most.
+    pub ratio: f64,
+    /// Angle of the lay from the x axis, between -pi/2 and pi/2 \[rad\].
+    pub angle: f64,
+}
+
+impl SpectralLay {
+    /// Whether the surface has a lay: isotropic surfaces of some hundred waves have ratios up to 1.3.
+    pub fn is_clear(&self) -> bool {
+        self.ratio > 1.5
     }
 }
 

@@ -6,7 +6,7 @@ use super::super::process::{Window, window};
 use super::super::{Fill, Level, Surface, fill, level};
 use super::{
     Extent, HeightStatistics, PowerSpectrum, RadialSpectrum, Rings, SelfAffineFit, SlopeStatistics,
-    SpectralMoments,
+    SpectralLay, SpectralMoments,
 };
 use crate::error::Result;
 
@@ -31,7 +31,10 @@ pub struct Summary {
 pub struct Waves {
     /// Spectral moments.
     pub moments: SpectralMoments,
-    /// Radially averaged power spectrum.
+    /// The lay; nothing but scatter where it is not [clear](SpectralLay::is_clear).
+    pub lay: SpectralLay,
+    /// Radially averaged power spectrum; of a surface with a clear lay averaged over ellipses of its axes, over the wave number
+    /// across it.
     pub spectrum: RadialSpectrum,
     /// Self-affine spectrum fitted over the whole range, up to where the spectrum breaks off; `None` where there are
     /// too few rings.
@@ -93,9 +96,11 @@ impl Waves {
                 PowerSpectrum::of(&window(&whole(&flat)?, Window::Hann)?)?
             }
         };
-        let spectrum = power.radial(Rings::PerDecade(RINGS))?;
+        let lay = power.lay();
+        let rings = Rings::PerDecade(RINGS);
+        let spectrum = if lay.is_clear() { power.along(&lay, rings)? } else { power.radial(rings)? };
         let fit = SelfAffineFit::of(&spectrum, f64::INFINITY, cut_off(&spectrum)).ok();
-        Ok(Waves { moments: power.moments(), spectrum, fit })
+        Ok(Waves { moments: power.moments(), lay, spectrum, fit })
     }
 }
 

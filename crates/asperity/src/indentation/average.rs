@@ -1,0 +1,219 @@
+//! Intervals that carry the choice of the model: an average over the numbers of terms, for solids and fluids.
+//!
+//! A record seldom says how many terms a material has. Each number of terms, with and without E∞, is a model with a
+//! probability (see [`super::nested`]); an interval is that of draws from all of them, each model with its probability (J. A.
+//! Hoeting et al., Stat. Sci. 14 (1999) 382). Before the record is seen
+//!
+//! ```text
+//! numbers of terms       equally probable
+//! solid or fluid         equally probable
+//! ln τ                   uniform from the step of the record to three times its length
+//! E_i                    sqrt(E_i) uniform up to 4 E*(0) of the best fit
+//! E∞                     uniform up to 2 E*(0)
+//! ```
+//!
+//! The intervals of E*(0) and E∞ are those of all models, those of E_i and τ_i of the models with as many terms as the best fit
+//! and of those with more terms that are more probable.
+//! Solids and fluids differ in kind: where a record allows both, an interval spans that of the solids and that of the fluids.
+
+use rayon::prelude::*;
+
+use super::check::MOST_TERMS;
+use super::least_squares::Solution;
+use super::model::Model;
+use super::nested::{self, add_logarithms};
+use super::parameters::Parameters;
+use super::spectrum::Spectrum;
+use super::{IndentationOptions, Interval};
+use crate::error::Result;
+use crate::material::LongTime;
+
+/// Longest time over the length of the record.
+const BEYOND: f64 = 3.0;
+/// Largest modulus of a term, and in equilibrium, over E*(0) of the best fit.
+const STIFFEST: [f64; 2] = [4.0, 2.0];
+/// Terms beyond the number of the best fit that are tried.
+const MORE: usize = 2;
+/// Depth of first touch: as far from its best value, over the largest depth, as this many standard deviations.
+const TOUCH: f64 = 6.0;
+/// Shares of the draws below and above an interval: less than 2.5 %, as the noise is itself known to a part only.
+const TAIL: f64 = 0.015;
+
+/// A material that the record may be of.
+struct Draw {
+    /// ln of its weight.
+    weight: f64,
+    equilibrium: f64,
+    /// (E_i, τ_i), times increasing.
+    terms: Vec<[f64; 2]>,
+    touch: f64,
+}
+
+/// All that the record may be of.
+pub(super) struct Average {
+    draws: Vec<Draw>,
+    /// Terms of the best fit.
+    terms: usize,
+}
+
+impl Average {
+    /// Draws about the best fit.
+    pub(super) fn new(
+        model: &Model,
+        parameters: &Parameters,
+        best: &Solution,
+        options: &IndentationOptions,
+    ) -> Result<Self> {
+        let [step, length] = model.window();
+        let window = [step, BEYOND * length];
+        let spectrum = Spectrum::new(model, parameters, best, window)?;
+        let stiffest = STIFFEST.map(|times| times * parameters.relaxation(&best.at).instantaneous());
+        let touch = match parameters.touch {
+            true => {
+                let k = parameters.len() - 1;
+                let half = TOUCH * best.deviations[k].min(1.0);
+                Some([best.at[k] - half, best.at[k] + half])
+            }
+            false => None,
+        };
+        let numbers = match options.terms {
+            Some(terms) => terms..=terms,
+            None => 0..=MOST_TERMS.min(parameters.terms + MORE),
+        };
+        let kinds: Vec<Kind> = numbers
+            .flat_map(|terms| [true, false].map(|solid| Kind { terms, solid, touch: touch.is_some() }))
+            .filter(|kind| match options.long_time {
+                LongTime::Free => kind.solid || kind.terms > 0,
+                LongTime::Solid => kind.solid,
+                LongTime::Fluid => !kind.solid && kind.terms > 0,
+            })
+            .collect();
+        let prior = Prior { window, stiffest, touch: touch.unwrap_or_default() };
+        let draws = kinds.par_iter().map(|kind| kind.draws(&prior, &spectrum)).collect::<Vec<_>>();
+        let mut draws: Vec<Draw> = draws.into_iter().flatten().collect();
+        let whole = draws.iter().fold(f64::NEG_INFINITY, |sum, draw| add_logarithms(sum, draw.weight));
+        draws.iter_mut().for_each(|draw| draw.weight -= whole);
+        Ok(Average { draws, terms: parameters.terms })
+    }
+
+    /// Probability of each number of terms, from 0 on.
+    pub(super) fn numbers(&self) -> Vec<f64> {
+        let mut shares = vec![0.0; MOST_TERMS + 1];
+        for draw in &self.draws {
+            shares[draw.terms.len()] += draw.weight.exp();
+        }
+        shares
+    }
+
+    pub(super) fn instantaneous(&self, value: f64) -> Interval {
+        let sum = |draw: &Draw| draw.equilibrium + draw.terms.iter().map(|term| term[0]).sum::<f64>();
+        self.interval(value, |draw| Some(sum(draw)))
+    }
+
+    pub(super) fn equilibrium(&self, value: f64) -> Interval {
+        self.interval(value, |draw| Some(draw.equilibrium))
+    }
+
+    pub(super) fn touch(&self, value: f64) -> Interval {
+        self.interval(value, |draw| Some(draw.touch))
+    }
+
+    /// The modulus (part 0) or time (part 1) of a term of the best fit. Of a draw with more terms the largest ones count.
+    pub(super) fn term(&self, value: f64, k: usize, part: usize) -> Interval {
+        let numbers = self.numbers();
+        self.interval(value, |draw| {
+            let counts = draw.terms.len() >= self.terms && numbers[draw.terms.len()] >= numbers[self.terms];
+            counts.then(|| largest(&draw.terms, self.terms)[k][part])
+        })
+    }
+
+    /// The interval of what a draw has, about the value of the best fit.
+    fn interval(&self, value: f64, of: impl Fn(&Draw) -> Option<f64>) -> Interval {
+        let values = |fluid: bool| -> Vec<(f64, f64)> {
+            let alike = self.draws.iter().filter(|draw| (draw.equilibrium == 0.0) == fluid);
+            alike.filter_map(|draw| Some((of(draw)?, draw.weight.exp()))).collect()
+        };
+        let families = [values(false), values(true)];
+        let share = |family: &[(f64, f64)]| family.iter().map(|(_, weight)| weight).sum::<f64>();
+        let whole: f64 = families.iter().map(|family| share(family)).sum();
+        let likely = families.into_iter().filter(|family| share(family) > TAIL * whole);
+        let ends = likely.map(quantiles).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
+        let [low, high] = ends.unwrap_or([0.0, f64::INFINITY]);
+        Interval::new(value, [low.min(value), high.max(value)])
+    }
+}
+
+/// So many terms of the largest moduli, times increasing.
+fn largest(terms: &[[f64; 2]], count: usize) -> Vec<[f64; 2]> {
+    let mut terms = terms.to_vec();
+    terms.sort_by(|a, b| b[0].total_cmp(&a[0]));
+    terms.truncate(count);
+    terms.sort_by(|a, b| a[1].total_cmp(&b[1]));
+    terms
+}
+
+/// Between which all but the tails of values with weights lie.
+fn quantiles(mut values: Vec<(f64, f64)>) -> [f64; 2] {
+    values.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let whole: f64 = values.iter().map(|(_, weight)| weight).sum();
+    [TAIL, 1.0 - TAIL].map(|share| {
+        let mut below = 0.0;
+        let found = values.iter().find(|(_, weight)| {
+            below += weight;
+            below >= share * whole
+        });
+        found.or(values.last()).map_or(f64::NAN, |(value, _)| *value)
+    })
+}
+
+/// A number of terms, with or without E∞.
+#[derive(Clone, Copy)]
+struct Kind {
+    terms: usize,
+    solid: bool,
+    touch: bool,
+}
+
+/// What is known before the record is seen.
+struct Prior {
+    window: [f64; 2],
+    stiffest: [f64; 2],
+    touch: [f64; 2],
+}
+
+impl Kind {
+    /// Times, then moduli of the terms, E∞, touch.
+    fn dimensions(self) -> usize {
+        2 * self.terms + usize::from(self.solid) + usize::from(self.touch)
+    }
+
+    /// (ln τ), E∞ and touch of a point of the unit cube.
+    fn material(self, prior: &Prior, point: &[f64], terms: &mut Vec<[f64; 2]>) -> (f64, f64) {
+        let modulus = |u: f64| prior.stiffest[0] * u * u;
+        let [first, last] = prior.window.map(f64::ln);
+        let n = self.terms;
+        terms.clear();
+        terms.extend((0..n).map(|k| [modulus(point[n + k]), first + (last - first) * point[k]]));
+        let equilibrium = if self.solid { prior.stiffest[1] * point[2 * n] } else { 0.0 };
+        let [low, high] = prior.touch;
+        let touch = if self.touch { low + (high - low) * point[self.dimensions() - 1] } else { 0.0 };
+        (equilibrium, touch)
+    }
+
+    fn draws(self, prior: &Prior, spectrum: &Spectrum) -> Vec<Draw> {
+        let likelihood = |point: &[f64]| {
+            let mut terms = Vec::with_capacity(self.terms);
+            let (equilibrium, touch) = self.material(prior, point, &mut terms);
+            spectrum.log_likelihood(equilibrium, &terms, touch)
+        };
+        let seed = 2 * self.terms as u64 + u64::from(self.solid);
+        let found = nested::sample(self.dimensions(), self.terms, seed, likelihood);
+        let draw = |(weight, point): (f64, Vec<f64>)| {
+            let mut terms = vec![];
+            let (equilibrium, touch) = self.material(prior, &point, &mut terms);
+            terms.iter_mut().for_each(|term| term[1] = term[1].exp());
+            Draw { weight, equilibrium, terms, touch }
+        };
+        found.into_iter().map(draw).collect()
+    }
+}

@@ -1,0 +1,101 @@
+//! What no record of an indentation is, and options out of their range.
+
+use super::{IndentationOptions, IndentationRecord};
+use crate::error::{Error, Result};
+use crate::material::LongTime;
+
+/// Fewer rows tell nothing.
+const FEWEST: usize = 10;
+const MOST: usize = 10_000_000;
+/// Larger numbers, and a load or depth less than one over it, nobody measures.
+pub(super) const LARGEST: f64 = 1e30;
+/// More terms no single record determines.
+pub(super) const MOST_TERMS: usize = 6;
+/// Loads below minus this share of the largest are no noise.
+const PULL: f64 = 0.05;
+
+pub(super) fn options(options: &IndentationOptions) -> Result<()> {
+    if options.terms.is_some_and(|terms| terms > MOST_TERMS) {
+        let terms = options.terms.unwrap_or_default();
+        return Err(Error::invalid("number of terms", terms, format!("at most {MOST_TERMS}")));
+    }
+    if !(20..=10_000).contains(&options.springs) {
+        return Err(Error::invalid("number of springs", options.springs, "between 20 and 10000"));
+    }
+    if !(options.limit > 0.0 && options.limit.is_finite()) {
+        return Err(Error::invalid("largest misfit", options.limit, "finite and greater than 0"));
+    }
+    if options.terms == Some(0) && options.long_time == LongTime::Fluid {
+        return Err(Error::invalid("number of terms", 0, "at least 1 for a fluid"));
+    }
+    Ok(())
+}
+
+pub(super) fn record(record: &IndentationRecord) -> Result<()> {
+    let n = record.times.len();
+    for (name, column) in [("loads", record.loads), ("depths", record.depths)] {
+        if column.len() != n {
+            return Err(Error::invalid(
+                format!("number of {name}"),
+                column.len(),
+                format!("{n}, that of the times"),
+            ));
+        }
+    }
+    if !(FEWEST..=MOST).contains(&n) {
+        return Err(Error::invalid(
+            "number of rows of the record",
+            n,
+            format!("between {FEWEST} and {MOST}"),
+        ));
+    }
+    let columns = [("time", "s", record.times), ("load", "N", record.loads), ("depth", "m", record.depths)];
+    for (name, unit, column) in columns {
+        if let Some((row, value)) =
+            column.iter().enumerate().find(|(_, value)| value.is_nan() || value.abs() > LARGEST)
+        {
+            return Err(Error::invalid(
+                format!("{name} of row {}", row + 1),
+                value,
+                format!("a number, at most {LARGEST:e} {unit}"),
+            ));
+        }
+    }
+    if let Some(row) = record.times.windows(2).position(|pair| pair[1] <= pair[0]) {
+        return Err(Error::invalid(
+            format!("time of row {}", row + 2),
+            format!("{} s", record.times[row + 1]),
+            format!("later than the row before, {} s", record.times[row]),
+        ));
+    }
+    let largest = |column: &[f64]| column.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    for (name, unit, column) in [("load", "N", record.loads), ("depth", "m", record.depths)] {
+        if largest(column) < 1.0 / LARGEST {
+            return Err(Error::invalid(
+                format!("largest {name}"),
+                format!("{} {unit}", largest(column)),
+                "greater than 0: pressing is positive (turn the sign of the column)",
+            ));
+        }
+    }
+    let most = largest(record.loads);
+    if let Some((row, load)) = record.loads.iter().enumerate().find(|(_, load)| **load < -PULL * most) {
+        return Err(Error::invalid(
+            format!("load of row {}", row + 1),
+            format!("{load} N"),
+            format!(
+                "above -{:.0} % of the largest ({most:e} N): adhesion is not part of the model",
+                100.0 * PULL
+            ),
+        ));
+    }
+    let pressed = record.loads.iter().filter(|load| **load > 0.02 * most).count();
+    if pressed < FEWEST {
+        return Err(Error::invalid(
+            "number of rows in contact",
+            pressed,
+            format!("at least {FEWEST} with more than 2 % of the largest load"),
+        ));
+    }
+    Ok(())
+}

@@ -1,0 +1,74 @@
+//! What should be known before the numbers of a fit are believed.
+
+use super::{IndentationFit, IndentationOptions, Interval};
+
+/// Durbin-Watson number below which residuals follow each other.
+const ALIKE: f64 = 1.5;
+/// Probability of the number of terms of the best fit below which others are told.
+const SURE: f64 = 0.5;
+/// Least probability of another number that is told.
+const LIKELY: f64 = 0.1;
+
+pub(super) fn notes(fit: &IndentationFit, options: &IndentationOptions) -> Vec<String> {
+    let mut notes: Vec<String> = undetermined(fit)
+        .into_iter()
+        .map(|what| {
+            format!(
+                "{what} is not determined by this record: its 95 % interval spans more than a factor of 10, and \
+                 the value of the best fit is one of many that fit as well"
+            )
+        })
+        .collect();
+    if options.terms.is_none() {
+        notes.extend(number_of_terms(fit));
+    }
+    if fit.durbin_watson < ALIKE {
+        notes.push(format!(
+            "the residuals follow each other (Durbin-Watson number {:.2}, near 2 where they are independent): the model \
+             bends away from the record (friction, drift, adhesion, a substrate) or the noise is not white; the \
+             intervals are wider for it, but a systematic error is not in them",
+            fit.durbin_watson
+        ));
+    }
+    let [step, length] = fit.window;
+    for (k, [_, time]) in fit.terms.iter().enumerate() {
+        let k = k + 1;
+        if time.value < step {
+            notes.push(format!(
+                "the time of term {k} ({:.3e} s) is shorter than the steps of the record ({step:.3e} s)",
+                time.value
+            ));
+        } else if time.value > length {
+            notes.push(format!(
+                "the time of term {k} ({:.3e} s) is longer than the record ({length:.3e} s)",
+                time.value
+            ));
+        }
+    }
+    notes
+}
+
+fn undetermined(fit: &IndentationFit) -> Vec<String> {
+    let ends = [("the modulus at once", &fit.instantaneous), ("the equilibrium modulus", &fit.equilibrium)];
+    let ends = ends.into_iter().map(|(name, interval)| (name.to_owned(), interval));
+    let terms = fit.terms.iter().enumerate().flat_map(|(k, [modulus, time])| {
+        let k = k + 1;
+        [(format!("the modulus of term {k}"), modulus), (format!("the time of term {k}"), time)]
+    });
+    let open = |(name, interval): (String, &Interval)| (!interval.determined).then_some(name);
+    ends.chain(terms).filter_map(open).collect()
+}
+
+fn number_of_terms(fit: &IndentationFit) -> Option<String> {
+    let own = fit.terms.len();
+    if fit.numbers[own] >= SURE {
+        return None;
+    }
+    let likely = fit.numbers.iter().enumerate().filter(|(n, share)| *n == own || **share >= LIKELY);
+    let shares: Vec<String> = likely.map(|(n, share)| format!("{n}: {:.0} %", 100.0 * share)).collect();
+    Some(format!(
+        "the number of terms is not determined by this record (probabilities {}): the intervals of the terms hold if there \
+         are {own}",
+        shares.join(", ")
+    ))
+}

@@ -1,0 +1,64 @@
+//! The numbers that are sought, as a vector for the least squares: moduli and times enter by their logarithms, so that they stay
+//! positive and their errors are factors.
+
+use crate::material::{Relaxation, RelaxationTerm};
+
+/// Which numbers are sought: \[ln E∞\], ln E_i, ln τ_i, \[depth of first touch over the largest depth\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Parameters {
+    pub(super) solid: bool,
+    pub(super) terms: usize,
+    pub(super) touch: bool,
+}
+
+impl Parameters {
+    pub(super) fn len(&self) -> usize {
+        usize::from(self.solid) + 2 * self.terms + usize::from(self.touch)
+    }
+
+    pub(super) fn relaxation(&self, at: &[f64]) -> Relaxation {
+        let first = usize::from(self.solid);
+        let term = |k: usize| RelaxationTerm {
+            modulus: at[first + k].exp(),
+            relaxation_time: at[first + self.terms + k].exp(),
+        };
+        let mut terms: Vec<RelaxationTerm> = (0..self.terms).map(term).collect();
+        terms.sort_by(|a, b| a.relaxation_time.total_cmp(&b.relaxation_time));
+        Relaxation { equilibrium: if self.solid { at[0].exp() } else { 0.0 }, terms, viscosity: 0.0 }
+    }
+
+    /// The parameters of a relaxation function; `None` where it has another form.
+    pub(super) fn of(&self, relaxation: &Relaxation) -> Option<Vec<f64>> {
+        let positive = |x: f64| (x > 0.0 && x.is_finite()).then(|| x.ln());
+        let mut at = vec![];
+        if relaxation.viscosity > 0.0 || relaxation.terms.len() != self.terms {
+            return None;
+        }
+        match self.solid {
+            true => at.push(positive(relaxation.equilibrium)?),
+            false if relaxation.equilibrium == 0.0 => {}
+            false => return None,
+        }
+        for term in &relaxation.terms {
+            at.push(positive(term.modulus)?);
+        }
+        for term in &relaxation.terms {
+            at.push(positive(term.relaxation_time)?);
+        }
+        at.extend(self.touch.then_some(0.0));
+        Some(at)
+    }
+
+    /// The modulus or time that is known least, with its standard deviation.
+    pub(super) fn worst(&self, deviations: &[f64]) -> Option<(String, f64)> {
+        let first = usize::from(self.solid);
+        let name = |k: usize| match k {
+            0 if self.solid => "the equilibrium modulus".to_owned(),
+            k if k < first + self.terms => format!("the modulus of term {}", k - first + 1),
+            k => format!("the time of term {}", k - first - self.terms + 1),
+        };
+        let known = deviations.iter().take(first + 2 * self.terms).enumerate();
+        let worst = known.max_by(|a, b| a.1.total_cmp(b.1))?;
+        Some((name(worst.0), *worst.1))
+    }
+}

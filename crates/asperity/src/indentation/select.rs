@@ -1,0 +1,87 @@
+//! How many terms the best description of a record has.
+
+use super::check::MOST_TERMS;
+use super::least_squares::{Solution, solve};
+use super::model::Model;
+use super::parameters::Parameters;
+use super::start;
+use crate::error::{Error, Result};
+use crate::material::LongTime;
+
+/// A parameter whose standard deviation (of a logarithm) is larger is not determined: it is known to a factor of 7 either way.
+pub(super) const UNKNOWN: f64 = 1.0;
+/// Misfit that the model itself has, over the largest value.
+pub(super) const MODEL_ERROR: f64 = 2e-5;
+
+/// The best fit, with `terms` terms or as many as needed.
+pub(super) fn select(
+    model: &Model,
+    terms: Option<usize>,
+    long_time: LongTime,
+) -> Result<(Solution, Parameters)> {
+    match terms {
+        Some(terms) => best_of(model, terms, long_time),
+        None => as_many_as_needed(model, long_time),
+    }
+}
+
+/// Fits with `terms` terms: a solid, a fluid, or the better of both.
+fn best_of(model: &Model, terms: usize, long_time: LongTime) -> Result<(Solution, Parameters)> {
+    let solids = match (long_time, terms) {
+        (LongTime::Solid, _) | (_, 0) => &[true][..],
+        (LongTime::Fluid, _) => &[false],
+        (LongTime::Free, _) => &[true, false],
+    };
+    let mut best: Option<(Solution, Parameters)> = None;
+    let mut refused = None;
+    for solid in solids {
+        // An equilibrium modulus that is known to 30 % and bears a share of the load is not 0.
+        let known = |(solution, of): &(Solution, Parameters)| {
+            let share = solution.at[0].exp() / of.relaxation(&solution.at).instantaneous();
+            of.solid && solution.deviations[0] < 0.3 && share > 1e-3
+        };
+        if best.as_ref().is_some_and(known) {
+            break;
+        }
+        let parameters = Parameters { solid: *solid, terms, touch: model.fits_touch() };
+        let found = start::start(model, &parameters).and_then(|start| solve(model, &parameters, start));
+        match found {
+            Err(error) => refused = Some(error),
+            Ok(solution) => {
+                let better = best
+                    .as_ref()
+                    .is_none_or(|(other, of)| information(&solution, &parameters) < information(other, of));
+                if better {
+                    best = Some((solution, parameters));
+                }
+            }
+        }
+    }
+    match (best, refused) {
+        (Some(best), _) => Ok(best),
+        (None, Some(error)) => Err(error),
+        (None, None) => Err(Error::invalid("number of terms", terms, "one that can be fitted")),
+    }
+}
+
+/// Adds terms while that lowers the information criterion and each is determined.
+fn as_many_as_needed(model: &Model, long_time: LongTime) -> Result<(Solution, Parameters)> {
+    let mut best = best_of(model, usize::from(long_time == LongTime::Fluid), long_time)?;
+    let first = best.1.terms;
+    for terms in first + 1..=MOST_TERMS {
+        let Ok(next) = best_of(model, terms, long_time) else { break };
+        let known = next.1.worst(&next.0.deviations).is_none_or(|(_, deviation)| deviation <= UNKNOWN);
+        if !known || information(&next.0, &next.1) >= information(&best.0, &best.1) {
+            break;
+        }
+        best = next;
+    }
+    Ok(best)
+}
+
+/// Bayesian information criterion, n ln(Σ r²/n) + k ln n.
+fn information(solution: &Solution, parameters: &Parameters) -> f64 {
+    let n = solution.residuals.len() as f64;
+    let mean = solution.rms().powi(2).max(MODEL_ERROR * MODEL_ERROR);
+    n * mean.ln() + parameters.len() as f64 * n.ln()
+}

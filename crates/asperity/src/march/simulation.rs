@@ -13,8 +13,8 @@ use crate::time::{Plan, TimeGrid};
 /// How the hereditary integral is taken over a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 pub enum Scheme {
-    /// Pressure linear in each step: second order. Steps of a material without (or almost without)
-    /// instantaneous compliance, where this would ring, take the constant form.
+    /// Relaxing displacements, driven by a displacement that runs linearly over each step in time, or under load control in
+    /// int C dW: second order, positive and monotone for every material and step.
     #[default]
     Linear,
     /// Pressure constant in each step: first order, L-stable; SC17's assumption.
@@ -139,12 +139,15 @@ impl Simulation {
             0.0
         };
         let spots = if self.quantities.list.iter().any(|q| q.is_of_spots()) { 16.0 } else { 0.0 };
-        let older = if self.is_adaptive() { 8.0 } else { 0.0 };
-        let march = 6.0 * 8.0 + dents + stiffness + spots + older;
+        // the displacement of the memory; that of a third instant
+        let terms: usize =
+            self.parts().map(|creep| creep.terms.len() + usize::from(creep.fluidity > 0.0)).sum();
         let memory = match self.scheme {
             Scheme::Direct => self.plan().instants.len(),
-            _ => self.parts().map(|creep| creep.terms.len() + usize::from(creep.fluidity > 0.0)).sum(),
+            _ if terms == 0 => 0,
+            _ => terms + 1 + usize::from(self.is_adaptive()),
         };
+        let march = 6.0 * 8.0 + dents + stiffness + spots;
         f64::ceil(convolutions + solver + march) as usize + 8 * memory
     }
 

@@ -112,31 +112,19 @@ fn growing_contact_equals_one_elastic_solve() {
 fn held_approach_relaxes_every_cell_like_the_modulus() {
     let base = rough([32, 32]);
     let loading = Loading { control: Control::Approach, history: History::Step { value: 0.05 } };
-    let mut errors = vec![];
-    for steps in [20, 40] {
-        let simulation = Simulation {
-            loading: loading.clone().into(),
-            times: TimeGrid::Uniform { end: 2.0, steps },
-            ..base.clone()
-        };
-        let (state, _) = elastic(&base, zener().instantaneous, Prescribed::Approach(0.05));
-        let (rows, pressure) = run(simulation);
+    let (state, _) = elastic(&base, zener().instantaneous, Prescribed::Approach(0.05));
+    for steps in [1, 20] {
+        let times = TimeGrid::Uniform { end: 2.0, steps };
+        let (rows, pressure) = run(Simulation { loading: loading.clone().into(), times, ..base.clone() });
         let factor = relaxation().value(2.0) / relaxation().value(0.0);
         assert_eq!(rows[0].contact_area, rows[steps].contact_area);
-        let mut ratios = vec![];
         for (p, p0) in pressure.iter().zip(&state.pressure) {
             assert_eq!(*p > 0.0, *p0 > 0.0);
-            if *p0 > 1e-6 {
-                ratios.push(p / p0);
-            }
+            // Exact in any steps but for the solver, whose tolerance is relative to the mean pressure.
+            assert!((p - factor * p0).abs() < 1e-6 * rows[0].max_pressure, "{p} {p0}");
         }
-        // Uniform over the cells to the solver's tolerance.
-        let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
-        assert!(ratios.iter().all(|r| (r / mean - 1.0).abs() < 1e-5));
-        errors.push((mean / factor - 1.0).abs());
+        assert!((rows[steps].load / rows[0].load / factor - 1.0).abs() < 1e-8);
     }
-    // Second order: twice the steps, a quarter of the error.
-    assert!(errors[0] < 1e-3 && (errors[0] / errors[1] - 4.0).abs() < 0.4, "{errors:?}");
 }
 
 #[test]
@@ -316,12 +304,22 @@ fn kelvin_voigt_creeps_without_ringing() {
     };
     let base = Simulation { creep: kelvin.clone(), ..rough([32, 32]) };
     let ramp = History::Ramp { value: 0.1, duration: 0.5 };
-    let simulation =
-        Simulation { loading: load(ramp), times: TimeGrid::Uniform { end: 6.0, steps: 60 }, ..base.clone() };
+    let simulation = Simulation {
+        loading: load(ramp.clone()),
+        times: TimeGrid::Uniform { end: 6.0, steps: 60 },
+        ..base.clone()
+    };
     let (rows, _) = run(simulation);
     assert!(rows.windows(2).all(|r| r[1].approach > r[0].approach), "creep is monotone");
-    let (state, _) = elastic(&base, 1.0, Prescribed::Load(0.1));
-    assert!((rows.last().unwrap().approach / state.approach - 1.0).abs() < 0.01);
+    // While the contact grows it is one elastic contact with L = int C dW, in any steps.
+    for row in &rows[1..] {
+        let ramped = kelvin.integral(row.time) - kelvin.integral((row.time - 0.5).max(0.0));
+        let (state, _) = elastic(&base, 1.0, Prescribed::Load(0.2 * ramped));
+        assert!((row.approach / state.approach - 1.0).abs() < 1e-6, "t = {}", row.time);
+    }
+    // Under the held load the pressure falls where the contact has been from the start: at every step, not up and down.
+    let held: Vec<f64> = rows.iter().filter(|row| row.time > 0.55).map(|row| row.max_pressure).collect();
+    assert!(held.windows(2).all(|pair| pair[1] < pair[0] * (1.0 + 1e-9)), "{held:?}");
     // A jump of load has no solution at t = 0+.
     let jump = Simulation { loading: load(History::Step { value: 0.1 }), ..base };
     assert!(March::new(jump).is_err());

@@ -40,6 +40,7 @@ impl March {
         }
         let (memory_scalars, memory) = match &self.past {
             Past::Memory(m) => m.save(),
+            Past::Constant(c) => c.save(),
             Past::Direct(d) => d.save(),
         };
         let mut scalars = self.timeline.save();
@@ -98,13 +99,17 @@ impl March {
         let memory = (0..checkpoint.fields.len().saturating_sub(others))
             .map(|k| next(&format!("memory_{k}")))
             .collect::<Result<Vec<_>>>()?;
-        let Some(scalars) = march.meter.load(scalars) else {
+        let Some((scalars, energies)) =
+            scalars.len().checked_sub(march.meter.saved()).and_then(|n| scalars.split_at_checked(n))
+        else {
             return Err(foreign("one without the energies asked for".into()));
         };
         let restored = match &mut march.past {
-            Past::Memory(m) => m.load(scalars, &memory),
+            Past::Memory(m) => m.restore(scalars, &memory),
+            Past::Constant(c) => c.restore(scalars, &memory),
             Past::Direct(d) => d.load(scalars, memory),
         };
+        let restored = restored && march.meter.restore(&march.past, energies);
         if !restored {
             return Err(foreign("a memory of another material or scheme".into()));
         }

@@ -57,6 +57,11 @@ impl Enclosure {
         self.last_near = Some(near);
     }
 
+    /// A length at which the event has not happened yet.
+    pub(super) fn near(&self) -> f64 {
+        self.near
+    }
+
     /// A length at which the event has happened.
     pub(super) fn far(&self) -> f64 {
         self.far

@@ -1,6 +1,6 @@
 //! The quantities of a row, taken when the row is solved.
 
-use super::energy::{End, Ends, Energy, Flattening};
+use super::energy::{End, Energy, Flattening};
 use super::{March, Past, Step};
 use crate::contact::Hardness;
 use crate::error::Result;
@@ -20,13 +20,13 @@ pub(super) struct Meter {
 }
 
 impl Meter {
-    /// For these columns, of bodies with `branches` branches.
-    pub(super) fn new(columns: Vec<Column>, operator: &dyn Operator, branches: usize) -> Self {
+    /// For these columns, of bodies that remember in this way.
+    pub(super) fn new(columns: Vec<Column>, operator: &dyn Operator, past: &Past) -> Self {
         let has = |test: &dyn Fn(Quantity) -> bool| columns.iter().any(|column| test(column.quantity));
         Meter {
             values: vec![f64::NAN; columns.iter().map(Column::width).sum()],
             stiffness: has(&|q| q == Quantity::ContactStiffness).then(|| ContactStiffness::new(operator)),
-            energy: has(&Quantity::is_energy).then(|| Energy::new(branches)),
+            energy: Energy::new(past).filter(|_| has(&Quantity::is_energy)),
             columns,
         }
     }
@@ -61,11 +61,14 @@ impl Meter {
         self.energy.as_ref().map_or(vec![], Energy::save)
     }
 
-    /// Splits what [`save`](Self::save) gave off the end of `scalars` and takes it back; `None` where it does not fit.
-    pub(super) fn load<'s>(&mut self, scalars: &'s [f64]) -> Option<&'s [f64]> {
-        let Some(energy) = &mut self.energy else { return Some(scalars) };
-        let (rest, own) = scalars.split_at_checked(scalars.len().checked_sub(energy.len())?)?;
-        energy.load(own).then_some(rest)
+    /// How many numbers [`save`](Self::save) gives.
+    pub(super) fn saved(&self) -> usize {
+        self.energy.as_ref().map_or(0, Energy::len)
+    }
+
+    /// Takes back what [`save`](Self::save) gave of the state that `past` holds; false where it does not fit.
+    pub(super) fn restore(&mut self, past: &Past, numbers: &[f64]) -> bool {
+        self.energy.as_mut().is_none_or(|energy| energy.restore(past, numbers))
     }
 }
 
@@ -95,11 +98,7 @@ impl March {
             stiffness = found.0;
             self.outcome.convolutions += found.1;
         }
-        if let (Some(energy), Past::Memory(memory)) = (&mut meter.energy, &self.past) {
-            let ends = Ends {
-                before: (&self.previous.pressure, &self.previous.unit_displacement),
-                now: (&self.state.pressure, &self.state.unit_displacement),
-            };
+        if let Some(energy) = &mut meter.energy {
             let cell_area = self.simulation.grid.cell_area();
             let overlap = cell_area * self.overlap_work();
             let end = End {
@@ -111,8 +110,7 @@ impl March {
                 },
                 jump,
             };
-            let parts = memory.parts(ends.before.0, ends.now.0);
-            energy.take(&ends, &parts, self.simulation.instantaneous(), cell_area, end);
+            energy.take(&self.past, self.ends(), cell_area, end);
         }
         let Some(step) = self.last() else { return Ok(()) };
         step.fill(meter, stiffness);

@@ -1,19 +1,21 @@
 //! The march through time: one elastic contact per step.
 //!
-//! Space and time separate: u(x, t) = integral C(t - s) d(Kp)(x, s). With U = Kp kept in displacement
-//! space, a step from t_n to t_(n+1) leaves u_(n+1) = c U_(n+1) + g, where the number c and the field g
-//! (the history) are known before the solve (theory section 4). So the step IS the elastic contact with
-//! compliance c and undeformed gap h0 + g, and the past costs no convolution.
+//! Space and time separate: u(x, t) = integral C(t - s) d(Kp)(x, s). With U = Kp, a step from t_n to t_(n+1)
+//! leaves u_(n+1) = c U_(n+1) + g, where the number c and the field g (the history) are known before the solve
+//! (docs/theory.md, section 5). So the step is the elastic contact with compliance c and undeformed gap h0 + g, and
+//! the past costs no convolution.
 
 #![allow(clippy::type_complexity)] // the closures of a sweep spell out the slices that they walk
 
 mod adaptive;
 mod checkpoint;
+mod constant;
 mod dense;
 mod dents;
 mod direct;
 mod energy;
 mod event;
+mod locate;
 mod measure;
 mod memory;
 mod record;
@@ -35,14 +37,14 @@ use crate::field::{minimum, sum};
 use crate::load::{Control, Event};
 use crate::operator::{Operator, half_space};
 use crate::time::Instant;
-use adaptive::{Defect, Three};
+use constant::Constant;
 use dents::Dents;
 use direct::Direct;
 use event::{Enclosure, MET};
 use measure::Meter;
-use memory::Memory;
+use memory::{Drive, Ends, Interval, Memory};
 use record::Remembered;
-use timeline::Timeline;
+use timeline::{Accepted, Timeline};
 
 /// A simulation on its way.
 ///
@@ -93,8 +95,6 @@ pub struct March {
     /// The permanent flattening, where there is any.
     dents: Option<Dents>,
     meter: Meter,
-    /// U two rows before, where steps are adaptive.
-    older: Vec<f64>,
     /// Estimated error of the last step.
     time_error: Option<f64>,
     /// What the last row reached, where stages ask for it.
@@ -124,15 +124,17 @@ struct Reached {
 
 /// What the bodies remember.
 enum Past {
-    Memory(Memory),
+    Memory(Box<Memory>),
+    Constant(Constant),
     Direct(Direct),
 }
 
 impl Past {
-    /// g of the step that ended last, which began with U = `before`.
-    fn remembered(&self, before: &[f64], g: &mut [f64]) {
+    /// g of the step that ended last.
+    fn remembered(&self, g: &mut [f64]) {
         match self {
-            Past::Memory(m) => m.remembered(before, g),
+            Past::Memory(m) => m.remembered(g),
+            Past::Constant(c) => c.remembered(g),
             Past::Direct(d) => d.remembered(g),
         }
     }
@@ -153,15 +155,14 @@ impl March {
         let n = simulation.grid.len();
         let past = match simulation.scheme {
             Scheme::Direct => Past::Direct(Direct::new(&simulation.creep, &simulation.thermal)),
-            scheme => Past::Memory(Memory::new(simulation.parts(), scheme, n)),
+            Scheme::Constant => Past::Constant(Constant::new(&simulation)),
+            Scheme::Linear => Past::Memory(Box::new(Memory::new(&simulation, simulation.is_adaptive())?)),
         };
-        let branches = if let Past::Memory(memory) = &past { memory.branches() } else { 0 };
-        let meter = Meter::new(simulation.columns()?, &*operator, branches);
+        let meter = Meter::new(simulation.columns()?, &*operator, &past);
         let dents = Dents::new(&simulation);
         Ok(March {
             gap: simulation.gap.iter().copied().collect(),
             hardness: simulation.hardness_of_cells(),
-            older: vec![0.0; if simulation.is_adaptive() { n } else { 0 }],
             time_error: None,
             reached: Reached::default(),
             lengths: vec![0.0; simulation.parts().count()],
@@ -215,60 +216,128 @@ impl March {
     /// [`Error::Undetermined`], [`Error::Interrupted`]; [`Error::Missed`] where an event did not come;
     /// [`Error::Invalid`] where a stage begins with a jump that the material cannot follow.
     pub fn advance(&mut self) -> Result<Option<Step<'_>>> {
+        self.set_first_step();
         let Some(mut instant) = self.timeline.propose(&self.simulation)? else {
             return Ok(None);
         };
         self.outcome = Outcome::default();
-        let start = self.begin(instant);
+        let (mut turn, start) = self.begin(&mut instant)?;
         self.solve(instant, start)?;
-        let mut error = self.local_error(instant);
-        while let Some(dt) = self.timeline.pace().and_then(|pace| pace.rejects(instant.dt, error)) {
-            instant = self.try_again(dt)?;
+        let mut error = self.shorten_to_tolerance(&mut instant, &mut turn)?;
+        let event = self.find_event(&mut instant)?;
+        if event && error.is_some() {
             error = self.local_error(instant);
         }
-        let event = self.find_event(&mut instant)?;
+        self.settle(instant);
         self.measure(instant.dt == 0.0)?;
         self.dent();
-        self.time_error = if event { self.local_error(instant) } else { error };
+        self.time_error = error;
         self.reached = self.reached_now();
-        self.timeline.accept(&self.simulation, instant, self.time_error, event, self.reached);
+        let row = Accepted { instant, error, event, turn, reached: self.reached };
+        self.timeline.accept(&self.simulation, row);
         self.done += 1;
         Ok(self.last())
     }
 
-    /// Sets the contact of the step that ends at `instant`: its compliance, its gap, its first guess.
-    fn begin(&mut self, instant: Instant) -> Start {
+    /// Solves the step shorter and shorter until its error is small enough, where steps are adaptive; returns the error.
+    fn shorten_to_tolerance(&mut self, instant: &mut Instant, turn: &mut bool) -> Result<Option<f64>> {
+        if self.timeline.pace().is_none() {
+            return Ok(None);
+        }
+        if instant.jump {
+            return Ok(Some(0.0));
+        }
+        if !self.is_apart() && !(self.timeline.smooth() && self.knows_the_state_before()) {
+            // The state just solved is the third one, of a step half as long.
+            self.keep_as_third();
+            *turn = self.try_again(instant, 0.5 * instant.dt)?;
+        }
+        loop {
+            let error = self.local_error(*instant);
+            let shorter = self.timeline.pace().and_then(|pace| pace.rejects(instant.dt, error?));
+            let Some(dt) = shorter else { return Ok(error) };
+            *turn = self.try_again(instant, dt)?;
+        }
+    }
+
+    /// Sets the contact of the step that ends at `instant`: its compliance, its gap, its first guess. The step ends sooner where
+    /// contact is made or lost in it; then the answer is true.
+    fn begin(&mut self, instant: &mut Instant) -> Result<(bool, Start)> {
+        self.set(*instant)?;
+        let turn = self.locate(instant)?;
+        Ok((turn, self.guess(*instant)))
+    }
+
+    /// Takes in the last row, and sets the contact of the next step: its compliance and its gap.
+    fn set(&mut self, instant: Instant) -> Result<()> {
         self.measure_step(instant);
         self.meter.clear();
+        let drive = self.drive(instant);
         let unit = &self.state.unit_displacement;
         let rigid = undeformed(&self.simulation, &self.dents);
+        let lengths = &self.lengths;
         self.compliance = match &mut self.past {
-            Past::Memory(m) => {
-                m.history(&self.lengths, &self.previous.unit_displacement, unit, rigid, &mut self.gap)
-            }
+            Past::Memory(m) => m.begin(Interval { lengths, drive }, unit, rigid, &mut self.gap)?,
+            Past::Constant(c) => c.begin(lengths, unit, rigid, &mut self.gap),
             Past::Direct(d) => d.history(instant.time, instant.dt, unit, rigid, &mut self.gap),
         };
         std::mem::swap(&mut self.state, &mut self.previous);
-        // What stands there is U two rows before.
-        let older = &self.state.unit_displacement[..self.older.len()];
-        self.older.copy_from_slice(older);
-        self.guess(instant)
+        Ok(())
     }
 
-    /// The step under way at another length, guessed from the last row and the last trial.
-    fn try_again(&mut self, dt: f64) -> Result<Instant> {
-        let tried = self.current.map_or(0.0, |(_, trial)| trial.dt);
-        let instant = self.timeline.inside(&self.simulation, dt);
+    /// Sets the contact of the step under way at another length.
+    fn reset(&mut self, instant: Instant, drive: Drive) -> Result<()> {
         self.measure_step(instant);
-        let unit = &self.previous.unit_displacement;
         let rigid = undeformed(&self.simulation, &self.dents);
+        let lengths = &self.lengths;
         self.compliance = match &mut self.past {
-            Past::Memory(m) => m.retry(&self.lengths, unit, rigid, &mut self.gap),
-            Past::Direct(d) => d.retry(dt, rigid, &mut self.gap),
+            Past::Memory(m) => m.retry(Interval { lengths, drive }, rigid, &mut self.gap)?,
+            Past::Constant(c) => c.retry(lengths, rigid, &mut self.gap),
+            Past::Direct(d) => d.retry(instant.dt, rigid, &mut self.gap),
         };
-        let start = self.guess_again(instant, tried);
-        self.solve(instant, start)?;
-        Ok(instant)
+        Ok(())
+    }
+
+    /// Takes the step under way again at another length, guessed from the last row and the last trial; whether the contact is
+    /// lost or made there.
+    fn try_again(&mut self, instant: &mut Instant, dt: f64) -> Result<bool> {
+        let tried = self.current.map_or(0.0, |(_, trial)| trial.dt);
+        *instant = self.timeline.inside(&self.simulation, dt);
+        self.reset(*instant, self.drive(*instant))?;
+        let turn = self.locate(instant)?;
+        let start = self.guess_again(*instant, tried);
+        self.solve(*instant, start)?;
+        Ok(turn)
+    }
+
+    /// What is known of the step to `instant` before it is solved.
+    fn drive(&self, instant: Instant) -> Drive {
+        let apart = matches!(&self.past, Past::Memory(m) if m.load() == 0.0);
+        match self.prescribed(instant) {
+            Prescribed::Load(load) if apart && load == 0.0 => Drive::Apart,
+            Prescribed::Load(load) => Drive::Load(load),
+            Prescribed::Approach(_) if apart => Drive::Apart,
+            Prescribed::Approach(_) => Drive::Approach,
+        }
+    }
+
+    /// Pressure and U at both ends of the step under way.
+    fn ends(&self) -> Ends<'_> {
+        Ends {
+            before: (&self.previous.pressure, &self.previous.unit_displacement),
+            now: (&self.state.pressure, &self.state.unit_displacement),
+        }
+    }
+
+    /// Tells the memory the load of the row.
+    fn settle(&mut self, instant: Instant) {
+        let load = match self.prescribed(instant) {
+            Prescribed::Load(load) => load,
+            Prescribed::Approach(_) => sum(&self.state.pressure) * self.simulation.grid.cell_area(),
+        };
+        if let Past::Memory(memory) = &mut self.past {
+            memory.settle(load);
+        }
     }
 
     /// What the solver is to meet.
@@ -317,23 +386,47 @@ impl March {
         }
     }
 
-    /// Error that the step adds to the approach, over the largest approach so far; see [`adaptive`].
+    /// Estimated error of the stress at the end of the step, where steps are adaptive.
     fn local_error(&self, instant: Instant) -> Option<f64> {
-        let (Past::Memory(memory), Some(_), false) = (&self.past, self.timeline.pace(), instant.jump) else {
-            return None;
+        let (Past::Memory(memory), Some(_)) = (&self.past, self.timeline.pace()) else { return None };
+        let rigid = undeformed(&self.simulation, &self.dents);
+        Some(if instant.jump { 0.0 } else { memory.error(self.ends(), &self.gap, rigid) })
+    }
+
+    fn keep_as_third(&mut self) {
+        let Past::Memory(memory) = &mut self.past else { return };
+        let rigid = undeformed(&self.simulation, &self.dents);
+        memory.keep_as_third(&self.state.unit_displacement, &self.gap, rigid);
+    }
+
+    /// Whether the memory holds the state before the last row, one row after it.
+    fn knows_the_state_before(&self) -> bool {
+        matches!(&self.past, Past::Memory(memory) if memory.has_third())
+    }
+
+    /// Whether the step under way has no pressure at either end.
+    fn is_apart(&self) -> bool {
+        matches!(&self.past, Past::Memory(memory) if memory.is_apart())
+    }
+
+    /// How long the first step of a smooth piece is: a twentieth of it at most, or as the material and the load say.
+    fn set_first_step(&mut self) {
+        let Some(piece) = self.timeline.piece() else { return };
+        let Past::Memory(memory) = &mut self.past else { return };
+        let longest = piece.length / 20.0;
+        let soon = 1e-3 * longest;
+        let end = piece.start + soon;
+        let clocks = self.simulation.thermal.iter().map(|body| body.clock.elapsed(piece.start, end) / soon);
+        let creep = &self.simulation.creep;
+        let laboratory = f64::from(u8::from(!creep.terms.is_empty() || creep.fluidity > 0.0));
+        let rate = clocks.fold(laboratory, f64::max);
+        let load = match self.timeline.stage(&self.simulation).control {
+            Control::Approach => None,
+            Control::Load => Some(piece.slope(soon)),
+            Control::Pressure => Some(piece.slope(soon) * self.simulation.grid.area()),
         };
-        let pressures = [&self.previous.pressure[..], &self.state.pressure[..]];
-        let (before, now) = (&self.previous.unit_displacement, &self.state.unit_displacement);
-        let error = match memory.defect(instant.dt) {
-            Defect::Curvature(weight) => {
-                let last = self.timeline.last().filter(|last| self.timeline.smooth() && last.dt > 0.0)?;
-                let states = Three { older: &self.older, before, now, lengths: [last.dt, instant.dt] };
-                weight * adaptive::curvature(&states, pressures)
-            }
-            Defect::Change(weight) => weight * adaptive::change(before, now, pressures),
-        };
-        let scale = self.timeline.largest.approach.max(self.state.approach.abs());
-        Some(if error > 0.0 { error / scale } else { 0.0 })
+        let first = memory.first_step(longest, load, piece.after_jump, rate);
+        self.timeline.restart(first);
     }
 
     /// Whether the event that ends the stage happens in the step under way, which is then cut there.
@@ -372,15 +465,15 @@ impl March {
         };
         let mut enclosure = Enclosure::new(instant.dt, before, side * signal);
         while let Some(dt) = enclosure.guess() {
-            *instant = self.try_again(dt)?;
+            self.try_again(instant, dt)?;
             let (signal, _) = self.signal(event, self.reached_now(), *instant);
             if met(signal) {
                 return Ok(true);
             }
-            enclosure.narrow(dt, side * signal);
+            enclosure.narrow(instant.dt, side * signal);
         }
         if instant.dt != enclosure.far() {
-            *instant = self.try_again(enclosure.far())?;
+            self.try_again(instant, enclosure.far())?;
         }
         Ok(true)
     }
@@ -433,7 +526,7 @@ impl March {
             gap: &self.gap,
             compliance: self.compliance,
             outcome: self.outcome,
-            remembered: Remembered::Past(&self.past, &self.previous.unit_displacement),
+            remembered: Remembered::Past(&self.past),
             time_error: self.time_error,
             dents: self.dents.as_ref(),
             meter: Some(&self.meter),

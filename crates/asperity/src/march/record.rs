@@ -42,8 +42,8 @@ pub struct Row {
     pub residual: f64,
     /// Certified relative energy-norm error of the pressure.
     pub certificate: f64,
-    /// Estimated error that the step adds to the approach, over the largest approach so far; where steps are
-    /// adaptive, and the last three states are smooth in time.
+    /// Estimated error of the stress at the end of the step, relative, where steps are adaptive; 0 of a jump, and where
+    /// nothing touches.
     pub time_error: Option<f64>,
     /// Number of the stage, from 0.
     pub stage: usize,
@@ -75,8 +75,8 @@ pub struct Step<'a> {
 /// g, the displacement that the past leaves.
 #[derive(Clone, Copy)]
 pub(super) enum Remembered<'a> {
-    /// Of the step under way, which began with this U.
-    Past(&'a Past, &'a [f64]),
+    /// Of the step under way.
+    Past(&'a Past),
     /// Itself.
     Field(&'a [f64]),
 }
@@ -113,7 +113,7 @@ impl<'a> Step<'a> {
     pub fn displacement_into(&self, displacement: &mut Array2<f64>) {
         if let Some(displacement) = displacement.as_slice_mut() {
             match self.remembered {
-                Remembered::Past(past, before) => past.remembered(before, displacement),
+                Remembered::Past(past) => past.remembered(displacement),
                 Remembered::Field(g) => displacement.copy_from_slice(g),
             }
         }

@@ -17,10 +17,10 @@ use crate::time::{Plan, TimeGrid};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub enum Scheme {
-    /// Linear in time: second order.
+    /// Linear displacement: second order.
     ///
-    /// Steps of a material without (or almost without) instantaneous compliance, where this would ring, take the
-    /// constant form.
+    /// Relaxing displacements, driven by a displacement that runs linearly over each step in time, or under load control in
+    /// the integral of C dW: positive and monotone for every material and step.
     #[default]
     Linear,
     /// Constant over each step: first order, L-stable; the assumption of SC17.
@@ -125,16 +125,19 @@ impl Simulation {
     pub fn bytes(&self) -> usize {
         let (grid, n) = (&self.grid, self.grid.len());
         let has = |wanted: bool, bytes: usize| if wanted { bytes } else { 0 };
+        // the displacement of the memory, and that of a third instant
+        let terms: usize =
+            self.parts().map(|creep| creep.terms.len() + usize::from(creep.fluidity > 0.0)).sum();
         let history = match self.scheme {
             Scheme::Direct => self.plan().instants.len(),
-            _ => self.parts().map(|creep| creep.terms.len() + usize::from(creep.fluidity > 0.0)).sum(),
+            _ if terms == 0 => 0,
+            _ => terms + 1 + usize::from(self.is_adaptive()),
         };
         operator::bytes(grid, self.boundary)
             + Solver::bytes(self.solver.method, grid, self.boundary)
             // pressure and U of two rows, undeformed and remembered gap
             + 6 * 8 * n
             + 8 * n * history
-            + has(self.is_adaptive(), 8 * n)
             // the gap with its dents
             + has(self.plasticity == Plasticity::Accumulate, 8 * n)
             + has(self.quantities.has(Quantity::ContactStiffness), ContactStiffness::bytes(grid, self.boundary))

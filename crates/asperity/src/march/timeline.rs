@@ -35,6 +35,37 @@ pub(super) struct Timeline {
     missed: Option<Missed>,
 }
 
+/// A row that is done.
+#[derive(Clone, Copy)]
+pub(super) struct Accepted {
+    pub(super) instant: Instant,
+    /// Its estimated error, where steps are adaptive.
+    pub(super) error: Option<f64>,
+    /// Whether it ends its stage.
+    pub(super) event: bool,
+    /// Whether contact was made or lost.
+    pub(super) turn: bool,
+    pub(super) reached: Reached,
+}
+
+/// A smooth piece of the course that has just begun.
+pub(super) struct Piece<'a> {
+    /// On the clock of the run, and how long it is as far as is known \[s\].
+    pub(super) start: f64,
+    pub(super) length: f64,
+    pub(super) after_jump: bool,
+    history: &'a History,
+    stage_start: f64,
+}
+
+impl Piece<'_> {
+    /// Rate of the prescribed value at its start, over a time `dt`.
+    pub(super) fn slope(&self, dt: f64) -> f64 {
+        let inside = self.start - self.stage_start;
+        (self.history.after(inside + dt) - self.history.after(inside)) / dt
+    }
+}
+
 /// An event that did not come.
 #[derive(Clone, Copy)]
 struct Missed {
@@ -83,6 +114,26 @@ impl Timeline {
 
     pub(super) fn pace(&self) -> Option<&Pace> {
         self.pace.as_ref()
+    }
+
+    /// The smooth piece that begins with the next step, where steps are adaptive and one begins.
+    pub(super) fn piece(&self) -> Option<Piece<'_>> {
+        if self.smooth || self.jump.is_some() || self.finished || self.pace.is_none() {
+            return None;
+        }
+        let last = self.last?;
+        Some(Piece {
+            start: last.time,
+            length: self.stops.get(self.next)?.time - last.time,
+            after_jump: last.jump,
+            history: &self.history,
+            stage_start: self.start,
+        })
+    }
+
+    /// The first step of a smooth piece may be that long.
+    pub(super) fn restart(&mut self, first: f64) {
+        self.pace.iter_mut().for_each(|pace| pace.restart(first));
     }
 
     /// The stage under way.
@@ -155,23 +206,17 @@ impl Timeline {
         history.before(time - start)
     }
 
-    /// Takes the row at `instant`; `event` where it ends its stage.
-    pub(super) fn accept(
-        &mut self,
-        simulation: &Simulation,
-        instant: Instant,
-        error: Option<f64>,
-        event: bool,
-        reached: Reached,
-    ) {
+    /// Takes a row.
+    pub(super) fn accept(&mut self, simulation: &Simulation, row: Accepted) {
+        let Accepted { instant, error, event, turn, reached } = row;
         self.largest.approach = self.largest.approach.max(reached.approach.abs());
         self.largest.load = self.largest.load.max(reached.load);
         self.last = Some(instant);
-        self.smooth = !instant.jump;
+        self.smooth = !instant.jump && !turn;
         if let Some(pace) = &mut self.pace
             && !instant.jump
         {
-            pace.accept(instant.dt, error);
+            pace.accept(instant.dt, error.unwrap_or(0.0));
         }
         if instant.jump {
             self.jump = None;
@@ -182,7 +227,6 @@ impl Timeline {
             self.jump = stop.after;
             if stop.bend || stop.after.is_some() {
                 self.smooth = false;
-                self.pace.iter_mut().for_each(Pace::restart);
             }
         }
         let over = self.jump.is_none() && self.next >= self.stops.len();
@@ -259,7 +303,7 @@ impl Timeline {
     pub(super) fn save(&self) -> Vec<f64> {
         let last =
             self.last.map_or([f64::INFINITY; 4], |i| [i.time, i.dt, i.value, f64::from(u8::from(i.jump))]);
-        let pace = self.pace.as_ref().map_or([f64::INFINITY; 2], Pace::save);
+        let pace = self.pace.as_ref().map_or(f64::INFINITY, |pace| pace.dt);
         let flag = |yes: bool| f64::from(u8::from(yes));
         let missed = self.missed.map_or([f64::INFINITY; 2], |m| [m.reached.approach, m.reached.load]);
         let mut numbers = vec![self.stage as f64, self.start, self.reached, self.next as f64];
@@ -271,13 +315,13 @@ impl Timeline {
         ]);
         numbers.extend([self.largest.approach, self.largest.load]);
         numbers.extend(last);
-        numbers.extend(pace);
+        numbers.push(pace);
         numbers.extend(missed);
         numbers
     }
 
     /// How many numbers [`Timeline::save`] gives.
-    pub(super) const SAVED: usize = 18;
+    pub(super) const SAVED: usize = 17;
 
     /// Takes back what [`Timeline::save`] gave; false where it does not fit.
     pub(super) fn load(&mut self, simulation: &Simulation, numbers: &[f64]) -> bool {
@@ -297,7 +341,6 @@ impl Timeline {
             value,
             jumped,
             length,
-            error,
             missed_approach,
             missed_load,
         ] = numbers
@@ -329,7 +372,7 @@ impl Timeline {
             stage: self.stage,
         });
         if let Some(pace) = &mut self.pace {
-            pace.load([length, error]);
+            pace.dt = length;
         }
         self.missed = match self.stage(simulation).until {
             Some(event) if !missed_approach.is_infinite() => {

@@ -342,8 +342,8 @@ mod tests {
                 march.advance().unwrap();
             }
             let (last, before) = (march.state.pressure.clone(), march.previous.pressure.clone());
-            let instant = march.timeline.propose(&march.simulation).unwrap().unwrap();
-            march.begin(instant);
+            let mut instant = march.timeline.propose(&march.simulation).unwrap().unwrap();
+            march.begin(&mut instant).unwrap();
             let guess = march.state.pressure.clone();
             let mut energy = |beside: f64| -> f64 {
                 let p: Vec<f64> =

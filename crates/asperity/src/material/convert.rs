@@ -95,23 +95,32 @@ impl Creep {
                 "a compliance greater than 0 1/Pa, to have a modulus",
             ));
         }
-        let mut poles = vec![];
-        if creep.instantaneous > 0.0 {
-            poles.push((0.0, creep.instantaneous));
-        }
-        poles.extend(creep.terms.iter().map(|c| (c.retardation_time, c.compliance)));
-        let terms = interlacing_roots(creep.fluidity, &poles)?.into_iter().map(|root| RelaxationTerm {
-            modulus: 1.0 / (root.x * (root.x * root.slope)),
-            relaxation_time: root.x,
-        });
-        let relaxation = Relaxation {
-            equilibrium: if creep.fluidity > 0.0 { 0.0 } else { 1.0 / creep.long_time() },
-            terms: terms.filter(|e| e.modulus > 0.0).collect(),
-            viscosity: if creep.instantaneous > 0.0 { 0.0 } else { 1.0 / creep.rate(0.0) },
-        };
+        let (mut relaxation, _) = relaxation_of(&creep)?;
+        relaxation.terms.retain(|e| e.modulus > 0.0);
         relaxation.validate().map_err(|e| out_of_range("relaxation", &e))?;
         Ok(relaxation)
     }
+}
+
+/// The relaxation function of a creep function whose terms are in order of time, no two of them the same,
+/// with one term for every root, and the roots.
+pub(super) fn relaxation_of(creep: &Creep) -> Result<(Relaxation, Vec<Root>)> {
+    let mut poles = vec![];
+    if creep.instantaneous > 0.0 {
+        poles.push((0.0, creep.instantaneous));
+    }
+    poles.extend(creep.terms.iter().map(|c| (c.retardation_time, c.compliance)));
+    let roots = interlacing_roots(creep.fluidity, &poles)?;
+    let term = |root: &Root| RelaxationTerm {
+        modulus: 1.0 / (root.x * (root.x * root.slope)),
+        relaxation_time: root.x,
+    };
+    let relaxation = Relaxation {
+        equilibrium: if creep.fluidity > 0.0 { 0.0 } else { 1.0 / creep.long_time() },
+        terms: roots.iter().map(term).collect(),
+        viscosity: if creep.instantaneous > 0.0 { 0.0 } else { 1.0 / creep.rate(0.0) },
+    };
+    Ok((relaxation, roots))
 }
 
 fn out_of_range(which: &str, error: &Error) -> Error {
@@ -124,9 +133,12 @@ fn out_of_range(which: &str, error: &Error) -> Error {
 
 /// A root x of F and F'(x).
 #[derive(Clone, Copy, Debug)]
-struct Root {
+pub(super) struct Root {
     x: f64,
     slope: f64,
+    /// The pole that it is nearest to, and x less that pole to full relative accuracy.
+    pub(super) pole: f64,
+    pub(super) distance: f64,
 }
 
 /// The roots of F(x) = c + sum w_k/(p_k - x) for increasing poles p_k >= 0.
@@ -145,7 +157,8 @@ fn interlacing_roots(c: f64, poles: &[(f64, f64)]) -> Result<Vec<Root>> {
                 // Nearer to the next pole: count the distance from there, downwards.
                 let function = Offset::new(c, poles, k + 1);
                 let below = bisect(0.5 * gap, |d| function.value(-d) > 0.0);
-                roots.push(Root { x: poles[k + 1].0 - below, slope: function.slope(-below) });
+                let (next, slope) = (poles[k + 1].0, function.slope(-below));
+                roots.push(Root { x: next - below, slope, pole: next, distance: -below });
                 continue;
             }
             bisect(0.5 * gap, |d| function.value(d) < 0.0)
@@ -156,7 +169,7 @@ fn interlacing_roots(c: f64, poles: &[(f64, f64)]) -> Result<Vec<Root>> {
         } else {
             break;
         };
-        roots.push(Root { x: pole + distance, slope: function.slope(distance) });
+        roots.push(Root { x: pole + distance, slope: function.slope(distance), pole, distance });
     }
     match roots.iter().find(|r| !(r.x > 0.0 && r.x < f64::MAX && r.slope > 0.0)) {
         Some(root) => Err(out_of_range("converted", &Error::invalid("time", root.x, "positive and finite"))),

@@ -22,6 +22,7 @@ mod body;
 mod convert;
 mod creep;
 mod data;
+mod dual;
 mod fit;
 mod fractional;
 mod master;
@@ -41,6 +42,7 @@ mod thermal;
 
 pub use body::{Body, Lateral, pair_creep, pair_hardness};
 pub use creep::{Creep, CreepTerm};
+pub(crate) use dual::Dual;
 pub use fit::{Fit, FitOptions, LongTime, Misfit, fit_creep, fit_dma, fit_relaxation};
 pub use fractional::{Approximation, Fractional};
 pub use master::{Abscissa, Isotherm, MasterCurve, estimate_shift, master_curve};

@@ -46,7 +46,7 @@ impl Check {
 pub type Case = (&'static str, fn() -> Result<Vec<Check>>);
 
 /// All cases, in the order of the documentation.
-pub const CASES: [Case; 28] = [
+pub const CASES: [Case; 29] = [
     ("hertz-sphere", elastic::hertz_sphere),
     ("hertz-ellipse", elastic::hertz_ellipse),
     ("cone", elastic::cone),
@@ -57,6 +57,7 @@ pub const CASES: [Case; 28] = [
     ("ting-triangle", viscoelastic::ting_triangle),
     ("westergaard-creep", viscoelastic::westergaard_creep),
     ("held-approach", viscoelastic::held_approach),
+    ("stiff-held-approach", viscoelastic::stiff_held_approach),
     ("flat-punch-history", viscoelastic::flat_punch_history),
     ("springs-sphere", springs::sphere_under_load),
     ("springs-cone", springs::cone_under_approach),

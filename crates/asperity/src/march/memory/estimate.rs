@@ -1,0 +1,171 @@
+//! The error of a step, from three states of u: no solve of its own.
+//!
+//! Over a step of length x, u runs linearly in z (time, or L under load control). What that leaves out of the stress is, to
+//! leading order,
+//!
+//! ```text
+//! ε = 2 |u[z0, z1, z2]| Δz² [ Σ E_i b(x/τ_i) + ζ/(2x) ],    b(y) = [y - 2 + (y + 2) exp(-y)]/(2 y²)
+//! error = Σ ε / max( Σ U', 0.1 Σ U_n, 0.1 E_inf Σ |u'| )
+//! ```
+//!
+//! with u\[z0, z1, z2\] the second divided difference and sums over the cells in contact at either end: an error of the
+//! stress over the stress, not of the displacement over the approach. The second and third bound keep it finite
+//! where contact ends or begins.
+
+use super::{Course, Ends, Memory, Reference};
+use crate::field::{strands, sweep};
+
+/// Share of the stress at the start, and of the relaxed one, that an error is measured by at the least.
+const FLOOR: f64 = 0.1;
+/// L may grow by this share in the first step of a smooth piece.
+const GROWTH: f64 = 0.2;
+/// The first step after a jump is this share of the mean relaxation time.
+const FIRST: f64 = 0.2;
+
+impl Memory {
+    /// Keeps the state just solved as the third one, for a shorter step from the same start.
+    pub(in crate::march) fn keep_as_third(&mut self, unit: &[f64], gap: &[f64], rigid: &[f64]) {
+        self.reference = Some(Reference { length: self.rules.length, course: self.rules.course });
+        let compliance = self.rules.compliance;
+        if self.third.is_empty() {
+            return;
+        }
+        sweep((&mut self.third[..], unit, gap, rigid), &|(third, unit, gap, rigid): (
+            &mut [f64],
+            &[f64],
+            &[f64],
+            &[f64],
+        )| {
+            for (k, third) in third.iter_mut().enumerate() {
+                // A cell that cannot touch has no finite gap, and no say.
+                let g = gap[k] - rigid[k];
+                *third = if g.is_finite() { compliance * unit[k] + g } else { 0.0 };
+            }
+        });
+    }
+
+    /// The estimated error of the step under way, which has just been solved; 0 where nothing is remembered.
+    pub(in crate::march) fn error(&self, ends: Ends<'_>, gap: &[f64], rigid: &[f64]) -> f64 {
+        let Some(reference) = self.reference else { return 0.0 };
+        if self.third.is_empty() || self.rules.length <= 0.0 {
+            return 0.0;
+        }
+        let (step, third) = self.clock(reference);
+        let weight = 2.0 * step * step * self.defect();
+        let compliance = self.rules.compliance;
+        let cells = (
+            (&self.displacement[..], &self.third[..]),
+            (ends.before.0, ends.before.1),
+            (ends.now.0, ends.now.1),
+            (gap, rigid),
+        );
+        let [curved, now, before, displaced] =
+            sweep(cells, &|((u, u_third), (p, unit), (p_now, unit_now), (gap, rigid)): (
+                (&[f64], &[f64]),
+                (&[f64], &[f64]),
+                (&[f64], &[f64]),
+                (&[f64], &[f64]),
+            )| {
+                strands(u.len(), |i| {
+                    if !(p[i] > 0.0 || p_now[i] > 0.0) {
+                        return [0.0; 4];
+                    }
+                    let u_now = compliance * unit_now[i] + (gap[i] - rigid[i]);
+                    let slopes = [(u_third[i] - u[i]) / third, (u_now - u[i]) / step];
+                    let second = (slopes[0] - slopes[1]) / (third - step);
+                    [second.abs(), unit_now[i], unit[i], u_now.abs()]
+                })
+            });
+        let relaxed = self.dual.relaxation.equilibrium * displaced;
+        let scale = now.max(FLOOR * before).max(FLOOR * relaxed);
+        if scale > 0.0 { weight * curved / scale } else { 0.0 }
+    }
+
+    /// The end of the step and the third state on one clock: L where it ran one and the same way in both, else time.
+    fn clock(&self, third: Reference) -> (f64, f64) {
+        match (self.rules.course, third.course) {
+            (Course::Load(step), Course::Load(other)) if step * other > 0.0 => {
+                (step, if third.length < 0.0 { -other } else { other })
+            }
+            _ => (self.rules.length, third.length),
+        }
+    }
+
+    /// Σ E_i b(x/τ_i) + ζ/(2x).
+    fn defect(&self) -> f64 {
+        let (x, relaxation) = (self.rules.length, &self.dual.relaxation);
+        let terms = relaxation.terms.iter().map(|e| e.modulus * chord_defect(x / e.relaxation_time));
+        terms.sum::<f64>() + 0.5 * relaxation.viscosity / x
+    }
+
+    /// How long the first step of a smooth piece may be as far as the material says \[s\], at most `longest`, while the load
+    /// goes at the rate `load` (of a prescribed load), `after_jump` or not. `rate` is that of the fastest clock.
+    pub(in crate::march) fn first_step(
+        &mut self,
+        longest: f64,
+        load: Option<f64>,
+        after_jump: bool,
+        rate: f64,
+    ) -> f64 {
+        if self.is_elastic() || !(rate > 0.0) {
+            return longest;
+        }
+        let mut first = longest;
+        let relaxation = &self.dual.relaxation;
+        let decay: f64 = relaxation.terms.iter().map(|e| e.modulus / e.relaxation_time).sum();
+        if after_jump && decay > 0.0 && relaxation.viscosity == 0.0 {
+            first = first.min(FIRST * relaxation.instantaneous() / decay / rate);
+        }
+        if let Some(slope) = load {
+            self.dual.to_strains(&self.end.states, self.end.driver, &mut self.strains);
+            self.shape.set(&self.dual, self.end.load, slope / rate, &self.strains);
+            let grows =
+                |dt: f64| self.shape.change(&self.dual, dt * rate).abs() > GROWTH * self.end.driver.abs();
+            while self.end.driver != 0.0 && grows(first) && first > 1e-15 * longest {
+                first *= 0.5;
+            }
+        }
+        first
+    }
+}
+
+/// b(y) = \[y - 2 + (y + 2) exp(-y)\] / (2 y²), y/12 for small y.
+fn chord_defect(y: f64) -> f64 {
+    if y < 0.1 {
+        // sum over k >= 3 of (-1)^(k+1) (k - 2)/k! y^k, over 2 y²: six terms leave less than 1e-10 of the first.
+        let (mut sum, mut power, mut factorial) = (0.0, y, 6.0);
+        for k in 3..9_i32 {
+            let sign = if k % 2 == 1 { 1.0 } else { -1.0 };
+            sum += sign * f64::from(k - 2) / factorial * power;
+            power *= y;
+            factorial *= f64::from(k + 1);
+        }
+        0.5 * sum
+    } else {
+        (y - 2.0 + (y + 2.0) * libm::exp(-y)) / (2.0 * y * y)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_defect_of_a_chord_is_that_of_a_parabola() {
+        // u = t² on [0, 1] under its chord t: integral of (t - t²) exp(-(1 - t) y) y dt, over u'' = 2.
+        for y in [1e-6, 0.01, 0.0999999, 0.1, 0.7, 30.0, 1e6] {
+            let n = 20_000;
+            let f = |k: usize| {
+                let t = k as f64 / n as f64;
+                // graded towards the end, where the kernel is steep
+                let s = 1.0 - (1.0 - t) * (1.0 - t);
+                (s - s * s) * (-(1.0 - s) * y).exp() * y * 2.0 * (1.0 - t)
+            };
+            let sum: f64 = (1..n).map(|k| if k % 2 == 1 { 4.0 * f(k) } else { 2.0 * f(k) }).sum();
+            let exact = (sum + f(0) + f(n)) / (3.0 * n as f64) / 2.0;
+            // Simpson's rule at y = 1e6 has 14 panels over the kernel's width
+            let tolerance = if y > 1e5 { 1e-3 } else { 1e-6 };
+            assert!((chord_defect(y) / exact - 1.0).abs() < tolerance, "{y} {} {exact}", chord_defect(y));
+        }
+    }
+}

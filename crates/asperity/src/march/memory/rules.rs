@@ -1,0 +1,161 @@
+//! What a step does to the memory: its compliance, and a few numbers for each branch.
+//!
+//! With x the length of the step, y = x/τ_i, E = exp(-y), r(s) the course of u from its value at the start (0) to that at
+//! the end (1), and γ_i = ∫ exp(-(x - s)/τ_i) r(s) ds/τ_i,
+//!
+//! ```text
+//! q_i' = E q_i + (1 - E - γ_i) u_n + γ_i u_(n+1)
+//! e    = E_inf + Σ E_i (1 - γ_i) + ζ r'(x)                       c = 1/e
+//! h    = Σ E_i [E q_i + (1 - E - γ_i) u_n] + ζ r'(x) u_n
+//! u_(n+1) = (U_(n+1) + h)/e
+//! ```
+//!
+//! which is exact for that course of u. All terms of h have one sign while u >= 0.
+
+use super::branches::{Combination, Ending, Update};
+use super::shape::{Shape, moment};
+use crate::material::Dual;
+
+/// A rate r'(x) x of the driver below this is taken for this: a dashpot alone needs one.
+const SLOWEST: f64 = 1e-9;
+
+/// How u runs over a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Course {
+    /// Linear in time.
+    Time,
+    /// Linear in L, which changes by so much.
+    Load(f64),
+}
+
+/// The rules of a step.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Rules {
+    /// Length of the step on the fastest clock.
+    pub(super) length: f64,
+    pub(super) course: Course,
+    /// c = 1/e.
+    pub(super) compliance: f64,
+    updates: Vec<Update>,
+    /// u_(n+1) = c U + Σ recalled q_i + own u_n.
+    recalled: Vec<f64>,
+    own: f64,
+}
+
+impl Rules {
+    pub(super) fn new(states: usize) -> Self {
+        Rules {
+            length: 0.0,
+            course: Course::Time,
+            compliance: 0.0,
+            updates: vec![Update::default(); states],
+            recalled: vec![0.0; states],
+            own: 0.0,
+        }
+    }
+
+    /// A step of length `x`.
+    pub(super) fn set(&mut self, dual: &Dual, x: f64, course: Course, shape: &Shape) {
+        (self.length, self.course) = (x, course);
+        let relaxation = &dual.relaxation;
+        if x <= 0.0 {
+            // No time passes: the states stay, and the springs of all branches answer.
+            self.compliance = dual.creep.instantaneous;
+            self.own = 0.0;
+            for ((update, recalled), term) in
+                self.updates.iter_mut().zip(&mut self.recalled).zip(&relaxation.terms)
+            {
+                *update = Update { keep: 1.0, old: 0.0, new: 0.0 };
+                *recalled = self.compliance * term.modulus;
+            }
+            return;
+        }
+        let speed = match course {
+            Course::Time => 1.0,
+            Course::Load(change) => (shape.slope(dual, x) * x / change).max(SLOWEST),
+        };
+        let dashpot = relaxation.viscosity * speed / x;
+        let (mut modulus, mut own) = (relaxation.equilibrium + dashpot, dashpot);
+        for (i, term) in relaxation.terms.iter().enumerate() {
+            let y = x / term.relaxation_time;
+            let (keep, fade) = (libm::exp(-y), moment(0, y));
+            let Share { taken, left } = match course {
+                Course::Time => Share { taken: moment(1, y), left: fade / y },
+                Course::Load(change) => shape.share(dual, i, x, change),
+            };
+            let update = Update { keep, old: (fade - taken).max(0.0), new: taken };
+            modulus += term.modulus * left;
+            own += term.modulus * update.old;
+            self.updates[i] = update;
+            self.recalled[i] = term.modulus * keep;
+        }
+        self.compliance = 1.0 / modulus;
+        self.recalled.iter_mut().for_each(|weight| *weight *= self.compliance);
+        self.own = self.compliance * own;
+    }
+
+    /// A step that is set recovers without pressure: u' = `recalled` (q, u); the states stay as they are until there is pressure
+    /// again.
+    pub(super) fn set_apart(&mut self, recalled: &[f64]) {
+        if let Some((own, weights)) = recalled.split_last() {
+            self.recalled.copy_from_slice(weights);
+            self.own = *own;
+        }
+    }
+
+    /// g: what u_(n+1) is without pressure.
+    pub(super) fn recalled(&self) -> Combination<'_> {
+        Combination { weights: &self.recalled, own: self.own }
+    }
+
+    pub(super) fn ending(&self) -> Ending<'_> {
+        Ending { compliance: self.compliance, recalled: self.recalled(), updates: &self.updates }
+    }
+
+    /// u_(n+1) of a cell under `unit` = U_(n+1), and its states after the step.
+    pub(super) fn end(&self, unit: f64, u: f64, q: &mut [f64]) -> f64 {
+        let sum: f64 = self.recalled.iter().zip(&*q).map(|(weight, q)| weight * q).sum();
+        let fresh = self.compliance * unit + sum + self.own * u;
+        for (q, update) in q.iter_mut().zip(&self.updates) {
+            *q = update.keep * *q + update.old * u + update.new * fresh;
+        }
+        fresh
+    }
+
+    /// Its numbers, for a checkpoint.
+    pub(super) fn save(&self) -> Vec<f64> {
+        let change = if let Course::Load(change) = self.course { change } else { f64::INFINITY };
+        let mut numbers = vec![self.length, change, self.compliance, self.own];
+        numbers.extend(&self.recalled);
+        numbers.extend(self.updates.iter().flat_map(|u| [u.keep, u.old, u.new]));
+        numbers
+    }
+
+    /// How many numbers [`save`](Self::save) gives.
+    pub(super) fn saved(&self) -> usize {
+        4 + 4 * self.updates.len()
+    }
+
+    /// Takes back what [`save`](Self::save) gave; false where it does not fit.
+    pub(super) fn load(&mut self, numbers: &[f64]) -> bool {
+        let [length, change, compliance, own, rest @ ..] = numbers else { return false };
+        if rest.len() != 4 * self.updates.len() {
+            return false;
+        }
+        (self.length, self.compliance, self.own) = (*length, *compliance, *own);
+        self.course = if change.is_infinite() { Course::Time } else { Course::Load(*change) };
+        let (recalled, updates) = rest.split_at(self.recalled.len());
+        self.recalled.copy_from_slice(recalled);
+        for (update, n) in self.updates.iter_mut().zip(updates.chunks(3)) {
+            *update = Update { keep: n[0], old: n[1], new: n[2] };
+        }
+        true
+    }
+}
+
+/// What a state takes of the change of u over a step, γ, and what it leaves, 1 - γ, each to its own digits.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Share {
+    pub(super) taken: f64,
+    pub(super) left: f64,
+}

@@ -70,6 +70,9 @@ fn create(file: &H5File, contents: &Contents<'_>, variable: &Variable) -> Result
 }
 
 fn write_data(contents: &Contents<'_>, data: &Data, data_set: &H5Dataset) -> Result<(), WriteError> {
+    if data_set.total_elements() == 0 {
+        return Ok(()); // no instant is exported: a data set without numbers takes no write
+    }
     match data {
         Data::Reals(reals) => data_set.write_raw(reals)?,
         Data::Counts(counts) => data_set.write_raw(counts)?,

@@ -1,9 +1,9 @@
 //! Stiff bodies under a held approach, steps of any length: what the solution does exactly, and how fast the rest converges.
 
-use asperity::load::{Course, Stage};
 use asperity::march::{March, Row, Simulation};
 use asperity::material::{Creep, ReducedTime, Relaxation, Shift, ThermalCreep};
 use asperity::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
+use asperity::load::{Course, Stage};
 use asperity::{Boundary, Control, Grid, History, Loading, Programme, SolverOptions, TimeGrid};
 
 /// One relaxing term of 1 s whose modulus falls by `ratio`, to 1.
@@ -69,8 +69,9 @@ fn off(rows: &[Row], relaxation: &Relaxation, clock: impl Fn(f64) -> f64) -> f64
 
 #[test]
 fn a_held_approach_relaxes_as_the_modulus_does_in_steps_of_any_length() {
-    let random: Vec<f64> =
-        (1..20).map(|n| 1e-3 * 10f64.powf(0.31 * f64::from(n) + 0.15 * f64::from(n * n % 7))).collect();
+    // Steps of all lengths, without an order.
+    let lengths = (1..20).map(|n| 10f64.powf(f64::from(n * n * n % 11) - 6.0));
+    let random: Vec<f64> = lengths.scan(0.0, |t, dt| { *t += dt; Some(*t) }).collect();
     for relaxation in [one(10.0), one(100.0), one(1000.0), rubber()] {
         for times in [
             TimeGrid::Uniform { end: 3.0, steps: 30 },
@@ -133,7 +134,8 @@ fn a_held_approach_follows_the_clocks_of_bodies_that_change_their_temperature() 
         .to_relaxation()
         .unwrap();
     let thermal = vec![body(&first, wlf, 320.0), body(&second, arrhenius, 290.0)];
-    let rows = rows(Simulation { thermal, times: TimeGrid::Uniform { end: 100.0, steps: 10 }, ..held });
+    let rows =
+        rows(Simulation { thermal, times: TimeGrid::Uniform { end: 100.0, steps: 10 }, ..held });
     let error = off(&rows, &pair, |t| t);
     assert!(error < 1e-7, "{error:e}");
 }
@@ -142,22 +144,16 @@ fn a_held_approach_follows_the_clocks_of_bodies_that_change_their_temperature() 
 fn two_bodies_whose_clocks_change_against_each_other_relax_at_a_held_approach() {
     // Of two such bodies no closed form is known; in many short steps the rates hardly change within one.
     let wlf = Shift::Wlf { c1: 8.86, c2: 101.6, reference: 300.0 };
-    let clock = |to| ReducedTime::new(wlf.clone(), &[(0.0, 300.0), (10.0, to), (20.0, 300.0)]).unwrap();
+    let clock = |to| ReducedTime::new(wlf.clone(), &[(0.0, 300.0), (1.0, to), (2.0, 300.0)]).unwrap();
     let thermal = vec![
-        ThermalCreep { creep: one(100.0).to_creep().unwrap(), clock: clock(320.0) },
-        ThermalCreep { creep: one(20.0).to_creep().unwrap(), clock: clock(290.0) },
+        ThermalCreep { creep: one(100.0).to_creep().unwrap(), clock: clock(310.0) },
+        ThermalCreep { creep: one(20.0).to_creep().unwrap(), clock: clock(295.0) },
     ];
     let at = |steps| {
-        let times = TimeGrid::Uniform { end: 20.0, steps };
+        let times = TimeGrid::Uniform { end: 2.0, steps };
         let loading = approach(History::Step { value: 0.03 });
-        let rows = rows(Simulation {
-            creep: Creep::default(),
-            thermal: thermal.clone(),
-            times,
-            loading,
-            ..rough(12)
-        });
-        assert!(rows.windows(2).all(|pair| pair[1].load < pair[0].load));
+        let rows = rows(Simulation { creep: Creep::default(), thermal: thermal.clone(), times, loading, ..rough(16) });
+        assert!(rows.windows(2).all(|pair| pair[1].load < pair[0].load && pair[1].contact_area == pair[0].contact_area));
         rows[steps / 2].load / rows[0].load
     };
     let [coarse, middle, fine] = [10, 20, 160].map(at);
@@ -202,10 +198,7 @@ fn a_load_then_a_held_approach_give_the_load_of_the_elastic_contact_seen_through
     for (relaxation, exact) in oracle {
         let creep = relaxation.to_creep().unwrap();
         let programme = Programme::new(vec![
-            Stage {
-                duration: Some(20.0),
-                ..Stage::new(Control::Load, History::Step { value: 0.03 * creep.value(0.0).recip() / 100.0 })
-            },
+            Stage { duration: Some(20.0), ..Stage::new(Control::Load, History::Step { value: 0.03 * creep.value(0.0).recip() / 100.0 }) },
             Stage { duration: Some(980.0), ..Stage::new(Control::Approach, Course::Hold) },
             Stage::new(Control::Load, Course::Hold),
         ]);
@@ -221,42 +214,40 @@ fn a_load_then_a_held_approach_give_the_load_of_the_elastic_contact_seen_through
             for (t, ratio) in exact {
                 let row = rows.iter().find(|row| row.time == t).unwrap();
                 // Nine digits are known of W0; the solver's tolerance.
-                assert!(
-                    (row.load / rows[0].load / ratio - 1.0).abs() < 1e-6,
-                    "{t}: {}",
-                    row.load / rows[0].load
-                );
+                assert!((row.load / rows[0].load / ratio - 1.0).abs() < 1e-6, "{t}: {}", row.load / rows[0].load);
             }
-            // Back under load the contact grows again.
+            // Back under load the contact grows again, or stands where all has relaxed.
             let [before, last] = [rows[rows.len() - 2], rows[rows.len() - 1]];
             assert!((last.load / before.load - 1.0).abs() < 1e-9);
-            assert!(last.approach >= before.approach);
+            assert!(last.approach >= before.approach * (1.0 - 1e-7));
         }
     }
 }
 
-/// Largest error of the load, over the load and a tenth of the relaxed one, on the rows of the coarsest grid.
-fn orders(relaxation: &Relaxation, points: &[(f64, f64)], steps: [usize; 3], fine: usize) -> [f64; 3] {
+/// Root mean square error of the load from `start` on, over the load and a tenth of the relaxed one.
+fn orders(relaxation: &Relaxation, points: &[(f64, f64)], start: f64, steps: [usize; 3], fine: usize) -> [f64; 3] {
     let end = points[points.len() - 1].0;
     let run = |steps: usize| {
         rows(Simulation {
             creep: relaxation.to_creep().unwrap(),
             loading: approach(History::Table { points: points.to_vec() }),
             times: TimeGrid::Uniform { end, steps },
-            ..sphere(20)
+            ..sphere(32)
         })
     };
     let best = run(fine);
     let relaxed = 4.0 / 3.0 * 0.04f64.powf(1.5) * relaxation.equilibrium;
     steps.map(|steps| {
         let found = run(steps);
-        let same = |row: &Row| *best.iter().find(|b| (b.time - row.time).abs() < 1e-9 * end).unwrap();
         let error = |row: &Row| {
-            let exact = same(row).load;
+            let exact = best.iter().find(|b| (b.time - row.time).abs() < 1e-9 * end).unwrap().load;
             (row.load - exact).abs() / (exact + 0.1 * relaxed)
         };
-        // After the first step of each ramp, where contact begins in the middle of a step.
-        found.iter().filter(|row| row.time > end / steps as f64 * 1.5).map(error).fold(0.0, f64::max)
+        // On the rows of the coarsest steps.
+        let every = end / (fine / (fine / steps).max(1)).min(16) as f64;
+        let common = |row: &&Row| row.time >= start && (row.time / every).fract().min(1.0 - (row.time / every).fract()) < 1e-6;
+        let errors: Vec<f64> = found.iter().filter(common).map(error).collect();
+        (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt()
     })
 }
 
@@ -264,7 +255,7 @@ fn orders(relaxation: &Relaxation, points: &[(f64, f64)], steps: [usize; 3], fin
 fn a_ramp_and_hold_are_of_second_order_however_stiff_the_body() {
     for relaxation in [one(100.0), one(1000.0)] {
         let ramp = [(0.0, 0.0), (5.0, 0.04), (8.0, 0.04)];
-        let errors = orders(&relaxation, &ramp, [16, 32, 64], 512);
+        let errors = orders(&relaxation, &ramp, 5.0, [16, 32, 64], 512);
         println!("{errors:?}");
         for pair in errors.windows(2) {
             assert!((pair[0] / pair[1]).log2() > 1.6, "{errors:?}");
@@ -288,30 +279,9 @@ fn pressed_held_retracted_and_touched_again_nothing_is_lost_that_is_there() {
     let springs: [(f64, &[(f64, f64)]); 2] = [
         (
             100.0,
-            &[
-                (10.0, 0.0568),
-                (20.0, 0.08783),
-                (25.0, 0.011187),
-                (80.0, 0.0106667),
-                (90.0, 0.0),
-                (135.0, 0.04678),
-                (140.0, 0.08502),
-                (180.0, 0.0106667),
-            ],
+            &[(10.0, 0.0568), (20.0, 0.08783), (25.0, 0.011187), (80.0, 0.0106667), (90.0, 0.0), (135.0, 0.04678), (140.0, 0.08502), (180.0, 0.0106667)],
         ),
-        (
-            1000.0,
-            &[
-                (10.0, 0.5389),
-                (20.0, 0.7893),
-                (25.0, 0.015913),
-                (80.0, 0.0106667),
-                (90.0, 0.0),
-                (130.0, 0.0),
-                (140.0, 0.4142),
-                (180.0, 0.0106667),
-            ],
-        ),
+        (1000.0, &[(10.0, 0.5389), (20.0, 0.7893), (25.0, 0.015913), (80.0, 0.0106667), (90.0, 0.0), (130.0, 0.0), (140.0, 0.4142), (180.0, 0.0106667)]),
     ];
     for (ratio, loads) in springs {
         for times in [
@@ -376,6 +346,9 @@ fn adaptive_steps_hold_their_tolerance_in_load_and_largest_pressure() {
                 for row in &found {
                     let same = |other: &&Row| (other.time - row.time).abs() <= 1e-12 * row.time;
                     let exact = fine.iter().rfind(same).unwrap();
+                    if std::env::var("SHOW").is_ok() {
+                        println!("{} {} {} load {} peak {} te {:?}", row.time, row.contact_area / 0.25 * 576.0, row.load, (row.load / exact.load - 1.0), row.max_pressure / exact.max_pressure - 1.0, row.time_error);
+                    }
                     worst[0] = worst[0].max((row.load - exact.load).abs() / load);
                     // The pressure of each row over its own: a held load lets it fall a hundredfold.
                     let scale = if control == Control::Load { exact.max_pressure } else { peak };

@@ -43,6 +43,7 @@ mod thermal;
 pub use body::{Body, Lateral, pair_creep, pair_hardness};
 pub use creep::{Creep, CreepTerm};
 pub(crate) use dual::Dual;
+pub(crate) use quadrature::integrate;
 pub use fit::{Fit, FitOptions, LongTime, Misfit, fit_creep, fit_dma, fit_relaxation};
 pub use fractional::{Approximation, Fractional};
 pub use master::{Abscissa, Isotherm, MasterCurve, estimate_shift, master_curve};

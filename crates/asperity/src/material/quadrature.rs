@@ -13,7 +13,7 @@ const HALF_RULE: [(f64, f64); 8] = [
 ];
 
 /// Integral of f from a to b.
-pub(super) fn integrate(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
+pub(crate) fn integrate(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
     let (centre, half) = (0.5 * (a + b), 0.5 * (b - a));
     let pair = |(x, weight): &(f64, f64)| weight * (f(centre - half * x) + f(centre + half * x));
     half * HALF_RULE.iter().map(pair).sum::<f64>()

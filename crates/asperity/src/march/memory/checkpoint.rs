@@ -11,7 +11,8 @@ impl Memory {
             UnderWay::Contact => 1.0,
             UnderWay::Apart => 2.0,
         };
-        let mut numbers = vec![under_way, self.end.load, self.end.driver];
+        let piece = self.piece.unwrap_or(f64::INFINITY);
+        let mut numbers = vec![under_way, piece, self.end.load, self.end.driver];
         numbers.extend(&self.end.states);
         for clocks in [&self.rates, &self.gone, &self.elapsed] {
             numbers.extend(clocks);
@@ -26,10 +27,10 @@ impl Memory {
     /// Takes back what [`Memory::save`] gave; false where it does not fit.
     pub(in crate::march) fn restore(&mut self, numbers: &[f64], fields: &[Vec<f64>]) -> bool {
         let (states, clocks) = (self.dual.states(), self.rates.len());
-        if numbers.len() != 3 + states + 3 * clocks + self.rules.saved() {
+        if numbers.len() != 4 + states + 3 * clocks + self.rules.saved() {
             return false;
         }
-        let (place, rest) = numbers.split_at(3);
+        let (place, rest) = numbers.split_at(4);
         let (total, rest) = rest.split_at(states);
         let (rates, rest) = rest.split_at(clocks);
         let (gone, rest) = rest.split_at(clocks);
@@ -39,7 +40,8 @@ impl Memory {
             1.0 => UnderWay::Contact,
             _ => UnderWay::Apart,
         };
-        (self.end.load, self.end.driver) = (place[1], place[2]);
+        self.piece = Some(place[1]).filter(|lasted| lasted.is_finite());
+        (self.end.load, self.end.driver) = (place[2], place[3]);
         self.end.states.copy_from_slice(total);
         self.gone.copy_from_slice(gone);
         self.elapsed.copy_from_slice(elapsed);

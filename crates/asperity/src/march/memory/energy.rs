@@ -20,10 +20,7 @@
 use super::shape::moment;
 use super::{Course, Ends, Memory, UnderWay};
 use crate::field::{strands, sweep};
-use crate::material::Dual;
-
-/// The course of u in a step is followed in parts that grow by this factor.
-const GROWTH: f64 = 1.1;
+use crate::material::{Dual, integrate};
 
 /// Products of the states q_i and u (the last) with each other, at the end of a step.
 #[derive(Clone, Debug)]
@@ -64,8 +61,7 @@ impl Memory {
     /// What the step under way, which has just been solved, did; brings `products` to its end.
     pub(in crate::march) fn exchange(&self, products: &mut Products, ends: Ends<'_>) -> Exchange {
         let (p, unit) = ends.now;
-        let energy =
-            sweep((p, unit), &|(p, unit): (&[f64], &[f64])| strands(p.len(), |k| [p[k] * unit[k]]))[0];
+        let energy = sweep((p, unit), &|(p, unit): (&[f64], &[f64])| strands(p.len(), |k| [p[k] * unit[k]]))[0];
         let from_nothing = self.total.load == 0.0;
         if self.is_elastic() {
             let own = &mut products.list[0][0];
@@ -104,21 +100,14 @@ impl Memory {
         let start = &products.list[count];
         let change: Vec<f64> = of_end.iter().zip(start).map(|(end, start)| end - start).collect();
         let square = itself - 2.0 * of_end[count] + start[count];
-        let followed = self.follow();
+        let (followed, speed) = self.follow();
         let relaxation = &self.dual.relaxation;
-        let jump = self.rules.length <= 0.0;
-        let speed = match jump {
-            true => 0.0,
-            false => self.course().iter().map(|[s, r]| r * r / s).sum::<f64>() * relaxation.viscosity,
-        };
+        let dashpot = relaxation.viscosity * speed;
         let of = |own: f64, square: f64, with: &dyn Fn(usize) -> f64| {
-            let branches = relaxation
-                .terms
-                .iter()
-                .zip(&followed)
-                .enumerate()
-                .map(|(i, (e, f))| e.modulus * ((own - with(i)) * f.fading + square * f.growing));
-            relaxation.equilibrium * (own + 0.5 * square) + branches.sum::<f64>() + speed * square
+            let branches = relaxation.terms.iter().zip(&followed).enumerate().map(|(i, (e, f))| {
+                e.modulus * ((own - with(i)) * f.fading + square * f.growing)
+            });
+            relaxation.equilibrium * (own + 0.5 * square) + branches.sum::<f64>() + dashpot * square
         };
         let mut work = of(change[count], square, &|i| change[i]);
         let driven = self.end.driver - self.total.driver;
@@ -130,7 +119,7 @@ impl Memory {
         products.list.push(last);
         products.carry(&self.rows());
         let stored = products.stored();
-        if jump {
+        if self.rules.length <= 0.0 {
             work = stored - before;
         }
         Exchange { stored, work, heat: (work - (stored - before)).max(0.0), mean_load, from_nothing }
@@ -147,44 +136,38 @@ impl Memory {
         rows
     }
 
-    /// The course of the step in parts: how long each is, and how far u goes in it (of 1 in all).
-    fn course(&self) -> Vec<[f64; 2]> {
-        let x = self.rules.length;
-        let Course::Load(change) = self.rules.course else { return vec![[x, 1.0]] };
-        let times = self.dual.creep.terms.iter().map(|term| term.retardation_time);
-        let mut s = (1e-3 * times.fold(x, f64::min)).max(1e-12 * x);
-        let (mut parts, mut last, mut share) = (vec![], 0.0, 0.0);
-        loop {
-            let end = if GROWTH * s < x { s } else { x };
-            let r = if end < x { self.shape.change(&self.dual, end) / change } else { 1.0 };
-            parts.push([end - last, r - share]);
-            if end >= x {
-                return parts;
-            }
-            (last, share, s) = (end, r, GROWTH * s);
+    /// Integrals over the course of the step: of each branch, and ∫ r'² ds.
+    fn follow(&self) -> (Vec<Followed>, f64) {
+        let (x, terms) = (self.rules.length, &self.dual.relaxation.terms);
+        if x <= 0.0 {
+            return (vec![Followed { fading: 1.0, growing: 0.5 }; terms.len()], 0.0);
         }
-    }
-
-    fn follow(&self) -> Vec<Followed> {
-        let parts = self.course();
-        let of = |tau: f64| {
-            let mut sums = Followed { fading: 0.0, growing: 0.0 };
-            let (mut left, mut lag) = (1.0, 0.0);
-            for [s, r] in &parts {
-                let y = s / tau;
-                let mean = moment(0, y) / y;
-                sums.fading += left * mean * r;
-                sums.growing += r * (lag * mean + r * moment(1, y) / y);
-                lag = lag * libm::exp(-y) + r * mean;
-                left *= libm::exp(-y);
-            }
-            sums
+        let Course::Load(change) = self.rules.course else {
+            let of = |y: f64| Followed { fading: moment(0, y) / y, growing: moment(1, y) / y };
+            return (terms.iter().map(|term| of(x / term.relaxation_time)).collect(), 1.0 / x);
         };
-        if self.rules.length <= 0.0 {
-            let still = Followed { fading: 1.0, growing: 0.5 };
-            return vec![still; self.dual.states()];
+        // Panels of a decade down to the shortest time that matters.
+        let retardation = self.dual.creep.terms.iter().map(|term| term.retardation_time);
+        let shortest = retardation.chain(terms.iter().map(|term| term.relaxation_time)).fold(x, f64::min);
+        let mut edges = vec![x];
+        while edges.last().is_some_and(|edge| *edge > 0.1 * shortest && *edge > 1e-15 * x) {
+            edges.extend(edges.last().map(|edge| 0.1 * edge));
         }
-        self.dual.relaxation.terms.iter().map(|term| of(term.relaxation_time)).collect()
+        edges.push(0.0);
+        let along = |f: &dyn Fn(f64) -> f64| -> f64 {
+            edges.windows(2).map(|edge| integrate(edge[1], edge[0], f)).sum()
+        };
+        let speed = |s: f64| self.shape.slope(&self.dual, s) / change;
+        let of = |i: usize| Followed {
+            fading: along(&|s| libm::exp(-s / terms[i].relaxation_time) * speed(s)),
+            growing: along(&|s| {
+                let gone = self.shape.change(&self.dual, s);
+                self.shape.share(&self.dual, i, s, gone).left * gone / change * speed(s)
+            }),
+        };
+        let viscous = self.dual.relaxation.viscosity > 0.0;
+        let square = if viscous { along(&|s| speed(s) * speed(s)) } else { 0.0 };
+        ((0..terms.len()).map(of).collect(), square)
     }
 }
 

@@ -8,10 +8,13 @@
 //! error = Σ ε / max( Σ U', 0.1 Σ U_n, 0.1 E_inf Σ |u'| )
 //! ```
 //!
-//! with u\[z0, z1, z2\] the second divided difference and sums over the cells in contact at either end: an error of the
-//! stress over the stress, not of the displacement over the approach. The second and third bound keep it finite
+//! with b(y) taken (1 - exp(-(T + x)/τ_i))/(1 - exp(-y)) times: the errors of the steps before add up as long as the branch
+//! remembers them, and T is how long the smooth piece of the course has lasted. Here u\[z0, z1, z2\] is the second divided
+//! difference of three states, and the sums go over the cells in contact at either end: an error of the stress over
+//! the stress, not of the displacement over the approach. The second and third bound keep it finite
 //! where contact ends or begins.
 
+use super::shape::moment;
 use super::{Course, Ends, Memory, Reference};
 use crate::field::{strands, sweep};
 
@@ -91,10 +94,14 @@ impl Memory {
         }
     }
 
-    /// Σ E_i b(x/τ_i) + ζ/(2x).
+    /// Σ E_i b(x/τ_i) + ζ/(2x), with what is remembered of the steps before.
     fn defect(&self) -> f64 {
         let (x, relaxation) = (self.rules.length, &self.dual.relaxation);
-        let terms = relaxation.terms.iter().map(|e| e.modulus * chord_defect(x / e.relaxation_time));
+        let whole = x + self.piece.unwrap_or(0.0);
+        let terms = relaxation.terms.iter().map(|e| {
+            let y = x / e.relaxation_time;
+            e.modulus * chord_defect(y) * (moment(0, whole / e.relaxation_time) / moment(0, y))
+        });
         terms.sum::<f64>() + 0.5 * relaxation.viscosity / x
     }
 
@@ -107,6 +114,7 @@ impl Memory {
         after_jump: bool,
         rate: f64,
     ) -> f64 {
+        self.piece = None;
         if self.is_elastic() || !(rate > 0.0) {
             return longest;
         }

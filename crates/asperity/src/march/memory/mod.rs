@@ -47,6 +47,8 @@ pub(in crate::march) struct Memory {
     /// u of a third instant, where the error of steps is estimated.
     third: Vec<f64>,
     reference: Option<Reference>,
+    /// How long the smooth piece of the course has lasted at the start of the step under way; none of a piece that begins.
+    piece: Option<f64>,
     /// How far the clocks have gone without pressure since the states were those of the cells.
     gone: Vec<f64>,
     /// The load as a cell at the start of the step under way, and at its end.
@@ -137,6 +139,7 @@ impl Memory {
             displacement: zeros(if elastic { 0 } else { cells }),
             third: zeros(if elastic || !estimates { 0 } else { cells }),
             reference: None,
+            piece: None,
             end: total.clone(),
             total,
             under_way: UnderWay::Nothing,
@@ -179,6 +182,7 @@ impl Memory {
         gap: &mut [f64],
     ) -> Result<f64> {
         self.total.set(&self.end);
+        self.piece = Some(self.piece.map_or(0.0, |lasted| lasted + self.rules.length));
         let ends = self.under_way == UnderWay::Contact;
         self.reference = ends.then(|| Reference { length: -self.rules.length, course: self.rules.course });
         if self.under_way == UnderWay::Apart {

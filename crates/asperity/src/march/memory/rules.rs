@@ -159,3 +159,98 @@ pub(super) struct Share {
     pub(super) taken: f64,
     pub(super) left: f64,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::material::{Creep, Relaxation};
+
+    /// Deterministic numbers in \[0, 1) (splitmix64).
+    fn random(seed: u64) -> impl FnMut() -> f64 {
+        let mut state = seed;
+        move || {
+            state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+            let mut z = state;
+            z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+        }
+    }
+
+    /// A spectrum of one to eight terms over eight decades.
+    fn spectrum(random: &mut impl FnMut() -> f64) -> Relaxation {
+        let count = 1 + (8.0 * random()) as usize;
+        let terms: Vec<(f64, f64)> = (0..count)
+            .map(|_| (libm::pow(10.0, 3.0 * random()), libm::pow(10.0, 8.0 * random() - 4.0)))
+            .collect();
+        Relaxation::absolute(1.0, &terms).unwrap()
+    }
+
+    #[test]
+    fn a_held_approach_is_exact_and_recovery_monotone_for_any_spectrum_and_any_steps() {
+        for seed in 0..1000 {
+            let mut random = random(seed);
+            let relaxation = spectrum(&mut random);
+            let dual = Dual::of(relaxation.to_creep().unwrap()).unwrap();
+            let mut rules = Rules::new(dual.states());
+            let shape = Shape::new(dual.creep.terms.len());
+            let mut q = vec![0.0; dual.states()];
+            rules.set(&dual, 0.0, Course::Time, &shape);
+            let mut u = rules.end(dual.relaxation.instantaneous(), 0.0, &mut q);
+            let mut t = 0.0;
+            for _ in 0..12 {
+                let x = libm::pow(10.0, 10.0 * random() - 6.0);
+                t += x;
+                rules.set(&dual, x, Course::Time, &shape);
+                let held = 1.0;
+                let free = rules.clone().end(0.0, u, &mut q.clone());
+                let unit = (held - free) / rules.compliance;
+                // Roundings of the instantaneous modulus, which the sum began with.
+                let rounding = 1e-14 * relaxation.instantaneous();
+                assert!((unit - relaxation.value(t)).abs() < rounding, "{seed} {t}: {unit}");
+                u = rules.end(unit, u, &mut q);
+            }
+            // Set free, in equal steps: down to 0, never past it.
+            let x = libm::pow(10.0, 8.0 * random() - 4.0);
+            rules.set(&dual, x, Course::Time, &shape);
+            for _ in 0..12 {
+                let next = rules.end(0.0, u, &mut q);
+                assert!(next <= u && next > -1e-13, "{seed}: {u} {next}");
+                u = next;
+            }
+        }
+    }
+
+    #[test]
+    fn a_held_load_keeps_the_creep_of_its_driver_for_any_spectrum_and_any_steps() {
+        // L = W C(t): the load as a cell, through steps of eight decades.
+        for seed in 0..200 {
+            let mut random = random(seed);
+            let creep = spectrum(&mut random).to_creep().unwrap();
+            let creep = Creep { fluidity: if seed % 3 == 0 { 0.1 * creep.instantaneous } else { 0.0 }, ..creep };
+            let dual = Dual::of(creep.clone()).unwrap();
+            let mut rules = Rules::new(dual.states());
+            let mut shape = Shape::new(dual.creep.terms.len());
+            let (mut q, mut strains) = (vec![0.0; dual.states()], vec![0.0; dual.strains()]);
+            rules.set(&dual, 0.0, Course::Time, &shape);
+            let mut driver = rules.end(2.0, 0.0, &mut q);
+            let mut t = 0.0;
+            for _ in 0..20 {
+                let x = libm::pow(10.0, 8.0 * random() - 5.0);
+                t += x;
+                dual.to_strains(&q, driver, &mut strains);
+                shape.set(&dual, 2.0, 0.0, &strains);
+                let course = match shape.runs_one_way(&dual, driver, x) {
+                    true => Course::Load(shape.change(&dual, x)),
+                    false => Course::Time,
+                };
+                rules.set(&dual, x, course, &shape);
+                let next = rules.end(2.0, driver, &mut q);
+                assert!(next >= driver * (1.0 - 1e-9), "{seed}: {driver} {next}");
+                driver = next;
+                let exact = 2.0 * creep.value(t);
+                assert!((driver / exact - 1.0).abs() < 1e-8, "{seed} {t}: {driver} {exact}");
+            }
+        }
+    }
+}

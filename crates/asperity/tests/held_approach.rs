@@ -1,9 +1,9 @@
 //! Stiff bodies under a held approach, steps of any length: what the solution does exactly, and how fast the rest converges.
 
+use asperity::load::{Course, Stage};
 use asperity::march::{March, Row, Simulation};
 use asperity::material::{Creep, ReducedTime, Relaxation, Shift, ThermalCreep};
 use asperity::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
-use asperity::load::{Course, Stage};
 use asperity::{Boundary, Control, Grid, History, Loading, Programme, SolverOptions, TimeGrid};
 
 /// One relaxing term of 1 s whose modulus falls by `ratio`, to 1.
@@ -71,7 +71,12 @@ fn off(rows: &[Row], relaxation: &Relaxation, clock: impl Fn(f64) -> f64) -> f64
 fn a_held_approach_relaxes_as_the_modulus_does_in_steps_of_any_length() {
     // Steps of all lengths, without an order.
     let lengths = (1..20).map(|n| 10f64.powf(f64::from(n * n * n % 11) - 6.0));
-    let random: Vec<f64> = lengths.scan(0.0, |t, dt| { *t += dt; Some(*t) }).collect();
+    let random: Vec<f64> = lengths
+        .scan(0.0, |t, dt| {
+            *t += dt;
+            Some(*t)
+        })
+        .collect();
     for relaxation in [one(10.0), one(100.0), one(1000.0), rubber()] {
         for times in [
             TimeGrid::Uniform { end: 3.0, steps: 30 },
@@ -134,8 +139,7 @@ fn a_held_approach_follows_the_clocks_of_bodies_that_change_their_temperature() 
         .to_relaxation()
         .unwrap();
     let thermal = vec![body(&first, wlf, 320.0), body(&second, arrhenius, 290.0)];
-    let rows =
-        rows(Simulation { thermal, times: TimeGrid::Uniform { end: 100.0, steps: 10 }, ..held });
+    let rows = rows(Simulation { thermal, times: TimeGrid::Uniform { end: 100.0, steps: 10 }, ..held });
     let error = off(&rows, &pair, |t| t);
     assert!(error < 1e-7, "{error:e}");
 }
@@ -152,8 +156,17 @@ fn two_bodies_whose_clocks_change_against_each_other_relax_at_a_held_approach() 
     let at = |steps| {
         let times = TimeGrid::Uniform { end: 2.0, steps };
         let loading = approach(History::Step { value: 0.03 });
-        let rows = rows(Simulation { creep: Creep::default(), thermal: thermal.clone(), times, loading, ..rough(16) });
-        assert!(rows.windows(2).all(|pair| pair[1].load < pair[0].load && pair[1].contact_area == pair[0].contact_area));
+        let rows = rows(Simulation {
+            creep: Creep::default(),
+            thermal: thermal.clone(),
+            times,
+            loading,
+            ..rough(16)
+        });
+        assert!(
+            rows.windows(2)
+                .all(|pair| pair[1].load < pair[0].load && pair[1].contact_area == pair[0].contact_area)
+        );
         rows[steps / 2].load / rows[0].load
     };
     let [coarse, middle, fine] = [10, 20, 160].map(at);
@@ -198,7 +211,10 @@ fn a_load_then_a_held_approach_give_the_load_of_the_elastic_contact_seen_through
     for (relaxation, exact) in oracle {
         let creep = relaxation.to_creep().unwrap();
         let programme = Programme::new(vec![
-            Stage { duration: Some(20.0), ..Stage::new(Control::Load, History::Step { value: 0.03 * creep.value(0.0).recip() / 100.0 }) },
+            Stage {
+                duration: Some(20.0),
+                ..Stage::new(Control::Load, History::Step { value: 0.03 * creep.value(0.0).recip() / 100.0 })
+            },
             Stage { duration: Some(980.0), ..Stage::new(Control::Approach, Course::Hold) },
             Stage::new(Control::Load, Course::Hold),
         ]);
@@ -214,7 +230,11 @@ fn a_load_then_a_held_approach_give_the_load_of_the_elastic_contact_seen_through
             for (t, ratio) in exact {
                 let row = rows.iter().find(|row| row.time == t).unwrap();
                 // Nine digits are known of W0; the solver's tolerance.
-                assert!((row.load / rows[0].load / ratio - 1.0).abs() < 1e-6, "{t}: {}", row.load / rows[0].load);
+                assert!(
+                    (row.load / rows[0].load / ratio - 1.0).abs() < 1e-6,
+                    "{t}: {}",
+                    row.load / rows[0].load
+                );
             }
             // Back under load the contact grows again, or stands where all has relaxed.
             let [before, last] = [rows[rows.len() - 2], rows[rows.len() - 1]];
@@ -225,7 +245,13 @@ fn a_load_then_a_held_approach_give_the_load_of_the_elastic_contact_seen_through
 }
 
 /// Root mean square error of the load from `start` on, over the load and a tenth of the relaxed one.
-fn orders(relaxation: &Relaxation, points: &[(f64, f64)], start: f64, steps: [usize; 3], fine: usize) -> [f64; 3] {
+fn orders(
+    relaxation: &Relaxation,
+    points: &[(f64, f64)],
+    start: f64,
+    steps: [usize; 3],
+    fine: usize,
+) -> [f64; 3] {
     let end = points[points.len() - 1].0;
     let run = |steps: usize| {
         rows(Simulation {
@@ -245,7 +271,9 @@ fn orders(relaxation: &Relaxation, points: &[(f64, f64)], start: f64, steps: [us
         };
         // On the rows of the coarsest steps.
         let every = end / (fine / (fine / steps).max(1)).min(16) as f64;
-        let common = |row: &&Row| row.time >= start && (row.time / every).fract().min(1.0 - (row.time / every).fract()) < 1e-6;
+        let common = |row: &&Row| {
+            row.time >= start && (row.time / every).fract().min(1.0 - (row.time / every).fract()) < 1e-6
+        };
         let errors: Vec<f64> = found.iter().filter(common).map(error).collect();
         (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt()
     })
@@ -279,9 +307,30 @@ fn pressed_held_retracted_and_touched_again_nothing_is_lost_that_is_there() {
     let springs: [(f64, &[(f64, f64)]); 2] = [
         (
             100.0,
-            &[(10.0, 0.0568), (20.0, 0.08783), (25.0, 0.011187), (80.0, 0.0106667), (90.0, 0.0), (135.0, 0.04678), (140.0, 0.08502), (180.0, 0.0106667)],
+            &[
+                (10.0, 0.0568),
+                (20.0, 0.08783),
+                (25.0, 0.011187),
+                (80.0, 0.0106667),
+                (90.0, 0.0),
+                (135.0, 0.04678),
+                (140.0, 0.08502),
+                (180.0, 0.0106667),
+            ],
         ),
-        (1000.0, &[(10.0, 0.5389), (20.0, 0.7893), (25.0, 0.015913), (80.0, 0.0106667), (90.0, 0.0), (130.0, 0.0), (140.0, 0.4142), (180.0, 0.0106667)]),
+        (
+            1000.0,
+            &[
+                (10.0, 0.5389),
+                (20.0, 0.7893),
+                (25.0, 0.015913),
+                (80.0, 0.0106667),
+                (90.0, 0.0),
+                (130.0, 0.0),
+                (140.0, 0.4142),
+                (180.0, 0.0106667),
+            ],
+        ),
     ];
     for (ratio, loads) in springs {
         for times in [
@@ -347,7 +396,15 @@ fn adaptive_steps_hold_their_tolerance_in_load_and_largest_pressure() {
                     let same = |other: &&Row| (other.time - row.time).abs() <= 1e-12 * row.time;
                     let exact = fine.iter().rfind(same).unwrap();
                     if std::env::var("SHOW").is_ok() {
-                        println!("{} {} {} load {} peak {} te {:?}", row.time, row.contact_area / 0.25 * 576.0, row.load, (row.load / exact.load - 1.0), row.max_pressure / exact.max_pressure - 1.0, row.time_error);
+                        println!(
+                            "{} {} {} load {} peak {} te {:?}",
+                            row.time,
+                            row.contact_area / 0.25 * 576.0,
+                            row.load,
+                            (row.load / exact.load - 1.0),
+                            row.max_pressure / exact.max_pressure - 1.0,
+                            row.time_error
+                        );
                     }
                     worst[0] = worst[0].max((row.load - exact.load).abs() / load);
                     // The pressure of each row over its own: a held load lets it fall a hundredfold.

@@ -61,7 +61,8 @@ impl Memory {
     /// What the step under way, which has just been solved, did; brings `products` to its end.
     pub(in crate::march) fn exchange(&self, products: &mut Products, ends: Ends<'_>) -> Exchange {
         let (p, unit) = ends.now;
-        let energy = sweep((p, unit), &|(p, unit): (&[f64], &[f64])| strands(p.len(), |k| [p[k] * unit[k]]))[0];
+        let energy =
+            sweep((p, unit), &|(p, unit): (&[f64], &[f64])| strands(p.len(), |k| [p[k] * unit[k]]))[0];
         let from_nothing = self.total.load == 0.0;
         if self.is_elastic() {
             let own = &mut products.list[0][0];
@@ -104,9 +105,12 @@ impl Memory {
         let relaxation = &self.dual.relaxation;
         let dashpot = relaxation.viscosity * speed;
         let of = |own: f64, square: f64, with: &dyn Fn(usize) -> f64| {
-            let branches = relaxation.terms.iter().zip(&followed).enumerate().map(|(i, (e, f))| {
-                e.modulus * ((own - with(i)) * f.fading + square * f.growing)
-            });
+            let branches = relaxation
+                .terms
+                .iter()
+                .zip(&followed)
+                .enumerate()
+                .map(|(i, (e, f))| e.modulus * ((own - with(i)) * f.fading + square * f.growing));
             relaxation.equilibrium * (own + 0.5 * square) + branches.sum::<f64>() + dashpot * square
         };
         let mut work = of(change[count], square, &|i| change[i]);

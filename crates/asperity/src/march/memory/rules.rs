@@ -227,7 +227,8 @@ mod tests {
         for seed in 0..200 {
             let mut random = random(seed);
             let creep = spectrum(&mut random).to_creep().unwrap();
-            let creep = Creep { fluidity: if seed % 3 == 0 { 0.1 * creep.instantaneous } else { 0.0 }, ..creep };
+            let creep =
+                Creep { fluidity: if seed % 3 == 0 { 0.1 * creep.instantaneous } else { 0.0 }, ..creep };
             let dual = Dual::of(creep.clone()).unwrap();
             let mut rules = Rules::new(dual.states());
             let mut shape = Shape::new(dual.creep.terms.len());

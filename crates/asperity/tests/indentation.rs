@@ -297,12 +297,12 @@ fn intervals_hold_the_truth_where_the_record_hardly_determines_it() {
     }
 }
 
-/// 240 records: of each 30 to 60 intervals of 95 %, 90 % at least hold the truth.
+/// 480 records: of each 60 to 110 intervals of 95 %, 90 % at least hold the truth.
 #[test]
-#[ignore = "a minute or two: 240 fits"]
+#[ignore = "some minutes: 480 fits"]
 fn intervals_hold_the_truth_in_eight_kinds_of_tests() {
     for kind in &KINDS {
-        let counts = study(kind, 30);
+        let counts = study(kind, 60);
         println!(
             "{:<44} E(0) {} | E(inf) {} | E_i {} | tau_i {} | terms: {} fewer, {} more | other channel {}",
             kind.name,

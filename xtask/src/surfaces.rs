@@ -1,4 +1,4 @@
-//! Times and the picture of the surfaces' documentation (docs/surfaces.md, docs/performance.md).
+//! Times and the picture of the surfaces' documentation (docs/surfaces.md, docs/dev/experiments.md).
 
 use std::process::Command;
 

@@ -36,7 +36,7 @@ pub fn elastic<'py>(
     let prescribed = match (load, approach) {
         (Some(load), None) => Prescribed::Load(load),
         (None, Some(approach)) => Prescribed::Approach(approach),
-        _ => return Err(CaseError::new_err("give load or approach, one of them")),
+        _ => return Err(CaseError::new_err("give load or approach, exactly one of them")),
     };
     for (what, value) in [("contact modulus", contact_modulus), ("hardness", hardness)] {
         if value.is_nan() || value <= 0.0 || (what == "contact modulus" && value.is_infinite()) {

@@ -17,8 +17,8 @@ create_exception!(
     asperity,
     ConvergenceError,
     PyRuntimeError,
-    "A solve stopped before it met its tolerance. Attributes: residual, tolerance, certificate, iterations, time \
-     (seconds, None outside of a march), and best: the state that was reached."
+    "A solve stopped before it reached its tolerance. Attributes: residual, tolerance, certificate, iterations, time \
+     (seconds, None outside of a march), and best: the best state that was found."
 );
 
 /// An error of the numerics.

@@ -121,7 +121,7 @@ pub fn fit_file<'py>(
     };
     let Some(found) = found else {
         return Err(CaseError::new_err(format!(
-            "{}: its header does not tell what was measured; give kind=\"relaxation\", \"creep\" or \"dma\"",
+            "{}: its header does not state what was measured; give kind=\"relaxation\", \"creep\" or \"dma\"",
             path.display()
         )));
     };

@@ -128,7 +128,7 @@ impl Body {
         let lateral = match (poisson, bulk_modulus) {
             (Some(nu), None) => Lateral::Poisson(nu),
             (None, Some(modulus)) => Lateral::BulkModulus(modulus),
-            _ => return Err(CaseError::new_err("give poisson or bulk_modulus, one of them")),
+            _ => return Err(CaseError::new_err("give poisson or bulk_modulus, exactly one of them")),
         };
         let (material, error) = build(model, measure, &numbers, &terms).map_err(|error| raised(py, error))?;
         let mut inner = material::Body { name, material, lateral, hardness };

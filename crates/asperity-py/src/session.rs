@@ -83,7 +83,7 @@ pub fn check(path: PathBuf, text: Option<String>, overrides: Vec<String>) -> PyR
 #[pyfunction]
 pub fn case_text(json: &str) -> PyResult<String> {
     let wrong = |error: &dyn std::fmt::Display| {
-        error::CaseError::new_err(format!("the case is no table of keys: {error}"))
+        error::CaseError::new_err(format!("the case is not a table of keys: {error}"))
     };
     let table: toml::Table = serde_json::from_str(json).map_err(|error| wrong(&error))?;
     toml::to_string(&table).map_err(|error| wrong(&error))

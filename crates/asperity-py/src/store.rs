@@ -206,7 +206,7 @@ pub fn save(
         setup,
     };
     if field_times.len() != field_steps.len() {
-        return Err(CaseError::new_err("there must be as many times as rows of the fields"));
+        return Err(CaseError::new_err("the number of times must equal the number of rows of the fields"));
     }
     let gap = initial_gap.as_array();
     detached(py, || {

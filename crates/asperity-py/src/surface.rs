@@ -44,7 +44,7 @@ pub fn self_affine<'py>(
     let roughness = match (rms_gradient, rms_height) {
         (Some(gradient), None) => Roughness::RmsGradient(gradient),
         (None, Some(height)) => Roughness::RmsHeight(height),
-        _ => return Err(CaseError::new_err("give rms_gradient or rms_height, one of them")),
+        _ => return Err(CaseError::new_err("give rms_gradient or rms_height, exactly one of them")),
     };
     let roll_off = roll_off.unwrap_or(longest);
     let grid = grid(py, cells, size)?;

@@ -110,7 +110,7 @@ pub fn without_python<T: Send>(
                     Err(RecvTimeoutError::Timeout) => {}
                     Err(RecvTimeoutError::Disconnected) => {
                         return Err(PyRuntimeError::new_err(
-                            "the work ended without an answer: a fault of asperity",
+                            "internal error: the computation ended without a result; please report it",
                         ));
                     }
                 }

@@ -144,7 +144,7 @@ def test_quantities_reach_xarray_and_studies(flattened, tmp_path):
             assert ours[name].dims == stored[name].dims and ours[name].attrs["units"] == stored[name].attrs["units"], name
     data = asp.study(CASE, {"load.history.peak": ["2 mN", "4 mN"]})
     assert np.array_equal(data.external_work.isel({"load.history.peak": 1}), flattened.external_work)
-    with pytest.raises(AttributeError, match="asked for"):
+    with pytest.raises(AttributeError, match="requested"):
         flattened.rms_gap
     with pytest.raises(AttributeError, match="histogram"):
         flattened.spot_histogram

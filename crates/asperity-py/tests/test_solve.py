@@ -105,7 +105,7 @@ def test_a_march_lends_each_row(sphere):
     for step in march:
         assert step.pressure.sum() > 0 and step.time == march.times[step.index]
         steps.append(step)
-    with pytest.raises(asp.CaseError, match="gone on"):
+    with pytest.raises(asp.CaseError, match="moved on"):
         steps[0].pressure
     with pytest.raises(AttributeError, match="approach"):
         steps[0].aproach

@@ -19,7 +19,7 @@ pub struct Grid {
     size: [f64; 2],
 }
 
-/// What surrounds the domain.
+/// Boundary condition of the domain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]

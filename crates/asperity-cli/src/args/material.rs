@@ -39,14 +39,14 @@ pub struct Show {
     /// Draw the functions: a path that ends in .svg, .png or .pdf
     #[arg(long, value_name = "PATH")]
     pub plot: Option<PathBuf>,
-    /// Replace a picture that is there already
+    /// Replace an existing picture
     #[arg(long)]
     pub force: bool,
 }
 
 #[derive(Debug, clap::Args)]
 pub struct Fit {
-    /// The text table: one point per line; separator and decimal mark are found, units stand in the header
+    /// A text table with one point per line; separator and decimal mark are detected, units come from the header
     pub data: PathBuf,
     /// What was measured: relaxation modulus over time, creep compliance over time, or storage and loss modulus over
     /// frequency (dma) [default: what the header says]
@@ -55,20 +55,20 @@ pub struct Fit {
     /// Whether the numbers are Young's or shear moduli (or compliances)
     #[arg(long, value_parser = choice::<Modulus>(), default_value = "young")]
     pub modulus: Modulus,
-    /// Where a quantity stands, by number from 1 or by header: --column frequency=1 --column storage="E' [MPa]";
+    /// Column of a quantity, by number from 1 or by header: --column frequency=1 --column storage="E' [MPa]";
     /// quantities: time, modulus, compliance, frequency, storage, loss, tan_delta, temperature
     #[arg(long, value_name = "QUANTITY=COLUMN")]
     pub column: Vec<String>,
-    /// Unit of a quantity, where the header names none: --unit storage=MPa
+    /// Unit of a quantity, if the header does not name it: --unit storage=MPa
     #[arg(long, value_name = "QUANTITY=UNIT")]
     pub unit: Vec<String>,
-    /// The part of the curve that is fitted: --window '0.1 s, 100 s', of a dma --window '0.1 Hz, 100 Hz'
+    /// Part of the curve to fit: --window '0.1 s, 100 s', for a dma --window '0.1 Hz, 100 Hz'
     #[arg(long, value_name = "A,B")]
     pub window: Option<String>,
-    /// Most terms [default: as many as the data call for]
+    /// Largest number of terms [default: as many as the data justify]
     #[arg(long, value_name = "N")]
     pub max_terms: Option<usize>,
-    /// Times per decade that the fit begins with [default: 3]
+    /// Times per decade at the start of the fit [default: 3]
     #[arg(long, value_name = "N")]
     pub per_decade: Option<f64>,
     /// Decades of times beyond the data [default: 1]
@@ -80,13 +80,13 @@ pub struct Fit {
     /// What comes after the data: whatever fits best (free), no flow (solid), or no modulus left (fluid)
     #[arg(long, value_parser = choice::<LongTime>(), default_value = "free")]
     pub long_time: LongTime,
-    /// Shift of several temperatures: --wlf 'C1, C2, REFERENCE', e.g. '8.86, 101.6 K, 20 °C'
+    /// Shift for data at several temperatures: --wlf 'C1, C2, REFERENCE', e.g. '8.86, 101.6 K, 20 °C'
     #[arg(long, value_name = "C1,C2,REF", conflicts_with_all = ["arrhenius", "estimate_shift"])]
     pub wlf: Option<String>,
-    /// Shift of several temperatures: --arrhenius 'ENERGY, REFERENCE', e.g. '120 kJ/mol, 20 °C'
+    /// Shift for data at several temperatures: --arrhenius 'ENERGY, REFERENCE', e.g. '120 kJ/mol, 20 °C'
     #[arg(long, value_name = "ENERGY,REF", conflicts_with = "estimate_shift")]
     pub arrhenius: Option<String>,
-    /// Find the shift from the overlap of the sweeps, about this temperature
+    /// Estimate the shift from the overlap of the sweeps, with this reference temperature
     #[arg(long, value_name = "REF")]
     pub estimate_shift: Option<String>,
     /// The file to write, with a `material = { ... }` for a case [default: printed]
@@ -98,7 +98,7 @@ pub struct Fit {
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
-    /// Replace files that are there already
+    /// Replace existing files
     #[arg(long)]
     pub force: bool,
 }
@@ -116,25 +116,25 @@ pub struct FitIndentation {
     /// Poisson's ratio of the body
     #[arg(long, value_name = "NU", default_value = "0.5")]
     pub poisson: String,
-    /// The moduli to give
+    /// Kind of moduli to report
     #[arg(long, value_parser = choice::<Modulus>(), default_value = "young")]
     pub modulus: Modulus,
     /// The channel that the test controlled [default: the one that fewer straight pieces describe, ramps and holds]
     #[arg(long, value_parser = choice::<Given>())]
     pub given: Option<Given>,
-    /// Number of terms, at most 6 [default: as many as the record calls for]
+    /// Number of terms, at most 6 [default: as many as the record justifies]
     #[arg(long, value_name = "N")]
     pub terms: Option<usize>,
-    /// What happens at times longer than the record: whatever fits best (free), no flow (solid), or no modulus left (fluid)
+    /// Behaviour at times longer than the record: whatever fits best (free), no flow (solid), or no modulus left (fluid)
     #[arg(long, value_parser = choice::<LongTime>(), default_value = "free")]
     pub long_time: LongTime,
     /// Fit the depth of first touch too, instead of taking it as 0
     #[arg(long)]
     pub fit_touch: bool,
-    /// Where a quantity stands: QUANTITY=NUMBER or QUANTITY=HEADER, of time, load, depth; may be given several times
+    /// Column of a quantity (time, load, depth), by number from 1 or by header; may be given several times
     #[arg(long, value_name = "QUANTITY=COLUMN")]
     pub column: Vec<String>,
-    /// The unit of a quantity: QUANTITY=UNIT; may be given several times
+    /// Unit of a quantity, if the header does not name it; may be given several times
     #[arg(long, value_name = "QUANTITY=UNIT")]
     pub unit: Vec<String>,
     /// Write the material, ready to paste under a [[body]] of a case file
@@ -143,7 +143,7 @@ pub struct FitIndentation {
     /// Draw record and model as PNG, SVG or PDF
     #[arg(long, value_name = "PATH")]
     pub plot: Option<PathBuf>,
-    /// Replace files that are there already
+    /// Replace existing files
     #[arg(long)]
     pub force: bool,
     /// Print one JSON object

@@ -36,35 +36,35 @@ pub struct Args {
 pub enum Command {
     /// Run a case; the result is a Zarr directory
     Run(Run),
-    /// Check a case and say what will be solved, the memory and the time that it takes
+    /// Check a case and report what will be solved and how much memory and time it needs
     Check(Check),
     /// Write a commented starter case
     New(New),
     /// Compare the solver with exact solutions and print the table of errors
     Verify(Verify),
-    /// Look at, make, prepare or convert surfaces
+    /// Inspect, generate, process or convert surfaces
     #[command(subcommand)]
     Surface(Surface),
     /// Print a summary of a result with a small map of the contact
     Show(ShowResult),
-    /// Write a result as one HTML page: maps, curves, numbers; it needs no network
+    /// Write a result as one HTML page with maps, curves and numbers; it needs no network
     Report(Report),
-    /// Look at a result in the browser, maps at full resolution; follows a run that goes on
+    /// View a result in the browser with maps at full resolution, also while it is being written
     View(View),
     /// Draw a figure of a result as PNG, SVG or PDF
     Plot(Plot),
     /// Show a material over time and frequency, or fit one to measured curves
     #[command(subcommand)]
     Material(Material),
-    /// Find the material of a body from a measured indentation: load and depth over time
+    /// Fit a material to a measured indentation: load and depth over time
     FitIndentation(FitIndentation),
     /// Write a result for other programs: NetCDF, HDF5, npz, VTK, CSV, PNG
     Export(Export),
-    /// Compute the figures of Spinu and Cerlinca (2017) again, each with an independent curve and the difference
+    /// Compute the figures of Spinu and Cerlinca (2017), each with an independent curve and the difference
     Reproduce(Reproduce),
     /// Print the JSON Schema of the case file
     Schema,
-    /// Print the completions for a shell
+    /// Print the completion script for a shell
     Completions {
         /// bash, elvish, fish, powershell or zsh
         shell: Shell,
@@ -73,10 +73,49 @@ pub enum Command {
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory;
+    use clap::{CommandFactory, Parser};
 
     #[test]
     fn the_command_line_is_consistent() {
         super::Args::command().debug_assert();
+    }
+
+    /// Commands, options and values of the documents are those of the command.
+    #[test]
+    fn every_command_line_of_the_documents_is_understood() {
+        let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
+        let documents = std::fs::read_dir(format!("{root}/docs")).expect("the documents").flatten();
+        let documents =
+            documents.map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|e| e == "md"));
+        let readme = [format!("{root}/README.md").into(), format!("{root}/examples/data/README.md").into()];
+        let mut lines = 0;
+        for path in documents.chain(readme) {
+            // A line that ends with a backslash goes on.
+            let text = std::fs::read_to_string(&path).expect("a document").replace("\\\n", " ");
+            let blocks = text.split("```sh").skip(1).filter_map(|block| block.split("```").next());
+            for line in blocks.flat_map(str::lines).filter(|line| line.starts_with("asperity ")) {
+                if let Err(error) = super::Args::try_parse_from(words(line)) {
+                    panic!("{}: {line}\n{error}", path.display());
+                }
+                lines += 1;
+            }
+        }
+        assert!(lines > 30, "the documents have more than {lines} command lines");
+    }
+
+    /// The words of a line as a shell splits them: single and double quotes, up to a comment or redirection.
+    fn words(line: &str) -> Vec<String> {
+        let (mut words, mut word, mut quote) = (Vec::new(), String::new(), None);
+        for c in line.chars().chain([' ']) {
+            match (quote, c) {
+                (Some(open), _) if c == open => quote = None,
+                (None, '"' | '\'') => quote = Some(c),
+                (None, ' ') if word.is_empty() => {}
+                (None, ' ') => words.push(std::mem::take(&mut word)),
+                (None, '#' | '>') if word.is_empty() => break,
+                _ => word.push(c),
+            }
+        }
+        words
     }
 }

@@ -1,4 +1,4 @@
-//! The arguments of what is done with results.
+//! The arguments of the commands for results.
 
 use std::path::PathBuf;
 
@@ -6,7 +6,7 @@ use std::path::PathBuf;
 pub struct ShowResult {
     /// The result (a Zarr directory)
     pub result: PathBuf,
-    /// The instant of the map: the stored one that is nearest, e.g. '500 s' [default: last]
+    /// Time of the map, e.g. '500 s'; the nearest stored one is used [default: last]
     #[arg(long, value_name = "T")]
     pub time: Option<String>,
     /// Print one JSON object: status, rows, work and every number of the last row
@@ -21,13 +21,13 @@ pub struct Report {
     /// The page to write [default: the result's name with .html]
     #[arg(short, long, value_name = "PATH")]
     pub output: Option<PathBuf>,
-    /// Largest size of the maps in the page, in megabytes; larger ones are reduced to means over blocks of cells
+    /// Largest size of the maps in the page, in megabytes; larger maps are averaged over blocks of cells
     #[arg(long, value_name = "MB", default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..=2000))]
     pub megabytes: u32,
-    /// Largest number of instants whose maps are in the page
+    /// Largest number of times with maps in the page
     #[arg(long, value_name = "N", default_value_t = 24, value_parser = clap::value_parser!(u32).range(1..=10000))]
     pub instants: u32,
-    /// Replace a page that is there already
+    /// Replace an existing page
     #[arg(long)]
     pub force: bool,
 }
@@ -36,10 +36,10 @@ pub struct Report {
 pub struct View {
     /// The result (a Zarr directory)
     pub result: PathBuf,
-    /// The port; 0 takes a free one
+    /// Port to listen at; 0 chooses a free one
     #[arg(long, default_value_t = 0)]
     pub port: u16,
-    /// The address to listen at: other machines can look at the result where it is not this machine's own
+    /// Address to listen at; if it is not an address of this machine alone, other machines can view the result
     #[arg(long, default_value = "127.0.0.1", value_name = "ADDRESS")]
     pub host: std::net::IpAddr,
 }
@@ -51,16 +51,16 @@ pub struct Plot {
     /// evolution, load-displacement, pressure, gap, displacement, contact, flattening, initial-gap, profile,
     /// histogram, spots, work or quantities
     pub what: String,
-    /// The file to write; its ending tells the form: png, svg or pdf [default: RESULT-WHAT.png]
+    /// The file to write; its extension selects the format: png, svg or pdf [default: RESULT-WHAT.png]
     #[arg(short, long, value_name = "PATH")]
     pub output: Option<PathBuf>,
-    /// The instant of maps, profiles and distributions: the stored one that is nearest, e.g. '500 s' [default: last]
+    /// Time of maps, profiles and distributions, e.g. '500 s'; the nearest stored one is used [default: last]
     #[arg(long, value_name = "T")]
     pub time: Option<String>,
-    /// Direction of the line of a profile
+    /// Direction of a profile
     #[arg(long, value_name = "AXIS", default_value = "x", value_parser = ["x", "y"])]
     pub along: String,
-    /// Where the line of a profile crosses the other axis, e.g. '20 um' [default: the middle]
+    /// Position of a profile on the other axis, e.g. '20 um' [default: the middle]
     #[arg(long, value_name = "PLACE")]
     pub at: Option<String>,
     /// Time on a logarithmic axis
@@ -69,7 +69,7 @@ pub struct Plot {
     /// The title [default: that of the case]
     #[arg(long)]
     pub title: Option<String>,
-    /// Replace a file that is there already
+    /// Replace an existing file
     #[arg(long)]
     pub force: bool,
 }
@@ -81,13 +81,13 @@ pub struct Export {
     /// netcdf, hdf5, npz, vtk, csv or png (a directory of pictures)
     #[arg(long)]
     pub to: String,
-    /// The file to write [default: the result's name with the ending of the format]
+    /// The file to write [default: the result's name with the extension of the format]
     #[arg(short, long, value_name = "PATH")]
     pub output: Option<PathBuf>,
     /// Fields to export [default: all that the result holds; none for csv]
     #[arg(long, value_delimiter = ',')]
     pub fields: Option<Vec<String>>,
-    /// Replace an output that is there already
+    /// Replace an existing output
     #[arg(long)]
     pub force: bool,
 }
@@ -97,10 +97,10 @@ pub struct Reproduce {
     /// Only these figures, 1 to 8
     #[arg(value_parser = clap::value_parser!(u8).range(1..=8))]
     pub figures: Vec<u8>,
-    /// The directory to make
+    /// The directory to create
     #[arg(short, long, value_name = "DIR", default_value = "reproduction")]
     pub output: PathBuf,
-    /// What the figures are written as: png, svg or pdf
+    /// Format of the figures: png, svg or pdf
     #[arg(long, value_name = "FORM", default_value = "png", value_parser = ["png", "svg", "pdf"])]
     pub form: String,
     /// Cells along a side of every case [default: 256, and 512 for the rough sphere; the paper has 1024]
@@ -109,7 +109,7 @@ pub struct Reproduce {
     /// Threads to use [default: one per core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
-    /// Replace figures and results that are there already
+    /// Replace existing figures and results
     #[arg(long)]
     pub force: bool,
     /// Print a JSON list of {figure, quantity, difference, of}

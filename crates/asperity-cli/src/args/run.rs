@@ -6,13 +6,13 @@ use std::path::PathBuf;
 pub struct Run {
     /// The case file (TOML)
     pub case: PathBuf,
-    /// Where the result goes [default: output.path of the case, or the case's name with .zarr]
+    /// Path of the result [default: output.path of the case, or the case's name with .zarr]
     #[arg(short, long, value_name = "PATH")]
     pub output: Option<PathBuf>,
-    /// Go on with the run of this case that was interrupted or killed
+    /// Continue the run of this case that was interrupted or killed
     #[arg(long, conflicts_with = "force")]
     pub resume: bool,
-    /// Replace a result that is there already
+    /// Replace an existing result
     #[arg(long)]
     pub force: bool,
     #[command(flatten)]
@@ -20,7 +20,7 @@ pub struct Run {
     /// Print one JSON object at the end
     #[arg(long)]
     pub json: bool,
-    /// Say nothing but errors and the result
+    /// Print only errors and the result
     #[arg(short, long)]
     pub quiet: bool,
     /// Print every row; given twice (-vv), print every iteration of the solver: residual, working cells, step
@@ -41,7 +41,7 @@ pub struct Check {
 
 #[derive(Debug, clap::Args)]
 pub struct Common {
-    /// Threads to use [default: one per core]; the numbers are the same for any
+    /// Threads to use [default: one per core]; the results do not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
     /// Set a key of the case, e.g. --set domain.cells='[256, 256]' --set body.0.hardness='200 MPa'
@@ -51,11 +51,11 @@ pub struct Common {
 
 #[derive(Debug, clap::Args)]
 pub struct New {
-    /// The starter case; without it they are listed
+    /// Name of the starter case; without it all are listed
     pub template: Option<String>,
     /// The file to write [default: TEMPLATE.toml]
     pub path: Option<PathBuf>,
-    /// Replace a file that is there already
+    /// Replace an existing file
     #[arg(long)]
     pub force: bool,
 }

@@ -8,9 +8,9 @@ use clap::Subcommand;
 pub enum Surface {
     /// Print format, size and statistics of the heights as stored
     Info(SurfaceInfo),
-    /// Make a rough surface: self-affine, with a lay, with a height distribution
+    /// Generate a self-affine rough surface, optionally with a lay or a height distribution
     Generate(Box<SurfaceGenerate>),
-    /// Prepare a surface step by step: level, fill, crop, resample, filter, ...
+    /// Process a surface step by step: level, fill, crop, resample, filter, ...
     Process(Box<SurfaceProcess>),
     /// Write the surface as NPZ, GWY, X3P, SDF, NetCDF or text
     Convert(SurfaceConvert),
@@ -20,19 +20,19 @@ pub enum Surface {
 pub struct SurfaceInfo {
     #[command(flatten)]
     pub file: SurfaceFile,
-    /// The surface repeats beyond its edges: take its spectrum without levelling and window
+    /// Treat the surface as periodic: compute its spectrum without levelling and window
     #[arg(long)]
     pub periodic: bool,
-    /// Fit the Hurst exponent only to waves up to this length
+    /// Longest wavelength used to fit the Hurst exponent
     #[arg(long, value_name = "LENGTH")]
     pub longest: Option<String>,
-    /// Fit the Hurst exponent only to waves from this length on
+    /// Shortest wavelength used to fit the Hurst exponent
     #[arg(long, value_name = "LENGTH")]
     pub shortest: Option<String>,
     /// Draw height map, power spectrum and height distribution (.png or .svg)
     #[arg(long, value_name = "PICTURE")]
     pub plot: Option<PathBuf>,
-    /// Replace a picture that is there already
+    /// Replace an existing picture
     #[arg(long)]
     pub force: bool,
     /// Print one JSON object
@@ -49,16 +49,16 @@ pub struct SurfaceGenerate {
     /// Length along x and y, one for a square: --size '1 mm,1 mm'
     #[arg(long, value_name = "A,B")]
     pub size: Option<String>,
-    /// A known roughness: contact-mechanics-challenge; other options change its numbers
+    /// A published roughness: contact-mechanics-challenge; other options replace its numbers
     #[arg(long, value_name = "NAME")]
     pub preset: Option<String>,
     /// Hurst exponent, greater than 0 and at most 1
     #[arg(long, value_name = "H")]
     pub hurst: Option<String>,
-    /// Root mean square of the gradient; this or --rms-height
+    /// Root mean square of the gradient; give this or --rms-height
     #[arg(long, value_name = "G", allow_hyphen_values = true)]
     pub rms_gradient: Option<String>,
-    /// Root mean square of the height, e.g. '0.2 um'; this or --rms-gradient
+    /// Root mean square of the height, e.g. '0.2 um'; give this or --rms-gradient
     #[arg(long, value_name = "LENGTH", allow_hyphen_values = true)]
     pub rms_height: Option<String>,
     /// Longest wavelength
@@ -82,10 +82,10 @@ pub struct SurfaceGenerate {
     /// Kurtosis of the heights, 3 for Gaussian ones
     #[arg(long, value_name = "SKU")]
     pub kurtosis: Option<String>,
-    /// A measured surface whose heights are distributed as wanted
+    /// Measured surface whose height distribution is used
     #[arg(long, value_name = "FILE", conflicts_with_all = ["skewness", "kurtosis"])]
     pub distribution: Option<String>,
-    /// Number that picks the realisation
+    /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub seed: u64,
     #[command(flatten)]
@@ -96,7 +96,7 @@ pub struct SurfaceGenerate {
 pub struct SurfaceProcess {
     #[command(flatten)]
     pub file: SurfaceFile,
-    /// A step, done in the order given, as in `process` of a case file: --op level=plane --op fill=harmonic --op 'crop
+    /// A processing step, done in the order given, as in `process` of a case file: --op level=plane --op fill=harmonic --op 'crop
     /// size=50um,50um' --op 'filter shortest=2um' --op 'resample=bilinear cells=512,512' --op flip=x --op rotate=1
     /// --op invert --op window=hann --op 'outliers=6 radius=2'
     #[arg(long, value_name = "STEP", required = true)]
@@ -109,28 +109,28 @@ pub struct SurfaceProcess {
 pub struct SurfaceConvert {
     #[command(flatten)]
     pub file: SurfaceFile,
-    /// The file to write; its ending tells the format
+    /// The file to write; its extension selects the format
     pub output: PathBuf,
-    /// The format, where the ending does not tell it: npz, gwy, x3p, sdf, nc, asc
+    /// The format, if the extension does not select it: npz, gwy, x3p, sdf, nc, asc
     #[arg(long)]
     pub to: Option<String>,
-    /// Replace a file that is there already
+    /// Replace an existing file
     #[arg(long)]
     pub force: bool,
 }
 
 #[derive(Debug, clap::Args)]
 pub struct SurfaceOutput {
-    /// The file to write; its ending tells the format
+    /// The file to write; its extension selects the format
     #[arg(short, long, value_name = "PATH")]
     pub output: PathBuf,
-    /// The format, where the ending does not tell it: npz, gwy, x3p, sdf, nc, asc
+    /// The format, if the extension does not select it: npz, gwy, x3p, sdf, nc, asc
     #[arg(long, value_name = "FORMAT")]
     pub to: Option<String>,
     /// Draw height map, power spectrum and height distribution (.png or .svg)
     #[arg(long, value_name = "PICTURE")]
     pub plot: Option<PathBuf>,
-    /// Replace files that are there already
+    /// Replace existing files
     #[arg(long)]
     pub force: bool,
     /// Print the statistics as one JSON object
@@ -140,15 +140,15 @@ pub struct SurfaceOutput {
 
 #[derive(Debug, clap::Args)]
 pub struct SurfaceFile {
-    /// The measured surface; its format is found from the content
+    /// The measured surface; its format is detected from the content
     pub file: PathBuf,
-    /// Physical size along x and y, where the file holds none: --size '1 mm,1 mm'
+    /// Physical size along x and y, if the file does not state it: --size '1 mm,1 mm'
     #[arg(long, value_name = "A,B")]
     pub size: Option<String>,
-    /// Unit of the heights, where the file holds none: --height-unit um
+    /// Unit of the heights, if the file does not state it: --height-unit um
     #[arg(long, value_name = "U")]
     pub height_unit: Option<String>,
-    /// Name or number (from 0) of the channel, where a file has several
+    /// Name or number (from 0) of the channel, if the file has several
     #[arg(long)]
     pub channel: Option<String>,
 }

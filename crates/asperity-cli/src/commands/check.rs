@@ -106,12 +106,14 @@ fn tell(case: &Case, d: &Description, estimate: Option<f64>) -> String {
         }
         Some(e) => {
             format!(
-                "contact modulus {} at once, {} at last",
+                "contact modulus {} instantaneous, {} relaxed",
                 quantity(e, "Pa"),
                 quantity(d.relaxed_modulus, "Pa")
             )
         }
-        None => format!("contact modulus {} at last, rigid at once", quantity(d.relaxed_modulus, "Pa")),
+        None => {
+            format!("contact modulus {} relaxed, instantaneously rigid", quantity(d.relaxed_modulus, "Pa"))
+        }
     };
     line("bodies", format!("{}; {modulus}", d.bodies.join(", ")));
     if !d.retardation_times.is_empty() {
@@ -143,7 +145,9 @@ fn tell(case: &Case, d: &Description, estimate: Option<f64>) -> String {
         "time",
         match d.rows {
             Some(rows) => format!("{rows} rows to {end}, {} scheme", d.scheme),
-            None => format!("rows as the run finds them, to {end} at the latest, {} scheme", d.scheme),
+            None => {
+                format!("number of rows found by the run, end at {end} at the latest, {} scheme", d.scheme)
+            }
         },
     );
     if d.stages > 1 {

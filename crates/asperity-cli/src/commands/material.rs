@@ -215,7 +215,7 @@ pub fn source(report: &MaterialReport) -> Vec<String> {
     lines.extend(
         report
             .shift_factor
-            .map(|factor| format!("shift factor a_T = {factor:.4e}: all times as many times as long")),
+            .map(|factor| format!("shift factor a_T = {factor:.4e}: all times are multiplied by it")),
     );
     lines.extend(report.notes.iter().map(|note| format!("note: {note}")));
     lines
@@ -227,7 +227,7 @@ fn fit(args: &Fit) -> Result<(), Failure> {
         None => Curves::kind_of(&args.data).map_err(told)?.ok_or_else(|| {
             let path = args.data.display();
             Failure::input(format!(
-                "{path}: the header does not tell what was measured; say --kind relaxation, creep or dma"
+                "{path}: the header does not state what was measured; give --kind relaxation, creep or dma"
             ))
         })?,
     };
@@ -337,7 +337,9 @@ fn ends(kind: Kind, text: &str) -> Result<[f64; 2], Failure> {
     let (first, last) = (first?, last?);
     match first < last {
         true => Ok([first, last]),
-        false => Err(Failure::input(format!("--window is \"{text}\": its ends must rise"))),
+        false => Err(Failure::input(format!(
+            "--window is \"{text}\": the second end must be greater than the first"
+        ))),
     }
 }
 

@@ -33,7 +33,7 @@ fn use_threads(threads: Option<u16>) -> Result<(), Failure> {
 fn free(path: &Path, force: bool) -> Result<(), Failure> {
     if path.exists() && !force {
         let path = path.display();
-        return Err(Failure::input(format!("{path} is there already; name another file or give --force")));
+        return Err(Failure::input(format!("{path} already exists; choose another file or use --force")));
     }
     Ok(())
 }

@@ -29,7 +29,7 @@ pub fn run(args: &New) -> Result<(), Failure> {
     written.map_err(|error| {
         Failure::input(match error.kind() {
             ErrorKind::AlreadyExists => {
-                format!("{} is there already; name another file or give --force", path.display())
+                format!("{} already exists; choose another file or use --force", path.display())
             }
             _ => format!("cannot write {}: {error}", path.display()),
         })

@@ -18,7 +18,7 @@ pub fn run(args: &Reproduce) -> Result<(), Failure> {
         numbers.iter().map(|n| args.output.join(format!("figure-{n}.{}", args.form))).collect();
     if let Some(taken) = files.iter().find(|file| !args.force && file.exists()) {
         return Err(told(&format!(
-            "{} is there already; name another directory or give --force",
+            "{} already exists; choose another directory or use --force",
             taken.display()
         )));
     }

@@ -35,7 +35,7 @@ pub fn run(args: &Run) -> Result<(), Failure> {
                 return Ok(());
             }
             let (rows, result) = (summary.rows, summary.result.display());
-            Err(Failure::Interrupted(format!("{rows} rows are in {result}; go on with --resume")))
+            Err(Failure::Interrupted(format!("{rows} rows are in {result}; continue with --resume")))
         }
         Err(RunError::Case(errors)) => Err(Failure::Case(errors)),
         Err(error @ RunError::Output(_)) => Err(Failure::input(error.to_string())),

@@ -76,8 +76,8 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
     let state = match reader.status() {
         Status::Complete => "complete",
         Status::Running if reader.is_being_written() => "running now",
-        Status::Running => "killed before its end; go on with asperity run --resume",
-        Status::Interrupted => "interrupted; go on with asperity run --resume",
+        Status::Running => "killed before its end; continue with asperity run --resume",
+        Status::Interrupted => "interrupted; continue with asperity run --resume",
         Status::Failed => "failed",
     };
     line("status", format!("{state}, {}{of} rows", reader.len()));

@@ -35,7 +35,7 @@ pub fn run(args: &View) -> Result<(), Failure> {
         let listener = TcpListener::bind(SocketAddr::new(args.host, args.port)).await.map_err(told)?;
         let address = listener.local_addr().map_err(told)?;
         crate::print(&format!("http://{address}/\n"))?;
-        eprintln!("open it in a browser; Ctrl-C ends it");
+        eprintln!("open this address in a browser; press Ctrl-C to stop");
         serve(listener, Live::new(&args.result), args.host).await;
         Ok(())
     })
@@ -71,7 +71,7 @@ async fn answer(
     let asked = request.headers().get(header::HOST).and_then(|host| host.to_str().ok());
     if host.is_loopback() && !is_this_machine(asked) {
         // A page from elsewhere whose name leads here must not read results.
-        return Ok(text(StatusCode::FORBIDDEN, "this address answers to localhost only".into()));
+        return Ok(text(StatusCode::FORBIDDEN, "only requests to localhost are answered".into()));
     }
     if request.method() != Method::GET {
         return Ok(text(StatusCode::METHOD_NOT_ALLOWED, "only GET".into()));

@@ -296,7 +296,7 @@ fn file_text(path: &Path) -> Result<String, (String, String)> {
         (format!("the file cannot be read: {error}"), "name a case file, not a directory".to_owned())
     })?;
     if bytes.len() as u64 > MOST_BYTES {
-        let reason = format!("the file is larger than {} MB, which no case file is", MOST_BYTES >> 20);
+        let reason = format!("the file is larger than {} MB, the limit for a case file", MOST_BYTES >> 20);
         return Err((reason, "name a TOML case file".to_owned()));
     }
     String::from_utf8(bytes).map_err(|error| {

@@ -69,7 +69,7 @@ fn path(key: &str) -> Result<Vec<Step>, String> {
     }
     match steps.len() <= DEEPEST {
         true => Ok(steps),
-        false => Err(format!("{key:?} is deeper than any key")),
+        false => Err(format!("{key:?} has more parts than any key")),
     }
 }
 

@@ -227,7 +227,7 @@ fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeMap<Role, us
             let name = role.name();
             let columns = table.listed();
             let message = format!(
-                "which column holds the {name}? The file has {columns}; say it as columns = {{ {name} = 1 }}, by \
+                "no column is recognised as {name}; the file has {columns}; name it as in columns = {{ {name} = 1 }}, by \
                  number or header"
             );
             Err(fault(message))
@@ -249,7 +249,7 @@ pub(super) fn named(table: &Table, kind: Kind) -> bool {
 
 fn find(table: &Table, role: Role, column: &Column) -> Result<usize, Fault> {
     let wrong = |what: String| {
-        fault(format!("{} is to be {what}, but the columns are {}", role.name(), table.listed()))
+        fault(format!("{} must be {what}, but the columns are {}", role.name(), table.listed()))
     };
     match column {
         Column::Number(n) if *n >= 1 && *n <= table.columns => Ok(n - 1),
@@ -300,8 +300,8 @@ fn frequency(unit: &str) -> Result<f64, String> {
     let radians = unit.contains("rad");
     if !radians && !unit.contains("Hz") {
         return Err(match unit {
-            "" => "names no unit: cycles per second (Hz) or radians per second (rad/s)?".to_owned(),
-            _ => format!("\"{unit}\" does not tell cycles (Hz) from radians (rad/s)"),
+            "" => "has no unit: give Hz (cycles per second) or rad/s (radians per second)".to_owned(),
+            _ => format!("\"{unit}\" may mean cycles (Hz) or radians (rad/s)"),
         });
     }
     let parsed = Unit::parse(&unit.replace("rad", "1"));

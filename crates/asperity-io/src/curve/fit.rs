@@ -169,7 +169,7 @@ impl Request {
             ShiftRequest::None if curves.sweeps.len() > 1 => {
                 let known: Vec<String> = curves.sweeps.iter().take(20).filter_map(celsius).collect();
                 Err(fault(format!(
-                    "the file holds {} temperatures ({}); say how times depend on temperature, as in shift = {{ \
+                    "the file holds {} temperatures ({}); state how times depend on temperature, as in shift = {{ \
                      model = \"wlf\", c1 = 8.86, c2 = \"101.6 K\", reference = \"20 °C\" }}, or model = \
                      \"estimated\"",
                     curves.sweeps.len(),
@@ -284,7 +284,7 @@ fn estimated(
         Some(law) => (law.shift, Some(law.rms)),
         None => {
             notes.push(format!(
-                "neither the WLF nor the Arrhenius law meets the shift factors within {LAW} decades; the factors \
+                "neither the WLF nor the Arrhenius law fits the shift factors to within {LAW} decades; the factors \
                  themselves are used, between the temperatures measured"
             ));
             (table, None)

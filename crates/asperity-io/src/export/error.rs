@@ -18,7 +18,7 @@ pub enum ExportError {
         path: PathBuf,
     },
     /// The output is there and is not what this export writes, so that it is never removed.
-    #[error("{} {found}; it is left alone: choose another output or move it away", .path.display())]
+    #[error("{} {found}; it is not overwritten; choose another output or move it away", .path.display())]
     Foreign {
         /// The output asked for.
         path: PathBuf,

@@ -16,7 +16,7 @@ pub enum StoreError {
         path: PathBuf,
     },
     /// The output is there and is not (only) a result, so that it is never removed.
-    #[error("{} {found}; it is left alone: choose another output or move it away", .path.display())]
+    #[error("{} {found}; it is not overwritten; choose another output or move it away", .path.display())]
     Foreign {
         /// The output asked for.
         path: PathBuf,
@@ -42,7 +42,7 @@ pub enum StoreError {
         why: String,
     },
     /// The result was written by a later version in a form that this one does not know.
-    #[error("{} was written by asperity {version} in form {schema}, this version reads up to form {known}; update asperity", .path.display())]
+    #[error("{} was written by asperity {version} in format version {schema}; this version reads up to {known}; update asperity", .path.display())]
     Newer {
         /// The result.
         path: PathBuf,
@@ -64,7 +64,7 @@ pub enum StoreError {
         hint: &'static str,
     },
     /// A run cannot go on from this result: it belongs to another case.
-    #[error("{} belongs to another case: {what} is {stored}, now {given}; restore the case, or start anew with another output or --force", .path.display())]
+    #[error("{} belongs to another case: {what} is {stored}, now {given}; restore the case, or start again with another output or --force", .path.display())]
     Mismatch {
         /// The result.
         path: PathBuf,
@@ -121,7 +121,7 @@ fn hint(error: &io::Error) -> &'static str {
         StorageFull | QuotaExceeded | FileTooLarge => {
             "; free some space (the finished steps of a run are kept, --resume goes on with it)"
         }
-        NotFound => "; make its directory first or mend the path",
+        NotFound => "; create its directory first or correct the path",
         PermissionDenied | ReadOnlyFilesystem => "; choose a place that you may write to",
         _ => "",
     }

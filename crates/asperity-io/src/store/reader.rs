@@ -117,7 +117,7 @@ impl Reader {
         }
         // What a loss of power did not let reach the disk reads as zeros.
         if let Some(n) = rows.windows(2).position(|pair| pair[1].time < pair[0].time) {
-            return Err(corrupt(&self.root.join("time"), format_args!("time runs backwards after row {n}")));
+            return Err(corrupt(&self.root.join("time"), format_args!("times decrease after row {n}")));
         }
         Ok(rows)
     }

@@ -338,7 +338,7 @@ fn times() {
     );
     says(grid, "times = [\"0 s\", \"3 s\"]\n", "time.times[0]", 39, &["a time greater than 0"]);
     says(grid, "times = []\n", "time.times", 39, &["one time at least"]);
-    says(grid, "times = [1]\nsteps = 3\n", "time.steps", 40, &["does not go with `times`"]);
+    says(grid, "times = [1]\nsteps = 3\n", "time.steps", 40, &["cannot be combined with `times`"]);
     says("steps = 20", "steps = 20\nfirst = \"1 s\"", "time.first", 41, &["belongs to spacing = \"log\""]);
     says(
         "steps = 20",
@@ -471,7 +471,7 @@ fn stages_and_adaptive_steps() {
         &["20 N", "at most"],
     );
     // The grid of the run.
-    says("steps = 20", "steps = 20\nspacing = \"adaptive\"", "time.steps", 40, &["does not go with"]);
+    says("steps = 20", "steps = 20\nspacing = \"adaptive\"", "time.steps", 40, &["cannot be combined with"]);
     says(
         "steps = 20",
         "spacing = \"adaptive\"\ntolerance = 0.5",
@@ -483,7 +483,7 @@ fn stages_and_adaptive_steps() {
     says("steps = 20", "spacing = \"adaptive\"\nscheme = \"constant\"", "time", 38, &["linear"]);
     says("steps = 20", "spacing = \"adaptive\"\nfirst = \"11 s\"", "time.first", 41, &["before time.end"]);
     let hold = "control = \"load\"\nhistory = { kind = \"hold\" }\n";
-    says(old, hold, "load.history", 33, &["nothing is there", "stage"]);
+    says(old, hold, "load.history", 33, &["no earlier value to hold", "stage"]);
 }
 
 #[test]

@@ -85,7 +85,7 @@ fn the_case_of_the_paper_is_the_paper_s() {
     let modulus = 1.0 / case.creep.instantaneous;
     assert!((modulus * (1.0 - 0.38 * 0.38) / 2491.4388e6 - 1.0).abs() < 1e-12, "{modulus}");
     let times: Vec<f64> = case.creep.terms.iter().map(|term| term.retardation_time).collect();
-    // theory section 3, ten digits given
+    // docs/theory.md, section 4: ten digits
     assert!((times[0] / 9.936295903 - 1.0).abs() < 1e-9 && (times[1] / 133.8704875 - 1.0).abs() < 1e-9);
     let description = case.describe();
     assert_eq!((description.rows, description.stored_rows), (Some(101), Some(11)));

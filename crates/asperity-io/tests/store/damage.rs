@@ -74,7 +74,7 @@ fn a_later_form_is_said_to_be_later() {
     });
     assert!(matches!(error, StoreError::Newer { schema: 2, known: 1, .. }));
     assert!(error.to_string().ends_with(
-        "was written by asperity 7.1.0 in form 2, this version reads up to form 1; update asperity"
+        "was written by asperity 7.1.0 in format version 2; this version reads up to 1; update asperity"
     ));
 }
 
@@ -150,7 +150,7 @@ fn rows_that_never_reached_the_disk_are_found() {
     time[16..32].fill(0);
     fs::write(path.join("time/c/0"), time).unwrap();
     let error = read_all(&path).unwrap_err();
-    assert!(error.to_string().contains("time runs backwards after row 1"), "{error}");
+    assert!(error.to_string().contains("times decrease after row 1"), "{error}");
 }
 
 #[test]

@@ -89,7 +89,7 @@ fn a_place_that_cannot_be_written_is_named_and_nothing_is_left() {
     let error = Writer::create(&path.join("result.zarr"), &case.header, case.gap.view(), false).unwrap_err();
     let message = error.to_string();
     assert!(
-        message.contains("cannot write into") && message.contains("make its directory first"),
+        message.contains("cannot write into") && message.contains("create its directory first"),
         "{message}"
     );
     fs::write(&path, "").unwrap();

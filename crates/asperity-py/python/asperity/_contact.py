@@ -78,7 +78,7 @@ def elastic(
     ----------
     gap : undeformed gap [m] as array (nx, ny), infinite where nothing can touch; or a Surface
     contact_modulus : E* [Pa], (1 - nu1^2)/E1 + (1 - nu2^2)/E2 = 1/E*
-    load, approach : normal load [N] or approach [m], one of them
+    load, approach : normal load [N] or approach [m], exactly one of them
     size : lengths of the domain along x and y [m], where the gap is an array
     hardness : largest pressure [Pa], of all cells or as array (nx, ny)
     boundary : "free" or "periodic"
@@ -86,7 +86,7 @@ def elastic(
 
     Raises
     ------
-    CaseError : the input is wrong, or more load than the hardness bears
+    CaseError : the input is wrong, or the load is more than the hardness can carry
     ConvergenceError : not solved to the tolerance; carries the best pressure as `best`
 
     Examples

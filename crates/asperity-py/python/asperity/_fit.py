@@ -30,7 +30,7 @@ _LABELS = {"relaxation": ("relaxation modulus",), "creep": ("creep compliance",)
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """A Prony series fitted to measured curves, and how well it meets them.
+    """A Prony series fitted to measured curves, and its misfit.
 
     Made by :func:`fit_relaxation`, :func:`fit_creep`, :func:`fit_dma` and :func:`fit_file`.
     """
@@ -292,7 +292,7 @@ def fit_file(
     Parameters
     ----------
     path : table with one point per line; quantities and units are found from its header
-    kind : "relaxation", "creep" or "dma", where the header does not tell
+    kind : "relaxation", "creep" or "dma", if the header does not state it
     columns : names or numbers (from 1) of columns by quantity: time, modulus, compliance, frequency, storage, loss,
         tan_delta, temperature
     units : units by quantity, which go before those of the header
@@ -357,7 +357,7 @@ def _fit(kind: str, x: Any, values: list[Any], temperature: Any, **rest: Any) ->
     if len(sweeps) > 1 and rest["shift"] is None:
         known = ", ".join(f"{kelvin:.2f} K" for kelvin, _, _ in sweeps[:20])
         raise CaseError(
-            f"the data hold {len(sweeps)} temperatures ({known}); say how times depend on temperature: "
+            f"the data hold {len(sweeps)} temperatures ({known}); state how times depend on temperature: "
             "shift=asperity.wlf(c1=..., c2=..., reference=...), or shift='estimated' with reference=..."
         )
     return _made(_core.fit(kind, sweeps, _options(rest)), rest)

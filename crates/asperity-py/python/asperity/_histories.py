@@ -1,4 +1,4 @@
-"""What is prescribed over time, and the instants that are solved."""
+"""Prescribed histories, stages, and time grids."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class History:
 
 @dataclass(frozen=True)
 class Times:
-    """The instants that are solved; made by :func:`uniform`, :func:`log` or :func:`listed`."""
+    """The times to solve for; made by :func:`uniform`, :func:`log` or :func:`listed`."""
 
     kind: str
     numbers: tuple[float, ...]
@@ -76,11 +76,11 @@ class Stage:
 
     Parameters
     ----------
-    load, pressure, approach : what is prescribed [N], [Pa] or [m], one of them: a history, or a number for a step
+    load, pressure, approach : what is prescribed [N], [Pa] or [m], exactly one of them: a history, or a number for a step
     duration : the stage lasts no longer than this [s]; the last stage may last to the end of the run
     until : what ends it: ("approach", value [m]), ("load", value [N]) or ("pressure", value [Pa]), crossed from either side, or
         "contact-lost". Without `duration` it must happen before the run ends.
-    times : its own instants, on its own clock; default those of the run
+    times : times of the stage, measured from its start; default: those of the run
 
     Examples
     --------
@@ -140,7 +140,7 @@ def one_of(given: dict[str, History | float | None], otherwise: str) -> tuple[st
     """The one that is given."""
     named = [(name, value) for name, value in given.items() if value is not None]
     if len(named) != 1:
-        raise CaseError(f"{otherwise}, one of them; given: {', '.join(name for name, _ in named) or 'none'}")
+        raise CaseError(f"{otherwise}, exactly one of them; given: {', '.join(name for name, _ in named) or 'none'}")
     return named[0]
 
 
@@ -150,7 +150,7 @@ def uniform(end: float, steps: int) -> Times:
 
 
 def log(end: float, steps: int, *, first: float) -> Times:
-    """`steps` instants in geometric progression from `first` to `end` [s]."""
+    """`steps` times in geometric progression from `first` to `end` [s]."""
     return Times("log", (number("end", end), float(count("number of steps", steps)), number("first instant", first)))
 
 
@@ -171,7 +171,7 @@ def adaptive(end: float, *, tolerance: float = 1e-3, first: float) -> Times:
 
 
 def listed(instants: Sequence[float]) -> Times:
-    """The instants after 0 themselves [s], increasing."""
+    """The times after 0 [s], increasing."""
     return Times("list", tuple(float(t) for t in line("times", instants)))
 
 
@@ -181,5 +181,5 @@ def as_history(what: str, value: History | float) -> History:
 
 
 def as_times(value: Times | Sequence[float]) -> Times:
-    """A time grid; a sequence is the instants."""
+    """A time grid; a sequence holds the times."""
     return value if isinstance(value, Times) else listed(value)

@@ -25,7 +25,7 @@ Interval = tuple[float, float, float]
 
 @dataclass(frozen=True, eq=False)
 class IndentationFit:
-    """What a record of load and depth tells of its material; moduli are Young's. Made by :func:`fit_indentation`."""
+    """A material fitted to a record of load and depth; moduli are Young's. Made by :func:`fit_indentation`."""
 
     #: (modulus [Pa], relaxation time [s]) of each term, each as (value, low, high).
     terms: list[tuple[Interval, Interval]]
@@ -123,9 +123,9 @@ def fit_indentation(
     columns = [line(what, values) for what, values in (("time", time), ("load", load), ("depth", depth))]
     if len({len(column) for column in columns}) > 1:
         told = ", ".join(f"{what} {len(column)}" for what, column in zip(("time", "load", "depth"), columns))
-        raise CaseError(f"the columns must be of one length; there are: {told}")
+        raise CaseError(f"the columns must have the same length; there are: {told}")
     if (radius is None) == (slope is None):
-        raise CaseError("give radius or slope, one of them")
+        raise CaseError("give radius or slope, exactly one of them")
     profile = ("sphere", number("radius", radius)) if slope is None else ("cone", number("slope", slope))
     nu = number("poisson", poisson)
     if not -1.0 < nu <= 0.5:

@@ -151,7 +151,7 @@ def _make(kind: type[Material], given: dict[str, Any]) -> Material:
 def _modulus(given: dict[str, Any]) -> tuple[str, float]:
     young, shear = given.get("young"), given.get("shear")
     if (young is None) == (shear is None):
-        raise CaseError("give young or shear, one of them")
+        raise CaseError("give young or shear, exactly one of them")
     return ("young", number("young", young)) if shear is None else ("shear", number("shear", shear))
 
 

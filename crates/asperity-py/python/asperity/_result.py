@@ -45,7 +45,7 @@ ROW: dict[str, tuple[str, str]] = {
     "stage": ("1", "stage of the load"),
 }
 
-#: Quantities that rows have where they are asked for: unit and meaning.
+#: Optional quantities of a row: unit and meaning.
 QUANTITIES: dict[str, tuple[str, str]] = {name: (unit, words) for name, unit, words, _ in _core.quantities()}
 #: Those of them with a number for each bin: names of dimension and ends, unit and meaning of what is counted.
 HISTOGRAMS: dict[str, tuple[str, str, str, str]] = {
@@ -75,7 +75,7 @@ class Result:
 
     `time` [s], `load` [N], `approach` [m], `contact_area`, `contact_area_corrected`, `capped_area` [m^2],
     `contact_fraction`, `mean_pressure`, `max_pressure` [Pa], `mean_gap` [m], `iterations`, `convolutions`, `residual`,
-    `certificate`, `time_error`, `stage` are attributes, and so are the quantities that were asked for. The first row is
+    `certificate`, `time_error`, `stage` are attributes, and so are the requested quantities. The first row is
     the state right after t = 0.
     """
 
@@ -113,7 +113,7 @@ class Result:
         if name in QUANTITIES:
             if table is not None and name in self.__dict__.get("_histograms", {}):
                 raise AttributeError(f"{name!r} has a number for each bin: use histogram({name!r})")
-            raise AttributeError(f"the result has no {name!r}, as it was not asked for: quantities=[{name!r}]")
+            raise AttributeError(f"the result has no {name!r}, because it was not requested: quantities=[{name!r}]")
         raise AttributeError(f"a result has no {name!r}; it has {', '.join(ROW)}, field(name, time=...) and plot")
 
     def __dir__(self) -> list[str]:
@@ -150,14 +150,14 @@ class Result:
 
     @property
     def quantities(self) -> list[str]:
-        """Names of the quantities that were asked for."""
+        """Names of the requested quantities."""
         return [*(name for name in self._table if name in QUANTITIES), *self._histograms]
 
     def histogram(self, name: str) -> tuple[Floats, Floats]:
         """Ends of the bins, and the numbers of all rows, shape (rows, bins), of "spot_histogram" (number of spots per class of
         area [m^2]), "pressure_histogram" or "gap_histogram" (probability densities [1/Pa], [1/m])."""
         if name not in self._histograms:
-            raise CaseError(f"the histogram {name!r} was not asked for; kept: {', '.join(self._histograms) or 'none'}")
+            raise CaseError(f"the histogram {name!r} was not requested; kept: {', '.join(self._histograms) or 'none'}")
         return self._histograms[name]
 
     @property
@@ -166,7 +166,7 @@ class Result:
         return self._field_times.copy()
 
     def cycles(self, frequency: float, *, start: float = 0.0) -> list[Cycle]:
-        """What each full period 1/`frequency` [Hz] from `start` [s] on tells of the contact: energy, stiffness, loss angle.
+        """Dissipated energy, stiffness and loss angle of each full period 1/`frequency` [Hz] from `start` [s] on.
 
         The energy is the area of the hysteresis loop, the integral of W dw over the period; stiffness and loss angle are modulus and
         argument of the ratio of the first harmonics of load and approach (J. D. Ferry, Viscoelastic Properties of Polymers, 1980).
@@ -216,7 +216,7 @@ class Result:
         return gap
 
     def field(self, name: str, *, time: float | None = None, index: int | None = None) -> Floats:
-        """A field of shape (nx, ny) at the kept instant nearest to `time` [s], or of that number; default the last.
+        """A field of shape (nx, ny) at the stored time nearest to `time` [s], or with that index; default the last.
 
         "pressure" [Pa], "gap", "displacement", "flattening" [m], "contact" (0 out of contact, 1 in contact, 2 at the hardness).
         """
@@ -334,7 +334,7 @@ class Result:
         if kept == 0:
             raise CaseError("no fields were kept")
         if time is not None and index is not None:
-            raise CaseError("give time or index, one of them")
+            raise CaseError("give time or index, exactly one of them")
         if time is not None:
             distance = np.abs(self.field_times - number("time", time))
             # Of two at the same time, before and after a jump, the later.
@@ -342,7 +342,7 @@ class Result:
         if index is None:
             return kept - 1
         if not -kept <= index < kept:
-            raise CaseError(f"index is {index}, but fields were kept at {kept} instants")
+            raise CaseError(f"index is {index}, but fields were kept at {kept} times")
         return int(index) % kept
 
     def _one(self, name: str, index: int) -> Floats:
@@ -365,7 +365,7 @@ def _centres(cells: int, length: float) -> Floats:
 
 
 def open(path: str | os.PathLike[str]) -> Result:
-    """Opens a result on disk, finished or not; its fields are read when they are asked for."""
+    """Opens a result on disk, finished or not; its fields are read when they are used."""
     store = _core.Store(os.fspath(path))
     attributes: dict[str, Any] = json.loads(store.attributes)
     nx, ny = store.size

@@ -1,4 +1,4 @@
-"""Marches through time: from numpy to a result in memory, or from a case file to one on disk."""
+"""Contacts over time: from numpy to a result in memory, or from a case file to a result on disk."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ from ._surface import as_surface
 class Step:
     """The state after one row of a march: its numbers as attributes, its fields as arrays.
 
-    `time`, `load`, `approach`, `contact_area`, ... as in results. A view: once the march has gone on, its fields can no
-    longer be read.
+    `time`, `load`, `approach`, `contact_area`, ... as in results. A step is a view: when the march has moved on, its fields can
+    no longer be read.
     """
 
     def __init__(self, march: March, row: dict[str, Any], index: int) -> None:
@@ -47,7 +47,7 @@ class Step:
         """The field "pressure" [Pa], "gap", "displacement", "flattening" [m] or "contact" (0, 1, 2), shape (nx, ny), as a new
         array."""
         if self._march._core.done != self._index + 1:
-            raise CaseError(f"the march has gone on from row {self._index}: read fields before the next row")
+            raise CaseError(f"the march has moved on from row {self._index}: read fields before the next row")
         values: Floats = self._march._core.field(name)
         return values
 
@@ -76,7 +76,7 @@ class Step:
 
 
 class March:
-    """A simulation that goes on row by row: iterate over it for its :class:`Step` s. Made by :func:`march`."""
+    """A simulation that is solved step by step: iterate over it for its :class:`Step` s. Made by :func:`march`."""
 
     def __init__(self, core: _core.March, initial_gap: Floats, size: tuple[float, float], setup: dict[str, Any]) -> None:
         self._core = core
@@ -87,7 +87,7 @@ class March:
         self._setup = setup
 
     def __len__(self) -> int:
-        """Rows in all, as far as they are known: adaptive steps find theirs as they go."""
+        """Number of rows, as far as it is known: with adaptive steps it is not known in advance."""
         return len(self._core)
 
     @property
@@ -151,7 +151,7 @@ def march(
     given = {"load": load, "pressure": pressure, "approach": approach}
     if stages is not None:
         if any(value is not None for value in given.values()):
-            raise CaseError("give load, pressure, approach or stages, one of them")
+            raise CaseError("give load, pressure, approach or stages, exactly one of them")
         programme = list(stages)
         if not programme or not all(isinstance(stage, Stage) for stage in programme):
             raise CaseError("stages is a list of asperity.Stage, one at least")
@@ -242,30 +242,30 @@ def solve(
     ----------
     surface : Surface, or heights [m] as array (nx, ny) with `size`, or a SurfaceTopography or xarray array
     material : the deformable body, or a pair of them
-    times : instants that are solved: uniform, log, adaptive, listed, or a sequence [s]; breaks of the history are added
+    times : times to solve for: uniform, log, adaptive, listed, or a sequence [s]; breaks of the history are added
     load, pressure, approach : what is prescribed [N], [Pa] or [m]: a history, or a number for a step
-    stages : instead, a list of :class:`Stage` s: control that switches at a time or an event
-    hardness : largest pressure [Pa], of all cells or as array (nx, ny); else that of the materials
+    stages : instead, a list of :class:`Stage` s: the control switches at a time or at an event
+    hardness : largest pressure [Pa], for all cells or as array (nx, ny); default: that of the materials
     boundary : "free" (half-space) or "periodic"
-    temperature : of the run [K], or its (time [s], temperature [K]) points, straight in between and held after the last;
-        of every material that has a shift and no temperature of its own
+    temperature : of the run [K], or (time [s], temperature [K]) points, linear in between and held after the last; it applies
+        to every material that has a shift and no temperature of its own
     scheme : "linear" (second order), "constant" (SC17) or "direct" (full hereditary sum)
     method : "projected-cg" or "polonsky-keer"
-    plasticity : what flattening at the hardness leaves: "cap" (nothing) or "accumulate" (it stays, as the field "flattening")
-    quantities : numbers of each row besides: "contact_stiffness", "contact_spots", "largest_spot", "mean_spot",
+    plasticity : what remains of flattening on unloading: "cap" (nothing) or "accumulate" (all of it; field "flattening")
+    quantities : optional numbers of each row: "contact_stiffness", "contact_spots", "largest_spot", "mean_spot",
         "contact_perimeter", "rms_gap", "elastic_energy", "dissipated_energy", "flattening_work", "external_work", and
         "spot_histogram", "pressure_histogram", "gap_histogram" of that many `bins` up to `largest_pressure` [Pa] (by default the
         hardness) and `largest_gap` [m] (by default that of the undeformed gap)
-    fields : those that are kept: "pressure", "gap", "displacement", "contact", "flattening"
-    every : rows whose fields are kept: every so many, besides the first and last; default every row up to 20 of them
-    field_times : instead, times at which they are kept [s], which become steps
-    progress : a line with the progress; default: in terminals and notebooks
+    fields : fields to keep: "pressure", "gap", "displacement", "contact", "flattening"
+    every : keep the fields of every n-th row, and of the first and the last; default: of every row, up to 20 rows
+    field_times : instead, times at which fields are kept [s]; each becomes a step
+    progress : show a line with the progress; default: in terminals and notebooks
     on_step : called with each Step
 
     Raises
     ------
     CaseError : the input is wrong
-    ConvergenceError : a step was not solved to the tolerance; its `best` holds the state reached
+    ConvergenceError : a step was not solved to the tolerance; its `best` is the best state that was found
 
     Returns
     -------
@@ -276,7 +276,7 @@ def solve(
         raise CaseError(f"fields holds {unknown[0]!r}, but may hold {', '.join(FIELDS)}")
     wanted = None if field_times is None else line("field_times", field_times)
     if wanted is not None and every is not None:
-        raise CaseError("give every or field_times, one of them")
+        raise CaseError("give every or field_times, exactly one of them")
     run = march(
         surface,
         material,
@@ -368,9 +368,9 @@ def run(
     case : path of a case file; or its text (of several lines), or its keys as a dictionary, with files relative to the
         working directory
     set : changed keys of the case: ``{"load.history.value": "2 N"}``
-    output : where the result goes; default: what the case says, or its name with .zarr
+    output : path of the result; default: `output.path` of the case, or its name with .zarr
     force : replace a result that is there
-    resume : go on with the stopped run whose result is there; Ctrl-C leaves a readable one
+    resume : continue a stopped run from its result; Ctrl-C leaves a readable result
     progress : a line with the progress; default: in terminals and notebooks
     on_row : called with the numbers of each row, the rows done, and those in all
 

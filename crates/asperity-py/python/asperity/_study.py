@@ -54,36 +54,36 @@ def study(
     case : path, text or dictionary of a case as in :func:`run`; or a dictionary of the parameters of :func:`solve`; or
         a function that takes the parameters of a point and returns a :class:`Result`
     over : values by parameter; the study solves every combination. Parameters of a case are dotted keys,
-        ``{"load.history.value": ["0.1 N", "0.5 N"]}``. Values that are no numbers or text (materials, surfaces) are best
-        given with labels: ``{"material": {"soft": ..., "hard": ...}}``. Or a list of points, each a dictionary.
-    zip : the first values of all parameters are the first point, and so on, instead of every combination
-    folder : where the result of every point is kept. A study that is called again finds what is done, goes on with what
-        was stopped, and solves what is new. Without it nothing is kept but the dataset.
+        ``{"load.history.value": ["0.1 N", "0.5 N"]}``. Give values that are neither numbers nor text (materials,
+        surfaces) with labels: ``{"material": {"soft": ..., "hard": ...}}``. Or a list of points, each a dictionary.
+    zip : combine the first values of all parameters to the first point, and so on, instead of every combination
+    folder : where the result of every point is stored. When a study is called again, finished points are read from it,
+        stopped ones continue, and new ones are solved. Without a folder only the dataset is kept.
     fields : fields that become part of the dataset: "pressure", "gap", "displacement", "contact", "flattening"
-    workers : processes; default: as many as there are processors, or points
-    threads : threads of each; default: what makes workers times threads the number of processors
-    client : a ``dask.distributed.Client``: its workers solve the points, each with its own number of threads; a `folder`,
-        and files that the case names, must be where they can reach them
-    retry : solve again what had failed
-    progress : a line with the progress; default: in terminals and notebooks
+    workers : number of processes; default: the number of processors, or of points if that is smaller
+    threads : threads of each process; default: the number of processors divided by the number of workers
+    client : a ``dask.distributed.Client``, whose workers solve the points, each with its own number of threads; they must be
+        able to read the `folder` and the files that the case names
+    retry : solve failed points again
+    progress : show a line with the progress; default: in terminals and notebooks
 
     Returns
     -------
     xarray.Dataset : the numbers of all rows with dimensions (parameters..., step), NaN beyond the last row of a point;
-        `time` of each step, of all points or of each; `steps` (number of rows), `status` ("complete" or "failed") and
-        `error` (why) of each point. A parameter that is called as one of them has "_given" at its end. Points that
-        are no product have the dimension `point`.
+        `time` of each step, common to all points or for each; `steps` (number of rows), `status` ("complete" or "failed") and
+        `error` (the reason) of each point. A parameter with the same name as one of these gets the suffix "_given". Points that
+        are not all combinations have the dimension `point`.
 
     Raises
     ------
-    CaseError : parameters or case are wrong as a whole. A point that fails is no error: it says so in the dataset.
+    CaseError : the parameters or the case are wrong. A single point that fails raises nothing; see `status` and `error`.
 
     Notes
     -----
-    Every point has the same numbers as a run by itself, to the last bit, whatever the number of workers and threads.
-    Ctrl-C stops within one iteration of the solver; what is done is in the `folder`. A point of a case goes on from
-    its last checkpoint, one of :func:`solve` or a function from its beginning. A point is known again by its settings
-    and by all that the points share: the text of the case and the files that it names, or arguments and code of the function.
+    Every point has the same numbers as a single run, to the last bit, for any number of workers and threads. Ctrl-C stops
+    within one iteration of the solver; finished points are in the `folder`. A stopped point of a case continues from its last
+    checkpoint, one of :func:`solve` or of a function starts again. A point in the folder is identified by its settings and by
+    everything that the points share: the text of the case and the files that it names, or arguments and code of the function.
 
     Examples
     --------
@@ -120,7 +120,7 @@ def study(
     names = [point.name for point in points]
     if len(set(names)) < len(names):
         twice = next(n for n, name in enumerate(names) if name in names[:n])
-        raise CaseError(f"the point {label_all(points[twice].settings)} is there twice")
+        raise CaseError(f"the point {label_all(points[twice].settings)} appears twice")
 
     done: dict[int, Solved] = {}
     if place is not None:
@@ -158,7 +158,7 @@ class _Plan:
             if zipped:
                 if len(set(lengths)) > 1:
                     told = ", ".join(f"{name} {n}" for name, n in _pairs(self.names, lengths))
-                    raise CaseError(f"zip needs as many values of every parameter; there are: {told}")
+                    raise CaseError(f"zip needs the same number of values for every parameter; there are: {told}")
                 rows: Any = _pairs(*columns.values())
                 self.shape: tuple[int, ...] = (lengths[0],)
             else:

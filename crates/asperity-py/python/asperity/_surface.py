@@ -85,7 +85,7 @@ class Surface:
         """The surface after steps in the words of ``asperity surface process --op``, done in order.
 
         ``level=plane``, ``fill=harmonic share=0.25``, ``crop cells=512,512 from=0,0``, ``filter longest=40um``, ... The
-        methods below say the same one by one. Each step is recorded in :attr:`history`.
+        methods below do the same steps one by one. Each step is recorded in :attr:`history`.
 
         >>> import asperity as asp, numpy as np
         >>> tilted = asp.Surface(np.add.outer(np.arange(10.0), np.arange(8.0)), size=(10e-6, 8e-6))
@@ -123,7 +123,7 @@ class Surface:
         or the smallest rectangle that holds every defined point."""
         given = [name for name, value in (("cells", cells), ("size", size), ("defined", defined or None)) if value is not None]
         if len(given) != 1:
-            raise CaseError(f"give cells, size or defined=True, one of them; given: {', '.join(given) or 'none'}")
+            raise CaseError(f"give cells, size or defined=True, exactly one of them; given: {', '.join(given) or 'none'}")
         if defined:
             return self.process("crop defined=true")
         if cells is not None:
@@ -171,7 +171,7 @@ class Surface:
     def statistics(
         self, *, periodic: bool | None = None, longest: float | None = None, shortest: float | None = None
     ) -> dict[str, float]:
-        """What ``asperity surface info`` tells of the heights as they are.
+        """The statistics of ``asperity surface info`` of the heights as they are.
 
         Parameters
         ----------
@@ -243,10 +243,10 @@ class Surface:
         return f"<b>Surface</b>, {self.cells[0]} x {self.cells[1]} cells<table>{rows}</table>"
 
     def write(self, path: str | os.PathLike[str], *, format: str | None = None, force: bool = False) -> None:
-        """Writes NPZ, GWY, X3P, SDF, NetCDF or text, as the path's ending or `format` says."""
+        """Writes NPZ, GWY, X3P, SDF, NetCDF or text, selected by the path's extension or by `format`."""
         path = os.fspath(path)
         if not force and os.path.exists(path):
-            raise FileExistsError(f"{path} is there already; name another file or give force=True")
+            raise FileExistsError(f"{path} already exists; choose another file or give force=True")
         form = format or os.path.splitext(path)[1].lstrip(".")
         _core.write_surface(path, self.heights, list(self.size), form, self.history)
 
@@ -266,7 +266,7 @@ class Surface:
         ----------
         path : text matrix, CSV, XYZ, NPY, NPZ, NetCDF, HDF5, SDF, X3P, SUR, GWY, AL3D, OPD, BCR; also packed by gzip
         size : lengths along x and y [m], needed where the file holds none
-        height_unit : what a number of the file is worth [m], needed where the file does not say
+        height_unit : unit of the numbers in the file [m], needed if the file does not state it
         channel : which one, by name or number, where the file holds several
         level, fill : as the methods of that name; by default the heights are as measured, undefined points NaN
         """
@@ -304,7 +304,7 @@ class Surface:
         The spectrum is flat from wavelength `longest` to `roll_off` and falls as q^(-2 - 2 hurst) to `shortest` [m].
         The rms gradient, or the rms height [m], is exact. With a lay the waves are `lay_ratio` times longer along the
         direction `lay_angle` [rad from x towards y]; with `skewness` or `kurtosis` the heights are distributed so, exactly,
-        and the spectrum is met as nearly as that allows.
+        and the spectrum is as close as that allows.
 
         >>> import asperity as asp
         >>> surface = asp.Surface.self_affine(cells=(64, 64), size=(1e-3, 1e-3), hurst=0.8, rms_height=1e-6,
@@ -381,7 +381,7 @@ class Surface:
     ) -> Surface:
         """A flat circle of that radius, or rectangle of those sides [m]; cells outside cannot touch."""
         if (radius is None) == (sides is None):
-            raise CaseError("give radius or sides, one of them")
+            raise CaseError("give radius or sides, exactly one of them")
         numbers = [number("radius", radius)] if sides is None else list(pair("sides", sides))
         return _shape("flat-punch", numbers, center, cells, size)
 

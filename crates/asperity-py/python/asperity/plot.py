@@ -68,15 +68,15 @@ class Plots:
         return ax
 
     def pressure(self, *, time: float | None = None, ax: Any = None) -> Any:
-        """Map of the pressure at the kept instant nearest to `time` [s]; default the last."""
+        """Map of the pressure at the stored time nearest to `time` [s]; default the last."""
         return self._map("pressure", "Pa", "inferno", time, ax)
 
     def gap(self, *, time: float | None = None, ax: Any = None) -> Any:
-        """Map of the gap at the kept instant nearest to `time` [s]; default the last."""
+        """Map of the gap at the stored time nearest to `time` [s]; default the last."""
         return self._map("gap", "m", "viridis", time, ax)
 
     def displacement(self, *, time: float | None = None, ax: Any = None) -> Any:
-        """Map of the displacement at the kept instant nearest to `time` [s]; default the last."""
+        """Map of the displacement at the stored time nearest to `time` [s]; default the last."""
         return self._map("displacement", "m", "viridis", time, ax)
 
     def contact(self, *, time: float | None = None, ax: Any = None) -> Any:

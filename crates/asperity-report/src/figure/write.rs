@@ -36,7 +36,7 @@ pub enum FigureError {
         path: PathBuf,
     },
     /// There is something at the path.
-    #[error("{} is there already; name another file or give --force", path.display())]
+    #[error("{} already exists; choose another file or use --force", path.display())]
     Exists {
         /// The path.
         path: PathBuf,

@@ -53,7 +53,7 @@ pub enum ReportError {
     #[error(transparent)]
     Store(#[from] StoreError),
     /// There is a file already.
-    #[error("{} is there already; name another file or give --force", .0.display())]
+    #[error("{} already exists; choose another file or use --force", .0.display())]
     Exists(PathBuf),
     /// The system refuses.
     #[error("cannot write {}: {source}", path.display())]

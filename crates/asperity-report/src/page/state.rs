@@ -33,7 +33,7 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
     let note = match maps.block {
         1 => String::new(),
         block => format!(
-            "Maps show means over {block} × {block} cells (of the contact state: the commonest) of {} × {}.",
+            "Maps show means over {block} × {block} cells (of the contact state: the most frequent value) of {} × {}.",
             grid.cells()[0],
             grid.cells()[1]
         ),
@@ -102,8 +102,8 @@ fn status(reader: &Reader) -> String {
     let state = match reader.status() {
         Status::Complete => return format!("complete, {rows} rows"),
         Status::Running if reader.is_being_written() => "running",
-        Status::Running => "incomplete: its run was killed (go on with asperity run --resume)",
-        Status::Interrupted => "incomplete: its run was interrupted (go on with asperity run --resume)",
+        Status::Running => "incomplete: its run was killed (continue with asperity run --resume)",
+        Status::Interrupted => "incomplete: its run was interrupted (continue with asperity run --resume)",
         Status::Failed => "incomplete: its run failed",
     };
     let why = reader.work().message.as_ref().map_or(String::new(), |message| format!(": {message}"));
@@ -161,8 +161,8 @@ fn facts(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
     );
     line("Surfaces", names("surfaces"));
     line("Deformable bodies", names("bodies"));
-    line("Contact modulus at once, 1/C(0)", number("instantaneous_modulus", "Pa"));
-    line("Contact modulus relaxed, 1/C(∞)", number("relaxed_modulus", "Pa"));
+    line("Instantaneous contact modulus, 1/C(0)", number("instantaneous_modulus", "Pa"));
+    line("Relaxed contact modulus, 1/C(∞)", number("relaxed_modulus", "Pa"));
     let times = list("retardation_times").map(|list| {
         let times: Vec<f64> = list.filter_map(Value::as_f64).collect();
         match times[..] {

@@ -34,7 +34,7 @@ pub(super) fn surface(reader: &Reader) -> Result<Option<(Array2<f64>, Value)>, S
     ];
     if let Ok(slopes) = SlopeStatistics::of(&map) {
         lines.push(("Sdq, rms slope", quantity(slopes.sdq, "")));
-        lines.push(("Sdr, area in excess", format!("{} %", quantity(100.0 * slopes.sdr, ""))));
+        lines.push(("Sdr, developed area ratio", format!("{} %", quantity(100.0 * slopes.sdr, ""))));
     }
     let periodic = boundary(reader) == Boundary::Periodic;
     let spectrum = match (map.undefined(), periodic) {

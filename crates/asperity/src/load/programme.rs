@@ -168,7 +168,7 @@ impl Stage {
             return Err(Error::invalid(
                 "end",
                 "missing",
-                "a duration or an event (without, the stages after it never begin)",
+                "a duration or an event (otherwise the stages after it never begin)",
             ));
         }
         match self.until {

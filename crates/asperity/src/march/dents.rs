@@ -1,4 +1,4 @@
-//! Permanent flattening: the undeformed gap that changes with every row (docs/theory.md, "Flattening that stays").
+//! Permanent flattening: the undeformed gap that changes with every row (docs/theory.md, "Permanent flattening").
 //!
 //! A cell at the hardness ends a row with an overlap, h < 0. That much of it was pushed aside for good: it is added to
 //! the undeformed gap, h0 <- h0 - h, so that the cell ends the row just closed, h = 0, at p = H. The state stays a

@@ -29,15 +29,15 @@ pub enum Scheme {
     Direct,
 }
 
-/// What flattening at the hardness leaves behind.
+/// What remains of the flattening at the hardness after unloading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub enum Plasticity {
-    /// Nothing: the pressure is cut off at the hardness, and the overlap heals on unloading (SC17).
+    /// Nothing: the pressure is cut off at the hardness, and the flattening disappears on unloading (SC17).
     #[default]
     Cap,
-    /// A dent: after each row the overlap of the cells at the hardness is added to their undeformed gap and stays. Needs a
+    /// All of it: after each row the overlap of the cells at the hardness is added to their undeformed gap. Needs a
     /// hardness.
     Accumulate,
 }
@@ -60,7 +60,7 @@ pub struct Simulation {
     /// Cut-off of the pressure in each cell \[Pa\], finite, where it is not the same everywhere; where `hardness` is less,
     /// that holds.
     pub hardness_map: Option<Array2<f64>>,
-    /// What flattening at the cut-off leaves behind.
+    /// What remains of the flattening at the hardness after unloading.
     pub plasticity: Plasticity,
     /// What is prescribed; a [`Loading`] becomes a programme by `into()`.
     pub loading: Programme,

@@ -127,7 +127,7 @@ fn out_of_range(which: &str, error: &Error) -> Error {
     Error::invalid(
         format!("{which} function of the material"),
         format!("out of the range of floating-point numbers ({error})"),
-        "within it: check the moduli and times for absurd sizes",
+        "within that range: check the sizes of moduli and times",
     )
 }
 

@@ -13,7 +13,7 @@ use crate::material::refine;
 use crate::material::spectrum::{Kernel, Problem, Row, Spectrum};
 use crate::material::{Creep, CreepTerm, Relaxation, RelaxationTerm};
 
-/// What comes after the data: the behaviour at longer times.
+/// Behaviour at times longer than the data.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]

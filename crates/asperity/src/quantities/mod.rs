@@ -16,7 +16,7 @@
 //! | `gap_histogram` | 1/m | probability density of the gap of the open cells |
 //!
 //! What each costs and how it is derived: docs/theory.md ("Energy and other
-//! quantities of a row", "Flattening that stays"). A march takes them by
+//! quantities of a row", "Permanent flattening"). A march takes them by
 //! [`Simulation::quantities`](crate::Simulation::quantities) and lends them in [`Step::quantity`](crate::march::Step::quantity).
 
 mod histogram;
@@ -37,7 +37,7 @@ pub use stiffness::ContactStiffness;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
 #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
 pub enum Quantity {
-    /// Slope of load over approach under a small, sudden change, in N/m; some ten convolutions a row.
+    /// Slope of load over approach under a small, sudden change, in N/m; about ten convolutions per row.
     ///
     /// The bodies respond with their instantaneous compliance C(0+), as at the onset of unloading; infinite where that
     /// is 0, and in the full contact of a periodic body. Cells at the hardness carry no more, unless flattening stays:
@@ -56,7 +56,7 @@ pub enum Quantity {
     /// The border of a free domain does not count. A smooth contour without preferred direction is shorter by π/4
     /// (Yastrebov, Anciaux & Molinari 2017).
     ContactPerimeter,
-    /// Root of the mean square of the gap over the cells that can touch, in m.
+    /// Root mean square of the gap over the cells that can touch, in m.
     RmsGap,
     /// Energy stored in the springs of both bodies, in J.
     ElasticEnergy,

@@ -86,7 +86,7 @@ pub(super) fn balance() -> Result<Vec<Check>> {
 }
 
 pub(super) fn dents() -> Result<Vec<Check>> {
-    let mut checks = Checks::new("lasting-dents", "contact conditions of the dented surface");
+    let mut checks = Checks::new("lasting-dents", "contact conditions of the flattened surface");
     let capped = |plasticity, points: &[(f64, f64)], steps| -> Result<Simulation> {
         let history = History::Table { points: points.to_vec() };
         Ok(Simulation {
@@ -106,7 +106,7 @@ pub(super) fn dents() -> Result<Vec<Check>> {
     let reversible = super::rows(capped(Plasticity::Cap, &points, 12)?)?;
     let [peak, down, again, back] = [4, 6, 10, 12].map(|n| lasting.get(n).copied().unwrap_or_default());
     let [first, half] = [4, 2].map(|n| reversible.get(n).copied().unwrap_or_default());
-    // Solutions are unique: far above the solver's tolerance, far below what a dent makes.
+    // Solutions are unique: far above the solver's tolerance, far below the effect of flattening.
     checks.relative(
         "approach at the peak, as with the reversible cut-off",
         peak.approach,
@@ -115,7 +115,16 @@ pub(super) fn dents() -> Result<Vec<Check>> {
     );
     checks.relative("approach at the second peak, as at the first", back.approach, peak.approach, 1e-5);
     checks.relative("contact area at the second peak", back.contact_area, peak.contact_area, 1e-12);
-    checks.relative("approach at half the load, up again as down", again.approach, down.approach, 1e-5);
-    checks.absolute("deeper there than on the way up, over that", half.approach / again.approach, 0.97);
+    checks.relative(
+        "approach at half the load, reloading and unloading",
+        again.approach,
+        down.approach,
+        1e-5,
+    );
+    checks.absolute(
+        "approach at half the load, first loading over reloading",
+        half.approach / again.approach,
+        0.97,
+    );
     Ok(checks.list)
 }

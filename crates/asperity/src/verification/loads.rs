@@ -105,7 +105,7 @@ pub(super) fn adaptive() -> Result<Vec<Check>> {
     let error = held.iter().map(|row| (row.load / exact(row.time) - 1.0).abs()).fold(0.0, f64::max);
     checks.absolute(format!("load, {} steps, largest relative difference", held.len() - 1), error, tolerance);
     let crept = rows(Simulation { loading: step_load(0.01), ..base })?;
-    checks.absolute("steps under a held load, over the eighty allowed", (crept.len() - 1) as f64 / 80.0, 1.0);
+    checks.absolute("number of steps under a held load, over 80", (crept.len() - 1) as f64 / 80.0, 1.0);
     Ok(checks.list)
 }
 

@@ -155,7 +155,11 @@ impl<'a> Portrait<'a> {
         line("Sku", format!("{:.3}", h.sku), "kurtosis, 3 for a Gaussian surface");
         if let Some(slopes) = summary.slopes {
             line("Sdq", format!("{:.4}", slopes.sdq), "rms gradient");
-            line("Sdr", format!("{:.4} %", 100.0 * slopes.sdr), "developed area beyond the projected one");
+            line(
+                "Sdr",
+                format!("{:.4} %", 100.0 * slopes.sdr),
+                "developed area over projected area, minus 1",
+            );
         }
         if let Some(waves) = &summary.waves {
             let m = &waves.moments;

@@ -55,7 +55,7 @@ pub fn grid(
                 checks.push(|text| {
                     let mut error = words::missing_key(text, &domain.span, key);
                     error.message = format!(
-                        "{}: there are {} measured surfaces, so which one gives it must be said",
+                        "{}: there are {} measured surfaces, so it cannot be taken from one of them; give it",
                         error.message,
                         many.len()
                     );

@@ -43,7 +43,7 @@ pub fn prescription(
         ];
         for (key, span) in beside {
             if let Some(span) = span {
-                let message = format!("`{key}` does not go with `stages`, each of which has its own");
+                let message = format!("`{key}` cannot be combined with `stages`; each stage has its own");
                 checks.fault(span, message, "one of the two", Some("leave one of them out"));
                 return None;
             }
@@ -75,8 +75,9 @@ pub fn prescription(
     }
     let (control, at) = (raw.control.as_ref()?.value, raw.history.as_ref()?);
     if let raw::History::Hold(_) = at.value {
-        let help = "kind = \"hold\" belongs to a stage; to press from the start use kind = \"step\"";
-        checks.fault(&at.span, "nothing is there to be held".to_owned(), "another kind", Some(help));
+        let help =
+            "kind = \"hold\" is only possible in a stage; to apply a load from the start use kind = \"step\"";
+        checks.fault(&at.span, "there is no earlier value to hold".to_owned(), "another kind", Some(help));
         return None;
     }
     let (course, place) = course(checks, control, at, &mut files)?;
@@ -214,7 +215,7 @@ fn resolve(value: &Prescribed, control: Control) -> Result<f64, QuantityError> {
     }
     .map_err(|error| match (control, error.help) {
         (Control::Load | Control::Pressure, None) => {
-            let help = "the bodies do not adhere; to pull them apart prescribe the approach";
+            let help = "there is no adhesion; to pull the bodies apart prescribe the approach";
             QuantityError { expected: error.expected, help: Some(help.into()) }
         }
         (_, help) => QuantityError { expected: error.expected, help },
@@ -270,7 +271,7 @@ fn table_points(
         && *time != 0.0
     {
         good = false;
-        checks.wrong(&first.span, "a point at 0 s", Some("say what the value is at the start"));
+        checks.wrong(&first.span, "a point at 0 s", Some("give the value at the start"));
     }
     good.then_some((History::Table { points }, largest.1))
 }
@@ -305,14 +306,14 @@ fn bearable(
         _ => String::new(),
     };
     let message = format!(
-        "the history reaches {reached} {unit}, but the bodies bear at most {limit} {unit}, the hardness \
+        "the history reaches {reached} {unit}, but the bodies can carry at most {limit} {unit}, the hardness \
          {hardness} Pa{area}"
     );
     let help = "lower the load, raise the hardness or enlarge the domain";
     checks.fault(place, message, &format!("{limit} {unit} at most"), Some(help));
 }
 
-/// Bodies that do not yield at once cannot follow a jump: no state exists right after it.
+/// Without instantaneous compliance there is no solution right after a jump.
 fn jumps(
     checks: &mut Checks<'_, '_>,
     stage: &Stage,
@@ -329,8 +330,8 @@ fn jumps(
     let unit = unit(stage.control);
     let [t, before, after] = [t, before, after].map(number);
     let message = format!(
-        "the history jumps from {before} to {after} {unit} at t = {t} s, but the bodies do not yield at once \
-         (Kelvin-Voigt: no instantaneous compliance), so no state exists right after the jump"
+        "the history jumps from {before} to {after} {unit} at t = {t} s, but the bodies have no instantaneous \
+         compliance (Kelvin-Voigt), so there is no solution right after the jump"
     );
     let help = "use a ramp, or a material with an instantaneous modulus (zener, prony)";
     checks.fault(place, message, "a history without jumps", Some(help));

@@ -77,7 +77,7 @@ pub fn sample(checks: &mut Checks<'_, '_>, at: &At<raw::Material>) -> Option<Sam
         ShiftRequest::Given(shift) => Some(shift),
         ShiftRequest::Estimate(_) => {
             let place = shift.map_or(span, |at| &at.span);
-            let message = "only a file that holds several temperatures tells its own shift".to_owned();
+            let message = "a shift can be estimated only from a file with several temperatures".to_owned();
             checks.fault(place, message, "wlf, arrhenius or table", Some("give the constants of the shift"));
             return None;
         }
@@ -325,8 +325,7 @@ fn one_form(text: &Text<'_>, span: &Range<usize>, wanted: &str, given: &str, str
         strays => format!(" and not `{}`", strays.join("` or `")),
     };
     let message = format!("{path} must have `{wanted}`{not}, because {why}");
-    let help =
-        "with `equilibrium` go `modulus` or `ratio` (to it), with `instantaneous` goes `fraction` (of it)";
+    let help = "`equilibrium` takes terms with `modulus` or `ratio` (to it), `instantaneous` takes terms with `fraction` (of it)";
     text.error(span, path, Some(text.value(span)), wanted, Some(help.to_owned()), message)
 }
 
@@ -335,7 +334,7 @@ fn few_terms(checks: &mut Checks<'_, '_>, span: &Range<usize>, terms: usize) -> 
         return Some(());
     }
     let message = format!("the material has {terms} terms, but may have {MOST_TERMS}");
-    let help = "three terms per decade of time describe any measured material";
+    let help = "three terms per decade of time are enough for any measured material";
     checks.fault(span, message, "fewer terms", Some(help));
     None
 }

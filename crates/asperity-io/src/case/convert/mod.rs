@@ -90,8 +90,9 @@ pub fn case(
     }
     if adaptive && scheme != Scheme::Linear {
         let message =
-            "adaptive steps go with the scheme \"linear\", which their error estimate belongs to".to_owned();
-        let help = "leave `scheme` out, or take spacing = \"log\" with `steps`";
+            "adaptive steps need the scheme \"linear\", because their error estimate is derived for it"
+                .to_owned();
+        let help = "omit `scheme`, or use spacing = \"log\" with `steps`";
         checks.fault(&document.time.span, message, "scheme = \"linear\"", Some(help));
     }
     let fields = match (scheme, &pair) {

@@ -38,8 +38,7 @@ pub fn possible(
 ) {
     let lasting = plasticity(solver) == Plasticity::Accumulate;
     if let Some(at) = solver.plasticity.as_ref().filter(|_| lasting && !capped) {
-        let message =
-            "plasticity = \"accumulate\" flattens what is at the hardness, but no body has one".to_owned();
+        let message = "plasticity = \"accumulate\" needs a hardness, but no body has one".to_owned();
         checks.fault(
             &at.span,
             message,
@@ -49,7 +48,7 @@ pub fn possible(
     }
     let flattening = output.fields.iter().flatten().find(|at| at.value == FieldKind::Flattening);
     if let Some(at) = flattening.filter(|_| !lasting) {
-        let message = "the flattening does not stay with plasticity = \"cap\"".to_owned();
+        let message = "there is no permanent flattening with plasticity = \"cap\"".to_owned();
         checks.fault(&at.span, message, "another field", Some("set solver.plasticity = \"accumulate\""));
     }
     let top = output.histogram.as_ref().is_some_and(|histogram| histogram.value.pressure.is_some());
@@ -61,8 +60,9 @@ pub fn possible(
             checks.fault(&at.span, message, "an upper end of the pressure", Some(help));
         }
         if quantity.is_energy() && scheme == Scheme::Direct {
-            let message =
-                format!("{quantity} needs springs and dashpots, which scheme = \"direct\" does not know");
+            let message = format!(
+                "{quantity} needs the springs and dashpots of the material, which scheme = \"direct\" does not use"
+            );
             checks.fault(
                 &at.span,
                 message,
@@ -123,7 +123,7 @@ pub fn output(
 ) -> Option<Output> {
     let path = match &output.path {
         Some(path) if path.value.trim().is_empty() => {
-            checks.wrong(&path.span, "the path of a directory that the run makes", None);
+            checks.wrong(&path.span, "the path of a directory for the run to create", None);
             return None;
         }
         Some(path) => PathBuf::from(&path.value),

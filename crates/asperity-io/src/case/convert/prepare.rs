@@ -38,8 +38,8 @@ pub fn steps(checks: &mut Checks<'_, '_>, file: &File) -> Option<Vec<Step>> {
     for (key, span) in beside {
         if let Some(span) = span {
             clash = true;
-            let help = "put it into `process` as a step, at the place where it is to be done";
-            let message = format!("`{key}` stands beside `process`, which lists all steps itself");
+            let help = "add it to `process` as a step, in the order wanted";
+            let message = format!("`{key}` cannot be combined with `process`, which lists all steps");
             checks.fault(span, message, "either `process` or single keys", Some(help));
         }
     }

@@ -187,7 +187,7 @@ fn distribution(checks: &mut Checks<'_, '_>, at: &At<raw::Distribution>) -> Opti
         }
         (Some(_), ..) => {
             let help = "leave path out, or skewness and kurtosis";
-            let message = "`path` stands beside skewness or kurtosis".into();
+            let message = "`path` cannot be combined with skewness or kurtosis".into();
             checks.fault(&at.span, message, "one of them", Some(help));
             None
         }

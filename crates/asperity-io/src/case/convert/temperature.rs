@@ -80,7 +80,7 @@ fn table_points(
         match points.last() {
             None if time != 0.0 => {
                 good = false;
-                checks.wrong(&point.span, "a point at 0 s", Some("say how warm it is at the start"));
+                checks.wrong(&point.span, "a point at 0 s", Some("give the temperature at the start"));
             }
             Some((before, _)) if time < *before => {
                 good = false;

@@ -42,7 +42,7 @@ pub fn times(
         for (key, span) in beside {
             if let Some(span) = span {
                 alone = false;
-                let message = format!("`{key}` does not go with `times`, which lists every instant");
+                let message = format!("`{key}` cannot be combined with `times`, which lists every time");
                 checks.fault(span, message, "one of the two", Some("leave one of them out"));
             }
         }
@@ -135,7 +135,7 @@ impl Steps<'_> {
         let count = steps.value.count();
         if count > MOST_STEPS {
             let expected = format!("{MOST_STEPS} at most");
-            let help = "one step is one contact problem; take fewer, or spacing = \"log\"";
+            let help = "one step is one contact problem; use fewer, or spacing = \"log\"";
             checks.wrong(&steps.span, &expected, Some(help));
             return None;
         }
@@ -168,8 +168,9 @@ impl Steps<'_> {
     ) -> Option<TimeGrid> {
         if let Some(steps) = self.steps {
             let message =
-                "`steps` does not go with spacing = \"adaptive\", which finds their number".to_owned();
-            let help = "leave `steps` out, and set `tolerance`";
+                "`steps` cannot be combined with spacing = \"adaptive\", which determines their number"
+                    .to_owned();
+            let help = "omit `steps` and set `tolerance`";
             checks.fault(&steps.span, message, "one of the two", Some(help));
             return None;
         }

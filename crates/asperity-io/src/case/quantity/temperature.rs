@@ -52,7 +52,7 @@ impl Temperature {
             "" | "K" => Temperature::from_kelvin(value),
             "C" => Temperature::from_kelvin(celsius(value)),
             _ if CELSIUS.contains(&unit) => Temperature::from_kelvin(celsius(value)),
-            _ => Err(error(Some(format!("\"{unit}\" is no unit of temperature; units: K, °C")))),
+            _ => Err(error(Some(format!("\"{unit}\" is not a unit of temperature; units: K, °C")))),
         }
     }
 

@@ -23,7 +23,7 @@ pub struct Body {
     /// Cut-off for the pressure; none if not given. The softer body decides.
     #[schemars(example = "300 MPa")]
     pub hardness: Option<Pressure<Positive>>,
-    /// Cut-off for the pressure in each cell, from a file. With `hardness`, or one of the other body, the least holds.
+    /// Cut-off for the pressure in each cell, from a file. Of several hardnesses the smallest counts.
     #[schemars(example = serde_json::json!({ "path": "hardness.npy", "unit": "1 MPa" }))]
     pub hardness_file: Option<At<HardnessFile>>,
     /// Linear viscoelastic material.
@@ -39,7 +39,7 @@ pub struct HardnessFile {
     /// each y and values along x.
     #[schemars(example = "hardness.npy")]
     pub path: At<String>,
-    /// What one in the file is; 1 Pa if not given.
+    /// Unit of the numbers in the file; 1 Pa if not given.
     #[schemars(example = "1 MPa")]
     pub unit: Option<Pressure<Positive>>,
 }

@@ -35,26 +35,26 @@ pub struct Load {
 pub struct Stage {
     /// The prescribed quantity.
     pub control: Control,
-    /// Its value; the clock of the history starts with the stage.
+    /// Its value; the time of the history starts with the stage.
     #[schemars(example = serde_json::json!({ "kind": "hold" }))]
     pub history: At<History>,
-    /// The stage lasts no longer. Only the last stage needs neither `duration` nor `until`.
+    /// Longest duration of the stage. Every stage but the last needs `duration` or `until`.
     #[schemars(example = "10 s")]
     pub duration: Option<At<Duration<Positive>>>,
-    /// The stage ends where this happens: a value is crossed, from either side, or the contact is lost. Without
+    /// The stage ends when this happens: a value is crossed, from either side, or the contact is lost. Without
     /// `duration` it must happen before `time.end`.
     #[schemars(example = "contact-lost", example = serde_json::json!({ "approach": "2 um" }))]
     pub until: Option<At<Until>>,
-    /// Number of steps of the stage, in place of the instants of `[time]`; with `duration`.
+    /// Number of steps of the stage, instead of the times of `[time]`; with `duration`.
     #[schemars(example = 50)]
     pub steps: Option<At<Whole<1>>>,
-    /// How these steps are spread, or "adaptive" in place of `steps`; "uniform" if not given.
+    /// Spacing of these steps, or "adaptive" instead of `steps`; "uniform" if not given.
     pub spacing: Option<At<Spacing>>,
-    /// First instant of the stage after its start where the spacing is "log" or "adaptive"; as in `[time]` if not
+    /// First time of the stage after its start, if the spacing is "log" or "adaptive"; as in `[time]` if not
     /// given.
     #[schemars(example = "0.1 s")]
     pub first: Option<At<Duration<Positive>>>,
-    /// Where the spacing is "adaptive": as in `[time]`.
+    /// If the spacing is "adaptive": as in `[time]`.
     #[schemars(example = 1e-3)]
     pub tolerance: Option<At<Number<Positive>>>,
 }
@@ -63,7 +63,7 @@ pub struct Stage {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Until {
-    /// Bodies that touched touch no more.
+    /// The contact is lost.
     ContactLost,
     /// The approach crosses a value.
     #[schemars(example = "2 um")]
@@ -81,11 +81,11 @@ pub enum Until {
 #[serde(rename_all = "kebab-case")]
 #[schemars(tag = "kind")]
 pub enum History {
-    /// Applied at once and held.
+    /// Applied suddenly and held.
     Step(Step),
     /// Linear rise, then held.
     Ramp(Ramp),
-    /// What the quantity is when the stage starts, held; for stages.
+    /// The value at the start of the stage, held; only in stages.
     Hold(Hold),
     /// Linear rise and fall, then 0.
     Triangle(Triangle),
@@ -111,14 +111,14 @@ pub struct Step {
 #[serde(deny_unknown_fields)]
 pub struct Hold {}
 
-/// Where a ramp begins.
+/// Value at which a ramp starts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum From {
     /// At 0.
     #[default]
     Zero,
-    /// At what the quantity is when the stage starts.
+    /// At the value at the start of the stage.
     Current,
 }
 
@@ -128,7 +128,7 @@ pub struct Ramp {
     /// Value reached and held.
     #[schemars(example = "0.5 N")]
     pub value: At<Prescribed>,
-    /// Where the ramp begins; "zero" if not given.
+    /// Value at which the ramp starts; "zero" if not given.
     #[serde(default)]
     pub from: From,
     /// Time to reach it.
@@ -142,10 +142,10 @@ pub struct Triangle {
     /// Largest value.
     #[schemars(example = "0.5 N")]
     pub peak: At<Prescribed>,
-    /// Time up.
+    /// Duration of the rise.
     #[schemars(example = "10 s")]
     pub rise: Duration<Positive>,
-    /// Time down.
+    /// Duration of the fall.
     #[schemars(example = "10 s")]
     pub fall: Duration<Positive>,
 }
@@ -156,13 +156,13 @@ pub struct Trapezoid {
     /// Largest value.
     #[schemars(example = "0.5 N")]
     pub peak: At<Prescribed>,
-    /// Time up.
+    /// Duration of the rise.
     #[schemars(example = "10 s")]
     pub rise: Duration<Positive>,
-    /// Time at the peak.
+    /// Duration of the hold at the peak.
     #[schemars(example = "60 s")]
     pub hold: Duration<NonNegative>,
-    /// Time down.
+    /// Duration of the fall.
     #[schemars(example = "10 s")]
     pub fall: Duration<Positive>,
 }
@@ -173,7 +173,7 @@ pub struct Sine {
     /// Mean value.
     #[schemars(example = "0.5 N")]
     pub mean: At<Prescribed>,
-    /// Amplitude; not above the mean where a load or a pressure is prescribed.
+    /// Amplitude; not above the mean if a load or a pressure is prescribed.
     #[schemars(example = "0.2 N")]
     pub amplitude: At<Prescribed>,
     /// Frequency.
@@ -203,36 +203,36 @@ pub struct File {
     pub path: At<String>,
 }
 
-/// The instants of the solution.
+/// The times of the solution.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(rename = "Instants")]
 pub struct Time {
-    /// Last instant; with `steps`, spacing = "adaptive", or stages that have steps of their own.
+    /// End of the run; with `steps`, spacing = "adaptive", or stages that have steps of their own.
     #[schemars(example = "500 s")]
     pub end: Option<At<Duration<Positive>>>,
-    /// Number of steps from 0 to `end`; breaks and jumps of the history come on top.
+    /// Number of steps from 0 to `end`; breaks and jumps of the history are additional steps.
     #[schemars(example = 100)]
     pub steps: Option<At<Whole<1>>>,
-    /// How the steps are spread; "uniform" if not given.
+    /// Spacing of the steps; "uniform" if not given.
     pub spacing: Option<At<Spacing>>,
-    /// First instant after 0 where the spacing is "log" or "adaptive" (then also the first step after each break or
+    /// First time after 0 if the spacing is "log" or "adaptive" (then also the first step after each break or
     /// jump); if not given, a tenth of the shortest retardation time (of fractional models and fitted curves: 1e-4 of
-    /// the end), but not later than a uniform step, or a thousandth of the end where steps are adaptive.
+    /// the end), but not later than a uniform step, or a thousandth of the end if steps are adaptive.
     #[schemars(example = "0.1 s")]
     pub first: Option<At<Duration<Positive>>>,
-    /// Where the spacing is "adaptive": the largest error that the steps may leave, relative to the approach; 1e-3 if not
+    /// If the spacing is "adaptive": the largest error that the steps may leave, relative to the approach; 1e-3 if not
     /// given. A single step may add a quarter of it.
     #[schemars(example = 1e-3)]
     pub tolerance: Option<At<Number<Positive>>>,
-    /// The instants after 0 one by one, in place of `end` and `steps`.
+    /// List of the times after 0, instead of `end` and `steps`.
     #[schemars(example = ["1 s", "10 s", "100 s"])]
     pub times: Option<At<Vec<At<Duration<Positive>>>>>,
-    /// How the pressure goes over a step; "linear" if not given.
+    /// How the pressure varies over a step; "linear" if not given.
     pub scheme: Option<Scheme>,
 }
 
-/// How the steps are spread.
+/// Spacing of the steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Spacing {
@@ -240,6 +240,6 @@ pub enum Spacing {
     Uniform,
     /// Steps that grow by a constant factor.
     Log,
-    /// Steps as long as their error allows.
+    /// The length of each step follows its error.
     Adaptive,
 }

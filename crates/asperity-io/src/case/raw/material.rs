@@ -19,7 +19,7 @@ pub enum Material {
     Elastic(Elastic),
     /// Spring and dashpot in series: a fluid.
     Maxwell(Maxwell),
-    /// Spring and dashpot in parallel: no deformation at once.
+    /// Spring and dashpot in parallel: no instantaneous deformation.
     KelvinVoigt(KelvinVoigt),
     /// Standard linear solid: a spring in series with a Kelvin element.
     Zener(Zener),
@@ -83,12 +83,12 @@ macro_rules! models {
         #[serde(deny_unknown_fields)]
         pub struct $model {
             $($(#[$attribute])* pub $key: $kind,)*
-            /// How the times of the material depend on temperature; what is given holds at its reference.
+            /// How the times of the material depend on temperature; the given values are those at its reference.
             #[schemars(example = serde_json::json!(
                 { "model": "wlf", "c1": 8.86, "c2": "101.6 K", "reference": "20 °C" }))]
             pub shift: Option<At<Shift>>,
-            /// Temperature of this body during the run, where it is constant and its own; the section
-            /// [temperature] holds for all others.
+            /// Constant temperature of this body during the run; the section [temperature] applies to all
+            /// others.
             #[schemars(example = "60 °C")]
             pub temperature: Option<At<Temperature>>,
         }
@@ -121,13 +121,13 @@ models! {
     }
 
     Zener {
-        /// Young's modulus of the spring in series (the modulus at once); this or `shear`.
+        /// Young's modulus of the spring in series (the instantaneous modulus); this or `shear`.
         #[schemars(example = "2.1 GPa")]
         young: Option<Pressure<Positive>>,
         /// Young's modulus of the Kelvin element's spring; with `young`.
         #[schemars(example = "2.1 GPa")]
         young_kelvin: Option<Pressure<Positive>>,
-        /// Shear modulus of the spring in series (the modulus at once); this or `young`.
+        /// Shear modulus of the spring in series (the instantaneous modulus); this or `young`.
         #[schemars(example = "0.8 GPa")]
         shear: Option<Pressure<Positive>>,
         /// Shear modulus of the Kelvin element's spring; with `shear`.
@@ -162,11 +162,11 @@ models! {
     Prony {
         /// What the moduli measure: uniaxial tension or shear.
         modulus: Modulus,
-        /// Modulus after all relaxation, with absolute terms (`modulus`, `time`; 0 for a fluid) or with terms
+        /// Equilibrium modulus, with absolute terms (`modulus`, `time`; 0 for a fluid) or with terms
         /// relative to it (`ratio`, `time`).
         #[schemars(example = "1973 MPa")]
         equilibrium: Option<Pressure<NonNegative>>,
-        /// Modulus at once, with terms relative to it (`fraction`, `time`): the g_i of finite-element codes.
+        /// Instantaneous modulus, with terms relative to it (`fraction`, `time`): the g_i of finite-element codes.
         #[schemars(example = "2491.44 MPa")]
         instantaneous: Option<Pressure<Positive>>,
         /// The relaxing terms.
@@ -177,7 +177,7 @@ models! {
     Creep {
         /// What the compliances measure: uniaxial tension or shear.
         compliance: Modulus,
-        /// Compliance at once.
+        /// Instantaneous compliance.
         #[schemars(example = "4e-4 1/MPa")]
         instantaneous: Compliance<NonNegative>,
         /// The retarded terms.
@@ -226,16 +226,16 @@ models! {
     }
 
     FractionalZener {
-        /// Young's modulus after all relaxation; this or `shear_equilibrium`.
+        /// Young's modulus at equilibrium; this or `shear_equilibrium`.
         #[schemars(example = "3 MPa")]
         young_equilibrium: Option<Pressure<Positive>>,
-        /// Young's modulus at once; with `young_equilibrium`.
+        /// Instantaneous Young's modulus; with `young_equilibrium`.
         #[schemars(example = "3 GPa")]
         young_instantaneous: Option<Pressure<Positive>>,
-        /// Shear modulus after all relaxation; this or `young_equilibrium`.
+        /// Shear modulus at equilibrium; this or `young_equilibrium`.
         #[schemars(example = "1 MPa")]
         shear_equilibrium: Option<Pressure<Positive>>,
-        /// Shear modulus at once; with `shear_equilibrium`.
+        /// Instantaneous shear modulus; with `shear_equilibrium`.
         #[schemars(example = "1 GPa")]
         shear_instantaneous: Option<Pressure<Positive>>,
         /// Relaxation time.
@@ -253,13 +253,13 @@ models! {
         /// What the moduli measure: uniaxial tension or shear.
         modulus: Modulus,
         /// The text table, relative to the case file: one point per line, columns for time and modulus. Separator
-        /// and decimal mark are found; units stand in the header, as in "time [s]; E [MPa]".
+        /// and decimal mark are detected; units come from the header, as in "time [s]; E [MPa]".
         #[schemars(example = "relaxation.csv")]
         path: At<String>,
-        /// Which column is what, by number from 1 or by header; found from the header if not given.
+        /// The column of each quantity, by number from 1 or by header; taken from the header if not given.
         #[schemars(example = serde_json::json!({ "time": 1, "modulus": "E [MPa]" }))]
         columns: Option<At<RelaxationColumns>>,
-        /// Units of the columns, where the header names none or wrong ones.
+        /// Units of the columns, if the header does not name them or names wrong ones.
         #[schemars(example = serde_json::json!({ "time": "min", "modulus": "MPa" }))]
         units: Option<At<RelaxationUnits>>,
         /// How the Prony series is fitted.
@@ -271,13 +271,13 @@ models! {
         /// What the compliances measure: uniaxial tension or shear.
         compliance: Modulus,
         /// The text table, relative to the case file: one point per line, columns for time and compliance.
-        /// Separator and decimal mark are found; units stand in the header, as in "time [s]; D [1/MPa]".
+        /// Separator and decimal mark are detected; units come from the header, as in "time [s]; D [1/MPa]".
         #[schemars(example = "creep.csv")]
         path: At<String>,
-        /// Which column is what, by number from 1 or by header; found from the header if not given.
+        /// The column of each quantity, by number from 1 or by header; taken from the header if not given.
         #[schemars(example = serde_json::json!({ "time": 1, "compliance": "D [1/MPa]" }))]
         columns: Option<At<CreepColumns>>,
-        /// Units of the columns, where the header names none or wrong ones.
+        /// Units of the columns, if the header does not name them or names wrong ones.
         #[schemars(example = serde_json::json!({ "time": "min", "compliance": "1/MPa" }))]
         units: Option<At<CreepUnits>>,
         /// How the series is fitted.
@@ -289,14 +289,14 @@ models! {
         /// What the moduli measure: uniaxial tension or shear.
         modulus: Modulus,
         /// The text table, relative to the case file: one point per line, columns for frequency, storage modulus,
-        /// loss modulus or tan delta, and, where there are several temperatures, temperature. Separator and decimal
-        /// mark are found; units stand in the header, as in "f [Hz]; E' [MPa]; E'' [MPa]; T [°C]".
+        /// loss modulus or tan delta, and temperature if there are several. Separator and decimal mark are
+        /// detected; units come from the header, as in "f [Hz]; E' [MPa]; E'' [MPa]; T [°C]".
         #[schemars(example = "dma.csv")]
         path: At<String>,
-        /// Which column is what, by number from 1 or by header; found from the header if not given.
+        /// The column of each quantity, by number from 1 or by header; taken from the header if not given.
         #[schemars(example = serde_json::json!({ "frequency": 1, "storage": 2, "loss": "E'' [MPa]" }))]
         columns: Option<At<DmaColumns>>,
-        /// Units of the columns, where the header names none or wrong ones.
+        /// Units of the columns, if the header does not name them or names wrong ones.
         #[schemars(example = serde_json::json!({ "frequency": "rad/s", "storage": "MPa", "loss": "MPa" }))]
         units: Option<At<DmaUnits>>,
         /// How the Prony series is fitted.
@@ -309,13 +309,13 @@ models! {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PronyTerm {
-    /// Modulus of the term, where `equilibrium` is given.
+    /// Modulus of the term, with `equilibrium`.
     #[schemars(example = "254.776 MPa")]
     pub modulus: Option<Pressure<Positive>>,
-    /// Share of the modulus at once, where `instantaneous` is given.
+    /// Share of the instantaneous modulus, with `instantaneous`.
     #[schemars(example = 0.25)]
     pub fraction: Option<Number<Share>>,
-    /// Modulus of the term over that after all relaxation, where `equilibrium` is given and no moduli.
+    /// Modulus of the term over the equilibrium modulus, with `equilibrium` and without moduli.
     #[schemars(example = 2.5)]
     pub ratio: Option<Number<Positive>>,
     /// Relaxation time.
@@ -349,7 +349,7 @@ pub enum Column {
 /// Columns and units of the kinds of tables.
 macro_rules! tables {
     ($($columns:ident $units:ident { $($(#[$attribute:meta])* $key:ident: $column:literal, $unit:literal;)* })*) => {$(
-        /// Which column is what, by number from 1 or by header.
+        /// The column of each quantity, by number from 1 or by header.
         #[derive(Clone, Debug, Deserialize, JsonSchema)]
         #[serde(deny_unknown_fields)]
         pub struct $columns {
@@ -371,7 +371,7 @@ tables! {
         time: 1, "s";
         /// Relaxation modulus.
         modulus: 2, "MPa";
-        /// Temperature of the point, where the file holds several.
+        /// Temperature of the point, if the file has several.
         temperature: 3, "°C";
     }
     CreepColumns CreepUnits {
@@ -379,7 +379,7 @@ tables! {
         time: 1, "s";
         /// Creep compliance.
         compliance: 2, "1/MPa";
-        /// Temperature of the point, where the file holds several.
+        /// Temperature of the point, if the file has several.
         temperature: 3, "°C";
     }
     DmaColumns DmaUnits {
@@ -391,7 +391,7 @@ tables! {
         loss: 3, "MPa";
         /// Loss factor E''/E'; this or `loss`.
         tan_delta: 3, "%";
-        /// Temperature of the point, where the file holds several.
+        /// Temperature of the point, if the file has several.
         temperature: 4, "°C";
     }
 }
@@ -400,10 +400,10 @@ tables! {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Fit {
-    /// Most terms; as many as the data call for if not given.
+    /// Largest number of terms; as many as the data justify if not given.
     #[schemars(example = 12)]
     pub max_terms: Option<Whole<1>>,
-    /// Times per decade that the fit begins with; 3 if not given.
+    /// Times per decade at the start of the fit; 3 if not given.
     #[schemars(example = 3)]
     pub per_decade: Option<Number<Density>>,
     /// Decades of times beyond the data on either side; 1 if not given.
@@ -412,9 +412,9 @@ pub struct Fit {
     /// Largest relative misfit, over neighbouring points, before the data are refused; 0.1 if not given.
     #[schemars(example = 0.1)]
     pub max_misfit: Option<Number<Share>>,
-    /// What comes after the data; "free" if not given.
+    /// Behaviour at times longer than the data; "free" if not given.
     pub long_time: Option<LongTime>,
-    /// The part of the curve that is fitted: two times or, of a dma, two frequencies (after the shift, where there
+    /// The part of the curve that is fitted: two times or, for a dma, two frequencies (after the shift, if there
     /// are several temperatures); all of it if not given.
     #[schemars(example = ["0.1 s", "1000 s"])]
     pub window: Option<Two<At<Prescribed>>>,

@@ -37,7 +37,7 @@ use super::quantity::{Length, Whole};
 #[derive(Debug, JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct Document {
-    /// Title of the case, kept in the result.
+    /// Title of the case, stored in the result.
     #[schemars(example = "PMMA rough sphere, step load")]
     pub title: Option<String>,
     /// The computational domain: a rectangle of equal cells.
@@ -50,9 +50,9 @@ pub struct Document {
     pub body: Vec<At<Body>>,
     /// What presses the bodies together.
     pub load: At<Load>,
-    /// The instants of the solution.
+    /// The times of the solution.
     pub time: At<Time>,
-    /// The temperature of bodies whose material has a `shift`; they run at its reference if not given.
+    /// The temperature of bodies whose material has a `shift`; they are at its reference if not given.
     #[schemars(example = serde_json::json!({ "history": { "kind": "constant", "value": "60 °C" } }))]
     pub temperature: Option<At<Temperature>>,
     /// How each step is solved.
@@ -68,13 +68,13 @@ pub struct Document {
 #[serde(deny_unknown_fields)]
 pub struct Domain {
     /// Number of cells along x and y; any numbers, also not square and not powers of two. Those of the measured
-    /// surface if not given; needed where there is none.
+    /// surface if not given; needed without a measured surface.
     #[schemars(example = [1024, 1024])]
     pub cells: Option<At<Two<Whole<1>>>>,
-    /// Length of the domain along x and y. That of the measured surface if not given; needed where there is none.
+    /// Length of the domain along x and y. That of the measured surface if not given; needed without a measured surface.
     #[schemars(example = ["0.1 mm", "0.1 mm"])]
     pub size: Option<At<Two<Length<Positive>>>>,
-    /// What surrounds the domain; "free" if not given.
+    /// Boundary condition of the domain; "free" if not given.
     pub boundary: Option<Boundary>,
 }
 

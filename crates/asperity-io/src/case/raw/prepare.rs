@@ -9,7 +9,7 @@ use super::{At, Two};
 use crate::case::quantity::range::{Positive, Share};
 use crate::case::quantity::{Length, Number, Signed, Whole};
 
-/// One step of the preparation of a measured surface.
+/// One processing step of a measured surface.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 #[schemars(tag = "op")]
@@ -20,17 +20,17 @@ pub enum Operation {
     Fill(FillStep),
     /// Keep a rectangle.
     Crop(At<Crop>),
-    /// Other cells over the same rectangle.
+    /// Resample the same rectangle to another number of cells.
     Resample(ResampleStep),
-    /// Keep the wavelengths of a band; the surface is taken as periodic.
+    /// Keep the wavelengths of a band; the surface is treated as periodic.
     Filter(At<Filter>),
     /// Mirror along an axis.
     Flip(FlipStep),
-    /// Turn by quarter turns from x towards y.
+    /// Rotate by quarter turns from x towards y.
     Rotate(RotateStep),
     /// Change the sign of the heights.
     Invert(InvertStep),
-    /// Fade out towards the edges.
+    /// Multiply by a window that decreases to zero towards the edges.
     Window(At<Window>),
     /// Make spikes undefined.
     Outliers(Outliers),
@@ -39,7 +39,7 @@ pub enum Operation {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct LevelStep {
-    /// What is taken off; "plane" if not given.
+    /// What is subtracted; "plane" if not given.
     pub form: Option<Level>,
 }
 
@@ -60,13 +60,13 @@ pub struct Crop {
     /// Number of cells kept along x and y; this, `size` or `defined`.
     #[schemars(example = [512, 512])]
     pub cells: Option<Two<Whole<1>>>,
-    /// First cell kept along x and y, from 0; with `cells`. Not given: the middle of the surface is kept.
+    /// First cell kept along x and y, from 0; with `cells`. If not given, the middle of the surface is kept.
     #[schemars(example = [0, 0])]
     pub from: Option<Two<Whole<0>>>,
     /// Lengths kept along x and y, rounded to whole cells; this, `cells` or `defined`.
     #[schemars(example = ["0.2 mm", "0.2 mm"])]
     pub size: Option<Two<Length<Positive>>>,
-    /// Corner of the part kept, from the surface's corner; with `size`. Not given: the middle is kept.
+    /// Corner of the part kept, from the surface's corner; with `size`. If not given, the middle is kept.
     #[schemars(example = ["0 mm", "0.1 mm"])]
     pub corner: Option<Two<Length>>,
     /// true: the smallest rectangle that holds all defined points.
@@ -84,7 +84,7 @@ pub struct ResampleStep {
     pub cells: Option<Two<Whole<1>>>,
 }
 
-/// The wavelengths that are kept; one of `longest` and `shortest` at least.
+/// The wavelengths that are kept; give `longest`, `shortest` or both.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Filter {
@@ -101,7 +101,7 @@ pub struct Filter {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FlipStep {
-    /// The axis that changes its direction.
+    /// The axis along which the surface is mirrored.
     pub axis: Axis,
 }
 
@@ -136,7 +136,7 @@ pub enum WindowShape {
     /// (1 - cos(2 pi x/L))/2.
     #[default]
     Hann,
-    /// Hann's flanks over a share of the length, flat between.
+    /// Hann's flanks over a share of the length, flat in between.
     Tukey,
 }
 

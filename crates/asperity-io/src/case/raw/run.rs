@@ -25,10 +25,10 @@ pub struct Solver {
     /// Largest residual of a converged step, relative to the mean displacement; 1e-6 if not given.
     #[schemars(example = 1e-6)]
     pub tolerance: Option<Number<Tolerance>>,
-    /// Most iterations of one step.
+    /// Largest number of iterations of one step.
     #[schemars(example = 1000)]
     pub max_iterations: Option<Whole<1>>,
-    /// What flattening at the hardness leaves behind; "cap" if not given.
+    /// What remains of the flattening at the hardness after unloading; "cap" if not given.
     pub plasticity: Option<At<Plasticity>>,
 }
 
@@ -42,18 +42,18 @@ pub struct Output {
     /// The fields that are stored; ["pressure", "gap"] if not given, [] for none.
     #[schemars(example = ["pressure", "gap"])]
     pub fields: Option<Vec<At<FieldKind>>>,
-    /// Quantities that each row has besides load, approach and areas; ["all"] for all that the case allows.
+    /// Optional quantities of each row, in addition to load, approach and areas; ["all"] for all that the case allows.
     #[schemars(example = ["contact_stiffness", "contact_spots", "dissipated_energy"])]
     pub quantities: Option<Vec<At<Quantities>>>,
     /// Bins of the histograms among the quantities.
     #[schemars(example = serde_json::json!({ "bins": 50, "pressure": "300 MPa" }))]
     pub histogram: Option<At<Histogram>>,
     /// Fields are stored at the first row, at every n-th row after it and at the last row; if not given, n is
-    /// a tenth of the number of steps (10 where steps are adaptive). This or `times`.
+    /// a tenth of the number of steps (10 if steps are adaptive). This or `times`.
     #[schemars(example = 10)]
     pub every: Option<At<Whole<1>>>,
-    /// Instants at which fields are stored, besides the first and the last row; each becomes a step, or where steps are
-    /// adaptive the state there is interpolated. This or `every`.
+    /// Times at which fields are stored, in addition to the first and the last row. Each becomes a step; if steps are
+    /// adaptive the state there is interpolated instead. This or `every`.
     #[schemars(example = ["1 s", "10 s", "100 s"])]
     pub times: Option<At<Vec<At<Time<NonNegative>>>>>,
     /// Whether a run can be resumed; true if not given.
@@ -115,14 +115,14 @@ impl JsonSchema for Quantities {
     }
 }
 
-/// Bins of the histograms of pressure and gap; they begin at 0 and have one width.
+/// Bins of the histograms of pressure and gap; they begin at 0 and have equal widths.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Histogram {
     /// Number of bins, at most 10000; 50 if not given.
     #[schemars(example = 50)]
     pub bins: Option<At<Whole<1>>>,
-    /// Upper end of the pressure; the hardness if not given, needed where there is none.
+    /// Upper end of the pressure; the hardness if not given, needed without a hardness.
     #[schemars(example = "300 MPa")]
     pub pressure: Option<Pressure<Positive>>,
     /// Upper end of the gap; the largest undeformed gap if not given.

@@ -98,7 +98,7 @@ pub struct Wave {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SelfAffine {
-    /// A known roughness by its name; its numbers are the defaults of the other keys.
+    /// A published roughness by its name; its numbers are the defaults of the other keys.
     pub preset: Option<Preset>,
     /// Hurst exponent: the spectrum falls as q^(-2 (1 + hurst)). Needed without `preset`.
     #[schemars(example = 0.8)]
@@ -124,12 +124,12 @@ pub struct SelfAffine {
     /// How the heights are distributed; Gaussian if not given.
     #[schemars(example = serde_json::json!({ "skewness": -1, "kurtosis": 5 }))]
     pub distribution: Option<At<Distribution>>,
-    /// Number that picks the realisation.
+    /// Seed of the random numbers.
     #[schemars(example = 1)]
     pub seed: Whole<0>,
 }
 
-/// A known roughness.
+/// A published roughness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Preset {
@@ -138,7 +138,7 @@ pub enum Preset {
     ContactMechanicsChallenge,
 }
 
-/// The direction in which a surface was worked: the wavelengths hold across it.
+/// The direction in which a surface was worked. The given wavelengths are those across it.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Lay {
@@ -160,8 +160,8 @@ pub struct Distribution {
     /// Kurtosis Sku; 3 (Gaussian) if not given, from about 1.9 + 1.6 skewness^2 on.
     #[schemars(example = 5)]
     pub kurtosis: Option<Number<Positive>>,
-    /// A topography file whose levelled heights are distributed as wanted; instead of the other two. Its unit does
-    /// not matter.
+    /// A topography file whose levelled heights have the distribution wanted; instead of the other two. Its unit
+    /// does not matter.
     #[schemars(example = "measured.sur")]
     pub path: Option<At<String>>,
 }
@@ -170,35 +170,35 @@ pub struct Distribution {
 #[serde(deny_unknown_fields)]
 pub struct File {
     /// The file, relative to the case file: SUR, SDF, X3P, GWY, AL3D, OPD, BCR, NetCDF, HDF5, NPY, NPZ, XYZ, CSV or a
-    /// text matrix, found from the content.
+    /// text matrix, detected from the content.
     #[schemars(example = "roughness.sur")]
     pub path: At<String>,
-    /// Channel by name or by number (from 0), where the file has several; the first if not given.
+    /// Channel by name or by number (from 0), if the file has several; the first one with heights if not given.
     #[schemars(example = &"Topography")]
     pub channel: Option<Label>,
-    /// Physical size along x and y, where the file holds none.
+    /// Physical size along x and y, if the file does not state it.
     #[schemars(example = ["0.1 mm", "0.1 mm"])]
     pub size: Option<Two<Length<Positive>>>,
-    /// Unit of the heights, where the file holds none.
+    /// Unit of the heights, if the file does not state it.
     #[schemars(example = &"um")]
     pub height_unit: Option<At<String>>,
-    /// The rectangle kept.
+    /// The rectangle to keep.
     #[schemars(example = serde_json::json!({ "size": ["0.2 mm", "0.2 mm"] }))]
     pub crop: Option<At<Crop>>,
-    /// The axis that changes its direction: of two measured surfaces that face each other, one is seen from behind.
+    /// The axis along which the surface is mirrored: of two measured surfaces in contact, one is seen from behind.
     pub flip: Option<At<Axis>>,
     /// Quarter turns from x towards y.
     #[schemars(example = 1)]
     pub rotate: Option<At<Signed>>,
-    /// Whether the heights change their sign (a replica, or a file that shows the opposite body).
+    /// Whether to change the sign of the heights (a replica, or a file that shows the opposite body).
     #[schemars(example = false)]
     pub invert: Option<At<bool>>,
-    /// What is taken off the heights; "plane" if not given.
+    /// What is subtracted from the heights; "plane" if not given.
     pub level: Option<At<Level>>,
     /// Spikes to remove; none if not given. They become undefined, and `fill` fills them.
     #[schemars(example = serde_json::json!({ "threshold": 6, "radius": 2 }))]
     pub outliers: Option<At<Outliers>>,
-    /// What is done about undefined points; "harmonic" if not given.
+    /// What is done with undefined points; "harmonic" if not given.
     pub fill: Option<At<Fill>>,
     /// Largest share of undefined points that is filled; 0.25 if not given.
     #[schemars(example = 0.25)]
@@ -206,13 +206,13 @@ pub struct File {
     /// The wavelengths kept; all if not given.
     #[schemars(example = serde_json::json!({ "longest": "80 um", "shortest": "2.5 um" }))]
     pub filter: Option<At<Filter>>,
-    /// A window that fades the heights out towards the edges; none if not given.
+    /// A window by which the heights decrease to zero towards the edges; none if not given.
     #[schemars(example = serde_json::json!({ "shape": "tukey", "share": 0.1 }))]
     pub window: Option<At<Window>>,
-    /// How the heights come onto the cells of the domain, where it has others; without it they must agree.
+    /// How the heights are resampled if the domain has another number of cells; without it they must agree.
     pub resample: Option<At<Resampling>>,
-    /// The preparation as a list of steps in the order in which they are done, instead of the keys from `crop` to
-    /// `resample`: then exactly these steps are done, no levelling or filling besides.
+    /// The processing steps as a list, in the order in which they are done, instead of the keys from `crop` to
+    /// `resample`. Only these steps are done, without a default levelling or filling.
     #[schemars(example = serde_json::json!([{ "op": "level", "form": "plane" }, { "op": "fill", "method": "nearest" }]))]
     pub process: Option<At<Vec<At<Operation>>>>,
 }

@@ -16,9 +16,9 @@ pub enum Shift {
     Wlf(Wlf),
     /// ln a_T = (energy/R) (1/T - 1/reference).
     Arrhenius(Arrhenius),
-    /// Shift factors at temperatures, straight lines of log10 a_T in between.
+    /// A table of shift factors, with log10 a_T linear in between.
     Table(ShiftTable),
-    /// From the overlap of the sweeps of a file that holds several temperatures.
+    /// Estimated from the overlap of the sweeps of a file with several temperatures.
     Estimated(Estimated),
 }
 
@@ -31,7 +31,7 @@ pub struct Wlf {
     /// c2, a difference of temperatures.
     #[schemars(example = "101.6 K")]
     pub c2: TemperatureDifference<Positive>,
-    /// Reference temperature, at which the material holds as it is given.
+    /// Reference temperature, to which the given values of the material belong.
     #[schemars(example = "20 °C")]
     pub reference: Kelvin,
 }
@@ -42,7 +42,7 @@ pub struct Arrhenius {
     /// Activation energy.
     #[schemars(example = "120 kJ/mol")]
     pub energy: MolarEnergy<Positive>,
-    /// Reference temperature, at which the material holds as it is given.
+    /// Reference temperature, to which the given values of the material belong.
     #[schemars(example = "20 °C")]
     pub reference: Kelvin,
 }
@@ -50,7 +50,7 @@ pub struct Arrhenius {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ShiftTable {
-    /// Pairs [temperature, log10 a_T] in order of temperature; 0 where the material holds as it is given.
+    /// Pairs [temperature, log10 a_T] in order of temperature; 0 at the reference temperature.
     #[schemars(example = [("0 °C", 2.5), ("20 °C", 0.0), ("60 °C", -3.0)])]
     #[schemars(length(min = 2))]
     pub points: Vec<Two<Kelvin, Number>>,
@@ -82,7 +82,7 @@ pub enum TemperatureHistory {
     Constant(Constant),
     /// From one temperature to another, then held.
     Ramp(TemperatureRamp),
-    /// Straight lines between points; two points at one time are a jump; held after the last.
+    /// Linear between points, held after the last; two points at the same time are a jump.
     Table(TemperatureTable),
     /// The points of a table from a file of two columns, time and temperature.
     File(TemperatureFile),

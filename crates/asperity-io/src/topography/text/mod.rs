@@ -102,11 +102,7 @@ pub(super) fn detect(bytes: &[u8]) -> Option<Format> {
 /// The bytes as UTF-8 (or as an 8-bit code, which only concerns the header).
 fn decode(bytes: &[u8]) -> Result<Cow<'_, [u8]>, Problem> {
     encoding::utf8(bytes).ok_or_else(|| {
-        Problem::malformed(
-            "the file",
-            "binary",
-            "text; leave the format away to have it found from the content",
-        )
+        Problem::malformed("the file", "binary", "text; omit the format to have it detected from the content")
     })
 }
 

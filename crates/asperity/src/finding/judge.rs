@@ -47,20 +47,20 @@ pub struct Judge {
     grid: Grid,
     /// Found before the first row.
     known: Vec<Finding>,
-    /// Found in rows of an earlier session of the run.
-    earlier: Vec<Finding>,
     /// Whether contact at the border is looked for, and whether it would be confined by a larger domain.
     free: bool,
     confined: bool,
     /// Radius of the paraboloid that the gap is at the border \[m\].
     radius: Option<f64>,
     border: Option<[usize; 2]>,
-    /// Largest radius that a contact at the border would take \[m\].
+    /// Side of the domain that the contact would take \[m\].
     needed: f64,
     deepest: f64,
     resolution: Resolution,
     strain: Strain,
     balance: Balance,
+    /// What the balance was in an earlier session of the run.
+    earlier_balance: Option<Finding>,
 }
 
 impl Judge {
@@ -70,7 +70,6 @@ impl Judge {
         let free = *boundary == Boundary::Free;
         Judge {
             known: before(simulation, known),
-            earlier: vec![],
             free,
             confined: domain::confined(gap),
             radius: if free { domain::radius(grid, gap) } else { None },
@@ -80,6 +79,7 @@ impl Judge {
             resolution: Resolution::default(),
             strain: Strain::new(simulation, radius(known.parts)),
             balance: Balance::default(),
+            earlier_balance: None,
             grid: *grid,
         }
     }
@@ -87,11 +87,16 @@ impl Judge {
     /// Takes in the rows that an earlier session of the run stored, with what it found.
     pub fn resume(&mut self, rows: &[Row], found: &[Finding]) {
         rows.iter().enumerate().for_each(|(index, row)| self.take(index, row));
-        // What rows alone do not tell. Later rows are judged again.
-        let of_fields = |finding: &&Finding| [CONTACT_AT_BORDER, ENERGY_BALANCE].contains(&finding.code.as_ref());
-        for finding in found.iter().filter(of_fields) {
-            if let Some([first, last]) = finding.rows.filter(|at| at[0] < rows.len()) {
-                self.earlier.push(Finding { rows: Some([first, last.min(rows.len() - 1)]), ..finding.clone() });
+        // What rows alone do not tell; later rows are judged again.
+        for finding in found {
+            let Some([first, last]) = finding.rows.filter(|at| at[0] < rows.len()) else { continue };
+            match finding.code.as_ref() {
+                CONTACT_AT_BORDER => {
+                    self.border = Some([first, last.min(rows.len() - 1)]);
+                    self.needed = finding.limit.unwrap_or(0.0);
+                }
+                ENERGY_BALANCE => self.earlier_balance = Some(finding.clone()),
+                _ => {}
             }
         }
     }
@@ -102,7 +107,7 @@ impl Judge {
         if self.free && row.contact_area > 0.0 && domain::touches_border(step.pressure()) {
             self.border = Some(self.border.map_or([index; 2], |[first, _]| [first, index]));
             let compliance = step.simulation().compliance(row.time);
-            let needed = self.radius.map_or(0.0, |radius| match step.instant().control {
+            let needed = ROOM * self.radius.map_or(0.0, |radius| match step.instant().control {
                 Control::Approach => (radius * row.approach.max(0.0)).sqrt(),
                 Control::Load | Control::Pressure => (0.75 * radius * row.load * compliance).cbrt(),
             });
@@ -131,7 +136,7 @@ impl Judge {
     pub fn findings(&self, simulation: &Simulation) -> Vec<Finding> {
         let mut found = self.known.clone();
         if let Some([first, last]) = self.border {
-            let needed = (self.needed > 0.0).then_some(ROOM * self.needed);
+            let needed = (self.needed > 0.0).then_some(self.needed);
             let words = format!("In {} the contact", super::words::rows([first, last]));
             found.push(domain::at_border(&self.grid, self.confined, needed, &words).at([first, last]));
         }
@@ -140,31 +145,10 @@ impl Judge {
         if !found.iter().any(|finding| finding.code == LARGE_SLOPE) {
             found.extend(surface::near(&self.grid, &simulation.gap, self.deepest));
         }
-        found.extend(self.balance.finding());
-        for earlier in &self.earlier {
-            match found.iter_mut().find(|finding| finding.code == earlier.code) {
-                Some(finding) => join(finding, earlier),
-                None => found.push(earlier.clone()),
-            }
-        }
+        let balances = self.balance.finding().into_iter().chain(self.earlier_balance.clone());
+        found.extend(balances.reduce(|a, b| if b.value > a.value { b } else { a }));
         found
     }
-}
-
-/// Both findings of one code: the rows of both, the number of the worse.
-fn join(finding: &mut Finding, earlier: &Finding) {
-    let rows = match (finding.rows, earlier.rows) {
-        (Some(a), Some(b)) => Some([a[0].min(b[0]), a[1].max(b[1])]),
-        (a, b) => a.or(b),
-    };
-    let worse = match finding.code.as_ref() {
-        ENERGY_BALANCE => earlier.value > finding.value,
-        _ => earlier.limit > finding.limit,
-    };
-    if worse {
-        *finding = earlier.clone();
-    }
-    finding.rows = rows;
 }
 
 fn before(simulation: &Simulation, known: Known<'_>) -> Vec<Finding> {

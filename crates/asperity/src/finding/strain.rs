@@ -2,8 +2,10 @@
 //!
 //! The half-space is linear: it takes the contact as small against the radius, a/R, and strains as small. Two numbers
 //! tell: the approach over the contact radius, w/a, which is a/R of a paraboloid and a measure of the strain of any
-//! compact contact (K. L. Johnson, Contact Mechanics, 1985, section 3.5), and the largest pressure over the modulus that
-//! is left of it, ε(t) = ∫ C(t - s) dp_max(s). Hertz's contact has ε = 2a/(πR), so the two limits agree.
+//! compact contact (K. L. Johnson, Contact Mechanics, 1985, section 3.5), and the contact pressure over the modulus that
+//! is left of it, ε(t) = ∫ C(t - s) dp(s). Hertz's contact has ε = 2a/(πR), so the two limits agree. The pressure is the
+//! largest one, or that in the middle of a Hertzian contact of the same load and area, 3W/(2A), where that is less: at the
+//! edge of a punch the largest pressure is endless, and tells the size of the cells.
 
 use super::contact::Counted;
 use super::words::{digits, rows};
@@ -65,7 +67,9 @@ impl Strain {
 
     pub(super) fn see(&mut self, index: usize, row: &Row, contact: Counted) {
         let start = std::mem::replace(&mut self.time, row.time);
-        let strain: f64 = self.bodies.iter_mut().map(|body| body.strain([start, row.time], row.max_pressure)).sum();
+        let of_hertz = if row.contact_area > 0.0 { 1.5 * row.load / row.contact_area } else { 0.0 };
+        let pressure = row.max_pressure.min(of_hertz);
+        let strain: f64 = self.bodies.iter_mut().map(|body| body.strain([start, row.time], pressure)).sum();
         self.pressure.see(index, strain);
         if row.contact_area > 0.0 && row.approach > 0.0 {
             let width = match (contact.is_compact(), self.radius) {
@@ -94,7 +98,7 @@ fn wide(value: f64) -> String {
 }
 
 fn hard(value: f64) -> String {
-    format!("The largest pressure is {} of the contact modulus", digits(value))
+    format!("The contact pressure is {} of the contact modulus", digits(value))
 }
 
 fn large(value: f64, limit: f64, what: &str) -> Finding {

@@ -35,7 +35,6 @@ pub use expected::{Contact, Expected};
 pub use judge::{Judge, Known};
 pub use material::{beyond_data, misfit, unlikely_modulus};
 pub use surface::{hurst, of_heights};
-pub use words::si;
 
 /// How much a finding matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -1,14 +1,7 @@
 //! Numbers in the texts of findings.
 
 /// Three digits and a prefix: `si(2.5e-5, "m")` is "25 µm". Powers of a unit take no prefix.
-///
-/// ```
-/// use asperity::finding::si;
-/// assert_eq!(si(2.5e-5, "m"), "25 µm");
-/// assert_eq!(si(0.999999, "N"), "1 N");
-/// assert_eq!(si(0.0, "Pa"), "0 Pa");
-/// ```
-pub fn si(value: f64, unit: &str) -> String {
+pub(super) fn si(value: f64, unit: &str) -> String {
     const PREFIXES: [(&str, i32); 8] =
         [("n", -9), ("µ", -6), ("m", -3), ("", 0), ("k", 3), ("M", 6), ("G", 9), ("T", 12)];
     if value == 0.0 || !value.is_finite() {
@@ -44,6 +37,9 @@ mod tests {
 
     #[test]
     fn numbers_have_three_digits() {
+        assert_eq!(si(2.5e-5, "m"), "25 µm");
+        assert_eq!(si(0.999_999, "N"), "1 N");
+        assert_eq!(si(0.0, "Pa"), "0 Pa");
         assert_eq!(si(0.12345, "m"), "123 mm");
         assert_eq!(si(2e-13, "m"), "0.0002 nm");
         assert_eq!(si(1e17, "Pa"), "100000 TPa");

@@ -205,7 +205,7 @@ impl March {
         self.interrupt.store(false, Ordering::Relaxed);
         let march = self.march.get_mut().unwrap_or_else(PoisonError::into_inner);
         let (judge, last) = (&mut self.judge, &mut self.last);
-        let done = without_python(py, &self.interrupt, || {
+        let done = without_python(py, &self.interrupt, || -> asperity::Result<bool> {
             let Some(step) = march.advance()? else { return Ok(false) };
             let row = step.row();
             judge.see(&step, &row);

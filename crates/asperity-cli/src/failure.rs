@@ -12,6 +12,8 @@ pub enum Failure {
     Input(String),
     /// The solve failed.
     Solve(String),
+    /// Warnings, where they are to be errors.
+    Strict(usize),
     /// Somebody pressed Ctrl-C; the message says how to go on.
     Interrupted(String),
 }
@@ -22,10 +24,10 @@ impl Failure {
         Failure::Input(message.into())
     }
 
-    /// 1 the solve failed, 2 the input is wrong, 130 interrupted.
+    /// 1 the solve failed, or there are warnings under --strict; 2 the input is wrong; 130 interrupted.
     pub fn code(&self) -> u8 {
         match self {
-            Failure::Solve(_) => 1,
+            Failure::Solve(_) | Failure::Strict(_) => 1,
             Failure::Case(_) | Failure::Input(_) => 2,
             Failure::Interrupted(_) => 130,
         }
@@ -36,6 +38,9 @@ impl Failure {
         match self {
             Failure::Case(errors) => tell_case(errors),
             Failure::Input(message) | Failure::Solve(message) => eprintln!("error: {message}"),
+            Failure::Strict(warnings) => {
+                eprintln!("error: {} (--strict)", crate::words::counted(*warnings, "warning"));
+            }
             Failure::Interrupted(message) => eprintln!("interrupted: {message}"),
         }
     }

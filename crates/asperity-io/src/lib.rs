@@ -6,6 +6,7 @@ pub mod curve;
 pub mod cycles;
 mod digest;
 pub mod export;
+pub mod finding;
 pub mod preparation;
 pub mod readable;
 pub mod session;

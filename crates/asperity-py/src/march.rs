@@ -3,6 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use asperity::finding::{Judge, Known};
 use asperity::quantities::{Quantities, Quantity};
 use asperity::{
     Course, Event, Grid, History, Programme, Simulation, SolverOptions, Stage, TimeGrid, march, material,
@@ -22,6 +23,9 @@ use crate::wait::{detached, without_python};
 pub struct March {
     /// Locked where threads of Python share it.
     march: Mutex<march::March>,
+    judge: Judge,
+    /// The numbers of the last row.
+    last: Option<march::Row>,
     interrupt: Arc<AtomicBool>,
 }
 
@@ -187,17 +191,27 @@ impl March {
             ..Simulation::new(grid, gap)
         };
         let interrupt = Arc::new(AtomicBool::new(false));
-        let made = without_python(py, &interrupt, || march::March::new(simulation))?;
-        let mut march = made.map_err(|error| raised(py, error))?;
+        let made = without_python(py, &interrupt, || {
+            let judge = Judge::new(&simulation, Known { parts: &[], bodies: &bodies });
+            march::March::new(simulation).map(|march| (march, judge))
+        })?;
+        let (mut march, judge) = made.map_err(|error| raised(py, error))?;
         march.interrupt_with(interrupt.clone());
-        Ok(March { march: Mutex::new(march), interrupt })
+        Ok(March { march: Mutex::new(march), judge, last: None, interrupt })
     }
 
     /// Goes on by one row; False at the end.
     fn advance(&mut self, py: Python<'_>) -> PyResult<bool> {
         self.interrupt.store(false, Ordering::Relaxed);
         let march = self.march.get_mut().unwrap_or_else(PoisonError::into_inner);
-        let done = without_python(py, &self.interrupt, || march.advance().map(|step| step.is_some()))?;
+        let (judge, last) = (&mut self.judge, &mut self.last);
+        let done = without_python(py, &self.interrupt, || -> asperity::Result<bool> {
+            let Some(step) = march.advance()? else { return Ok(false) };
+            let row = step.row();
+            judge.see(&step, &row);
+            *last = Some(row);
+            Ok(true)
+        })?;
         done.map_err(|error| {
             let raised = raised(py, error);
             if raised.is_instance_of::<crate::error::ConvergenceError>(py) {
@@ -235,6 +249,12 @@ impl March {
         columns.into_iter().map(|column| (column.quantity.name(), column.edges)).collect()
     }
 
+    /// What was found so far, as a JSON list.
+    fn findings(&self) -> String {
+        let march = self.locked();
+        asperity_io::finding::list(&self.judge.findings(march.simulation())).to_string()
+    }
+
     /// Rows in all.
     fn __len__(&self) -> usize {
         let march = self.locked();
@@ -269,7 +289,7 @@ impl March {
             let numbers = columns.zip(step.columns()).map(|((name, single), column)| {
                 (name, single, step.quantity(column.quantity).map(<[f64]>::to_vec).unwrap_or_default())
             });
-            Some((step.row(), numbers.collect::<Vec<_>>()))
+            Some((self.last.unwrap_or_else(|| step.row()), numbers.collect::<Vec<_>>()))
         })?;
         if let Some((row, quantities)) = last {
             fill(&out, &row)?;

@@ -72,11 +72,18 @@ pub fn run<'py>(
     Ok(out)
 }
 
-/// What a case will do, as JSON.
+/// What a case will do, and what was found about it, as JSON.
 #[pyfunction]
 #[pyo3(signature = (path, text, overrides))]
-pub fn check(path: PathBuf, text: Option<String>, overrides: Vec<String>) -> PyResult<String> {
-    serde_json::to_string(&read(&path, text.as_deref(), &overrides)?.describe()).map_err(error::file)
+pub fn check(
+    py: Python<'_>,
+    path: PathBuf,
+    text: Option<String>,
+    overrides: Vec<String>,
+) -> PyResult<String> {
+    let case = read(&path, text.as_deref(), &overrides)?;
+    let examined = detached(py, || case.examine())?.map_err(error::case)?;
+    serde_json::to_string(&examined).map_err(error::file)
 }
 
 /// A case given as JSON, as the text of a case file.

@@ -140,7 +140,7 @@ impl<'a> Stack<'a> {
 type Asked<'py> = (String, PyReadonlyArray1<'py, f64>, PyReadonlyArray2<'py, f64>);
 
 /// Writes a result that was in memory. `columns` are the numbers of all rows by their names, `fields` the stacks of
-/// the rows `field_steps`; `setup` is JSON that says what was solved.
+/// the rows `field_steps`; `setup` is JSON that says what was solved, `findings` a JSON list.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub fn save(
@@ -156,10 +156,13 @@ pub fn save(
     field_steps: Vec<usize>,
     field_times: Vec<f64>,
     quantities: Vec<Asked<'_>>,
+    findings: &str,
 ) -> PyResult<()> {
     let (nx, ny) = initial_gap.as_array().dim();
     let grid = Grid::new([nx, ny], size).map_err(|error| raised(py, error))?;
     let setup = serde_json::from_str(setup).map_err(|error| CaseError::new_err(error.to_string()))?;
+    let findings = serde_json::from_str(findings).map_err(|error| CaseError::new_err(error.to_string()))?;
+    let findings = asperity_io::finding::from_list(&findings);
     let rows = rows(&columns)?;
     let mut held = Vec::new();
     for (name, stack) in &fields {
@@ -225,6 +228,7 @@ pub fn save(
             let numbers: Vec<f64> = numbers.iter().flat_map(|values| values.row(n).to_vec()).collect();
             writer.append_with(row, &numbers, &fields)?;
         }
+        writer.set_findings(findings);
         writer.finish(&Outcome::new(Status::Complete))
     })?
     .map(drop)

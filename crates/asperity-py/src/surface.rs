@@ -254,6 +254,8 @@ pub fn describe<'py>(
             out.set_item("roll_off", fit.roll_off)?;
             out.set_item("plateau", fit.plateau)?;
             out.set_item("spectrum_misfit", fit.misfit)?;
+            let found = Vec::from_iter(asperity::finding::hurst(&fit));
+            out.set_item("findings", asperity_io::finding::list(&found).to_string())?;
         }
     }
     Ok(out)

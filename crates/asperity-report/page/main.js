@@ -29,6 +29,9 @@ function summary() {
   $("status").textContent = state.status;
   $("case").textContent = state.case;
   $("footer").textContent = state.footer;
+  $("findings").hidden = !state.findings.length;
+  $("finding-list").replaceChildren(...state.findings.map((finding) =>
+    make("li", { class: finding.severity }, make("b", {}, finding.severity), ` ${finding.text} `, make("code", {}, finding.code))));
   $("headline").replaceChildren(...state.headline.map(([name, value]) => make("div", {}, make("b", {}, value), make("span", {}, name))));
   $("facts").replaceChildren(...state.facts.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]));
 }

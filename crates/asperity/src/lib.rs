@@ -16,6 +16,7 @@
 //! - [`load`], [`time`]: what is prescribed, and when the state is computed;
 //! - [`march`]: the simulation; [`contact`]: the elastic contact inside every step;
 //! - [`quantities`], [`spots`]: what each row may be asked for besides;
+//! - [`finding`]: where the numbers of a run may be off;
 //! - [`operator`], [`kernel`], [`convolution`]: u = Kp;
 //! - [`mod@reference`], [`verification`]: closed forms and the checks against them.
 //!
@@ -26,6 +27,7 @@ pub mod contact;
 pub mod cycles;
 pub mod error;
 mod field;
+pub mod finding;
 pub mod grid;
 pub mod indentation;
 pub mod kernel;

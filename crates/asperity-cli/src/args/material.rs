@@ -74,8 +74,8 @@ pub struct Fit {
     /// Decades of times beyond the data [default: 1]
     #[arg(long, value_name = "DECADES")]
     pub margin: Option<f64>,
-    /// Largest relative misfit before the data are refused [default: 0.1]
-    #[arg(long, value_name = "SHARE")]
+    /// Largest relative misfit (rms) before the data are refused [default: 0.1]
+    #[arg(long, value_name = "SHARE", visible_alias = "misfit")]
     pub max_misfit: Option<f64>,
     /// What comes after the data: whatever fits best (free), no flow (solid), or no modulus left (fluid)
     #[arg(long, value_parser = choice::<LongTime>(), default_value = "free")]

@@ -20,6 +20,9 @@ pub struct Run {
     /// Print one JSON object at the end
     #[arg(long)]
     pub json: bool,
+    /// Treat warnings as errors: exit code 1; the result is kept
+    #[arg(long)]
+    pub strict: bool,
     /// Print only errors and the result
     #[arg(short, long)]
     pub quiet: bool,
@@ -37,6 +40,9 @@ pub struct Check {
     /// Print one JSON object
     #[arg(long)]
     pub json: bool,
+    /// Warnings are errors: exit code 1
+    #[arg(long)]
+    pub strict: bool,
 }
 
 #[derive(Debug, clap::Args)]

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use asperity::operator::half_space;
 use asperity::{Grid, Method, Scheme};
-use asperity_io::case::{Case, Description};
+use asperity_io::case::{Case, Description, Examination, Inputs, SurfaceInput};
 use serde_json::json;
 
 use crate::args::Check;
@@ -26,15 +26,16 @@ pub fn run(args: &Check) -> Result<(), Failure> {
     super::use_threads(args.common.threads)?;
     let case = Case::read(&args.case, &args.common.set)?;
     // The files are read and the gap is built: what `run` would refuse is refused here.
-    case.simulation()?;
-    let description = case.describe();
-    let estimate = seconds(&case, &description);
+    let examined = case.examine()?;
+    let estimate = seconds(&case, &examined.description);
     if args.json {
-        let mut object = serde_json::to_value(&description).unwrap_or_default();
+        let mut object = serde_json::to_value(&examined).unwrap_or_default();
         object["estimated_s"] = json!(estimate);
-        return crate::print(&format!("{object}\n"));
+        crate::print(&format!("{object}\n"))?;
+    } else {
+        crate::print(&tell(&case, &examined, estimate))?;
     }
-    crate::print(&tell(&case, &description, estimate))
+    super::findings::strict(args.strict, &examined.findings)
 }
 
 /// The retardation times, or how many and from where to where.
@@ -77,7 +78,50 @@ fn seconds(case: &Case, description: &Description) -> Option<f64> {
     Some((rows + FIRST) * convolutions * iteration * convolution + past)
 }
 
-fn tell(case: &Case, d: &Description, estimate: Option<f64>) -> String {
+/// "radius 10.00 mm", "Sq 1.000 µm, Sdq 0.1"; nothing for what its name says.
+fn shape(surface: &SurfaceInput) -> Option<String> {
+    let length = |value: f64| quantity(value, "m");
+    let radius = surface.radius.map(|[x, y]| match x == y {
+        true => format!("radius {}", length(x)),
+        false => format!("radii {} and {}", length(x), length(y)),
+    });
+    let slope = surface.slope.map(|slope| format!("slope {slope}"));
+    let sq = surface.sq.map(|sq| format!("Sq {}", length(sq)));
+    let sdq = surface.sdq.map(|sdq| format!("Sdq {sdq:.4}"));
+    let parts: Vec<String> = [radius, slope, sq, sdq].into_iter().flatten().collect();
+    (!parts.is_empty()).then(|| format!("{}: {}", surface.name, parts.join(", ")))
+}
+
+/// "12.00 µm", or "12.00 µm at once, 15.00 µm at the end".
+fn range([first, last]: [f64; 2], words: impl Fn(f64) -> String) -> String {
+    let [first, last] = [first, last].map(words);
+    if first == last { first } else { format!("{first} at once, {last} at the end") }
+}
+
+/// What is prescribed at most, and the contact to be expected: lines of a name and a value.
+fn prospects(inputs: &Inputs) -> Vec<[String; 2]> {
+    let mut lines = vec![];
+    let mut line = |name: &str, value: String| lines.push([name.to_owned(), value]);
+    if let (Some(load), Some(pressure)) = (inputs.largest_load, inputs.largest_mean_pressure) {
+        let (load, pressure) = (quantity(load, "N"), quantity(pressure, "Pa"));
+        line("load", format!("{load} at most, {pressure} over the domain"));
+    }
+    if let Some(approach) = inputs.largest_approach {
+        line("approach", format!("{} at most", quantity(approach, "m")));
+    }
+    let strain = inputs.expected_pressure_over_modulus.map_or(String::new(), |p| format!(", p/E* {p:.2e}"));
+    if let (Some(radii), Some(cells)) = (inputs.expected_contact_radius, inputs.expected_cells_across) {
+        let radius = range(radii, |radius| quantity(radius, "m"));
+        line("expected", format!("contact radius {radius}, {cells:.0} cells across{strain}"));
+    } else if let Some(shares) = inputs.expected_contact_share {
+        let share = range(shares, |share| format!("{:.2} %", 100.0 * share));
+        line("expected", format!("contact of {share} of the domain{strain}"));
+    }
+    lines
+}
+
+fn tell(case: &Case, examined: &Examination, estimate: Option<f64>) -> String {
+    let (d, inputs) = (&examined.description, &examined.inputs);
     let title = d.title.as_deref().unwrap_or(&case.name);
     let [nx, ny] = d.cells;
     let mut text = format!("{title}\n");
@@ -94,6 +138,9 @@ fn tell(case: &Case, d: &Description, estimate: Option<f64>) -> String {
         ),
     );
     line("gap", d.surfaces.join(" + "));
+    for surface in inputs.surfaces.iter().filter_map(shape) {
+        line("", surface);
+    }
     for prepared in &d.preparation {
         line("prepared", prepared.surface.clone());
         for step in &prepared.steps {
@@ -116,6 +163,16 @@ fn tell(case: &Case, d: &Description, estimate: Option<f64>) -> String {
         }
     };
     line("bodies", format!("{}; {modulus}", d.bodies.join(", ")));
+    for modulus in &inputs.moduli {
+        let name = if modulus.modulus == "shear" { "shear modulus" } else { "Young's modulus" };
+        let relaxed = quantity(modulus.relaxed, "Pa");
+        let value = match modulus.instantaneous.map(|at_once| quantity(at_once, "Pa")) {
+            Some(at_once) if at_once == relaxed => at_once,
+            Some(at_once) => format!("{at_once} at once, {relaxed} at last"),
+            None => format!("rigid at once, {relaxed} at last"),
+        };
+        line("", format!("{}: {name} {value}", modulus.body));
+    }
     if !d.retardation_times.is_empty() {
         line("creep", retardation(&d.retardation_times));
     }
@@ -131,14 +188,14 @@ fn tell(case: &Case, d: &Description, estimate: Option<f64>) -> String {
             if low == high { celsius(low) } else { format!("{} to {}", celsius(low), celsius(high)) },
         );
     }
-    for warning in &d.warnings {
-        line("warning", warning.clone());
-    }
     if let Some(hardness) = d.hardness {
         line("hardness", quantity(hardness, "Pa"));
     }
     if let Some([least, most]) = d.hardness_of_cells {
         line("hardness", format!("{} to {}, by cell", quantity(least, "Pa"), quantity(most, "Pa")));
+    }
+    for [name, value] in prospects(inputs) {
+        line(&name, value);
     }
     let end = quantity(d.end, "s");
     line(
@@ -171,6 +228,9 @@ fn tell(case: &Case, d: &Description, estimate: Option<f64>) -> String {
             "run time",
             format!("roughly {} on {} threads", duration(estimate), rayon::current_num_threads()),
         );
+    }
+    for finding in &examined.findings {
+        line(finding.severity.as_str(), format!("{} [{}]", finding.text, finding.code));
     }
     text
 }

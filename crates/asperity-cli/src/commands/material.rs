@@ -244,6 +244,8 @@ fn fit(args: &Fit) -> Result<(), Failure> {
     }
     let curves = Curves::read(&args.data, kind, &columns).map_err(told)?;
     let fitted = request.fit(&curves).map_err(told)?;
+    let (name, of) = (args.data.display().to_string(), fitted.misfit);
+    let findings = Vec::from_iter(asperity::finding::misfit(&name, of.rms, of.max, fitted.noise));
     let block = fitted.to_toml(&curves);
     if let Some(path) = &args.output {
         write(path, &block, args.force)?;
@@ -257,8 +259,10 @@ fn fit(args: &Fit) -> Result<(), Failure> {
         let mut object = json_of(&curves, &fitted);
         object["output"] = json!(args.output);
         object["material"] = json!(block);
+        object["findings"] = asperity_io::finding::list(&findings);
         return crate::print(&format!("{object}\n"));
     }
+    super::findings::tell(&findings);
     let mut text = report(args, &curves, &fitted);
     match &args.output {
         Some(path) => {

@@ -3,6 +3,7 @@
 pub mod check;
 pub mod completions;
 pub mod export;
+pub mod findings;
 pub mod fit_indentation;
 pub mod material;
 pub mod new;

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use asperity::finding::Finding;
 use asperity::march::Row;
 use asperity_io::case::Case;
 use asperity_io::session::{RunError, RunOptions, Summary, run as run_case};
@@ -19,6 +20,7 @@ pub fn run(args: &Run) -> Result<(), Failure> {
     super::use_threads(args.common.threads)?;
     let case = Case::read(&args.case, &args.common.set)?;
     tell_materials(args, &case);
+    let known = tell_findings(args, &case.findings, &[]);
     let options = RunOptions {
         output: args.output.clone(),
         force: args.force,
@@ -30,9 +32,10 @@ pub fn run(args: &Run) -> Result<(), Failure> {
     teller.end();
     match done {
         Ok(summary) => {
+            tell_findings(args, &summary.findings, &known);
             tell(args, &summary, None)?;
             if summary.status != Status::Interrupted {
-                return Ok(());
+                return super::findings::strict(args.strict, &summary.findings);
             }
             let (rows, result) = (summary.rows, summary.result.display());
             Err(Failure::Interrupted(format!("{rows} rows are in {result}; continue with --resume")))
@@ -45,6 +48,7 @@ pub fn run(args: &Run) -> Result<(), Failure> {
                 _ => error.to_string(),
             };
             if let RunError::Solve { summary, .. } | RunError::Storage { summary, .. } = &error {
+                tell_findings(args, &summary.findings, &known);
                 tell(args, summary, Some(&error))?;
             }
             Err(Failure::Solve(message))
@@ -52,15 +56,21 @@ pub fn run(args: &Run) -> Result<(), Failure> {
     }
 }
 
-/// What stands for measured and fractional materials and how well, and where the run goes beyond it.
+/// Tells the findings that are not told yet on stderr, and returns them.
+fn tell_findings(args: &Run, findings: &[Finding], told: &[Finding]) -> Vec<Finding> {
+    let new: Vec<Finding> = findings.iter().filter(|finding| !told.contains(finding)).cloned().collect();
+    if !args.quiet {
+        super::findings::tell(&new);
+    }
+    new
+}
+
+/// What stands for measured and fractional materials, and how well.
 fn tell_materials(args: &Run, case: &Case) {
     for report in case.materials.iter().filter(|_| !args.quiet) {
         for line in super::material::source(report) {
             eprintln!("{}: {line}", report.body);
         }
-    }
-    for warning in &case.warnings {
-        eprintln!("warning: {warning}");
     }
 }
 
@@ -134,6 +144,9 @@ fn tell(args: &Run, summary: &Summary, error: Option<&RunError>) -> Result<(), F
             duration(summary.wall_s)
         ),
     );
+    if !summary.findings.is_empty() {
+        line("findings", super::findings::counted(&summary.findings));
+    }
     line("result", summary.result.display().to_string());
     crate::print(&text)
 }
@@ -147,6 +160,7 @@ fn json_object(summary: &Summary, error: Option<&RunError>) -> Value {
         "iterations": summary.iterations,
         "peak_memory_bytes": summary.peak_memory_bytes,
         "result": summary.result,
+        "findings": asperity_io::finding::list(&summary.findings),
     });
     if let Some(error) = error {
         object["error"] = json!(error.to_string());

@@ -45,6 +45,7 @@ fn object(reader: &Reader) -> Result<String, StoreError> {
         "convolutions": work.convolutions,
         "iterations": work.iterations,
         "last": last,
+        "findings": asperity_io::finding::list(reader.findings()),
         "cycles": cycles::of_result(reader)?.iter().map(cycles_json).collect::<Vec<_>>(),
     });
     Ok(format!("{object}\n"))
@@ -83,6 +84,9 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
     line("status", format!("{state}, {}{of} rows", reader.len()));
     if let Some(message) = &reader.work().message {
         line("", message.clone());
+    }
+    for finding in reader.findings() {
+        line(finding.severity.as_str(), format!("{} [{}]", finding.text, finding.code));
     }
     let [nx, ny] = header.grid.cells();
     let [lx, ly] = header.grid.size();

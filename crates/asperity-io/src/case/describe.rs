@@ -138,7 +138,7 @@ impl Case {
             relaxed_modulus: 1.0 / creep.long_time(),
             retardation_times: creep.terms.iter().map(|term| term.retardation_time).collect(),
             materials: self.materials.clone(),
-            warnings: self.warnings.clone(),
+            warnings: self.findings.iter().map(|finding| finding.text.clone()).collect(),
             temperature: self.temperature_range(),
             hardness: self.hardness.is_finite().then_some(self.hardness),
             hardness_of_cells: self.hardness_map.as_ref().map(|map| {

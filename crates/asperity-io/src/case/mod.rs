@@ -42,6 +42,7 @@
 mod convert;
 mod describe;
 mod error;
+mod examine;
 pub mod fragment;
 mod measured;
 mod memory;
@@ -59,14 +60,16 @@ use std::io::Read;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use asperity::finding::Finding;
 use asperity::material::{Body, Creep, ThermalCreep};
 use asperity::quantities::{Quantities, Quantity};
-use asperity::surface::undeformed_gap;
+use asperity::surface::{Part, undeformed_gap};
 use asperity::{Boundary, Error, Grid, Plasticity, Programme, Scheme, Simulation, SolverOptions, TimeGrid};
 use ndarray::Array2;
 
 pub use describe::{Description, MaterialReport, Preparation};
 pub use error::{CaseError, CaseErrors};
+pub use examine::{Examination, Inputs, ModulusInput, SurfaceInput};
 pub use measured::Measured;
 pub use plan::{Output, Rows, Surface};
 pub use schema::schema;
@@ -103,8 +106,8 @@ pub struct Case {
     pub temperatures: Option<Vec<(f64, f64)>>,
     /// Where the materials come from, and how well they are known.
     pub materials: Vec<MaterialReport>,
-    /// What should be known before the numbers are believed.
-    pub warnings: Vec<String>,
+    /// What was found about the materials.
+    pub findings: Vec<Finding>,
     /// Files that hold numbers of the case (not surfaces), as it names them, and their MD5.
     pub files: Vec<(String, String)>,
     /// Cut-off H of the pressure \[Pa\], the softer body's; infinite without.
@@ -184,22 +187,29 @@ impl Case {
         }
     }
 
+    /// The parts of the undeformed gap. Reads the topography files.
+    ///
+    /// # Errors
+    /// [`CaseErrors`] where a file cannot be read or does not fit the domain.
+    pub fn parts(&self) -> Result<Vec<Part>, CaseErrors> {
+        let part = |surface: &Surface| match surface {
+            Surface::Part(part) => Ok(part.clone()),
+            Surface::File(file) => file.part(&self.grid).map_err(|reason| self.fault(&file.span, reason)),
+        };
+        self.surfaces.iter().map(part).collect()
+    }
+
     /// The undeformed gap \[m\], shape (nx, ny), smallest value 0, infinite where a cell cannot touch. Reads
     /// the topography files and makes the synthetic roughness.
     ///
     /// # Errors
     /// [`CaseErrors`] where a file cannot be read or does not fit the domain, or no cell can touch.
     pub fn gap(&self) -> Result<Array2<f64>, CaseErrors> {
-        let mut parts = Vec::with_capacity(self.surfaces.len());
-        for surface in &self.surfaces {
-            parts.push(match surface {
-                Surface::Part(part) => part.clone(),
-                Surface::File(file) => {
-                    file.part(&self.grid).map_err(|reason| self.fault(&file.span, reason))?
-                }
-            });
-        }
-        undeformed_gap(&self.grid, &parts).map_err(|error| {
+        self.gap_of(&self.parts()?)
+    }
+
+    fn gap_of(&self, parts: &[Part]) -> Result<Array2<f64>, CaseErrors> {
+        undeformed_gap(&self.grid, parts).map_err(|error| {
             CaseErrors::without_place(&self.name, format!("surface: {error}"), "a gap that can close", None)
         })
     }
@@ -209,6 +219,14 @@ impl Case {
     /// # Errors
     /// As [`gap`](Self::gap); a load above the hardness times the area that can touch.
     pub fn simulation(&self) -> Result<Simulation, CaseErrors> {
+        self.simulation_of(&self.parts()?)
+    }
+
+    /// The same with the parts that [`parts`](Self::parts) gave.
+    ///
+    /// # Errors
+    /// As [`simulation`](Self::simulation).
+    pub fn simulation_of(&self, parts: &[Part]) -> Result<Simulation, CaseErrors> {
         let simulation = Simulation {
             boundary: self.boundary,
             creep: self.creep.clone(),
@@ -221,7 +239,7 @@ impl Case {
             scheme: self.scheme,
             plasticity: self.plasticity,
             solver: self.solver,
-            ..Simulation::new(self.grid, self.gap()?)
+            ..Simulation::new(self.grid, self.gap_of(parts)?)
         };
         let simulation = Simulation { quantities: self.quantities(&simulation), ..simulation };
         match simulation.validate() {

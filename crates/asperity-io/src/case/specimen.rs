@@ -53,7 +53,7 @@ pub fn specimens(
             })
             .collect();
         if let Some(first) = specimens.first_mut() {
-            first.warnings = case.warnings;
+            first.warnings = case.findings.into_iter().map(|finding| finding.text).collect();
         }
         return Ok(specimens);
     }

@@ -145,6 +145,15 @@ pub(super) type Values = BTreeMap<Role, Vec<f64>>;
 /// The values of all quantities of a curve of `kind`, in SI, and what was assumed.
 pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<(Values, Vec<String>), Fault> {
     let places = places(table, form, said)?;
+    for (role, column) in &places {
+        if table.names.get(*column).is_some_and(|name| is_logarithm(name)) {
+            let column = format!("column {}{}", column + 1, table.quoted(*column));
+            return Err(fault(format!(
+                "{} ({column}) is named as a logarithm; give the values themselves, in a column with their unit",
+                role.name()
+            )));
+        }
+    }
     let (mut values, mut notes) = (Values::new(), Vec::new());
     for (role, column) in places {
         let header_unit = table.units.get(column).map_or("", String::as_str);
@@ -214,6 +223,14 @@ fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeMap<Role, us
         possible.iter().copied().filter(missing).collect()
     };
     if places.keys().all(|role| *role == Role::Temperature) && said.columns.is_empty() {
+        if let Some(line) = table.unread.as_ref().filter(|line| line.contains("Pa") || line.contains("log")) {
+            let shown: String = line.chars().take(60).collect();
+            return Err(fault(format!(
+                "the line before the numbers, {shown:?}, does not name {} columns, and it may hold a unit; name each column \
+                 with its unit, as in \"modulus [MPa]\", or say columns = {{ ... }} and units = {{ ... }}",
+                table.columns
+            )));
+        }
         // No names: the columns in the order of the documentation.
         for (n, role) in required(&places).into_iter().enumerate() {
             if n < table.columns && !places.values().any(|place| *place == n) {
@@ -233,6 +250,13 @@ fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeMap<Role, us
             Err(fault(message))
         }
     }
+}
+
+/// Whether a name is that of a logarithm: "log E", "lg(t)", "ln G'".
+fn is_logarithm(name: &str) -> bool {
+    let name = name.to_lowercase();
+    let rest = ["log10", "log", "lg", "ln"].iter().find_map(|start| name.strip_prefix(start));
+    rest.is_some_and(|rest| !rest.starts_with(char::is_alphanumeric))
 }
 
 /// Whether the header names all that a file of this kind needs.

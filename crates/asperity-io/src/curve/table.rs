@@ -21,6 +21,8 @@ pub(super) struct Table {
     pub headers: Vec<String>,
     /// Unit of each column as it is written; empty where the file names none.
     pub units: Vec<String>,
+    /// The line before the numbers, where it does not name the columns.
+    pub unread: Option<String>,
     /// Number of columns.
     pub columns: usize,
     pub rows: Vec<Row>,
@@ -68,6 +70,10 @@ impl Table {
             return Err(fault(format!("the table has {columns} columns, but may have {MOST_COLUMNS}")));
         }
         let (headers, units) = header(&lines[..first], separator, columns);
+        let unread = match headers.iter().all(String::is_empty) && units.is_none() {
+            true => lines[..first].iter().rev().find(|line| !line.is_empty()).map(|line| (*line).to_owned()),
+            false => None,
+        };
         let mut rows = Vec::new();
         for (n, line) in lines.iter().enumerate().skip(first) {
             if line.is_empty() || is_comment(line) {
@@ -94,7 +100,7 @@ impl Table {
             None => headers.iter().map(|header| split_unit(header).1.to_owned()).collect(),
         };
         drop(lines);
-        Ok(Table { names, headers, units, columns, rows, text, separator, decimal_comma })
+        Ok(Table { names, headers, units, unread, columns, rows, text, separator, decimal_comma })
     }
 
     /// The numbers of a column.
@@ -190,15 +196,43 @@ fn header_cells(line: &str, separator: Option<char>, columns: usize) -> Option<V
     let clean = |cells: Vec<&str>| -> Vec<String> {
         cells.iter().map(|cell| cell.trim().trim_matches('"').trim().to_owned()).collect()
     };
-    let mut plain = clean(cells(line, separator));
+    let mut plain = clean(quoted_cells(line, separator));
     if plain.len() == columns + 1 && plain.last().is_some_and(String::is_empty) {
         plain.pop();
+    }
+    if plain.len() > columns {
+        plain = with_units(plain);
     }
     if plain.len() == columns {
         return Some(plain);
     }
     let spaced = clean(line.split("  ").filter(|cell| !cell.trim().is_empty()).collect());
     (separator.is_none() && spaced.len() == columns).then_some(spaced)
+}
+
+/// The cells of a header line, where a separator between quotes is none.
+fn quoted_cells(line: &str, separator: Option<char>) -> Vec<&str> {
+    let Some(separator) = separator.filter(|_| line.contains('"')) else { return cells(line, separator) };
+    let mut quoted = false;
+    let outside = |c: char| {
+        quoted ^= c == '"';
+        c == separator && !quoted
+    };
+    line.split(outside).map(str::trim).collect()
+}
+
+/// Cells that are nothing but a unit join the name before them: "E, MPa" in a file of commas.
+fn with_units(cells: Vec<String>) -> Vec<String> {
+    let mut joined: Vec<String> = Vec::with_capacity(cells.len());
+    for cell in cells {
+        match joined.last_mut() {
+            Some(name) if !cell.is_empty() && is_unit(&cell) && split_unit(name).1.is_empty() => {
+                *name = format!("{name} [{}]", bare_unit(&cell));
+            }
+            _ => joined.push(cell),
+        }
+    }
+    joined
 }
 
 /// "MPa" of "[MPa]" or "(MPa)".
@@ -214,7 +248,7 @@ fn is_unit(cell: &str) -> bool {
         || (unit.chars().count() > 1 && Unit::parse(unit).is_ok())
 }
 
-/// Name and unit of "load [mN]", "load (mN)" or "load/mN".
+/// Name and unit of "load [mN]", "load (mN)", "load/mN", "load, mN", "load in mN", "load_mN" or "load mN".
 fn split_unit(header: &str) -> (&str, &str) {
     for (open, close) in [('[', ']'), ('(', ')')] {
         // The last bracket: "E(t) (MPa)".
@@ -229,15 +263,58 @@ fn split_unit(header: &str) -> (&str, &str) {
             };
         }
     }
+    if let Some((name, unit)) = header.rsplit_once([' ', ',', ';', '_'])
+        && is_unit_of(name, unit)
+    {
+        let name = name.trim_end_matches([' ', ',', ';', '_', '/']);
+        return (name.strip_suffix(" in").unwrap_or(name).trim(), unit);
+    }
     match header.split_once('/') {
         Some((name, unit)) if !name.trim().is_empty() => (name.trim(), bare_unit(unit.trim())),
         _ => (header.trim(), ""),
     }
 }
 
+/// Whether the word after a name is its unit, and not the second word of the name ("E min", "T g").
+fn is_unit_of(name: &str, unit: &str) -> bool {
+    let named = !name.trim_matches([' ', ',', ';', '_', '/']).is_empty();
+    let time = name.trim().to_lowercase().starts_with('t');
+    named
+        && match unit {
+            "" | "-" | "1" | "%" | "d" | "g" | "day" | "days" | "cal" => false,
+            "min" | "h" => time,
+            "s" | "K" | "N" | "m" => true,
+            unit => is_unit(unit),
+        }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn units_are_read_in_the_ways_that_people_write_them() {
+        for header in ["E, MPa", "E in MPa", "E_MPa", "E MPa", "E / MPa", "E/MPa", "E [MPa]", "E (MPa)"] {
+            assert_eq!(split_unit(header), ("E", "MPa"), "{header}");
+        }
+        assert_eq!(split_unit("frequency rad/s"), ("frequency", "rad/s"));
+        assert_eq!(split_unit("time_min"), ("time", "min"));
+        // Second words of names are no units.
+        for header in ["storage modulus", "tan_delta", "T g", "E min", "E(t)", "E'", "loss factor"] {
+            assert_eq!(split_unit(header), (header, ""), "{header}");
+        }
+        for text in [
+            "t, s, E, MPa\n0.5, 2\n1.5, 1\n",
+            "\"t, s\",\"E, MPa\"\n0.5,2\n1.5,1\n",
+            "t in s;E in MPa\n0,5;2\n1,5;1\n",
+            "t_s,E_MPa\n0.5,2\n1.5,1\n",
+            "time [s], E, MPa\n0.5,2\n1.5,1\n",
+        ] {
+            let table = Table::parse(text.as_bytes()).unwrap();
+            assert_eq!(table.units, ["s", "MPa"], "{text}");
+            assert_eq!(table.names[1], "E", "{text}");
+        }
+    }
 
     #[test]
     fn headers_separators_and_decimal_marks() {

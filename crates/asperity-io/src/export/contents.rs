@@ -152,6 +152,8 @@ fn attribute(value: &Value) -> Option<Attribute> {
             let one = std::slice::from_ref(value);
             counts(one).map(Attribute::Counts).or_else(|| reals(one).map(Attribute::Reals))?
         }
+        // Lists of objects, or of nothing, go as JSON: formats of arrays know none.
+        Value::Array(values) if values.iter().all(Value::is_object) => Attribute::Text(value.to_string()),
         Value::Array(values) => {
             counts(values).map(Attribute::Counts).or_else(|| reals(values).map(Attribute::Reals))?
         }

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+use asperity::finding::{Finding, Judge, Known};
 use asperity::march::{March, Row, Step};
 use asperity::material::Creep;
 use asperity::{Error, Simulation};
@@ -17,7 +18,7 @@ use serde_json::{Map, Value, json};
 use thiserror::Error;
 
 use crate::case::{Case, CaseErrors};
-use crate::store::{Field, FieldKind, Header, Outcome, Status, StoreError, Work, Writer};
+use crate::store::{Field, FieldKind, Header, Outcome, Reader, Status, StoreError, Work, Writer};
 
 pub use memory::peak_memory_bytes;
 
@@ -70,6 +71,8 @@ pub struct Summary {
     pub result: PathBuf,
     /// The last row stored.
     pub last: Option<Row>,
+    /// Where its numbers may be off.
+    pub findings: Vec<Finding>,
 }
 
 /// Why a run did not complete.
@@ -119,71 +122,169 @@ fn run_inside(
     options: &RunOptions,
     observe: &mut (dyn FnMut(Progress) + Send),
 ) -> Result<Summary, RunError> {
-    let simulation = case.simulation()?;
+    let parts = case.parts()?;
+    let simulation = case.simulation_of(&parts)?;
+    let judge = Judge::new(&simulation, Known { parts: &parts, bodies: &case.bodies });
+    drop(parts);
     let header = header(case, &simulation);
     let path = options.output.clone().unwrap_or_else(|| case.output.path.clone());
-    let (mut writer, checkpoint) = if options.resume {
-        Writer::resume(&path, &header, simulation.gap.view()).map_err(RunError::Output)?
+    let (writer, checkpoint, earlier) = if options.resume {
+        let earlier = earlier(&path).map_err(RunError::Output)?;
+        let resumed = Writer::resume(&path, &header, simulation.gap.view());
+        let (writer, checkpoint) = resumed.map_err(RunError::Output)?;
+        (writer, checkpoint, earlier)
     } else {
         let writer = Writer::create(&path, &header, simulation.gap.view(), options.force);
-        (writer.map_err(RunError::Output)?, None)
+        (writer.map_err(RunError::Output)?, None, Earlier::default())
     };
+    let mut record = Record { case, writer, judge, path: &path, last: None };
     let march = match &checkpoint {
-        Some(checkpoint) => March::resume(simulation, checkpoint),
+        Some(checkpoint) => {
+            let rows = earlier.rows.get(..checkpoint.step).unwrap_or_default();
+            record.judge.resume(rows, &earlier.findings);
+            March::resume(simulation, checkpoint)
+        }
         None => March::new(simulation),
     };
     let mut march = match march {
         Ok(march) => march,
-        Err(source) => return Err(fail(writer, source, None, &path, None)),
+        Err(source) => return Err(record.fail(None, source)),
     };
     march.interrupt_with(options.interrupt.clone());
     let (total, resumed, end_time) = (march.rows_expected(), march.done(), case.times.end());
     let mut maps = Maps::new(case, &march);
-    let mut last = None;
     loop {
         let row = match march.advance().map(|step| step.is_some()) {
             Ok(false) => break,
-            Ok(true) => match store(&mut writer, &mut maps, &march) {
+            Ok(true) => match record.store(&mut maps, &march) {
                 Ok(Some(row)) => row,
                 Ok(None) => break,
-                Err(source) => return Err(stop_storing(writer, source, &path, last)),
+                Err(source) => return Err(record.stop_storing(&march, source)),
             },
             Err(Error::Interrupted) => {
                 // The step under way is lost: a resumed run repeats what came after the last checkpoint.
-                return end(writer, Outcome::new(Status::Interrupted), &path, last);
+                return record.end(Some(&march), Outcome::new(Status::Interrupted));
             }
-            Err(source) => {
-                let best = march.last().map(|step| Box::new(step.row()));
-                return Err(fail(writer, source, best, &path, last));
-            }
+            Err(source) => return Err(record.fail(Some(&march), source)),
         };
-        last = Some(row);
-        let due = case.output.checkpoint && !march.finished() && writer.checkpoint_due();
-        if due && let Err(source) = writer.checkpoint(&march.checkpoint()) {
-            return Err(stop_storing(writer, source, &path, last));
+        let due = case.output.checkpoint && !march.finished() && record.writer.checkpoint_due();
+        if due && let Err(source) = record.checkpoint(&march) {
+            return Err(record.stop_storing(&march, source));
         }
         let finished = march.finished();
         observe(Progress { row: &row, done: march.done(), resumed, total, end: end_time, finished });
     }
-    end(writer, Outcome::new(Status::Complete), &path, last)
+    record.end(Some(&march), Outcome::new(Status::Complete))
 }
 
-/// Stores the last row, and before it the fields between it and the row before it that are asked for.
-fn store(writer: &mut Writer, maps: &mut Maps<'_>, march: &March) -> Result<Option<Row>, StoreError> {
-    let Some(step) = march.last() else { return Ok(None) };
-    let instant = step.instant();
-    for time in maps.case.output.rows.between(instant.time - instant.dt, instant.time) {
-        // Steps that end there keep their own fields.
-        if let Some(between) = march.between(*time) {
-            let fields = maps.of(&march.view(&between));
-            writer.stage(*time, &fields)?;
+/// Rows and findings of the sessions before a resumed one.
+#[derive(Default)]
+struct Earlier {
+    rows: Vec<Row>,
+    findings: Vec<Finding>,
+}
+
+fn earlier(path: &Path) -> Result<Earlier, StoreError> {
+    let reader = Reader::open(path)?;
+    Ok(Earlier { rows: reader.rows()?, findings: reader.findings().to_vec() })
+}
+
+/// The result of a run under way, and its judge.
+struct Record<'a> {
+    case: &'a Case,
+    writer: Writer,
+    judge: Judge,
+    path: &'a Path,
+    /// The last row stored.
+    last: Option<Row>,
+}
+
+impl Record<'_> {
+    /// Stores the last row, and before it the fields between it and the row before it that are asked for.
+    fn store(&mut self, maps: &mut Maps<'_>, march: &March) -> Result<Option<Row>, StoreError> {
+        let Some(step) = march.last() else { return Ok(None) };
+        let instant = step.instant();
+        for time in maps.case.output.rows.between(instant.time - instant.dt, instant.time) {
+            // Steps that end there keep their own fields.
+            if let Some(between) = march.between(*time) {
+                let fields = maps.of(&march.view(&between));
+                self.writer.stage(*time, &fields)?;
+            }
+        }
+        let row = step.row();
+        let keeps = maps.case.output.rows.holds(step.index(), march.finished(), instant.time);
+        let fields = if keeps { maps.of(&step) } else { vec![] };
+        self.writer.append_with(&row, step.quantities(), &fields)?;
+        self.judge.see(&step, &row);
+        self.last = Some(row);
+        Ok(Some(row))
+    }
+
+    /// What was found so far: of the materials, and of the run.
+    fn findings(&self, march: Option<&March>) -> Vec<Finding> {
+        let of_run = match march {
+            Some(march) => self.judge.findings(march.simulation()),
+            None => self.judge.known().to_vec(),
+        };
+        self.case.findings.iter().cloned().chain(of_run).collect()
+    }
+
+    /// Stores what was found, and the state from which the run goes on.
+    fn checkpoint(&mut self, march: &March) -> Result<(), StoreError> {
+        self.writer.note(self.findings(Some(march)))?;
+        self.writer.checkpoint(&march.checkpoint())
+    }
+
+    /// Ends a run whose step was not solved.
+    fn fail(self, march: Option<&March>, source: Error) -> RunError {
+        let best = march.and_then(|march| march.last()).map(|step| Box::new(step.row()));
+        let outcome = Outcome { message: Some(source.to_string()), ..Outcome::new(Status::Failed) };
+        match self.end(march, outcome) {
+            Ok(summary) => RunError::Solve { source, summary: Box::new(summary), best },
+            Err(error) => error,
         }
     }
-    let row = step.row();
-    let keeps = maps.case.output.rows.holds(step.index(), march.finished(), instant.time);
-    let fields = if keeps { maps.of(&step) } else { vec![] };
-    writer.append_with(&row, step.quantities(), &fields)?;
-    Ok(Some(row))
+
+    /// Ends a run whose step could not be stored; that this cannot be stored either is no news.
+    fn stop_storing(self, march: &March, source: StoreError) -> RunError {
+        let outcome = Outcome { message: Some(source.to_string()), ..Outcome::new(Status::Failed) };
+        let summary = match self.end(Some(march), outcome) {
+            Ok(summary) => Box::new(summary),
+            Err(RunError::Storage { summary, .. }) => summary,
+            Err(error) => return error,
+        };
+        RunError::Storage { source, summary }
+    }
+
+    /// Ends the result.
+    fn end(mut self, march: Option<&March>, outcome: Outcome) -> Result<Summary, RunError> {
+        let findings = self.findings(march);
+        self.writer.set_findings(findings.clone());
+        let (rows, before) = (self.writer.len(), self.writer.work().clone());
+        let outcome = Outcome {
+            peak_memory_bytes: peak_memory_bytes(),
+            threads: Some(rayon::current_num_threads()),
+            ..outcome
+        };
+        let (status, result, last) = (outcome.status, self.path.to_owned(), self.last);
+        let summary = |status, work: Work| Summary {
+            status,
+            rows,
+            iterations: work.iterations,
+            convolutions: work.convolutions,
+            wall_s: work.wall_s,
+            peak_memory_bytes: work.peak_memory_bytes,
+            result,
+            last,
+            findings,
+        };
+        match self.writer.finish(&outcome) {
+            Ok(work) => Ok(summary(status, work)),
+            Err(source) => {
+                Err(RunError::Storage { source, summary: Box::new(summary(Status::Failed, before)) })
+            }
+        }
+    }
 }
 
 /// The fields of the rows that keep them, in memory of their own.
@@ -277,49 +378,4 @@ fn setup(case: &Case) -> Map<String, Value> {
 fn creep(creep: &Creep) -> Value {
     let terms: Vec<_> = creep.terms.iter().map(|t| json!([t.compliance, t.retardation_time])).collect();
     json!({ "instantaneous": creep.instantaneous, "terms": terms, "fluidity": creep.fluidity })
-}
-
-/// Ends a run whose step was not solved.
-fn fail(writer: Writer, source: Error, best: Option<Box<Row>>, path: &Path, last: Option<Row>) -> RunError {
-    let outcome = Outcome { message: Some(source.to_string()), ..Outcome::new(Status::Failed) };
-    match end(writer, outcome, path, last) {
-        Ok(summary) => RunError::Solve { source, summary: Box::new(summary), best },
-        Err(error) => error,
-    }
-}
-
-/// Ends a run whose step could not be stored; that this cannot be stored either is no news.
-fn stop_storing(writer: Writer, source: StoreError, path: &Path, last: Option<Row>) -> RunError {
-    let outcome = Outcome { message: Some(source.to_string()), ..Outcome::new(Status::Failed) };
-    let summary = match end(writer, outcome, path, last) {
-        Ok(summary) => Box::new(summary),
-        Err(RunError::Storage { summary, .. }) => summary,
-        Err(error) => return error,
-    };
-    RunError::Storage { source, summary }
-}
-
-/// Ends the result.
-fn end(writer: Writer, outcome: Outcome, path: &Path, last: Option<Row>) -> Result<Summary, RunError> {
-    let (rows, before) = (writer.len(), writer.work().clone());
-    let outcome = Outcome {
-        peak_memory_bytes: peak_memory_bytes(),
-        threads: Some(rayon::current_num_threads()),
-        ..outcome
-    };
-    let status = outcome.status;
-    let summary = |status, work: Work| Summary {
-        status,
-        rows,
-        iterations: work.iterations,
-        convolutions: work.convolutions,
-        wall_s: work.wall_s,
-        peak_memory_bytes: work.peak_memory_bytes,
-        result: path.to_owned(),
-        last,
-    };
-    match writer.finish(&outcome) {
-        Ok(work) => Ok(summary(status, work)),
-        Err(source) => Err(RunError::Storage { source, summary: Box::new(summary(Status::Failed, before)) }),
-    }
 }

@@ -14,6 +14,7 @@ use super::error::{Result, StoreError, corrupt, io};
 use super::header::{self, Header, Progress};
 use super::layout::{self, ArraySpec, LEVEL};
 use super::replace::{Way, replace};
+use crate::finding;
 
 const NAME: &str = "zarr.json";
 /// Where documents are written first; that of the group in an array's directory, where no reader of the
@@ -103,7 +104,9 @@ impl Document {
             let length = shape.and_then(Value::as_u64).and_then(|n| usize::try_from(n).ok());
             length.ok_or_else(|| corrupt(&file, format_args!("the array `{name}` is missing or malformed")))
         };
-        let progress = Progress { status, work, rows: length("time")?, maps: length("field_time")? };
+        let findings = attributes.get("findings").map(finding::from_list).unwrap_or_default();
+        let progress =
+            Progress { status, work, rows: length("time")?, maps: length("field_time")?, findings };
         let document = Document { header, progress };
         for array in document.arrays() {
             if metadata.get(array.name).is_none_or(|stored| !same_form(stored, &array.document(LEVEL))) {

@@ -3,11 +3,13 @@
 use std::path::Path;
 
 use asperity::Grid;
+use asperity::finding::Finding;
 use asperity::quantities::{Column, Quantity};
 use serde_json::{Map, Value, json};
 
 use super::error::{Result, StoreError, corrupt};
 use super::layout::FieldKind;
+use crate::finding;
 
 /// Value of the attribute `format`: marks the directories that this store may replace.
 const FORMAT: &str = "asperity-result";
@@ -94,15 +96,18 @@ pub(super) struct Progress {
     pub(super) rows: usize,
     /// Instants of the fields.
     pub(super) maps: usize,
+    /// What the run found about itself.
+    pub(super) findings: Vec<Finding>,
 }
 
 impl Default for Progress {
     fn default() -> Self {
-        Progress { status: Status::Running, work: Work::default(), rows: 0, maps: 0 }
+        Progress { status: Status::Running, work: Work::default(), rows: 0, maps: 0, findings: vec![] }
     }
 }
 
-/// Attributes of the group. Flat, of numbers and text only, so that xarray can pass them on to NetCDF.
+/// Attributes of the group. Flat, of numbers and text only (but for the findings), so that xarray can pass them on to
+/// NetCDF.
 pub(super) fn attributes(header: &Header) -> Map<String, Value> {
     let [nx, ny] = header.grid.cells();
     let [lx, ly] = header.grid.size();
@@ -143,6 +148,7 @@ pub(super) fn put_progress(map: &mut Map<String, Value>, progress: &Progress) {
     put("work_convolutions", Some(json!(work.convolutions)));
     put("work_peak_memory_bytes", work.peak_memory_bytes.map(|bytes| json!(bytes)));
     put("work_threads", work.threads.map(|threads| json!(threads)));
+    put("findings", Some(finding::list(&progress.findings)));
 }
 
 /// Whether the attributes are those of a result of any version.

@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
+use asperity::finding::Finding;
 use asperity::march::Row;
 use asperity::quantities::Quantity;
 use ndarray::Array2;
@@ -78,6 +79,11 @@ impl Reader {
         let mut attributes = header::attributes(self.header());
         header::put_progress(&mut attributes, &self.document.progress);
         attributes
+    }
+
+    /// What the run found about itself, as far as it has come.
+    pub fn findings(&self) -> &[Finding] {
+        &self.document.progress.findings
     }
 
     /// The work that it took.

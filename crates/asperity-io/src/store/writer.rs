@@ -4,6 +4,7 @@ use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use asperity::finding::Finding;
 use asperity::march::{Checkpoint, Row};
 use ndarray::ArrayView2;
 
@@ -318,6 +319,20 @@ impl Writer {
         }
         self.field_time.put(map, time.to_le_bytes())?;
         self.field_step.put(map, (self.progress.rows as i64).to_le_bytes())
+    }
+
+    /// Sets what the run has found about itself; readers see it with the next row, [`note`](Self::note) or end.
+    pub fn set_findings(&mut self, findings: Vec<Finding>) {
+        self.progress.findings = findings;
+    }
+
+    /// Sets what the run has found about itself, for readers to see at once.
+    ///
+    /// # Errors
+    /// [`StoreError::Io`] where the system refuses.
+    pub fn note(&mut self, findings: Vec<Finding>) -> Result<()> {
+        self.set_findings(findings);
+        self.pages.commit(&self.root, &self.progress, Way::Quick)
     }
 
     /// Whether writing a checkpoint now keeps the writing of all of them below 1 % of the time. A killed run

@@ -15,6 +15,7 @@ True
 from . import compat
 from ._core import CaseError, ConvergenceError, __version__
 from ._contact import ElasticContact, elastic
+from ._findings import Finding, ResultWarning
 from ._fit import Fit, fit_creep, fit_dma, fit_file, fit_relaxation
 from ._histories import (
     History,
@@ -64,6 +65,7 @@ __all__ = [
     "Cycle",
     "Elastic",
     "ElasticContact",
+    "Finding",
     "Fit",
     "FractionalMaxwell",
     "FractionalZener",
@@ -75,6 +77,7 @@ __all__ = [
     "Maxwell",
     "Prony",
     "Result",
+    "ResultWarning",
     "Shift",
     "Springpot",
     "Stage",

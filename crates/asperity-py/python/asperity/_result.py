@@ -12,6 +12,7 @@ import numpy as np
 from . import _core
 from ._arrays import Floats, number, plain
 from ._core import CaseError
+from ._findings import Finding, findings_of
 
 if TYPE_CHECKING:
     from .plot import Plots
@@ -144,6 +145,11 @@ class Result:
         return dict(self._attributes)
 
     @property
+    def findings(self) -> list[Finding]:
+        """Where the numbers may be off (docs/findings.md): each with `code`, `severity`, `text`, `value`, `limit`, `rows`."""
+        return findings_of(self._attributes.get("findings", []))
+
+    @property
     def fields(self) -> list[str]:
         """Names of the fields that were kept."""
         return list(self._fields)
@@ -250,7 +256,9 @@ class Result:
             rows[name] = (("time", along), numbers, dict(zip(("units", "long_name"), QUANTITIES[name])))  # type: ignore[assignment]
             coordinates[along] = (along, middle, {"units": unit, "long_name": f"middle of {words}"})
             coordinates[ends] = (ends, edges, {"units": unit, "long_name": f"ends of {words}"})
-        return xarray.Dataset({**rows, **maps, **dict([gap])}, coords=coordinates, attrs=self._attributes)
+        # Text, as all other attributes, so that the dataset can be written.
+        attributes = {**self._attributes, "findings": json.dumps(self._attributes.get("findings", []))}
+        return xarray.Dataset({**rows, **maps, **dict([gap])}, coords=coordinates, attrs=attributes)
 
     @property
     def plot(self) -> Plots:
@@ -288,6 +296,7 @@ class Result:
                 ),
                 *((name, plain(edges), plain(numbers)) for name, (edges, numbers) in self._histograms.items()),
             ],
+            json.dumps(attributes.get("findings", [])),
         )
 
     def report(self, path: str | os.PathLike[str], *, force: bool = False, megabytes: int = 12) -> None:

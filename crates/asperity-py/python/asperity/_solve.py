@@ -13,6 +13,7 @@ import numpy.typing as npt
 from . import _core
 from ._arrays import Floats, count, field, line, number
 from ._core import CaseError
+from ._findings import Finding, findings_of, warn
 from ._histories import History, Stage, Times, as_history, as_stage, as_times, one_of
 from ._materials import Material
 from ._progress import Progress
@@ -94,6 +95,11 @@ class March:
     def times(self) -> Floats:
         """Times of all rows [s], as far as they are known: 0+, the steps, and the breaks and jumps of the history."""
         return np.array(self._core.times())
+
+    @property
+    def findings(self) -> list[Finding]:
+        """Where the numbers of the rows so far may be off (docs/findings.md)."""
+        return findings_of(json.loads(self._core.findings()))
 
     def __iter__(self) -> Iterator[Step]:
         return self
@@ -270,6 +276,10 @@ def solve(
     Returns
     -------
     Result
+
+    Warns
+    -----
+    ResultWarning : the numbers may be off; the result's `findings` say where and why
     """
     kept = [str(name) for name in fields]
     if unknown := [name for name in kept if name not in FIELDS]:
@@ -336,6 +346,8 @@ def solve(
                 maps[name].append(last.field(name))
     finally:
         teller.end()
+    found = run.findings
+    warn(found, 2)
     return Result(
         table={name: np.array(values) for name, values in table.items() if name not in HISTOGRAMS},
         histograms={name: (ends, np.array(table[name])) for name, ends in edges.items() if name in HISTOGRAMS},
@@ -343,7 +355,13 @@ def solve(
         field_steps=np.array(steps),
         initial_gap=run.initial_gap,
         size=run.size,
-        attributes={"title": title, "version": _core.__version__, "status": "complete", "setup": json.dumps(run._setup)},
+        attributes={
+            "title": title,
+            "version": _core.__version__,
+            "status": "complete",
+            "setup": json.dumps(run._setup),
+            "findings": [dict(finding) for finding in found],
+        },
     )
 
 
@@ -410,11 +428,14 @@ def run(
     finally:
         if teller is not None:
             teller.end()
-    return open(summary["result"])
+    result = open(summary["result"])
+    warn(result.findings, 2)
+    return result
 
 
 def check(case: str | os.PathLike[str] | Mapping[str, Any], *, set: dict[str, Any] | Sequence[str] | None = None) -> dict[str, Any]:
-    """What a case (as in :func:`run`) will do, in numbers: cells, rows, moduli, memory [byte], ..."""
+    """What a case (as in :func:`run`) will do, in numbers: cells, rows, moduli, memory [byte], ...; the inputs that a slip
+    would hide in, the contact to be expected, and the findings that are known before the run."""
     out: dict[str, Any] = json.loads(_core.check(*_source(case), _keys(set)))
     return out
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field as dataclass_field
@@ -12,6 +13,7 @@ import numpy as np
 from . import _core
 from ._arrays import Floats, count, counts, field, number, pair
 from ._core import CaseError
+from ._findings import findings_of, warn
 
 if TYPE_CHECKING:
     from .plot import SurfacePlots
@@ -186,6 +188,10 @@ class Surface:
             lay_ratio (rms slope across it over that along it), lay_angle [rad] from x; hurst, hurst_error (one standard
             error), roll_off [m], plateau [m^4], spectrum_misfit of a self-affine spectrum, where one can be fitted (with a
             clear lay: across it)
+
+        Warns
+        -----
+        ResultWarning : the Hurst exponent lies outside of 0 to 1
         """
         band = None
         if longest is not None or shortest is not None:
@@ -195,7 +201,9 @@ class Surface:
                 from_ if longest is None else number("longest", longest),
                 to if shortest is None else number("shortest", shortest),
             ]
-        return _core.describe(self.heights, list(self.size), self._repeats(periodic), band)
+        found = _core.describe(self.heights, list(self.size), self._repeats(periodic), band)
+        warn(findings_of(json.loads(found.pop("findings", "[]"))), 2)
+        return found
 
     def power_spectrum(self, per_decade: int = 16) -> tuple[Floats, Floats]:
         """Wavenumbers [1/m] and radially averaged power spectrum C(q) [m^4]; 0 rings per decade: linear rings.

@@ -46,6 +46,7 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
         "title": title(reader),
         "status": status(reader),
         "footer": format!("asperity {}; every number in SI units with prefixes.", reader.header().version),
+        "findings": asperity_io::finding::list(reader.findings()),
         "headline": headline(reader)?,
         "facts": facts(reader)?,
         "case": reader.header().case_text,

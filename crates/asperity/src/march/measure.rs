@@ -39,6 +39,12 @@ impl Meter {
         &self.values
     }
 
+    /// Work of the load, and what became of it, where energies are asked for.
+    pub(super) fn energy_balance(&self) -> Option<[f64; 2]> {
+        let energy = self.energy.as_ref()?;
+        Some([energy.work, energy.elastic + energy.dissipated + energy.flattening])
+    }
+
     /// The numbers of a quantity.
     pub(super) fn of(&self, quantity: Quantity) -> Option<&[f64]> {
         let mut start = 0;

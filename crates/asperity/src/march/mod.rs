@@ -25,6 +25,7 @@ mod warm_start;
 
 pub use checkpoint::Checkpoint;
 pub use dense::Between;
+pub(crate) use record::PERIMETER_SHARE;
 pub use record::{Row, Step};
 pub use simulation::{Plasticity, Scheme, Simulation};
 

@@ -50,7 +50,7 @@ pub struct Row {
 }
 
 /// (pi - 1 + ln 2)/24: the mean excess of a counted area per perimeter and cell.
-const PERIMETER_SHARE: f64 = (std::f64::consts::PI - 1.0 + std::f64::consts::LN_2) / 24.0;
+pub(crate) const PERIMETER_SHARE: f64 = (std::f64::consts::PI - 1.0 + std::f64::consts::LN_2) / 24.0;
 
 /// One row of a march: the state, lent until the march goes on.
 #[derive(Clone, Copy)]
@@ -85,6 +85,17 @@ impl<'a> Step<'a> {
     /// Number of the row; 0 is t = 0+.
     pub fn index(&self) -> usize {
         self.index
+    }
+
+    /// What is simulated.
+    pub fn simulation(&self) -> &'a Simulation {
+        self.simulation
+    }
+
+    /// Work of the load, and the sum of the energies stored, lost and spent on flattening \[J\]; `None` where no energy is
+    /// asked for.
+    pub(crate) fn energy_balance(&self) -> Option<[f64; 2]> {
+        self.meter?.energy_balance()
     }
 
     /// Time, length of the step, prescribed value.

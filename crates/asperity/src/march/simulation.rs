@@ -121,6 +121,11 @@ impl Simulation {
         self.parts().map(|creep| creep.instantaneous).sum()
     }
 
+    /// Compliance of the pair at time t under a pressure held since 0 \[1/Pa\].
+    pub fn compliance(&self, t: f64) -> f64 {
+        self.creep.value(t) + self.thermal.iter().map(|body| body.value(0.0, t)).sum::<f64>()
+    }
+
     /// Memory that a march takes at most \[bytes\]: its operator, solver, fields, history, and what its quantities need.
     pub fn bytes(&self) -> usize {
         let (grid, n) = (&self.grid, self.grid.len());

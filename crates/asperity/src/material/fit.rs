@@ -36,7 +36,8 @@ pub struct FitOptions {
     pub margin: f64,
     /// Default: whatever fits best.
     pub long_time: LongTime,
-    /// Largest systematic relative misfit before the data are refused, default 0.1.
+    /// Largest relative misfit before the data are refused, default 0.1: of the rms over all points, and of the mean of
+    /// neighbouring points where their scatter does not explain it.
     pub limit: f64,
     /// Most terms, at least 1; by default as many as the data call for.
     pub max_terms: usize,
@@ -287,6 +288,17 @@ impl FitOptions {
             count += residuals.len();
         }
         misfit.rms = (squares / count as f64).sqrt();
+        if misfit.rms.is_nan() || misfit.rms > self.limit {
+            return Err(Error::invalid(
+                "rms misfit of the fit",
+                format!("{:.2} % ({:.2} % at {:e})", 100.0 * misfit.rms, 100.0 * misfit.max, misfit.worst),
+                format!(
+                    "at most {:.2} % (the largest misfit allowed): fit a narrower window, allow more terms, leave \
+                     outliers out, or allow a larger misfit",
+                    100.0 * self.limit
+                ),
+            ));
+        }
         let uncertainty = refine::uncertainty(problem, &spectrum);
         Ok(Solved { spectrum, misfit, uncertainty })
     }

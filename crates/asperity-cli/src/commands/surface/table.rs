@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use asperity::finding::{self, Finding};
 use asperity::surface::Surface as Map;
 use asperity::surface::statistics::{BearingCurve, Extent, SelfAffineFit, Summary};
 use asperity_io::topography::Topography;
@@ -119,11 +120,19 @@ impl<'a> Portrait<'a> {
                 "plateau": fit.plateau,
                 "misfit": fit.misfit,
             })),
+            "findings": asperity_io::finding::list(&self.findings()),
             "bearing": { "share": SHARES, "height": heights },
             "channel": topography.channel,
             "channels": topography.channels,
             "history": topography.history().collect::<Vec<_>>(),
         })
+    }
+
+    /// What was found about the heights and the fit.
+    fn findings(&self) -> Vec<Finding> {
+        let fit = self.summary.waves.as_ref().and_then(|waves| waves.fit.as_ref());
+        let of_fit = fit.and_then(finding::hurst);
+        finding::of_heights("the surface", &self.map).into_iter().chain(of_fit).collect()
     }
 
     fn table(&self) -> String {
@@ -193,6 +202,9 @@ impl<'a> Portrait<'a> {
             })
             .collect();
         line("bearing", shares.join(", "), "");
+        for finding in self.findings() {
+            line(finding.severity.as_str(), format!("{} [{}]", finding.text, finding.code), "");
+        }
         for (n, step) in topography.history().enumerate() {
             line(if n == 0 { "history" } else { "" }, step.to_owned(), "");
         }

@@ -1,5 +1,6 @@
 //! Bodies: from samples of materials to what the pair of them is to the contact.
 
+use asperity::finding::{self, Finding};
 use asperity::material::{Body, Creep, Lateral, Material, ReducedTime, Shift, ThermalCreep, pair_hardness};
 use asperity::time::Plan;
 
@@ -19,8 +20,8 @@ pub struct Pair {
     pub hardness: f64,
     /// Where the materials come from.
     pub reports: Vec<MaterialReport>,
-    /// Where the run goes beyond what is known of a material.
-    pub warnings: Vec<String>,
+    /// Where fits are poor, and where the run goes beyond what is known of a material.
+    pub findings: Vec<Finding>,
     /// Rows of the run.
     pub plan: Plan,
 }
@@ -79,7 +80,7 @@ pub fn pair(
         thermal: Vec::new(),
         hardness: f64::INFINITY,
         reports: Vec::new(),
-        warnings: Vec::new(),
+        findings: Vec::new(),
         plan,
     };
     for made in made {
@@ -88,7 +89,7 @@ pub fn pair(
             None => pair.creep = pair.creep.sum(&made.creep),
         }
         pair.bodies.push(made.body);
-        pair.warnings.extend(made.warning);
+        pair.findings.extend(made.findings);
         pair.reports.push(made.report);
     }
     pair.hardness = pair_hardness(&pair.bodies);
@@ -101,7 +102,7 @@ struct Made {
     creep: Creep,
     clock: Option<ReducedTime>,
     report: MaterialReport,
-    warning: Option<String>,
+    findings: Vec<Finding>,
 }
 
 fn body(
@@ -123,8 +124,8 @@ fn body(
     };
     let (sample, warmth) = (sample?, warmth?);
     let window = warmth.window(plan);
-    let (reference, report, warning) = reference(checks, &raw.material, sample, window)?;
-    let warning = warning.map(|warning| format!("{name}: {warning}"));
+    let (reference, report, beyond) = reference(checks, &raw.material, sample, window)?;
+    let findings = findings(&name, &report, window, beyond);
     let factor = warmth.constant_factor();
     let material = match factor {
         Some(factor) if factor != 1.0 => checks.core(&raw.material.span, reference.stretched(factor))?,
@@ -142,7 +143,25 @@ fn body(
     };
     let body = Body { name, material, lateral, hardness: raw.hardness.map(|hardness| hardness.get()) };
     let creep = checks.core(&at.span, body.contact_creep())?;
-    Some(Made { body, creep, clock, report, warning })
+    Some(Made { body, creep, clock, report, findings })
+}
+
+/// What is found about the material of the body `name`; `beyond` says where a run over `window` [s] leaves the data.
+fn findings(
+    name: &str,
+    report: &MaterialReport,
+    window: Option<[f64; 2]>,
+    beyond: Option<String>,
+) -> Vec<Finding> {
+    let misfit = match (report.rms_misfit, report.max_misfit) {
+        (Some(rms), Some(largest)) => finding::misfit(name, rms, largest, report.noise.unwrap_or(0.0)),
+        _ => None,
+    };
+    let beyond = match (beyond, window, report.window) {
+        (Some(words), Some(needed), Some(known)) => Some(finding::beyond_data(name, needed, known, &words)),
+        _ => None,
+    };
+    misfit.into_iter().chain(beyond).collect()
 }
 
 /// A material by itself, and where it comes from.

@@ -126,7 +126,7 @@ pub fn case(
             thermal: pair.thermal,
             temperatures: points.map(<[_]>::to_vec),
             materials: pair.reports,
-            warnings: pair.warnings,
+            findings: pair.findings,
             files,
             hardness: pair.hardness,
             hardness_map: hardness.map,

@@ -1,0 +1,179 @@
+//! What `asperity check` says of a case: what was read, what is to be expected, and what may be off.
+
+use asperity::Simulation;
+use asperity::contact::Prescribed;
+use asperity::finding::{Contact, Expected, Finding, Judge, Known};
+use asperity::material::Modulus;
+use asperity::surface::statistics::{HeightStatistics, SlopeStatistics};
+use asperity::surface::{Part, Punch, Shape, Surface};
+use serde::Serialize;
+
+use super::{Case, CaseErrors, Description};
+
+/// A case, looked at without being solved.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Examination {
+    /// What will be solved, and what it takes.
+    #[serde(flatten)]
+    pub description: Description,
+    /// The inputs that a slip would hide in.
+    pub inputs: Inputs,
+    /// What was found.
+    #[serde(serialize_with = "as_list")]
+    pub findings: Vec<Finding>,
+}
+
+fn as_list<S: serde::Serializer>(findings: &[Finding], serializer: S) -> Result<S::Ok, S::Error> {
+    crate::finding::list(findings).serialize(serializer)
+}
+
+/// Inputs in SI, and the contact that they lead one to expect.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Inputs {
+    /// The parts of the gap.
+    pub surfaces: Vec<SurfaceInput>,
+    /// The moduli of the bodies.
+    pub moduli: Vec<ModulusInput>,
+    /// Largest load \[N\], where a load or a pressure is prescribed.
+    pub largest_load: Option<f64>,
+    /// The same over the domain \[Pa\].
+    pub largest_mean_pressure: Option<f64>,
+    /// Largest approach \[m\], where that is prescribed.
+    pub largest_approach: Option<f64>,
+    /// Expected radius of a round contact right after the load and at the end \[m\].
+    pub expected_contact_radius: Option<[f64; 2]>,
+    /// Expected share of the domain in contact right after the load and at the end.
+    pub expected_contact_share: Option<[f64; 2]>,
+    /// Expected cells across a round contact at the end.
+    pub expected_cells_across: Option<f64>,
+    /// Expected pressure over contact modulus at the end: the largest of a round contact, the mean of a rough one.
+    pub expected_pressure_over_modulus: Option<f64>,
+}
+
+/// A part of the gap.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct SurfaceInput {
+    /// "sphere", a file's path, ...
+    pub name: String,
+    /// Radii along x and y \[m\], of spheres, ellipsoids and round punches; null where infinite.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub radius: Option<[f64; 2]>,
+    /// Slope of a cone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slope: Option<f64>,
+    /// Sq: rms height about the mean \[m\], of rough surfaces and waves.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sq: Option<f64>,
+    /// Sdq: rms slope, of rough surfaces and waves.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sdq: Option<f64>,
+}
+
+/// The modulus of a body at once and relaxed \[Pa\].
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ModulusInput {
+    /// Name of the body.
+    pub body: String,
+    /// "young" or "shear".
+    pub modulus: &'static str,
+    /// At once; absent for a body that does not yield at once.
+    pub instantaneous: Option<f64>,
+    /// After all relaxation; 0 for a fluid.
+    pub relaxed: f64,
+}
+
+impl Case {
+    /// Reads and builds all that a run would, without solving, and says what is found.
+    ///
+    /// # Errors
+    /// As [`simulation`](Self::simulation).
+    pub fn examine(&self) -> Result<Examination, CaseErrors> {
+        let parts = self.parts()?;
+        let simulation = self.simulation_of(&parts)?;
+        let judge = Judge::new(&simulation, Known { parts: &parts, bodies: &self.bodies });
+        let expected = Expected::of(&simulation, &parts);
+        let of_case = self.findings.iter().chain(judge.known()).cloned();
+        let to_come = expected.iter().flat_map(|expected| expected.findings(&simulation));
+        let findings = of_case.chain(to_come).collect();
+        Ok(Examination {
+            inputs: self.inputs(&simulation, &parts, expected),
+            findings,
+            description: self.describe(),
+        })
+    }
+
+    fn inputs(&self, simulation: &Simulation, parts: &[Part], expected: Option<Expected>) -> Inputs {
+        let relaxed = |body: &asperity::material::Body| {
+            let relaxation = body.material.relaxation().ok()?;
+            let instantaneous = relaxation.instantaneous();
+            Some(ModulusInput {
+                body: body.name.clone(),
+                modulus: match body.material.measure() {
+                    Modulus::Young => "young",
+                    Modulus::Shear => "shear",
+                },
+                instantaneous: instantaneous.is_finite().then_some(instantaneous),
+                relaxed: relaxation.equilibrium,
+            })
+        };
+        let mut inputs = Inputs {
+            surfaces: parts.iter().map(|part| surface(&self.grid, part)).collect(),
+            moduli: self.bodies.iter().filter_map(relaxed).collect(),
+            ..Inputs::default()
+        };
+        let Some(expected) = expected else { return inputs };
+        match expected.largest {
+            Prescribed::Load(load) => {
+                inputs.largest_load = Some(load);
+                inputs.largest_mean_pressure = Some(load / simulation.grid.area());
+            }
+            Prescribed::Approach(approach) => inputs.largest_approach = Some(approach),
+        }
+        match expected.contact {
+            Some(Contact::Round(radii)) => {
+                inputs.expected_contact_radius = Some(radii);
+                let cell = simulation.grid.spacing().into_iter().fold(0.0, f64::max);
+                inputs.expected_cells_across = Some(2.0 * radii[1] / cell);
+            }
+            Some(Contact::Share(shares)) => inputs.expected_contact_share = Some(shares),
+            None => {}
+        }
+        inputs.expected_pressure_over_modulus = expected.strain;
+        inputs
+    }
+}
+
+fn surface(grid: &asperity::Grid, part: &Part) -> SurfaceInput {
+    let heights = match part {
+        Part::Shape { shape: shape @ Shape::Wave { .. }, .. } => {
+            let [x0, y0] = grid.centre();
+            let wave = |(i, j): (usize, usize)| shape.gap(grid.x(i) - x0, grid.y(j) - y0);
+            Some(ndarray::Array2::from_shape_fn(grid.shape(), wave))
+        }
+        Part::Shape { .. } => None,
+        Part::SelfAffine(surface) => surface.heights(grid).ok(),
+        Part::Synthesis(surface) => surface.heights(grid).ok(),
+        Part::Heights { heights, .. } => Some(heights.clone()),
+    };
+    let rough = heights.and_then(|heights| Surface::new(*grid, heights).ok());
+    let (name, radius, slope) = match part {
+        Part::Shape { shape, .. } => {
+            let radius = match shape {
+                Shape::Sphere { radius } | Shape::FlatPunch(Punch::Circle { radius }) => Some([*radius; 2]),
+                Shape::Ellipsoid { radius_x, radius_y } => Some([*radius_x, *radius_y]),
+                _ => None,
+            };
+            let slope = if let Shape::Cone { slope } = shape { Some(*slope) } else { None };
+            (shape.name().to_owned(), radius, slope)
+        }
+        Part::SelfAffine(_) | Part::Synthesis(_) => ("self-affine".to_owned(), None, None),
+        Part::Heights { name, .. } => (name.clone(), None, None),
+    };
+    SurfaceInput {
+        name,
+        radius,
+        slope,
+        sq: rough.as_ref().and_then(|surface| HeightStatistics::of(surface).ok()).map(|heights| heights.sq),
+        sdq: rough.as_ref().and_then(|surface| SlopeStatistics::of(surface).ok()).map(|slopes| slopes.sdq),
+    }
+}

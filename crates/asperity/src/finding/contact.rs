@@ -1,0 +1,116 @@
+//! Contacts and contact spots of a few cells.
+//!
+//! The width of the spots is 4 A/P, four times the contact area over its perimeter, counted in cells and edges: d for a
+//! spot of d by d cells. A row tells both, as its corrected area is A less a share of the perimeter.
+
+use super::words::{digits, rows};
+use super::{FEW_CONTACT_CELLS, Finding, SPOTS_UNRESOLVED};
+use crate::grid::Grid;
+use crate::march::{PERIMETER_SHARE, Row};
+
+/// Cells across a spot, at least: below, the pressure inside it is a guess.
+const ACROSS: f64 = 4.0;
+/// Cells of a contact, at least: the area of 50 cells is known to a tenth or so.
+const FEWEST: f64 = 50.0;
+
+/// A contact in cells.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Counted {
+    /// Cells in contact.
+    pub cells: f64,
+    /// Edges between a cell in contact and one that is not.
+    pub edges: f64,
+}
+
+impl Counted {
+    pub(super) fn of(grid: &Grid, row: &Row) -> Self {
+        let cell = grid.cell_area();
+        let edges = (row.contact_area - row.contact_area_corrected) / (PERIMETER_SHARE * cell);
+        Counted { cells: (row.contact_area / cell).round(), edges: edges.round() }
+    }
+
+    /// Mean width of the spots in cells; infinite where the contact has no edge.
+    pub(super) fn width(self) -> f64 {
+        4.0 * self.cells / self.edges
+    }
+
+    /// Whether it is one spot without holes, more or less: a circle of cells has edges² = 64/pi cells.
+    pub(super) fn is_compact(self) -> bool {
+        self.cells > 0.0 && self.edges * self.edges < 30.0 * self.cells
+    }
+}
+
+/// The largest contact of a run, and the rows whose contact the grid does not resolve.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Resolution {
+    largest: Counted,
+    narrow: Option<[usize; 2]>,
+    few: Option<[usize; 2]>,
+}
+
+impl Resolution {
+    pub(super) fn see(&mut self, index: usize, contact: Counted) {
+        if contact.cells == 0.0 {
+            return;
+        }
+        if contact.cells > self.largest.cells {
+            self.largest = contact;
+        }
+        let extend = |rows: &mut Option<[usize; 2]>| {
+            *rows = Some(rows.map_or([index; 2], |[first, _]| [first, index]));
+        };
+        if contact.width() < ACROSS {
+            extend(&mut self.narrow);
+        }
+        if contact.cells < FEWEST {
+            extend(&mut self.few);
+        }
+    }
+
+    /// Every contact begins with a cell: the largest one is judged.
+    pub(super) fn findings(&self) -> Vec<Finding> {
+        let Counted { cells, .. } = self.largest;
+        let width = self.largest.width();
+        let mut found = vec![];
+        if let Some(at) = self.few.filter(|_| cells < FEWEST) {
+            found.push(few(cells, "has").at(at));
+        }
+        if let Some(at) = self.narrow.filter(|_| width < ACROSS) {
+            found.push(narrow(width, &format!("The contact spots ({})", rows(at))).at(at));
+        }
+        found
+    }
+}
+
+/// A contact of so many cells.
+pub(super) fn few(cells: f64, has: &str) -> Finding {
+    let text = format!(
+        "The largest contact {has} {} cells, less than {FEWEST}: area, pressure and approach are coarse. Refine the grid \
+         (domain.cells), or take a smaller domain (domain.size).",
+        digits(cells.round())
+    );
+    Finding::warning(FEW_CONTACT_CELLS, cells, FEWEST, text)
+}
+
+/// Spots of so many cells across; `spots` begins the sentence.
+pub(super) fn narrow(width: f64, spots: &str) -> Finding {
+    let text = format!(
+        "{spots} are {} cells across in the mean where the contact is largest, less than {ACROSS}: largest pressure and \
+         contact area depend on the grid. Refine it (domain.cells), or leave short waves out.",
+        digits(width)
+    );
+    Finding::warning(SPOTS_UNRESOLVED, width, ACROSS, text)
+}
+
+/// What a round contact of this diameter in cells would be found to be.
+pub(super) fn expected(across: f64) -> Vec<Finding> {
+    let cells = std::f64::consts::FRAC_PI_4 * across * across;
+    let mut found = vec![];
+    if cells < FEWEST {
+        found.push(few(cells, "is expected to have"));
+    }
+    if across < ACROSS {
+        found.push(narrow(across, "Contact spots"));
+    }
+    found
+}

@@ -1,0 +1,188 @@
+//! The border of the domain.
+//!
+//! A free domain ends: nothing beyond it touches. A periodic one goes on as it began: its gap must do so too.
+
+use ndarray::Array2;
+
+use super::words::{digits, si};
+use super::{CONTACT_AT_BORDER, Finding, GAP_NOT_PERIODIC, ROUGH_ON_FREE_DOMAIN};
+use crate::grid::Grid;
+
+/// A gap whose second difference across the border is so many times the largest inside does not repeat.
+const JUMP: f64 = 2.0;
+/// Gaps that vary by less than this share of their range are flat: rounding of the sum of parts.
+const ROUNDING: f64 = 1e-9;
+/// How much wider the gap must be at the border than in the mean, over its standard deviation. A sphere has 1.6, a
+/// cone 1.3, a cylinder 1.1; a rough plane, a wave or a tilted plane 0.
+const CONFINED: f64 = 0.5;
+
+/// Whether any cell of the border of a field is positive.
+pub(super) fn touches_border(pressure: ndarray::ArrayView2<'_, f64>) -> bool {
+    let (nx, ny) = pressure.dim();
+    let any = |line: ndarray::ArrayView1<'_, f64>| line.iter().any(|p| *p > 0.0);
+    [0, nx - 1].into_iter().any(|i| any(pressure.row(i)))
+        || [0, ny - 1].into_iter().any(|j| any(pressure.column(j)))
+}
+
+/// Contact at the border of a free domain, in these rows. `needed` is the side of the domain that the contact would
+/// take \[m\], where the gap tells; `contact` begins the sentence.
+pub(super) fn at_border(grid: &Grid, confined: bool, needed: Option<f64>, contact: &str) -> Finding {
+    let [lx, ly] = grid.size();
+    let side = lx.min(ly);
+    let size = format!("{} x {}", si(lx, "m"), si(ly, "m"));
+    let cure = match needed.filter(|needed| confined && *needed > side) {
+        Some(needed) => {
+            let needed = si(needed, "m");
+            format!("Take a domain of at least {needed} x {needed} (domain.size), or less load.")
+        }
+        None if confined => "Take a larger domain (domain.size), or less load.".to_owned(),
+        None => "If the surface goes on beyond the domain, take boundary = \"periodic\".".to_owned(),
+    };
+    let limit = needed.filter(|needed| confined && *needed > side).unwrap_or(f64::NAN);
+    Finding::warning(
+        CONTACT_AT_BORDER,
+        side,
+        limit,
+        format!(
+            "{contact} reaches the border of the free domain of {size}: nothing beyond it touches, so contact area, pressure and \
+             approach are those of a body that ends there. {cure}"
+        ),
+    )
+}
+
+/// Radius of the paraboloid of the gap at the border of the domain about its lowest cell \[m\]: the mean of r²/(2 h).
+/// `None` where the gap is closed or endless there.
+pub(super) fn radius(grid: &Grid, gap: &Array2<f64>) -> Option<f64> {
+    let (mut lowest, mut place) = (f64::INFINITY, (0, 0));
+    for (at, h) in gap.indexed_iter() {
+        if *h < lowest {
+            (lowest, place) = (*h, at);
+        }
+    }
+    let (nx, ny) = gap.dim();
+    let (x0, y0) = (grid.x(place.0), grid.y(place.1));
+    let (mut sum, mut count) = (0.0, 0.0);
+    for (i, j) in border(nx, ny) {
+        let h = gap[(i, j)] - lowest;
+        let square = (grid.x(i) - x0).powi(2) + (grid.y(j) - y0).powi(2);
+        if h > 0.0 && h.is_finite() && square > 0.0 {
+            sum += 2.0 * h / square;
+            count += 1.0;
+        }
+    }
+    (count > 0.0 && sum > 0.0).then(|| count / sum)
+}
+
+fn border(nx: usize, ny: usize) -> impl Iterator<Item = (usize, usize)> {
+    let ends = (0..ny).flat_map(move |j| [(0, j), (nx - 1, j)]);
+    ends.chain((0..nx).flat_map(move |i| [(i, 0), (i, ny - 1)]))
+}
+
+/// How much wider the gap is at the border than in the mean, over its standard deviation; `None` where cells cannot
+/// touch, or where nothing varies (flat on flat, a punch as large as the domain).
+pub(super) fn widening(gap: &Array2<f64>) -> Option<f64> {
+    let cells = gap.len() as f64;
+    let mean = gap.sum() / cells;
+    let spread = (gap.fold(0.0, |sum, h| sum + (h - mean) * (h - mean)) / cells).sqrt();
+    let (nx, ny) = gap.dim();
+    let (sum, count) = border(nx, ny).fold((0.0, 0.0), |(sum, count), at| (sum + gap[at], count + 1.0));
+    (mean.is_finite() && spread > ROUNDING * mean.abs()).then(|| (sum / count - mean) / spread)
+}
+
+/// Whether something besides the end of the domain confines the contact.
+pub(super) fn confined(gap: &Array2<f64>) -> bool {
+    widening(gap).is_none_or(|widening| widening > CONFINED)
+}
+
+/// A surface on a free domain that nothing but the end of the domain confines.
+pub(super) fn unconfined(gap: &Array2<f64>) -> Option<Finding> {
+    let widening = widening(gap).filter(|widening| *widening <= CONFINED)?;
+    Some(Finding::warning(
+        ROUGH_ON_FREE_DOMAIN,
+        widening,
+        CONFINED,
+        "The gap is no wider at the border of the free domain than inside it: the surface ends there like a punch, and \
+         the pressure rises towards the border. For a part of a larger surface take boundary = \"periodic\"; for a body \
+         that ends there this is right.",
+    ))
+}
+
+/// A periodic gap that does not go on across the border: the second differences there against the largest of the lines
+/// inside, cell by cell (rms) and of the line as a whole (mean).
+pub(super) fn not_periodic(grid: &Grid, gap: &Array2<f64>) -> Option<Finding> {
+    let range = gap.iter().filter(|h| h.is_finite()).fold(0.0, |most: f64, h| most.max(*h));
+    let found = [0, 1].into_iter().filter_map(|axis| kink(gap, axis, range).map(|kink| (axis, kink)));
+    let (axis, Kink { jump, slope, inside }) = found.max_by(|a, b| a.1.jump.total_cmp(&b.1.jump))?;
+    let name = ["x", "y"][axis];
+    let slope = slope / grid.spacing()[axis];
+    Some(Finding::warning(
+        GAP_NOT_PERIODIC,
+        jump,
+        inside,
+        format!(
+            "The gap does not go on across the border of the periodic domain along {name}: it jumps by {}, {} times as \
+             much as from cell to cell inside, and its slope changes by {}. The jump acts as an edge. Take boundary = \
+             \"free\" for a single body; level a measured surface and give it a window, or take whole waves.",
+            si(jump, "m"),
+            digits(jump / inside.max(ROUNDING * range)),
+            digits(slope)
+        ),
+    ))
+}
+
+struct Kink {
+    /// Largest rms or mean second difference across the border, and inside \[m\].
+    jump: f64,
+    inside: f64,
+    /// Change of the mean first difference across the border \[m\].
+    slope: f64,
+}
+
+/// The kink at the border along an axis, where there is one.
+fn kink(gap: &Array2<f64>, axis: usize, range: f64) -> Option<Kink> {
+    let lines = [gap.dim().0, gap.dim().1][axis];
+    if lines < 5 {
+        return None;
+    }
+    let bends = bends(gap, axis);
+    let (inner, ends) = (&bends[1..lines - 1], [bends[0], bends[lines - 1]]);
+    let size = |line: &[f64; 2], k: usize| line[k].abs();
+    let largest =
+        |list: &[[f64; 2]], k: usize| list.iter().fold(0.0, |most: f64, line| most.max(size(line, k)));
+    let found = [0, 1].map(|k| (largest(&ends, k), largest(inner, k)));
+    let (jump, inside) =
+        found.into_iter().find(|(across, inside)| *across > (JUMP * inside).max(ROUNDING * range))?;
+    Some(Kink { jump, inside, slope: (ends[0][1] + ends[1][1]).abs() })
+}
+
+/// Root mean square and mean of the second differences along an axis, of each line of the domain across it. Cells that
+/// cannot touch, and their neighbours, are left out.
+fn bends(gap: &Array2<f64>, axis: usize) -> Vec<[f64; 2]> {
+    let (nx, ny) = gap.dim();
+    let lines = [nx, ny][axis];
+    let mut sums = vec![[0.0_f64; 3]; lines];
+    let mut add = |line: usize, before: f64, here: f64, after: f64| {
+        let bend = before - 2.0 * here + after;
+        if bend.is_finite() {
+            let [squares, sum, count] = &mut sums[line];
+            (*squares, *sum, *count) = (*squares + bend * bend, *sum + bend, *count + 1.0);
+        }
+    };
+    for i in 0..nx {
+        let row = gap.row(i);
+        if axis == 0 {
+            let (before, after) = (gap.row((i + nx - 1) % nx), gap.row((i + 1) % nx));
+            row.iter()
+                .zip(before)
+                .zip(after)
+                .for_each(|((here, before), after)| add(i, *before, *here, *after));
+        } else {
+            (0..ny).for_each(|j| add(j, row[(j + ny - 1) % ny], row[j], row[(j + 1) % ny]));
+        }
+    }
+    let line = |[squares, sum, count]: [f64; 3]| match count > 0.0 {
+        true => [f64::sqrt(squares / count), sum / count],
+        false => [0.0, 0.0],
+    };
+    sums.into_iter().map(line).collect()
+}

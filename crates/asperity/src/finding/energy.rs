@@ -1,0 +1,40 @@
+//! The energy balance: what the load does is stored in the springs, lost in the dashpots or spent on flattening.
+//! The difference is an error of the time steps.
+
+use super::words::digits;
+use super::{ENERGY_BALANCE, Finding};
+
+/// Share of the largest work by which the sum may be off.
+const MISSING: f64 = 0.05;
+
+/// The balance over the rows.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Balance {
+    /// Largest work and largest difference \[J\].
+    work: f64,
+    missing: f64,
+    worst: usize,
+}
+
+impl Balance {
+    /// Work of the load, and energies stored and lost, at the end of a row \[J\].
+    pub(super) fn see(&mut self, index: usize, [work, energies]: [f64; 2]) {
+        self.work = self.work.max(work.abs()).max(energies.abs());
+        let missing = (work - energies).abs();
+        if missing > self.missing {
+            (self.missing, self.worst) = (missing, index);
+        }
+    }
+
+    pub(super) fn finding(&self) -> Option<Finding> {
+        let share = self.missing / self.work;
+        (share > MISSING).then(|| {
+            let text = format!(
+                "The work of the load differs from the energies stored and lost by {} % of the largest work: the steps are \
+                 too long for the energies. Take more steps where the load moves, or spacing = \"adaptive\".",
+                digits(100.0 * share)
+            );
+            Finding::warning(ENERGY_BALANCE, share, MISSING, text).at([self.worst; 2])
+        })
+    }
+}

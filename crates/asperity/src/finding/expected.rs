@@ -1,0 +1,220 @@
+//! The contact that is to be expected, before the run.
+//!
+//! ```text
+//! paraboloid   a³ = 3 R W C / 4,  w = a²/R,  p_max C = 2a/(πR)          (Hertz)
+//! cone         a² = 2 W C / (π s),  w = π s a/2,  p_mean C = s/2         (Love, Sneddon)
+//! rough plane  A/A0 = 2 p C / h',  p_mean C = h'/2 inside the contact    (Persson; h' the rms slope)
+//! ```
+//!
+//! with the compliance C at once and at the end of the run. An estimate: it leaves out what the other parts of the gap
+//! add, and everything but the largest load or approach.
+
+use std::f64::consts::PI;
+
+use super::words::si;
+use super::{Finding, contact, domain, strain, surface};
+use crate::contact::Prescribed;
+use crate::grid::{Boundary, Grid};
+use crate::load::{Control, Course, Event, Stage};
+use crate::march::Simulation;
+use crate::surface::{Part, Punch, Shape};
+
+/// The domain of a contact should be so many times as wide as its radius.
+pub(super) const ROOM: f64 = 2.5;
+/// Contacts this near to the border are expected to reach it.
+const NEAR: f64 = 0.97;
+
+/// The expected contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Contact {
+    /// One round spot of these radii \[m\], right after the load and at the end.
+    Round([f64; 2]),
+    /// These shares of the domain.
+    Share([f64; 2]),
+}
+
+/// What is to be expected of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Expected {
+    /// The largest load \[N\], or the largest approach \[m\], that the case prescribes.
+    pub largest: Prescribed,
+    /// The contact, where the surface is simple enough.
+    pub contact: Option<Contact>,
+    /// Pressure over contact modulus at the end: the largest in a round contact, the mean in that of a rough plane.
+    pub strain: Option<f64>,
+    /// Contact radius over radius of the body at the end.
+    width: Option<f64>,
+    /// Distance from the middle of the contact to the nearest border \[m\].
+    room: f64,
+}
+
+/// The shape that decides a contact.
+#[derive(Clone, Copy)]
+enum Form {
+    Paraboloid { radius: f64 },
+    Cone { slope: f64 },
+    Punch { radius: f64 },
+    Rough { slope: f64 },
+}
+
+impl Expected {
+    /// From the parts of the gap; `None` where nothing is pressed.
+    pub fn of(simulation: &Simulation, parts: &[Part]) -> Option<Expected> {
+        let grid = &simulation.grid;
+        let stages = &simulation.loading.stages;
+        let cases = stages.iter().filter_map(|stage| largest(simulation, stage));
+        let form = form(parts, || surface::slope(grid, &simulation.gap, f64::INFINITY));
+        let compliance = [simulation.instantaneous(), simulation.compliance(simulation.times.end())];
+        let size = |(largest, until): &(Prescribed, Option<Event>)| {
+            let radius = |c: f64| {
+                let radius = form?.radius(*largest, c, simulation.hardness);
+                let end = match until {
+                    Some(Event::Approach(w)) => form?.radius(Prescribed::Approach(*w), c, f64::INFINITY),
+                    Some(Event::Load(w)) => form?.radius(Prescribed::Load(*w), c, simulation.hardness),
+                    _ => None,
+                };
+                Some(radius?.min(end.unwrap_or(f64::INFINITY)))
+            };
+            Some([radius(compliance[0])?, radius(compliance[1])?])
+        };
+        let mut all: Vec<_> = cases.map(|case| (case.0, size(&case))).collect();
+        all.sort_by(|a, b| order(a).total_cmp(&order(b)));
+        let (largest, radii) = all.pop()?;
+        let mut expected =
+            Expected { largest, contact: None, strain: None, width: None, room: room(grid, parts) };
+        match (form, radii, largest) {
+            (Some(Form::Rough { slope }), _, Prescribed::Load(load)) => {
+                let share = |c: f64| (2.0 * load / grid.area() * c / slope).min(1.0);
+                let shares = compliance.map(share);
+                expected.contact = Some(Contact::Share(shares));
+                expected.strain =
+                    Some(load / grid.area() * compliance[1] / shares[1]).filter(|s| s.is_finite());
+            }
+            (Some(form), Some(radii), _) => {
+                let a = radii[1];
+                expected.contact = Some(Contact::Round(radii));
+                (expected.strain, expected.width) = match form {
+                    Form::Paraboloid { radius } => (Some(2.0 * a / (PI * radius)), Some(a / radius)),
+                    Form::Cone { slope } => (Some(0.5 * slope), None),
+                    Form::Punch { radius } => match largest {
+                        Prescribed::Load(load) => (Some(load / (PI * radius * radius) * compliance[1]), None),
+                        Prescribed::Approach(w) => (Some(2.0 * w / (PI * radius)), None),
+                    },
+                    Form::Rough { .. } => (None, None),
+                };
+            }
+            _ => {}
+        }
+        Some(expected)
+    }
+
+    /// What will be found if the run goes as expected.
+    pub fn findings(&self, simulation: &Simulation) -> Vec<Finding> {
+        let Some(Contact::Round([_, radius])) = self.contact else { return vec![] };
+        let [dx, dy] = simulation.grid.spacing();
+        let mut found = vec![];
+        if simulation.boundary == Boundary::Free && radius > NEAR * self.room {
+            let words = format!("The expected contact, {} across,", si(2.0 * radius, "m"));
+            found.push(domain::at_border(&simulation.grid, true, Some(ROOM * radius), &words));
+        }
+        if radius > 0.0 {
+            found.extend(contact::expected(2.0 * radius / dx.max(dy)));
+        }
+        found.extend(strain::expected(self.width.unwrap_or(0.0), self.strain.unwrap_or(0.0)));
+        found
+    }
+}
+
+fn order((largest, radii): &(Prescribed, Option<[f64; 2]>)) -> f64 {
+    let given = match largest {
+        Prescribed::Load(w) | Prescribed::Approach(w) => *w,
+    };
+    radii.map_or(given, |radii| radii[1])
+}
+
+impl Form {
+    /// Radius of the contact under a load or an approach with the compliance c; at least what the hardness takes.
+    fn radius(self, given: Prescribed, c: f64, hardness: f64) -> Option<f64> {
+        let least = |load: f64| (load / (PI * hardness)).sqrt();
+        Some(match (self, given) {
+            (Form::Paraboloid { radius }, Prescribed::Load(w)) => {
+                (0.75 * radius * w * c).cbrt().max(least(w))
+            }
+            (Form::Paraboloid { radius }, Prescribed::Approach(w)) => (radius * w.max(0.0)).sqrt(),
+            (Form::Cone { slope }, Prescribed::Load(w)) => (2.0 * w * c / (PI * slope)).sqrt().max(least(w)),
+            (Form::Cone { slope }, Prescribed::Approach(w)) => 2.0 * w.max(0.0) / (PI * slope),
+            (Form::Punch { radius }, _) => radius,
+            (Form::Rough { .. }, _) => return None,
+        })
+    }
+}
+
+/// The largest value of a stage, and the event that may end it before.
+fn largest(simulation: &Simulation, stage: &Stage) -> Option<(Prescribed, Option<Event>)> {
+    let end = simulation.times.end();
+    let most = match &stage.course {
+        Course::Given(history) => history.range(stage.duration.unwrap_or(end).min(end))[1],
+        Course::RampTo { value, .. } => *value,
+        Course::Hold => return None,
+    };
+    let largest = match stage.control {
+        Control::Load => Prescribed::Load(most),
+        Control::Pressure => Prescribed::Load(most * simulation.grid.area()),
+        Control::Approach => Prescribed::Approach(most),
+    };
+    (most > 0.0).then_some((largest, stage.until))
+}
+
+/// Radii \[m\] of the paraboloids together along x and y; `None` without.
+fn radii(parts: &[Part]) -> Option<[f64; 2]> {
+    let curvature = parts.iter().fold([0.0; 2], |[x, y], part| match part {
+        Part::Shape { shape: Shape::Sphere { radius }, .. } => [x + 1.0 / radius, y + 1.0 / radius],
+        Part::Shape { shape: Shape::Ellipsoid { radius_x, radius_y }, .. } => {
+            [x + 1.0 / radius_x, y + 1.0 / radius_y]
+        }
+        _ => [x, y],
+    });
+    (curvature[0] > 0.0 && curvature[1] > 0.0).then(|| curvature.map(f64::recip))
+}
+
+/// Radius of the paraboloids together \[m\].
+pub(super) fn radius(parts: &[Part]) -> Option<f64> {
+    radii(parts).map(|[x, y]| (x * y).sqrt())
+}
+
+/// The shape that decides; without one, the slope of the gap.
+fn form(parts: &[Part], slope: impl FnOnce() -> f64) -> Option<Form> {
+    let punch = parts.iter().find_map(|part| match part {
+        Part::Shape { shape: Shape::FlatPunch(Punch::Circle { radius }), .. } => Some(*radius),
+        Part::Shape { shape: Shape::FlatPunch(Punch::Rectangle { size: [a, b] }), .. } => {
+            Some((a * b / PI).sqrt())
+        }
+        _ => None,
+    });
+    let cone = parts.iter().find_map(|part| match part {
+        Part::Shape { shape: Shape::Cone { slope }, .. } => Some(*slope),
+        _ => None,
+    });
+    match (radius(parts), cone, punch) {
+        (Some(radius), None, None) => Some(Form::Paraboloid { radius }),
+        (None, Some(slope), None) => Some(Form::Cone { slope }),
+        (None, None, Some(radius)) => parts[1..].is_empty().then_some(Form::Punch { radius }),
+        (None, None, None) => Some(slope()).filter(|slope| *slope > 0.0).map(|slope| Form::Rough { slope }),
+        _ => None,
+    }
+}
+
+/// Distance from the middle of the shapes to the nearest border \[m\].
+fn room(grid: &Grid, parts: &[Part]) -> f64 {
+    let [x0, y0] = parts
+        .iter()
+        .find_map(|part| match part {
+            Part::Shape { center, shape } if !matches!(shape, Shape::FlatPunch(_) | Shape::Wave { .. }) => {
+                Some(*center)
+            }
+            _ => None,
+        })
+        .unwrap_or_default();
+    let [lx, ly] = grid.size();
+    (0.5 * lx - x0.abs()).min(0.5 * ly - y0.abs()).max(0.0)
+}

@@ -1,0 +1,180 @@
+//! The judge of a run: what is known before it, what each row adds, and what is found in the end.
+
+use super::contact::{Counted, Resolution};
+use super::energy::Balance;
+use super::expected::{ROOM, radius};
+use super::strain::Strain;
+use super::{CONTACT_AT_BORDER, ENERGY_BALANCE, Finding, LARGE_SLOPE, domain, material, surface, time};
+use crate::grid::{Boundary, Grid};
+use crate::load::Control;
+use crate::march::{Row, Simulation, Step};
+use crate::material::Body;
+use crate::surface::Part;
+
+/// What is known of a simulation besides its numbers.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Known<'a> {
+    /// The parts of the gap; none where only the gap is known.
+    pub parts: &'a [Part],
+    /// The bodies; none where only the pair is known.
+    pub bodies: &'a [Body],
+}
+
+/// The judge of one run.
+///
+/// ```
+/// use asperity::finding::{Judge, Known, CONTACT_AT_BORDER};
+/// use asperity::{march::{March, Simulation}, material::Creep, surface::{Part, Shape, undeformed_gap}, *};
+/// // A sphere of 10 mm under 20 N on 1 MPa: the contact fills the domain of 2 mm.
+/// let grid = Grid::new([32, 32], [2e-3, 2e-3])?;
+/// let parts = [Part::Shape { shape: Shape::Sphere { radius: 10e-3 }, center: [0.0, 0.0] }];
+/// let mut march = March::new(Simulation {
+///     creep: Creep::elastic(1e-6),
+///     loading: Loading { control: Control::Load, history: History::Step { value: 20.0 } }.into(),
+///     ..Simulation::new(grid, undeformed_gap(&grid, &parts)?)
+/// })?;
+/// let mut judge = Judge::new(march.simulation(), Known { parts: &parts, ..Known::default() });
+/// while let Some(step) = march.advance()? {
+///     judge.see(&step, &step.row());
+/// }
+/// let findings = judge.findings(march.simulation());
+/// let border = findings.iter().find(|finding| finding.code == CONTACT_AT_BORDER).expect("it fills the domain");
+/// assert!(border.is_warning() && border.rows == Some([0, 1]));
+/// assert!(border.limit > Some(4e-3)); // the domain that the contact would take
+/// # Ok::<(), asperity::Error>(())
+/// ```
+pub struct Judge {
+    grid: Grid,
+    /// Found before the first row.
+    known: Vec<Finding>,
+    /// Whether contact at the border is looked for, and whether it would be confined by a larger domain.
+    free: bool,
+    confined: bool,
+    /// Radius of the paraboloid that the gap is at the border \[m\].
+    radius: Option<f64>,
+    border: Option<[usize; 2]>,
+    /// Side of the domain that the contact would take \[m\].
+    needed: f64,
+    deepest: f64,
+    resolution: Resolution,
+    strain: Strain,
+    balance: Balance,
+    /// What the balance was in an earlier session of the run.
+    earlier_balance: Option<Finding>,
+}
+
+impl Judge {
+    /// Judges what is known before the run.
+    pub fn new(simulation: &Simulation, known: Known<'_>) -> Self {
+        let Simulation { grid, gap, boundary, .. } = simulation;
+        let free = *boundary == Boundary::Free;
+        Judge {
+            known: before(simulation, known),
+            free,
+            confined: domain::confined(gap),
+            radius: if free { domain::radius(grid, gap) } else { None },
+            border: None,
+            needed: 0.0,
+            deepest: 0.0,
+            resolution: Resolution::default(),
+            strain: Strain::new(simulation, radius(known.parts)),
+            balance: Balance::default(),
+            earlier_balance: None,
+            grid: *grid,
+        }
+    }
+
+    /// Takes in the rows that an earlier session of the run stored, with what it found.
+    pub fn resume(&mut self, rows: &[Row], found: &[Finding]) {
+        rows.iter().enumerate().for_each(|(index, row)| self.take(index, row));
+        // What rows alone do not tell; later rows are judged again.
+        for finding in found {
+            let Some([first, last]) = finding.rows.filter(|at| at[0] < rows.len()) else { continue };
+            match finding.code.as_ref() {
+                CONTACT_AT_BORDER => {
+                    self.border = Some([first, last.min(rows.len() - 1)]);
+                    self.needed = finding.limit.unwrap_or(0.0);
+                }
+                ENERGY_BALANCE => self.earlier_balance = Some(finding.clone()),
+                _ => {}
+            }
+        }
+    }
+
+    /// Looks at a row.
+    pub fn see(&mut self, step: &Step<'_>, row: &Row) {
+        let index = step.index();
+        if self.free && row.contact_area > 0.0 && domain::touches_border(step.pressure()) {
+            self.border = Some(self.border.map_or([index; 2], |[first, _]| [first, index]));
+            let compliance = step.simulation().compliance(row.time);
+            let needed = ROOM
+                * self.radius.map_or(0.0, |radius| match step.instant().control {
+                    Control::Approach => (radius * row.approach.max(0.0)).sqrt(),
+                    Control::Load | Control::Pressure => (0.75 * radius * row.load * compliance).cbrt(),
+                });
+            self.needed = self.needed.max(needed);
+        }
+        if let Some(balance) = step.energy_balance() {
+            self.balance.see(index, balance);
+        }
+        self.take(index, row);
+    }
+
+    fn take(&mut self, index: usize, row: &Row) {
+        let contact = Counted::of(&self.grid, row);
+        self.deepest = self.deepest.max(row.approach);
+        self.resolution.see(index, contact);
+        self.strain.see(index, row, contact);
+    }
+
+    /// What is known before the run.
+    pub fn known(&self) -> &[Finding] {
+        &self.known
+    }
+
+    /// What was found so far, in the order of the table of docs/findings.md: the domain, the surface, the contact, the
+    /// material, the steps.
+    pub fn findings(&self, simulation: &Simulation) -> Vec<Finding> {
+        let mut found = self.known.clone();
+        if let Some([first, last]) = self.border {
+            let needed = (self.needed > 0.0).then_some(self.needed);
+            let words = format!("In {} the contact", super::words::rows([first, last]));
+            found.push(domain::at_border(&self.grid, self.confined, needed, &words).at([first, last]));
+        }
+        found.extend(self.resolution.findings());
+        found.extend(self.strain.findings());
+        if !found.iter().any(|finding| finding.code == LARGE_SLOPE) {
+            found.extend(surface::near(&self.grid, &simulation.gap, self.deepest));
+        }
+        let balances = self.balance.finding().into_iter().chain(self.earlier_balance.clone());
+        found.extend(balances.reduce(|a, b| if b.value > a.value { b } else { a }));
+        found
+    }
+}
+
+fn before(simulation: &Simulation, known: Known<'_>) -> Vec<Finding> {
+    let Simulation { grid, gap, boundary, .. } = simulation;
+    let mut found = match boundary {
+        Boundary::Free => domain::unconfined(gap),
+        Boundary::Periodic => domain::not_periodic(grid, gap),
+    }
+    .into_iter()
+    .collect::<Vec<_>>();
+    for part in known.parts {
+        found.extend(surface::of_part(grid, part));
+    }
+    found.extend(surface::of_gap(grid, gap, known.parts.is_empty()));
+    let bodies = known.bodies.iter().filter_map(|body| {
+        let relaxation = body.material.relaxation().ok()?;
+        let name = format!("{} of {}", body.material.measure().name(), body.name);
+        let instantaneous = relaxation.instantaneous();
+        let modulus = if instantaneous.is_finite() { instantaneous } else { relaxation.equilibrium };
+        material::unlikely_modulus(&name, modulus)
+    });
+    found.extend(bodies);
+    if known.bodies.is_empty() {
+        found.extend(material::of_pair(simulation));
+    }
+    found.extend(time::of(simulation));
+    found
+}

@@ -1,0 +1,60 @@
+//! Materials: moduli that look like a slip of the unit, and how well measured data are fitted and covered.
+
+use super::words::{digits, si};
+use super::{BEYOND_MATERIAL_DATA, Finding, MATERIAL_MISFIT, UNLIKELY_UNIT};
+use crate::march::Simulation;
+
+/// Moduli of solids: from the softest gels to beyond diamond \[Pa\].
+const MODULI: [f64; 2] = [10.0, 3e12];
+/// Rms misfit of a fit, and how many times the scatter of the data it may be.
+const MISFIT: f64 = 0.05;
+const SCATTER: f64 = 2.0;
+
+/// A modulus \[Pa\] that no body has; `name` is what it is called.
+pub fn unlikely_modulus(name: &str, modulus: f64) -> Option<Finding> {
+    let [least, most] = MODULI;
+    let limit = if modulus < least { least } else { most };
+    let unlikely = modulus.is_finite() && modulus > 0.0 && !(least..=most).contains(&modulus);
+    unlikely.then(|| {
+        let text = format!(
+            "The {name} is {}; solids have {} to {}. Check its unit (Pa, kPa, MPa, GPa; m is milli, M is mega).",
+            si(modulus, "Pa"),
+            si(least, "Pa"),
+            si(most, "Pa")
+        );
+        Finding::warning(UNLIKELY_UNIT, modulus, limit, text)
+    })
+}
+
+/// The moduli of the pair.
+pub(super) fn of_pair(simulation: &Simulation) -> Option<Finding> {
+    let instantaneous = simulation.instantaneous();
+    let long = std::iter::once(&simulation.creep).chain(simulation.thermal.iter().map(|body| &body.creep));
+    let compliance =
+        if instantaneous > 0.0 { instantaneous } else { long.map(|creep| creep.long_time()).sum() };
+    unlikely_modulus("contact modulus E*", 1.0 / compliance)
+}
+
+/// A fit with this rms and largest relative misfit to data of this relative scatter; `name` is what it is a fit of.
+pub fn misfit(name: &str, rms: f64, largest: f64, scatter: f64) -> Option<Finding> {
+    let limit = MISFIT.max(SCATTER * scatter);
+    (rms.is_nan() || rms > limit).then(|| {
+        let text = format!(
+            "The material of {name} follows its data to {} % rms and {} % at most: contact area and approach are off by \
+             shares of that. Fit a narrower window, give more terms, or look at the data (asperity material fit --plot).",
+            digits(100.0 * rms),
+            digits(100.0 * largest)
+        );
+        Finding::warning(MATERIAL_MISFIT, rms, limit, text)
+    })
+}
+
+/// A run that needs the material of `name` from the first to the last time \[s\], where data cover `window` \[s\] only;
+/// `words` say so.
+pub fn beyond_data(name: &str, [first, last]: [f64; 2], window: [f64; 2], words: &str) -> Finding {
+    let text = format!("{name}: {words}. Measure these times too, or take the run as an estimate there.");
+    // The end that is passed by more decades.
+    let (short, long) = (window[0] / first, last / window[1]);
+    let (value, limit) = if short > long { (first, window[0]) } else { (last, window[1]) };
+    Finding::warning(BEYOND_MATERIAL_DATA, value, limit, text)
+}

@@ -1,0 +1,176 @@
+//! Findings: what a run says about itself where its numbers may be off.
+//!
+//! A solver converges on any input, also on one that its theory does not cover, that its grid does not resolve, or
+//! that has a slip of the unit. The judges of this module look for that: before a run at the gap, the bodies, the
+//! steps ([`Judge::new`]), during it at each row ([`Judge::see`]), and they say what they found with the number, its
+//! limit and what to do. They change no number and need no convolution.
+//!
+//! | file | judges |
+//! |---|---|
+//! | `domain` | the border of the domain: contact there, gaps that do not repeat, surfaces that do not end before it |
+//! | `surface` | waves that the grid does not resolve, slopes, outliers, sizes that look like a slip of the unit |
+//! | `contact` | contacts and contact spots of a few cells |
+//! | `strain` | deformations and slopes beyond linear theory |
+//! | `material` | moduli, and how well measured data are fitted and covered |
+//! | `time` | steps that are too long for the history and the material |
+//! | `energy` | the energy balance |
+//! | `expected` | an estimate of the contact before the run |
+//!
+//! docs/findings.md lists all codes with their limits.
+
+mod contact;
+mod domain;
+mod energy;
+mod expected;
+mod judge;
+mod material;
+mod strain;
+mod surface;
+mod time;
+mod words;
+
+use std::borrow::Cow;
+
+pub use expected::{Contact, Expected};
+pub use judge::{Judge, Known};
+pub use material::{beyond_data, misfit, unlikely_modulus};
+pub use surface::{hurst, of_heights};
+
+/// How much a finding matters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Severity {
+    /// Worth knowing; the numbers stand.
+    Note,
+    /// The numbers may be off.
+    Warning,
+}
+
+impl Severity {
+    /// "note" or "warning".
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Severity::Note => "note",
+            Severity::Warning => "warning",
+        }
+    }
+}
+
+impl std::fmt::Display for Severity {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.as_str())
+    }
+}
+
+/// Something about a run that its user should know before believing its numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// One of [`CODES`].
+    pub code: Cow<'static, str>,
+    /// How much it matters.
+    pub severity: Severity,
+    /// One or two sentences: what was found, what it may do to the result, what to do about it.
+    pub text: String,
+    /// The number that was judged, in SI units; the table of docs/findings.md says which.
+    pub value: Option<f64>,
+    /// The limit that it passes, in the same unit.
+    pub limit: Option<f64>,
+    /// First and last row that it is about; `None` where it is about the case.
+    pub rows: Option<[usize; 2]>,
+}
+
+impl Finding {
+    /// A warning about a number beyond its limit.
+    pub fn warning(code: &'static str, value: f64, limit: f64, text: impl Into<String>) -> Self {
+        let number = |x: f64| x.is_finite().then_some(x);
+        Finding {
+            code: code.into(),
+            severity: Severity::Warning,
+            text: text.into(),
+            value: number(value),
+            limit: number(limit),
+            rows: None,
+        }
+    }
+
+    /// The same as a note.
+    #[must_use]
+    pub fn as_note(self) -> Self {
+        Finding { severity: Severity::Note, ..self }
+    }
+
+    /// The same, about these rows.
+    #[must_use]
+    pub fn at(self, rows: [usize; 2]) -> Self {
+        Finding { rows: Some(rows), ..self }
+    }
+
+    /// Whether it is a warning.
+    pub fn is_warning(&self) -> bool {
+        self.severity == Severity::Warning
+    }
+}
+
+impl std::fmt::Display for Finding {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}: {} [{}]", self.severity, self.text, self.code)
+    }
+}
+
+/// Every code. A code keeps its meaning.
+pub const CODES: [&str; 17] = [
+    CONTACT_AT_BORDER,
+    GAP_NOT_PERIODIC,
+    ROUGH_ON_FREE_DOMAIN,
+    SHORTEST_WAVE_UNRESOLVED,
+    SPOTS_UNRESOLVED,
+    FEW_CONTACT_CELLS,
+    LARGE_SLOPE,
+    LARGE_STRAIN,
+    ENERGY_BALANCE,
+    STEPS_TOO_LONG,
+    ALIASED_HISTORY,
+    MATERIAL_MISFIT,
+    BEYOND_MATERIAL_DATA,
+    HURST_OUT_OF_RANGE,
+    HURST_UNCERTAIN,
+    OUTLIERS,
+    UNLIKELY_UNIT,
+];
+
+/// Contact, or the expected contact, reaches the border of a free domain.
+pub const CONTACT_AT_BORDER: &str = "contact-at-border";
+/// The gap of a periodic domain does not go on across its border.
+pub const GAP_NOT_PERIODIC: &str = "gap-not-periodic";
+/// Nothing but the end of the free domain confines the contact.
+pub const ROUGH_ON_FREE_DOMAIN: &str = "rough-on-free-domain";
+/// Waves shorter than four cells.
+pub const SHORTEST_WAVE_UNRESOLVED: &str = "shortest-wave-unresolved";
+/// Contact spots narrower than four cells.
+pub const SPOTS_UNRESOLVED: &str = "spots-unresolved";
+/// A contact of a few cells in all.
+pub const FEW_CONTACT_CELLS: &str = "few-contact-cells";
+/// Slopes beyond linear theory.
+pub const LARGE_SLOPE: &str = "large-slope";
+/// Deformations beyond linear theory.
+pub const LARGE_STRAIN: &str = "large-strain";
+/// The work of the load is not the energy stored and lost.
+pub const ENERGY_BALANCE: &str = "energy-balance";
+/// Too few steps where history and material change.
+pub const STEPS_TOO_LONG: &str = "steps-too-long";
+/// Too few steps to a period.
+pub const ALIASED_HISTORY: &str = "aliased-history";
+/// The material does not follow the measured data.
+pub const MATERIAL_MISFIT: &str = "material-misfit";
+/// The run needs the material at times that were not measured.
+pub const BEYOND_MATERIAL_DATA: &str = "beyond-material-data";
+/// A Hurst exponent outside of (0, 1].
+pub const HURST_OUT_OF_RANGE: &str = "hurst-out-of-range";
+/// A Hurst exponent that window, levelling or band decide.
+pub const HURST_UNCERTAIN: &str = "hurst-uncertain";
+/// Heights far from the others.
+pub const OUTLIERS: &str = "outliers";
+/// A number that a slip of the unit explains best.
+pub const UNLIKELY_UNIT: &str = "unlikely-unit";
+
+#[cfg(test)]
+mod tests;

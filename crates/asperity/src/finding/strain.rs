@@ -1,0 +1,165 @@
+//! Deformations beyond linear theory.
+//!
+//! The half-space is linear: it takes the contact as small against the radius, a/R, and strains as small. Two numbers
+//! tell: the approach over the contact radius, w/a, which is a/R of a paraboloid and a measure of the strain of any
+//! compact contact (K. L. Johnson, Contact Mechanics, 1985, section 3.5), and the contact pressure over the modulus that
+//! is left of it, ε(t) = ∫ C(t - s) dp(s). Hertz's contact has ε = 2a/(πR), so the two limits agree. The pressure is the
+//! largest one, or that in the middle of a Hertzian contact of the same load and area, 3W/(2A), where that is less: at the
+//! edge of a punch the largest pressure is endless, and tells the size of the cells.
+
+use super::contact::Counted;
+use super::words::{digits, rows};
+use super::{Finding, LARGE_STRAIN, UNLIKELY_UNIT};
+use crate::march::{Row, Simulation};
+use crate::material::{Creep, ReducedTime};
+
+/// Contact radius over radius.
+const WIDEST: f64 = 0.3;
+/// Pressure over modulus.
+const HARDEST: f64 = 0.2;
+
+/// The largest of a number over the rows, and the rows beyond its limit.
+#[derive(Clone, Copy, Debug)]
+struct Peak {
+    limit: f64,
+    value: f64,
+    rows: Option<[usize; 2]>,
+}
+
+impl Peak {
+    fn new(limit: f64) -> Self {
+        Peak { limit, value: 0.0, rows: None }
+    }
+
+    fn see(&mut self, index: usize, value: f64) {
+        self.value = self.value.max(value);
+        if value > self.limit {
+            self.rows = Some(self.rows.map_or([index; 2], |[first, _]| [first, index]));
+        }
+    }
+
+    fn excess(&self) -> f64 {
+        self.value / self.limit
+    }
+}
+
+/// What the rows tell of the strains.
+pub(super) struct Strain {
+    bodies: Vec<Branches>,
+    time: f64,
+    /// Radius of the shapes \[m\], where they are known.
+    radius: Option<f64>,
+    width: Peak,
+    pressure: Peak,
+}
+
+impl Strain {
+    pub(super) fn new(simulation: &Simulation, radius: Option<f64>) -> Self {
+        let thermal = simulation.thermal.iter().map(|body| Branches::new(&body.creep, Some(&body.clock)));
+        Strain {
+            bodies: std::iter::once(Branches::new(&simulation.creep, None)).chain(thermal).collect(),
+            time: 0.0,
+            radius,
+            width: Peak::new(WIDEST),
+            pressure: Peak::new(HARDEST),
+        }
+    }
+
+    pub(super) fn see(&mut self, index: usize, row: &Row, contact: Counted) {
+        let start = std::mem::replace(&mut self.time, row.time);
+        let of_hertz = if row.contact_area > 0.0 { 1.5 * row.load / row.contact_area } else { 0.0 };
+        let pressure = row.max_pressure.min(of_hertz);
+        let strain: f64 = self.bodies.iter_mut().map(|body| body.strain([start, row.time], pressure)).sum();
+        self.pressure.see(index, strain);
+        if row.contact_area > 0.0 && row.approach > 0.0 {
+            let width = match (contact.is_compact(), self.radius) {
+                (true, _) => row.approach / (row.contact_area / std::f64::consts::PI).sqrt(),
+                (false, Some(radius)) => (row.approach / radius).sqrt(),
+                (false, None) => 0.0,
+            };
+            self.width.see(index, width);
+        }
+    }
+
+    pub(super) fn findings(&self) -> Vec<Finding> {
+        let of = |peak: &Peak, what: fn(f64) -> String| {
+            peak.rows.map(|at| {
+                large(peak.value, peak.limit, &format!("{} ({})", what(peak.value), rows(at))).at(at)
+            })
+        };
+        let [width, pressure] = [of(&self.width, wide), of(&self.pressure, hard)];
+        let worst = if self.width.excess() >= self.pressure.excess() { width } else { pressure };
+        let deep =
+            self.width.rows.filter(|_| self.width.value > 1.0).map(|at| too_deep(self.width.value).at(at));
+        worst.into_iter().chain(deep).collect()
+    }
+}
+
+/// "The contact radius is 0.4 of the radius of the body".
+fn wide(value: f64) -> String {
+    format!("The contact radius is {} of the radius of the body", digits(value))
+}
+
+fn hard(value: f64) -> String {
+    format!("The contact pressure is {} of the contact modulus", digits(value))
+}
+
+fn large(value: f64, limit: f64, what: &str) -> Finding {
+    let text = format!(
+        "{what}, more than {limit}: the strains are no longer small, and linear theory is an estimate only. Check the \
+         units of load, modulus and radius; if they are right, expect errors of this order."
+    );
+    Finding::warning(LARGE_STRAIN, value, limit, text)
+}
+
+fn too_deep(value: f64) -> Finding {
+    let text = format!(
+        "The body is pressed in deeper than its own radius (contact radius over radius: {}). Check the units of load or \
+         approach, modulus and radius.",
+        digits(value)
+    );
+    Finding::warning(UNLIKELY_UNIT, value, 1.0, text)
+}
+
+/// What contact radius over radius and pressure over modulus would be found to be.
+pub(super) fn expected(width: f64, pressure: f64) -> Vec<Finding> {
+    let mut found = vec![];
+    if width > 1.0 {
+        found.push(too_deep(width));
+    }
+    if width > WIDEST && width / WIDEST >= pressure / HARDEST {
+        found.push(large(width, WIDEST, &format!("Expected: {}", wide(width))));
+    } else if pressure > HARDEST {
+        found.push(large(pressure, HARDEST, &format!("Expected: {}", hard(pressure))));
+    }
+    found
+}
+
+/// ∫ C(t - s) dp(s) of one creep function, p constant in each step.
+struct Branches {
+    creep: Creep,
+    clock: Option<ReducedTime>,
+    strains: Vec<f64>,
+    flow: f64,
+}
+
+impl Branches {
+    fn new(creep: &Creep, clock: Option<&ReducedTime>) -> Self {
+        Branches {
+            strains: vec![0.0; creep.terms.len()],
+            creep: creep.clone(),
+            clock: clock.cloned(),
+            flow: 0.0,
+        }
+    }
+
+    fn strain(&mut self, [start, end]: [f64; 2], pressure: f64) -> f64 {
+        let length = self.clock.as_ref().map_or(end - start, |clock| clock.elapsed(start, end));
+        for (strain, term) in self.strains.iter_mut().zip(&self.creep.terms) {
+            let gained = -libm::expm1(-length / term.retardation_time);
+            *strain += gained * (term.compliance * pressure - *strain);
+        }
+        self.flow += self.creep.fluidity * length * pressure;
+        self.creep.instantaneous * pressure + self.strains.iter().sum::<f64>() + self.flow
+    }
+}

@@ -1,0 +1,371 @@
+//! Each judge fires on a case made for it, and is silent beside it.
+
+use ndarray::Array2;
+
+use super::*;
+use crate::grid::{Boundary, Grid};
+use crate::load::{Control, History, Loading};
+use crate::march::{March, Simulation};
+use crate::material::{Body, Creep, CreepTerm, Lateral, Material, Modulus};
+use crate::quantities::{Quantities, Quantity};
+use crate::surface::statistics::SelfAffineFit;
+use crate::surface::{Part, Roughness, SelfAffine, Shape, Surface, undeformed_gap};
+use crate::time::TimeGrid;
+
+fn grid(cells: usize, size: f64) -> Grid {
+    Grid::new([cells; 2], [size; 2]).unwrap()
+}
+
+fn sphere(radius: f64) -> Part {
+    Part::Shape { shape: Shape::Sphere { radius }, center: [0.0; 2] }
+}
+
+fn rough(shortest: f64, gradient: f64) -> Part {
+    Part::SelfAffine(SelfAffine {
+        hurst: 0.8,
+        roughness: Roughness::RmsGradient(gradient),
+        longest: 1e-3,
+        shortest,
+        roll_off: 1e-3,
+        seed: 1,
+    })
+}
+
+/// A millimetre in 64 cells, 1 MPa, 10 mN at once, held for a second.
+fn simulation(parts: &[Part]) -> Simulation {
+    let grid = grid(64, 1e-3);
+    Simulation {
+        creep: Creep::elastic(1e-6),
+        loading: step(0.01),
+        ..Simulation::new(grid, undeformed_gap(&grid, parts).unwrap())
+    }
+}
+
+fn step(value: f64) -> crate::load::Programme {
+    Loading { control: Control::Load, history: History::Step { value } }.into()
+}
+
+fn loaded(control: Control, history: History) -> crate::load::Programme {
+    Loading { control, history }.into()
+}
+
+fn zener() -> Creep {
+    Creep {
+        instantaneous: 1e-6,
+        terms: vec![CreepTerm { compliance: 1e-6, retardation_time: 1.0 }],
+        fluidity: 0.0,
+    }
+}
+
+fn before(simulation: &Simulation, parts: &[Part]) -> Vec<Finding> {
+    Judge::new(simulation, Known { parts, bodies: &[] }).known().to_vec()
+}
+
+fn after(simulation: Simulation, parts: &[Part]) -> Vec<Finding> {
+    let mut judge = Judge::new(&simulation, Known { parts, bodies: &[] });
+    let mut march = March::new(simulation).unwrap();
+    while let Some(step) = march.advance().unwrap() {
+        judge.see(&step, &step.row());
+    }
+    judge.findings(march.simulation())
+}
+
+fn codes(findings: &[Finding]) -> Vec<&str> {
+    assert!(findings.iter().all(|finding| CODES.contains(&finding.code.as_ref())), "{findings:?}");
+    findings.iter().map(|finding| finding.code.as_ref()).collect()
+}
+
+const QUIET: [&str; 0] = [];
+
+#[test]
+fn a_sound_contact_is_silent() {
+    let parts = [sphere(5e-3)];
+    assert_eq!(codes(&after(simulation(&parts), &parts)), QUIET);
+    assert_eq!(codes(&after(simulation(&parts), &[])), QUIET);
+}
+
+#[test]
+fn contact_at_the_border_of_a_free_domain_is_found_with_the_size_needed() {
+    let parts = [sphere(5e-3)];
+    let heavy = Simulation { loading: step(0.2), ..simulation(&parts) };
+    let found = after(heavy.clone(), &parts);
+    assert!(codes(&found).contains(&CONTACT_AT_BORDER), "{found:?}");
+    let border = &found[0];
+    assert_eq!((border.rows, border.value), (Some([0, 1]), Some(1e-3)));
+    // Hertz: a^3 = 0.75 * 5 mm * 0.2 N / 1 MPa, a = 0.909 mm; room for 2.5 radii.
+    let needed = border.limit.unwrap();
+    assert!((needed / (2.5 * 0.909e-3) - 1.0).abs() < 0.01, "{needed}");
+    // A domain of the size needed is silent.
+    let wide = grid(64, needed);
+    let parts = [sphere(5e-3)];
+    let enough = Simulation { grid: wide, gap: undeformed_gap(&wide, &parts).unwrap(), ..heavy.clone() };
+    assert!(!codes(&after(enough, &parts)).contains(&CONTACT_AT_BORDER));
+    // Known beforehand where the shape is known.
+    let expected = Expected::of(&heavy, &parts).unwrap();
+    assert!(codes(&expected.findings(&heavy)).contains(&CONTACT_AT_BORDER));
+    let light = simulation(&parts);
+    assert_eq!(codes(&Expected::of(&light, &parts).unwrap().findings(&light)), QUIET);
+    // A periodic domain has no border.
+    let periodic = Simulation { boundary: Boundary::Periodic, ..heavy };
+    assert!(!codes(&after(periodic, &parts)).contains(&CONTACT_AT_BORDER));
+}
+
+#[test]
+fn a_gap_that_does_not_repeat_is_found() {
+    let periodic = |parts: &[Part]| {
+        let simulation = Simulation { boundary: Boundary::Periodic, ..simulation(parts) };
+        codes(&before(&simulation, parts)).into_iter().map(str::to_owned).collect::<Vec<_>>()
+    };
+    let wave = |length| {
+        let shape = Shape::Wave { amplitude: 1e-6, wavelength: [length, f64::INFINITY] };
+        Part::Shape { shape, center: [0.0; 2] }
+    };
+    assert_eq!(periodic(&[sphere(5e-3)]), [GAP_NOT_PERIODIC]);
+    assert_eq!(periodic(&[wave(0.7e-3)]), [GAP_NOT_PERIODIC]);
+    // A rough surface askew by 30 um.
+    let grid = grid(64, 1e-3);
+    let Part::SelfAffine(surface) = rough(1e-4, 0.1) else { unreachable!() };
+    let mut heights = surface.heights(&grid).unwrap();
+    heights.indexed_iter_mut().for_each(|((i, _), z)| *z += 3e-5 * i as f64 / 64.0);
+    let tilted = Part::Heights { name: "tilted".into(), heights };
+    let simulation_of =
+        |part: &Part| Simulation { boundary: Boundary::Periodic, ..simulation(std::slice::from_ref(part)) };
+    let found = before(&simulation_of(&tilted), &[]);
+    assert_eq!(codes(&found), [GAP_NOT_PERIODIC]);
+    // The jump is that of the tilt, 30 um less one cell, but for the roughness on both sides.
+    assert!((found[0].value.unwrap() / 3e-5 - 1.0).abs() < 0.3, "{found:?}");
+
+    assert_eq!(periodic(&[wave(0.5e-3)]), QUIET);
+    assert_eq!(periodic(&[rough(1e-4, 0.1)]), QUIET);
+    assert_eq!(periodic(&[]), QUIET);
+    // A groove whose edge stands on the border is as sharp inside.
+    let groove = Array2::from_shape_fn((64, 64), |(i, _)| if i < 20 { 1e-6 } else { 0.0 });
+    assert_eq!(periodic(&[Part::Heights { name: "groove".into(), heights: groove }]), QUIET);
+}
+
+#[test]
+fn what_only_the_end_of_a_free_domain_confines_is_found() {
+    let free = |parts: &[Part]| before(&simulation(parts), parts);
+    assert_eq!(codes(&free(&[rough(1e-4, 0.1)])), [ROUGH_ON_FREE_DOMAIN]);
+    assert_eq!(codes(&free(&[sphere(5e-3), rough(1e-4, 0.05)])), QUIET);
+    assert_eq!(codes(&free(&[])), QUIET); // flat on flat: a punch of the size of the domain
+    let cone = Part::Shape { shape: Shape::Cone { slope: 0.1 }, center: [1e-4, 0.0] };
+    assert_eq!(codes(&free(&[cone])), QUIET);
+}
+
+#[test]
+fn waves_shorter_than_four_cells_are_found() {
+    let cell = 1e-3 / 64.0;
+    let periodic = |parts: &[Part], known: &[Part]| {
+        let simulation = Simulation { boundary: Boundary::Periodic, ..simulation(parts) };
+        codes(&before(&simulation, known)).into_iter().map(str::to_owned).collect::<Vec<_>>()
+    };
+    for (cells, wanted) in
+        [(2.5, vec![SHORTEST_WAVE_UNRESOLVED]), (3.9, vec![SHORTEST_WAVE_UNRESOLVED]), (4.1, vec![])]
+    {
+        let parts = [rough(cells * cell, 0.1)];
+        assert_eq!(periodic(&parts, &parts), wanted, "{cells}");
+    }
+    // From the gap alone the limit is known roughly.
+    assert_eq!(periodic(&[rough(2.2 * cell, 0.1)], &[]), [SHORTEST_WAVE_UNRESOLVED]);
+    assert_eq!(periodic(&[rough(4.1 * cell, 0.1)], &[]), QUIET);
+}
+
+#[test]
+fn steep_surfaces_are_found() {
+    let parts = [rough(1e-4, 0.6)];
+    let periodic = Simulation { boundary: Boundary::Periodic, ..simulation(&parts) };
+    assert_eq!(codes(&before(&periodic, &parts)), [LARGE_SLOPE]);
+    let parts = [rough(1e-4, 0.4)];
+    let periodic = Simulation { boundary: Boundary::Periodic, ..simulation(&parts) };
+    assert_eq!(codes(&before(&periodic, &parts)), QUIET);
+}
+
+#[test]
+fn contacts_and_spots_of_a_few_cells_are_found() {
+    let parts = [sphere(5e-3)];
+    // a = 9.1 um, on cells of 15.6 um.
+    let light = Simulation { loading: step(2e-7), ..simulation(&parts) };
+    let found = after(light, &parts);
+    assert_eq!(codes(&found), [FEW_CONTACT_CELLS, SPOTS_UNRESOLVED]);
+    assert_eq!(found[0].rows, Some([0, 1]));
+    // Every contact begins with a cell: a ramp that leads to a resolved contact is silent.
+    let ramp = loaded(Control::Load, History::Ramp { value: 0.01, duration: 1.0 });
+    let times = TimeGrid::Logarithmic { end: 1.0, steps: 8, first: 1e-5 };
+    let found = after(Simulation { loading: ramp, times, ..simulation(&parts) }, &parts);
+    assert_eq!(codes(&found), QUIET);
+}
+
+#[test]
+fn large_strains_are_found_before_and_after() {
+    let parts = [sphere(0.6e-3)];
+    let of = |load: f64| Simulation { loading: step(load), ..simulation(&parts) };
+    // a/R = (3 W / (4 E* R^2))^(1/3): 0.4 at 30.7 mN, 0.2 at 3.8 mN.
+    let found = after(of(30.7e-3), &parts);
+    assert_eq!(codes(&found), [LARGE_STRAIN], "{found:?}");
+    assert!((found[0].value.unwrap() / 0.4 - 1.0).abs() < 0.05, "{found:?}");
+    assert_eq!(codes(&after(of(30.7e-3), &[])), [LARGE_STRAIN]);
+    assert_eq!(codes(&after(of(3.8e-3), &parts)), QUIET);
+    let expected = |load: f64| codes(&Expected::of(&of(load), &parts).unwrap().findings(&of(load))).join(" ");
+    assert_eq!([expected(30.7e-3), expected(3.8e-3)], [LARGE_STRAIN.to_owned(), String::new()]);
+    // Deeper than its radius.
+    let deep = loaded(Control::Approach, History::Step { value: 0.7e-3 });
+    let deep = Simulation { loading: deep, ..simulation(&parts) };
+    let found = Expected::of(&deep, &parts).unwrap().findings(&deep);
+    assert!(codes(&found).contains(&UNLIKELY_UNIT), "{found:?}");
+}
+
+#[test]
+fn steps_too_long_for_a_falling_load_are_found() {
+    let parts = [sphere(5e-3)];
+    let of = |control, peak, fall, steps| {
+        let history = History::Trapezoid { peak, rise: 1.0, hold: 1.0, fall };
+        let times = TimeGrid::Uniform { end: 2.0 + fall, steps };
+        Simulation { creep: zener(), loading: loaded(control, history), times, ..simulation(&parts) }
+    };
+    let found = before(&of(Control::Load, 0.01, 1.0, 6), &parts);
+    assert_eq!(codes(&found), [STEPS_TOO_LONG]);
+    assert_eq!((found[0].value, found[0].rows), (Some(2.0), Some([5, 6])));
+    assert_eq!(codes(&before(&of(Control::Load, 0.01, 1.0, 30), &parts)), QUIET);
+    assert_eq!(codes(&before(&of(Control::Approach, 1e-6, 1.0, 6), &parts)), [STEPS_TOO_LONG]);
+    // An elastic body follows any step, and so does one that is relaxed all the time, or never.
+    let elastic = Simulation { creep: Creep::elastic(1e-6), ..of(Control::Load, 0.01, 1.0, 6) };
+    assert_eq!(codes(&before(&elastic, &parts)), QUIET);
+    for time in [1e-3, 1e3] {
+        let mut other = of(Control::Load, 0.01, 1.0, 6);
+        other.creep.terms[0].retardation_time = time;
+        assert_eq!(codes(&before(&other, &parts)), QUIET, "{time}");
+    }
+    // A load that grows or is held needs no steps.
+    let ramp = loaded(Control::Load, History::Ramp { value: 0.01, duration: 1.0 });
+    let coarse = Simulation { loading: ramp, ..of(Control::Load, 0.01, 1.0, 3) };
+    assert_eq!(codes(&before(&coarse, &parts)), QUIET);
+    // The scatter of a measured history is no course.
+    let points =
+        (0..60).map(|k| (0.1 * f64::from(k), 1e-6 * (f64::from(k) + 1.5 * f64::from(k % 2)))).collect();
+    let measured = loaded(Control::Approach, History::Table { points });
+    let times = TimeGrid::Uniform { end: 6.0, steps: 60 };
+    let measured = Simulation { loading: measured, times, ..of(Control::Load, 0.01, 1.0, 6) };
+    assert_eq!(codes(&before(&measured, &parts)), QUIET);
+}
+
+#[test]
+fn a_sine_with_few_steps_is_found() {
+    let parts = [sphere(5e-3)];
+    let of = |steps| {
+        let history = History::Sine { mean: 0.01, amplitude: 0.005, frequency: 2.0 };
+        let times = TimeGrid::Uniform { end: 10.0, steps };
+        Simulation { loading: loaded(Control::Load, history), times, ..simulation(&parts) }
+    };
+    let found = before(&of(100), &parts);
+    assert_eq!(codes(&found), [ALIASED_HISTORY]);
+    assert!((found[0].value.unwrap() - 5.0).abs() < 1e-9 && found[0].text.contains("400 steps"), "{found:?}");
+    assert_eq!(codes(&before(&of(400), &parts)), QUIET);
+}
+
+#[test]
+fn a_broken_energy_balance_is_found() {
+    let mut balance = super::energy::Balance::default();
+    balance.see(0, [1e-9, 1e-9]);
+    balance.see(1, [2e-9, 1.95e-9]);
+    assert_eq!(balance.finding(), None);
+    balance.see(2, [6.64e-9, 2.28e-9]);
+    let found = balance.finding().unwrap();
+    assert_eq!((found.code.as_ref(), found.rows), (ENERGY_BALANCE, Some([2, 2])));
+    // A march with energies is judged, and its own balance holds.
+    let parts = [sphere(5e-3)];
+    let quantities = Quantities::of([Quantity::ExternalWork]);
+    let times = TimeGrid::Uniform { end: 1.0, steps: 40 };
+    let loading = loaded(Control::Load, History::Ramp { value: 0.01, duration: 1.0 });
+    let simulation = Simulation { creep: zener(), quantities, times, loading, ..simulation(&parts) };
+    assert_eq!(codes(&after(simulation, &parts)), QUIET);
+}
+
+#[test]
+fn moduli_radii_and_heights_of_unlikely_units_are_found() {
+    let steel = Part::Shape { shape: Shape::Sphere { radius: 10.0 }, center: [0.0; 2] };
+    assert_eq!(codes(&before(&simulation(&[steel.clone()]), &[steel])), [UNLIKELY_UNIT]);
+    let soft = |shear: f64| Body {
+        name: "rubber".into(),
+        material: Material::elastic(Modulus::Shear, shear).unwrap(),
+        lateral: Lateral::Poisson(0.5),
+        hardness: None,
+    };
+    let parts = [sphere(5e-3)];
+    let judged = |bodies: &[Body]| {
+        let judge = Judge::new(&simulation(&parts), Known { parts: &parts, bodies });
+        codes(judge.known()).join(" ")
+    };
+    assert_eq!(judged(&[soft(2e-3)]), UNLIKELY_UNIT);
+    assert_eq!(judged(&[soft(2e6), soft(210e9)]), "");
+    let grid = grid(64, 1e-3);
+    let Part::SelfAffine(surface) = rough(1e-4, 0.1) else { unreachable!() };
+    let heights = surface.heights(&grid).unwrap();
+    let of =
+        |factor: f64| of_heights("the surface", &Surface::new(grid, heights.mapv(|z| factor * z)).unwrap());
+    assert_eq!(codes(&of(1e6)), [UNLIKELY_UNIT]);
+    assert_eq!(codes(&of(1.0)), QUIET);
+    let deep = Part::Heights { name: "deep".into(), heights: heights.mapv(|z| 1e11 * z) };
+    let periodic = Simulation { boundary: Boundary::Periodic, ..simulation(&[deep]) };
+    assert!(codes(&before(&periodic, &[])).contains(&UNLIKELY_UNIT));
+}
+
+#[test]
+fn outliers_and_hurst_exponents_are_judged() {
+    let grid = grid(64, 1e-3);
+    let Part::SelfAffine(surface) = rough(1e-4, 0.1) else { unreachable!() };
+    let mut heights = surface.heights(&grid).unwrap();
+    assert_eq!(codes(&of_heights("it", &Surface::new(grid, heights.clone()).unwrap())), QUIET);
+    heights[[10, 10]] = 1e-4;
+    assert!(codes(&of_heights("it", &Surface::new(grid, heights).unwrap())).contains(&OUTLIERS));
+
+    let fit = |hurst, misfit| SelfAffineFit { hurst, error: 0.1, roll_off: 1e-4, plateau: 1.0, misfit };
+    let judged =
+        |hurst, misfit| super::hurst(&fit(hurst, misfit)).map(|finding| (finding.code, finding.severity));
+    assert_eq!(judged(-4.76, 0.2), Some((HURST_OUT_OF_RANGE.into(), Severity::Warning)));
+    assert_eq!(judged(1.17, 0.2), Some((HURST_OUT_OF_RANGE.into(), Severity::Warning)));
+    assert_eq!(judged(f64::NAN, 0.2), Some((HURST_OUT_OF_RANGE.into(), Severity::Warning)));
+    assert_eq!(judged(0.8, 0.2), None);
+    assert_eq!(judged(0.8, 1.5), Some((HURST_UNCERTAIN.into(), Severity::Note)));
+}
+
+#[test]
+fn poor_fits_and_times_beyond_the_data_are_told() {
+    assert_eq!(misfit("rubber", 0.68, 2.0, 0.3).map(|finding| finding.code), Some(MATERIAL_MISFIT.into()));
+    // Two per cent of scatter leave two per cent of misfit.
+    assert_eq!(misfit("rubber", 0.02, 0.08, 0.02), None);
+    let beyond = beyond_data("rubber", [1e-2, 5e3], [1e-2, 1e3], "the run is longer");
+    assert_eq!((beyond.value, beyond.limit), (Some(5e3), Some(1e3)));
+}
+
+#[test]
+fn a_resumed_run_finds_what_a_whole_one_does() {
+    let parts = [sphere(5e-3)];
+    let history = History::Triangle { peak: 0.2, rise: 1.0, fall: 1.0 };
+    let times = TimeGrid::Uniform { end: 2.0, steps: 20 };
+    let simulation = Simulation { loading: loaded(Control::Load, history), times, ..simulation(&parts) };
+    let known = Known { parts: &parts, bodies: &[] };
+    let mut march = March::new(simulation.clone()).unwrap();
+    let mut whole = Judge::new(&simulation, known);
+    let mut second = Judge::new(&simulation, known);
+    let (mut rows, mut stored) = (vec![], vec![]);
+    while let Some(step) = march.advance().unwrap() {
+        let (row, index) = (step.row(), step.index());
+        whole.see(&step, &row);
+        rows.push(row);
+        // Stored with more rows than the checkpoint has.
+        if index == 13 {
+            stored = whole.findings(&simulation);
+        }
+    }
+    second.resume(&rows[..12], &stored);
+    let mut march = March::new(simulation.clone()).unwrap();
+    while let Some(step) = march.advance().unwrap() {
+        if step.index() >= 12 {
+            second.see(&step, &step.row());
+        }
+    }
+    let found = whole.findings(&simulation);
+    assert!(codes(&found).contains(&CONTACT_AT_BORDER));
+    assert_eq!(second.findings(&simulation), found);
+}

@@ -33,9 +33,10 @@ pub enum TimeGrid {
     Adaptive {
         /// Last instant \[s\].
         end: f64,
-        /// Largest error that one step may add, relative to the largest approach so far.
+        /// Largest error of the stress, relative (see [`crate::march::Row::time_error`]).
         tolerance: f64,
-        /// Length of the first step after t = 0 and after each break or jump \[s\].
+        /// The first step after t = 0 and after each break or jump is no longer \[s\]; it is shorter where the material or the
+        /// course ask for it.
         first: f64,
     },
 }

@@ -228,7 +228,7 @@ pub const SCALARS: [Scalar; 16] = scalars![
     Count convolutions ["1"] "convolutions";
     Real residual ["1"] "KKT residual";
     Real certificate ["1"] "certified relative error in the energy norm";
-    Maybe time_error ["1"] "estimated error of the step over the approach";
+    Maybe time_error ["1"] "estimated error of the stress, relative";
     Count stage ["1"] "stage of the load";
 ];
 

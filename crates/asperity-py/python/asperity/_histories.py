@@ -154,20 +154,21 @@ def log(end: float, steps: int, *, first: float) -> Times:
     return Times("log", (number("end", end), float(count("number of steps", steps)), number("first instant", first)))
 
 
-def adaptive(end: float, *, tolerance: float = 1e-3, first: float) -> Times:
-    """Steps to `end` [s] as long as their local error allows.
+def adaptive(end: float, *, tolerance: float = 1e-3, first: float | None = None) -> Times:
+    """Steps to `end` [s] as long as their error allows.
 
-    `tolerance` is the largest error that one step may add, relative to the largest approach so far; `first` [s] the length of the
-    first step, after each break of the history as well. Each row has its estimate as `time_error`.
+    `tolerance` is the largest relative error of the stress; the first step, also after each break of the history, is no longer
+    than `first` [s], a thousandth of `end` by default. Each row has its estimate as `time_error`.
 
     >>> import asperity as asp, numpy as np
     >>> sphere = asp.Surface.sphere(cells=(32, 32), size=(1e-3, 1e-3), radius=10e-3)
     >>> zener = asp.Zener(shear=1e6, shear_kelvin=1e6, retardation_time=1.0, poisson=0.5)
-    >>> result = asp.solve(sphere, zener, load=asp.ramp(1e-3, duration=1.0), times=asp.adaptive(5.0, first=1e-3))
-    >>> float(result.time[-1]), bool(np.nanmax(result.time_error) < 1e-3)
+    >>> result = asp.solve(sphere, zener, load=asp.ramp(1e-3, duration=1.0), times=asp.adaptive(5.0))
+    >>> float(result.time[-1]), bool(np.max(result.time_error) < 1e-3)
     (5.0, True)
     """
-    return Times("adaptive", (number("end", end), number("tolerance", tolerance), number("first step", first)))
+    soon = 1e-3 * end if first is None else first
+    return Times("adaptive", (number("end", end), number("tolerance", tolerance), number("first step", soon)))
 
 
 def listed(instants: Sequence[float]) -> Times:

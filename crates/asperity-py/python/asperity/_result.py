@@ -42,7 +42,7 @@ ROW: dict[str, tuple[str, str]] = {
     "convolutions": ("1", "convolutions"),
     "residual": ("1", "KKT residual"),
     "certificate": ("1", "certified relative error in the energy norm"),
-    "time_error": ("1", "estimated error of the step over the approach"),
+    "time_error": ("1", "estimated error of the stress, relative"),
     "stage": ("1", "stage of the load"),
 }
 

@@ -142,7 +142,9 @@ impl Programme {
                     && (k == 0 || stop.bend)
                     && last + first < stop.time
                 {
-                    plan.instants.push(instant(last + first, *first, f64::NAN, false));
+                    // Steps may well be shorter than the longest first one.
+                    let soon = 0.1 * first;
+                    plan.instants.push(instant(last + soon, soon, f64::NAN, false));
                 }
                 plan.instants.push(instant(stop.time, stop.time - last, stop.before, false));
                 if let Some(after) = stop.after {
@@ -242,11 +244,11 @@ mod tests {
     }
 
     #[test]
-    fn the_window_of_adaptive_steps_begins_with_the_first() {
+    fn the_window_of_adaptive_steps_begins_with_a_tenth_of_the_longest_first() {
         let history = History::Ramp { value: 1.0, duration: 1.0 };
         let grid = TimeGrid::Adaptive { end: 8.0, tolerance: 1e-3, first: 1e-4 };
         let plan = Programme::from(Loading { control: Control::Load, history }).plan(&grid, &[]);
         assert!(!plan.exact);
-        assert_eq!(plan.window(), [1e-4, 8.0]);
+        assert_eq!(plan.window(), [0.1 * 1e-4, 8.0]);
     }
 }

@@ -12,10 +12,8 @@ use crate::case::words;
 
 /// Tolerance of adaptive steps, where none is given.
 const TOLERANCE: f64 = 1e-3;
-/// The first of adaptive steps is no longer than this share of the end.
+/// The first of adaptive steps is no longer than this share of the end, where nothing is said.
 const FIRST: f64 = 1e-3;
-/// ... and no shorter than this one.
-const SHORTEST: f64 = 1e-14;
 /// Adaptive steps of a usual run (docs/verification.md).
 pub const USUAL_STEPS: usize = 100;
 
@@ -123,7 +121,7 @@ impl Steps<'_> {
     /// The grid to `end`.
     fn grid(self, checks: &mut Checks<'_, '_>, end: f64, shortest: impl Fn(f64) -> f64) -> Option<TimeGrid> {
         if self.adaptive() {
-            return self.adaptive_grid(checks, end, shortest);
+            return self.adaptive_grid(checks, end);
         }
         if let Some(tolerance) = self.tolerance {
             let message = "`tolerance` belongs to spacing = \"adaptive\"".to_owned();
@@ -160,12 +158,7 @@ impl Steps<'_> {
         })
     }
 
-    fn adaptive_grid(
-        self,
-        checks: &mut Checks<'_, '_>,
-        end: f64,
-        shortest: impl Fn(f64) -> f64,
-    ) -> Option<TimeGrid> {
+    fn adaptive_grid(self, checks: &mut Checks<'_, '_>, end: f64) -> Option<TimeGrid> {
         if let Some(steps) = self.steps {
             let message =
                 "`steps` cannot be combined with spacing = \"adaptive\", which determines their number"
@@ -176,7 +169,7 @@ impl Steps<'_> {
         }
         let first = match self.first {
             Some(first) => before_end(checks, first, self.end, end, 2)?,
-            None => (0.1 * shortest(end)).min(FIRST * end).max(SHORTEST * end),
+            None => FIRST * end,
         };
         let tolerance = self.tolerance.map_or(TOLERANCE, |at| at.value.get());
         let grid = TimeGrid::Adaptive { end, tolerance, first };

@@ -216,13 +216,13 @@ pub struct Time {
     pub steps: Option<At<Whole<1>>>,
     /// Spacing of the steps; "uniform" if not given.
     pub spacing: Option<At<Spacing>>,
-    /// First time after 0 if the spacing is "log" or "adaptive" (then also the first step after each break or
-    /// jump); if not given, a tenth of the shortest retardation time (of fractional models and fitted curves: 1e-4 of
-    /// the end), but not later than a uniform step, or a thousandth of the end if steps are adaptive.
+    /// First time after 0 if the spacing is "log"; if not given, a tenth of the shortest retardation time (of fractional
+    /// models and fitted curves: 1e-4 of the end), but not later than a uniform step. If the spacing is "adaptive", the
+    /// largest first step after 0 and after each break or jump; if not given, a thousandth of the end.
     #[schemars(example = "0.1 s")]
     pub first: Option<At<Duration<Positive>>>,
-    /// If the spacing is "adaptive": the largest error that the steps may leave, relative to the approach; 1e-3 if not
-    /// given. A single step may add a quarter of it.
+    /// If the spacing is "adaptive": the largest error that the steps may leave, relative to the stress; 1e-3 if not
+    /// given.
     #[schemars(example = 1e-3)]
     pub tolerance: Option<At<Number<Positive>>>,
     /// List of the times after 0, instead of `end` and `steps`.

@@ -2,7 +2,7 @@
 
 use asperity::material::Creep;
 use asperity::surface::Part;
-use asperity::{Course, History};
+use asperity::{Course, History, Simulation};
 use serde::Serialize;
 
 use super::plan::Surface;
@@ -119,7 +119,30 @@ pub struct Preparation {
     pub steps: Vec<String>,
 }
 
+/// Memory of the program itself and of its threads, whatever the case \[bytes\].
+const PROGRAM: usize = 18 << 20;
+/// Fields that are copied while a row is stored: the gap, and what is compressed.
+const STORED: usize = 3;
+
 impl Case {
+    /// The memory that a run takes at its peak \[bytes\]: what its plans say, and what storing takes.
+    fn memory_of_run(&self) -> u64 {
+        let simulation = Simulation {
+            boundary: self.boundary,
+            creep: self.creep.clone(),
+            thermal: self.thermal.clone(),
+            loading: self.loading.clone(),
+            times: self.times.clone(),
+            include: self.include.clone(),
+            scheme: self.scheme,
+            plasticity: self.plasticity,
+            solver: self.solver,
+            quantities: self.output.quantities.clone(),
+            ..Simulation::new(self.grid, ndarray::Array2::default((0, 0)))
+        };
+        (simulation.bytes() + STORED * 8 * self.grid.len() + PROGRAM) as u64
+    }
+
     /// What the case will do.
     pub fn describe(&self) -> Description {
         let stored_rows = self.stored_rows();
@@ -153,7 +176,7 @@ impl Case {
             scheme: choice::word(&self.scheme),
             stored_rows,
             fields: self.output.fields.iter().map(|field| field.name()).collect(),
-            memory_bytes: u64::try_from(self.memory).unwrap_or(u64::MAX),
+            memory_bytes: self.memory_of_run(),
             // initial_gap is always stored
             result_bytes: stored_rows
                 .map(|stored| (self.grid.len() as u64).saturating_mul(8 + stored as u64 * field_bytes)),

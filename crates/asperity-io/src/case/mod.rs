@@ -132,8 +132,6 @@ pub struct Case {
     rows: Option<usize>,
     /// About as many.
     usual_rows: usize,
-    /// Memory of the run in bytes.
-    memory: u128,
     /// Place of the history in the source.
     history: Range<usize>,
 }

@@ -72,7 +72,7 @@ fn cells_place(domain: &At<raw::Domain>) -> &Range<usize> {
     domain.value.cells.as_ref().map_or(&domain.span, |at| &at.span)
 }
 
-/// Bytes that the problem takes, whose bodies remember `fields` fields; more than the machine has are refused.
+/// Refuses a problem that takes more memory than the machine has; its bodies remember `fields` fields.
 pub fn memory(
     checks: &mut Checks<'_, '_>,
     domain: &At<raw::Domain>,
@@ -80,12 +80,12 @@ pub fn memory(
     fields: usize,
     extra: usize,
     scheme: Scheme,
-) -> u128 {
+) {
     let written = domain.value.cells.as_ref().map(|at| at.value.map(|count| count.count()));
-    let Some(cells) = written.or(grid.map(Grid::cells)) else { return 0 };
+    let Some(cells) = written.or(grid.map(Grid::cells)) else { return };
     let (needed, present) = (memory::estimate(cells, fields.saturating_add(extra)), memory::physical());
     if needed <= present {
-        return needed;
+        return;
     }
     let [nx, ny] = cells;
     let detail = match (scheme, fields) {
@@ -103,5 +103,4 @@ pub fn memory(
         _ => "take fewer cells",
     };
     checks.fault(cells_place(domain), message, "a problem that fits into memory", Some(help));
-    needed
 }

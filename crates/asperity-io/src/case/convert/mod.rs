@@ -101,7 +101,7 @@ pub fn case(
         (_, Some(pair)) => pair.branches(),
     };
     let extra = output::extra_fields(&document.solver, &document.output);
-    let memory = domain::memory(&mut checks, &document.domain, grid.as_ref(), fields, extra, scheme);
+    domain::memory(&mut checks, &document.domain, grid.as_ref(), fields, extra, scheme);
 
     checks.errors.sort_by_key(|error| error.span.as_ref().map_or(usize::MAX, |span| span.start));
     let surfaces = surfaces.zip(hardness);
@@ -139,7 +139,6 @@ pub fn case(
             output,
             usual_rows: pair.plan.instants.len() + if adaptive { time::USUAL_STEPS } else { 0 },
             rows: pair.plan.exact.then_some(pair.plan.instants.len()),
-            memory,
             history: prescription.span,
         }),
         _ => Err(checks.errors),

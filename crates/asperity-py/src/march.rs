@@ -102,10 +102,13 @@ fn times(kind: &str, numbers: &[f64]) -> PyResult<TimeGrid> {
 
 /// A list of numbers with the word that says what they are.
 type Numbers = (String, Vec<f64>);
-/// A stage: control, history, points of a table, duration, event with its value, time grid.
-type StageParts = (String, Numbers, Vec<(f64, f64)>, Option<f64>, Option<(String, f64)>, Option<Numbers>);
+/// A stage: control, history, points of a table, duration, event with its value, whether it counts only after a jump, time grid.
+type StageParts =
+    (String, Numbers, Vec<(f64, f64)>, Option<f64>, Option<(String, f64)>, bool, Option<Numbers>);
 
-fn stage((control, (kind, numbers), points, duration, until, grid): StageParts) -> PyResult<Stage> {
+fn stage(
+    (control, (kind, numbers), points, duration, until, after_jump, grid): StageParts,
+) -> PyResult<Stage> {
     let course = match (kind.as_str(), numbers.as_slice()) {
         ("hold", []) => Course::Hold,
         ("ramp-to", [value, duration]) => Course::RampTo { value: *value, duration: *duration },
@@ -128,6 +131,7 @@ fn stage((control, (kind, numbers), points, duration, until, grid): StageParts) 
         course,
         duration,
         until,
+        after_jump,
         times: grid.map(|(kind, numbers)| times(&kind, &numbers)).transpose()?,
     })
 }

@@ -13,7 +13,7 @@ use crate::error::{Error, Result, positive};
 pub struct Cycle {
     /// Start and end \[s\].
     pub span: [f64; 2],
-    /// External work integral W dw over the period \[J\]: the dissipated energy, and what a cycle that does not close
+    /// External work integral W dw over the period, on cubics through the rows \[J\]: the dissipated energy, and what a cycle that does not close
     /// stores besides.
     pub dissipated_energy: f64,
     /// Dynamic stiffness |K*| of the first harmonics \[N/m\].
@@ -111,7 +111,6 @@ impl Rows<'_> {
         if points.last()?[0] < end - close {
             points.push(between(*points.last()?, (last < self.time.len()).then(|| self.at(last))?, end));
         }
-        let loop_area = |pair: &[Point]| 0.5 * (pair[0][1] + pair[1][1]) * (pair[1][2] - pair[0][2]);
         let [load, approach] = [1, 2].map(|which| harmonic(&points, which, omega));
         let (load, approach) = (load?, approach?);
         // Amplitudes a - i b of a cos + b sin.
@@ -121,12 +120,48 @@ impl Rows<'_> {
         let loss_angle = turn - std::f64::consts::TAU * libm::round(turn / std::f64::consts::TAU);
         Some(Cycle {
             span: [start, end],
-            dissipated_energy: points.windows(2).map(loop_area).sum(),
+            dissipated_energy: (1..points.len()).map(|n| work(&points, n)).sum(),
             stiffness: size(load) / size(approach),
             loss_angle,
         })
         .filter(|cycle| cycle.stiffness.is_finite())
     }
+}
+
+/// Integral of W dw from point n - 1 to n, on the cubics in time through the four points around: chords alone would be a share of
+/// (2 pi/N)^2/6 short with N rows to the period. On the chord next to a jump and where the four points are not apart.
+fn work(points: &[Point], n: usize) -> f64 {
+    let [a, b] = [points[n - 1], points[n]];
+    let chord = 0.5 * (a[1] + b[1]) * (b[2] - a[2]);
+    let first = n.saturating_sub(2).min(points.len().saturating_sub(4));
+    let Some(around) = points.get(first..first + 4) else { return chord };
+    let step = b[0] - a[0];
+    if around.windows(2).any(|pair| pair[1][0] - pair[0][0] < 0.05 * step) {
+        return chord;
+    }
+    // Value and slope of the cubic of a column at a time.
+    let cubic = |column: usize, t: f64| {
+        let (mut value, mut slope) = (0.0, 0.0);
+        for (i, p) in around.iter().enumerate() {
+            let others = || around.iter().enumerate().filter(move |(k, _)| *k != i);
+            let basis: f64 = others().map(|(_, q)| (t - q[0]) / (p[0] - q[0])).product();
+            let terms = others().map(|(k, q)| {
+                let rest = others().filter(move |(l, _)| *l != k);
+                rest.map(|(_, r)| (t - r[0]) / (p[0] - r[0])).product::<f64>() / (p[0] - q[0])
+            });
+            value += p[column] * basis;
+            slope += p[column] * terms.sum::<f64>();
+        }
+        [value, slope]
+    };
+    // Gauss' rule of three points: exact for the product of a cubic and the slope of one.
+    let node = 0.6f64.sqrt();
+    let middle = 0.5 * (a[0] + b[0]);
+    let at = |x: f64| {
+        let t = middle + 0.5 * step * x;
+        cubic(1, t)[0] * cubic(2, t)[1]
+    };
+    0.5 * step * (5.0 * at(-node) + 8.0 * at(0.0) + 5.0 * at(node)) / 9.0
 }
 
 fn between(a: Point, b: Point, time: f64) -> Point {
@@ -201,6 +236,25 @@ mod tests {
             assert!((cycle.loss_angle - 0.8).abs() < 1e-3, "{cycle:?}");
         }
         assert_eq!(found[1].span, [5.0, 9.0]);
+    }
+
+    #[test]
+    fn the_loop_of_forty_rows_has_its_area_to_a_thousandth() {
+        let f = 0.5;
+        let omega = std::f64::consts::TAU * f;
+        for uneven in [0.0, 0.3] {
+            let time: Vec<f64> =
+                (0..=120).map(|n| 0.05 * (f64::from(n) + uneven * (1.7 * f64::from(n)).sin())).collect();
+            // With a second harmonic, as in a contact whose area changes.
+            let approach: Vec<f64> =
+                time.iter().map(|t| (omega * t).cos() + 0.2 * (2.0 * omega * t).cos()).collect();
+            let load: Vec<f64> =
+                time.iter().map(|t| (omega * t + 0.3).cos() + 0.2 * (2.0 * omega * t + 0.4).cos()).collect();
+            let exact = std::f64::consts::PI * (0.3f64.sin() + 2.0 * 0.04 * 0.4f64.sin());
+            let found = cycles(&time, &load, &approach, f, 2.0).unwrap();
+            // (2 pi/40)^4/6 of the first harmonic, sixteen times that of the second's tenth; a few times more where uneven.
+            assert!((found[0].dissipated_energy / exact - 1.0).abs() < 1e-3, "{:?} {exact}", found[0]);
+        }
     }
 
     #[test]

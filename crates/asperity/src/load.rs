@@ -23,6 +23,9 @@ pub enum Control {
     Approach,
 }
 
+/// A history with more turns than this is not looked at one by one.
+const MOST_EXTREMES: usize = 100_000;
+
 /// A value over time, from t = 0 on.
 #[derive(Clone, Debug, PartialEq)]
 pub enum History {
@@ -144,6 +147,13 @@ impl History {
         times
     }
 
+    /// Times in (0, end) where the history is largest or smallest, besides its breaks, in order.
+    pub(crate) fn extremes(&self, end: f64) -> Vec<f64> {
+        let History::Sine { frequency, .. } = self else { return vec![] };
+        let quarters = (0..).map(|n| (0.25 + 0.5 * f64::from(n)) / frequency);
+        quarters.take_while(|t| *t < end).take(MOST_EXTREMES).collect()
+    }
+
     /// Smallest and largest value over \[0, end\].
     pub fn range(&self, end: f64) -> [f64; 2] {
         let mut range = [f64::INFINITY, f64::NEG_INFINITY];
@@ -181,7 +191,10 @@ enum Side {
 }
 
 fn trapezoid(t: f64, peak: f64, rise: f64, hold: f64, fall: f64) -> f64 {
-    if t < rise {
+    if t >= rise + hold + fall {
+        // Exactly, whatever the rounding of the times.
+        0.0
+    } else if t < rise {
         peak * t / rise
     } else if t <= rise + hold {
         peak
@@ -250,6 +263,25 @@ fn validate_table(points: &[(f64, f64)]) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_history_that_ends_at_nothing_ends_there_exactly() {
+        for n in 1..500 {
+            let [rise, hold, fall] = [0.2, 0.3, 0.2].map(|t| t * (1.0 + 1e-3 * f64::from(n)));
+            let history = History::Trapezoid { peak: 1.0, rise, hold, fall };
+            let end = history.breaks(10.0)[2];
+            assert_eq!((history.before(end), history.after(end)), (0.0, 0.0));
+            let history = History::Triangle { peak: 1.0, rise, fall };
+            assert_eq!(history.before(history.breaks(10.0)[1]), 0.0);
+        }
+    }
+
+    #[test]
+    fn a_sine_turns_every_half_period() {
+        let sine = History::Sine { mean: 1.0, amplitude: -0.5, frequency: 2.0 };
+        assert_eq!(sine.extremes(1.0), [0.125, 0.375, 0.625, 0.875]);
+        assert!(History::Step { value: 1.0 }.extremes(1.0).is_empty());
+    }
 
     #[test]
     fn a_table_meets_its_points_to_the_last_bit_and_stays_between_them() {

@@ -9,7 +9,7 @@ import numpy.typing as npt
 _Floats = npt.NDArray[np.float64]
 _Shift = tuple[str, list[float], list[tuple[float, float]]]
 _Grid = tuple[str, list[float]]
-_Stage = tuple[str, _Grid, list[tuple[float, float]], float | None, tuple[str, float] | None, _Grid | None]
+_Stage = tuple[str, _Grid, list[tuple[float, float]], float | None, tuple[str, float] | None, bool, _Grid | None]
 
 __all__ = [
     "elastic",

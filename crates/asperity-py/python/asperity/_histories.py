@@ -80,6 +80,8 @@ class Stage:
     duration : the stage lasts no longer than this [s]; the last stage may last to the end of the run
     until : what ends it: ("approach", value [m]), ("load", value [N]) or ("pressure", value [Pa]), crossed from either side, or
         "contact-lost". Without `duration` it must happen before the run ends.
+    after_jump : the event of `until` counts only after the jump with which the stage begins, as a load that relaxes after a step
+        of the approach
     times : times of the stage, measured from its start; default: those of the run
 
     Examples
@@ -104,6 +106,7 @@ class Stage:
     approach: History | float | None = None
     duration: float | None = None
     until: str | tuple[str, float] | None = None
+    after_jump: bool = False
     times: Times | Sequence[float] | None = None
 
     def _parts(self) -> _core._Stage:
@@ -125,6 +128,7 @@ class Stage:
             list(history.points),
             None if self.duration is None else number("duration of the stage", self.duration),
             until,
+            self.after_jump,
             None if grid is None else (grid.kind, list(grid.numbers)),
         )
 

@@ -40,6 +40,9 @@ pub struct Stage {
     /// The stage ends where this happens. Without `duration` it must happen before the run ends; with it the
     /// stage ends quietly at the latest then.
     pub until: Option<Event>,
+    /// The event counts only after the jump with which the stage begins: not what the jump itself reaches, but what comes after
+    /// it, as a load that relaxes.
+    pub after_jump: bool,
     /// Instants of the stage, on its own clock, in place of those of the run.
     pub times: Option<TimeGrid>,
 }
@@ -101,7 +104,7 @@ impl From<Loading> for Programme {
 impl Stage {
     /// A stage that lasts to the end of the run, with the instants of the run.
     pub fn new(control: Control, course: impl Into<Course>) -> Self {
-        Stage { control, course: course.into(), duration: None, until: None, times: None }
+        Stage { control, course: course.into(), duration: None, until: None, after_jump: false, times: None }
     }
 }
 

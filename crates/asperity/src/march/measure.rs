@@ -194,14 +194,16 @@ impl Step<'_> {
     /// Root of the mean square of the gap over the cells that can touch \[m\].
     fn rms_gap(&self) -> f64 {
         let (c, w) = (self.compliance, self.state.approach);
-        let [square, cells] =
-            sweep((&self.state.unit_displacement[..], self.gap), &|(u, h): (&[f64], &[f64])| {
-                strands(u.len(), |i| {
-                    let can_touch = h[i] < f64::INFINITY;
-                    let gap = if can_touch { c * u[i] + h[i] - w } else { 0.0 };
-                    [gap * gap, f64::from(u8::from(can_touch))]
-                })
-            });
+        // Where flattening stays, a cell ends its row just closed.
+        let closes = self.simulation.plasticity == super::Plasticity::Accumulate;
+        let cells = (&self.state.unit_displacement[..], self.gap, &self.state.pressure[..], self.hardness);
+        let [square, cells] = sweep(cells, &|(u, h, p, hardness): (&[f64], &[f64], &[f64], Hardness)| {
+            strands(u.len(), |i| {
+                let apart = h[i] < f64::INFINITY && !(closes && p[i] >= hardness.at(i));
+                let gap = if apart { c * u[i] + h[i] - w } else { 0.0 };
+                [gap * gap, f64::from(u8::from(h[i] < f64::INFINITY))]
+            })
+        });
         (square / cells).sqrt()
     }
 }

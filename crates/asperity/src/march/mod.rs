@@ -341,12 +341,14 @@ impl March {
         }
     }
 
-    /// What the solver is to meet.
+    /// What the solver is to meet. A load that is rounding of the largest one is none.
     fn prescribed(&self, instant: Instant) -> Prescribed {
+        let none = instant.value.abs() <= 16.0 * f64::EPSILON * self.timeline.scale;
         match instant.control {
+            Control::Approach => Prescribed::Approach(instant.value),
+            _ if none => Prescribed::Load(0.0),
             Control::Load => Prescribed::Load(instant.value),
             Control::Pressure => Prescribed::Load(instant.value * self.simulation.grid.area()),
-            Control::Approach => Prescribed::Approach(instant.value),
         }
     }
 
@@ -433,6 +435,12 @@ impl March {
     /// Whether the event that ends the stage happens in the step under way, which is then cut there.
     fn find_event(&mut self, instant: &mut Instant) -> Result<bool> {
         let Some(event) = self.timeline.stage(&self.simulation).until else { return Ok(false) };
+        // No load is no contact.
+        let event =
+            if matches!(event, Event::Load(0.0) | Event::Pressure(0.0)) { Event::ContactLost } else { event };
+        if instant.jump && instant.dt == 0.0 && self.timeline.stage(&self.simulation).after_jump {
+            return Ok(false);
+        }
         let (signal, tolerance) = self.signal(event, self.reached_now(), *instant);
         if self.timeline.side == 0.0 {
             // The value must be left before it can be reached, and what never touched is not lost: from the last row on,

@@ -10,7 +10,10 @@ use crate::material::{Creep, ThermalCreep};
 use crate::operator;
 use crate::quantities::{Column, ContactStiffness, Quantities, Quantity};
 use crate::spots::Spots;
-use crate::time::{Plan, TimeGrid};
+use crate::time::{Plan, SAME, TimeGrid};
+
+/// Fewer steps than this to the period of a sine miss its course.
+const LEAST_PER_PERIOD: f64 = 20.0;
 
 /// How the pressure varies over a time step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -243,6 +246,7 @@ impl Simulation {
             ));
         }
         self.solver.validate()?;
+        self.validate_steps()?;
         self.validate_load()?;
         self.validate_jumps()
     }
@@ -312,6 +316,51 @@ impl Simulation {
             if most * factor > max * (1.0 + 1e-12) {
                 return Err(Error::Infeasible { load: most * factor, max });
             }
+        }
+        Ok(())
+    }
+
+    /// Steps must follow a sine, and times of a history must be apart.
+    fn validate_steps(&self) -> Result<()> {
+        let end = self.times.end();
+        for (n, stage) in self.loading.stages.iter().enumerate() {
+            let Course::Given(history) = &stage.course else { continue };
+            let breaks = history.breaks(end);
+            let close = |pair: &&[f64]| pair[1] > pair[0] && pair[1] - pair[0] <= SAME * end;
+            let times: Vec<f64> = std::iter::once(0.0).chain(breaks).collect();
+            if let Some(pair) = times.windows(2).find(close) {
+                let error = Error::invalid(
+                    "times of the history",
+                    format!("{} s and {} s", pair[0], pair[1]),
+                    format!(
+                        "at least {:e} s apart, {SAME:e} of the run: rounding joins closer ones",
+                        SAME * end
+                    ),
+                );
+                return Err(if self.loading.stages.len() > 1 { of_stage(error, n) } else { error });
+            }
+        }
+        let mut longest = vec![0.0_f64; self.loading.stages.len()];
+        for instant in self.plan().instants {
+            longest[instant.stage] = longest[instant.stage].max(instant.dt);
+        }
+        for (n, (stage, longest)) in self.loading.stages.iter().zip(longest).enumerate() {
+            let Course::Given(History::Sine { amplitude, frequency, .. }) = stage.course else { continue };
+            let grid = stage.times.as_ref().unwrap_or(&self.times);
+            if amplitude == 0.0 || grid.is_adaptive() || longest * frequency <= 1.001 / LEAST_PER_PERIOD {
+                continue;
+            }
+            let lasts = stage.duration.unwrap_or(end).min(grid.end());
+            let error = Error::invalid(
+                "longest time step under a sine",
+                format!("{longest} s"),
+                format!(
+                    "at most {} s, {LEAST_PER_PERIOD} steps to a period: {} uniform steps at least, or adaptive ones",
+                    1.0 / (LEAST_PER_PERIOD * frequency),
+                    (LEAST_PER_PERIOD * frequency * lasts).ceil(),
+                ),
+            );
+            return Err(if self.loading.stages.len() > 1 { of_stage(error, n) } else { error });
         }
         Ok(())
     }

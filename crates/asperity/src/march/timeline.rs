@@ -7,7 +7,7 @@ use crate::march::{Reached, Simulation};
 use crate::time::{Instant, SAME, Span, Stop, TimeGrid, agree, stops};
 
 /// Steps to the period of a sine, at least, where steps are adaptive.
-const STEPS_PER_PERIOD: f64 = 20.0;
+const STEPS_PER_PERIOD: f64 = 40.0;
 
 pub(super) struct Timeline {
     kinks: Vec<f64>,
@@ -16,6 +16,8 @@ pub(super) struct Timeline {
     start: f64,
     reached: f64,
     history: History,
+    /// The largest size of its value.
+    pub(super) scale: f64,
     /// Start and history of the stage before.
     passed: (f64, History),
     stops: Vec<Stop>,
@@ -82,6 +84,7 @@ impl Timeline {
             start: 0.0,
             reached: 0.0,
             history: History::Step { value: 0.0 },
+            scale: 0.0,
             passed: (0.0, History::Step { value: 0.0 }),
             stops: vec![],
             next: 0,
@@ -284,7 +287,10 @@ impl Timeline {
             run_end,
             include: &simulation.include,
             kinks: &self.kinks,
+            turns: next.until.is_some(),
         };
+        let [least, most] = self.history.range(end - start);
+        self.scale = least.abs().max(most.abs());
         self.stops = stops(&span, next.times.as_ref(), &simulation.times);
         self.next = 0;
         let longest = match &self.history {

@@ -30,6 +30,8 @@ pub(crate) struct Span<'a> {
     pub include: &'a [f64],
     /// Where the temperature bends.
     pub kinks: &'a [f64],
+    /// Whether the turns of the history are stops too: an event that comes and goes between two steps is met there.
+    pub turns: bool,
 }
 
 /// An instant on the clock of the run, that of the stage, and what it is.
@@ -49,6 +51,9 @@ pub(crate) fn stops(span: &Span<'_>, own: Option<&TimeGrid>, grid: &TimeGrid) ->
     let mut marks: Vec<Mark> = Vec::new();
     marks.extend(breaks.iter().map(|b| Mark { time: start + b, inside: *b, is_break: true, bend: true }));
     let outer = |time: f64, bend: bool| Mark { time, inside: time - start, is_break: false, bend };
+    if span.turns {
+        marks.extend(history.extremes(end - start).into_iter().map(|t| outer(start + t, false)));
+    }
     marks.extend(span.kinks.iter().map(|t| outer(*t, true)));
     marks.extend(span.include.iter().map(|t| outer(*t, false)));
     match own {
@@ -135,7 +140,8 @@ impl Programme {
             }
             let own = stage.times.as_ref();
             let end = stage.duration.map_or(run_end, |duration| (start + duration).min(run_end));
-            let span = Span { history: &history, start, end, run_end, include, kinks: &[] };
+            let turns = stage.until.is_some();
+            let span = Span { history: &history, start, end, run_end, include, kinks: &[], turns };
             let mut last = start;
             for (k, stop) in stops(&span, own, grid).into_iter().enumerate() {
                 if let TimeGrid::Adaptive { first, .. } = own.unwrap_or(grid)

@@ -110,6 +110,7 @@ fn stage(
             raw::Until::Load(value) => Event::Load(value.get()),
             raw::Until::Pressure(value) => Event::Pressure(value.get()),
         }),
+        after_jump: raw.after_jump,
         ..Stage::new(control, course)
     };
     Some((stage, place))

@@ -45,6 +45,10 @@ pub struct Stage {
     /// `duration` it must happen before `time.end`.
     #[schemars(example = "contact-lost", example = serde_json::json!({ "approach": "2 um" }))]
     pub until: Option<At<Until>>,
+    /// The event of `until` counts only after the jump with which the stage begins (as a load that relaxes after a step of
+    /// the approach); false if not given.
+    #[serde(default)]
+    pub after_jump: bool,
     /// Number of steps of the stage, instead of the times of `[time]`; with `duration`.
     #[schemars(example = 50)]
     pub steps: Option<At<Whole<1>>>,

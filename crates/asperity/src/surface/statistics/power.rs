@@ -180,8 +180,14 @@ impl PowerSpectrum {
     }
 
     /// The lay, from the mean products of slopes <z_x^2>, <z_x z_y>, <z_y^2>: their principal axes.
+    /// A strip of fewer than eight lines of points has none.
     pub fn lay(&self) -> SpectralLay {
+        /// Lines of points that tell two directions apart.
+        const FEWEST: usize = 8;
         let [nx, ny] = self.grid.cells();
+        if nx.min(ny) < FEWEST {
+            return SpectralLay { ratio: 1.0, angle: 0.0 };
+        }
         let rows: Vec<[f64; 3]> = (0..nx)
             .into_par_iter()
             .map(|i| {

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! with b(y) taken (1 - exp(-(T + x)/τ_i))/(1 - exp(-y)) times: the errors of the steps before add up as long as the branch
-//! remembers them, and T is how long the smooth piece of the course has lasted. Here u\[z0, z1, z2\] is the second divided
+//! remembers them, and T is how long the smooth piece of the course has lasted, 15 steps at most. Here u\[z0, z1, z2\] is the second divided
 //! difference of three states, and the sums go over the cells in contact at either end: an error of the stress over
 //! the stress, not of the displacement over the approach. The second and third bound keep it finite
 //! where contact ends or begins.
@@ -20,6 +20,8 @@ use crate::field::{strands, sweep};
 
 /// Share of the stress at the start, and of the relaxed one, that an error is measured by at the least.
 const FLOOR: f64 = 0.1;
+/// Errors of so many steps add up: the curvature of a longer course changes its sign.
+const ALIKE: f64 = 16.0;
 /// L may grow by this share in the first step of a smooth piece.
 const GROWTH: f64 = 0.2;
 /// The first step after a jump is this share of the mean relaxation time.
@@ -97,7 +99,7 @@ impl Memory {
     /// Σ E_i b(x/τ_i) + ζ/(2x), with what is remembered of the steps before.
     fn defect(&self) -> f64 {
         let (x, relaxation) = (self.rules.length, &self.dual.relaxation);
-        let whole = x + self.piece.unwrap_or(0.0);
+        let whole = (x + self.piece.unwrap_or(0.0)).min(ALIKE * x);
         let terms = relaxation.terms.iter().map(|e| {
             let y = x / e.relaxation_time;
             e.modulus * chord_defect(y) * (moment(0, whole / e.relaxation_time) / moment(0, y))

@@ -82,8 +82,8 @@ fn a_programme_of_stages_is_run_stored_interrupted_and_resumed_to_the_same_bits(
     assert!((rows.last().unwrap().load - 1.0).abs() < 1e-5);
     assert_eq!(whole.header().rows_expected, None);
     let errors = whole.series("time_error").unwrap();
-    assert!(errors[0].is_nan() && errors.iter().any(|error| *error > 0.0));
-    assert!(errors.iter().all(|error| error.is_nan() || *error <= 0.01));
+    assert!(errors.iter().any(|error| *error > 0.0));
+    assert!(errors.iter().all(|error| *error <= 0.01), "none is NaN, none above the tolerance: {errors:?}");
 }
 
 #[test]

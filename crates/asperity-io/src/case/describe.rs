@@ -121,8 +121,8 @@ pub struct Preparation {
 
 /// Memory of the program itself and of its threads, whatever the case \[bytes\].
 const PROGRAM: usize = 18 << 20;
-/// Fields that are copied while a row is stored: the gap, and what is compressed.
-const STORED: usize = 3;
+/// Fields that are copied while a row or a checkpoint is stored: the gap, and what is compressed.
+const STORED: usize = 5;
 
 impl Case {
     /// The memory that a run takes at its peak \[bytes\]: what its plans say, and what storing takes.

@@ -229,7 +229,7 @@ poisson = 0.3
             ("domain.cells.5=1", "no element 5"),
             ("domain.0=1", "a table has names"),
             ("title.x=1", "neither table nor list"),
-            ("a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a=1", "deeper"),
+            ("a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a=1", "more parts than any key"),
         ] {
             let message = set(text).unwrap_err();
             assert!(message.contains(words), "{text}: {message}");

@@ -48,6 +48,7 @@ pub struct Stage {
     /// The event of `until` counts only after the jump with which the stage begins (as a load that relaxes after a step of
     /// the approach); false if not given.
     #[serde(default)]
+    #[schemars(example = true)]
     pub after_jump: bool,
     /// Number of steps of the stage, instead of the times of `[time]`; with `duration`.
     #[schemars(example = 50)]

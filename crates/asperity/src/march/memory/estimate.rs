@@ -22,6 +22,8 @@ use crate::field::{strands, sweep};
 const FLOOR: f64 = 0.1;
 /// Errors of so many steps add up: the curvature of a longer course changes its sign.
 const ALIKE: f64 = 16.0;
+/// Relative rounding error of u, which a contact closes to some units in the last place of the approach.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// L may grow by this share in the first step of a smooth piece.
 const GROWTH: f64 = 0.2;
 /// The first step after a jump is this share of the mean relaxation time.
@@ -57,6 +59,7 @@ impl Memory {
         }
         let (step, third) = self.clock(reference);
         let weight = 2.0 * step * step * self.defect();
+        let spread = ((1.0 / third).abs() + (1.0 / step).abs()) / (third - step).abs();
         let compliance = self.rules.compliance;
         let cells = (
             (&self.displacement[..], &self.third[..]),
@@ -76,9 +79,12 @@ impl Memory {
                         return [0.0; 4];
                     }
                     let u_now = compliance * unit_now[i] + (gap[i] - rigid[i]);
-                    let slopes = [(u_third[i] - u[i]) / third, (u_now - u[i]) / step];
-                    let second = (slopes[0] - slopes[1]) / (third - step);
-                    [second.abs(), unit_now[i], unit[i], u_now.abs()]
+                    let (before, now) = (u_third[i] - u[i], u_now - u[i]);
+                    let second = (before / third - now / step) / (third - step);
+                    // What rounding errors of u make of it.
+                    let rounding = ROUNDING * u[i].abs().max(u_now.abs()) * spread;
+                    let curved = if second.abs() > rounding { second.abs() } else { 0.0 };
+                    [curved, unit_now[i], unit[i], u_now.abs()]
                 })
             });
         let relaxed = self.dual.relaxation.equilibrium * displaced;

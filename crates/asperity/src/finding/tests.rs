@@ -284,7 +284,10 @@ fn a_broken_energy_balance_is_found() {
 #[test]
 fn moduli_radii_and_heights_of_unlikely_units_are_found() {
     let steel = Part::Shape { shape: Shape::Sphere { radius: 10.0 }, center: [0.0; 2] };
-    assert_eq!(codes(&before(&simulation(&[steel.clone()]), &[steel])), [UNLIKELY_UNIT]);
+    assert_eq!(
+        codes(&before(&simulation(std::slice::from_ref(&steel)), std::slice::from_ref(&steel))),
+        [UNLIKELY_UNIT]
+    );
     let soft = |shear: f64| Body {
         name: "rubber".into(),
         material: Material::elastic(Modulus::Shear, shear).unwrap(),

@@ -248,7 +248,8 @@ impl March {
         if instant.jump {
             return Ok(Some(0.0));
         }
-        if !self.is_apart() && !(self.timeline.smooth() && self.knows_the_state_before()) {
+        let knows_three = self.timeline.smooth() && self.knows_the_state_before();
+        if !self.is_apart() && !knows_three {
             // The state just solved is the third one, of a step half as long.
             self.keep_as_third();
             *turn = self.try_again(instant, 0.5 * instant.dt)?;

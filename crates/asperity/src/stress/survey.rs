@@ -131,8 +131,7 @@ pub fn survey(stress: &mut SubsurfaceStress, depths: &[f64], threshold: Option<f
         Extreme { value, depth: depths[n], cell }
     };
     let deepest = depths.len() - 1;
-    let (of_mises, of_tresca): (fn(&Slab) -> First, fn(&Slab) -> First) = (|s| s.mises, |s| s.tresca);
-    let mises_at = best(of_mises);
+    let mises_at = best(|s| s.mises);
     let mut refined = |of: fn(&Slab) -> First| -> Result<Extreme> {
         let n = best(of);
         let mut points: Vec<(f64, First)> =
@@ -149,7 +148,7 @@ pub fn survey(stress: &mut SubsurfaceStress, depths: &[f64], threshold: Option<f
         }
         Ok(found)
     };
-    let (mises, tresca) = (refined(of_mises)?, refined(of_tresca)?);
+    let (mises, tresca) = (refined(|s| s.mises)?, refined(|s| s.tresca)?);
     let [dx, dy] = stress.grid().spacing();
     let cell_area = stress.grid().cell_area();
     let volume = |_| {

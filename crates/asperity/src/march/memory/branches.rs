@@ -136,17 +136,15 @@ impl Branches {
         sweep((self.blocks(), u), &|(q, u): (Interleaved<&mut [f64]>, &mut [f64])| {
             let n = u.len();
             let mut cell = vec![0.0; count + 1];
-            for k in 0..n {
-                for i in 0..count {
-                    cell[i] = q.data[i * n + k];
-                }
-                cell[count] = u[k];
+            for (k, u) in u.iter_mut().enumerate() {
+                cell[..count].iter_mut().enumerate().for_each(|(i, state)| *state = q.data[i * n + k]);
+                cell[count] = *u;
                 for (i, row) in matrix.iter().enumerate() {
                     let sum = row.iter().zip(&cell).map(|(a, b)| a * b).sum();
                     if i < count {
                         q.data[i * n + k] = sum;
                     } else {
-                        u[k] = sum;
+                        *u = sum;
                     }
                 }
             }

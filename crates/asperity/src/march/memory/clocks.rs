@@ -68,7 +68,7 @@ impl Clocks {
     /// Sets `rates` to those of the step; whether they have changed. A step in no time has the rates of the last.
     pub(super) fn set_rates(&self, lengths: &[f64], rates: &mut [f64]) -> bool {
         let fastest = self.length(lengths);
-        if !(fastest > 0.0) {
+        if fastest.is_nan() || fastest <= 0.0 {
             return false;
         }
         let rate = |length: f64| (length / fastest).max(STOPPED);

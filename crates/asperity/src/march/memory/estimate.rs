@@ -123,7 +123,7 @@ impl Memory {
         rate: f64,
     ) -> f64 {
         self.piece = None;
-        if self.is_elastic() || !(rate > 0.0) {
+        if self.is_elastic() || rate.is_nan() || rate <= 0.0 {
             return longest;
         }
         let mut first = longest;

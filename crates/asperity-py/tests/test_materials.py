@@ -145,7 +145,7 @@ def test_an_indentation_gives_the_material_back():
     ):
         with pytest.raises(asp.CaseError, match=words):
             asp.fit_indentation(t, t, t * 1e-6, **{**dict(radius=0.01, poisson=0.5), **change})
-    for columns, words in (((t[:5], t[:5], t[:5]), "10"), ((t, t[:5], t), "one length"), ((t[::-1], t, t), "time"), ((t, t * np.nan, t), "load")):
+    for columns, words in (((t[:5], t[:5], t[:5]), "10"), ((t, t[:5], t), "same length"), ((t[::-1], t, t), "time"), ((t, t * np.nan, t), "load")):
         with pytest.raises(asp.CaseError, match=words):
             asp.fit_indentation(*columns, radius=0.01, poisson=0.5)
 

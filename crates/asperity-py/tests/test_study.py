@@ -259,7 +259,7 @@ def test_a_study_runs_from_a_script_without_a_guard_and_with_a_function_of_it(tm
         ({"load": [0.001, 0.001]}, {}, "differ"),
         ([{"load": 0.001}, {"load": 0.001}], {}, "twice"),
         ([{"load": 0.001}, {"pressure": 1.0}], {}, "parameters"),
-        ({"load": [1.0], "boundary": ["free", "periodic"]}, dict(zip=True), "as many"),
+        ({"load": [1.0], "boundary": ["free", "periodic"]}, dict(zip=True), "same number"),
         ({"load": [0.001]}, dict(fields=["stress"]), "stress"),
         ({"load": [0.001]}, dict(workers=0), "workers"),
         ({"load": [0.001]}, dict(threads=1.5), "threads"),

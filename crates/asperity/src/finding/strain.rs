@@ -114,7 +114,7 @@ fn large(value: f64, limit: f64, what: &str) -> Finding {
 
 fn too_deep(value: f64) -> Finding {
     let text = format!(
-        "The body is pressed in deeper than its own radius (contact radius over radius: {}). Check the units of load or \
+        "The body is pressed in deeper than its own radius (approach over contact radius: {}). Check the units of load or \
          approach, modulus and radius.",
         digits(value)
     );

@@ -288,3 +288,78 @@ fn constant_load_never_lets_the_counted_area_shrink() {
         assert!(held[held.len() - 1].contact_area > held[0].contact_area);
     }
 }
+
+#[test]
+fn a_load_that_falls_to_nothing_ends_its_contact_exactly_then() {
+    // 0.2 + 0.3 + 0.2 s: the sum is no round number, and the load at its end is none all the same.
+    let fall = History::Trapezoid { peak: 0.2, rise: 0.2, hold: 0.3, fall: 0.2 };
+    let simulation = Simulation {
+        loading: Programme::new(vec![until(Control::Load, fall, Event::ContactLost)]),
+        times: TimeGrid::Uniform { end: 4.0, steps: 4 },
+        ..rough([20, 20])
+    };
+    let last = *rows(simulation).last().unwrap();
+    assert!((last.time - 0.7).abs() < 1e-12 && last.contact_area == 0.0, "{last:?}");
+}
+
+#[test]
+fn no_load_is_the_loss_of_contact_whatever_the_steps() {
+    let there_and_back = History::Triangle { peak: 0.05, rise: 1.0, fall: 2.0 };
+    let at = |event, times| {
+        let stage = until(Control::Approach, there_and_back.clone(), event);
+        rows(Simulation { loading: Programme::new(vec![stage]), times, ..rough([20, 20]) })
+            .last()
+            .unwrap()
+            .time
+    };
+    let adaptive = TimeGrid::Adaptive { end: 4.0, tolerance: 1e-3, first: 0.1 };
+    let best = at(Event::ContactLost, TimeGrid::Uniform { end: 4.0, steps: 400 });
+    for times in
+        [TimeGrid::Uniform { end: 4.0, steps: 8 }, TimeGrid::Uniform { end: 4.0, steps: 40 }, adaptive]
+    {
+        let (load, lost) = (at(Event::Load(0.0), times.clone()), at(Event::ContactLost, times));
+        // One event, of second order in the steps.
+        assert!(load == lost && (load - best).abs() < 0.02, "{load} {lost} {best}");
+    }
+}
+
+#[test]
+fn an_event_between_two_steps_is_met_at_the_turn_of_a_sine() {
+    // The load is above 1.999 N of 2 N for 1 % of the period; twenty steps do not fall on its peak.
+    let sine = History::Sine { mean: 0.1, amplitude: 0.1, frequency: 0.9 };
+    let simulation = Simulation {
+        loading: Programme::new(vec![until(Control::Load, sine, Event::Load(0.19999))]),
+        times: TimeGrid::Uniform { end: 2.0, steps: 37 },
+        ..rough([20, 20])
+    };
+    let last = *rows(simulation).last().unwrap();
+    assert!(last.time < 0.25 / 0.9 && (last.load / 0.19999 - 1.0).abs() < 1e-5, "{last:?}");
+}
+
+#[test]
+fn an_event_after_the_jump_is_the_relaxation_and_too_few_steps_of_a_sine_are_refused() {
+    let press = until(Control::Approach, History::Step { value: 0.05 }, Event::Load(0.0));
+    let first = rows(Simulation {
+        loading: Programme::new(vec![Stage { until: None, ..press.clone() }]),
+        times: TimeGrid::Uniform { end: 0.1, steps: 1 },
+        ..rough([20, 20])
+    })[0]
+        .load;
+    // E*(t) = 2 + 2 exp(-2t) falls to 0.75 of its start at t = ln(2)/2.
+    let wanted = Event::Load(0.75 * first);
+    let run = |after_jump| {
+        let stage = Stage { until: Some(wanted), after_jump, ..press.clone() };
+        let times = TimeGrid::Uniform { end: 4.0, steps: 4 };
+        *rows(Simulation { loading: Programme::new(vec![stage]), times, ..rough([20, 20]) }).last().unwrap()
+    };
+    assert_eq!(run(false).time, 0.0);
+    assert!((run(true).time - 0.5 * 2f64.ln()).abs() < 1e-4, "{:?}", run(true));
+    let sine = History::Sine { mean: 0.1, amplitude: 0.1, frequency: 2.0 };
+    let simulation = Simulation {
+        loading: Programme::new(vec![Stage::new(Control::Load, sine)]),
+        times: TimeGrid::Uniform { end: 100.0, steps: 100 },
+        ..rough([20, 20])
+    };
+    let Err(error) = March::new(simulation) else { panic!("accepted") };
+    assert!(error.to_string().contains("4000 uniform steps"), "{error}");
+}

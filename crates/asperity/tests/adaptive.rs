@@ -256,3 +256,35 @@ fn a_material_without_instantaneous_compliance_takes_adaptive_steps_too() {
     assert!((rows.last().unwrap().approach / exact - 1.0).abs() < 0.05);
     assert!(rows.len() < 700);
 }
+
+#[test]
+fn a_contact_whose_load_jumps_as_cells_touch_is_stepped_over() {
+    // Without instantaneous compliance the dashpot feels every new cell at once: no step is short enough for that.
+    let term = |compliance, retardation_time| CreepTerm { compliance, retardation_time };
+    let creep = Creep { instantaneous: 0.0, terms: vec![term(1e-4, 3.0)], fluidity: 0.0 };
+    let history = History::Ramp { value: 0.02, duration: 1.0 };
+    let run = |tolerance| {
+        let loading = Loading { control: Control::Approach, history: history.clone() }.into();
+        rows(Simulation { creep: creep.clone(), loading, times: adaptive(5.0, tolerance, 0.1), ..sphere(16) })
+    };
+    for tolerance in [1e-2, 1e-3] {
+        let rows = run(tolerance);
+        // A few hundred; without the bound there is no end.
+        assert!(rows.len() < 3000, "{tolerance}: {}", rows.len());
+        assert!(rows.iter().all(|row| row.time_error.is_some_and(|error| !error.is_nan())));
+        // The solid relaxes to its spring: W = E L at the held approach, five retardation times later all but exp(-1.3).
+        let last = rows.last().unwrap();
+        assert!(last.time == 5.0 && last.load > 0.0);
+    }
+}
+
+#[test]
+fn a_fluid_that_relaxes_to_nothing_takes_few_steps() {
+    // A held approach is exact in any step; what is left of the load after a hundred relaxation times is rounding.
+    let creep = Creep { instantaneous: 1e-4, terms: vec![], fluidity: 1e-4 };
+    let history = History::Ramp { value: 0.02, duration: 200.0 };
+    let loading = Loading { control: Control::Approach, history }.into();
+    let rows = rows(Simulation { creep, loading, times: adaptive(500.0, 1e-3, 1.0), ..sphere(16) });
+    assert!(rows.len() < 3000, "{}", rows.len());
+    assert!(rows.last().unwrap().load < 1e-6 * rows.iter().map(|row| row.load).fold(0.0, f64::max));
+}

@@ -3,6 +3,10 @@
 //! The error of a step falls with the square of its length, so the next one is 0.9 sqrt(allowed/error) times as long, at
 //! most twice and at least a fifth. After t = 0, a jump, a kink, a switch or an event, where no third state is known, a step is
 //! solved at twice its length first.
+//!
+//! Where the contact itself changes at once (a body without instantaneous compliance whose cells touch one by one), no step is
+//! short enough. So none is shorter than a millionth of the time since the smooth piece began; a step of that length is taken
+//! with the error that it has, which `time_error` tells.
 
 use crate::time::SHORTEST;
 
@@ -13,6 +17,9 @@ const SHRINK: f64 = 0.2;
 const SAFETY: f64 = 0.9;
 /// Errors of single steps add up while the material remembers them: each may take this share.
 const SHARE: f64 = 0.25;
+
+/// No step is shorter than this share of the time since the smooth piece began.
+const FINEST: f64 = 1e-6;
 
 /// How long the next step is.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,35 +33,44 @@ pub(super) struct Pace {
     longest: f64,
     /// Length of the next step \[s\].
     pub(super) dt: f64,
+    /// Time since the smooth piece began \[s\].
+    pub(super) elapsed: f64,
 }
 
 impl Pace {
     pub(super) fn new(tolerance: f64, first: f64, end: f64, longest: f64) -> Self {
         let first = first.min(longest);
-        Pace { allowed: SHARE * tolerance, first, shortest: SHORTEST * end, longest, dt: first }
+        Pace { allowed: SHARE * tolerance, first, shortest: SHORTEST * end, longest, dt: first, elapsed: 0.0 }
+    }
+
+    /// The shortest step that is tried now.
+    fn shortest(&self) -> f64 {
+        self.shortest.max(FINEST * self.elapsed)
     }
 
     /// A smooth piece begins whose first step may be `dt` long; it is solved at twice its length first.
     pub(super) fn restart(&mut self, dt: f64) {
+        self.elapsed = 0.0;
         self.dt = 2.0 * dt.min(self.first).max(self.shortest);
     }
 
     /// The length to try instead of `dt`, where the error is too large.
     pub(super) fn rejects(&self, dt: f64, error: f64) -> Option<f64> {
         let excess = error / self.allowed;
-        if excess <= 1.0 || dt <= self.shortest {
+        if excess <= 1.0 || dt <= self.shortest() {
             return None;
         }
-        Some((dt * (SAFETY / excess.sqrt()).clamp(SHRINK, SAFETY)).max(self.shortest))
+        Some((dt * (SAFETY / excess.sqrt()).clamp(SHRINK, SAFETY)).max(self.shortest()))
     }
 
     /// Takes the step `dt`, which may have ended early at a stop, and plans the next.
     pub(super) fn accept(&mut self, dt: f64, error: f64) {
+        self.elapsed += dt;
         let factor = (SAFETY / (error / self.allowed).sqrt()).clamp(SHRINK, GROWTH);
         // A step that a stop cut short says little of a longer one.
         let cut = dt < 0.999 * self.dt && factor >= 1.0;
         let next = if cut { self.dt.max(factor * dt) } else { factor * dt };
-        self.dt = next.clamp(self.shortest, self.longest);
+        self.dt = next.max(self.shortest()).min(self.longest);
     }
 }
 
@@ -76,6 +92,8 @@ mod tests {
         // Cut short by a stop: the length before is kept.
         pace.accept(1e-5, 1e-9);
         assert_eq!(pace.dt, 4e-3);
+        // After 4e-3 s no step is shorter than 4e-9 s.
+        assert_eq!(pace.rejects(3e-9, 1.0), None);
         pace.restart(1.0);
         assert_eq!(pace.dt, 2e-3);
         pace.restart(1e-4);

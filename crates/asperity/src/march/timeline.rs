@@ -309,7 +309,7 @@ impl Timeline {
     pub(super) fn save(&self) -> Vec<f64> {
         let last =
             self.last.map_or([f64::INFINITY; 4], |i| [i.time, i.dt, i.value, f64::from(u8::from(i.jump))]);
-        let pace = self.pace.as_ref().map_or(f64::INFINITY, |pace| pace.dt);
+        let pace = self.pace.as_ref().map_or([f64::INFINITY; 2], |pace| [pace.dt, pace.elapsed]);
         let flag = |yes: bool| f64::from(u8::from(yes));
         let missed = self.missed.map_or([f64::INFINITY; 2], |m| [m.reached.approach, m.reached.load]);
         let mut numbers = vec![self.stage as f64, self.start, self.reached, self.next as f64];
@@ -321,13 +321,13 @@ impl Timeline {
         ]);
         numbers.extend([self.largest.approach, self.largest.load]);
         numbers.extend(last);
-        numbers.push(pace);
+        numbers.extend(pace);
         numbers.extend(missed);
         numbers
     }
 
     /// How many numbers [`Timeline::save`] gives.
-    pub(super) const SAVED: usize = 17;
+    pub(super) const SAVED: usize = 18;
 
     /// Takes back what [`Timeline::save`] gave; false where it does not fit.
     pub(super) fn load(&mut self, simulation: &Simulation, numbers: &[f64]) -> bool {
@@ -347,6 +347,7 @@ impl Timeline {
             value,
             jumped,
             length,
+            elapsed,
             missed_approach,
             missed_load,
         ] = numbers
@@ -378,7 +379,7 @@ impl Timeline {
             stage: self.stage,
         });
         if let Some(pace) = &mut self.pace {
-            pace.dt = length;
+            (pace.dt, pace.elapsed) = (length, elapsed);
         }
         self.missed = match self.stage(simulation).until {
             Some(event) if !missed_approach.is_infinite() => {

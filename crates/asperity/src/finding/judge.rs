@@ -164,6 +164,7 @@ fn before(simulation: &Simulation, known: Known<'_>) -> Vec<Finding> {
         found.extend(surface::of_part(grid, part));
     }
     found.extend(surface::of_gap(grid, gap, known.parts.is_empty()));
+    found.extend(surface::of_given_height(grid, gap, known.parts));
     let bodies = known.bodies.iter().filter_map(|body| {
         let relaxation = body.material.relaxation().ok()?;
         let name = format!("{} of {}", body.material.measure().name(), body.name);

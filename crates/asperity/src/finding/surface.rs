@@ -82,7 +82,7 @@ fn of_spectrum(grid: &Grid, surface: &SelfAffine) -> Vec<Finding> {
     let [dx, dy] = grid.spacing();
     let slope = match surface.roughness {
         Roughness::RmsGradient(gradient) => steep("self-affine surface", gradient),
-        // Known once the surface is made: see `gap`.
+        // Known once the surface is made: see `of_given_height`.
         Roughness::RmsHeight(_) => None,
     };
     let short = unresolved("self-affine surface", surface.shortest / dx.max(dy));
@@ -134,6 +134,21 @@ pub(super) fn of_gap(grid: &Grid, gap: &Array2<f64>, unknown: bool) -> Vec<Findi
         found.extend(unresolved("gap", cells));
     }
     found
+}
+
+/// Self-affine parts of a given rms height: their slope is known from the gap.
+pub(super) fn of_given_height(grid: &Grid, gap: &Array2<f64>, parts: &[Part]) -> Option<Finding> {
+    let by_height =
+        |part: &Part| matches!(part, Part::SelfAffine(SelfAffine { roughness: Roughness::RmsHeight(_), .. }));
+    let slope = parts.iter().any(by_height).then(|| slope(grid, gap, f64::INFINITY))?;
+    if slope <= UNLIKELY_SLOPE {
+        return steep("gap", slope);
+    }
+    let text = format!(
+        "The gap has an rms slope of {}: check the units of rms_height, of the wavelengths and of domain.size.",
+        digits(slope)
+    );
+    Some(Finding::warning(UNLIKELY_UNIT, slope, UNLIKELY_SLOPE, text))
 }
 
 /// Cells to the wave whose curvature behaves as that of the gap: along an axis, a wave of m cells has second differences

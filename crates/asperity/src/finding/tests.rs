@@ -176,6 +176,15 @@ fn steep_surfaces_are_found() {
     let parts = [rough(1e-4, 0.6)];
     let periodic = Simulation { boundary: Boundary::Periodic, ..simulation(&parts) };
     assert_eq!(codes(&before(&periodic, &parts)), [LARGE_SLOPE]);
+    // A height of millimetres that should be micrometres.
+    let Part::SelfAffine(surface) = rough(1e-4, 0.1) else { unreachable!() };
+    let of_height = |height| {
+        let parts = [Part::SelfAffine(SelfAffine { roughness: Roughness::RmsHeight(height), ..surface })];
+        let periodic = Simulation { boundary: Boundary::Periodic, ..simulation(&parts) };
+        codes(&before(&periodic, &parts)).join(" ")
+    };
+    assert!(of_height(1e-3).contains(UNLIKELY_UNIT) && of_height(1e-5).contains(LARGE_SLOPE));
+    assert_eq!(of_height(1e-7), "");
     let parts = [rough(1e-4, 0.4)];
     let periodic = Simulation { boundary: Boundary::Periodic, ..simulation(&parts) };
     assert_eq!(codes(&before(&periodic, &parts)), QUIET);

@@ -1,6 +1,7 @@
 //! What a case will do, in numbers: for `asperity check`.
 
 use asperity::material::Creep;
+use asperity::quantities::Quantity;
 use asperity::surface::Part;
 use asperity::{Course, History, Simulation};
 use serde::Serialize;
@@ -127,19 +128,11 @@ const STORED: usize = 5;
 impl Case {
     /// The memory that a run takes at its peak \[bytes\]: what its plans say, and what storing takes.
     fn memory_of_run(&self) -> u64 {
-        let simulation = Simulation {
-            boundary: self.boundary,
-            creep: self.creep.clone(),
-            thermal: self.thermal.clone(),
-            loading: self.loading.clone(),
-            times: self.times.clone(),
-            include: self.include.clone(),
-            scheme: self.scheme,
-            plasticity: self.plasticity,
-            solver: self.solver,
-            quantities: self.output.quantities.clone(),
-            ..Simulation::new(self.grid, ndarray::Array2::default((0, 0)))
-        };
+        let mut quantities = self.output.quantities.clone();
+        if self.output.all_quantities {
+            quantities.list = Quantity::ALL.to_vec();
+        }
+        let simulation = Simulation { quantities, ..self.with_gap(ndarray::Array2::default((0, 0))) };
         (simulation.bytes() + STORED * 8 * self.grid.len() + PROGRAM) as u64
     }
 

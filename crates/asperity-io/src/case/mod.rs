@@ -225,7 +225,19 @@ impl Case {
     /// # Errors
     /// As [`simulation`](Self::simulation).
     pub fn simulation_of(&self, parts: &[Part]) -> Result<Simulation, CaseErrors> {
-        let simulation = Simulation {
+        let simulation = self.with_gap(self.gap_of(parts)?);
+        let simulation = Simulation { quantities: self.quantities(&simulation), ..simulation };
+        match simulation.validate() {
+            Ok(()) => Ok(simulation),
+            // Under a punch only a part of the domain bears.
+            Err(error @ Error::Infeasible { .. }) => Err(self.fault(&self.history, error.to_string())),
+            Err(error) => Err(CaseErrors::without_place(&self.name, error.to_string(), "", None)),
+        }
+    }
+
+    /// The simulation with a gap, without the quantities that are asked for.
+    fn with_gap(&self, gap: Array2<f64>) -> Simulation {
+        Simulation {
             boundary: self.boundary,
             creep: self.creep.clone(),
             thermal: self.thermal.clone(),
@@ -237,14 +249,7 @@ impl Case {
             scheme: self.scheme,
             plasticity: self.plasticity,
             solver: self.solver,
-            ..Simulation::new(self.grid, self.gap_of(parts)?)
-        };
-        let simulation = Simulation { quantities: self.quantities(&simulation), ..simulation };
-        match simulation.validate() {
-            Ok(()) => Ok(simulation),
-            // Under a punch only a part of the domain bears.
-            Err(error @ Error::Infeasible { .. }) => Err(self.fault(&self.history, error.to_string())),
-            Err(error) => Err(CaseErrors::without_place(&self.name, error.to_string(), "", None)),
+            ..Simulation::new(self.grid, gap)
         }
     }
 

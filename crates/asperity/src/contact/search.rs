@@ -7,9 +7,6 @@ use crate::operator::Operator;
 /// The length a of the first trial step.
 const FIRST_LENGTH: f64 = 0.75;
 
-/// The share of the tolerance that rounding errors of U may take before U = K p is computed afresh.
-const SPARE: f64 = 1e-2;
-
 /// One solve: what is asked for, and what an iteration tells the next.
 pub(super) struct Search<'a> {
     pub operator: &'a mut dyn Operator,
@@ -33,7 +30,7 @@ pub(super) struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    /// A search from a state that is feasible, or soon will be.
+    /// Begins at a state whose U is known; see [`super::ProjectedCg::start`].
     pub(super) fn new(
         operator: &'a mut dyn Operator,
         problem: &'a Problem<'a>,
@@ -67,7 +64,7 @@ impl<'a> Search<'a> {
 
     /// Whether rounding errors of U are below what the tolerance shows, or as small as they can be.
     pub(super) fn is_precise(&self, tolerance: f64) -> bool {
-        self.state.rounding <= 1.0 || f64::EPSILON * self.state.rounding <= SPARE * tolerance
+        self.state.rounding <= 1.0 || self.state.is_precise(tolerance)
     }
 
     /// Counts the iterations in which the residual has not halved.

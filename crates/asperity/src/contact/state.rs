@@ -2,6 +2,9 @@
 
 use crate::field::zeros;
 
+/// The share of a solver's tolerance that the rounding error of U may take.
+const SPARE: f64 = 1e-2;
+
 /// Pressure, its displacement under unit modulus, and approach.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactState {
@@ -19,6 +22,11 @@ impl ContactState {
     /// No contact, on a grid of `cells` cells.
     pub fn new(cells: usize) -> Self {
         ContactState { pressure: zeros(cells), unit_displacement: zeros(cells), approach: 0.0, rounding: 0.0 }
+    }
+
+    /// Whether the rounding error of U stays below what a solver's `tolerance` shows.
+    pub(crate) fn is_precise(&self, tolerance: f64) -> bool {
+        f64::EPSILON * self.rounding <= SPARE * tolerance
     }
 
     /// No contact, at the approach `approach`.

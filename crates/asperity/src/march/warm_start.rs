@@ -25,8 +25,6 @@ const FELT: f64 = 0.1;
 const SAME: f64 = 4e-13;
 /// The share of the pressure that may lie outside its bounds: the solver's step onto the bounds is small then.
 const OUTSIDE: f64 = 1e-4;
-/// The share of the solver's tolerance that the rounding error of U may take.
-const SPARE: f64 = 1e-2;
 
 /// The rounding error of U falls by this factor at least in a row where it is computed afresh.
 const REFRESHED: f64 = 100.0;
@@ -179,7 +177,7 @@ impl March {
             Prescribed::Load(load) => (cell_area * total / load - 1.0).abs() <= SAME_LOAD,
             Prescribed::Approach(_) => feasible > 0.0,
         };
-        let precise = f64::EPSILON * state.rounding <= SPARE * tolerance && !refreshed;
+        let precise = state.is_precise(tolerance) && !refreshed;
         if has_load && precise && kept == 0.0 && outside <= OUTSIDE * feasible {
             Start::Displacement { feasible: outside == 0.0 }
         } else {

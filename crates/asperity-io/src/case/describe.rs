@@ -122,7 +122,9 @@ pub struct Preparation {
 
 /// Memory of the program itself and of its threads, whatever the case \[bytes\].
 const PROGRAM: usize = 18 << 20;
-/// Fields that are copied while a row or a checkpoint is stored: the gap, and what is compressed.
+/// Fields that are copied while a checkpoint is stored: what is compressed.
+const KEPT: usize = 2;
+/// The same while a row with fields is stored: the gap too, and what the report draws.
 const STORED: usize = 5;
 
 impl Case {
@@ -133,7 +135,8 @@ impl Case {
             quantities.list = Quantity::ALL.to_vec();
         }
         let simulation = Simulation { quantities, ..self.with_gap(ndarray::Array2::default((0, 0))) };
-        (simulation.bytes() + STORED * 8 * self.grid.len() + PROGRAM) as u64
+        let copies = if self.output.fields.is_empty() { KEPT } else { STORED };
+        (simulation.bytes() + copies * 8 * self.grid.len() + PROGRAM) as u64
     }
 
     /// What the case will do.

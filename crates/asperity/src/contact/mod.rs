@@ -104,17 +104,18 @@ pub struct Outcome {
 
 /// A contact solver with its own working memory. What one solve finds does not depend on the solves before it.
 pub enum Solver {
-    /// Preconditioned projected conjugate gradients.
-    ProjectedCg(Box<ProjectedCg>),
+    /// Preconditioned projected conjugate gradients. Planned in the first solve that needs it: until then the coarser grids
+    /// of a cold start have the memory.
+    ProjectedCg(Option<Box<ProjectedCg>>),
     /// Polonsky & Keer.
     PolonskyKeer(Box<PolonskyKeer>),
 }
 
 impl Solver {
-    /// Plans a solver for the operator's grid.
+    /// A solver for the operator's grid.
     pub fn new(method: Method, operator: &dyn Operator) -> Self {
         match method {
-            Method::ProjectedCg => Solver::ProjectedCg(Box::new(ProjectedCg::new(operator))),
+            Method::ProjectedCg => Solver::ProjectedCg(None),
             Method::PolonskyKeer => Solver::PolonskyKeer(Box::new(PolonskyKeer::new(operator.grid()))),
         }
     }
@@ -163,6 +164,7 @@ impl Solver {
                 let cold = matches!(start, Start::Pressure) && sum(&state.pressure) <= 0.0;
                 let before =
                     if cold { coarse::start(operator, problem, options, state, interrupt)? } else { 0.0 };
+                let solver = solver.get_or_insert_with(|| Box::new(ProjectedCg::new(operator)));
                 let outcome = solver.solve(start, operator, problem, options, state, interrupt)?;
                 Ok(Outcome { convolutions: outcome.convolutions + before.ceil() as usize, ..outcome })
             }

@@ -368,6 +368,29 @@ fn pressed_held_retracted_and_touched_again_nothing_is_lost_that_is_there() {
     }
 }
 
+/// The largest errors of load and largest pressure in the rows of adaptive steps, over their largest values; the reference
+/// takes each step in eight. And the number of rows.
+fn errors_of_adaptive_steps(base: &Simulation, end: f64, tolerance: f64) -> ([f64; 2], usize) {
+    let times = TimeGrid::Adaptive { end, tolerance, first: end };
+    let found = rows(Simulation { times, ..base.clone() });
+    let parts = found.windows(2).filter(|pair| pair[1].time > pair[0].time).flat_map(|pair| {
+        let [a, b] = [pair[0].time, pair[1].time];
+        (1..=8).map(move |n| if n == 8 { b } else { a + (b - a) * f64::from(n) / 8.0 })
+    });
+    let fine = rows(Simulation { times: TimeGrid::List(parts.collect()), ..base.clone() });
+    let largest = |of: fn(&Row) -> f64| fine.iter().map(of).fold(0.0, f64::max);
+    let (load, peak) = (largest(|row| row.load), largest(|row| row.max_pressure));
+    let mut worst = [0.0_f64; 2];
+    for row in &found {
+        let same = |other: &&Row| (other.time - row.time).abs() <= 1e-12 * row.time;
+        let exact = fine.iter().rfind(same).unwrap();
+        worst[0] = worst[0].max((row.load - exact.load).abs() / load);
+        worst[1] = worst[1].max((row.max_pressure - exact.max_pressure).abs() / peak);
+        assert!(row.time_error.is_some_and(|error| error.is_finite()), "{row:?}");
+    }
+    (worst, found.len())
+}
+
 #[test]
 fn adaptive_steps_hold_their_tolerance_in_load_and_largest_pressure() {
     let press = vec![(0.0, 0.0), (2.0, 0.04), (6.0, 0.04), (7.0, 0.036), (9.0, 0.036)];
@@ -381,30 +404,34 @@ fn adaptive_steps_hold_their_tolerance_in_load_and_largest_pressure() {
                 ..sphere(24)
             };
             for tolerance in [1e-2, 1e-3] {
-                let times = TimeGrid::Adaptive { end, tolerance, first: end };
-                let found = rows(Simulation { times, ..base.clone() });
-                // Each step in eight.
-                let parts = found.windows(2).filter(|pair| pair[1].time > pair[0].time).flat_map(|pair| {
-                    let [a, b] = [pair[0].time, pair[1].time];
-                    (1..=8).map(move |n| if n == 8 { b } else { a + (b - a) * f64::from(n) / 8.0 })
-                });
-                let fine = rows(Simulation { times: TimeGrid::List(parts.collect()), ..base.clone() });
-                let largest = |of: fn(&Row) -> f64| fine.iter().map(of).fold(0.0, f64::max);
-                let (load, peak) = (largest(|row| row.load), largest(|row| row.max_pressure));
-                let mut worst = [0.0_f64; 2];
-                for row in &found {
-                    let same = |other: &&Row| (other.time - row.time).abs() <= 1e-12 * row.time;
-                    let exact = fine.iter().rfind(same).unwrap();
-                    worst[0] = worst[0].max((row.load - exact.load).abs() / load);
-                    worst[1] = worst[1].max((row.max_pressure - exact.max_pressure).abs() / peak);
-                    assert!(row.time_error.is_some_and(|error| error.is_finite()), "{row:?}");
-                }
-                println!("{control:?} {tolerance}: {} rows, {worst:?}", found.len());
+                let ([load, pressure], rows) = errors_of_adaptive_steps(&base, end, tolerance);
+                println!("{control:?} {tolerance}: {rows} rows, {load} {pressure}");
                 // The largest pressure is that of one cell of the rim, which a step may meet as it begins to touch.
-                let [load, pressure] = worst;
                 let within = load <= tolerance && pressure <= 2.0 * tolerance;
-                assert!(within, "{control:?} {tolerance}: {worst:?}");
+                assert!(within, "{control:?} {tolerance}: {load} {pressure}");
             }
+        }
+    }
+}
+
+/// In a contact of a few cells a whole ring of cells touches at once. Cells that touch move faster than their displacement over
+/// the step says; without that in the estimate the load was wrong by 26 tolerances.
+#[test]
+fn a_ring_of_cells_that_touches_shortens_the_steps() {
+    let points = vec![(0.0, 0.0), (2.0, 0.0125), (6.0, 0.0125), (7.0, 0.0109), (9.0, 0.0109)];
+    for ratio in [100.0, 1000.0] {
+        let base = Simulation {
+            // a relaxation time far below the steps
+            creep: Relaxation::absolute(1.0, &[(ratio - 1.0, 1.0 / ratio)]).unwrap().to_creep().unwrap(),
+            loading: approach(History::Table { points: points.clone() }),
+            ..sphere(16)
+        };
+        for tolerance in [1e-2, 1e-3] {
+            let ([load, _], rows) = errors_of_adaptive_steps(&base, 9.0, tolerance);
+            println!("{ratio} {tolerance}: {rows} rows, {load}");
+            // Rings differ in how many cells they have: a step that just passes may be wrong by two tolerances.
+            assert!(load <= 2.0 * tolerance, "{ratio} {tolerance}: {load}");
+            assert!(rows < 200, "{rows} rows");
         }
     }
 }

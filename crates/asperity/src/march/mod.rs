@@ -323,9 +323,10 @@ impl March {
         }
     }
 
-    /// Pressure and U at both ends of the step under way.
+    /// Pressure, U and the change of the approach at both ends of the step under way.
     fn ends(&self) -> Ends<'_> {
         Ends {
+            advance: self.state.approach - self.previous.approach,
             before: (&self.previous.pressure, &self.previous.unit_displacement),
             now: (&self.state.pressure, &self.state.unit_displacement),
         }

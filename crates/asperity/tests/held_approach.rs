@@ -415,7 +415,7 @@ fn adaptive_steps_hold_their_tolerance_in_load_and_largest_pressure() {
 }
 
 /// In a contact of a few cells a whole ring of cells touches at once. Cells that touch move faster than their displacement over
-/// the step says; without that in the estimate the load was wrong by 26 tolerances.
+/// the step says; without that in the estimate the load is wrong by up to 4 tolerances here.
 #[test]
 fn a_ring_of_cells_that_touches_shortens_the_steps() {
     let points = vec![(0.0, 0.0), (2.0, 0.0125), (6.0, 0.0125), (7.0, 0.0109), (9.0, 0.0109)];

@@ -131,8 +131,10 @@ impl Table {
             format!("{modulus}(t) [Pa]"),
             format!("{compliance}(t) [1/Pa]")
         );
+        let covered = specimen.report.window.unwrap_or([0.0, f64::INFINITY]);
+        let mark = |t: f64| if t < covered[0] * 0.999 || t > covered[1] * 1.001 { " *" } else { "" };
         for ((t, relaxation), creep) in self.times.iter().zip(&self.relaxation).zip(&self.creep) {
-            let _ = writeln!(text, "  {t:>12.4e} {relaxation:>14.6e} {creep:>14.6e}");
+            let _ = writeln!(text, "  {t:>12.4e} {relaxation:>14.6e} {creep:>14.6e}{}", mark(*t));
         }
         let _ = writeln!(
             text,
@@ -143,7 +145,19 @@ impl Table {
             "tan delta"
         );
         for ((w, storage), loss) in self.frequencies.iter().zip(&self.storage).zip(&self.loss) {
-            let _ = writeln!(text, "  {w:>12.4e} {storage:>14.6e} {loss:>14.6e} {:>12.4e}", loss / storage);
+            let tan_delta = loss / storage;
+            let _ = writeln!(
+                text,
+                "  {w:>12.4e} {storage:>14.6e} {loss:>14.6e} {tan_delta:>12.4e}{}",
+                mark(1.0 / w)
+            );
+        }
+        if self.times.iter().any(|t| !mark(*t).is_empty()) {
+            let [first, last] = covered.map(|t| quantity(t, "s"));
+            let _ = writeln!(
+                text,
+                "\n  * extrapolated: the terms stand for the material from {first} to {last} only"
+            );
         }
         text
     }
@@ -185,7 +199,7 @@ pub fn source(report: &MaterialReport) -> Vec<String> {
     let times = |[first, last]: [f64; 2]| format!("{} to {}", quantity(first, "s"), quantity(last, "s"));
     if let (Some(error), Some(window)) = (report.error, report.window) {
         lines.push(format!(
-            "Prony sum of {}, relative error {error:.1e} at most from {}",
+            "Prony sum of {}, relative error {error:.1e} at most from {}; an extrapolation at other times, t = 0+ among them",
             counted(report.terms, "term"),
             times(window)
         ));

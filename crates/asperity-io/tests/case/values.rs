@@ -249,15 +249,15 @@ fn times_schemes_and_solver() {
     let log = case(Parts { time: log, ..PARTS });
     assert_eq!(log.times, TimeGrid::Logarithmic { end: 100.0, steps: 5, first: 0.01 });
     assert_eq!(log.scheme, Scheme::Direct);
-    // A tenth of the shortest retardation time, and a uniform step where that is shorter.
+    // A tenth of the shortest retardation time; a uniform step or a twentieth of the ramp where that is shorter.
     let body =
         r#"{ poisson = 0.5, material = { model = "kelvin-voigt", shear = 1e6, retardation_time = "2 s" } }"#;
-    let first = |time| {
-        case(Parts { body, time, history: r#"{ kind = "ramp", value = 1, duration = 1 }"#, ..PARTS }).times
-    };
-    let log = |steps| TimeGrid::Logarithmic { end: 100.0, steps, first: if steps == 5 { 0.2 } else { 0.1 } };
-    assert_eq!(first(r#"{ end = 100, steps = 5, spacing = "log" }"#), log(5));
-    assert_eq!(first(r#"{ end = 100, steps = 1000, spacing = "log" }"#), log(1000));
+    for (steps, duration, first) in [(5, 10.0, 0.2), (1000, 10.0, 0.1), (5, 1.0, 0.05)] {
+        let time = format!(r#"{{ end = 100, steps = {steps}, spacing = "log" }}"#);
+        let history = format!(r#"{{ kind = "ramp", value = 1, duration = {duration} }}"#);
+        let found = case(Parts { body, time: &time, history: &history, ..PARTS }).times;
+        assert_eq!(found, TimeGrid::Logarithmic { end: 100.0, steps, first });
+    }
 
     let more = r#"
 solver = { method = "polonsky-keer", tolerance = 1e-8, max_iterations = 77, plasticity = "cap" }

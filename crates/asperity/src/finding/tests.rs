@@ -237,6 +237,16 @@ fn steps_too_long_for_a_falling_load_are_found() {
     assert_eq!((found[0].value, found[0].rows), (Some(2.0), Some([5, 6])));
     assert_eq!(codes(&before(&of(Control::Load, 0.01, 1.0, 30), &parts)), QUIET);
     assert_eq!(codes(&before(&of(Control::Approach, 1e-6, 1.0, 6), &parts)), [STEPS_TOO_LONG]);
+    // Area and approach of a rising load are exact in any step, its heat is not.
+    let rising = |quantities| {
+        let ramp = loaded(Control::Load, History::Ramp { value: 0.01, duration: 1.0 });
+        Simulation { loading: ramp, quantities, ..of(Control::Load, 0.01, 1.0, 6) }
+    };
+    assert_eq!(codes(&before(&rising(Quantities::default()), &parts)), QUIET);
+    let heat = Quantities { list: vec![Quantity::DissipatedEnergy], ..Quantities::default() };
+    let found = before(&rising(heat), &parts);
+    assert_eq!(codes(&found), [STEPS_TOO_LONG]);
+    assert!(found[0].text.contains("load rises"), "{}", found[0].text);
     // An elastic body follows any step, and so does one that is relaxed all the time, or never.
     let elastic = Simulation { creep: Creep::elastic(1e-6), ..of(Control::Load, 0.01, 1.0, 6) };
     assert_eq!(codes(&before(&elastic, &parts)), QUIET);

@@ -2,7 +2,8 @@
 //!
 //! A step is exact where load or approach is held and where the contact grows, however long it is. Where the load falls,
 //! or the approach moves, the contact goes its own way inside of a step, and the material relaxes on the way: such a
-//! course must be followed in steps. A periodic load must be followed in any case: a few steps to a period show
+//! course must be followed in steps. So must a load that rises, where energies are asked for: approach and area are exact then,
+//! but the heat on the way there is not. A periodic load must be followed in any case: a few steps to a period show
 //! another load. Adaptive steps look after themselves.
 
 use super::words::{digits, rows, si};
@@ -27,6 +28,7 @@ pub(super) fn of(simulation: &Simulation) -> Vec<Finding> {
     let plan = simulation.plan();
     let mut found = vec![];
     let mut long: Option<Piece> = None;
+    let energies = simulation.quantities.list.iter().any(|quantity| quantity.is_energy());
     for (n, stage) in simulation.loading.stages.iter().enumerate() {
         if stage.times.as_ref().unwrap_or(&simulation.times).is_adaptive() {
             continue;
@@ -36,7 +38,7 @@ pub(super) fn of(simulation: &Simulation) -> Vec<Finding> {
         let count = plan.instants[first..].iter().take_while(|instant| instant.stage == n).count();
         let instants = &plan.instants[first..first + count];
         found.extend(aliased(simulation, n, stage, instants));
-        for course in courses(stage, instants) {
+        for course in courses(stage, instants, energies) {
             let course = Piece { first: first + course.first, last: first + course.last, ..course };
             let fewer = long.as_ref().is_none_or(|other| course.steps < other.steps);
             if course.steps < PER_COURSE && fewer && relaxes(simulation, &plan, &course) {
@@ -57,11 +59,12 @@ struct Piece {
     /// Sum of its steps and the shortest of them \[s\].
     length: f64,
     shortest: f64,
-    control: Control,
+    /// What moves, and which way.
+    moves: &'static str,
 }
 
-/// The courses of a stage that a step does not follow by itself.
-fn courses(stage: &Stage, instants: &[Instant]) -> Vec<Piece> {
+/// The courses of a stage that a step does not follow by itself, or whose `energies` it does not.
+fn courses(stage: &Stage, instants: &[Instant], energies: bool) -> Vec<Piece> {
     if matches!(stage.course, Course::Hold | Course::Given(History::Step { .. } | History::Sine { .. })) {
         return vec![];
     }
@@ -98,7 +101,11 @@ fn courses(stage: &Stage, instants: &[Instant]) -> Vec<Piece> {
                     steps: 1,
                     length: instant.dt,
                     shortest: instant.dt,
-                    control: instant.control,
+                    moves: match instant.control {
+                        Control::Approach => "approach moves",
+                        Control::Load | Control::Pressure if way < 0.0 => "load falls",
+                        Control::Load | Control::Pressure => "load rises",
+                    },
                 },
                 change,
             )),
@@ -106,9 +113,9 @@ fn courses(stage: &Stage, instants: &[Instant]) -> Vec<Piece> {
         }
         going = way;
     }
-    let matters = |(course, moved): &(Piece, f64)| match course.control {
-        Control::Approach => moved.is_nan() || moved.abs() > SMALL * largest,
-        Control::Load | Control::Pressure => *moved < -SMALL * largest,
+    let matters = |(course, moved): &(Piece, f64)| match instants[course.first].control {
+        Control::Load | Control::Pressure if !energies => *moved < -SMALL * largest,
+        _ => moved.is_nan() || moved.abs() > SMALL * largest,
     };
     found.into_iter().filter(matters).map(|(course, _)| course).collect()
 }
@@ -130,10 +137,7 @@ fn relaxes(simulation: &Simulation, plan: &Plan, course: &Piece) -> bool {
 }
 
 fn too_long(plan: &Plan, course: &Piece) -> Finding {
-    let what = match course.control {
-        Control::Approach => "approach moves",
-        Control::Load | Control::Pressure => "load falls",
-    };
+    let what = course.moves;
     let at = [course.first, course.last];
     let place = if plan.exact { format!(" ({})", rows(at)) } else { String::new() };
     let text = format!(

@@ -68,7 +68,7 @@ pub enum Quantity {
     FlatteningWork,
     /// Work of the load since t = 0, in J.
     ///
-    /// ∫ W dw by the trapezoidal rule, jumps exact. It is the sum of the three energies, up to the error of the steps.
+    /// ∫ W dw from the mean load of each step, jumps exact. It is the sum of the three energies, up to the error of the steps.
     ExternalWork,
     /// Number of contact spots per class of area: 1 cell, 2 to 3, 4 to 7, and so on.
     SpotHistogram,

@@ -28,11 +28,11 @@ struct Place {
     largest: Range<usize>,
 }
 
-/// `times` makes the grid of a stage from its keys.
+/// `times` makes the grid of a stage from its keys and its course.
 pub fn prescription(
     checks: &mut Checks<'_, '_>,
     load: &At<raw::Load>,
-    mut times: impl FnMut(&mut Checks<'_, '_>, &At<raw::Stage>) -> Option<Option<TimeGrid>>,
+    mut times: impl FnMut(&mut Checks<'_, '_>, &At<raw::Stage>, Option<&Course>) -> Option<Option<TimeGrid>>,
 ) -> Option<Prescription> {
     let raw = &load.value;
     let mut files = vec![];
@@ -58,8 +58,9 @@ pub fn prescription(
             .iter()
             .enumerate()
             .map(|(n, at)| {
-                let own = times(checks, at);
-                let made = stage(checks, at, n == last, &mut files)?;
+                let made = stage(checks, at, n == last, &mut files);
+                let own = times(checks, at, made.as_ref().map(|(stage, _)| &stage.course));
+                let made = made?;
                 Some((Stage { times: own?, ..made.0 }, made.1))
             })
             .collect();

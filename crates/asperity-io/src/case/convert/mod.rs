@@ -17,6 +17,7 @@ mod time;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use asperity::load::Course;
 use asperity::material::Material;
 use asperity::time::Plan;
 use asperity::{Scheme, TimeGrid};
@@ -46,15 +47,18 @@ pub fn case(
         document.body.iter().map(|body| material::sample(&mut checks, &body.value.material)).collect();
     let temperatures = temperature::temperatures(&mut checks, document.temperature.as_ref(), &samples);
     let points = temperatures.iter().flatten().map(|t| t.points.as_slice()).next();
-    let shortest = |end: f64| material::shortest(&samples, points, end);
+    let first_step = |end: f64, course: Option<&Course>| {
+        time::first_step(material::shortest(&samples, points, end), course)
+    };
     let stages = document.load.value.stages.as_ref().map(|list| list.value.as_slice()).unwrap_or_default();
     let own = |stage: &At<raw::Stage>| stage.value.steps.is_some() || stage.value.spacing.is_some();
     let all_own = !stages.is_empty() && stages.iter().all(own);
-    let times = time::times(&mut checks, &document.time, all_own, shortest);
-    let prescription = load::prescription(&mut checks, &document.load, |checks, stage| {
-        time::of_stage(checks, stage, shortest)
+    let prescription = load::prescription(&mut checks, &document.load, |checks, stage, course| {
+        time::of_stage(checks, stage, |end| first_step(end, course))
     });
     let programme = prescription.as_ref().map(|prescription| &prescription.programme);
+    let course = programme.and_then(|programme| programme.stages.first()).map(|stage| &stage.course);
+    let times = time::times(&mut checks, &document.time, all_own, |end| first_step(end, course));
     let output = output::output(&mut checks, &document.output, times.as_ref(), programme, output);
     let grids =
         programme.iter().flat_map(|programme| &programme.stages).filter_map(|stage| stage.times.as_ref());

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use asperity::TimeGrid;
+use asperity::load::Course;
 
 use super::Checks;
 use crate::case::quantity::range::Positive;
@@ -20,12 +21,18 @@ pub const USUAL_STEPS: usize = 100;
 /// More steps than this are a slip of the pen (and more than a time grid takes).
 pub const MOST_STEPS: usize = 10_000_000;
 
+/// The first step of a logarithmic grid, where none is given \[s\]: a tenth of the shortest time of the material, and a twentieth
+/// of what comes before the first break of the history.
+pub fn first_step(material: f64, course: Option<&Course>) -> f64 {
+    (0.1 * material).min(0.05 * course.and_then(Course::first_break).unwrap_or(f64::INFINITY))
+}
+
 /// The instants of the run; `own` where every stage of the load has its own.
 pub fn times(
     checks: &mut Checks<'_, '_>,
     time: &At<raw::Time>,
     own: bool,
-    shortest: impl Fn(f64) -> f64,
+    first_step: impl Fn(f64) -> f64,
 ) -> Option<TimeGrid> {
     let raw = &time.value;
     if let Some(times) = &raw.times {
@@ -61,14 +68,14 @@ pub fn times(
         }
     }
     let end = raw.end.as_ref()?.value.get();
-    if unspecified { Some(TimeGrid::List(vec![end])) } else { steps.grid(checks, end, shortest) }
+    if unspecified { Some(TimeGrid::List(vec![end])) } else { steps.grid(checks, end, first_step) }
 }
 
 /// The instants of a stage, on its clock; the inner `None` where it has none of its own.
 pub fn of_stage(
     checks: &mut Checks<'_, '_>,
     stage: &At<raw::Stage>,
-    shortest: impl Fn(f64) -> f64,
+    first_step: impl Fn(f64) -> f64,
 ) -> Option<Option<TimeGrid>> {
     let raw = &stage.value;
     let steps = Steps {
@@ -95,7 +102,7 @@ pub fn of_stage(
         );
         return None;
     };
-    steps.grid(checks, duration.value.get(), shortest).map(Some)
+    steps.grid(checks, duration.value.get(), first_step).map(Some)
 }
 
 /// Keys that say how long the steps are.
@@ -119,7 +126,12 @@ impl Steps<'_> {
     }
 
     /// The grid to `end`.
-    fn grid(self, checks: &mut Checks<'_, '_>, end: f64, shortest: impl Fn(f64) -> f64) -> Option<TimeGrid> {
+    fn grid(
+        self,
+        checks: &mut Checks<'_, '_>,
+        end: f64,
+        first_step: impl Fn(f64) -> f64,
+    ) -> Option<TimeGrid> {
         if self.adaptive() {
             return self.adaptive_grid(checks, end);
         }
@@ -141,8 +153,7 @@ impl Steps<'_> {
             Spacing::Log => {
                 let first = match self.first {
                     Some(first) => before_end(checks, first, self.end, end, count)?,
-                    // A tenth of the shortest time of the material, but not later than a uniform step.
-                    None => (0.1 * shortest(end)).min(end / count as f64),
+                    None => first_step(end).min(end / count as f64),
                 };
                 TimeGrid::Logarithmic { end, steps: count, first }
             }

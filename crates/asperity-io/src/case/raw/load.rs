@@ -222,7 +222,8 @@ pub struct Time {
     /// Spacing of the steps; "uniform" if not given.
     pub spacing: Option<At<Spacing>>,
     /// First time after 0 if the spacing is "log"; if not given, a tenth of the shortest retardation time (of fractional
-    /// models and fitted curves: 1e-4 of the end), but not later than a uniform step. If the spacing is "adaptive", the
+    /// models and fitted curves: 1e-4 of the end), but not later than a uniform step or a twentieth of the first ramp of the
+    /// history. If the spacing is "adaptive", the
     /// largest first step after 0 and after each break or jump; if not given, a thousandth of the end.
     #[schemars(example = "0.1 s")]
     pub first: Option<At<Duration<Positive>>>,

@@ -252,10 +252,13 @@ fn times_schemes_and_solver() {
     // A tenth of the shortest retardation time; a uniform step or a twentieth of the ramp where that is shorter.
     let body =
         r#"{ poisson = 0.5, material = { model = "kelvin-voigt", shear = 1e6, retardation_time = "2 s" } }"#;
-    for (steps, duration, first) in [(5, 10.0, 0.2), (1000, 10.0, 0.1), (5, 1.0, 0.05)] {
-        let time = format!(r#"{{ end = 100, steps = {steps}, spacing = "log" }}"#);
-        let history = format!(r#"{{ kind = "ramp", value = 1, duration = {duration} }}"#);
-        let found = case(Parts { body, time: &time, history: &history, ..PARTS }).times;
+    let (slow, fast) =
+        (r#"{ kind = "ramp", value = 1, duration = 10 }"#, r#"{ kind = "ramp", value = 1, duration = 1 }"#);
+    let (few, many) =
+        (r#"{ end = 100, steps = 5, spacing = "log" }"#, r#"{ end = 100, steps = 1000, spacing = "log" }"#);
+    for (steps, time, history, first) in [(5, few, slow, 0.2), (1000, many, slow, 0.1), (5, few, fast, 0.05)]
+    {
+        let found = case(Parts { body, time, history, ..PARTS }).times;
         assert_eq!(found, TimeGrid::Logarithmic { end: 100.0, steps, first });
     }
 

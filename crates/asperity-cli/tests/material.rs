@@ -205,3 +205,36 @@ fn check_and_run_tell_where_a_material_comes_from() {
     assert!(setup["materials"][0]["rms_misfit"].as_f64().unwrap() < 0.03, "{setup}");
     assert!(setup["md5_of_files"]["data/rubber-dma.csv"].is_string() && setup["warnings"][0].is_string());
 }
+
+/// A shear modulus taken as Young's makes a rubber three times too soft.
+#[test]
+fn the_header_says_which_modulus_it_is() {
+    let dir = tempfile::tempdir().unwrap();
+    let curve = |symbol: &str| {
+        let rows: String = (0..20)
+            .map(|k| 10f64.powf(f64::from(k) / 6.0))
+            .map(|t| format!("{t},{}\n", 1.0 + 2.0 * (-t / 10.0).exp()))
+            .collect();
+        format!("t [s],{symbol} [MPa]\n{rows}")
+    };
+    let fit = |symbol: &str, more: &[&str]| {
+        std::fs::write(dir.path().join("data.csv"), curve(symbol)).unwrap();
+        let kind = ["material", "fit", "data.csv", "--kind", "relaxation", "--json"];
+        let object = json(&asperity(dir.path(), &[&kind[..], more].concat()));
+        let block = object["material"].as_str().unwrap().to_owned();
+        let modulus = if block.contains("\"shear\"") { "shear" } else { "young" };
+        (modulus, object["notes"].to_string())
+    };
+    for (symbol, options, modulus, note) in [
+        ("G(t)", &[][..], "shear", ""),
+        ("E", &[], "young", ""),
+        ("shear modulus", &["--column", "modulus=2"], "shear", ""),
+        ("modulus", &[], "young", "does not say which"),
+        ("G(t)", &["--modulus", "young"], "young", "the header names shear moduli"),
+        ("E", &["--modulus", "shear"], "shear", "the header names Young's moduli"),
+    ] {
+        let (found, notes) = fit(symbol, options);
+        assert_eq!(found, modulus, "{symbol} {options:?}");
+        assert!(notes.contains(note) && (note.is_empty() == !notes.contains("header")), "{symbol}: {notes}");
+    }
+}

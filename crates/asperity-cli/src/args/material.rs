@@ -52,9 +52,9 @@ pub struct Fit {
     /// frequency (dma) [default: what the header says]
     #[arg(long, value_parser = choice::<Kind>())]
     pub kind: Option<Kind>,
-    /// Whether the numbers are Young's or shear moduli (or compliances)
-    #[arg(long, value_parser = choice::<Modulus>(), default_value = "young")]
-    pub modulus: Modulus,
+    /// Whether the numbers are Young's or shear moduli (or compliances) [default: what the header says, E or G, D or J]
+    #[arg(long, value_parser = choice::<Modulus>())]
+    pub modulus: Option<Modulus>,
     /// Column of a quantity, by number from 1 or by header: --column frequency=1 --column storage="E' [MPa]";
     /// quantities: time, modulus, compliance, frequency, storage, loss, tan_delta, temperature
     #[arg(long, value_name = "QUANTITY=COLUMN")]

@@ -246,17 +246,22 @@ fn fit(args: &Fit) -> Result<(), Failure> {
         })?,
     };
     let columns = columns(&args.column, &args.unit)?;
-    let request = Request {
-        measure: args.modulus,
+    let mut request = Request {
         shift: shift(args)?,
         window: args.window.as_deref().map(|text| ends(kind, text)).transpose()?,
         options: options(args),
+        ..Request::default()
     };
     // What cannot be written is said before the work.
     for path in args.output.iter().chain(&args.plot) {
         super::free(path, args.force)?;
     }
-    let curves = Curves::read(&args.data, kind, &columns).map_err(told)?;
+    let mut curves = Curves::read(&args.data, kind, &columns).map_err(told)?;
+    request.measure = args.modulus.or(curves.measure).unwrap_or_else(|| {
+        let note = "the header does not say which: taken as Young's moduli; --modulus shear takes them as shear moduli";
+        curves.notes.push(note.to_owned());
+        Modulus::Young
+    });
     let fitted = request.fit(&curves).map_err(told)?;
     let (name, of) = (args.data.display().to_string(), fitted.misfit);
     let findings = Vec::from_iter(asperity::finding::misfit(&name, of.rms, of.max, fitted.noise));

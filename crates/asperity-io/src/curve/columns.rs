@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::str::FromStr;
 
+use asperity::material::Modulus;
+
 use super::Kind;
 use super::error::{Fault, fault};
 use super::table::Table;
@@ -249,6 +251,23 @@ fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeMap<Role, us
             );
             Err(fault(message))
         }
+    }
+}
+
+/// What the names of the columns call the modulus or compliance: E and D are Young's, G and J shear.
+pub(super) fn measure(table: &Table, form: Form, said: &Columns) -> Option<Modulus> {
+    let places = places(table, form, said).ok()?;
+    let of = |role: &Role| places.get(role).and_then(|column| table.names.get(*column));
+    let name = [Role::Storage, Role::Modulus, Role::Compliance].iter().find_map(of)?.to_lowercase();
+    let mut letters = name.chars();
+    let symbol = letters.next()?;
+    match symbol {
+        _ if name.contains("shear") => Some(Modulus::Shear),
+        _ if name.contains("young") || name.contains("tensile") => Some(Modulus::Young),
+        _ if letters.next().is_some_and(char::is_alphanumeric) => None,
+        'g' | 'j' => Some(Modulus::Shear),
+        'e' | 'd' => Some(Modulus::Young),
+        _ => None,
     }
 }
 

@@ -100,6 +100,20 @@ impl Fitted {
 /// A law replaces estimated shift factors where it meets them within this \[decades\].
 const LAW: f64 = 0.1;
 
+/// Says that the header names another modulus than the one asked for.
+fn contradiction(named: Modulus, taken: Modulus) -> String {
+    let name = |measure| match measure {
+        Modulus::Young => "Young's moduli",
+        Modulus::Shear => "shear moduli",
+    };
+    format!(
+        "the header names {}, but the numbers are taken as {}, as modulus = \"{}\" says: they differ by 2 (1 + Poisson's ratio)",
+        name(named),
+        name(taken),
+        crate::choice::word(&taken)
+    )
+}
+
 impl Request {
     /// Fits the curves.
     ///
@@ -112,6 +126,12 @@ impl Request {
 
     fn fitted(&self, curves: &Curves) -> Result<Fitted, Fault> {
         let mut notes = curves.notes.clone();
+        notes.extend(
+            curves
+                .measure
+                .filter(|named| *named != self.measure)
+                .map(|named| contradiction(named, self.measure)),
+        );
         let temperatures: Vec<f64> = curves.sweeps.iter().filter_map(|sweep| sweep.temperature).collect();
         let (shift, shift_rms) = self.shift_of(curves, &mut notes)?;
         let (data, lines) = master(curves, shift.as_ref())?;

@@ -38,6 +38,7 @@ pub use error::CurveError;
 pub use fit::{Fitted, Request, Series, ShiftRequest};
 pub use indentation::{Indentation, MaterialOf, indentation_block};
 
+use asperity::material::Modulus;
 use serde::Deserialize;
 
 use crate::choice;
@@ -94,6 +95,8 @@ pub struct Curves {
     pub path: PathBuf,
     /// What was measured.
     pub kind: Kind,
+    /// Whether its header names Young's moduli (E, D) or shear moduli (G, J).
+    pub measure: Option<Modulus>,
     /// One sweep per temperature, the coldest first.
     pub sweeps: Vec<Sweep>,
     /// What was assumed about the file.
@@ -139,10 +142,11 @@ impl Curves {
         let parsed = Table::parse(bytes).and_then(|table| {
             let (values, notes) = columns::values(&table, kind.into(), columns)?;
             let lines: Vec<usize> = table.rows.iter().map(|row| row.line).collect();
-            Ok((sweeps(kind, &values, &lines)?, notes))
+            let measure = columns::measure(&table, kind.into(), columns);
+            Ok((sweeps(kind, &values, &lines)?, measure, notes))
         });
-        let (sweeps, notes) = parsed.map_err(|fault| fault.of(path))?;
-        Ok(Curves { path: path.to_owned(), kind, sweeps, notes, digest })
+        let (sweeps, measure, notes) = parsed.map_err(|fault| fault.of(path))?;
+        Ok(Curves { path: path.to_owned(), kind, measure, sweeps, notes, digest })
     }
 
     /// Number of points.

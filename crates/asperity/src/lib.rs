@@ -17,7 +17,7 @@
 //! - [`march`]: the simulation; [`contact`]: the elastic contact inside every step;
 //! - [`quantities`], [`spots`]: what each row may be asked for besides;
 //! - [`finding`]: where the numbers of a run may be off;
-//! - [`operator`], [`kernel`], [`convolution`]: u = Kp;
+//! - [`operator`], [`kernel`], [`convolution`]: u = Kp; [`layer`]: K of bodies of layers;
 //! - [`mod@reference`], [`verification`]: closed forms and the checks against them.
 //!
 //! The example of [`march::March`] is a whole simulation. Theory, conventions and verification are in `docs/` of
@@ -31,6 +31,7 @@ pub mod finding;
 pub mod grid;
 pub mod indentation;
 pub mod kernel;
+pub mod layer;
 pub mod load;
 pub mod march;
 pub mod material;

@@ -6,17 +6,18 @@ use std::sync::Arc;
 
 use asperity::kernel::{HalfSpace, Kernel};
 use asperity::operator::plan;
-use asperity::{Boundary, ContactState, Grid, Method, Prescribed, Problem, Solver, SolverOptions};
+use asperity::{Boundary, ContactState, Grid, Method, Prescribed, Problem, Result, Solver, SolverOptions};
 use ndarray::Array2;
 
 /// A body whose response to long waves is bounded, as that of a layer on a rigid base: (2/|q|) tanh(|q| t), 2 t for a uniform
 /// pressure. Periodic domains only.
+#[derive(Debug)]
 struct Bounded {
     thickness: f64,
 }
 
 impl Kernel for Bounded {
-    fn influence(&self, _: [f64; 2], _: [usize; 2]) -> Array2<f64> {
+    fn influence(&self, _: [f64; 2], _: [usize; 2]) -> Result<Array2<f64>> {
         unreachable!("periodic domains take the symbol")
     }
 
@@ -31,15 +32,16 @@ impl Kernel for Bounded {
 }
 
 /// A half-space under a bed of independent springs: every cell yields by `spring` more under its own pressure.
+#[derive(Debug)]
 struct OnSprings {
     spring: f64,
 }
 
 impl Kernel for OnSprings {
-    fn influence(&self, cell: [f64; 2], count: [usize; 2]) -> Array2<f64> {
-        let mut influence = HalfSpace.influence(cell, count);
+    fn influence(&self, cell: [f64; 2], count: [usize; 2]) -> Result<Array2<f64>> {
+        let mut influence = HalfSpace.influence(cell, count)?;
         influence[(0, 0)] += self.spring;
-        influence
+        Ok(influence)
     }
 
     fn symbol(&self, qx: f64, qy: f64) -> f64 {
@@ -54,7 +56,7 @@ fn solve(
     gap: &[f64],
     prescribed: Prescribed,
 ) -> ContactState {
-    let mut operator = plan(grid, boundary, kernel);
+    let mut operator = plan(grid, boundary, kernel).unwrap();
     let mut solver = Solver::new(Method::ProjectedCg, &*operator);
     let mut state = ContactState::new(grid.len());
     let problem = Problem { gap, compliance: 0.5, hardness: f64::INFINITY.into(), prescribed };

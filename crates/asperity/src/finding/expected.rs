@@ -6,7 +6,7 @@
 //! rough plane  A/A0 = 2 p C / h',  p_mean C = h'/2 inside the contact    (Persson; h' the rms slope)
 //! ```
 //!
-//! with the compliance C at once and at the end of the run. An estimate: it leaves out what the other parts of the gap
+//! with the compliance C at once and at the end of the run; for half-spaces only. An estimate: it leaves out what the other parts of the gap
 //! add, and everything but the largest load or approach.
 
 use std::f64::consts::PI;
@@ -63,7 +63,11 @@ impl Expected {
         let grid = &simulation.grid;
         let stages = &simulation.loading.stages;
         let cases = stages.iter().filter_map(|stage| largest(simulation, stage));
-        let form = form(parts, || surface::slope(grid, &simulation.gap, f64::INFINITY));
+        // The formulas are those of the half-space.
+        let form = match simulation.kernel.is_half_space() {
+            true => form(parts, || surface::slope(grid, &simulation.gap, f64::INFINITY)),
+            false => None,
+        };
         let compliance = [simulation.instantaneous(), simulation.compliance(simulation.times.end())];
         let size = |(largest, until): &(Prescribed, Option<Event>)| {
             let radius = |c: f64| {

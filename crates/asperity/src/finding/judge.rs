@@ -66,13 +66,14 @@ pub struct Judge {
 impl Judge {
     /// Judges what is known before the run.
     pub fn new(simulation: &Simulation, known: Known<'_>) -> Self {
-        let Simulation { grid, gap, boundary, .. } = simulation;
+        let Simulation { grid, gap, boundary, kernel, .. } = simulation;
         let free = *boundary == Boundary::Free;
         Judge {
             known: before(simulation, known),
             free,
             confined: domain::confined(gap),
-            radius: if free { domain::radius(grid, gap) } else { None },
+            // The domain that a contact takes is estimated by Hertz.
+            radius: if free && kernel.is_half_space() { domain::radius(grid, gap) } else { None },
             border: None,
             needed: 0.0,
             deepest: 0.0,

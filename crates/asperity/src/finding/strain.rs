@@ -5,11 +5,15 @@
 //! compact contact (K. L. Johnson, Contact Mechanics, 1985, section 3.5), and the contact pressure over the modulus that
 //! is left of it, ε(t) = ∫ C(t - s) dp(s). Hertz's contact has ε = 2a/(πR), so the two limits agree. The pressure is the
 //! largest one, or that in the middle of a Hertzian contact of the same load and area, 3W/(2A), where that is less: at the
-//! edge of a punch the largest pressure is endless, and tells the size of the cells.
+//! edge of a punch the largest pressure is endless, and tells the size of the cells. On layers a contact of radius a yields
+//! q K(q)/2 times as much as on the half-space of the top layer, q = 1/a, and so does its strain.
+
+use std::sync::Arc;
 
 use super::contact::Counted;
 use super::words::{digits, rows};
 use super::{Finding, LARGE_STRAIN, UNLIKELY_UNIT};
+use crate::kernel::Kernel;
 use crate::march::{Row, Simulation};
 use crate::material::{Creep, ReducedTime};
 
@@ -46,6 +50,7 @@ impl Peak {
 /// What the rows tell of the strains.
 pub(super) struct Strain {
     bodies: Vec<Branches>,
+    kernel: Arc<dyn Kernel>,
     time: f64,
     /// Radius of the shapes \[m\], where they are known.
     radius: Option<f64>,
@@ -58,6 +63,7 @@ impl Strain {
         let thermal = simulation.thermal.iter().map(|body| Branches::new(&body.creep, Some(&body.clock)));
         Strain {
             bodies: std::iter::once(Branches::new(&simulation.creep, None)).chain(thermal).collect(),
+            kernel: simulation.kernel.clone(),
             time: 0.0,
             radius,
             width: Peak::new(WIDEST),
@@ -68,7 +74,7 @@ impl Strain {
     pub(super) fn see(&mut self, index: usize, row: &Row, contact: Counted) {
         let start = std::mem::replace(&mut self.time, row.time);
         let of_hertz = if row.contact_area > 0.0 { 1.5 * row.load / row.contact_area } else { 0.0 };
-        let pressure = row.max_pressure.min(of_hertz);
+        let pressure = row.max_pressure.min(of_hertz) * self.share(row, contact);
         let strain: f64 = self.bodies.iter_mut().map(|body| body.strain([start, row.time], pressure)).sum();
         self.pressure.see(index, strain);
         if row.contact_area > 0.0 && row.approach > 0.0 {
@@ -79,6 +85,15 @@ impl Strain {
             };
             self.width.see(index, width);
         }
+    }
+
+    /// What a compact contact on layers yields over what it would on the half-space of the top layer.
+    fn share(&self, row: &Row, contact: Counted) -> f64 {
+        if self.kernel.is_half_space() || !contact.is_compact() {
+            return 1.0;
+        }
+        let q = (std::f64::consts::PI / row.contact_area).sqrt();
+        0.5 * q * self.kernel.symbol(q, 0.0)
     }
 
     pub(super) fn findings(&self) -> Vec<Finding> {

@@ -11,23 +11,41 @@ pub use periodic::wave_kernel;
 use ndarray::Array2;
 use ndarray::parallel::prelude::*;
 
+use crate::error::Result;
+
 /// The elastic response of a body's surface, from which an [`Operator`](crate::operator::Operator) is planned.
 ///
 /// A free domain takes it by its influence coefficients, a periodic one by its symbol; the two describe the same body:
 /// the symbol is the Fourier transform of the response to a point load.
-pub trait Kernel: Send + Sync {
+pub trait Kernel: std::fmt::Debug + Send + Sync {
     /// Displacements K(i dx, j dy) \[m\] at distances of i < `count[0]` and j < `count[1]` cells from the centre of a
     /// cell of sides `cell` = \[dx, dy\] \[m\] under unit pressure.
-    fn influence(&self, cell: [f64; 2], count: [usize; 2]) -> Array2<f64>;
+    ///
+    /// # Errors
+    /// [`Error::Invalid`](crate::Error::Invalid) where they cannot be computed.
+    fn influence(&self, cell: [f64; 2], count: [usize; 2]) -> Result<Array2<f64>>;
 
     /// Amplitude of the displacement \[m\] under a pressure wave cos(q.x) of unit amplitude; `q` = (qx, qy) \[rad/m\] is not
     /// zero. Positive.
     fn symbol(&self, qx: f64, qy: f64) -> f64;
 
-    /// Displacement \[m\] under a uniform unit pressure on a periodic domain; `None` where it is not determined, as on a
-    /// half-space: displacements are then measured from their mean.
+    /// Displacement \[m\] under a uniform unit pressure on a periodic domain, not negative; `None` where it is not
+    /// determined, as on a half-space: displacements are then measured from their mean.
     fn uniform(&self) -> Option<f64> {
         None
+    }
+
+    /// Whether this is the elastic half-space, for estimates that hold for it alone.
+    fn is_half_space(&self) -> bool {
+        false
+    }
+
+    /// Whether cells of sides `cell` = \[dx, dy\] \[m\] resolve the body.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`](crate::Error::Invalid) where they do not.
+    fn check(&self, _cell: [f64; 2]) -> Result<()> {
+        Ok(())
     }
 }
 
@@ -36,7 +54,22 @@ pub trait Kernel: Send + Sync {
 pub struct HalfSpace;
 
 impl Kernel for HalfSpace {
-    fn influence(&self, [dx, dy]: [f64; 2], count: [usize; 2]) -> Array2<f64> {
+    fn influence(&self, cell: [f64; 2], count: [usize; 2]) -> Result<Array2<f64>> {
+        Ok(self.coefficients(cell, count))
+    }
+
+    fn symbol(&self, qx: f64, qy: f64) -> f64 {
+        wave_kernel(qx, qy)
+    }
+
+    fn is_half_space(&self) -> bool {
+        true
+    }
+}
+
+impl HalfSpace {
+    /// Its influence coefficients.
+    pub(crate) fn coefficients(self, [dx, dy]: [f64; 2], count: [usize; 2]) -> Array2<f64> {
         let mut kernel = Array2::zeros((count[0], count[1]));
         kernel.outer_iter_mut().into_par_iter().enumerate().for_each(|(i, mut row)| {
             for (j, k) in row.iter_mut().enumerate() {
@@ -44,9 +77,5 @@ impl Kernel for HalfSpace {
             }
         });
         kernel
-    }
-
-    fn symbol(&self, qx: f64, qy: f64) -> f64 {
-        wave_kernel(qx, qy)
     }
 }

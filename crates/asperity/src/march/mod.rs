@@ -36,7 +36,7 @@ use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem, Solve
 use crate::error::{Error, Result};
 use crate::field::{minimum, sum};
 use crate::load::{Control, Event};
-use crate::operator::{Operator, half_space};
+use crate::operator::{Operator, plan};
 use crate::time::Instant;
 use constant::Constant;
 use dents::Dents;
@@ -151,7 +151,7 @@ impl March {
         simulation.validate()?;
         let timeline = Timeline::new(&simulation);
         let options = &simulation.solver;
-        let operator = half_space(simulation.grid, simulation.boundary);
+        let operator = plan(simulation.grid, simulation.boundary, simulation.kernel.clone())?;
         let solver = Solver::new(options.method, &*operator);
         let n = simulation.grid.len();
         let past = match simulation.scheme {

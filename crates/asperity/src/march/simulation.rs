@@ -1,10 +1,13 @@
 //! What is simulated: all that a march needs to know.
 
+use std::sync::Arc;
+
 use ndarray::Array2;
 
 use crate::contact::{Solver, SolverOptions};
 use crate::error::{Error, Result};
 use crate::grid::{Boundary, Grid};
+use crate::kernel::{HalfSpace, Kernel};
 use crate::load::{Control, Course, History, Loading, Programme, of_stage};
 use crate::material::{Creep, ThermalCreep};
 use crate::operator;
@@ -52,6 +55,8 @@ pub struct Simulation {
     pub grid: Grid,
     /// Free or periodic.
     pub boundary: Boundary,
+    /// How the surface yields in space, for unit compliance: half-spaces, or [layers](crate::layer::separate).
+    pub kernel: Arc<dyn Kernel>,
     /// Undeformed gap h0 \[m\], shape (nx, ny), least value 0; infinite where a cell cannot touch.
     pub gap: Array2<f64>,
     /// Contact creep compliance C(t) of the pair \[1/Pa\]; without the bodies of `thermal`.
@@ -85,6 +90,7 @@ impl Simulation {
         Simulation {
             grid,
             boundary: Boundary::Free,
+            kernel: Arc::new(HalfSpace),
             gap,
             creep: Creep::elastic(1.0),
             thermal: vec![],
@@ -201,6 +207,7 @@ impl Simulation {
         if touchable == 0 {
             return Err(Error::invalid("gap", "infinite everywhere", "finite in one cell at least"));
         }
+        self.kernel.check(self.grid.spacing())?;
         self.parts().try_for_each(Creep::validate)?;
         if self.parts().all(|creep| creep.value(f64::MAX.sqrt()) <= 0.0) {
             return Err(Error::invalid(

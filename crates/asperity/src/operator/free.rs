@@ -7,8 +7,9 @@ use ndarray::Array2;
 
 use super::{ApproximateInverse, Operator};
 use crate::convolution::{Convolution, even_spectrum};
+use crate::error::{Error, Result};
 use crate::grid::{Boundary, Grid};
-use crate::kernel::Kernel;
+use crate::kernel::{HalfSpace, Kernel};
 
 /// u(i, j) = sum K(i - i', j - j') p(i', j'), with no pressure outside the domain.
 pub struct Free {
@@ -20,13 +21,28 @@ pub struct Free {
 
 impl Free {
     /// Plans the operator; the influence coefficients are computed here.
-    pub fn new(grid: Grid, kernel: Arc<dyn Kernel>) -> Self {
-        let lengths = padded(&grid);
-        let influence = influence(&grid, &*kernel);
-        let spectrum = even_spectrum(&influence, lengths);
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where the kernel cannot be computed on the grid, or is not positive definite there.
+    pub fn new(grid: Grid, kernel: Arc<dyn Kernel>) -> Result<Self> {
+        kernel.check(grid.spacing())?;
+        let influence = kernel.influence(grid.spacing(), computed(&grid))?;
+        plausible(&influence)?;
+        let spectrum = even_spectrum(&influence, padded(&grid));
+        Ok(Free::planned(grid, kernel, influence[(0, 0)], &spectrum))
+    }
+
+    /// The operator of the elastic half-space.
+    pub fn half_space(grid: Grid) -> Self {
+        let influence = HalfSpace.coefficients(grid.spacing(), computed(&grid));
+        let spectrum = even_spectrum(&influence, padded(&grid));
         debug_assert!(spectrum.iter().all(|s| *s > 0.0), "the kernel is positive definite");
-        let convolution = Convolution::new(grid.cells(), lengths, spectrum.view());
-        Free { grid, kernel, convolution, self_influence: influence[(0, 0)] }
+        Free::planned(grid, Arc::new(HalfSpace), influence[(0, 0)], &spectrum)
+    }
+
+    fn planned(grid: Grid, kernel: Arc<dyn Kernel>, self_influence: f64, spectrum: &Array2<f64>) -> Self {
+        let convolution = Convolution::new(grid.cells(), padded(&grid), spectrum.view());
+        Free { grid, kernel, convolution, self_influence }
     }
 
     /// Bytes that the operator takes on that grid.
@@ -40,10 +56,27 @@ fn padded(grid: &Grid) -> [usize; 2] {
     grid.cells().map(|n| Convolution::good_length(2 * n - 1))
 }
 
-/// K on the quadrant of the padded torus. Beyond the domain the true coefficients go on: no output
+/// Coefficients along x and y: the quadrant of the padded torus. Beyond the domain the true coefficients go on: no output
 /// of the domain reads them, and the kernel stays smooth and its spectrum positive.
-fn influence(grid: &Grid, kernel: &dyn Kernel) -> Array2<f64> {
-    kernel.influence(grid.spacing(), padded(grid).map(|length| length / 2 + 1))
+fn computed(grid: &Grid) -> [usize; 2] {
+    padded(grid).map(|length| length / 2 + 1)
+}
+
+/// A positive definite kernel is largest at its centre.
+///
+/// The spectrum on the padded torus may be negative in places, where the response reaches beyond the domain: the torus is not
+/// the body. On the domain K is positive as long as the symbol of the body is.
+fn plausible(influence: &Array2<f64>) -> Result<()> {
+    let most = influence.iter().fold(0.0, |most: f64, k| if k.is_nan() { f64::NAN } else { most.max(k.abs()) });
+    let own = influence[(0, 0)];
+    match own > 0.0 && own.is_finite() && most <= own {
+        true => Ok(()),
+        false => Err(Error::invalid(
+            "largest influence of a cell on another over that on itself",
+            format!("{:e}", most / own),
+            "less than 1: the cells are too coarse for the body; take smaller ones, or a periodic domain",
+        )),
+    }
 }
 
 impl Operator for Free {
@@ -72,14 +105,13 @@ impl Operator for Free {
     }
 
     fn on_grid(&self, grid: Grid) -> Option<Box<dyn Operator>> {
-        Some(Box::new(Free::new(grid, self.kernel.clone())))
+        Some(Box::new(Free::new(grid, self.kernel.clone()).ok()?))
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::HalfSpace;
 
     #[test]
     fn the_spectrum_is_positive_for_any_shape() {
@@ -91,7 +123,7 @@ mod tests {
             ([65, 129], [3.0, 2.0]),
         ] {
             let grid = Grid::new(cells, size).unwrap();
-            let spectrum = even_spectrum(&influence(&grid, &HalfSpace), padded(&grid));
+            let spectrum = even_spectrum(&HalfSpace.coefficients(grid.spacing(), computed(&grid)), padded(&grid));
             assert!(spectrum.iter().all(|s| *s > 0.0), "{cells:?} {size:?}");
         }
     }

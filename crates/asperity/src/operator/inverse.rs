@@ -101,7 +101,8 @@ impl Torus {
             let size = [dx * lengths[0] as f64, dy * lengths[1] as f64];
             // Where a uniform pressure has no displacement of its own: half of M at the longest wave.
             let longest = std::f64::consts::TAU / size[0].max(size[1]);
-            let uniform = kernel.uniform().map_or(0.5 / kernel.symbol(longest, 0.0), |u| 1.0 / u);
+            let own = kernel.uniform().filter(|uniform| *uniform > 0.0);
+            let uniform = own.map_or(0.5 / kernel.symbol(longest, 0.0), |u| 1.0 / u);
             let inverse =
                 wave_spectrum(lengths, size, uniform / unit, |qx, qy| 1.0 / (kernel.symbol(qx, qy) * unit));
             let least = inverse.iter().fold(f64::INFINITY, |least, s| least.min(*s));

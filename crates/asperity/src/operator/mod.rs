@@ -20,6 +20,7 @@ use std::sync::Arc;
 use ndarray::Array2;
 use ndarray::parallel::prelude::*;
 
+use crate::error::Result;
 use crate::grid::{Boundary, Grid};
 use crate::kernel::{HalfSpace, Kernel};
 
@@ -55,7 +56,7 @@ pub trait Operator: Send {
 /// use asperity::{Boundary, Grid, kernel::HalfSpace, operator::plan};
 /// // A wave of pressure of unit amplitude displaces a half-space by 2/|q|.
 /// let grid = Grid::new([8, 8], [1.0, 1.0])?;
-/// let mut operator = plan(grid, Boundary::Periodic, Arc::new(HalfSpace));
+/// let mut operator = plan(grid, Boundary::Periodic, Arc::new(HalfSpace))?;
 /// let q = std::f64::consts::TAU;
 /// let p: Vec<f64> = (0..64).map(|n| (q * grid.x(n / 8)).cos()).collect();
 /// let mut u = vec![0.0; 64];
@@ -63,16 +64,25 @@ pub trait Operator: Send {
 /// assert!((u[0] - 2.0 / q * p[0]).abs() < 1e-15);
 /// # Ok::<(), asperity::Error>(())
 /// ```
-pub fn plan(grid: Grid, boundary: Boundary, kernel: Arc<dyn Kernel>) -> Box<dyn Operator> {
-    match boundary {
-        Boundary::Free => Box::new(Free::new(grid, kernel)),
-        Boundary::Periodic => Box::new(Periodic::new(grid, kernel)),
-    }
+///
+/// # Errors
+/// [`Error::Invalid`](crate::Error::Invalid) where the grid does not resolve the body.
+pub fn plan(grid: Grid, boundary: Boundary, kernel: Arc<dyn Kernel>) -> Result<Box<dyn Operator>> {
+    Ok(match boundary {
+        Boundary::Free => Box::new(Free::new(grid, kernel)?),
+        Boundary::Periodic => {
+            kernel.check(grid.spacing())?;
+            Box::new(Periodic::new(grid, kernel))
+        }
+    })
 }
 
 /// The operator of the elastic half-space.
 pub fn half_space(grid: Grid, boundary: Boundary) -> Box<dyn Operator> {
-    plan(grid, boundary, Arc::new(HalfSpace))
+    match boundary {
+        Boundary::Free => Box::new(Free::half_space(grid)),
+        Boundary::Periodic => Box::new(Periodic::new(grid, Arc::new(HalfSpace))),
+    }
 }
 
 /// Bytes that the operator of a grid takes.

@@ -61,7 +61,7 @@ impl Operator for Periodic {
     }
 
     fn determines_mean(&self) -> bool {
-        self.kernel.uniform().is_some()
+        self.kernel.uniform().is_some_and(|uniform| uniform > 0.0)
     }
 
     fn approximate_inverse(&self) -> ApproximateInverse {

@@ -165,7 +165,19 @@ fn sanitize() -> Done {
     let version = String::from_utf8_lossy(&version.stdout).into_owned();
     let host = version.lines().find_map(|line| line.strip_prefix("host: ")).ok_or("rustc names no host")?;
     run(Command::new("rustup")
-        .args(["run", "nightly", "cargo", "test", "-p", "asperity-convolution", "--lib", "--target", host])
+        .args([
+            "run",
+            "nightly",
+            "cargo",
+            "test",
+            "-p",
+            "asperity-convolution",
+            "-p",
+            "asperity-sweep",
+            "--lib",
+            "--target",
+            host,
+        ])
         .env("RUSTFLAGS", "-Zsanitizer=address")
         .env("CARGO_TARGET_DIR", root().join("target/sanitize")))
 }

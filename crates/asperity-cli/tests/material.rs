@@ -235,6 +235,6 @@ fn the_header_says_which_modulus_it_is() {
     ] {
         let (found, notes) = fit(symbol, options);
         assert_eq!(found, modulus, "{symbol} {options:?}");
-        assert!(notes.contains(note) && (note.is_empty() == !notes.contains("header")), "{symbol}: {notes}");
+        assert!(notes.contains(note) && (note.is_empty() != notes.contains("header")), "{symbol}: {notes}");
     }
 }

@@ -5,8 +5,9 @@
 
 use std::time::Instant;
 
-use asperity_convolution::lanes::{Instructions, Lanes};
+use asperity_convolution::lanes::Lanes;
 use asperity_convolution::{Convolution, even_spectrum};
+use asperity_sweep::Instructions;
 use ndarray::Array2;
 
 type Form = (String, Box<dyn FnMut() -> f64 + Send>, Vec<f64>);

@@ -8,7 +8,6 @@
 //!
 //! Normalisation: forward and inverse transforms together are the identity.
 
-pub mod eights;
 pub mod lanes;
 mod pruned;
 mod spectrum;

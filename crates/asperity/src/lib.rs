@@ -26,7 +26,6 @@
 pub mod contact;
 pub mod cycles;
 pub mod error;
-mod field;
 pub mod finding;
 pub mod grid;
 pub mod indentation;

@@ -119,13 +119,14 @@ fn a_sphere_on_a_layer_solves_the_integral_equation() {
 #[test]
 fn a_flat_punch_on_a_layer_is_as_stiff_as_hayes_says() {
     // W c1/(4 a w) of Hayes et al. (1972), by the integral equation.
-    let rows = [(0.4, 0.3, 1.4726120019749862), (1.0, 0.5, 3.618735848959762), (2.0, 0.45, 6.4205880185441195)];
+    let rows =
+        [(0.4, 0.3, 1.4726120019749862), (1.0, 0.5, 3.618735848959762), (2.0, 0.45, 6.4205880185441195)];
     for (a_over_d, nu, kappa) in rows {
         let (a, n) = (1.0, 121);
         let grid = Grid::new([n, n], [2.4 * a; 2]).unwrap();
         let punch = Part::Shape { shape: Shape::FlatPunch(Punch::Circle { radius: a }), center: [0.0, 0.0] };
         let simulation = |kernel: Arc<dyn Kernel>| Simulation {
-            gap: undeformed_gap(&grid, &[punch.clone()]).unwrap(),
+            gap: undeformed_gap(&grid, std::slice::from_ref(&punch)).unwrap(),
             ..Simulation { grid, ..sphere(n, 2.4 * a, 1.0, kernel) }
         };
         let stiffness = |kernel: Arc<dyn Kernel>| {
@@ -248,8 +249,7 @@ fn full_contact_on_a_rigid_base_is_determined_by_the_approach() {
             ..Simulation::new(grid, gap.clone())
         };
         let mut march = March::new(simulation).unwrap();
-        let load = march.advance().map(|step| step.unwrap().row().load);
-        load
+        march.advance().map(|step| step.unwrap().row().load)
     };
     let compressible = Stack::new(vec![layer(0.2, 0.7, 0.3)], Base::Rigid).unwrap();
     let load = approach(Arc::new(Layered::new(vec![compressible.clone()]).unwrap())).unwrap();
@@ -268,7 +268,8 @@ fn full_contact_on_a_rigid_base_is_determined_by_the_approach() {
 #[test]
 fn a_layer_much_thinner_than_a_cell_is_refused() {
     for boundary in [Boundary::Free, Boundary::Periodic] {
-        let simulation = Simulation { boundary, ..sphere(32, 1.0, 1e-3, kernel(&[layer(1e-3, 1.0, 0.3)], Base::Rigid)) };
+        let simulation =
+            Simulation { boundary, ..sphere(32, 1.0, 1e-3, kernel(&[layer(1e-3, 1.0, 0.3)], Base::Rigid)) };
         let error = simulation.validate().unwrap_err().to_string();
         assert!(error.contains("4 times the thickness of the top layer"), "{error}");
     }

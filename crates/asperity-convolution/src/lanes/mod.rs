@@ -53,6 +53,7 @@ mod transform;
 mod work;
 mod wrap;
 
+use asperity_sweep::Instructions;
 use ndarray::{Array2, ArrayView2};
 
 pub use engine::Modify;
@@ -60,33 +61,6 @@ use engine::{Convolve, Engine};
 use factors::{Factors, factors};
 pub use lane::Real;
 use wrap::wrapped_spectrum;
-
-/// The instructions that a plan is made of. All give the same bits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Instructions {
-    /// Vectors of 512 bits (AVX-512F).
-    Avx512,
-    /// Vectors of 256 bits with fused multiply-add (AVX2, FMA).
-    Avx2,
-    /// What the compiler makes of plain Rust: NEON on aarch64. Slow on x86-64 without FMA.
-    Portable,
-}
-
-impl Instructions {
-    /// Those that this processor has, fastest first.
-    pub fn available() -> Vec<Self> {
-        let mut found = Vec::new();
-        #[cfg(target_arch = "x86_64")]
-        if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
-            if is_x86_feature_detected!("avx512f") {
-                found.push(Instructions::Avx512);
-            }
-            found.push(Instructions::Avx2);
-        }
-        found.push(Instructions::Portable);
-        found
-    }
-}
 
 /// A planned convolution of real fields with a real, even spectrum, in `f64` or `f32`.
 ///

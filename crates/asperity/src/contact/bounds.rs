@@ -1,8 +1,8 @@
 //! The bounds of the pressure, 0 <= p <= H: what is projected, what is free, and what a residual may move.
 
-use asperity_convolution::eights::Eight;
+use asperity_sweep::eights::Eight;
 
-use crate::field::Cells;
+use asperity_sweep::Cells;
 
 /// Cut-off H of the pressure \[Pa\].
 ///
@@ -139,7 +139,7 @@ impl<V: Eight> Interval<V> {
 
 #[cfg(test)]
 mod tests {
-    use asperity_convolution::eights::{Mask, Work, vectorize};
+    use asperity_sweep::eights::{Mask, Work, vectorize};
 
     use super::*;
 

@@ -1,7 +1,7 @@
 //! The conjugate direction on the working set, after Polak and Ribiere, from the preconditioned residual.
 
 use super::sweeps::direction::{Conjugate, Products};
-use crate::field::{Set, run};
+use asperity_sweep::{Set, run};
 
 /// Residual, preconditioned residual and direction, now and one iteration ago, on the working sets of both.
 pub(super) struct Fields<'a> {

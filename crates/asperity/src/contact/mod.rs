@@ -37,9 +37,9 @@ pub use workspace::ProjectedCg;
 use std::sync::atomic::AtomicBool;
 
 use crate::error::{Error, NotConverged, Result};
-use crate::field::sum;
 use crate::grid::{Boundary, Grid};
 use crate::operator::Operator;
+use asperity_sweep::sum;
 
 /// The solver of the contact problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]

@@ -19,9 +19,9 @@ use super::{
     ContactState, Hardness, Outcome, Prescribed, Problem, SolverOptions, interrupted, not_converged,
 };
 use crate::error::{Error, Result};
-use crate::field::{strands, sweep};
 use crate::grid::Grid;
 use crate::operator::Operator;
+use asperity_sweep::{strands, sweep};
 
 /// The method's working memory: 24 bytes per cell and a set of cells.
 pub struct PolonskyKeer {

@@ -17,13 +17,13 @@
 //! It costs three convolutions in f32 on the unpadded grid, and saves half of the iterations. The three are one chain: of what
 //! lies between them only z is written to memory, and both products of a come from the spectra (Parseval).
 
-use asperity_convolution::eights::vectorize;
+use asperity_sweep::eights::vectorize;
 
 use super::sweeps::preconditioner::{Add, Keep, Weigh};
-use crate::field::zeros;
 use crate::grid::{Boundary, Grid};
 use crate::operator::{ApproximateInverse, INVERSE, Operator, SCREENED};
 use crate::set::find_adjacent;
+use asperity_sweep::zeros;
 
 /// z from r on a working set, both f32.
 pub(super) struct Preconditioner {

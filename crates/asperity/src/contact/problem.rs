@@ -3,8 +3,8 @@
 use super::sweeps::feasible::Limits;
 use super::{ContactState, Hardness, Outcome};
 use crate::error::{Error, Result};
-use crate::field::{Max, Min, run, sum, sweep};
 use crate::operator::Operator;
+use asperity_sweep::{Max, Min, run, sum, sweep};
 
 /// One elastic contact of unit operator K.
 #[derive(Clone, Copy, Debug)]

@@ -21,8 +21,8 @@ use super::{
     ContactState, Outcome, Prescribed, Problem, ProjectedCg, SolverOptions, interrupted, not_converged,
 };
 use crate::error::{Error, Result};
-use crate::field::{Min, Set, SetMut, run};
 use crate::operator::Operator;
+use asperity_sweep::{Min, Set, SetMut, run};
 
 /// Iterations without a halving of the residual before a gradient step.
 const PATIENCE: usize = 10;

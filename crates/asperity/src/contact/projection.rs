@@ -4,12 +4,12 @@
 //! The sum is a piecewise linear, non-decreasing function of lambda; Newton's method with a bracket finds
 //! its root in a few sweeps. Neither the trial point nor the projection is stored for it.
 
-use asperity_convolution::eights::Eight;
+use asperity_sweep::eights::Eight;
 
 use super::Hardness;
 use super::bounds::Interval;
 use super::sweeps::projection::{Bends, ClippedSum};
-use crate::field::{Max, Min, Set, run};
+use asperity_sweep::{Max, Min, Set, run};
 
 /// Relative error at which a sum is met: the cells inside the bounds take the rest, and so few of them cross a bound
 /// by it that nothing is left.

@@ -6,7 +6,7 @@
 
 use super::sweeps::rate::{FreeGap, Rate};
 use super::{ContactState, Prescribed, Problem};
-use crate::field::{Merge, larger, run, smaller};
+use asperity_sweep::{Merge, larger, run, smaller};
 
 /// Sums and extremes over all cells, for the approach w.
 #[derive(Clone, Copy, Debug)]

@@ -5,8 +5,8 @@ use super::search::Search;
 use super::sweeps::feasible::{BelowAndCapped, Clip, Scale, ShiftAll};
 use super::{ContactState, Hardness, Problem, ProjectedCg, bounds};
 use crate::error::{Error, Result};
-use crate::field::{Set, SetMut, run};
 use crate::operator::Operator;
+use asperity_sweep::{Set, SetMut, run};
 
 /// What is known of the state that a solve starts from.
 #[derive(Clone, Copy, Debug)]

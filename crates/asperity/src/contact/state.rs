@@ -1,6 +1,6 @@
 //! The state of a contact: what the solver overwrites and the next solve starts from.
 
-use crate::field::zeros;
+use asperity_sweep::zeros;
 
 /// The share of a solver's tolerance that the rounding error of U may take.
 const SPARE: f64 = 1e-2;

@@ -1,9 +1,9 @@
 //! The working memory of projected conjugate gradients.
 
 use super::preconditioner::Preconditioner;
-use crate::field::zeros;
 use crate::grid::{Boundary, Grid};
 use crate::operator::Operator;
+use asperity_sweep::zeros;
 
 /// Preconditioned projected conjugate gradients: the preconditioner, 32 bytes per cell, and two sets.
 pub struct ProjectedCg {

@@ -152,11 +152,13 @@ fn shear_creep(body: &Body) -> Result<(Creep, f64)> {
 
 /// The largest part of a creep function.
 fn size(creep: &Creep) -> f64 {
-    creep.terms.iter().map(|term| term.compliance).fold(creep.instantaneous.max(0.0), f64::max).max(match creep {
-        // A dashpot alone.
-        Creep { instantaneous: 0.0, terms, fluidity } if terms.is_empty() => *fluidity,
-        _ => 0.0,
-    })
+    creep.terms.iter().map(|term| term.compliance).fold(creep.instantaneous.max(0.0), f64::max).max(
+        match creep {
+            // A dashpot alone.
+            Creep { instantaneous: 0.0, terms, fluidity } if terms.is_empty() => *fluidity,
+            _ => 0.0,
+        },
+    )
 }
 
 /// s in a(t) = s b(t); `None` where there is none.
@@ -211,7 +213,8 @@ mod tests {
         let top = body("top", zener(2e6, 3.0), 0.5);
         // The same law, as Young's moduli: E = 2 (1 + nu) G.
         let young = Material::zener(Modulus::Young, 2.6e6, 1.3e6, 3.0).unwrap();
-        let stack = LayeredBody { layers: vec![layer(1e-3, top.clone())], base: Some(body("base", young, 0.3)) };
+        let stack =
+            LayeredBody { layers: vec![layer(1e-3, top.clone())], base: Some(body("base", young, 0.3)) };
         let separated = separate(&[stack]).unwrap();
         assert_eq!(separated.creep, top.contact_creep().unwrap());
         let elastic = Layer { thickness: 1e-3, shear: 2.0, poisson: 0.5, interface: Interface::Bonded };
@@ -249,7 +252,11 @@ mod tests {
         };
         let rubber = body("rubber", zener(1e6, 1.0), 0.5);
         let steel = body("steel", elastic(8e10), 0.3);
-        refused(vec![layer(1e-3, rubber.clone())], Some(steel.clone()), "creep function of steel is not a multiple");
+        refused(
+            vec![layer(1e-3, rubber.clone())],
+            Some(steel.clone()),
+            "creep function of steel is not a multiple",
+        );
         refused(vec![layer(1e-3, steel)], Some(rubber.clone()), "creep function of rubber");
         let slower = body("slower", zener(1e6, 1.1), 0.5);
         refused(vec![layer(1e-3, rubber.clone()), layer(1e-3, slower)], None, "slower");
@@ -266,13 +273,18 @@ mod tests {
     fn an_elastic_layer_may_have_a_bulk_modulus() {
         let (shear, nu) = (1e6, 0.4);
         let bulk = 2.0 * shear * (1.0 + nu) / (3.0 * (1.0 - 2.0 * nu));
-        for material in [elastic(shear), Material::elastic(Modulus::Young, 2.0 * shear * (1.0 + nu)).unwrap()] {
+        for material in [elastic(shear), Material::elastic(Modulus::Young, 2.0 * shear * (1.0 + nu)).unwrap()]
+        {
             let by_bulk = Body { lateral: Lateral::BulkModulus(bulk), ..body("a", material, 0.0) };
-            let of = |body: Body| separate(&[LayeredBody { layers: vec![layer(1e-3, body)], base: None }]).unwrap();
+            let of = |body: Body| {
+                separate(&[LayeredBody { layers: vec![layer(1e-3, body)], base: None }]).unwrap()
+            };
             let [a, b] = [of(by_bulk), of(body("a", elastic(shear), nu))];
             let ratio = a.kernel.symbol(100.0, 0.0) / b.kernel.symbol(100.0, 0.0);
             // Roundings, times 1/(1 - 2 nu).
-            assert!((ratio - 1.0).abs() < 1e-13 && (a.creep.value(0.0) / b.creep.value(0.0) - 1.0).abs() < 1e-13);
+            assert!(
+                (ratio - 1.0).abs() < 1e-13 && (a.creep.value(0.0) / b.creep.value(0.0) - 1.0).abs() < 1e-13
+            );
         }
     }
 }

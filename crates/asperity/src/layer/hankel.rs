@@ -134,10 +134,11 @@ impl Series {
         let rest = |q: &f64| {
             let decayed = libm::expm1(-q * d);
             // q C - b - (a - b)(1 - e^(-q d))
-            scale * match is_short(q * d) {
-                true => (a - b) * libm::exp(-q * d),
-                false => (q * stack.compliance(*q) - b) + (a - b) * decayed,
-            }
+            scale
+                * match is_short(q * d) {
+                    true => (a - b) * libm::exp(-q * d),
+                    false => (q * stack.compliance(*q) - b) + (a - b) * decayed,
+                }
         };
         let values: Vec<f64> = nodes.par_iter().map(rest).collect();
         // Angles are whole parts of a turn, so that one table serves all.
@@ -153,7 +154,8 @@ impl Series {
             sum.map(|s| s / count as f64)
         };
         let coefficients: Vec<[f64; 2]> = (0..=count / 2).into_par_iter().map(coefficient).collect();
-        let size = |list: &[[f64; 2]]| list.iter().fold(0.0, |most: f64, c| most.max(libm::hypot(c[0], c[1])));
+        let size =
+            |list: &[[f64; 2]]| list.iter().fold(0.0, |most: f64, c| most.max(libm::hypot(c[0], c[1])));
         let left = size(&coefficients[coefficients.len() * 9 / 10..]) / (scale * (a + b));
         let turned = |(m, [re, im]): (usize, [f64; 2])| {
             let phase = bessel_phase(frequency(m, spacing, count));
@@ -230,7 +232,15 @@ fn gamma_phase(y: f64) -> f64 {
     // 1/z = (x - iy)/|z|^2, and its odd powers.
     let [re, im] = [x / square, -y / square];
     let [re2, im2] = [re * re - im * im, 2.0 * re * im];
-    let coefficients = [1.0 / 12.0, -1.0 / 360.0, 1.0 / 1260.0, -1.0 / 1680.0, 1.0 / 1188.0, -691.0 / 360_360.0, 1.0 / 156.0];
+    let coefficients = [
+        1.0 / 12.0,
+        -1.0 / 360.0,
+        1.0 / 1260.0,
+        -1.0 / 1680.0,
+        1.0 / 1188.0,
+        -691.0 / 360_360.0,
+        1.0 / 156.0,
+    ];
     let (mut power, mut series) = ([re, im], 0.0);
     for c in coefficients {
         series += c * power[1];
@@ -299,7 +309,8 @@ mod tests {
 
     #[test]
     fn a_layer_of_the_material_of_its_base_adds_nothing() {
-        let smooth = Smooth::new(&stack(&[layer(1.0, 1.0, 0.3)], half_space(1.0)), 1.0, 100.0).unwrap().unwrap();
+        let smooth =
+            Smooth::new(&stack(&[layer(1.0, 1.0, 0.3)], half_space(1.0)), 1.0, 100.0).unwrap().unwrap();
         for r in [0.0, 0.1, 1.0, 10.0, 90.0] {
             // Roundings of q C(q), at all the waves of the series.
             assert!(smooth.value(r).abs() < 1e-13, "{r}: {}", smooth.value(r));

@@ -99,7 +99,9 @@ impl Stack {
             elasticity(of, layer.shear, layer.poisson)?;
         }
         match base {
-            Base::HalfSpace { shear, poisson } => elasticity(|what| format!("{what} of the base"), shear, poisson)?,
+            Base::HalfSpace { shear, poisson } => {
+                elasticity(|what| format!("{what} of the base"), shear, poisson)?
+            }
             Base::Rigid if layers.is_empty() => {
                 return Err(Error::invalid("number of layers on a rigid base", 0, "at least 1"));
             }

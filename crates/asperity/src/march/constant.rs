@@ -12,8 +12,8 @@
 
 use super::memory::branches::{Branches, Combination, Ending, Update};
 use super::memory::{Ends, Exchange};
-use crate::field::{strands, sweep, zeros};
 use crate::march::Simulation;
+use asperity_sweep::{strands, sweep, zeros};
 
 pub(super) struct Constant {
     instantaneous: f64,

@@ -6,11 +6,11 @@
 //! pressure-weighted mean, sum p (h0 + u - w) = 0 over 0 < p < H. The steps themselves take no notice.
 
 use crate::contact::{ContactState, Hardness};
-use crate::field::{minimum, strands, sum, sweep};
 use crate::load::Control;
 use crate::march::record::{Remembered, Step};
 use crate::march::{March, Past, cap, undeformed};
 use crate::time::Instant;
+use asperity_sweep::{minimum, strands, sum, sweep};
 
 /// A state within the last step of a march; [`March::view`] shows it as a row.
 pub struct Between {

@@ -6,7 +6,7 @@
 
 use super::{March, Plasticity, Simulation, cap};
 use crate::contact::Hardness;
-use crate::field::sweep;
+use asperity_sweep::sweep;
 
 /// The undeformed gap with all dents so far \[m\].
 pub(super) struct Dents(Vec<f64>);

@@ -4,8 +4,8 @@
 //! C(xi(t_n) - xi(t_(k-1))) for a body whose temperature changes. O(Nt^2) work and Nt fields, but any creep
 //! function: the oracle for [`super::memory`].
 
-use crate::field::sweep;
 use crate::material::{Creep, ThermalCreep};
+use asperity_sweep::sweep;
 
 pub(super) struct Direct {
     creep: Creep,

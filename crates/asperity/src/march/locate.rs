@@ -9,9 +9,9 @@ use super::March;
 use super::event::Enclosure;
 use super::memory::Drive;
 use crate::error::Result;
-use crate::field::minimum;
 use crate::load::Control;
 use crate::time::Instant;
+use asperity_sweep::minimum;
 
 /// Bodies that are closer than this share of their motion in the step touch from its start on.
 const TOUCHING: f64 = 1e-6;

@@ -4,10 +4,10 @@ use super::energy::{End, Energy, Flattening};
 use super::{March, Past, Step};
 use crate::contact::Hardness;
 use crate::error::Result;
-use crate::field::{strands, sweep};
 use crate::operator::Operator;
 use crate::quantities::{Column, ContactStiffness, Quantity, contact_edges, densities, spot_classes};
 use crate::spots::Spots;
+use asperity_sweep::{strands, sweep};
 
 /// What takes the quantities of a march, and those of the last row.
 #[derive(Default)]
@@ -108,7 +108,7 @@ impl March {
             let cell_area = self.simulation.grid.cell_area();
             let overlap = cell_area * self.overlap_work();
             let end = End {
-                load: cell_area * crate::field::sum(&self.state.pressure),
+                load: cell_area * asperity_sweep::sum(&self.state.pressure),
                 approach: self.state.approach,
                 flattening: match self.simulation.plasticity {
                     super::Plasticity::Cap => Flattening::Held(overlap),

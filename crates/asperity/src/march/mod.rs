@@ -34,10 +34,10 @@ use std::sync::atomic::AtomicBool;
 
 use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem, Solver, Start};
 use crate::error::{Error, Result};
-use crate::field::{minimum, sum};
 use crate::load::{Control, Event};
 use crate::operator::{Operator, plan};
 use crate::time::Instant;
+use asperity_sweep::{minimum, sum};
 use constant::Constant;
 use dents::Dents;
 use direct::Direct;

@@ -1,15 +1,15 @@
 //! What a row of the result tells: numbers of the contact, and the fields on request.
 
-use asperity_convolution::eights::{Eight, Work, vectorize};
+use asperity_sweep::eights::{Eight, Work, vectorize};
 use ndarray::{Array2, ArrayView2};
 
 use crate::contact::{ContactState, Hardness, Outcome};
-use crate::field::{Max, sweep};
 use crate::march::dents::Dents;
 use crate::march::measure::Meter;
 use crate::march::{Past, Simulation};
 use crate::quantities::{Column, Quantity, contact_edges};
 use crate::time::Instant;
+use asperity_sweep::{Max, sweep};
 
 /// The numbers of one row.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]

@@ -6,12 +6,12 @@
 //! U of the guess is known. Its rounding error grows with every row that takes its U this way; a bound of it goes along with the
 //! state, and where it could show, U is computed afresh.
 
-use asperity_convolution::eights::{Eight, Mask, Work};
+use asperity_sweep::eights::{Eight, Mask, Work};
 
 use super::{March, cap};
 use crate::contact::{Hardness, Prescribed, SAME_LOAD, Start};
-use crate::field::{Merge, kernel, run};
 use crate::time::Instant;
+use asperity_sweep::{Merge, kernel, run};
 
 /// Least and largest f.
 const REACH: std::ops::Range<f64> = -4.0..4.0;

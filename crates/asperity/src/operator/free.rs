@@ -67,7 +67,8 @@ fn computed(grid: &Grid) -> [usize; 2] {
 /// The spectrum on the padded torus may be negative in places, where the response reaches beyond the domain: the torus is not
 /// the body. On the domain K is positive as long as the symbol of the body is.
 fn plausible(influence: &Array2<f64>) -> Result<()> {
-    let most = influence.iter().fold(0.0, |most: f64, k| if k.is_nan() { f64::NAN } else { most.max(k.abs()) });
+    let most =
+        influence.iter().fold(0.0, |most: f64, k| if k.is_nan() { f64::NAN } else { most.max(k.abs()) });
     let own = influence[(0, 0)];
     match own > 0.0 && own.is_finite() && most <= own {
         true => Ok(()),
@@ -123,7 +124,8 @@ mod tests {
             ([65, 129], [3.0, 2.0]),
         ] {
             let grid = Grid::new(cells, size).unwrap();
-            let spectrum = even_spectrum(&HalfSpace.coefficients(grid.spacing(), computed(&grid)), padded(&grid));
+            let spectrum =
+                even_spectrum(&HalfSpace.coefficients(grid.spacing(), computed(&grid)), padded(&grid));
             assert!(spectrum.iter().all(|s| *s > 0.0), "{cells:?} {size:?}");
         }
     }

@@ -3,7 +3,7 @@
 //! A contour of a grid runs along x and y only. One of random direction is longer by the mean of |cos| + |sin|, 4/π
 //! (V. A. Yastrebov, G. Anciaux & J.-F. Molinari, Tribol. Int. 114 (2017) 161).
 
-use asperity_convolution::eights::{Eight, Mask, Work, vectorize};
+use asperity_sweep::eights::{Eight, Mask, Work, vectorize};
 use ndarray::ArrayView2;
 use rayon::prelude::*;
 

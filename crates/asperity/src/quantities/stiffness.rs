@@ -15,9 +15,9 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use crate::error::{Error, NotConverged, Result};
-use crate::field::{strands, sweep};
 use crate::grid::{Boundary, Grid};
 use crate::operator::{ApproximateInverse, Operator};
+use asperity_sweep::{strands, sweep};
 
 /// Iterations end where one adds less than this share of the sum: its relative error is then of that size.
 const SMALLEST_SHARE: f64 = 1e-7;

@@ -4,8 +4,8 @@ use rayon::prelude::*;
 
 use super::{Invariants, SubsurfaceStress, invariants};
 use crate::error::{Error, Result};
-use crate::field::{Merge, sweep};
 use crate::grid::{Boundary, Grid};
+use asperity_sweep::{Merge, sweep};
 
 /// Depths of [`automatic_depths`] below the surface.
 const AUTOMATIC: usize = 24;

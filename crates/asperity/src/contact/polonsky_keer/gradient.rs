@@ -9,8 +9,8 @@ use super::super::projection::{Shift, Trial};
 use super::super::sweeps::gradient::{GradientStep, GradientTrial};
 use super::super::{ContactState, Hardness, Problem};
 use super::{PolonskyKeer, add};
-use crate::field::{Set, run, sweep};
 use crate::operator::Operator;
+use asperity_sweep::{Set, run, sweep};
 
 /// Iterations without a halving of the residual that are the first stall.
 const PATIENCE: usize = 20;

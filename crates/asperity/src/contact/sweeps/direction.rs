@@ -1,9 +1,9 @@
 //! Kernels of the search direction, all on the working set: products of the preconditioned residual, the conjugate direction,
 //! and the steepest descent over all cells that can touch.
 
-use asperity_convolution::eights::{Eight, Mask, Work};
+use asperity_sweep::eights::{Eight, Mask, Work};
 
-use crate::field::{Set, SetMut, kernel};
+use asperity_sweep::{Set, SetMut, kernel};
 
 kernel! {
     /// r becomes (r - mean) / `unit` on the set.

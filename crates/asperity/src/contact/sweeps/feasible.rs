@@ -1,10 +1,10 @@
 //! Kernels that make a pressure feasible: within its bounds, zero where nothing can touch, with a given sum.
 
-use asperity_convolution::eights::{Eight, Mask, Work};
+use asperity_sweep::eights::{Eight, Mask, Work};
 
 use crate::contact::Hardness;
 use crate::contact::projection::Shift;
-use crate::field::{Min, Set, SetMut, kernel};
+use asperity_sweep::{Min, Set, SetMut, kernel};
 
 kernel! {
     /// Number of cells that can touch, the sum of H over them, and the least gap.

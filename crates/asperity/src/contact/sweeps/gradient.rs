@@ -1,10 +1,10 @@
 //! Kernels of a projected-gradient step in double precision: the trial point, and the step to its projection.
 
-use asperity_convolution::eights::{Eight, Mask, Work};
+use asperity_sweep::eights::{Eight, Mask, Work};
 
 use crate::contact::Hardness;
 use crate::contact::projection::Shift;
-use crate::field::{Set, kernel};
+use asperity_sweep::{Set, kernel};
 
 kernel! {
     /// r = c U + h - w and y = p - b r on the set; 0 and p elsewhere.

@@ -1,6 +1,6 @@
 //! Kernels of the preconditioner, on the rows of its convolutions (see [`crate::contact::preconditioner`]).
 
-use asperity_convolution::eights::{Eight, Mask, Work};
+use asperity_sweep::eights::{Eight, Mask, Work};
 
 /// D of an open cell that is adjacent to one of S by a side or a corner.
 const ADJACENT: f64 = 0.67;

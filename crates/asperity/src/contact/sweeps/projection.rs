@@ -1,9 +1,9 @@
 //! Kernels of the projection that keeps the load: the sum of clip(p - a d + lambda) over a set, and where it bends.
 
-use asperity_convolution::eights::{Eight, Mask, Work};
+use asperity_sweep::eights::{Eight, Mask, Work};
 
 use crate::contact::Hardness;
-use crate::field::{Max, Min, Set, kernel};
+use asperity_sweep::{Max, Min, Set, kernel};
 
 kernel! {
     /// Over the cells of a set: the sum of clip(y + lambda), y = p - a d, and the number of cells strictly inside the bounds,

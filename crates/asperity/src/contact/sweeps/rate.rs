@@ -1,12 +1,12 @@
 //! Kernels that rate a state: the mean gap of the free cells, and for an approach w the residual r = c U + h - w, the working
 //! set, and the sums and extremes of [`Rating`].
 
-use asperity_convolution::eights::{Eight, Mask, Work};
+use asperity_sweep::eights::{Eight, Mask, Work};
 
 use crate::contact::Hardness;
 use crate::contact::bounds::Interval;
 use crate::contact::rating::Rating;
-use crate::field::{SetMut, kernel};
+use asperity_sweep::{SetMut, kernel};
 
 kernel! {
     /// Sum of g = c U + h over the free cells 0 < p < H, and their number.

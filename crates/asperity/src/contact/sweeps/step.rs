@@ -1,10 +1,10 @@
 //! Kernels of a step: the step s to the projected trial point, its curvature, and the state moved along it.
 
-use asperity_convolution::eights::{Eight, Mask, Work};
+use asperity_sweep::eights::{Eight, Mask, Work};
 
 use crate::contact::Hardness;
 use crate::contact::projection::Shift;
-use crate::field::{Min, Set, kernel};
+use asperity_sweep::{Min, Set, kernel};
 
 kernel! {
     /// s = clip(p - a d + lambda) - p on the set, 0 elsewhere; yields <r, s> and <s, s>, and the largest t for which p + t s

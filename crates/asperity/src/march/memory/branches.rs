@@ -3,7 +3,7 @@
 //! The blocks of the fields lie side by side, \[block\]\[branch\]\[cell\], so that a sweep's block is one slice, and each field is
 //! read and written once per step.
 
-use crate::field::{BLOCK, Cells, strands, sweep};
+use asperity_sweep::{BLOCK, Cells, strands, sweep};
 
 /// Cells that are worked on together: their branches stay in the first caches.
 const CHUNK: usize = 512;

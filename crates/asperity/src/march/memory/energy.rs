@@ -19,8 +19,8 @@
 
 use super::shape::moment;
 use super::{Course, Ends, Memory, UnderWay};
-use crate::field::{strands, sweep};
 use crate::material::{Dual, integrate};
+use asperity_sweep::{strands, sweep};
 
 /// Products of the states q_i and u (the last) with each other, at the end of a step.
 #[derive(Clone, Debug)]

@@ -20,7 +20,7 @@
 
 use super::shape::moment;
 use super::{Course, Ends, Memory, Reference};
-use crate::field::{strands, sweep};
+use asperity_sweep::{strands, sweep};
 
 /// Share of the stress at the start, and of the relaxed one, that an error is measured by at the least.
 const FLOOR: f64 = 0.1;

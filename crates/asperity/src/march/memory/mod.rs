@@ -32,9 +32,9 @@ use rules::{Course, Rules};
 use shape::Shape;
 
 use crate::error::Result;
-use crate::field::zeros;
 use crate::march::Simulation;
 use crate::material::Dual;
+use asperity_sweep::zeros;
 
 pub(in crate::march) struct Memory {
     clocks: Clocks,

@@ -1,7 +1,7 @@
 //! The state within the step that was solved last: u between its values at the ends, on the clock in which it ran.
 
 use super::{Course, Memory, Rules, UnderWay};
-use crate::field::sweep;
+use asperity_sweep::sweep;
 
 /// A moment within a step.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -5,20 +5,24 @@
 //! blocks' sums pairwise up the same tree. The tree depends on the length alone, so the same field
 //! gives the same bits on one thread and on many; nothing is allocated.
 
-use asperity_convolution::eights::{Work, vectorize};
+pub mod eights;
+mod instructions;
+
+use eights::{Work, vectorize};
+pub use instructions::Instructions;
 use rayon::prelude::*;
 
 /// Cells in one block, a multiple of eight: a few arrays of it fit the second-level cache.
-pub(crate) const BLOCK: usize = 8192;
+pub const BLOCK: usize = 8192;
 
 /// A field of zeros, written by all threads: memory that a system hands out as zeros without writing them would be fetched
 /// when it is first used, cell by cell in the middle of a solve, and twice where it is read first.
-pub(crate) fn zeros<T: Default + Send>(cells: usize) -> Vec<T> {
+pub fn zeros<T: Default + Send>(cells: usize) -> Vec<T> {
     (0..cells).into_par_iter().with_min_len(BLOCK).map(|_| T::default()).collect()
 }
 
 /// Arrays that are walked together: slices and tuples of slices of one length.
-pub(crate) trait Cells: Send + Sized {
+pub trait Cells: Send + Sized {
     /// Number of cells.
     fn cells(&self) -> usize;
     /// The cells before `mid`, and from `mid` on.
@@ -53,11 +57,11 @@ impl<C: Cells> Cells for Option<C> {
     }
 }
 
-/// A set of cells, eight in a byte (see [`asperity_convolution::eights`]).
-pub(crate) struct Set<'a>(pub &'a [u8]);
+/// A set of cells, eight in a byte (see [`eights`]).
+pub struct Set<'a>(pub &'a [u8]);
 
 /// A set of cells to be found.
-pub(crate) struct SetMut<'a>(pub &'a mut [u8]);
+pub struct SetMut<'a>(pub &'a mut [u8]);
 
 impl Cells for Set<'_> {
     fn cells(&self) -> usize {
@@ -103,7 +107,7 @@ cells_of_tuple!(A, B, C, D, E, F, G);
 cells_of_tuple!(A, B, C, D, E, F, G, H);
 
 /// What a block yields and how two neighbours' yields become one.
-pub(crate) trait Merge: Send {
+pub trait Merge: Send {
     /// The yield of both blocks; `self` comes first.
     fn merge(self, next: Self) -> Self;
 }
@@ -127,11 +131,11 @@ impl Merge for f64 {
 
 /// The larger of two.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Max(pub f64);
+pub struct Max(pub f64);
 
 /// The smaller of two.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Min(pub f64);
+pub struct Min(pub f64);
 
 impl Merge for Max {
     fn merge(self, next: Self) -> Self {
@@ -159,18 +163,18 @@ impl<A: Merge, B: Merge, C: Merge> Merge for (A, B, C) {
 
 /// The larger, as one instruction (no special treatment of NaN).
 #[inline(always)]
-pub(crate) fn larger(a: f64, b: f64) -> f64 {
+pub fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
 /// The smaller, as one instruction (no special treatment of NaN).
 #[inline(always)]
-pub(crate) fn smaller(a: f64, b: f64) -> f64 {
+pub fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 
 /// Applies `block` to every block of the cells and merges what they yield.
-pub(crate) fn sweep<C: Cells, M: Merge>(cells: C, block: &(impl Fn(C) -> M + Sync)) -> M {
+pub fn sweep<C: Cells, M: Merge>(cells: C, block: &(impl Fn(C) -> M + Sync)) -> M {
     let n = cells.cells();
     if n <= BLOCK {
         return block(cells);
@@ -181,8 +185,9 @@ pub(crate) fn sweep<C: Cells, M: Merge>(cells: C, block: &(impl Fn(C) -> M + Syn
 }
 
 /// Declares a sweep kernel: fields of one number of cells, which are walked together, and numbers that are the same for all
-/// cells. The first field must have all cells. With a [`Work`](asperity_convolution::eights::Work) that handles a part of the
+/// cells. The first field must have all cells. With a [`Work`](eights::Work) that handles a part of the
 /// cells, [`run`] applies it to all of them.
+#[macro_export]
 macro_rules! kernel {
     ($(#[$doc:meta])* $view:vis struct $name:ident<$life:lifetime> {
         cells { $first:ident: $first_type:ty $(, $field:ident: $type:ty)* $(,)? }
@@ -194,13 +199,13 @@ macro_rules! kernel {
             $($view $field: $type,)*
             $($($view $number: $number_type,)*)?
         }
-        impl<$life> crate::field::Cells for $name<$life> {
+        impl<$life> $crate::Cells for $name<$life> {
             fn cells(&self) -> usize {
-                crate::field::Cells::cells(&self.$first)
+                $crate::Cells::cells(&self.$first)
             }
             fn split(self, mid: usize) -> (Self, Self) {
-                let $first = crate::field::Cells::split(self.$first, mid);
-                $(let $field = crate::field::Cells::split(self.$field, mid);)*
+                let $first = $crate::Cells::split(self.$first, mid);
+                $(let $field = $crate::Cells::split(self.$field, mid);)*
                 (
                     $name { $first: $first.0, $($field: $field.0,)* $($($number: self.$number,)*)? },
                     $name { $first: $first.1, $($field: $field.1,)* $($($number: self.$number,)*)? },
@@ -209,11 +214,10 @@ macro_rules! kernel {
         }
     };
 }
-pub(crate) use kernel;
 
 /// Runs a kernel over all of its cells, in the widest vectors of the processor and on all threads, and merges what the blocks
 /// yield in a fixed order.
-pub(crate) fn run<K: Cells + Work>(kernel: K) -> K::Yield
+pub fn run<K: Cells + Work>(kernel: K) -> K::Yield
 where
     K::Yield: Merge,
 {
@@ -222,7 +226,7 @@ where
 
 /// Sums over `n` cells in eight interleaved strands: the order that vector units prefer, fixed here.
 #[inline(always)]
-pub(crate) fn strands<const K: usize>(n: usize, mut term: impl FnMut(usize) -> [f64; K]) -> [f64; K] {
+pub fn strands<const K: usize>(n: usize, mut term: impl FnMut(usize) -> [f64; K]) -> [f64; K] {
     let mut strand = [[0.0; K]; 8];
     let whole = n - n % 8;
     let mut i = 0;
@@ -246,12 +250,12 @@ pub(crate) fn strands<const K: usize>(n: usize, mut term: impl FnMut(usize) -> [
 }
 
 /// sum of the cells.
-pub(crate) fn sum(field: &[f64]) -> f64 {
+pub fn sum(field: &[f64]) -> f64 {
     sweep(field, &|f: &[f64]| strands(f.len(), |i| [f[i]]))[0]
 }
 
 /// Smallest cell; infinity where there is none.
-pub(crate) fn minimum(field: &[f64]) -> f64 {
+pub fn minimum(field: &[f64]) -> f64 {
     sweep(field, &|f: &[f64]| Min(f.iter().fold(f64::INFINITY, |m, v| smaller(*v, m)))).0
 }
 

@@ -11,7 +11,7 @@
 //! Sets of cells are bits, one byte for eight cells: `set[n / 8] >> (n % 8) & 1`.
 //!
 //! ```
-//! use asperity_convolution::eights::{Eight, Work, vectorize};
+//! use asperity_sweep::eights::{Eight, Work, vectorize};
 //!
 //! /// sum of max(p, 0)
 //! struct Pushing<'a>(&'a [f64]);
@@ -43,7 +43,7 @@ mod tests;
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Not, Sub};
 
-use crate::lanes::Instructions;
+use crate::Instructions;
 
 /// Eight `f64`, one for each of eight neighbouring cells.
 pub trait Eight:

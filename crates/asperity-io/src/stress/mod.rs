@@ -15,5 +15,5 @@ pub use below::{Below, Instant};
 pub(crate) use evaluate::boundary;
 pub use evaluate::{StressError, evaluate, of_result};
 pub use plan::{Depths, StressBody, StressDescription, StressPlan, bodies_of};
-pub use section::{Section, section};
+pub use section::{Section, below_at, section};
 pub use yielding::{FirstYield, first_yield};

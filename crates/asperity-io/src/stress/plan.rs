@@ -122,6 +122,16 @@ impl StressPlan {
         }
     }
 
+    /// The plan for a result of which nothing else is said: what is stored, or the largest values of the first body.
+    /// `None` where the result does not say its Poisson's ratio.
+    pub fn for_result(reader: &Reader) -> Option<StressPlan> {
+        if let Some(set) = reader.stress() {
+            return Some(StressPlan::of(set, reader));
+        }
+        let body = bodies_of(reader).into_iter().next()?;
+        body.poisson.filter(|ratio| (0.0..=0.5).contains(ratio)).map(|ratio| StressPlan::new(&body.name, ratio))
+    }
+
     /// What a survey looks for.
     pub(super) fn survey(&self) -> SurveyOptions {
         SurveyOptions { threshold: self.threshold, rolling: self.rolling }

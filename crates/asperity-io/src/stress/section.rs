@@ -1,18 +1,16 @@
 //! A closer look at one time: sections through the place of the largest von Mises stress, at equal distances of depth.
 
-use asperity::stress::{
-    StressQuantity, SubsurfaceStress, SurveyOptions, automatic_depths, contact_box, spaced_depths, survey,
-};
+use std::sync::atomic::AtomicBool;
+
+use asperity::stress::{StressQuantity, SubsurfaceStress};
 use ndarray::Array2;
 
-use super::evaluate::{StressError, boundary};
-use super::{Below, Depths, StressPlan};
+use super::evaluate::{StressError, boundary, of_result};
+use super::{Below, Depths, Instant, StressPlan};
 use crate::store::{At, FieldKind, Reader};
 
-/// Depths of a section.
-const DEPTHS: usize = 24;
-/// Depths of the search for the maximum, where it is not stored.
-const SEARCH: usize = 12;
+/// Slabs of a section.
+const DEPTHS: usize = 32;
 /// A section reaches this many times as deep as its maximum, and a few cells at least.
 const REACH: f64 = 5.0;
 const CELLS: f64 = 8.0;
@@ -36,37 +34,48 @@ pub struct Section {
     pub map: Array2<f64>,
 }
 
-/// Sections of a stored instant, for the Poisson's ratio of the plan; no deeper than its depths. The place is the stored one,
-/// where the stress was computed with this Poisson's ratio.
+/// What was found at the stored instant `at`: what the result holds, or, where the stress was computed otherwise or not there,
+/// what `plan` gives now.
 ///
 /// # Errors
 /// [`StressError`] where the result holds no such pressure.
-pub fn section(reader: &Reader, plan: &StressPlan, at: At) -> Result<Section, StressError> {
-    let grid = reader.header().grid;
-    let [nx, ny] = grid.cells();
+pub fn below_at(reader: &Reader, plan: &StressPlan, at: At) -> Result<Below, StressError> {
     let index = reader.index(at)?;
-    let pressure = reader.field(FieldKind::Pressure, At::Index(index))?;
-    let pressure = pressure.as_slice().unwrap_or_default();
-    let mut stress = SubsurfaceStress::new(grid, boundary(reader), plan.poisson)?;
-    stress.set_pressure(pressure)?;
-    let automatic = automatic_depths(&grid, boundary(reader), contact_box(&grid, pressure));
-    let cell = grid.spacing()[0].max(grid.spacing()[1]);
-    let deepest = match &plan.depths {
-        Depths::List(list) => list.last().copied(),
-        Depths::Auto => automatic.last().copied(),
-    };
-    let (largest, place) = match stored(reader, plan, index)? {
-        Some(known) => known,
-        None => {
-            let ends = [0.5 * cell, automatic.last().copied().unwrap_or(cell)];
-            let found = survey(&mut stress, &spaced_depths(ends, SEARCH, true, true), &SurveyOptions::default())?;
-            let [i, j] = [found.mises.cell / ny, found.mises.cell % ny];
-            (found.mises.value, [found.mises.depth, grid.x(i), grid.y(j)])
-        }
-    };
+    let stored = Below::of(reader)?.filter(|below| {
+        let same = StressPlan { times: plan.times.clone(), ..StressPlan::of(&below.set, reader) };
+        let depths = plan.depths == Depths::Auto || plan.depths == same.depths;
+        depths && StressPlan { depths: plan.depths.clone(), ..same } == *plan
+    });
+    if let Some(mut below) = stored
+        && let Some(instant) = below.instants.iter().find(|instant| instant.index == index)
+    {
+        below.instants = vec![instant.clone()];
+        return Ok(below);
+    }
+    let one = StressPlan { times: Some(vec![reader.field_times()[index]]), ..plan.clone() };
+    of_result(reader, &one, &AtomicBool::new(false))
+}
+
+/// Sections through the place of the largest von Mises stress of an instant of `below`, no deeper than its depths.
+///
+/// # Errors
+/// [`StressError`] where the result holds no such pressure, or nothing touches.
+pub fn section(reader: &Reader, below: &Below, instant: &Instant) -> Result<Section, StressError> {
+    let grid = reader.header().grid;
+    let ([nx, ny], [dx, dy]) = (grid.cells(), grid.spacing());
+    let number = |name| below.number(instant, name);
+    let place = ["max_mises_depth", "max_mises_x", "max_mises_y"].map(number);
+    if place.iter().any(|length| !length.is_finite()) {
+        return Err(reader.missing("stress at this time".into(), "no contact there".into()).into());
+    }
+    let pressure = reader.field(FieldKind::Pressure, At::Index(instant.index))?;
+    let mut stress = SubsurfaceStress::new(grid, boundary(reader), below.set.poisson)?;
+    stress.set_pressure(pressure.as_slice().unwrap_or_default())?;
+    let cell = dx.max(dy);
     let least = CELLS * cell;
-    let reach = f64::max(REACH * place[0], least).min(deepest.unwrap_or(least).max(least));
-    let [i, j] = [(place[1] / grid.spacing()[0]) as usize, (place[2] / grid.spacing()[1]) as usize];
+    let deepest = below.set.depths.last().copied().unwrap_or(least);
+    let reach = f64::max(REACH * place[0], least).min(deepest.max(least));
+    let [i, j] = [((place[1] / dx) as usize).min(nx - 1), ((place[2] / dy) as usize).min(ny - 1)];
     // No slab is thinner than half a cell, so that no middle is nearer to the surface than a quarter.
     let count = ((2.0 * reach / cell) as usize).clamp(1, DEPTHS);
     let (mut along_x, mut along_y) = (Array2::zeros((nx, count)), Array2::zeros((ny, count)));
@@ -81,14 +90,5 @@ pub fn section(reader: &Reader, plan: &StressPlan, at: At) -> Result<Section, St
     stress.at(place[0], &mut six)?;
     StressQuantity::Mises.field_into(&six, &mut field);
     let map = Array2::from_shape_vec(grid.shape(), field).unwrap_or_default();
-    Ok(Section { index, place, largest, reach, along_x, along_y, map })
-}
-
-/// The largest von Mises stress of a stored instant and its place (depth, x, y), where it is stored.
-fn stored(reader: &Reader, plan: &StressPlan, index: usize) -> Result<Option<(f64, [f64; 3])>, StressError> {
-    let Some(below) = Below::of(reader)?.filter(|below| below.set.poisson == plan.poisson) else { return Ok(None) };
-    let Some(instant) = below.instants.iter().find(|instant| instant.index == index) else { return Ok(None) };
-    let number = |name| below.number(instant, name);
-    let place = ["max_mises_depth", "max_mises_x", "max_mises_y"].map(number);
-    Ok(place.iter().all(|length| length.is_finite()).then(|| (number("max_mises"), place)))
+    Ok(Section { index: instant.index, place, largest: number("max_mises"), reach, along_x, along_y, map })
 }

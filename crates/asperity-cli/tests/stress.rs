@@ -20,7 +20,10 @@ fn err(output: &Output) -> String {
 /// The starter case on a coarse grid.
 fn solved(directory: &Path) -> PathBuf {
     assert!(asperity(directory, &["new", "subsurface-stress"]).status.success());
-    let run = asperity(directory, &["run", "subsurface-stress.toml", "-q", "--set", "domain.cells=[48, 48]", "-o", "s.zarr"]);
+    let run = asperity(
+        directory,
+        &["run", "subsurface-stress.toml", "-q", "--set", "domain.cells=[48, 48]", "-o", "s.zarr"],
+    );
     assert!(run.status.success(), "{}", err(&run));
     assert!(out(&run).contains("first yield between"), "{}", out(&run));
     directory.join("s.zarr")
@@ -34,7 +37,13 @@ fn the_stress_of_the_starter_case_is_that_of_hertz() {
     let shown = asperity(at, &["stress", "s.zarr"]);
     assert!(shown.status.success(), "{}", err(&shown));
     let text = out(&shown);
-    for part in ["von Mises", "stressed volume", "orthogonal shear", "yield stress 1 GPa: first yield between", "hardness"] {
+    for part in [
+        "von Mises",
+        "stressed volume",
+        "orthogonal shear",
+        "yield stress 1 GPa: first yield between",
+        "hardness",
+    ] {
         assert!(text.contains(part), "{part}: {text}");
     }
     let object: Value = serde_json::from_str(&out(&asperity(at, &["stress", "s.zarr", "--json"]))).unwrap();
@@ -59,7 +68,8 @@ fn options_compute_the_stress_again_and_keep_what_is_not_said() {
     let directory = tempfile::tempdir().unwrap();
     let at = directory.path();
     solved(at);
-    let arguments = ["stress", "s.zarr", "--depths", "0,0.1 mm", "--times", "1 s", "--components", "zz", "--json"];
+    let arguments =
+        ["stress", "s.zarr", "--depths", "0,0.1 mm", "--times", "1 s", "--components", "zz", "--json"];
     let object: Value = serde_json::from_str(&out(&asperity(at, &arguments))).unwrap();
     assert_eq!(object["depths"], serde_json::json!([0.0, 1e-4]));
     assert_eq!(object["times"], serde_json::json!([1.0]));
@@ -73,6 +83,8 @@ fn options_compute_the_stress_again_and_keep_what_is_not_said() {
     for (arguments, told) in [
         (vec!["--depths", "1 um"], "--depths[0] is"),
         (vec!["--depths", "5 kg"], "a length"),
+        (vec!["--depths", "-1 um"], "not less than 0"),
+        (vec!["--depths", "1e300"], "times the domain"),
         (vec!["--components", "mizes"], "did you mean \"mises\"?"),
         (vec!["--yield-stress", "-1 MPa"], "greater than 0"),
         (vec!["--rolling", "z"], "\"x\""),
@@ -115,7 +127,13 @@ fn check_states_what_the_stress_takes() {
     let at = directory.path();
     assert!(asperity(at, &["new", "subsurface-stress", "case.toml"]).status.success());
     let text = out(&asperity(at, &["check", "case.toml", "--set", "stress.components=[\"mises\"]"]));
-    for part in ["stress", "of plate (Poisson's ratio 0.3)", "25 depths", "at 11 times", "stored at each depth: mises"] {
+    for part in [
+        "stress",
+        "of plate (Poisson's ratio 0.3)",
+        "25 depths",
+        "at 11 times",
+        "stored at each depth: mises",
+    ] {
         assert!(text.contains(part), "{part}: {text}");
     }
     let object: Value = serde_json::from_str(&out(&asperity(at, &["check", "case.toml", "--json"]))).unwrap();

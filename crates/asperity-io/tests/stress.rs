@@ -50,7 +50,8 @@ fn read(text: &str) -> Result<Case, CaseErrors> {
 }
 
 fn solved(text: &str, directory: &Path) -> Reader {
-    let options = RunOptions { output: Some(directory.join("out.zarr")), force: true, ..RunOptions::default() };
+    let options =
+        RunOptions { output: Some(directory.join("out.zarr")), force: true, ..RunOptions::default() };
     let summary = run(&read(text).unwrap(), &options, |_| ()).unwrap();
     assert_eq!(summary.status, Status::Complete);
     Reader::open(&summary.result).unwrap()
@@ -85,7 +86,9 @@ fn a_run_stores_the_stress_of_its_stored_pressures() {
     for name in ["stressed_volume", "orthogonal_shear", "orthogonal_shear_depth", "max_tension_y"] {
         assert!(reader.stress_series(name).unwrap()[4] > 0.0, "{name}");
     }
-    assert!(reader.stress_field(StressQuantity::Zz, At::Last, 0).unwrap_err().to_string().contains("mises, xz"));
+    assert!(
+        reader.stress_field(StressQuantity::Zz, At::Last, 0).unwrap_err().to_string().contains("mises, xz")
+    );
     assert!(reader.stress_series("max_shear").unwrap_err().to_string().contains("max_tresca"));
 }
 
@@ -107,7 +110,9 @@ fn first_yield_lies_between_two_stored_times() {
     let calm = solved(&CASE.replace("50 kPa", "1 MPa"), directory.path());
     let below = Below::of(&calm).unwrap().unwrap();
     let Some(FirstYield::Never(safety)) = first_yield(&below) else { panic!("{below:?}") };
-    assert!((safety - 1e6 / mises[4]).abs() < 1e-9 * safety);
+    // The largest of all times: the contact creeps under a held load, and its stress falls.
+    let largest = mises.iter().copied().fold(0.0, f64::max);
+    assert!(largest > mises[4] && (safety - 1e6 / largest).abs() < 1e-9 * safety);
 }
 
 #[test]
@@ -130,7 +135,9 @@ fn a_stored_result_takes_another_stress_in_place_of_the_old_one() {
     let after = now.stress_series("max_mises").unwrap();
     assert!(after[..4].iter().all(|mises| mises.is_nan()) && after[4] > 0.9 * before[4]);
     assert!(now.stress_series("stressed_volume").is_err());
-    assert!(!now.path().join("stress_mises").exists() && now.path().join("stress_tension/zarr.json").exists());
+    assert!(
+        !now.path().join("stress_mises").exists() && now.path().join("stress_tension/zarr.json").exists()
+    );
     assert!(now.stress_field(StressQuantity::Tension, At::Index(0), 1).unwrap().iter().all(|s| s.is_nan()));
     assert_eq!(now.rows().unwrap(), reader.rows().unwrap(), "all else is as it was");
     // An interrupted evaluation leaves a result without stress.
@@ -272,8 +279,15 @@ fn volumes_and_exports_hold_the_numbers() {
         let start = bytes.windows(7).position(|w| w == b"\"raw\">\n").unwrap() + 8;
         let head = String::from_utf8_lossy(&bytes[..start]).into_owned();
         assert!(head.contains(kind) && head.contains(&format!("0 23 0 19 0 {}", slices - 1)), "{head}");
-        let offset: usize =
-            head.split("stress_xz\" format=\"appended\" offset=\"").nth(1).unwrap().split('"').next().unwrap().parse().unwrap();
+        let offset: usize = head
+            .split("stress_xz\" format=\"appended\" offset=\"")
+            .nth(1)
+            .unwrap()
+            .split('"')
+            .next()
+            .unwrap()
+            .parse()
+            .unwrap();
         let length = u64::from_le_bytes(bytes[start + offset..][..8].try_into().unwrap());
         assert_eq!(length, 4 * 24 * 20 * slices);
         // The last slice is the surface, where no shear stress acts; 32-bit numbers of 1e5 Pa.

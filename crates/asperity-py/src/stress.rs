@@ -3,7 +3,8 @@
 use std::sync::atomic::AtomicBool;
 
 use asperity::stress::{
-    Extreme, StressQuantity, SubsurfaceStress, SurveyOptions, automatic_depths, check_depths, contact_box, survey,
+    Extreme, StressQuantity, SubsurfaceStress, SurveyOptions, automatic_depths, check_depths, contact_box,
+    survey,
 };
 use asperity::{Boundary, Error, Grid};
 use ndarray::Array3;

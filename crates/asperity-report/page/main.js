@@ -262,10 +262,10 @@ const stressCharts = [];
 function stressPart() {
   const s = state.stress;
   $("stress").hidden = !s;
-  if (!s || stressCharts.length) return;
+  if (!s || $("stress-facts").children.length) return;
   $("stress-facts").replaceChildren(...s.facts.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]));
   const lines = (x) => [["von Mises", "mises"], ["Tresca", "tresca"], ["principal", "tension"]].map(([name, key]) => ({ name, x, y: s[key].map((v) => v ?? NaN) }));
-  stressCharts.push(new Chart($("stress-curves"), { title: "Largest stress over time", x: { label: "time", unit: "s" }, y: { label: "stress", unit: "Pa" }, series: lines(s.time) }));
+  if (s.time.length > 1) stressCharts.push(new Chart($("stress-curves"), { title: "Largest stress over time", x: { label: "time", unit: "s" }, y: { label: "stress", unit: "Pa" }, series: lines(s.time) }));
   $("stress-figure").hidden = !s.svg && !state.live;
   if (s.svg) $("stress-picture").src = "data:image/svg+xml;base64," + s.svg;
   else if (state.live) $("stress-picture").src = "stress.svg";

@@ -148,12 +148,16 @@ fn stress_lines(stress: &StressDescription, seconds: Option<f64>) -> Vec<[String
         None => format!("{} depths down to the width of the contact", stress.depth_count),
     };
     let times = stress.times.map_or("the stored times".to_owned(), |n| crate::words::counted(n, "time"));
-    let mut lines =
-        vec![["stress".to_owned(), format!("of {} (Poisson's ratio {}), {range}, at {times}", stress.body, stress.poisson)]];
-    let seconds = seconds.map_or(String::new(), |seconds| format!(", roughly {} after the run", duration(seconds)));
+    let mut lines = vec![[
+        "stress".to_owned(),
+        format!("of {} (Poisson's ratio {}), {range}, at {times}", stress.body, stress.poisson),
+    ]];
+    let seconds =
+        seconds.map_or(String::new(), |seconds| format!(", roughly {} after the run", duration(seconds)));
     lines.push([String::new(), format!("{} of memory{seconds}", bytes(stress.memory_bytes as f64))]);
     if !stress.fields.is_empty() {
-        let size = stress.result_bytes.map_or(String::new(), |size| format!(", up to {}", bytes(size as f64)));
+        let size =
+            stress.result_bytes.map_or(String::new(), |size| format!(", up to {}", bytes(size as f64)));
         lines.push([String::new(), format!("stored at each depth: {}{size}", stress.fields.join(", "))]);
     }
     lines
@@ -262,7 +266,9 @@ fn tell(case: &Case, examined: &Examination, estimate: Option<f64>) -> String {
         ),
     );
     if let Some(stress) = &d.stress {
-        stress_lines(stress, stress_seconds(case, stress)).into_iter().for_each(|[name, value]| line(&name, value));
+        stress_lines(stress, stress_seconds(case, stress))
+            .into_iter()
+            .for_each(|[name, value]| line(&name, value));
     }
     line("memory", format!("about {}", bytes(d.memory_bytes as f64)));
     if let Some(estimate) = estimate {

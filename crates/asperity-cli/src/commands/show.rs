@@ -132,9 +132,13 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
         && let Some(worst) = below.worst()
     {
         let [mises, depth] = ["max_mises", "max_mises_depth"].map(|name| below.number(worst, name));
-        let place = if depth.is_finite() { format!(" at depth {}", quantity(depth, "m")) } else { String::new() };
+        let place =
+            if depth.is_finite() { format!(" at depth {}", quantity(depth, "m")) } else { String::new() };
         let time = quantity(worst.time, "s");
-        line("stress", format!("largest von Mises {}{place} of {}, t = {time}", quantity(mises, "Pa"), below.set.body));
+        line(
+            "stress",
+            format!("largest von Mises {}{place} of {}, t = {time}", quantity(mises, "Pa"), below.set.body),
+        );
         if let Some(first) = first_yield(&below) {
             line("yield", first.sentence());
         }

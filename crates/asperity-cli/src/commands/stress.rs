@@ -8,7 +8,8 @@ use asperity_io::export::volume;
 use asperity_io::finding;
 use asperity_io::store::{At, Reader, Writer};
 use asperity_io::stress::{
-    Below, Instant, StressBody, StressError, StressPlan, below_at, bodies_of, evaluate, first_yield, of_result,
+    Below, Instant, StressBody, StressError, StressPlan, below_at, bodies_of, evaluate, first_yield,
+    of_result,
 };
 use asperity_report::figure::Form;
 use asperity_report::result::stress_figure;
@@ -76,7 +77,9 @@ fn told(error: impl std::fmt::Display) -> Failure {
 
 fn ended(error: StressError) -> Failure {
     match error {
-        StressError::Solve(asperity::Error::Interrupted) => Failure::Interrupted("the stress is not stored".into()),
+        StressError::Solve(asperity::Error::Interrupted) => {
+            Failure::Interrupted("the stress is not stored".into())
+        }
         error => told(error),
     }
 }
@@ -130,7 +133,9 @@ fn plan(args: &Stress, reader: &Reader) -> Result<StressPlan, Failure> {
     let known = bodies.iter().any(|body| body.poisson.is_some());
     if !known && !reader.header().setup.contains_key("poisson") {
         let path = args.result.display();
-        return Err(Failure::input(format!("{path} does not say the Poisson's ratio of its bodies; give --poisson NU")));
+        return Err(Failure::input(format!(
+            "{path} does not say the Poisson's ratio of its bodies; give --poisson NU"
+        )));
     }
     let mut given: Vec<(&str, &str)> = keys(args).collect();
     if let (Some(stored), None) = (&stored, &args.body)
@@ -165,7 +170,8 @@ fn plan(args: &Stress, reader: &Reader) -> Result<StressPlan, Failure> {
 fn faults(faults: Vec<Fault>) -> Failure {
     let sentence = |fault: &Fault| {
         let help = fault.help.as_ref().map(|help| format!("; {help}")).unwrap_or_default();
-        let option = if fault.key.is_empty() { String::new() } else { format!("--{} ", fault.key.replace('_', "-")) };
+        let option =
+            if fault.key.is_empty() { String::new() } else { format!("--{} ", fault.key.replace('_', "-")) };
         format!("{option}{}{help}", fault.message)
     };
     Failure::input(faults.iter().map(sentence).collect::<Vec<_>>().join("\n"))
@@ -200,7 +206,8 @@ fn table(lines: &[Vec<String>]) -> String {
     let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
     let widths: Vec<usize> = (0..columns).map(width).collect();
     let line = |line: &Vec<String>| {
-        let words: Vec<String> = line.iter().zip(&widths).map(|(word, width)| format!("{word:<width$}")).collect();
+        let words: Vec<String> =
+            line.iter().zip(&widths).map(|(word, width)| format!("{word:<width$}")).collect();
         format!("  {}\n", words.join("  ").trim_end())
     };
     lines.iter().map(line).collect()
@@ -213,7 +220,8 @@ fn number(value: f64, unit: &str) -> String {
 
 fn text(below: &Below, shown: Option<&Instant>) -> String {
     let set = &below.set;
-    let ends = [set.depths.first(), set.depths.last()].map(|depth| number(depth.copied().unwrap_or(f64::NAN), "m"));
+    let ends =
+        [set.depths.first(), set.depths.last()].map(|depth| number(depth.copied().unwrap_or(f64::NAN), "m"));
     let mut text = format!(
         "Stress below the surface of {} (Poisson's ratio {}), {} from {} to {}\n\n",
         set.body,
@@ -223,9 +231,11 @@ fn text(below: &Below, shown: Option<&Instant>) -> String {
         ends[1]
     );
     for (name, key) in [("von Mises", "max_mises"), ("Tresca", "max_tresca"), ("principal", "max_tension")] {
-        let head = ["time", "load", &format!("largest {name}"), "depth", "x", "y"].map(str::to_owned).to_vec();
+        let head =
+            ["time", "load", &format!("largest {name}"), "depth", "x", "y"].map(str::to_owned).to_vec();
         let line = |instant: &Instant| {
-            let place = ["depth", "x", "y"].map(|part| number(below.number(instant, &format!("{key}_{part}")), "m"));
+            let place =
+                ["depth", "x", "y"].map(|part| number(below.number(instant, &format!("{key}_{part}")), "m"));
             let [depth, x, y] = place;
             let value = number(below.number(instant, key), "Pa");
             vec![number(instant.time, "s"), number(instant.load, "N"), value, depth, x, y]
@@ -247,7 +257,8 @@ fn text(below: &Below, shown: Option<&Instant>) -> String {
         text.push('\n');
     }
     if let Some(threshold) = set.threshold {
-        text += &format!("stressed volume: where the von Mises stress exceeds {}\n\n", quantity(threshold, "Pa"));
+        text +=
+            &format!("stressed volume: where the von Mises stress exceeds {}\n\n", quantity(threshold, "Pa"));
     }
     if let Some(instant) = shown {
         text += &format!("largest stress by depth at t = {}\n", number(instant.time, "s"));

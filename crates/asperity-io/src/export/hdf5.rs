@@ -94,7 +94,8 @@ fn write_map<T: H5Type>(data_set: &H5Dataset, n: usize, map: &[T]) -> Result<(),
     let mut starts = vec![0; data_set.ndims()];
     let mut counts = data_set.shape();
     let depths = if counts.len() == 4 { counts[1] } else { 1 };
-    for (axis, index) in [n / depths, n % depths].into_iter().enumerate().take(counts.len().saturating_sub(2)) {
+    for (axis, index) in [n / depths, n % depths].into_iter().enumerate().take(counts.len().saturating_sub(2))
+    {
         starts[axis] = index;
         counts[axis] = 1;
     }

@@ -177,7 +177,15 @@ fn run_inside(
             return Err(record.stop_storing(&march, source));
         }
         let finished = march.finished();
-        observe(Progress { row: &row, done: march.done(), resumed, total, end: end_time, finished, stress: None });
+        observe(Progress {
+            row: &row,
+            done: march.done(),
+            resumed,
+            total,
+            end: end_time,
+            finished,
+            stress: None,
+        });
     }
     if let (Some(plan), Some(row)) = (&case.stress, record.last) {
         let done = march.done();

@@ -253,7 +253,11 @@ pub(super) struct ArraySpec {
 
 impl ArraySpec {
     /// A coordinate \[its unit\] along the dimension of its name.
-    pub(super) fn coordinate_of(series: &Series, dimensions: &'static [&'static str], length: usize) -> ArraySpec {
+    pub(super) fn coordinate_of(
+        series: &Series,
+        dimensions: &'static [&'static str],
+        length: usize,
+    ) -> ArraySpec {
         ArraySpec {
             name: series.name,
             data_type: DataType::Float64,

@@ -118,9 +118,14 @@ impl StressSet {
     /// The arrays of a result with `maps` instants of fields.
     pub(super) fn arrays(&self, [nx, ny]: [usize; 2], maps: usize) -> Vec<ArraySpec> {
         let depths = self.depths.len();
-        let mut arrays = vec![ArraySpec::coordinate_of(&series(DEPTH, "m", "depth below the surface"), &["depth"], depths)];
+        let mut arrays = vec![ArraySpec::coordinate_of(
+            &series(DEPTH, "m", "depth below the surface"),
+            &["depth"],
+            depths,
+        )];
         arrays.extend(self.scalars().iter().map(|series| ArraySpec::of_instants(series, maps)));
-        let profile = |series: &Series| ArraySpec::profile_of(series, &["field_time", "depth"], [maps, depths]);
+        let profile =
+            |series: &Series| ArraySpec::profile_of(series, &["field_time", "depth"], [maps, depths]);
         arrays.extend(self.profiles().iter().map(profile));
         let volume = |(_, series): &(_, Series)| {
             ArraySpec::volume_of(series, &["field_time", "depth", "x", "y"], [maps, depths, nx, ny])
@@ -153,7 +158,8 @@ impl StressSet {
         let quantity = |name: &Value| StressQuantity::from_name(name.as_str()?);
         let instant = |n: &Value| usize::try_from(n.as_u64()?).ok().filter(|n| *n < maps);
         let instants: Vec<usize> = list("instants")?.iter().map(instant).collect::<Option<_>>()?;
-        let rising = depths.windows(2).all(|two| two[0] < two[1]) && instants.windows(2).all(|two| two[0] < two[1]);
+        let rising =
+            depths.windows(2).all(|two| two[0] < two[1]) && instants.windows(2).all(|two| two[0] < two[1]);
         if depths.is_empty() || !rising {
             return None;
         }
@@ -332,8 +338,11 @@ impl Reader {
     fn stress_column(&self, name: &str, known: &[Series]) -> Result<Vec<f64>> {
         if !known.iter().any(|series| series.name == name) {
             let names: Vec<_> = known.iter().map(|series| series.name).collect();
-            let available =
-                if names.is_empty() { "no stress (asperity stress computes it)".into() } else { names.join(", ") };
+            let available = if names.is_empty() {
+                "no stress (asperity stress computes it)".into()
+            } else {
+                names.join(", ")
+            };
             return Err(self.missing(format!("`{name}`"), available));
         }
         let numbers = column::read(self.path(), &self.spec(name)?, self.field_times().len())?;
@@ -356,7 +365,8 @@ impl Reader {
                     format!("the stress fields {} at {} depths", names.join(", "), set.depths.len())
                 }
             };
-            return Err(self.missing(format!("stress field `{}` of depth number {depth}", quantity.name()), available));
+            return Err(self
+                .missing(format!("stress field `{}` of depth number {depth}", quantity.name()), available));
         };
         let shape = self.header().grid.shape();
         if !set.instants.contains(&index) {

@@ -1,11 +1,10 @@
 //! What was found below the surface, at each of the times.
 
+use asperity::finding::Finding;
 use asperity::stress::{Extreme, Survey};
 use asperity::{Grid, finding};
-use asperity::finding::Finding;
 
 use crate::store::{Reader, Result, StressSet};
-
 
 /// What was found at one time.
 #[derive(Clone, Debug, PartialEq)]

@@ -111,13 +111,15 @@ impl StressPlan {
 
     /// The plan that led to what is stored.
     pub fn of(set: &StressSet, reader: &Reader) -> StressPlan {
+        let times = set.instants.iter().map(|index| reader.field_times()[*index]).collect();
         StressPlan {
             depths: Depths::List(set.depths.clone()),
             quantities: set.quantities.clone(),
             threshold: set.threshold,
             yield_stress: set.yield_stress,
             rolling: set.rolling,
-            times: Some(set.instants.iter().map(|index| reader.field_times()[*index]).collect()),
+            // A time does not tell the states before and after a jump apart.
+            times: (set.instants.len() < reader.field_times().len()).then_some(times),
             ..StressPlan::new(&set.body, set.poisson)
         }
     }
@@ -129,7 +131,9 @@ impl StressPlan {
             return Some(StressPlan::of(set, reader));
         }
         let body = bodies_of(reader).into_iter().next()?;
-        body.poisson.filter(|ratio| (0.0..=0.5).contains(ratio)).map(|ratio| StressPlan::new(&body.name, ratio))
+        body.poisson
+            .filter(|ratio| (0.0..=0.5).contains(ratio))
+            .map(|ratio| StressPlan::new(&body.name, ratio))
     }
 
     /// What a survey looks for.

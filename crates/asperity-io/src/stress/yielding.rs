@@ -31,7 +31,8 @@ pub fn first_yield(below: &Below) -> Option<FirstYield> {
 impl FirstYield {
     /// One sentence.
     pub fn sentence(&self) -> String {
-        let state = |[time, load]: [f64; 2]| format!("t = {} (load {})", quantity(time, "s"), quantity(load, "N"));
+        let state =
+            |[time, load]: [f64; 2]| format!("t = {} (load {})", quantity(time, "s"), quantity(load, "N"));
         match self {
             FirstYield::Never(safety) if safety.is_finite() => {
                 format!("no yield: the yield stress is {safety:.3} times the largest von Mises stress")

@@ -68,7 +68,13 @@ impl Map {
         size: [f64; 2],
     ) -> Map {
         let meaning = Values::Quantity { label: label.into(), unit: unit.into(), colours, range: None };
-        Map { title: title.into(), values: raster::means(values, raster::block(values)), meaning, size, axes: Axes::Area }
+        Map {
+            title: title.into(),
+            values: raster::means(values, raster::block(values)),
+            meaning,
+            size,
+            axes: Axes::Area,
+        }
     }
 
     /// The same map as a section whose second axis is the depth.

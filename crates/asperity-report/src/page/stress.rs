@@ -10,7 +10,9 @@ use crate::result::{PlotError, stress_figure};
 /// Largest values over time; null where no stress was computed.
 pub(super) fn curves(reader: &Reader) -> Result<Value, StoreError> {
     let Some(below) = Below::of(reader)? else { return Ok(Value::Null) };
-    let over = |name: &str| below.instants.iter().map(|instant| json!(below.number(instant, name))).collect::<Value>();
+    let over = |name: &str| {
+        below.instants.iter().map(|instant| json!(below.number(instant, name))).collect::<Value>()
+    };
     Ok(json!({
         "facts": facts(&below),
         "time": below.instants.iter().map(|instant| json!(instant.time)).collect::<Value>(),
@@ -25,7 +27,9 @@ fn facts(below: &Below) -> Vec<[String; 2]> {
     let set = &below.set;
     let mut lines = vec![["Body".to_owned(), format!("{}, Poisson's ratio {}", set.body, set.poisson)]];
     let Some(worst) = below.worst() else { return lines };
-    for (name, key) in [("von Mises", "max_mises"), ("shear (Tresca)", "max_tresca"), ("principal", "max_tension")] {
+    for (name, key) in
+        [("von Mises", "max_mises"), ("shear (Tresca)", "max_tresca"), ("principal", "max_tension")]
+    {
         let [value, depth] = [key.to_owned(), format!("{key}_depth")].map(|name| below.number(worst, &name));
         if depth.is_finite() {
             let time = quantity(worst.time, "s");

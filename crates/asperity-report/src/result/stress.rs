@@ -13,7 +13,8 @@ const WIDE: f64 = 3.0;
 
 /// The stress at a stored instant: what the result holds, or the largest values of its first body.
 pub(super) fn stress(reader: &Reader, at: At) -> Result<Figure, PlotError> {
-    let plan = StressPlan::for_result(reader).ok_or_else(|| PlotError::NoPoisson(reader.path().to_owned()))?;
+    let plan =
+        StressPlan::for_result(reader).ok_or_else(|| PlotError::NoPoisson(reader.path().to_owned()))?;
     let stored = Below::of(reader)?;
     let index = reader.index(at)?;
     match stored.filter(|below| below.instants.iter().any(|instant| instant.index == index)) {
@@ -74,20 +75,22 @@ pub fn stress_figure(reader: &Reader, below: &Below, index: usize) -> Result<Fig
 
 fn title(reader: &Reader, instant: &Instant) -> String {
     let title = &reader.header().title;
-    let what = format!("stress below the surface at t = {}", quantity(instant.time, "s"));
-    if title.is_empty() { what } else { format!("{title}: {what}") }
+    let what = format!("tress below the surface at t = {}", quantity(instant.time, "s"));
+    if title.is_empty() { format!("S{what}") } else { format!("{title}: s{what}") }
 }
 
 /// The largest stresses by depth.
 fn profile(below: &Below, instant: &Instant, found: &Section) -> Curves {
     let depths = &below.set.depths;
-    let lines = [("von Mises", "mises_by_depth"), ("Tresca", "tresca_by_depth"), ("principal", "tension_by_depth")];
+    let lines =
+        [("von Mises", "mises_by_depth"), ("Tresca", "tresca_by_depth"), ("principal", "tension_by_depth")];
     let least = below.profile(instant, "tension_by_depth").iter().copied().fold(0.0, f64::min);
     // Room for the legend above the curves.
     let up = Axis::linear("stress", "Pa").between(least, 1.4 * found.largest);
     let mut panel = Curves::new("Largest at each depth", Axis::linear("depth", "m"), up);
     for (name, key) in lines {
-        panel = panel.with(Series::new(name, Style::Line, depths.clone(), below.profile(instant, key).to_vec()));
+        panel =
+            panel.with(Series::new(name, Style::Line, depths.clone(), below.profile(instant, key).to_vec()));
     }
     let shear = below.profile(instant, "orthogonal_shear_by_depth");
     if !shear.is_empty() {

@@ -192,7 +192,8 @@ impl SubsurfaceStress {
             [true, true] => Complex64::new(-scale, 0.0),
             _ => Complex64::new(0.0, scale),
         };
-        let (forward, inverse, half) = (&self.columns_forward, &self.columns_inverse, &self.coefficient_columns);
+        let (forward, inverse, half) =
+            (&self.columns_forward, &self.columns_inverse, &self.coefficient_columns);
         let (lengths, size, poisson) = (self.lengths, self.grid.size(), self.poisson);
         let columns = self.work.outer_iter_mut().into_par_iter().zip(self.pressure.outer_iter());
         columns.enumerate().for_each_init(

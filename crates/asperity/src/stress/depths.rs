@@ -5,6 +5,8 @@ use crate::grid::{Boundary, Grid};
 
 /// Depths between 0 and this share of a cell are refused: they show the steps of the pressure from cell to cell.
 const SHALLOWEST: f64 = 0.25;
+/// Depths beyond this many times the domain are refused: the stress there is nothing but rounding.
+const DEEPEST: f64 = 1e9;
 /// Depths of [`automatic_depths`] below the surface.
 const AUTOMATIC: usize = 24;
 /// They reach this many cells at least.
@@ -43,7 +45,11 @@ pub fn spaced_depths([first, last]: [f64; 2], count: usize, geometric: bool, sur
         k if k + 1 == count => last,
         k => {
             let share = k as f64 / (count - 1) as f64;
-            if geometric { first * libm::exp(libm::log(last / first) * share) } else { first + (last - first) * share }
+            if geometric {
+                first * libm::exp(libm::log(last / first) * share)
+            } else {
+                first + (last - first) * share
+            }
         }
     };
     surface.then_some(0.0).into_iter().chain((0..count).map(depth)).collect()
@@ -60,19 +66,23 @@ pub fn contact_box(grid: &Grid, pressure: &[f64]) -> f64 {
     if x0 > x1 { 0.0 } else { ((x1 - x0 + 1) * (y1 - y0 + 1)) as f64 * grid.cell_area() }
 }
 
-/// A depth may be 0, or a quarter of a cell and deeper.
+/// A depth may be 0, or a quarter of a cell and deeper, up to 1e9 times the domain.
 ///
 /// # Errors
 /// [`Error::Invalid`] for any other.
 pub fn check_depth(grid: &Grid, depth: f64) -> Result<()> {
     let shallowest = SHALLOWEST * grid.spacing()[0].max(grid.spacing()[1]);
-    if depth == 0.0 || depth >= shallowest && depth.is_finite() {
+    let deepest = DEEPEST * grid.size()[0].max(grid.size()[1]);
+    if depth == 0.0 || (shallowest..=deepest).contains(&depth) {
         return Ok(());
     }
-    let expected = format!(
-        "0, or at least {shallowest:e} m, a quarter of a cell (nearer to the surface the stress shows the steps of the \
-         pressure from cell to cell)"
-    );
+    let expected = match depth > deepest {
+        true => format!("at most {deepest:e} m, a thousand million times the domain"),
+        false => format!(
+            "0, or at least {shallowest:e} m, a quarter of a cell (nearer to the surface the stress shows the steps of \
+             the pressure from cell to cell)"
+        ),
+    };
     Err(Error::invalid("depth", format!("{depth:e} m"), expected))
 }
 

@@ -57,8 +57,14 @@ impl Slab {
         let [xx, yy, zz, xy, xz, yz] = fields.each_ref().map(Vec::as_slice);
         let threshold = options.threshold.unwrap_or(f64::INFINITY);
         let found = sweep((xx, yy, zz, xy, xz, yz), &|(xx, yy, zz, xy, xz, yz): Six<'_>| {
-            let mut found =
-                Slab { mises: NOTHING, tresca: NOTHING, tension: NOTHING, shear: NOTHING, above: 0.0, cells: xx.len() };
+            let mut found = Slab {
+                mises: NOTHING,
+                tresca: NOTHING,
+                tension: NOTHING,
+                shear: NOTHING,
+                above: 0.0,
+                cells: xx.len(),
+            };
             for cell in 0..xx.len() {
                 let tensor = [xx[cell], yy[cell], zz[cell], xy[cell], xz[cell], yz[cell]];
                 let Invariants { mises, tresca, tension, .. } = invariants(tensor);
@@ -83,7 +89,8 @@ fn range_along_y(field: &[f64], ny: usize) -> First {
     let ranges: Vec<f64> = field
         .par_chunks(ny)
         .map(|line| {
-            let [low, high] = line.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(*v), b.max(*v)]);
+            let [low, high] =
+                line.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(*v), b.max(*v)]);
             high - low
         })
         .collect();

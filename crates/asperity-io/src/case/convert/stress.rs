@@ -27,7 +27,8 @@ pub fn stress(
     let bodies: Vec<StressBody> = bodies.iter().map(StressBody::of).collect();
     let mut plan = plan(checks, at, grid, &bodies)?;
     if !output.fields.contains(&FieldKind::Pressure) {
-        let message = "the stress below the surface is computed from stored pressures, but none are stored".to_owned();
+        let message =
+            "the stress below the surface is computed from stored pressures, but none are stored".to_owned();
         checks.fault(&at.span, message, "stored pressures", Some("add \"pressure\" to output.fields"));
         return None;
     }
@@ -36,7 +37,12 @@ pub fn stress(
         Some((times, raw::StressTimes::All)) => {
             if output.rows != Rows::Every(1) {
                 let message = "not all rows have stored pressures".to_owned();
-                checks.fault(&times.span, message, "\"fields\" or a list of times", Some("set output.every = 1"));
+                checks.fault(
+                    &times.span,
+                    message,
+                    "\"fields\" or a list of times",
+                    Some("set output.every = 1"),
+                );
                 return None;
             }
         }

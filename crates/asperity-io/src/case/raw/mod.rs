@@ -64,6 +64,7 @@ pub struct Document {
     #[schemars(default)]
     pub output: Output,
     /// The stress below the surface, from the stored pressures; not computed if not given.
+    #[schemars(example = serde_json::json!({ "depths": "auto", "yield_stress": "110 MPa" }))]
     pub stress: Option<At<Stress>>,
 }
 

@@ -81,7 +81,7 @@ fn options_compute_the_stress_again_and_keep_what_is_not_said() {
     let stored: Value = serde_json::from_str(&out(&asperity(at, &["stress", "s.zarr", "--json"]))).unwrap();
     assert_eq!((&stored["poisson"], &stored["depths"]), (&Value::from(0.3), &object["depths"]));
     for (arguments, told) in [
-        (vec!["--depths", "1 um"], "--depths[0] is"),
+        (vec!["--depths", "1 um"], "a quarter of a cell"),
         (vec!["--depths", "5 kg"], "a length"),
         (vec!["--depths", "-1 um"], "not less than 0"),
         (vec!["--depths", "1e300"], "times the domain"),

@@ -256,9 +256,12 @@ fn a_section_holds_the_largest_stress_and_a_map() {
     let below = Below::of(&reader).unwrap().unwrap();
     let worst = below.worst().unwrap();
     let found = section(&reader, &below, worst).unwrap();
-    assert_eq!(found.map.dim(), (24, 20));
+    let depths: Vec<f64> = found.maps.iter().map(|(depth, _)| depth / found.place[0]).collect();
+    assert_eq!(depths, [0.5, 1.0, 2.0]);
+    let map = &found.maps[1].1;
+    assert_eq!(map.dim(), (24, 20));
     assert_eq!((found.along_x.dim().0, found.along_y.dim().0), (24, 20));
-    let largest = found.map.iter().copied().fold(0.0, f64::max);
+    let largest = map.iter().copied().fold(0.0, f64::max);
     // The map is at the depth of the maximum, computed again.
     assert!((largest / found.largest - 1.0).abs() < 1e-12, "{largest} {}", found.largest);
     assert!(found.along_x.iter().chain(&found.along_y).all(|s| *s <= 1.0001 * largest));

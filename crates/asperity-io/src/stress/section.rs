@@ -15,7 +15,7 @@ const DEPTHS: usize = 32;
 const REACH: f64 = 5.0;
 const CELLS: f64 = 8.0;
 
-/// Sections of the von Mises stress and the map at the depth of its maximum.
+/// Sections of the von Mises stress and maps about the depth of its maximum.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Section {
     /// Number of the stored instant.
@@ -30,8 +30,8 @@ pub struct Section {
     pub along_x: Array2<f64>,
     /// The same in the plane x = const, shape (y, depth) \[Pa\].
     pub along_y: Array2<f64>,
-    /// von Mises stress at the depth of the place, shape (x, y) \[Pa\].
-    pub map: Array2<f64>,
+    /// von Mises stress above, at and below the depth of the place: depths \[m\], and maps of shape (x, y) \[Pa\].
+    pub maps: Vec<(f64, Array2<f64>)>,
 }
 
 /// What was found at the stored instant `at`: what the result holds, or, where the stress was computed otherwise or not there,
@@ -87,8 +87,23 @@ pub fn section(reader: &Reader, below: &Below, instant: &Instant) -> Result<Sect
         (0..nx).for_each(|i| along_x[(i, n)] = field[i * ny + j]);
         (0..ny).for_each(|j| along_y[(j, n)] = field[i * ny + j]);
     }
-    stress.at(place[0], &mut six)?;
-    StressQuantity::Mises.field_into(&six, &mut field);
-    let map = Array2::from_shape_vec(grid.shape(), field).unwrap_or_default();
-    Ok(Section { index: instant.index, place, largest: number("max_mises"), reach, along_x, along_y, map })
+    let mut maps = vec![];
+    for depth in map_depths(place[0], cell) {
+        stress.at(depth, &mut six)?;
+        let mut map = Array2::zeros(grid.shape());
+        if let Some(field) = map.as_slice_mut() {
+            StressQuantity::Mises.field_into(&six, field);
+        }
+        maps.push((depth, map));
+    }
+    Ok(Section { index: instant.index, place, largest: number("max_mises"), reach, along_x, along_y, maps })
+}
+
+/// Half, once and twice the depth of the largest stress; below a largest stress at the surface one and two cells.
+fn map_depths(depth: f64, cell: f64) -> [f64; 3] {
+    match depth > 0.0 {
+        true if 0.5 * depth < 0.25 * cell => [0.0, depth, 2.0 * depth],
+        true => [0.5 * depth, depth, 2.0 * depth],
+        false => [0.0, cell, 2.0 * cell],
+    }
 }

@@ -66,9 +66,11 @@ pub fn stress_figure(reader: &Reader, below: &Below, index: usize) -> Result<Fig
     let mut figure = Figure::new(title)
         .with(cut(&found.along_x, "x", x, size[0], format!("Section y = {}", length(y))))
         .with(cut(&found.along_y, "y", y, size[1], format!("Section x = {}", length(x))))
-        .with(mises(format!("Depth {}", length(depth)), &found.map, size))
-        .with(profile(below, instant, &found))
         .caption(sentence);
+    for (depth, map) in &found.maps {
+        figure = figure.with(mises(format!("Depth {}", length(*depth)), map, size));
+    }
+    figure = figure.with(profile(below, instant, &found));
     figure.panel = [300.0, 230.0];
     Ok(figure)
 }

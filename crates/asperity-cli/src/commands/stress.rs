@@ -124,6 +124,9 @@ fn plan(args: &Stress, reader: &Reader) -> Result<StressPlan, Failure> {
     let mut bodies = bodies_of(reader);
     if let Some(text) = &args.poisson {
         let ratio = read::<Number<NonNegative>>("--poisson", text, "0.3")?.get();
+        if ratio > 0.5 {
+            return Err(Failure::input(format!("--poisson is {ratio}, but must be a Poisson's ratio from 0 to 0.5")));
+        }
         if bodies.is_empty() {
             bodies.push(StressBody { name: "body 1".into(), poisson: None });
         }

@@ -30,6 +30,7 @@ fn main() -> ExitCode {
         Command::Show(show) => commands::show::run(&show),
         Command::Report(report) => commands::report::run(&report),
         Command::View(view) => commands::view::run(&view),
+        Command::Stress(stress) => commands::stress::run(&stress),
         Command::Plot(plot) => commands::plot::run(&plot),
         Command::Material(material) => commands::material::run(&material),
         Command::FitIndentation(fit) => commands::fit_indentation::run(&fit),

@@ -71,6 +71,9 @@ impl Teller {
 
     /// One row more.
     pub fn tell(&mut self, progress: &Progress) {
+        if let Some([done, all]) = progress.stress {
+            return self.tell_stress(done, all);
+        }
         let row = progress.row;
         let state = format!(
             "t = {}, contact {:.2} %, {} iterations",
@@ -107,6 +110,21 @@ impl Teller {
                         ),
                     };
                     eprintln!("row {}: {state}, {left} left", rows(progress));
+                    *told = Some(Instant::now());
+                }
+            }
+            Teller::Silent => {}
+        }
+    }
+
+    /// The stress below the surface, after the last row.
+    fn tell_stress(&mut self, done: usize, all: usize) {
+        let state = format!("stress below the surface: {done} of {all} times");
+        match self {
+            Teller::Bar(bar, _) => bar.set_message(state),
+            Teller::Lines { told, pause, .. } => {
+                if told.is_none_or(|told| told.elapsed() >= *pause) {
+                    eprintln!("{state}");
                     *told = Some(Instant::now());
                 }
             }

@@ -11,4 +11,5 @@ pub mod preparation;
 pub mod readable;
 pub mod session;
 pub mod store;
+pub mod stress;
 pub mod topography;

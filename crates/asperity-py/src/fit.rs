@@ -73,6 +73,7 @@ pub fn fit<'py>(
         Sweep { temperature: *temperature, x, curves: curves.iter().map(array).collect(), lines }
     });
     let curves = Curves {
+        measure: None,
         path: PathBuf::from("the data"),
         kind: choose("kind", kind)?,
         sweeps: sweeps.collect(),

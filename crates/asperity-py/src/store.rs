@@ -9,6 +9,7 @@ use asperity_io::store::{At, Field, FieldKind, Header, Outcome, Reader, Row, Sta
 use ndarray::{ArrayView3, Axis};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
+use pyo3::types::PyDict;
 
 use crate::error::{CaseError, file, raised};
 use crate::march::choose;
@@ -61,6 +62,23 @@ impl Store {
 
     fn initial_gap<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         Ok(detached(py, || self.reader.initial_gap())?.map_err(file)?.into_pyarray(py))
+    }
+
+    /// The stress below the surface, where it was computed: depth, and by name what each instant of the fields has, NaN where it
+    /// was not computed; numbers have one dimension, profiles over depth two.
+    fn stress<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
+        let Some(set) = self.reader.stress() else { return Ok(None) };
+        let out = PyDict::new(py);
+        out.set_item("depth", set.depths.clone().into_pyarray(py))?;
+        for series in set.scalars() {
+            let numbers = self.reader.stress_series(series.name).map_err(file)?;
+            out.set_item(series.name, numbers.into_pyarray(py))?;
+        }
+        for series in set.profiles() {
+            let profile = self.reader.stress_profile(series.name).map_err(file)?;
+            out.set_item(series.name, profile.into_pyarray(py))?;
+        }
+        Ok(Some(out))
     }
 
     #[getter]

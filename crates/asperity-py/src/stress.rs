@@ -2,7 +2,10 @@
 
 use std::sync::atomic::AtomicBool;
 
-use asperity::stress::{Component, Extreme, SubsurfaceStress, automatic_depths, invariants, survey};
+use asperity::stress::{
+    Extreme, StressQuantity, SubsurfaceStress, SurveyOptions, automatic_depths, check_depths, contact_box,
+    survey,
+};
 use asperity::{Boundary, Error, Grid};
 use ndarray::Array3;
 use numpy::{IntoPyArray, PyArray3, PyReadonlyArray2};
@@ -43,7 +46,21 @@ pub fn stress_depths(
     boundary: &str,
 ) -> PyResult<Vec<f64>> {
     let (grid, boundary, cells, _) = planned(py, &pressure, size, boundary, 0.0)?;
-    Ok(automatic_depths(&grid, boundary, &cells))
+    Ok(automatic_depths(&grid, boundary, contact_box(&grid, &cells)))
+}
+
+/// Checks all numbers of a stress.
+#[pyfunction]
+pub fn stress_check(
+    py: Python<'_>,
+    pressure: PyReadonlyArray2<'_, f64>,
+    size: [f64; 2],
+    boundary: &str,
+    poisson: f64,
+    depths: Vec<f64>,
+) -> PyResult<()> {
+    let (grid, ..) = planned(py, &pressure, size, boundary, poisson)?;
+    check_depths(&grid, &depths).map_err(|error| raised(py, error))
 }
 
 /// One field of shape (depth, x, y): a component ("xx", ...), "mises", "tresca", "tension" or "pressure".
@@ -60,23 +77,16 @@ pub fn stress_field<'py>(
     let (grid, _, _, mut stress) = planned(py, &pressure, size, boundary, poisson)?;
     let [nx, ny] = grid.cells();
     let mut field = vec![0.0; depths.len() * grid.len()];
-    let component = Component::ALL.into_iter().find(|component| component.name() == name);
+    let quantity = StressQuantity::from_name(name)
+        .ok_or_else(|| CaseError::new_err(format!("there is no stress '{name}'")))?;
     let solved = without_python(py, &AtomicBool::new(false), || -> Result<(), Error> {
         let mut six = std::array::from_fn(|_| Vec::new());
         for (depth, out) in depths.iter().zip(field.chunks_mut(grid.len())) {
-            match component {
+            match quantity.component() {
                 Some(component) => stress.component_into(component, *depth, out)?,
                 None => {
                     stress.at(*depth, &mut six)?;
-                    for (cell, out) in out.iter_mut().enumerate() {
-                        let whole = invariants(std::array::from_fn(|k| six[k][cell]));
-                        *out = match name {
-                            "mises" => whole.mises,
-                            "tresca" => whole.tresca,
-                            "tension" => whole.tension,
-                            _ => whole.pressure,
-                        };
-                    }
+                    quantity.field_into(&six, out);
                 }
             }
         }
@@ -89,6 +99,7 @@ pub fn stress_field<'py>(
 
 /// Maxima with their places, and the profile over depth.
 #[pyfunction]
+#[allow(clippy::too_many_arguments)]
 pub fn stress_survey<'py>(
     py: Python<'py>,
     pressure: PyReadonlyArray2<'_, f64>,
@@ -97,9 +108,12 @@ pub fn stress_survey<'py>(
     poisson: f64,
     depths: Vec<f64>,
     threshold: Option<f64>,
+    rolling: Option<&str>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (grid, _, _, mut stress) = planned(py, &pressure, size, boundary, poisson)?;
-    let found = without_python(py, &AtomicBool::new(false), || survey(&mut stress, &depths, threshold))?;
+    let rolling = rolling.map(|word| choose("rolling", word)).transpose()?;
+    let options = SurveyOptions { threshold, rolling };
+    let found = without_python(py, &AtomicBool::new(false), || survey(&mut stress, &depths, &options))?;
     let found = found.map_err(|error| raised(py, error))?;
     let out = PyDict::new(py);
     let ny = grid.cells()[1];
@@ -112,7 +126,14 @@ pub fn stress_survey<'py>(
         out.set_item(format!("max_{name}_y"), grid.y(cell % ny))?;
     }
     out.set_item("mises_by_depth", found.mises_by_depth)?;
+    out.set_item("tresca_by_depth", found.tresca_by_depth)?;
+    out.set_item("tension_by_depth", found.tension_by_depth)?;
     out.set_item("stressed_volume", found.stressed_volume)?;
+    if let Some(shear) = found.orthogonal_shear {
+        out.set_item("orthogonal_shear", shear.largest.value)?;
+        out.set_item("orthogonal_shear_depth", shear.largest.depth)?;
+        out.set_item("orthogonal_shear_by_depth", shear.by_depth)?;
+    }
     out.set_item("at_the_deepest", found.at_the_deepest)?;
     out.set_item("unresolved", found.unresolved)?;
     Ok(out)

@@ -174,3 +174,63 @@ def test_a_hardness_for_each_cell():
     ):
         with pytest.raises(asp.CaseError, match=words):
             asp.solve(surface, rubber, load=3e-3, times=[1.0], progress=False, **change)
+
+
+STRESS = """
+[domain]
+cells = [20, 16]
+size = ["1 mm", "0.8 mm"]
+[[surface]]
+kind = "sphere"
+radius = "5 mm"
+[[body]]
+poisson = 0.3
+material = { model = "elastic", young = "1 GPa" }
+[load]
+control = "load"
+history = { kind = "step", value = "2 N" }
+[time]
+end = "1 s"
+steps = 1
+[output]
+fields = ["pressure"]
+[stress]
+depths = ["0 um", "60 um", "150 um"]
+yield_stress = "1 MPa"
+"""
+
+
+def test_the_stress_of_a_run_is_that_of_its_pressure(tmp_path):
+    case = tmp_path / "case.toml"
+    case.write_text(STRESS)
+    with pytest.warns(asp.ResultWarning, match="yield"):
+        result = asp.run(case, output=tmp_path / "out.zarr")
+    assert result.max_mises.shape == result.field_times.shape
+    assert result.mises_by_depth.shape == (len(result.field_times), 3)
+    below = result.stress(depths=[0.0, 60e-6, 150e-6])
+    assert np.array_equal(result.mises_by_depth[-1], below.mises.max(axis=(1, 2)))
+    found = below.survey(rolling="x")
+    assert found["max_mises"] == result.max_mises[-1] and found["max_mises_x"] == result.max_mises_x[-1]
+    # The surface bears the pressure; nothing depends on Poisson's ratio there.
+    assert np.allclose(below.zz[0], -result.field("pressure"), atol=1e-9 * result.max_pressure[-1])
+    assert found["orthogonal_shear_by_depth"].max() <= found["orthogonal_shear"]
+    with pytest.raises(asp.CaseError, match="rolling"):
+        below.survey(rolling="z")
+    for depths, words in [([1e-9], "quarter of a cell"), ([np.nan], "depth"), ([1e-4, 1e-4], "deeper"), ([], "at least one")]:
+        with pytest.raises(asp.CaseError, match=words):
+            result.stress(depths=depths)
+    with pytest.raises(asp.CaseError, match="body"):
+        result.stress(body=1)
+    memory = asp.elastic(result.initial_gap, 1e9, load=2.0, size=result.size)
+    assert asp.stress(memory.pressure, size=result.size, poisson=0.3).mises.shape == (25, 20, 16)
+    with pytest.raises(AttributeError, match="asperity stress"):
+        asp.solve(result.initial_gap, asp.Elastic(young=1e9, poisson=0.3), size=result.size, load=1.0, times=[1.0]).max_mises
+
+
+def test_a_bulk_modulus_needs_a_poisson_ratio_for_the_stress():
+    ball = asp.Surface.sphere(cells=(16, 16), size=(1e-3, 1e-3), radius=5e-3)
+    resin = asp.Zener(shear=1e9, shear_kelvin=1e9, retardation_time=1.0, bulk_modulus=4e9)
+    result = asp.solve(ball, resin, load=1.0, times=[1.0])
+    with pytest.raises(asp.CaseError, match="constant in time"):
+        result.stress()
+    assert result.stress(poisson=0.4).depths[0] == 0.0

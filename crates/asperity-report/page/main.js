@@ -257,8 +257,23 @@ axes.forEach((button) => button.addEventListener("click", () => {
   if (state.instants.length) evolution.forEach((chart) => chart.mark(state.instants[chosen.instant].time));
 }));
 
+/** The stress below the surface: drawn once, as it is complete when it appears. */
+const stressCharts = [];
+function stressPart() {
+  const s = state.stress;
+  $("stress").hidden = !s;
+  if (!s || $("stress-facts").children.length) return;
+  $("stress-facts").replaceChildren(...s.facts.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]));
+  const lines = (x) => [["von Mises", "mises"], ["Tresca", "tresca"], ["principal", "tension"]].map(([name, key]) => ({ name, x, y: s[key].map((v) => v ?? NaN) }));
+  if (s.time.length > 1) stressCharts.push(new Chart($("stress-curves"), { title: "Largest stress over time", x: { label: "time", unit: "s" }, y: { label: "stress", unit: "Pa" }, series: lines(s.time) }));
+  $("stress-figure").hidden = !s.svg && !state.live;
+  if (s.svg) $("stress-picture").src = "data:image/svg+xml;base64," + s.svg;
+  else if (state.live) $("stress-picture").src = "stress.svg";
+}
+
 async function start() {
   summary();
+  stressPart();
   timePanels();
   solverPanels();
   materialPanels();
@@ -285,8 +300,9 @@ async function follow() {
   const atEnd = chosen.instant >= state.instants.length - 1;
   if (next.instants.length < state.instants.length) cache.clear();
   const hadMaps = state.instants.length > 0;
-  for (const key of ["series", "status", "headline", "facts", "instants", "fields", "running"]) state[key] = next[key];
+  for (const key of ["series", "status", "headline", "facts", "instants", "fields", "running", "stress"]) state[key] = next[key];
   summary();
+  stressPart();
   timePanels();
   solverPanels();
   if (!hadMaps && state.instants.length) await mapsPart();

@@ -11,7 +11,6 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use asperity::contact::ProjectedCg;
-use asperity::convolution::eights::{Eight, Work, vectorize};
 use asperity::march::{March, Simulation};
 use asperity::material::{Creep, CreepTerm};
 use asperity::operator::half_space;
@@ -20,6 +19,7 @@ use asperity::{
     Boundary, ContactState, Control, Grid, History, Loading, Method, Prescribed, Problem, Solver,
     SolverOptions, TimeGrid,
 };
+use asperity_sweep::eights::{Eight, Work, vectorize};
 use rayon::prelude::*;
 
 const HARDNESS: f64 = 300e6;

@@ -3,6 +3,7 @@
 mod material;
 mod result;
 mod run;
+mod stress;
 mod surface;
 
 use asperity_io::choice::{self as choices, Choice};
@@ -13,6 +14,7 @@ use clap_complete::Shell;
 pub use material::{Fit, FitIndentation, Material, Show};
 pub use result::{Export, Plot, Report, Reproduce, ShowResult, View};
 pub use run::{Check, New, Run, Verify};
+pub use stress::Stress;
 pub use surface::{
     Surface, SurfaceConvert, SurfaceFile, SurfaceGenerate, SurfaceInfo, SurfaceOutput, SurfaceProcess,
 };
@@ -53,6 +55,8 @@ pub enum Command {
     View(View),
     /// Draw a figure of a result as PNG, SVG or PDF
     Plot(Plot),
+    /// Compute the stress below the surface of a result: largest values with places, profile over depth, first yield
+    Stress(Stress),
     /// Show a material over time and frequency, or fit one to measured curves
     #[command(subcommand)]
     Material(Material),

@@ -49,12 +49,12 @@ pub struct Plot {
     /// The result (a Zarr directory)
     pub result: PathBuf,
     /// evolution, load-displacement, pressure, gap, displacement, contact, flattening, initial-gap, profile,
-    /// histogram, spots, work or quantities
+    /// histogram, spots, work, quantities or stress
     pub what: String,
     /// The file to write; its extension selects the format: png, svg or pdf [default: RESULT-WHAT.png]
     #[arg(short, long, value_name = "PATH")]
     pub output: Option<PathBuf>,
-    /// Time of maps, profiles and distributions, e.g. '500 s'; the nearest stored one is used [default: last]
+    /// Time of maps, profiles, distributions and the stress, e.g. '500 s'; the nearest stored one is used [default: last]
     #[arg(long, value_name = "T")]
     pub time: Option<String>,
     /// Direction of a profile

@@ -3,8 +3,10 @@
 use std::time::Instant;
 
 use asperity::operator::half_space;
+use asperity::stress::SubsurfaceStress;
 use asperity::{Grid, Method, Scheme};
 use asperity_io::case::{Case, Description, Examination, Inputs, SurfaceInput};
+use asperity_io::stress::StressDescription;
 use serde_json::json;
 
 use crate::args::Check;
@@ -120,6 +122,47 @@ fn prospects(inputs: &Inputs) -> Vec<[String; 2]> {
     lines
 }
 
+/// Times and depths times what the stress at a depth takes here, timed on a small grid and scaled as N log N.
+fn stress_seconds(case: &Case, description: &StressDescription) -> Option<f64> {
+    let cells = case.grid.cells().map(|n| n.min(TIMED / 4));
+    let grid = Grid::new(cells, case.grid.size()).ok()?;
+    let mut stress = SubsurfaceStress::new(grid, case.boundary, description.poisson).ok()?;
+    stress.set_pressure(&vec![1.0; grid.len()]).ok()?;
+    let mut six = std::array::from_fn(|_| Vec::new());
+    let depth = grid.size()[0];
+    stress.at(depth, &mut six).ok()?;
+    let start = Instant::now();
+    stress.at(depth, &mut six).ok()?;
+    let timed = start.elapsed().as_secs_f64();
+    let cost = |n: f64| n * n.max(2.0).log2();
+    Some(description.evaluations? as f64 * timed * cost(case.grid.len() as f64) / cost(grid.len() as f64))
+}
+
+/// What will be computed of the stress below the surface, and what it takes.
+fn stress_lines(stress: &StressDescription, seconds: Option<f64>) -> Vec<[String; 2]> {
+    let range = match stress.depth_range {
+        Some([first, last]) if stress.depth_count > 1 => {
+            format!("{} depths from {} to {}", stress.depth_count, quantity(first, "m"), quantity(last, "m"))
+        }
+        Some([only, _]) => format!("depth {}", quantity(only, "m")),
+        None => format!("{} depths down to the width of the contact", stress.depth_count),
+    };
+    let times = stress.times.map_or("the stored times".to_owned(), |n| crate::words::counted(n, "time"));
+    let mut lines = vec![[
+        "stress".to_owned(),
+        format!("of {} (Poisson's ratio {}), {range}, at {times}", stress.body, stress.poisson),
+    ]];
+    let seconds =
+        seconds.map_or(String::new(), |seconds| format!(", roughly {} after the run", duration(seconds)));
+    lines.push([String::new(), format!("{} of memory{seconds}", bytes(stress.memory_bytes as f64))]);
+    if !stress.fields.is_empty() {
+        let size =
+            stress.result_bytes.map_or(String::new(), |size| format!(", up to {}", bytes(size as f64)));
+        lines.push([String::new(), format!("stored at each depth: {}{size}", stress.fields.join(", "))]);
+    }
+    lines
+}
+
 fn tell(case: &Case, examined: &Examination, estimate: Option<f64>) -> String {
     let (d, inputs) = (&examined.description, &examined.inputs);
     let title = d.title.as_deref().unwrap_or(&case.name);
@@ -222,6 +265,11 @@ fn tell(case: &Case, examined: &Examination, estimate: Option<f64>) -> String {
             case.output.path.display()
         ),
     );
+    if let Some(stress) = &d.stress {
+        stress_lines(stress, stress_seconds(case, stress))
+            .into_iter()
+            .for_each(|[name, value]| line(&name, value));
+    }
     line("memory", format!("about {}", bytes(d.memory_bytes as f64)));
     if let Some(estimate) = estimate {
         line(

@@ -13,6 +13,7 @@ pub mod reproduce;
 pub mod run;
 pub mod schema;
 pub mod show;
+pub mod stress;
 pub mod surface;
 pub mod verify;
 pub mod view;

@@ -8,6 +8,7 @@ use asperity::march::Row;
 use asperity_io::case::Case;
 use asperity_io::session::{RunError, RunOptions, Summary, run as run_case};
 use asperity_io::store::Status;
+use asperity_io::stress::{Below, first_yield};
 use serde_json::{Value, json};
 
 use crate::args::Run;
@@ -75,7 +76,7 @@ fn tell_materials(args: &Run, case: &Case) {
 }
 
 /// A flag that Ctrl-C raises; the second Ctrl-C ends the process at once.
-fn on_interrupt() -> Arc<AtomicBool> {
+pub(super) fn on_interrupt() -> Arc<AtomicBool> {
     let flag = Arc::new(AtomicBool::new(false));
     let raised = flag.clone();
     // Without a handler Ctrl-C still ends the process, and the result stays readable.
@@ -132,6 +133,9 @@ fn tell(args: &Run, summary: &Summary, error: Option<&RunError>) -> Result<(), F
             ),
         );
     }
+    if let Some(below) = &summary.stress {
+        stress_lines(below).into_iter().for_each(|[name, value]| line(&name, value));
+    }
     let memory = summary.peak_memory_bytes.map(|b| format!(", {}", bytes(b as f64))).unwrap_or_default();
     line(
         "work",
@@ -149,6 +153,29 @@ fn tell(args: &Run, summary: &Summary, error: Option<&RunError>) -> Result<(), F
     }
     line("result", summary.result.display().to_string());
     crate::print(&text)
+}
+
+/// The largest stress below the surface, and first yield.
+fn stress_lines(below: &Below) -> Vec<[String; 2]> {
+    let Some(worst) = below.worst() else { return vec![] };
+    let [mises, depth] = ["max_mises", "max_mises_depth"].map(|name| below.number(worst, name));
+    if !depth.is_finite() {
+        return vec![["stress".into(), "none: there is no contact at the times of the stress".into()]];
+    }
+    let mut lines = vec![[
+        "stress".to_owned(),
+        format!(
+            "largest von Mises {} at depth {} of {}, t = {}",
+            quantity(mises, "Pa"),
+            quantity(depth, "m"),
+            below.set.body,
+            quantity(worst.time, "s")
+        ),
+    ]];
+    if let Some(first) = first_yield(below) {
+        lines.push(["yield".into(), first.sentence()]);
+    }
+    lines
 }
 
 fn json_object(summary: &Summary, error: Option<&RunError>) -> Value {

@@ -4,6 +4,7 @@ use asperity::quantities::Quantity;
 use asperity_io::case::quantity::Time;
 use asperity_io::cycles;
 use asperity_io::store::{At, Reader, Status, StoreError};
+use asperity_io::stress::{Below, first_yield};
 use asperity_report::result::contact;
 use serde_json::json;
 
@@ -126,6 +127,21 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
         let value = values.last().copied().unwrap_or(f64::NAN);
         let words = if series.units == "1" { format!("{value}") } else { quantity(value, series.units) };
         line(if n == 0 { "quantities" } else { "" }, format!("{:<20}{words}", series.name));
+    }
+    if let Some(below) = Below::of(reader)?
+        && let Some(worst) = below.worst()
+    {
+        let [mises, depth] = ["max_mises", "max_mises_depth"].map(|name| below.number(worst, name));
+        let place =
+            if depth.is_finite() { format!(" at depth {}", quantity(depth, "m")) } else { String::new() };
+        let time = quantity(worst.time, "s");
+        line(
+            "stress",
+            format!("largest von Mises {}{place} of {}, t = {time}", quantity(mises, "Pa"), below.set.body),
+        );
+        if let Some(first) = first_yield(&below) {
+            line("yield", first.sentence());
+        }
     }
     let worst = rows.iter().map(|row| row.certificate).fold(0.0, f64::max);
     line("certificate", format!("{worst:.1e} at worst (relative error of the pressure)"));

@@ -9,6 +9,7 @@ use serde::Serialize;
 use super::plan::Surface;
 use super::{Case, Rows};
 use crate::choice;
+use crate::stress::{StressBody, StressDescription};
 
 /// Where the material of a body comes from, and how well it is known.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -62,6 +63,8 @@ pub struct Description {
     pub preparation: Vec<Preparation>,
     /// Names of the deformable bodies.
     pub bodies: Vec<String>,
+    /// Poisson's ratio of each of them; null where it changes with time (constant bulk modulus).
+    pub poisson: Vec<Option<f64>>,
     /// Contact modulus right after a load, 1/C(0) \[Pa\]; absent for bodies that do not yield at once.
     pub instantaneous_modulus: Option<f64>,
     /// Contact modulus after all creep, 1/C(infinity) \[Pa\]; 0 for a fluid.
@@ -100,6 +103,9 @@ pub struct Description {
     pub memory_bytes: u64,
     /// Stored fields before compression \[bytes\]; absent where not known beforehand.
     pub result_bytes: Option<u64>,
+    /// The stress below the surface, where it is asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stress: Option<StressDescription>,
 }
 
 /// A stage whose history is a sine.
@@ -136,11 +142,16 @@ impl Case {
         }
         let simulation = Simulation { quantities, ..self.with_gap(ndarray::Array2::default((0, 0))) };
         let copies = if self.output.fields.is_empty() { KEPT } else { STORED };
-        (simulation.bytes() + copies * 8 * self.grid.len() + PROGRAM) as u64
+        let stress = self.stress.as_ref().map_or(0, |plan| plan.bytes(&self.grid, self.boundary));
+        (simulation.bytes() + copies * 8 * self.grid.len() + PROGRAM + stress) as u64
     }
 
     /// What the case will do.
     pub fn describe(&self) -> Description {
+        let stress = self.stress.as_ref().map(|plan| {
+            let instants = plan.times.as_ref().map(Vec::len).or(self.stored_rows());
+            plan.describe(&self.grid, self.boundary, instants)
+        });
         let stored_rows = self.stored_rows();
         let creep = self.reference_creep();
         let field_bytes: u64 = self.output.fields.iter().map(|field| field.bytes()).sum();
@@ -153,6 +164,7 @@ impl Case {
             surfaces: self.surfaces.iter().map(name).collect(),
             preparation: self.surfaces.iter().filter_map(preparation).collect(),
             bodies: self.bodies.iter().map(|body| body.name.clone()).collect(),
+            poisson: self.bodies.iter().map(|body| StressBody::of(body).poisson).collect(),
             instantaneous_modulus: (creep.instantaneous > 0.0).then(|| 1.0 / creep.instantaneous),
             relaxed_modulus: 1.0 / creep.long_time(),
             retardation_times: creep.terms.iter().map(|term| term.retardation_time).collect(),
@@ -176,6 +188,7 @@ impl Case {
             // initial_gap is always stored
             result_bytes: stored_rows
                 .map(|stored| (self.grid.len() as u64).saturating_mul(8 + stored as u64 * field_bytes)),
+            stress,
         }
     }
 

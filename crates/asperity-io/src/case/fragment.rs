@@ -13,6 +13,7 @@ use super::raw;
 use super::read;
 use super::text::Text;
 use crate::preparation::Step;
+use crate::stress::{StressBody, StressPlan};
 
 /// The key that a step takes without its name: `level=plane` is `level form=plane`.
 const FIRST_KEYS: [(&str, &str); 8] = [
@@ -193,8 +194,47 @@ pub fn roughness(keys: &[(&str, &str)]) -> Result<(Grid, Part), Vec<Fault>> {
     }
 }
 
+/// The stress below the surface from words: the keys of `[stress]` but `times`, for a body among these.
+///
+/// ```
+/// use asperity::Grid;
+/// use asperity_io::case::fragment::stress;
+/// use asperity_io::stress::{Depths, StressBody};
+///
+/// let grid = Grid::new([64, 64], [1e-3, 1e-3]).unwrap();
+/// let bodies = [StressBody { name: "PMMA".into(), poisson: Some(0.38) }];
+/// let plan = stress(&[("depths", "0,50 um"), ("yield_stress", "110 MPa")], &grid, &bodies).unwrap();
+/// assert_eq!(plan.depths, Depths::List(vec![0.0, 50e-6]));
+/// assert_eq!(stress(&[("depths", "1 um")], &grid, &bodies).unwrap_err()[0].key, "depths[0]");
+/// ```
+///
+/// # Errors
+/// What is wrong with each key.
+pub fn stress(keys: &[(&str, &str)], grid: &Grid, bodies: &[StressBody]) -> Result<StressPlan, Vec<Fault>> {
+    let mut table = toml::Table::new();
+    for (key, text) in keys {
+        let mut given = value(text);
+        let is_list = given.is_array() || *text == "auto" || !["depths", "components"].contains(key);
+        if !is_list {
+            given = Value::Array(vec![given]);
+        }
+        table.insert((*key).to_owned(), given);
+    }
+    let document = document(vec![("stress", Value::Table(table))]);
+    let text = Text::parse(&document).map_err(faults)?;
+    let section = read::stress(&text).map_err(faults)?;
+    let mut checks = Checks { text: &text, dir: Path::new(""), errors: Vec::new() };
+    match convert::stress::plan(&mut checks, &section, grid, bodies) {
+        Some(plan) if checks.errors.is_empty() => Ok(plan),
+        _ => Err(faults(checks.errors)),
+    }
+}
+
 fn faults(errors: Vec<CaseError>) -> Vec<Fault> {
-    let bare = |text: &str| text.replace("surface[0].", "").replace("domain.", "").replace("surface[0]", "");
+    let bare = |text: &str| {
+        let inside = ["surface[0].", "domain.", "surface[0]", "stress."];
+        inside.iter().fold(text.to_owned(), |text, table| text.replace(table, ""))
+    };
     let fault = |error: CaseError| {
         let message = bare(error.message.strip_prefix(&error.key).unwrap_or(&error.message));
         let message = message.trim_start_matches([':', ' ']).to_owned();

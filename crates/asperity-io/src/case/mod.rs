@@ -75,6 +75,7 @@ pub use plan::{Output, Rows, Surface};
 pub use schema::schema;
 pub use specimen::{Specimen, specimens};
 
+use crate::stress::StressPlan;
 use overrides::Override;
 use text::Text;
 
@@ -128,6 +129,8 @@ pub struct Case {
     pub solver: SolverOptions,
     /// What is stored, and where.
     pub output: Output,
+    /// The stress below the surface, where it is asked for.
+    pub stress: Option<StressPlan>,
     /// Rows of the result, where known beforehand.
     rows: Option<usize>,
     /// About as many.

@@ -11,13 +11,13 @@ use toml::de::{DeString, DeTable, DeValue, ValueDeserializer};
 use super::error::CaseError;
 use super::quantity::range::{Poisson, Positive};
 use super::quantity::{Number, Pressure};
-use super::raw::{At, Document, Domain, Material, Surface};
+use super::raw::{At, Document, Domain, Material, Stress, Surface};
 use super::text::{MOST_ERRORS, Text};
 use super::words;
 
 /// The keys of the root.
 pub const SECTIONS: &[&str] =
-    &["title", "domain", "surface", "body", "load", "time", "temperature", "solver", "output"];
+    &["title", "domain", "surface", "body", "load", "time", "temperature", "solver", "output", "stress"];
 
 /// The document, or the faults that its sections have.
 pub fn document(text: &Text<'_>) -> Result<Document, Vec<CaseError>> {
@@ -37,10 +37,11 @@ pub fn document(text: &Text<'_>) -> Result<Document, Vec<CaseError>> {
     let temperature = reader.optional("temperature", HISTORY);
     let solver = reader.optional("solver", &[]).unwrap_or_default();
     let output = reader.optional("output", &[]).unwrap_or_default();
+    let stress = reader.optional("stress", &[]);
     reader.errors.sort_by_key(|error| error.span.as_ref().map_or(usize::MAX, |span| span.start));
     match (reader.errors.is_empty(), domain, load, time) {
         (true, Some(domain), Some(load), Some(time)) => {
-            Ok(Document { title, domain, surface, body, load, time, temperature, solver, output })
+            Ok(Document { title, domain, surface, body, load, time, temperature, solver, output, stress })
         }
         _ => Err(reader.errors),
     }
@@ -63,6 +64,16 @@ pub fn roughness(text: &Text<'_>) -> Read<(At<Domain>, Vec<At<Surface>>)> {
     let surfaces = reader.list("surface", &[Tag { inside: &[], key: "kind" }]);
     match (domain, reader.errors.is_empty()) {
         (Some(domain), true) => Ok((domain, surfaces)),
+        _ => Err(reader.errors),
+    }
+}
+
+/// The section `[stress]` of a document that may have nothing else.
+pub fn stress(text: &Text<'_>) -> Read<At<Stress>> {
+    let mut reader = Reader { text, errors: Vec::new(), misspelt: Vec::new() };
+    let stress = reader.required("stress", &[]);
+    match (stress, reader.errors.is_empty()) {
+        (Some(stress), true) => Ok(stress),
         _ => Err(reader.errors),
     }
 }

@@ -1,5 +1,6 @@
 //! What is exported: the result as a list of variables over named dimensions, the fields one map at a time.
 
+use asperity::stress::StressQuantity;
 use ndarray::Array2;
 use serde_json::Value;
 
@@ -34,6 +35,8 @@ pub(super) enum Data {
     InitialGap,
     /// One map x by y per instant, read when it is written.
     Field(FieldKind),
+    /// One map x by y per instant and depth, read when it is written.
+    Stress(StressQuantity),
 }
 
 /// A map as it is stored.
@@ -98,16 +101,50 @@ impl<'a> Contents<'a> {
             let over = [FIELD_TIME, X, Y];
             add(kind.name(), kind.units(), kind.long_name(), &over, Data::Field(*kind));
         }
+        if let Some(set) = reader.stress() {
+            let depth = dimensions.len();
+            dimensions.push(("depth", set.depths.len()));
+            add("depth", "m", "depth below the surface", &[depth], Data::Reals(set.depths.clone()));
+            for series in set.scalars() {
+                let all = reader.stress_series(series.name)?;
+                let numbers = instants.iter().map(|index| all[*index]).collect();
+                add(series.name, series.units, series.long_name, &[FIELD_TIME], Data::Reals(numbers));
+            }
+            for series in set.profiles() {
+                let all = reader.stress_profile(series.name)?;
+                let numbers = instants.iter().flat_map(|index| all.row(*index).to_vec()).collect();
+                add(series.name, series.units, series.long_name, &[FIELD_TIME, depth], Data::Reals(numbers));
+            }
+            for (quantity, series) in set.fields() {
+                let over = [FIELD_TIME, depth, X, Y];
+                add(series.name, series.units, series.long_name, &over, Data::Stress(quantity));
+            }
+        }
         let attributes =
             reader.attributes().into_iter().filter_map(|(key, value)| Some((key, attribute(&value)?)));
         Ok(Contents { attributes: attributes.collect(), reader, instants, dimensions, variables })
     }
 
-    /// The variable's map; for a field, that of the `n`th exported instant.
+    /// Depths of the stress.
+    fn depths(&self) -> usize {
+        self.reader.stress().map_or(1, |set| set.depths.len())
+    }
+
+    /// Number of maps that an instant has of a variable over the instants.
+    pub(super) fn maps_of_instant(&self, data: &Data) -> usize {
+        if matches!(data, Data::Stress(_)) { self.depths() } else { 1 }
+    }
+
+    /// The variable's map; for a field, that of the `n`th exported instant, for a stress field, of the `n`th instant and depth.
     pub(super) fn map(&self, data: &Data, n: usize) -> Result<Option<Map>> {
         Ok(match data {
             Data::Reals(_) | Data::Counts(_) => None,
             Data::InitialGap => Some(Map::Real(self.reader.initial_gap()?)),
+            Data::Stress(quantity) => {
+                let (instant, depth) = (n / self.depths(), n % self.depths());
+                let at = At::Index(self.instants.get(instant).copied().unwrap_or(usize::MAX));
+                Some(Map::Real(self.reader.stress_field(*quantity, at, depth)?))
+            }
             Data::Field(kind) => {
                 let at = At::Index(self.instants.get(n).copied().unwrap_or(usize::MAX));
                 Some(match kind {
@@ -124,6 +161,7 @@ impl<'a> Contents<'a> {
             Data::Reals(_) | Data::Counts(_) => 0,
             Data::InitialGap => 1,
             Data::Field(_) => self.instants.len(),
+            Data::Stress(_) => self.instants.len() * self.depths(),
         }
     }
 

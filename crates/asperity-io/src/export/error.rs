@@ -45,6 +45,9 @@ pub enum ExportError {
         /// What to do.
         hint: &'static str,
     },
+    /// The stress cannot be computed like this.
+    #[error(transparent)]
+    Stress(#[from] asperity::Error),
     /// The result cannot be read, or does not hold what was asked for.
     #[error(transparent)]
     Store(#[from] StoreError),

@@ -89,13 +89,15 @@ fn write_data(contents: &Contents<'_>, data: &Data, data_set: &H5Dataset) -> Res
     Ok(())
 }
 
-/// Writes the `n`th map of a data set: all of it, or its part at index `n` of the first of three axes.
+/// Writes the `n`th map of a data set: all of it, or its part at index `n` of the axes before the last two.
 fn write_map<T: H5Type>(data_set: &H5Dataset, n: usize, map: &[T]) -> Result<(), Hdf5Error> {
     let mut starts = vec![0; data_set.ndims()];
     let mut counts = data_set.shape();
-    if let ([_, _, _], [first, ..]) = (counts.as_slice(), starts.as_mut_slice()) {
-        *first = n;
-        counts[0] = 1;
+    let depths = if counts.len() == 4 { counts[1] } else { 1 };
+    for (axis, index) in [n / depths, n % depths].into_iter().enumerate().take(counts.len().saturating_sub(2))
+    {
+        starts[axis] = index;
+        counts[axis] = 1;
     }
     data_set.write_slice(&starts, &counts, map)
 }

@@ -18,11 +18,13 @@ mod hdf5;
 mod netcdf;
 mod npz;
 mod output;
+mod volume;
 mod vtk;
 
 use std::path::{Path, PathBuf};
 
 pub use error::{ExportError, Result};
+pub use volume::volume;
 
 use crate::store::{At, FieldKind, Reader, StoreError};
 use contents::Contents;

@@ -81,7 +81,7 @@ fn slab<'a>(contents: &Contents<'_>, variable: &'a Variable) -> Slab<'a> {
     let kind = match &variable.data {
         Data::Reals(_) | Data::InitialGap => Type::Double,
         Data::Field(crate::store::FieldKind::Contact) => Type::Byte,
-        Data::Field(_) => Type::Double,
+        Data::Field(_) | Data::Stress(_) => Type::Double,
         // Counts beyond 2^31 are exact as doubles up to 2^53.
         Data::Counts(counts) if counts.iter().all(|n| i32::try_from(*n).is_ok()) => Type::Int,
         Data::Counts(_) => Type::Double,
@@ -102,7 +102,11 @@ fn write_slab(
     n: usize,
     file: &mut impl Write,
 ) -> Result<(), WriteError> {
-    let part = |length: usize| if slab.record { n..n + 1 } else { 0..length };
+    let instants = contents.instants.len().max(1);
+    let part = |length: usize| match slab.record {
+        true => n * (length / instants)..(n + 1) * (length / instants),
+        false => 0..length,
+    };
     match &slab.variable.data {
         Data::Reals(reals) => {
             for x in &reals[part(reals.len())] {
@@ -117,19 +121,24 @@ fn write_slab(
                 }
             }
         }
-        data => match contents.map(data, n)? {
-            Some(Map::Real(map)) => {
-                for x in &map {
-                    file.write_all(&x.to_be_bytes())?;
+        data => {
+            let maps = contents.maps_of_instant(data);
+            for n in n * maps..(n + 1) * maps {
+                match contents.map(data, n)? {
+                    Some(Map::Real(map)) => {
+                        for x in &map {
+                            file.write_all(&x.to_be_bytes())?;
+                        }
+                    }
+                    Some(Map::Byte(map)) => {
+                        for cell in &map {
+                            file.write_all(&[*cell])?;
+                        }
+                    }
+                    None => {}
                 }
             }
-            Some(Map::Byte(map)) => {
-                for cell in &map {
-                    file.write_all(&[*cell])?;
-                }
-            }
-            None => {}
-        },
+        }
     }
     let padding = (padded(slab.bytes) - slab.bytes) as usize;
     Ok(file.write_all(&[0; 4][..padding])?)

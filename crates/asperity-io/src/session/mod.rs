@@ -19,6 +19,7 @@ use thiserror::Error;
 
 use crate::case::{Case, CaseErrors};
 use crate::store::{Field, FieldKind, Header, Outcome, Reader, Status, StoreError, Work, Writer};
+use crate::stress::{self, Below, StressError};
 
 pub use memory::peak_memory_bytes;
 
@@ -50,6 +51,8 @@ pub struct Progress<'a> {
     pub end: f64,
     /// Whether this was the last row.
     pub finished: bool,
+    /// Once all rows are stored: the times at which the stress below the surface is computed, and all of them.
+    pub stress: Option<[usize; 2]>,
 }
 
 /// What a run did.
@@ -73,6 +76,8 @@ pub struct Summary {
     pub last: Option<Row>,
     /// Where its numbers may be off.
     pub findings: Vec<Finding>,
+    /// The stress below the surface, where the case asks for it.
+    pub stress: Option<Below>,
 }
 
 /// Why a run did not complete.
@@ -137,7 +142,7 @@ fn run_inside(
         let writer = Writer::create(&path, &header, simulation.gap.view(), options.force);
         (writer.map_err(RunError::Output)?, None, Earlier::default())
     };
-    let mut record = Record { case, writer, judge, path: &path, last: None };
+    let mut record = Record { case, writer, judge, path: &path, last: None, stress: None };
     let march = match &checkpoint {
         Some(checkpoint) => {
             let rows = earlier.rows.get(..checkpoint.step).unwrap_or_default();
@@ -172,7 +177,30 @@ fn run_inside(
             return Err(record.stop_storing(&march, source));
         }
         let finished = march.finished();
-        observe(Progress { row: &row, done: march.done(), resumed, total, end: end_time, finished });
+        observe(Progress {
+            row: &row,
+            done: march.done(),
+            resumed,
+            total,
+            end: end_time,
+            finished,
+            stress: None,
+        });
+    }
+    if let (Some(plan), Some(row)) = (&case.stress, record.last) {
+        let done = march.done();
+        let tell = |times, of| {
+            let stress = Some([times, of]);
+            observe(Progress { row: &row, done, resumed, total, end: end_time, finished: true, stress });
+        };
+        match stress::evaluate(&mut record.writer, plan, &options.interrupt, tell) {
+            Ok(below) => record.stress = Some(below),
+            Err(StressError::Solve(Error::Interrupted)) => {
+                return record.end(Some(&march), Outcome::new(Status::Interrupted));
+            }
+            Err(StressError::Solve(source)) => return Err(record.fail(Some(&march), source)),
+            Err(StressError::Store(source)) => return Err(record.stop_storing(&march, source)),
+        }
     }
     record.end(Some(&march), Outcome::new(Status::Complete))
 }
@@ -197,6 +225,8 @@ struct Record<'a> {
     path: &'a Path,
     /// The last row stored.
     last: Option<Row>,
+    /// The stress below the surface, once it is computed.
+    stress: Option<Below>,
 }
 
 impl Record<'_> {
@@ -226,7 +256,8 @@ impl Record<'_> {
             Some(march) => self.judge.findings(march.simulation()),
             None => self.judge.known().to_vec(),
         };
-        self.case.findings.iter().cloned().chain(of_run).collect()
+        let of_stress = self.stress.iter().flat_map(|below| below.findings(&self.case.grid));
+        self.case.findings.iter().cloned().chain(of_run).chain(of_stress).collect()
     }
 
     /// Stores what was found, and the state from which the run goes on.
@@ -267,6 +298,7 @@ impl Record<'_> {
             ..outcome
         };
         let (status, result, last) = (outcome.status, self.path.to_owned(), self.last);
+        let stress = self.stress.take();
         let summary = |status, work: Work| Summary {
             status,
             rows,
@@ -277,6 +309,7 @@ impl Record<'_> {
             result,
             last,
             findings,
+            stress,
         };
         match self.writer.finish(&outcome) {
             Ok(work) => Ok(summary(status, work)),

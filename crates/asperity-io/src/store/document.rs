@@ -14,6 +14,7 @@ use super::error::{Result, StoreError, corrupt, io};
 use super::header::{self, Header, Progress};
 use super::layout::{self, ArraySpec, LEVEL};
 use super::replace::{Way, replace};
+use super::stress::StressSet;
 use crate::finding;
 
 const NAME: &str = "zarr.json";
@@ -29,6 +30,8 @@ const LARGEST: u64 = 64 << 20;
 pub(super) struct Document {
     pub(super) header: Header,
     pub(super) progress: Progress,
+    /// The stress below the surface, where it was computed.
+    pub(super) stress: Option<StressSet>,
 }
 
 /// The documents as JSON, kept between steps: only a few numbers of them change.
@@ -43,6 +46,7 @@ impl Pages {
             arrays.iter().map(|array| (array.name.to_owned(), array.document(LEVEL))).collect();
         let mut attributes = header::attributes(&document.header);
         header::put_progress(&mut attributes, &document.progress);
+        attributes.extend(document.stress_attribute());
         let consolidated = json!({"kind": "inline", "must_understand": false, "metadata": metadata});
         let group = json!({
             "zarr_format": 3,
@@ -86,7 +90,15 @@ impl Pages {
 impl Document {
     /// All arrays of the result.
     pub(super) fn arrays(&self) -> Vec<ArraySpec> {
-        layout::arrays(&self.header, self.progress.rows, self.progress.maps)
+        let (cells, Progress { rows, maps, .. }) = (self.header.grid.cells(), &self.progress);
+        let mut arrays = layout::arrays(&self.header, *rows, *maps);
+        arrays.extend(self.stress.iter().flat_map(|set| set.arrays(cells, *maps)));
+        arrays
+    }
+
+    /// The attribute `stress` of the group.
+    pub(super) fn stress_attribute(&self) -> Option<(String, Value)> {
+        self.stress.as_ref().map(|set| ("stress".to_owned(), json!(set.to_text())))
     }
 
     /// Reads and checks the document of the result at `root`.
@@ -107,7 +119,14 @@ impl Document {
         let findings = attributes.get("findings").map(finding::from_list).unwrap_or_default();
         let progress =
             Progress { status, work, rows: length("time")?, maps: length("field_time")?, findings };
-        let document = Document { header, progress };
+        let stress = match attributes.get("stress") {
+            None => None,
+            Some(text) => {
+                let set = text.as_str().and_then(|text| StressSet::parse(text, progress.maps));
+                Some(set.ok_or_else(|| corrupt(&file, "the attribute `stress` is malformed"))?)
+            }
+        };
+        let document = Document { header, progress, stress };
         for array in document.arrays() {
             if metadata.get(array.name).is_none_or(|stored| !same_form(stored, &array.document(LEVEL))) {
                 let what = format!("the array `{}` is missing or not of the form of a result", array.name);

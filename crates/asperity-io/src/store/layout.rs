@@ -252,6 +252,55 @@ pub(super) struct ArraySpec {
 }
 
 impl ArraySpec {
+    /// A coordinate \[its unit\] along the dimension of its name.
+    pub(super) fn coordinate_of(
+        series: &Series,
+        dimensions: &'static [&'static str],
+        length: usize,
+    ) -> ArraySpec {
+        ArraySpec {
+            name: series.name,
+            data_type: DataType::Float64,
+            dimensions,
+            shape: vec![length],
+            chunk: vec![length],
+            compressed: false,
+            attributes: json!({"units": series.units, "long_name": series.long_name}),
+        }
+    }
+
+    /// A number of each instant of the fields.
+    pub(super) fn of_instants(series: &Series, maps: usize) -> ArraySpec {
+        self::series(series.name, DataType::Float64, "field_time", maps, series.units, series.long_name)
+    }
+
+    /// A row of numbers of each instant.
+    pub(super) fn profile_of(
+        series: &Series,
+        dimensions: &'static [&'static str],
+        shape: [usize; 2],
+    ) -> ArraySpec {
+        ArraySpec {
+            chunk: vec![HISTOGRAMS_PER_CHUNK, shape[1]],
+            shape: shape.to_vec(),
+            ..ArraySpec::coordinate_of(series, dimensions, 0)
+        }
+    }
+
+    /// Fields at the depths of each instant.
+    pub(super) fn volume_of(
+        series: &Series,
+        dimensions: &'static [&'static str],
+        shape: [usize; 4],
+    ) -> ArraySpec {
+        ArraySpec {
+            chunk: vec![1, 1, side(shape[2]), side(shape[3])],
+            shape: shape.to_vec(),
+            compressed: true,
+            ..ArraySpec::coordinate_of(series, dimensions, 0)
+        }
+    }
+
     /// Metadata document (`zarr.json`) of the array, its chunks deflated with `level`.
     pub(super) fn document(&self, level: u8) -> Value {
         let mut codecs = vec![match self.data_type {

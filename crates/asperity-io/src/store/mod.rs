@@ -9,6 +9,9 @@
 //! | `field_time`, `field_step` | `field_time` | time and row of each stored field; of a field between two rows the later |
 //! | `initial_gap` | `x`, `y` | undeformed gap |
 //! | `x`, `y` | | centres of the cells |
+//! | `max_mises`, `max_mises_depth`, ... | `field_time` | the stress below the surface, where it was computed ([`StressSet`]) |
+//! | `mises_by_depth`, ... | `field_time`, `depth` | its largest values at each depth |
+//! | `stress_mises`, ... | `field_time`, `depth`, `x`, `y` | stress fields that were asked for |
 //!
 //! Numbers keep their bits. Each array has `units` and `long_name`; the attributes of the group hold
 //! the case file as text (`case`), its numbers as JSON text (`setup`), the `version`, the `status` and the
@@ -57,6 +60,7 @@ mod layout;
 mod reader;
 mod replace;
 mod resume;
+mod stress;
 mod writer;
 
 pub use asperity::march::{Checkpoint, Row};
@@ -65,4 +69,5 @@ pub use header::{Header, Status, Work};
 pub(crate) use layout::coordinates;
 pub use layout::{FieldKind, SCALARS, Scalar, Series};
 pub use reader::{At, Reader};
+pub use stress::{StressSet, StressWriter};
 pub use writer::{Field, Outcome, Writer};

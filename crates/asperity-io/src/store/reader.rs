@@ -78,6 +78,7 @@ impl Reader {
     pub fn attributes(&self) -> Map<String, Value> {
         let mut attributes = header::attributes(self.header());
         header::put_progress(&mut attributes, &self.document.progress);
+        attributes.extend(self.document.stress_attribute());
         attributes
     }
 
@@ -254,6 +255,10 @@ impl Reader {
         Chunks::new(&self.root, &self.spec("initial_gap")?)?.read_map(&[], self.header().grid.shape())
     }
 
+    pub(super) fn document(&self) -> &Document {
+        &self.document
+    }
+
     pub(super) fn into_document(self) -> Document {
         self.document
     }
@@ -287,7 +292,7 @@ impl Reader {
         self.missing("quantities".into(), "none (its case has no output.quantities)".into())
     }
 
-    fn spec(&self, name: &str) -> Result<ArraySpec> {
+    pub(super) fn spec(&self, name: &str) -> Result<ArraySpec> {
         let spec = self.document.arrays().into_iter().find(|spec| spec.name == name);
         spec.ok_or_else(|| self.missing(format!("array `{name}`"), "the arrays of a result".into()))
     }

@@ -11,6 +11,7 @@ use super::error::{Result, StoreError};
 use super::header::{Header, Status};
 use super::reader::Reader;
 use super::replace::Way;
+use super::stress;
 use super::writer::{Writer, lock, remove};
 
 impl Writer {
@@ -47,7 +48,8 @@ impl Writer {
         let all = reader.rows()?;
         let maps = reader.field_steps().iter().take_while(|step| **step < rows).count();
 
-        let Document { header: mut kept, mut progress } = reader.into_document();
+        // The stress is computed again at the end of the run.
+        let Document { header: mut kept, mut progress, stress: _ } = reader.into_document();
         let stored_maps = std::mem::replace(&mut progress.maps, maps);
         progress.rows = rows;
         progress.status = Status::Running;
@@ -58,10 +60,11 @@ impl Writer {
             kept.version = format!("{}, {}", kept.version, header.version);
         }
         kept.rows_expected = header.rows_expected;
-        let document = Document { header: kept, progress };
+        let document = Document { header: kept, progress, stress: None };
         let mut pages = Pages::new(&document);
         pages.commit(path, &document.progress, Way::Safe)?;
         pages.write_arrays(path, Way::Safe)?;
+        stress::clear(path)?;
         // Maps after the last one counted may have been written, the last of them by half.
         for kind in &document.header.fields {
             for map in maps.. {

@@ -17,6 +17,7 @@ use super::error::{Result, StoreError, input, io};
 use super::header::{Header, Progress, Status, Work};
 use super::layout::{Entry, FieldKind, SCALARS};
 use super::replace::Way;
+use super::stress::{self, StressSet};
 
 /// Steps that follow each other faster than this are committed the quick way (see [`super::replace`]).
 const QUICK: Duration = Duration::from_millis(20);
@@ -141,7 +142,7 @@ impl Writer {
         {
             return Err(input("fields of the result", format!("{kind} twice"), "each named once"));
         }
-        let document = Document { header: header.clone(), progress: Progress::default() };
+        let document = Document { header: header.clone(), progress: Progress::default(), stress: None };
         let lock = create::publish(path, force, |root| {
             create::write_constants(root, &document, initial_gap)?;
             let mut pages = Pages::new(&document);
@@ -319,6 +320,18 @@ impl Writer {
         }
         self.field_time.put(map, time.to_le_bytes())?;
         self.field_step.put(map, (self.progress.rows as i64).to_le_bytes())
+    }
+
+    /// Sets the stress below the surface that readers see.
+    pub(super) fn set_stress(&mut self, stress: Option<StressSet>) -> Result<()> {
+        let document = Document { header: self.header.clone(), progress: self.progress.clone(), stress };
+        self.pages = stress::publish(&self.root, &document)?;
+        Ok(())
+    }
+
+    /// What the run has found about itself so far.
+    pub fn findings(&self) -> &[Finding] {
+        &self.progress.findings
     }
 
     /// Sets what the run has found about itself; readers see it with the next row, [`note`](Self::note) or end.

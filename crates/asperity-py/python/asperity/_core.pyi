@@ -29,6 +29,7 @@ __all__ = [
     "run",
     "Store",
     "save",
+    "stress_check",
     "stress_depths",
     "stress_field",
     "stress_survey",
@@ -135,6 +136,7 @@ class Store:
     def quantities(self) -> list[str]: ...
     def histogram(self, name: str) -> tuple[_Floats, _Floats]: ...
     def initial_gap(self) -> _Floats: ...
+    def stress(self) -> dict[str, _Floats] | None: ...
     @property
     def field_steps(self) -> list[int]: ...
     @property
@@ -161,6 +163,7 @@ def elastic(
     tolerance: float,
     max_iterations: int,
 ) -> dict[str, Any]: ...
+def stress_check(pressure: _Floats, size: list[float], boundary: str, poisson: float, depths: list[float]) -> None: ...
 def stress_depths(pressure: _Floats, size: list[float], boundary: str) -> list[float]: ...
 def stress_field(
     name: str, pressure: _Floats, size: list[float], boundary: str, poisson: float, depths: list[float]
@@ -172,6 +175,7 @@ def stress_survey(
     poisson: float,
     depths: list[float],
     threshold: float | None,
+    rolling: str | None,
 ) -> dict[str, Any]: ...
 def run(
     path: str,

@@ -15,6 +15,9 @@ from ._core import CaseError
 from ._findings import Finding, findings_of
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from ._stress import Stress
     from .plot import Plots
 
 #: Fields: unit and meaning.
@@ -92,6 +95,7 @@ class Result:
         path: str | None = None,
         histograms: dict[str, tuple[Floats, Floats]] | None = None,
         field_times: Any = None,
+        stress: dict[str, Floats] | None = None,
     ) -> None:
         self._table = table
         self._fields = fields
@@ -105,12 +109,20 @@ class Result:
         self._attributes = attributes
         self._path = path
         self._histograms = dict(histograms or {})
+        self._stress = dict(stress or {})
 
     def __getattr__(self, name: str) -> Floats:
         table = self.__dict__.get("_table")
         if table is not None and name in table:
             values: Floats = table[name]
             return values
+        stress = self.__dict__.get("_stress") or {}
+        if name in stress:
+            found: Floats = stress[name]
+            return found
+        if name == "depth" or name.startswith(("max_mises", "max_tresca", "max_tension")) or name.endswith("_by_depth"):
+            words = "which [stress] of a case, or `asperity stress RESULT`, stores; stress(time=...) computes it now"
+            raise AttributeError(f"the result has no {name!r}, {words}")
         if name in QUANTITIES:
             if table is not None and name in self.__dict__.get("_histograms", {}):
                 raise AttributeError(f"{name!r} has a number for each bin: use histogram({name!r})")
@@ -118,7 +130,7 @@ class Result:
         raise AttributeError(f"a result has no {name!r}; it has {', '.join(ROW)}, field(name, time=...) and plot")
 
     def __dir__(self) -> list[str]:
-        return sorted([*super().__dir__(), *self._table])
+        return sorted([*super().__dir__(), *self._table, *self._stress])
 
     def __len__(self) -> int:
         """Rows."""
@@ -230,6 +242,44 @@ class Result:
             raise CaseError(f"the field {name!r} was not kept; kept: {', '.join(self._fields) or 'none'}")
         return self._one(name, self._index(time, index))
 
+    def stress(
+        self,
+        *,
+        time: float | None = None,
+        index: int | None = None,
+        depths: str | Sequence[float] = "auto",
+        poisson: float | None = None,
+        body: int = 0,
+    ) -> Stress:
+        """The stress below the surface at the stored time nearest to `time` [s], or with that index; default the last.
+
+        It follows from the stored pressure, with the Poisson's ratio of the body of that number (constant in time), or `poisson`;
+        see :func:`asperity.stress`. What a run or ``asperity stress`` stored are attributes over `field_times`: `max_mises` [Pa],
+        `max_mises_depth`, `max_mises_x`, `max_mises_y` [m], the same for `tresca` and `tension`, and over `field_times` and
+        `depth`: `mises_by_depth`, ...; NaN where the stress was not computed.
+
+        >>> import asperity as asp
+        >>> ball = asp.Surface.sphere(cells=(32, 32), size=(1e-3, 1e-3), radius=20e-3)
+        >>> steel = asp.Elastic(young=210e9, poisson=0.3)
+        >>> result = asp.solve(ball, steel, load=10.0, times=[1.0])
+        >>> below = result.stress()
+        >>> bool(abs(below.survey()["max_mises"] / result.max_pressure[-1] - 0.62) < 0.03)
+        True
+        """
+        from ._stress import stress
+
+        setup = json.loads(self._attributes.get("setup") or "{}")
+        if poisson is None:
+            known = setup.get("poisson") or []
+            if not 0 <= body < max(len(known), 1):
+                raise CaseError(f"body is {body}, but the result has {len(known)} bodies, counted from 0")
+            poisson = known[body] if known else None
+            if poisson is None:
+                raise CaseError("the result does not say a Poisson's ratio that is constant in time; give poisson=...")
+        pressure = self.field("pressure", time=time, index=index)
+        boundary = setup.get("boundary", "free")
+        return stress(pressure, size=self._size, poisson=poisson, depths=depths, boundary=boundary)
+
     def to_xarray(self) -> Any:
         """The result as xarray.Dataset, as ``xarray.open_zarr`` gives it for one on disk."""
         import xarray
@@ -243,6 +293,11 @@ class Result:
             name: (("field_time", "x", "y"), self._stack(name), {"units": FIELDS[name][0], "long_name": FIELDS[name][1]})
             for name in self._fields
         }
+        for name, values in self._stress.items():
+            if name != "depth":
+                unit = "m3" if name == "stressed_volume" else "m" if name.endswith(("_depth", "_x", "_y")) and "_by_" not in name else "Pa"
+                dimensions = ("field_time", "depth")[: values.ndim]
+                maps[name] = (dimensions, values, {"units": unit, "long_name": name.replace("_", " ")})  # type: ignore[assignment]
         gap = ("initial_gap", (("x", "y"), self.initial_gap, {"units": "m", "long_name": "undeformed gap"}))
         coordinates = {
             "time": ("time", np.asarray(self._table["time"]), {"units": "s", "long_name": "time"}),
@@ -250,6 +305,8 @@ class Result:
             "x": ("x", self.x, {"units": "m", "long_name": "x"}),
             "y": ("y", self.y, {"units": "m", "long_name": "y"}),
         }
+        if "depth" in self._stress:
+            coordinates["depth"] = ("depth", self._stress["depth"], {"units": "m", "long_name": "depth below the surface"})
         for name, (edges, numbers) in self._histograms.items():
             along, ends, unit, words = HISTOGRAMS[name]
             middle = np.sqrt(edges[1:] * edges[:-1]) if name == "spot_histogram" else 0.5 * (edges[1:] + edges[:-1])
@@ -268,7 +325,8 @@ class Result:
         return Plots(self)
 
     def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
-        """Writes the result as a Zarr group, as a run of a case file does: :func:`open` and xarray read it.
+        """Writes the result as a Zarr group, as a run of a case file does: :func:`open` and xarray read it. The stress below the
+        surface is not written: ``asperity stress`` computes it again.
 
         Raises
         ------
@@ -388,4 +446,5 @@ def open(path: str | os.PathLike[str]) -> Result:
         size=(nx, ny),
         attributes=attributes,
         path=os.fspath(path),
+        stress=store.stress(),
     )

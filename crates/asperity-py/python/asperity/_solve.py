@@ -193,6 +193,8 @@ def march(
     setup: dict[str, Any] = {
         "boundary": boundary,
         "bodies": [repr(body) for body in bodies],
+        # None where it changes with time.
+        "poisson": [body._given.get("poisson") for body in bodies],
         "control": control,
         "history": history,
         "scheme": scheme,

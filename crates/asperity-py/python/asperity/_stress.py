@@ -28,8 +28,8 @@ class Stress:
         self._boundary = boundary
         #: Depths [m].
         self.depths = depths
-        # The first field checks all numbers, so that errors come here and not later.
-        _core.stress_field("zz", pressure, list(size), boundary, poisson, list(depths[:1]))
+        # Errors come here and not with the first field.
+        _core.stress_check(pressure, list(size), boundary, poisson, [float(d) for d in depths])
 
     def _field(self, name: str) -> Floats:
         return _core.stress_field(
@@ -86,10 +86,12 @@ class Stress:
         """Minus the mean of the normal stresses."""
         return self._field("pressure")
 
-    def survey(self, threshold: float | None = None) -> dict[str, Any]:
+    def survey(self, threshold: float | None = None, *, rolling: str | None = None) -> dict[str, Any]:
         """Maxima, refined between the depths, with their places: `max_mises`, `max_mises_depth`, `max_mises_x`, `max_mises_y`,
-        the same for `tresca` and `tension`; `mises_by_depth`; and with a threshold [Pa] the `stressed_volume` [m^3] in which
-        the von Mises stress exceeds it.
+        the same for `tresca` and `tension`; `mises_by_depth`, `tresca_by_depth`, `tension_by_depth`; with a threshold [Pa] the
+        `stressed_volume` [m^3] in which the von Mises stress exceeds it; and for a contact that rolls along "x" or "y" the
+        largest range of the shear stress on planes parallel to the surface along that direction, `orthogonal_shear`,
+        `orthogonal_shear_depth` and `orthogonal_shear_by_depth` (Lundberg and Palmgren 1947).
 
         Warns where the maximum lies at the deepest depth, or nearer to the surface than two cells.
         """
@@ -100,6 +102,7 @@ class Stress:
             self._poisson,
             [float(d) for d in self.depths],
             None if threshold is None else number("threshold", threshold),
+            rolling,
         )
         if found.pop("at_the_deepest"):
             warnings.warn("the largest von Mises stress lies at the deepest depth: give deeper ones", stacklevel=2)
@@ -108,8 +111,7 @@ class Stress:
                 "the largest von Mises stress lies less than two cells below the surface: the grid is too coarse for it",
                 stacklevel=2,
             )
-        found["mises_by_depth"] = np.asarray(found["mises_by_depth"])
-        return found
+        return {name: np.asarray(value) if isinstance(value, list) else value for name, value in found.items()}
 
     def __repr__(self) -> str:
         nx, ny = self._pressure.shape

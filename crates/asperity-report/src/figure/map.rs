@@ -40,6 +40,22 @@ pub struct Map {
     pub meaning: Values,
     /// Lengths of the area along x and y \[m\].
     pub size: [f64; 2],
+    /// What its axes are.
+    pub axes: Axes,
+}
+
+/// The axes of a map.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Axes {
+    /// x to the right and y upwards, from 0.
+    Area,
+    /// x or y to the right, from `start` \[m\], and the depth downwards: a section of the body.
+    Section {
+        /// "x" or "y".
+        along: &'static str,
+        /// Where the section begins \[m\].
+        start: f64,
+    },
 }
 
 impl Map {
@@ -52,7 +68,18 @@ impl Map {
         size: [f64; 2],
     ) -> Map {
         let meaning = Values::Quantity { label: label.into(), unit: unit.into(), colours, range: None };
-        Map { title: title.into(), values: raster::means(values, raster::block(values)), meaning, size }
+        Map {
+            title: title.into(),
+            values: raster::means(values, raster::block(values)),
+            meaning,
+            size,
+            axes: Axes::Area,
+        }
+    }
+
+    /// The same map as a section whose second axis is the depth.
+    pub fn section(self, along: &'static str, start: f64) -> Map {
+        Map { axes: Axes::Section { along, start }, ..self }
     }
 
     /// A map of states.
@@ -67,6 +94,7 @@ impl Map {
             values: raster::states(values, raster::block(values)),
             meaning: Values::States(names),
             size,
+            axes: Axes::Area,
         }
     }
 
@@ -89,12 +117,16 @@ impl Map {
         let head = if self.title.is_empty() { 8.0 } else { TEXT + 9.0 };
 
         // Both axes in the same unit, and as long on paper as they are in truth.
-        let unit = shown("m", self.size[0].max(self.size[1]));
-        let axis = |name: &str, length: f64| {
-            let label = format!("{name} [{}]", unit.text);
-            Axis::linear(label, "").between(0.0, length * unit.factor)
+        let (names, start) = match self.axes {
+            Axes::Area => (["x", "y"], 0.0),
+            Axes::Section { along, start } => ([along, "depth"], start),
         };
-        let [across, up] = [axis("x", self.size[0]), axis("y", self.size[1])];
+        let unit = shown("m", (start + self.size[0]).max(self.size[1]));
+        let axis = |name: &str, start: f64, length: f64| {
+            let label = format!("{name} [{}]", unit.text);
+            Axis::linear(label, "").between(start * unit.factor, (start + length) * unit.factor)
+        };
+        let [across, up] = [axis(names[0], start, self.size[0]), axis(names[1], 0.0, self.size[1])];
         let room_y = height - foot - head;
         let y = Ruler::new(&up, [0.0, 1.0], 0.0, room_y / 32.0);
         let labels = y.ticks.iter().map(|(_, text)| font::width(text, SMALL)).fold(0.0, f64::max);
@@ -108,7 +140,9 @@ impl Map {
         let (right, top) = (left + w, y0 + head + 0.5 * (room_y - h));
         let bottom = top + h;
         let x = Ruler::new(&across, [0.0, 1.0], 0.0, w / 42.0).placed(left, right);
-        let y = Ruler::new(&up, [0.0, 1.0], 0.0, h / 32.0).placed(bottom, top);
+        let y = Ruler::new(&up, [0.0, 1.0], 0.0, h / 32.0);
+        let down = self.axes != Axes::Area;
+        let y = if down { y.placed(top, bottom) } else { y.placed(bottom, top) };
 
         if !self.title.is_empty() {
             drawing.text([left, top - 6.0], TEXT, Anchor::Start, "", &self.title);
@@ -116,10 +150,14 @@ impl Map {
         frame(drawing, &x, &y, [left, top, right, bottom], [left - labels - 10.0, bottom + foot - 5.0]);
         let picture = match (&self.meaning, &bar) {
             (Values::States(states), _) => raster::state_picture(&self.values, states),
+            (_, Some((_, ends, colours))) if down => {
+                raster::quantity(&self.values.slice(ndarray::s![.., ..;-1]).to_owned(), *ends, *colours)
+            }
             (_, Some((_, ends, colours))) => raster::quantity(&self.values, *ends, *colours),
             (_, None) => Vec::new(),
         };
-        let smooth = self.values.dim().0 > w as usize;
+        // The slabs of a section are thicker than its cells.
+        let smooth = down || self.values.dim().0 > w as usize;
         drawing.image([left, top], [w, h], &picture, smooth);
         let style = format!("fill=\"none\" stroke=\"{INK}\" stroke-width=\"0.8\"");
         drawing.rect([left, top], [w, h], &style);

@@ -23,7 +23,7 @@ mod write;
 pub use axis::{Axis, Scale};
 pub use colours::Colours;
 pub use curves::{Curves, Series, Style};
-pub use map::{Map, UNDEFINED, Values};
+pub use map::{Axes, Map, UNDEFINED, Values};
 pub(crate) use raster::{means, states};
 pub use write::{FigureError, Form};
 

@@ -7,7 +7,7 @@ use serde_json::json;
 
 use super::blob::packed;
 use super::maps::{Maps, one};
-use super::{filled_page, state, surface};
+use super::{filled_page, state, stress, surface};
 
 /// A result to look at.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,7 +30,7 @@ impl Live {
         Live { path: path.to_owned() }
     }
 
-    /// What is at a path of the page: `/`, `/state`, `/map/NAME`; `None` where nothing is.
+    /// What is at a path of the page: `/`, `/state`, `/stress.svg`, `/map/NAME`; `None` where nothing is.
     ///
     /// # Errors
     /// [`StoreError`] where the result is damaged, has no row yet or not this map.
@@ -43,6 +43,10 @@ impl Live {
                 answer("text/html; charset=utf-8", filled_page(&reader, &state, "").into_bytes())
             }
             "/state" => answer("application/json", state_of(&reader, false)?.to_string().into_bytes()),
+            "/stress.svg" => match stress::picture(&reader)? {
+                Some(picture) => answer("image/svg+xml", picture.into_bytes()),
+                None => Ok(None),
+            },
             path => match path.strip_prefix("/map/") {
                 Some(name) => match map(&reader, name)? {
                     Some(bytes) => answer("application/octet-stream", bytes),

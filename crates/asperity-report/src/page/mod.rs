@@ -8,6 +8,7 @@ mod live;
 mod maps;
 mod material;
 mod state;
+mod stress;
 mod surface;
 
 pub use live::{Answer, Live};
@@ -89,7 +90,10 @@ pub fn write(reader: &Reader, path: &Path, options: &Options) -> Result<(), Repo
 /// [`StoreError`] where the result has no row yet or is damaged.
 pub fn page(reader: &Reader, options: &Options) -> Result<String, StoreError> {
     let maps = maps::Maps::of(reader, options)?;
-    let state = state::state(reader, &maps)?;
+    let mut state = state::state(reader, &maps)?;
+    if let Some(picture) = stress::picture(reader)? {
+        state["stress"]["svg"] = STANDARD.encode(picture).into();
+    }
     let blobs: String = maps.blobs.iter().map(|(name, data)| element(name, data)).collect();
     Ok(filled_page(reader, &state, &blobs))
 }

@@ -7,7 +7,7 @@ use base64::engine::general_purpose::STANDARD;
 use serde_json::{Map, Value, json};
 
 use super::maps::Maps;
-use super::material;
+use super::{material, stress};
 use crate::figure::Colours;
 
 /// The result's title, or its file name.
@@ -64,6 +64,7 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
         },
         "surface": maps.surface,
         "material": material::curves(reader),
+        "stress": stress::curves(reader)?,
     }))
 }
 

@@ -6,6 +6,7 @@ use asperity::{ContactState, Grid, Method, Prescribed, Problem, Solver};
 use asperity_io::case::Case;
 use asperity_io::readable::quantity;
 use asperity_io::store::{At, FieldKind, Reader};
+use asperity_io::stress::StressError;
 
 use super::{Difference, Options, Reproduction, Result};
 use crate::figure::{Axis, Curves, Figure, Series, Style};
@@ -148,6 +149,11 @@ fn plot_error(error: crate::result::PlotError) -> super::PaperError {
         crate::result::PlotError::Store(error) => error.into(),
         crate::result::PlotError::Outside { at, length, .. } => {
             asperity::Error::invalid("line", at, format!("0 to {length}")).into()
+        }
+        crate::result::PlotError::Stress(StressError::Store(error)) => error.into(),
+        crate::result::PlotError::Stress(StressError::Solve(error)) => error.into(),
+        error @ crate::result::PlotError::NoPoisson(_) => {
+            asperity::Error::invalid("figure", error, "one of the paper's").into()
         }
     }
 }

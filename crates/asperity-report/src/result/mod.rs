@@ -14,15 +14,18 @@ mod distribution;
 mod evolution;
 mod fields;
 mod profile;
+mod stress;
 
 use asperity::Boundary;
 use asperity_io::choice;
 use asperity_io::readable::quantity;
 use asperity_io::store::{At, FieldKind, Reader, StoreError};
+use asperity_io::stress::StressError;
 use serde_json::Value;
 
 pub(crate) use evolution::quantity_panels;
 pub(crate) use fields::contact_states;
+pub use stress::stress_figure;
 
 use crate::figure::{Curves, Figure, Series};
 
@@ -55,6 +58,8 @@ pub enum Plot {
     Work,
     /// The quantities that were asked for, over time.
     Quantities,
+    /// Sections of the stress below the surface, a map of it, and its profile over depth, at an instant.
+    Stress,
 }
 
 /// What a figure shows of a result.
@@ -91,6 +96,12 @@ pub enum PlotError {
     /// The result does not hold what the figure shows, or is damaged.
     #[error(transparent)]
     Store(#[from] StoreError),
+    /// The stress below the surface cannot be computed.
+    #[error(transparent)]
+    Stress(#[from] StressError),
+    /// The stress needs a Poisson's ratio that the result does not have.
+    #[error("{} does not say a constant Poisson's ratio of its first body; use asperity stress --poisson NU --plot PATH", .0.display())]
+    NoPoisson(std::path::PathBuf),
     /// The line of a profile is outside of the area.
     #[error("the line at {axis} = {at:e} m is outside of the area, which goes from 0 to {length:e} m")]
     Outside {
@@ -105,7 +116,7 @@ pub enum PlotError {
 
 impl Plot {
     /// Every plot.
-    pub const ALL: [Plot; 13] = [
+    pub const ALL: [Plot; 14] = [
         Plot::Evolution,
         Plot::LoadDisplacement,
         Plot::Pressure,
@@ -119,6 +130,7 @@ impl Plot {
         Plot::Spots,
         Plot::Work,
         Plot::Quantities,
+        Plot::Stress,
     ];
 
     /// Its name on the command line.
@@ -137,6 +149,7 @@ impl Plot {
             Plot::Spots => "spots",
             Plot::Work => "work",
             Plot::Quantities => "quantities",
+            Plot::Stress => "stress",
         }
     }
 
@@ -152,7 +165,6 @@ impl Plot {
 /// [`PlotError::Store`] where the result has no row yet, does not hold the field or the instant, or is damaged;
 /// [`PlotError::Outside`] where the line of a profile does not cross the area.
 pub fn figure(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, PlotError> {
-    let title = options.title.clone().unwrap_or_else(|| reader.header().title.clone());
     let figure = match plot {
         Plot::Evolution => evolution::evolution(reader, options)?,
         Plot::LoadDisplacement => evolution::load_displacement(reader)?,
@@ -167,7 +179,10 @@ pub fn figure(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, 
         Plot::Profile => profile::profile(reader, options)?,
         Plot::Histogram => distribution::histogram(reader, options.at)?,
         Plot::Spots => distribution::spots(reader, options.at)?,
+        Plot::Stress => stress::stress(reader, options.at)?,
     };
+    let own = if figure.title.is_empty() { &reader.header().title } else { &figure.title };
+    let title = options.title.clone().unwrap_or_else(|| own.clone());
     Ok(Figure { title, ..figure })
 }
 

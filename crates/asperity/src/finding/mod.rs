@@ -12,6 +12,7 @@
 //! | `contact` | contacts and contact spots of a few cells |
 //! | `strain` | deformations and slopes beyond linear theory |
 //! | `material` | moduli, and how well measured data are fitted and covered |
+//! | `stress` | the stress below the surface: its resolution, and yielding |
 //! | `time` | steps that are too long for the history and the material |
 //! | `energy` | the energy balance |
 //! | `expected` | an estimate of the contact before the run |
@@ -25,6 +26,7 @@ mod expected;
 mod judge;
 mod material;
 mod strain;
+mod stress;
 mod surface;
 mod time;
 mod words;
@@ -34,6 +36,7 @@ use std::borrow::Cow;
 pub use expected::{Contact, Expected};
 pub use judge::{Judge, Known};
 pub use material::{beyond_data, misfit, unlikely_modulus};
+pub use stress::{stress_at_deepest, stress_unresolved, yield_exceeded};
 pub use surface::{hurst, of_heights};
 
 /// How much a finding matters.
@@ -117,7 +120,7 @@ impl std::fmt::Display for Finding {
 }
 
 /// Every code. A code keeps its meaning.
-pub const CODES: [&str; 17] = [
+pub const CODES: [&str; 20] = [
     CONTACT_AT_BORDER,
     GAP_NOT_PERIODIC,
     ROUGH_ON_FREE_DOMAIN,
@@ -135,6 +138,9 @@ pub const CODES: [&str; 17] = [
     HURST_UNCERTAIN,
     OUTLIERS,
     UNLIKELY_UNIT,
+    STRESS_UNRESOLVED,
+    STRESS_AT_DEEPEST,
+    YIELD_EXCEEDED,
 ];
 
 /// Contact, or the expected contact, reaches the border of a free domain.
@@ -171,6 +177,12 @@ pub const HURST_UNCERTAIN: &str = "hurst-uncertain";
 pub const OUTLIERS: &str = "outliers";
 /// A number that a slip of the unit explains best.
 pub const UNLIKELY_UNIT: &str = "unlikely-unit";
+/// The largest stress below the surface lies less than two cells deep.
+pub const STRESS_UNRESOLVED: &str = "stress-unresolved";
+/// The largest stress lies at the deepest of the depths.
+pub const STRESS_AT_DEEPEST: &str = "stress-at-deepest";
+/// The von Mises stress below the surface exceeds the yield stress.
+pub const YIELD_EXCEEDED: &str = "yield-exceeded";
 
 #[cfg(test)]
 mod tests;

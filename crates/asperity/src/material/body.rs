@@ -48,6 +48,31 @@ pub struct Body {
 }
 
 impl Body {
+    /// Poisson's ratio where it is constant in time: the one given, or that of an elastic body of this bulk modulus B:
+    /// (3 B - 2 G)/(2 (3 B + G)) = 1/2 - E/(6 B).
+    ///
+    /// ```
+    /// use asperity::material::{Body, Lateral, Material, Modulus};
+    /// let material = Material::elastic(Modulus::Shear, 1e9)?;
+    /// let body = Body { name: "resin".into(), material, lateral: Lateral::BulkModulus(5e9), hardness: None };
+    /// assert!((body.poisson().unwrap() - 13.0 / 32.0).abs() < 1e-15);
+    /// # Ok::<(), asperity::Error>(())
+    /// ```
+    pub fn poisson(&self) -> Option<f64> {
+        let creep = self.material.creep();
+        match self.lateral {
+            Lateral::Poisson(poisson) => Some(poisson),
+            Lateral::BulkModulus(_) if !creep.terms.is_empty() || creep.fluidity > 0.0 => None,
+            Lateral::BulkModulus(bulk) => Some(match self.material.measure() {
+                Modulus::Young => 0.5 - 1.0 / (6.0 * bulk * creep.instantaneous),
+                Modulus::Shear => {
+                    let three = 3.0 * bulk * creep.instantaneous;
+                    (three - 2.0) / (2.0 * (three + 1.0))
+                }
+            }),
+        }
+    }
+
     /// C(t) of this body against a rigid one \[1/Pa\].
     ///
     /// ```

@@ -1,12 +1,13 @@
 //! The convolution of the pressure with the stress of a cell or of a wave.
 //!
 //! The rows of the pressure are transformed once. For each component and depth the columns are transformed, multiplied by the
-//! stored quarter of the spectrum with the signs that its symmetry asks for, and transformed back. Work memory is six fields.
+//! spectrum of the component, and transformed back. Each component is even or odd in either direction, so that a quarter of its
+//! spectrum, as real numbers, is enough; it is made column by column. Work memory is five fields on a free domain.
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use ndarray::Array2;
+use ndarray::{Array1, Array2, ArrayViewMut1, Axis};
 use rayon::prelude::*;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex64;
@@ -14,12 +15,11 @@ use rustfft::{Fft, FftPlanner};
 
 use super::Component;
 use super::coefficients::{corner, wave};
+use super::depths::check_depth;
 use crate::convolution::Convolution;
 use crate::error::{Error, Result};
 use crate::grid::{Boundary, Grid};
 
-/// Depths between 0 and this share of a cell are refused: they show the steps of the pressure from cell to cell.
-const SHALLOWEST: f64 = 0.25;
 /// Rows of coefficients that a task computes together: their corners are shared.
 const STRIP: usize = 16;
 
@@ -45,6 +45,8 @@ pub struct SubsurfaceStress {
     rows_inverse: Arc<dyn ComplexToReal<f64>>,
     columns_forward: Arc<dyn Fft<f64>>,
     columns_inverse: Arc<dyn Fft<f64>>,
+    /// Columns of the real coefficients of a cell.
+    coefficient_columns: Arc<dyn RealToComplex<f64>>,
     /// Transforms of the rows of the pressure, and of a component: (ky, row).
     pressure: Array2<Complex64>,
     work: Array2<Complex64>,
@@ -70,6 +72,7 @@ impl SubsurfaceStress {
             rows_inverse: real.plan_fft_inverse(lengths[1]),
             columns_forward: complex.plan_fft_forward(lengths[0]),
             columns_inverse: complex.plan_fft_inverse(lengths[0]),
+            coefficient_columns: real.plan_fft_forward(lengths[0]),
             pressure: Array2::zeros(columns),
             work: Array2::zeros(columns),
             grid,
@@ -117,25 +120,27 @@ impl SubsurfaceStress {
         Ok(())
     }
 
+    /// Bytes that the transforms take, and with them six fields of [`at`](Self::at).
+    pub fn bytes(grid: &Grid, boundary: Boundary) -> usize {
+        let [nx, ny] = grid.cells();
+        let (length, coefficients) = match boundary {
+            Boundary::Free => (Convolution::good_length(2 * ny - 1), 1),
+            Boundary::Periodic => (ny, 0),
+        };
+        8 * nx * ((4 + coefficients) * (length / 2 + 1) + 6 * ny)
+    }
+
     /// One component \[Pa\] at `depth` >= 0 \[m\] below every cell centre.
     ///
     /// # Errors
     /// [`Error::Invalid`] for a depth that is negative, or between 0 and a quarter of a cell.
     pub fn component_into(&mut self, component: Component, depth: f64, out: &mut [f64]) -> Result<()> {
-        let [dx, dy] = self.grid.spacing();
-        let shallowest = SHALLOWEST * dx.max(dy);
-        if !(depth == 0.0 || depth >= shallowest && depth.is_finite()) {
-            let expected = format!(
-                "0, or at least {shallowest:e} m, a quarter of a cell (nearer to the surface the stress shows the \
-                 steps of the pressure from cell to cell)"
-            );
-            return Err(Error::invalid("depth", format!("{depth:e} m"), expected));
-        }
-        let factors = match self.boundary {
-            Boundary::Free => self.cell_factors(component, depth),
-            Boundary::Periodic => self.wave_factors(component, depth),
+        check_depth(&self.grid, depth)?;
+        let spectrum = match self.boundary {
+            Boundary::Free => Spectrum::Cell(self.transformed_rows(component, depth)),
+            Boundary::Periodic => Spectrum::Wave(depth),
         };
-        self.multiply(&factors, component.is_odd());
+        self.multiply(component, &spectrum);
         self.rows_back(out);
         Ok(())
     }
@@ -152,80 +157,71 @@ impl SubsurfaceStress {
         Ok(())
     }
 
-    /// The quarter of the spectrum on the waves of a periodic domain: (kx, ky).
-    fn wave_factors(&self, component: Component, depth: f64) -> Array2<f64> {
-        let ([mx, my], [lx, ly]) = (self.lengths, self.grid.size());
-        let odd = component.is_odd();
-        let mut factors = Array2::zeros((mx / 2 + 1, my / 2 + 1));
-        factors.outer_iter_mut().into_par_iter().enumerate().for_each(|(kx, mut row)| {
-            for (ky, factor) in row.iter_mut().enumerate() {
-                // The shortest wave of an even number of cells has no sine.
-                let vanishes = odd[0] && 2 * kx == mx || odd[1] && 2 * ky == my;
-                let q = [TAU * kx as f64 / lx, TAU * ky as f64 / ly];
-                *factor = if vanishes { 0.0 } else { wave(component, q, depth, self.poisson) };
-            }
-        });
-        factors
-    }
-
-    /// The quarter of the spectrum of the stress under one loaded cell of a free domain: (kx, ky).
-    fn cell_factors(&self, component: Component, depth: f64) -> Array2<f64> {
-        let [mx, my] = self.lengths;
-        let [odd_x, odd_y] = component.is_odd();
-        let cells = self.coefficients(component, depth);
-        // Along y, and with the axes exchanged along x.
-        let along_y = half_transform(&cells, my, odd_y);
-        half_transform(&along_y.reversed_axes().as_standard_layout().into_owned(), mx, odd_x)
-            .reversed_axes()
-            .as_standard_layout()
-            .into_owned()
-    }
-
-    /// The stress at the offsets (i dx, j dy), i < nx and j < ny, from a cell under unit pressure.
-    fn coefficients(&self, component: Component, depth: f64) -> Array2<f64> {
+    /// The stress at the offsets (i dx, j dy), i < nx and j < ny, from a cell under unit pressure, transformed along y: (i, ky).
+    fn transformed_rows(&self, component: Component, depth: f64) -> Array2<f64> {
         let ([nx, ny], [dx, dy]) = (self.grid.cells(), self.grid.spacing());
+        let (fft, odd) = (&self.rows_forward, component.is_odd()[1]);
         let at = |i: usize, j: usize| {
             corner(component, (i as f64 - 0.5) * dx, (j as f64 - 0.5) * dy, depth, self.poisson)
         };
-        let mut cells = Array2::zeros((nx, ny));
-        let strips = cells.axis_chunks_iter_mut(ndarray::Axis(0), STRIP).into_par_iter();
-        strips.enumerate().for_each(|(n, mut strip)| {
-            let corners: Vec<Vec<f64>> =
-                (0..=strip.nrows()).map(|i| (0..=ny).map(|j| at(STRIP * n + i, j)).collect()).collect();
-            for (i, mut row) in strip.outer_iter_mut().enumerate() {
-                for (j, cell) in row.iter_mut().enumerate() {
-                    let [low, high] = [&corners[i], &corners[i + 1]];
-                    *cell = ((high[j + 1] - low[j + 1]) - (high[j] - low[j])) / TAU;
+        let mut rows = Array2::zeros((nx, self.lengths[1] / 2 + 1));
+        let strips = rows.axis_chunks_iter_mut(Axis(0), STRIP).into_par_iter();
+        strips.enumerate().for_each_init(
+            || Half::new(fft),
+            |half, (n, mut strip)| {
+                let corners = |i: usize| (0..=ny).map(|j| at(STRIP * n + i, j)).collect::<Vec<f64>>();
+                let mut low = corners(0);
+                for (i, row) in strip.outer_iter_mut().enumerate() {
+                    let high = corners(i + 1);
+                    let cell = |j: usize| ((high[j + 1] - low[j + 1]) - (high[j] - low[j])) / TAU;
+                    half.transform(fft, odd, (0..ny).map(cell), row);
+                    low = high;
                 }
-            }
-        });
-        cells
+            },
+        );
+        rows
     }
 
     /// work = the columns of the pressure times the spectrum, transformed back along x.
-    fn multiply(&mut self, factors: &Array2<f64>, [odd_x, odd_y]: [bool; 2]) {
+    fn multiply(&mut self, component: Component, spectrum: &Spectrum) {
         let (mx, nx) = (self.lengths[0], self.grid.cells()[0]);
         let scale = 1.0 / (mx as f64 * self.lengths[1] as f64);
-        let unit = match (odd_x, odd_y) {
-            (false, false) => Complex64::new(scale, 0.0),
-            (true, true) => Complex64::new(-scale, 0.0),
+        let odd = component.is_odd();
+        let unit = match odd {
+            [false, false] => Complex64::new(scale, 0.0),
+            [true, true] => Complex64::new(-scale, 0.0),
             _ => Complex64::new(0.0, scale),
         };
-        let (forward, inverse) = (&self.columns_forward, &self.columns_inverse);
+        let (forward, inverse, half) =
+            (&self.columns_forward, &self.columns_inverse, &self.coefficient_columns);
+        let (lengths, size, poisson) = (self.lengths, self.grid.size(), self.poisson);
         let columns = self.work.outer_iter_mut().into_par_iter().zip(self.pressure.outer_iter());
         columns.enumerate().for_each_init(
             || {
                 let scratch = forward.get_inplace_scratch_len().max(inverse.get_inplace_scratch_len());
-                (vec![Complex64::ZERO; mx], vec![Complex64::ZERO; scratch])
+                let buffer = vec![Complex64::ZERO; mx];
+                (buffer, vec![Complex64::ZERO; scratch], Array1::zeros(mx / 2 + 1), Half::new(half))
             },
-            |(buffer, scratch), (ky, (mut work, pressure))| {
+            |(buffer, scratch, factors, halves), (ky, (mut work, pressure))| {
+                match spectrum {
+                    Spectrum::Cell(rows) => {
+                        let column = rows.column(ky);
+                        halves.transform(half, odd[0], column.iter().copied(), factors.view_mut());
+                    }
+                    Spectrum::Wave(depth) => factors.iter_mut().enumerate().for_each(|(kx, factor)| {
+                        // The shortest wave of an even number of cells has no sine.
+                        let vanishes = odd[0] && 2 * kx == lengths[0] || odd[1] && 2 * ky == lengths[1];
+                        let q = [TAU * kx as f64 / size[0], TAU * ky as f64 / size[1]];
+                        *factor = if vanishes { 0.0 } else { wave(component, q, *depth, poisson) };
+                    }),
+                }
                 buffer[nx..].fill(Complex64::ZERO);
                 buffer.iter_mut().zip(pressure).for_each(|(x, p)| *x = *p);
                 forward.process_with_scratch(buffer, scratch);
                 for (k, x) in buffer.iter_mut().enumerate() {
                     let mirrored = 2 * k > mx;
-                    let factor = factors[(if mirrored { mx - k } else { k }, ky)];
-                    *x *= unit * if mirrored && odd_x { -factor } else { factor };
+                    let factor = factors[if mirrored { mx - k } else { k }];
+                    *x *= unit * if mirrored && odd[0] { -factor } else { factor };
                 }
                 inverse.process_with_scratch(buffer, scratch);
                 work.iter_mut().zip(&buffer[..nx]).for_each(|(work, x)| *work = *x);
@@ -253,30 +249,49 @@ impl SubsurfaceStress {
     }
 }
 
-/// For each row, the transform of its even or odd continuation to `length` numbers: the real part, or the imaginary part over
-/// i, at the frequencies 0..=length/2.
-fn half_transform(rows: &Array2<f64>, length: usize, odd: bool) -> Array2<f64> {
-    let fft = RealFftPlanner::new().plan_fft_forward(length);
-    let mut out = Array2::zeros((rows.nrows(), length / 2 + 1));
-    let pairs = out.outer_iter_mut().into_par_iter().zip(rows.outer_iter());
-    pairs.for_each_init(
-        || (fft.make_input_vec(), fft.make_output_vec(), fft.make_scratch_vec()),
-        |(input, output, scratch), (mut out, row)| {
-            input.fill(0.0);
-            let sign = if odd { -1.0 } else { 1.0 };
-            for (j, x) in row.iter().enumerate() {
-                if j == 0 {
-                    // An odd sequence begins with zero.
-                    input[0] = if odd { 0.0 } else { *x };
-                } else {
-                    input[j] = *x;
-                    input[length - j] = sign * x;
-                }
+/// Where the spectrum of a component comes from.
+enum Spectrum {
+    /// The coefficients of a cell, transformed along y: (i, ky).
+    Cell(Array2<f64>),
+    /// The closed form of a wave at this depth \[m\].
+    Wave(f64),
+}
+
+/// Buffers of the transform of an even or odd sequence.
+struct Half {
+    input: Vec<f64>,
+    output: Vec<Complex64>,
+    scratch: Vec<Complex64>,
+}
+
+impl Half {
+    fn new(fft: &Arc<dyn RealToComplex<f64>>) -> Self {
+        Half { input: fft.make_input_vec(), output: fft.make_output_vec(), scratch: fft.make_scratch_vec() }
+    }
+
+    /// The transform of the even or odd continuation of `values` to the length of `fft`: the real part, or the imaginary part
+    /// over i.
+    fn transform(
+        &mut self,
+        fft: &Arc<dyn RealToComplex<f64>>,
+        odd: bool,
+        values: impl Iterator<Item = f64>,
+        mut out: ArrayViewMut1<f64>,
+    ) {
+        let length = self.input.len();
+        self.input.fill(0.0);
+        let sign = if odd { -1.0 } else { 1.0 };
+        for (j, x) in values.enumerate() {
+            if j == 0 {
+                // An odd sequence begins with zero.
+                self.input[0] = if odd { 0.0 } else { x };
+            } else {
+                self.input[j] = x;
+                self.input[length - j] = sign * x;
             }
-            let done = fft.process_with_scratch(input, output, scratch);
-            debug_assert!(done.is_ok(), "the buffers have the plan's lengths");
-            out.iter_mut().zip(output.iter()).for_each(|(to, x)| *to = if odd { x.im } else { x.re });
-        },
-    );
-    out
+        }
+        let done = fft.process_with_scratch(&mut self.input, &mut self.output, &mut self.scratch);
+        debug_assert!(done.is_ok(), "the buffers have the plan's lengths");
+        out.iter_mut().zip(&self.output).for_each(|(to, x)| *to = if odd { x.im } else { x.re });
+    }
 }

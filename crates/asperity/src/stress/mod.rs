@@ -19,13 +19,18 @@
 
 mod coefficients;
 mod convolve;
+mod depths;
 mod invariants;
+mod quantity;
+mod slab;
 mod survey;
 
 pub use coefficients::{rectangle, wave};
 pub use convolve::SubsurfaceStress;
+pub use depths::{automatic_depths, check_depth, check_depths, contact_box, spaced_depths};
 pub use invariants::{Invariants, invariants};
-pub use survey::{Extreme, Survey, automatic_depths, survey};
+pub use quantity::StressQuantity;
+pub use survey::{Extreme, OrthogonalShear, Rolling, Survey, SurveyOptions, survey, survey_with};
 
 /// A component of the stress tensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

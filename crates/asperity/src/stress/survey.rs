@@ -1,16 +1,15 @@
 //! Where the stress is largest: maxima over depths, refined between them, and the profile over depth.
 
-use rayon::prelude::*;
-
-use super::{Invariants, SubsurfaceStress, invariants};
+use super::slab::{First, Slab};
+use super::{Component, SubsurfaceStress, check_depths};
 use crate::error::{Error, Result};
-use crate::grid::{Boundary, Grid};
-use asperity_sweep::{Merge, sweep};
+use crate::grid::Grid;
 
-/// Depths of [`automatic_depths`] below the surface.
-const AUTOMATIC: usize = 24;
 /// Further depths at which a maximum is looked for.
 const REFINED: usize = 3;
+/// A depth nearer than this to one that is known, in the logarithm, would tell nothing more: the error of a maximum is of
+/// second order.
+const NEAR: f64 = 2e-3;
 
 /// A largest value and its place.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,8 +18,38 @@ pub struct Extreme {
     pub value: f64,
     /// Depth \[m\].
     pub depth: f64,
-    /// Number of the cell, C-order.
+    /// Number of the cell, C-order; the first of several.
     pub cell: usize,
+}
+
+/// Direction in which a contact rolls.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+pub enum Rolling {
+    /// Along x.
+    X,
+    /// Along y.
+    Y,
+}
+
+impl Rolling {
+    /// The orthogonal shear stress: on planes parallel to the surface, along the direction of rolling.
+    pub fn component(self) -> Component {
+        match self {
+            Rolling::X => Component::Xz,
+            Rolling::Y => Component::Yz,
+        }
+    }
+}
+
+/// What a survey finds besides the maxima. Default: nothing.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SurveyOptions {
+    /// The volume with a von Mises stress above this is measured \[Pa\].
+    pub threshold: Option<f64>,
+    /// The range of the orthogonal shear stress of a contact that rolls this way is found.
+    pub rolling: Option<Rolling>,
 }
 
 /// What a survey over depths finds.
@@ -30,11 +59,15 @@ pub struct Survey {
     pub depths: Vec<f64>,
     /// Largest von Mises stress at each of them \[Pa\].
     pub mises_by_depth: Vec<f64>,
+    /// Largest Tresca stress at each of them \[Pa\].
+    pub tresca_by_depth: Vec<f64>,
+    /// Largest principal stress at each of them \[Pa\].
+    pub tension_by_depth: Vec<f64>,
     /// Largest von Mises stress, its depth refined between the depths.
     pub mises: Extreme,
     /// Largest Tresca stress (s1 - s3)/2, refined likewise.
     pub tresca: Extreme,
-    /// Largest principal stress, at one of the depths.
+    /// Largest principal stress, at one of the depths looked at.
     pub tension: Extreme,
     /// True where the largest von Mises stress lies at the deepest depth: the survey should go deeper.
     pub at_the_deepest: bool,
@@ -42,171 +75,131 @@ pub struct Survey {
     pub unresolved: bool,
     /// Volume with a von Mises stress above the threshold \[m^3\], by the trapezoidal rule over the depths.
     pub stressed_volume: Option<f64>,
+    /// The orthogonal shear stress of rolling.
+    pub orthogonal_shear: Option<OrthogonalShear>,
 }
 
-/// The first largest value of a field.
-#[derive(Clone, Copy)]
-struct First {
-    value: f64,
-    cell: usize,
+/// The range of the orthogonal shear stress that a point of the body sees while the contact rolls over it: the largest less the
+/// least value on a line along the direction of rolling (G. Lundberg & A. Palmgren, Dynamic capacity of rolling bearings,
+/// 1947). The pressure is that of the moment: it must travel without changing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OrthogonalShear {
+    /// Largest range at each of the depths \[Pa\].
+    pub by_depth: Vec<f64>,
+    /// The largest of them, refined between the depths; its cell is on the line.
+    pub largest: Extreme,
 }
 
-impl Merge for First {
-    fn merge(self, next: Self) -> Self {
-        if next.value > self.value { next } else { self }
-    }
-}
-
-/// Maxima of one depth, and the cells above a threshold.
-#[derive(Clone, Copy)]
-struct Slab {
-    mises: First,
-    tresca: First,
-    tension: First,
-    above: f64,
-}
-
-impl Merge for Slab {
-    fn merge(self, next: Self) -> Self {
-        Slab {
-            mises: self.mises.merge(next.mises),
-            tresca: self.tresca.merge(next.tresca),
-            tension: self.tension.merge(next.tension),
-            above: self.above + next.above,
-        }
-    }
-}
-
-/// 0, and 24 depths in geometric progression from half a cell: on a free domain to 2 sqrt(A/pi), A the area of the rectangle
-/// around the contact (where there is no contact, of the domain); on a periodic one to half its shorter side.
-pub fn automatic_depths(grid: &Grid, boundary: Boundary, pressure: &[f64]) -> Vec<f64> {
-    let ([dx, dy], [lx, ly]) = (grid.spacing(), grid.size());
-    let deepest = match boundary {
-        Boundary::Periodic => 0.5 * lx.min(ly),
-        Boundary::Free => 2.0 * (contact_box(grid, pressure) / std::f64::consts::PI).sqrt(),
-    };
-    let first = 0.5 * dx.max(dy);
-    let deepest = deepest.max(2.0 * first);
-    let ratio = libm::log(deepest / first) / (AUTOMATIC - 1) as f64;
-    std::iter::once(0.0).chain((0..AUTOMATIC).map(|k| first * libm::exp(ratio * k as f64))).collect()
-}
-
-/// Area of the rectangle around the cells under pressure; the domain's where there are none.
-fn contact_box(grid: &Grid, pressure: &[f64]) -> f64 {
-    let ny = grid.cells()[1];
-    let touching = || pressure.iter().enumerate().filter(|(_, p)| **p > 0.0).map(|(n, _)| [n / ny, n % ny]);
-    let ends = |axis: usize| {
-        touching().fold((usize::MAX, 0), |(least, most), at| (least.min(at[axis]), most.max(at[axis])))
-    };
-    let [(x0, x1), (y0, y1)] = [ends(0), ends(1)];
-    if x0 > x1 { grid.area() } else { ((x1 - x0 + 1) * (y1 - y0 + 1)) as f64 * grid.cell_area() }
-}
-
-/// Surveys the stress below the pressure that `stress` holds, at `depths` (rising, at least one). Where a `threshold` \[Pa\] is
-/// given, the volume above it is measured.
+/// Surveys the stress below the pressure that `stress` holds, at `depths` (rising, at least one).
 ///
 /// # Errors
 /// [`Error::Invalid`] for depths that do not rise, and as [`SubsurfaceStress::component_into`].
-pub fn survey(stress: &mut SubsurfaceStress, depths: &[f64], threshold: Option<f64>) -> Result<Survey> {
-    if depths.is_empty() || depths.windows(2).any(|two| two[0] >= two[1]) {
-        return Err(Error::invalid(
-            "depths",
-            format!("{depths:?}"),
-            "at least one, each deeper than the one before",
-        ));
-    }
+pub fn survey(stress: &mut SubsurfaceStress, depths: &[f64], options: &SurveyOptions) -> Result<Survey> {
+    survey_with(stress, depths, options, |_, _| Ok(()))
+}
+
+/// The same, and shows the six components at each of the depths, numbered from 0, to `visit` (the depths in between at which
+/// a maximum is looked for are not shown). An error of `visit` ends the survey.
+///
+/// # Errors
+/// As [`survey`], and those of `visit`.
+pub fn survey_with<E: From<Error>>(
+    stress: &mut SubsurfaceStress,
+    depths: &[f64],
+    options: &SurveyOptions,
+    mut visit: impl FnMut(usize, &[Vec<f64>; 6]) -> Result<(), E>,
+) -> Result<Survey, E> {
+    let grid = *stress.grid();
+    check_depths(&grid, depths)?;
     let mut fields = std::array::from_fn(|_| Vec::new());
-    let mut slabs = Vec::with_capacity(depths.len());
-    for depth in depths {
+    let mut known = Known(Vec::with_capacity(depths.len() + 3 * REFINED));
+    for (n, depth) in depths.iter().enumerate() {
         stress.at(*depth, &mut fields)?;
-        slabs.push(slab(&fields, threshold));
+        visit(n, &fields)?;
+        known.0.push((*depth, Slab::of(&grid, &fields, options)));
     }
-    let best = |of: fn(&Slab) -> First| {
-        let number =
-            (0..slabs.len()).reduce(|a, b| if of(&slabs[b]).value > of(&slabs[a]).value { b } else { a });
-        number.unwrap_or(0)
-    };
-    let at = |n: usize, of: fn(&Slab) -> First| {
-        let First { value, cell } = of(&slabs[n]);
-        Extreme { value, depth: depths[n], cell }
-    };
+    let slabs: Vec<Slab> = known.0.iter().map(|(_, slab)| *slab).collect();
     let deepest = depths.len() - 1;
-    let mises_at = best(|s| s.mises);
-    let mut refined = |of: fn(&Slab) -> First| -> Result<Extreme> {
-        let n = best(of);
-        let mut points: Vec<(f64, First)> =
-            (n.saturating_sub(1)..=(n + 1).min(deepest)).map(|k| (depths[k], of(&slabs[k]))).collect();
-        let mut found = at(n, of);
-        for _ in 0..REFINED {
-            let Some(depth) = vertex(&points) else { break };
-            stress.at(depth, &mut fields)?;
-            let new = of(&slab(&fields, None));
-            if new.value > found.value {
-                found = Extreme { value: new.value, depth, cell: new.cell };
-            }
-            narrow(&mut points, (depth, new));
-        }
-        Ok(found)
-    };
-    let (mises, tresca) = (refined(|s| s.mises)?, refined(|s| s.tresca)?);
-    let [dx, dy] = stress.grid().spacing();
-    let cell_area = stress.grid().cell_area();
-    let volume = |_| {
-        let area = |n: usize| slabs[n].above * cell_area;
-        (1..depths.len()).map(|n| 0.5 * (area(n) + area(n - 1)) * (depths[n] - depths[n - 1])).sum()
-    };
-    Ok(Survey {
-        mises_by_depth: slabs.iter().map(|slab| slab.mises.value).collect(),
-        tension: at(best(|s| s.tension), |s| s.tension),
-        at_the_deepest: mises_at == deepest && deepest > 0,
-        unresolved: mises.depth > 0.0 && mises.depth < 2.0 * dx.max(dy),
-        stressed_volume: threshold.map(volume),
-        depths: depths.to_vec(),
-        mises,
-        tresca,
-    })
-}
-
-/// Maxima and the count above a threshold of one depth.
-fn slab(fields: &[Vec<f64>; 6], threshold: Option<f64>) -> Slab {
-    let cells: Vec<usize> = (0..fields[0].len()).into_par_iter().collect();
-    let nothing = First { value: f64::NEG_INFINITY, cell: 0 };
-    sweep(&cells[..], &|cells: &[usize]| {
-        let mut found = Slab { mises: nothing, tresca: nothing, tension: nothing, above: 0.0 };
-        for cell in cells.iter().copied() {
-            let Invariants { mises, tresca, tension, .. } =
-                invariants(std::array::from_fn(|component| fields[component][cell]));
-            found = found.merge(Slab {
-                mises: First { value: mises, cell },
-                tresca: First { value: tresca, cell },
-                tension: First { value: tension, cell },
-                above: f64::from(u8::from(threshold.is_some_and(|threshold| mises > threshold))),
-            });
-        }
-        found
-    })
-}
-
-/// The depth at which the parabola through three points, in the logarithm of the depth, is highest; `None` where there are not
-/// three below the surface, or it has no maximum between them.
-fn vertex(points: &[(f64, First)]) -> Option<f64> {
-    let [(z0, f0), (z1, f1), (z2, f2)] = points else { return None };
-    if *z0 <= 0.0 {
-        return None;
+    let at_the_deepest = deepest > 0 && known.best(|slab| slab.mises) == deepest;
+    let mut wanted: Vec<fn(&Slab) -> First> = vec![|slab| slab.mises, |slab| slab.tresca];
+    if options.rolling.is_some() {
+        wanted.push(|slab| slab.shear);
     }
-    let [a, b, c] = [z0, z1, z2].map(|z| libm::log(*z));
-    let (left, right) = ((f1.value - f0.value) / (b - a), (f2.value - f1.value) / (c - b));
-    let curvature = (right - left) / (c - a);
-    let at = 0.5 * (a + b) - 0.5 * left / curvature;
-    let depth = libm::exp(at);
-    (curvature < 0.0 && depth > *z0 && depth < *z2 && (depth / z1 - 1.0).abs() > 1e-9).then_some(depth)
+    for of in wanted {
+        for _ in 0..REFINED {
+            let Some(depth) = known.vertex(of) else { break };
+            stress.at(depth, &mut fields)?;
+            known.insert(depth, Slab::of(&grid, &fields, options));
+        }
+    }
+    let by_depth = |of: fn(&Slab) -> First| slabs.iter().map(|slab| of(slab).value).collect::<Vec<f64>>();
+    let mises = known.largest(|slab| slab.mises);
+    Ok(Survey {
+        depths: depths.to_vec(),
+        mises_by_depth: by_depth(|slab| slab.mises),
+        tresca_by_depth: by_depth(|slab| slab.tresca),
+        tension_by_depth: by_depth(|slab| slab.tension),
+        tresca: known.largest(|slab| slab.tresca),
+        tension: known.largest(|slab| slab.tension),
+        at_the_deepest,
+        unresolved: is_unresolved(&grid, mises.depth),
+        stressed_volume: options.threshold.map(|_| volume(&grid, depths, &slabs)),
+        orthogonal_shear: options.rolling.map(|_| OrthogonalShear {
+            by_depth: by_depth(|slab| slab.shear),
+            largest: known.largest(|slab| slab.shear),
+        }),
+        mises,
+    })
 }
 
-/// Takes in a point between three, and keeps the three around the highest.
-fn narrow(points: &mut Vec<(f64, First)>, new: (f64, First)) {
-    points.push(new);
-    points.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let best = (0..points.len()).reduce(|a, b| if points[b].1.value > points[a].1.value { b } else { a });
-    let start = best.unwrap_or(0).saturating_sub(1).min(points.len() - 3);
-    *points = points[start..start + 3].to_vec();
+/// Whether a maximum at this depth lies nearer to the surface than two cells, but not at the surface.
+fn is_unresolved(grid: &Grid, depth: f64) -> bool {
+    let [dx, dy] = grid.spacing();
+    depth > 0.0 && depth < 2.0 * dx.max(dy)
+}
+
+/// Trapezoidal rule over the depths.
+fn volume(grid: &Grid, depths: &[f64], slabs: &[Slab]) -> f64 {
+    let area = |n: usize| slabs[n].above * grid.cell_area();
+    (1..depths.len()).map(|n| 0.5 * (area(n) + area(n - 1)) * (depths[n] - depths[n - 1])).sum()
+}
+
+/// What is known at the depths looked at, in order of depth.
+struct Known(Vec<(f64, Slab)>);
+
+impl Known {
+    /// Number of the depth at which `of` is largest; the first of several.
+    fn best(&self, of: fn(&Slab) -> First) -> usize {
+        let value = |n: usize| of(&self.0[n].1).value;
+        (1..self.0.len()).fold(0, |best, n| if value(n) > value(best) { n } else { best })
+    }
+
+    fn largest(&self, of: fn(&Slab) -> First) -> Extreme {
+        let (depth, slab) = &self.0[self.best(of)];
+        let First { value, cell, .. } = of(slab);
+        Extreme { value, depth: *depth, cell }
+    }
+
+    /// The depth at which the parabola through the largest value and its neighbours, in the logarithm of the depth, is
+    /// highest; `None` where the three are not all below the surface, or nothing new is to be found there.
+    fn vertex(&self, of: fn(&Slab) -> First) -> Option<f64> {
+        let best = self.best(of);
+        let three = self.0.get(best.checked_sub(1)?..best + 2)?;
+        let [(z0, s0), (z1, s1), (z2, s2)] = three else { return None };
+        if *z0 <= 0.0 {
+            return None;
+        }
+        let [a, b, c] = [z0, z1, z2].map(|z| libm::log(*z));
+        let [f, g, h] = [s0, s1, s2].map(|slab| of(slab).value);
+        let (left, right) = ((g - f) / (b - a), (h - g) / (c - b));
+        let curvature = (right - left) / (c - a);
+        let at = 0.5 * (a + b) - 0.5 * left / curvature;
+        let new = [a, b, c].iter().all(|known| (at - known).abs() > NEAR);
+        (curvature < 0.0 && at > a && at < c && new).then(|| libm::exp(at))
+    }
+
+    fn insert(&mut self, depth: f64, slab: Slab) {
+        let place = self.0.partition_point(|(known, _)| *known < depth);
+        self.0.insert(place, (depth, slab));
+    }
 }

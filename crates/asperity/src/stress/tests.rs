@@ -236,9 +236,10 @@ fn the_largest_shear_under_a_sphere_is_where_hertz_has_it() {
         let (grid, p) = hertz(n);
         let mut stress = SubsurfaceStress::new(grid, Boundary::Free, 0.3).unwrap();
         stress.set_pressure(&p).unwrap();
-        let depths = automatic_depths(&grid, Boundary::Free, &p);
+        let depths = automatic_depths(&grid, Boundary::Free, contact_box(&grid, &p));
         assert!(depths[0] == 0.0 && depths.len() == 25 && depths[24] > 2.0);
-        let found = survey(&mut stress, &depths, Some(0.5)).unwrap();
+        let found =
+            survey(&mut stress, &depths, &SurveyOptions { threshold: Some(0.5), rolling: None }).unwrap();
         errors.push((found.tresca.value - 0.310_020_5).abs());
         assert!((found.mises.value - 2.0 * found.tresca.value).abs() < 1e-3, "{found:?}");
         assert!((found.tresca.depth - 0.4808645).abs() < 0.03, "{found:?}");
@@ -276,8 +277,135 @@ fn what_makes_no_sense_is_refused() {
     assert!(SubsurfaceStress::new(grid, Boundary::Free, 0.6).is_err());
     let mut stress = SubsurfaceStress::new(grid, Boundary::Free, 0.3).unwrap();
     assert!(stress.set_pressure(&[0.0; 15]).is_err() && stress.set_pressure(&[f64::NAN; 16]).is_err());
-    for depth in [-1.0, 0.1, f64::INFINITY, f64::NAN] {
+    for depth in [-1.0, 0.1, 1e300, f64::INFINITY, f64::NAN] {
         assert!(stress.component_into(Component::Zz, depth, &mut [0.0; 16]).is_err(), "{depth}");
     }
-    assert!(survey(&mut stress, &[1.0, 0.5], None).is_err() && survey(&mut stress, &[], None).is_err());
+    for depths in [&[1.0, 0.5][..], &[1.0, 1.0], &[], &[0.0, 0.1], &[f64::NAN]] {
+        assert!(survey(&mut stress, depths, &SurveyOptions::default()).is_err(), "{depths:?}");
+    }
+}
+
+#[test]
+fn the_orthogonal_shear_of_a_rolling_ball_is_that_of_huber() {
+    // M. T. Huber, Annalen der Physik 319 (1904): with m = r^2 + z^2 - 1, u = (m + sqrt(m^2 + 4 z^2))/2 the shear stress is
+    // -r z^2 sqrt(u)/((u^2 + z^2)(1 + u)); twice its largest value is 0.4277818 p0 at a depth of 0.3508641 a.
+    for n in [8, 16, 32] {
+        let (grid, p) = hertz(n);
+        let mut stress = SubsurfaceStress::new(grid, Boundary::Free, 0.3).unwrap();
+        stress.set_pressure(&p).unwrap();
+        let depths = spaced_depths([0.2, 0.8], 5, true, true);
+        let along = |stress: &mut SubsurfaceStress, rolling| {
+            let options = SurveyOptions { threshold: None, rolling: Some(rolling) };
+            survey(stress, &depths, &options).unwrap().orthogonal_shear.unwrap()
+        };
+        let [x, y] = [Rolling::X, Rolling::Y].map(|rolling| along(&mut stress, rolling));
+        assert!((x.largest.value - y.largest.value).abs() < 1e-12, "the contact is round");
+        assert_eq!(x.by_depth.len(), depths.len());
+        let middle = [2 * n - 1, 2 * n];
+        assert!(middle.contains(&(x.largest.cell % (4 * n))) && middle.contains(&(y.largest.cell / (4 * n))));
+        // Second order: cells lie up to half their side from the place of the maximum in each direction, and the stress
+        // falls by about twice the square of the distance.
+        let error = (x.largest.value - 0.427_781_8).abs();
+        assert!(error < 1.0 / (n * n) as f64, "{n}: {error}");
+        // Where the stress is flat the place is known to the root of that.
+        assert!((x.largest.depth - 0.350_864_1).abs() < 0.03, "{x:?}");
+    }
+}
+
+#[test]
+fn a_maximum_between_coarse_depths_is_found() {
+    let (grid, p) = hertz(16);
+    let mut stress = SubsurfaceStress::new(grid, Boundary::Free, 0.3).unwrap();
+    stress.set_pressure(&p).unwrap();
+    let mut at = |depths: &[f64]| survey(&mut stress, depths, &SurveyOptions::default()).unwrap();
+    let (coarse, fine) = (at(&[0.2, 0.4, 0.8, 1.6]), at(&spaced_depths([0.3, 0.7], 41, false, false)));
+    assert!(fine.tresca.value > coarse.tresca_by_depth[1] * 1.005, "the depths alone miss it");
+    // A hundredth of the depth costs a ten-thousandth of the maximum.
+    assert!((coarse.tresca.value / fine.tresca.value - 1.0).abs() < 1e-3, "{coarse:?} {fine:?}");
+    assert_eq!(coarse.mises_by_depth.len(), 4);
+}
+
+#[test]
+fn the_hertz_error_on_the_axis_is_of_second_order_in_every_component() {
+    // Johnson 1985, eq. 3.45 with nu = 0.3: (r, z) = (0, 0.48 a).
+    let z = 0.48_f64;
+    let zz = -1.0 / (1.0 + z * z);
+    let xx = -1.3 * (1.0 - z * (1.0 / z).atan()) + 0.5 / (1.0 + z * z);
+    let mut errors = vec![];
+    for n in [16, 32] {
+        let (grid, p) = hertz(n);
+        let mut stress = SubsurfaceStress::new(grid, Boundary::Free, 0.3).unwrap();
+        let fields = all(&mut stress, &p, z);
+        let cells = grid.cells()[0];
+        let cell = (cells / 2) * cells + cells / 2;
+        errors.push([
+            (fields[0][cell] - xx).abs(),
+            (fields[1][cell] - xx).abs(),
+            (fields[2][cell] - zz).abs(),
+        ]);
+    }
+    for (coarse, fine) in errors[0].iter().zip(errors[1]) {
+        // 1e-3 of p0 at 32 cells per radius.
+        assert!(fine < 1e-3 && coarse / fine > 3.0, "{errors:?}");
+    }
+}
+
+#[test]
+fn grids_of_one_cell_and_strips_are_grids() {
+    for cells in [[1, 1], [1, 5], [6, 1], [2, 2]] {
+        let grid = Grid::new(cells, [1.0, 3.0]).unwrap();
+        let ([dx, dy], p) = (grid.spacing(), vec![2.0; grid.len()]);
+        let mut stress = SubsurfaceStress::new(grid, Boundary::Periodic, 0.25).unwrap();
+        let [xx, yy, zz, xy, xz, yz] = all(&mut stress, &p, 3.0);
+        for n in 0..grid.len() {
+            assert!(
+                (zz[n] + 2.0).abs() < 1e-14
+                    && (xx[n] + 2.0 / 3.0).abs() < 1e-14
+                    && (yy[n] - xx[n]).abs() < 1e-14
+            );
+            assert!([xy[n], xz[n], yz[n]].iter().all(|s| s.abs() < 1e-14));
+        }
+        let mut stress = SubsurfaceStress::new(grid, Boundary::Free, 0.25).unwrap();
+        let fields = all(&mut stress, &p, 3.0);
+        for (component, field) in Component::ALL.into_iter().zip(&fields) {
+            // The whole loaded rectangle, seen from the first cell.
+            let from = [0.5 * dx - 0.5, 0.5 * dy - 1.5];
+            let whole = 2.0 * rectangle(component, from, 3.0, [0.5, 1.5], 0.25);
+            assert!((field[0] - whole).abs() < 1e-13, "{cells:?} {component:?}: {} {whole}", field[0]);
+        }
+    }
+}
+
+#[test]
+fn quantities_are_those_of_the_tensor() {
+    let six: [Vec<f64>; 6] = std::array::from_fn(|k| vec![1.0 + k as f64, -0.5 * k as f64]);
+    let mut out = [0.0; 2];
+    for quantity in StressQuantity::ALL {
+        quantity.field_into(&six, &mut out);
+        let whole = invariants(std::array::from_fn(|k| six[k][1]));
+        let expected = match quantity {
+            StressQuantity::Mises => whole.mises,
+            StressQuantity::Tresca => whole.tresca,
+            StressQuantity::Tension => whole.tension,
+            StressQuantity::Pressure => whole.pressure,
+            component => six[StressQuantity::ALL.iter().position(|q| *q == component).unwrap() - 4][1],
+        };
+        assert_eq!(out[1], expected, "{quantity:?}");
+        assert_eq!(StressQuantity::from_name(quantity.name()), Some(quantity));
+    }
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let grid = Grid::new([130, 110], [1.0, 1.0]).unwrap();
+    let p = pressure(&grid);
+    let on = |threads: usize| {
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(|| {
+            let mut stress = SubsurfaceStress::new(grid, Boundary::Free, 0.3).unwrap();
+            stress.set_pressure(&p).unwrap();
+            let options = SurveyOptions { threshold: Some(0.2), rolling: Some(Rolling::X) };
+            survey(&mut stress, &[0.0, 0.02, 0.05, 0.2], &options).unwrap()
+        })
+    };
+    assert_eq!(on(1), on(3));
 }

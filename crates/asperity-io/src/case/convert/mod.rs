@@ -10,6 +10,7 @@ mod load;
 mod material;
 mod output;
 pub(super) mod prepare;
+pub(super) mod stress;
 pub(super) mod surface;
 mod temperature;
 mod time;
@@ -107,6 +108,13 @@ pub fn case(
     let extra = output::extra_fields(&document.solver, &document.output);
     domain::memory(&mut checks, &document.domain, grid.as_ref(), fields, extra, scheme);
 
+    let stress = match (&document.stress, &grid, &pair, &output, &times) {
+        (Some(at), Some(grid), Some(pair), Some(output), Some(times)) => {
+            stress::stress(&mut checks, at, grid, &pair.bodies, output, times.end())
+        }
+        _ => None,
+    };
+
     checks.errors.sort_by_key(|error| error.span.as_ref().map_or(usize::MAX, |span| span.start));
     let surfaces = surfaces.zip(hardness);
     match (checks.errors.is_empty(), grid, surfaces, pair, prescription, times, output) {
@@ -141,6 +149,7 @@ pub fn case(
             plasticity: output::plasticity(&document.solver),
             solver: output::solver(&document.solver),
             output,
+            stress,
             usual_rows: pair.plan.instants.len() + if adaptive { time::USUAL_STEPS } else { 0 },
             rows: pair.plan.exact.then_some(pair.plan.instants.len()),
             history: prescription.span,

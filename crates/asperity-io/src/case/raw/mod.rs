@@ -8,6 +8,7 @@ mod load;
 mod material;
 pub mod prepare;
 mod run;
+mod stress;
 mod surface;
 mod thermal;
 
@@ -27,6 +28,7 @@ pub use material::{
     Column, CreepTable, CreepTerm, Dma, Fit, FractionalZener, Material, Prony, RelaxationTable,
 };
 pub use run::{Output, Quantities, Solver};
+pub use stress::{Depths, Progression, Stress, Times as StressTimes, Which};
 pub use surface::{Distribution, File, Preset, SelfAffine, Surface};
 pub use thermal::{Shift, Temperature, TemperatureHistory, TemperaturePoint};
 
@@ -61,6 +63,9 @@ pub struct Document {
     /// What is stored, and where.
     #[schemars(default)]
     pub output: Output,
+    /// The stress below the surface, from the stored pressures; not computed if not given.
+    #[schemars(example = serde_json::json!({ "depths": "auto", "yield_stress": "110 MPa" }))]
+    pub stress: Option<At<Stress>>,
 }
 
 /// A rectangle of equal cells.

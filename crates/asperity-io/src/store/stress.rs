@@ -1,0 +1,378 @@
+//! The arrays of the stress below the surface. They are added to a result once its pressures are stored, and over `field_time`:
+//! instants at which the stress was not computed are NaN.
+
+use std::path::{Path, PathBuf};
+
+use asperity::stress::{Rolling, StressQuantity};
+use ndarray::{Array2, ArrayView2};
+use serde_json::{Value, json};
+
+use super::chunks::Chunks;
+use super::column::{self, Column};
+use super::document::{Document, Pages};
+use super::error::{Result, corrupt, io};
+use super::layout::{ArraySpec, Series};
+use super::reader::{At, Reader};
+use super::replace::Way;
+use super::writer::{Writer, lock, remove};
+use crate::choice;
+
+/// What was computed of the stress: which body, where, when.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StressSet {
+    /// Name of the body.
+    pub body: String,
+    /// Its Poisson's ratio.
+    pub poisson: f64,
+    /// Depths \[m\], rising.
+    pub depths: Vec<f64>,
+    /// Fields that are stored at each depth.
+    pub quantities: Vec<StressQuantity>,
+    /// The stressed volume is that above this von Mises stress \[Pa\].
+    pub threshold: Option<f64>,
+    /// Yield stress of the body \[Pa\].
+    pub yield_stress: Option<f64>,
+    /// Direction of rolling.
+    pub rolling: Option<Rolling>,
+    /// Numbers of the stored instants at which it was computed.
+    pub instants: Vec<usize>,
+}
+
+const fn series(name: &'static str, units: &'static str, long_name: &'static str) -> Series {
+    Series { name, units, long_name }
+}
+
+const MAXIMA: [Series; 12] = [
+    series("max_mises", "Pa", "largest von Mises stress"),
+    series("max_mises_depth", "m", "depth of the largest von Mises stress"),
+    series("max_mises_x", "m", "x of the largest von Mises stress"),
+    series("max_mises_y", "m", "y of the largest von Mises stress"),
+    series("max_tresca", "Pa", "largest shear stress (Tresca)"),
+    series("max_tresca_depth", "m", "depth of the largest shear stress"),
+    series("max_tresca_x", "m", "x of the largest shear stress"),
+    series("max_tresca_y", "m", "y of the largest shear stress"),
+    series("max_tension", "Pa", "largest principal stress"),
+    series("max_tension_depth", "m", "depth of the largest principal stress"),
+    series("max_tension_x", "m", "x of the largest principal stress"),
+    series("max_tension_y", "m", "y of the largest principal stress"),
+];
+const VOLUME: Series = series("stressed_volume", "m3", "volume above the threshold");
+const SHEAR: [Series; 2] = [
+    series("orthogonal_shear", "Pa", "largest range of the orthogonal shear stress"),
+    series("orthogonal_shear_depth", "m", "depth of the largest range of the orthogonal shear stress"),
+];
+const PROFILES: [Series; 3] = [
+    series("mises_by_depth", "Pa", "largest von Mises stress by depth"),
+    series("tresca_by_depth", "Pa", "largest shear stress (Tresca) by depth"),
+    series("tension_by_depth", "Pa", "largest principal stress by depth"),
+];
+const SHEAR_PROFILE: Series =
+    series("orthogonal_shear_by_depth", "Pa", "range of the orthogonal shear stress by depth");
+const DEPTH: &str = "depth";
+
+/// Names of the stress fields in a result.
+fn field_name(quantity: StressQuantity) -> &'static str {
+    match quantity {
+        StressQuantity::Mises => "stress_mises",
+        StressQuantity::Tresca => "stress_tresca",
+        StressQuantity::Tension => "stress_tension",
+        StressQuantity::Pressure => "stress_pressure",
+        StressQuantity::Xx => "stress_xx",
+        StressQuantity::Yy => "stress_yy",
+        StressQuantity::Zz => "stress_zz",
+        StressQuantity::Xy => "stress_xy",
+        StressQuantity::Xz => "stress_xz",
+        StressQuantity::Yz => "stress_yz",
+    }
+}
+
+/// The names that arrays of the stress may have.
+pub(super) fn names() -> impl Iterator<Item = &'static str> {
+    let one = MAXIMA.iter().chain(&SHEAR).chain(&PROFILES).map(|series| series.name);
+    let rest = [VOLUME.name, SHEAR_PROFILE.name, DEPTH].into_iter();
+    one.chain(rest).chain(StressQuantity::ALL.map(field_name))
+}
+
+impl StressSet {
+    /// The numbers of each instant.
+    pub fn scalars(&self) -> Vec<Series> {
+        let mut all = MAXIMA.to_vec();
+        all.extend(self.threshold.map(|_| VOLUME));
+        all.extend(self.rolling.iter().flat_map(|_| SHEAR));
+        all
+    }
+
+    /// What each instant has a number of for each depth.
+    pub fn profiles(&self) -> Vec<Series> {
+        let mut all = PROFILES.to_vec();
+        all.extend(self.rolling.map(|_| SHEAR_PROFILE));
+        all
+    }
+
+    /// The stored fields: their names in the result.
+    pub fn fields(&self) -> Vec<(StressQuantity, Series)> {
+        let series = |quantity: &StressQuantity| series(field_name(*quantity), "Pa", quantity.long_name());
+        self.quantities.iter().map(|quantity| (*quantity, series(quantity))).collect()
+    }
+
+    /// The arrays of a result with `maps` instants of fields.
+    pub(super) fn arrays(&self, [nx, ny]: [usize; 2], maps: usize) -> Vec<ArraySpec> {
+        let depths = self.depths.len();
+        let mut arrays = vec![ArraySpec::coordinate_of(
+            &series(DEPTH, "m", "depth below the surface"),
+            &["depth"],
+            depths,
+        )];
+        arrays.extend(self.scalars().iter().map(|series| ArraySpec::of_instants(series, maps)));
+        let profile =
+            |series: &Series| ArraySpec::profile_of(series, &["field_time", "depth"], [maps, depths]);
+        arrays.extend(self.profiles().iter().map(profile));
+        let volume = |(_, series): &(_, Series)| {
+            ArraySpec::volume_of(series, &["field_time", "depth", "x", "y"], [maps, depths, nx, ny])
+        };
+        arrays.extend(self.fields().iter().map(volume));
+        arrays
+    }
+
+    /// As the text of an attribute.
+    pub(super) fn to_text(&self) -> String {
+        json!({
+            "body": self.body,
+            "poisson": self.poisson,
+            "depths": self.depths,
+            "components": self.quantities.iter().map(|quantity| quantity.name()).collect::<Vec<_>>(),
+            "threshold": self.threshold,
+            "yield_stress": self.yield_stress,
+            "rolling": self.rolling.as_ref().map(choice::word),
+            "instants": self.instants,
+        })
+        .to_string()
+    }
+
+    /// The inverse of [`to_text`](Self::to_text), for a result with `maps` instants; `None` where it is malformed.
+    pub(super) fn parse(text: &str, maps: usize) -> Option<StressSet> {
+        let object: Value = serde_json::from_str(text).ok()?;
+        let list = |key: &str| object.get(key).and_then(Value::as_array);
+        let number = |key: &str| object.get(key).and_then(Value::as_f64);
+        let depths: Vec<f64> = list("depths")?.iter().map(Value::as_f64).collect::<Option<_>>()?;
+        let quantity = |name: &Value| StressQuantity::from_name(name.as_str()?);
+        let instant = |n: &Value| usize::try_from(n.as_u64()?).ok().filter(|n| *n < maps);
+        let instants: Vec<usize> = list("instants")?.iter().map(instant).collect::<Option<_>>()?;
+        let rising =
+            depths.windows(2).all(|two| two[0] < two[1]) && instants.windows(2).all(|two| two[0] < two[1]);
+        if depths.is_empty() || !rising {
+            return None;
+        }
+        Some(StressSet {
+            body: object.get("body")?.as_str()?.to_owned(),
+            poisson: number("poisson")?,
+            depths,
+            quantities: list("components")?.iter().map(quantity).collect::<Option<_>>()?,
+            threshold: number("threshold"),
+            yield_stress: number("yield_stress"),
+            rolling: object.get("rolling").and_then(Value::as_str).and_then(choice::parse),
+            instants,
+        })
+    }
+}
+
+/// The arrays of the stress while they are written; no reader sees them before [`Writer::add_stress`].
+pub struct StressWriter {
+    root: PathBuf,
+    set: StressSet,
+    specs: Vec<ArraySpec>,
+    fields: Vec<(StressQuantity, Chunks)>,
+    /// Scalars and profiles of each stored instant.
+    scalars: Vec<Vec<f64>>,
+    profiles: Vec<Vec<Vec<f64>>>,
+}
+
+impl StressWriter {
+    /// Starts the arrays in the result at `root`, which has `maps` stored instants.
+    ///
+    /// # Errors
+    /// [`super::StoreError`] where it is no result.
+    pub fn new(root: &Path, set: &StressSet, maps: usize) -> Result<StressWriter> {
+        let reader = Reader::open(root)?;
+        let specs = set.arrays(reader.header().grid.cells(), maps);
+        let chunks = |(quantity, series): &(StressQuantity, Series)| {
+            let spec = specs.iter().find(|spec| spec.name == series.name);
+            let spec = spec.ok_or_else(|| reader.missing(series.name.into(), "no such array".into()))?;
+            Ok((*quantity, Chunks::new(root, spec)?))
+        };
+        Ok(StressWriter {
+            fields: set.fields().iter().map(chunks).collect::<Result<_>>()?,
+            scalars: vec![vec![f64::NAN; set.scalars().len()]; maps],
+            profiles: vec![vec![vec![f64::NAN; set.depths.len()]; set.profiles().len()]; maps],
+            root: root.to_owned(),
+            set: set.clone(),
+            specs,
+        })
+    }
+
+    /// Writes a field of the instant of number `map` at the depth of number `depth`; one that is not stored is left out.
+    ///
+    /// # Errors
+    /// [`super::StoreError::Io`] where the system refuses.
+    pub fn field(
+        &self,
+        quantity: StressQuantity,
+        map: usize,
+        depth: usize,
+        field: ArrayView2<'_, f64>,
+    ) -> Result<()> {
+        match self.fields.iter().find(|(kind, _)| *kind == quantity) {
+            Some((_, chunks)) => chunks.write_map(&[map as u64, depth as u64], field),
+            None => Ok(()),
+        }
+    }
+
+    /// Sets the numbers of an instant: those of [`StressSet::scalars`] and [`StressSet::profiles`], in their order.
+    pub fn instant(&mut self, map: usize, scalars: &[f64], profiles: &[Vec<f64>]) {
+        self.scalars[map] = scalars.to_vec();
+        self.profiles[map] = profiles.to_vec();
+    }
+
+    /// Writes all numbers.
+    fn finish(&self) -> Result<()> {
+        let bytes = |numbers: &[f64]| numbers.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>();
+        let find = |name: &str| self.specs.iter().find(|spec| spec.name == name);
+        if let Some(spec) = find(DEPTH) {
+            let chunks = Chunks::new(&self.root, spec)?;
+            let path = chunks.path(&[0]);
+            let directory = path.parent().unwrap_or(&self.root);
+            std::fs::create_dir_all(directory).map_err(io("make", directory))?;
+            chunks.write(&[0], &self.set.depths)?;
+        }
+        for (n, series) in self.set.scalars().iter().enumerate() {
+            let Some(spec) = find(series.name) else { continue };
+            let mut column = Column::new(&self.root, spec)?;
+            for (map, numbers) in self.scalars.iter().enumerate() {
+                column.put_row(map, &bytes(&numbers[n..=n]))?;
+            }
+        }
+        for (n, series) in self.set.profiles().iter().enumerate() {
+            let Some(spec) = find(series.name) else { continue };
+            let mut column = Column::new(&self.root, spec)?;
+            for (map, profiles) in self.profiles.iter().enumerate() {
+                column.put_row(map, &bytes(&profiles[n]))?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Writer {
+    /// Opens a finished or stopped result, to add to it.
+    ///
+    /// # Errors
+    /// As [`Reader::open`]; [`super::StoreError::Busy`] where another process is writing it.
+    pub fn amend(path: &Path) -> Result<Writer> {
+        Reader::open(path)?;
+        let held = lock(path)?;
+        // Once more: what wrote it until now has changed it.
+        let reader = Reader::open(path)?;
+        let last = reader.series("time")?.last().copied().unwrap_or(f64::NEG_INFINITY);
+        Writer::attach(path, reader.into_document(), held, last)
+    }
+
+    /// Takes the stress out of the result.
+    ///
+    /// # Errors
+    /// [`super::StoreError::Io`] where the system refuses.
+    pub fn remove_stress(&mut self) -> Result<()> {
+        self.set_stress(None)?;
+        clear(self.path())
+    }
+
+    /// Brings the stress that `store` wrote into the result.
+    ///
+    /// # Errors
+    /// [`super::StoreError::Io`] where the system refuses.
+    pub fn add_stress(&mut self, store: StressWriter) -> Result<()> {
+        store.finish()?;
+        self.set_stress(Some(store.set))
+    }
+}
+
+/// Removes all arrays of the stress; those of no document are seen by nobody.
+pub(super) fn clear(root: &Path) -> Result<()> {
+    names().try_for_each(|name| remove(&root.join(name)))
+}
+
+/// Replaces the documents of a result.
+pub(super) fn publish(root: &Path, document: &Document) -> Result<Pages> {
+    let mut pages = Pages::new(document);
+    pages.write_arrays(root, Way::Safe)?;
+    pages.commit(root, &document.progress, Way::Safe)?;
+    Ok(pages)
+}
+
+impl Reader {
+    /// What was computed of the stress below the surface; `None` where nothing was.
+    pub fn stress(&self) -> Option<&StressSet> {
+        self.document().stress.as_ref()
+    }
+
+    /// A number of each stored instant, by its name in [`StressSet::scalars`]; NaN where it was not computed.
+    ///
+    /// # Errors
+    /// [`super::StoreError::Missing`] where there is none of that name, [`super::StoreError::Corrupt`] where a file is damaged.
+    pub fn stress_series(&self, name: &str) -> Result<Vec<f64>> {
+        let known = self.stress().map(StressSet::scalars).unwrap_or_default();
+        self.stress_column(name, &known)
+    }
+
+    /// A number of each stored instant and depth, by its name in [`StressSet::profiles`], shape (instants, depths).
+    ///
+    /// # Errors
+    /// As [`stress_series`](Self::stress_series).
+    pub fn stress_profile(&self, name: &str) -> Result<Array2<f64>> {
+        let known = self.stress().map(StressSet::profiles).unwrap_or_default();
+        let numbers = self.stress_column(name, &known)?;
+        let depths = self.stress().map_or(1, |set| set.depths.len());
+        let shape = (numbers.len() / depths, depths);
+        Array2::from_shape_vec(shape, numbers).map_err(|error| corrupt(&self.path().join(name), error))
+    }
+
+    fn stress_column(&self, name: &str, known: &[Series]) -> Result<Vec<f64>> {
+        if !known.iter().any(|series| series.name == name) {
+            let names: Vec<_> = known.iter().map(|series| series.name).collect();
+            let available = if names.is_empty() {
+                "no stress (asperity stress computes it)".into()
+            } else {
+                names.join(", ")
+            };
+            return Err(self.missing(format!("`{name}`"), available));
+        }
+        let numbers = column::read(self.path(), &self.spec(name)?, self.field_times().len())?;
+        Ok(numbers.into_iter().map(f64::from_le_bytes).collect())
+    }
+
+    /// A stress field \[Pa\] of a stored instant at the depth of number `depth`, shape of the grid; NaN where it was not computed.
+    ///
+    /// # Errors
+    /// As [`stress_series`](Self::stress_series).
+    pub fn stress_field(&self, quantity: StressQuantity, at: At, depth: usize) -> Result<Array2<f64>> {
+        let index = self.index(at)?;
+        let set = self.stress().filter(|set| set.quantities.contains(&quantity) && depth < set.depths.len());
+        let Some(set) = set else {
+            let available = match self.stress() {
+                None => "no stress (asperity stress computes it)".to_owned(),
+                Some(set) if set.quantities.is_empty() => "no fields of the stress".to_owned(),
+                Some(set) => {
+                    let names: Vec<_> = set.quantities.iter().map(|quantity| quantity.name()).collect();
+                    format!("the stress fields {} at {} depths", names.join(", "), set.depths.len())
+                }
+            };
+            return Err(self
+                .missing(format!("stress field `{}` of depth number {depth}", quantity.name()), available));
+        };
+        let shape = self.header().grid.shape();
+        if !set.instants.contains(&index) {
+            return Ok(Array2::from_elem(shape, f64::NAN));
+        }
+        let chunks = Chunks::new(self.path(), &self.spec(field_name(quantity))?)?;
+        chunks.read_map(&[index as u64, depth as u64], shape)
+    }
+}

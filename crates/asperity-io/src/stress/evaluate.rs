@@ -1,0 +1,152 @@
+//! The stress at the stored times, one after the other.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use asperity::stress::{StressQuantity, SubsurfaceStress, automatic_depths, contact_box, survey_with};
+use asperity::{Boundary, Error};
+use ndarray::ArrayView2;
+use thiserror::Error as Failure;
+
+use super::below::{profiles, scalars};
+use super::{Below, Depths, StressPlan};
+use crate::choice;
+use crate::store::{At, FieldKind, Reader, StoreError, StressSet, StressWriter, Writer};
+
+/// Why the stress was not computed.
+#[derive(Debug, Failure)]
+pub enum StressError {
+    /// The result holds no pressures, or cannot be written.
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    /// The stress cannot be computed like this, or the user interrupted it.
+    #[error(transparent)]
+    Solve(#[from] Error),
+}
+
+/// Computes the stress of a result that `writer` holds, and stores it there in place of one that is stored. `observe` is told
+/// the number of times done and of all. Nothing of the stress is stored where it ends early.
+///
+/// # Errors
+/// [`StressError::Store`] where there are no pressures or the system refuses; [`StressError::Solve`] for depths that the grid
+/// does not allow, and [`Error::Interrupted`] where `interrupt` becomes true.
+pub fn evaluate(
+    writer: &mut Writer,
+    plan: &StressPlan,
+    interrupt: &AtomicBool,
+    mut observe: impl FnMut(usize, usize),
+) -> Result<Below, StressError> {
+    let reader = Reader::open(writer.path())?;
+    let set = set(&reader, plan)?;
+    writer.remove_stress()?;
+    let mut store = StressWriter::new(writer.path(), &set, reader.field_times().len())?;
+    compute(&reader, plan, &set, interrupt, &mut observe, Some(&mut store))?;
+    writer.add_stress(store)?;
+    let below = Below::of(&Reader::open(writer.path())?)?;
+    below.ok_or_else(|| StressError::Store(reader.missing("stress".into(), "none".into())))
+}
+
+/// The same for a result that is only read: nothing is stored.
+///
+/// # Errors
+/// As [`evaluate`].
+pub fn of_result(reader: &Reader, plan: &StressPlan, interrupt: &AtomicBool) -> Result<Below, StressError> {
+    let set = set(reader, plan)?;
+    let instants = compute(reader, plan, &set, interrupt, &mut |_, _| (), None)?;
+    Ok(Below { set, instants })
+}
+
+/// The boundary of the domain that a result was computed on.
+pub(crate) fn boundary(reader: &Reader) -> Boundary {
+    let word = reader.header().setup.get("boundary").and_then(serde_json::Value::as_str);
+    word.and_then(choice::parse).unwrap_or_default()
+}
+
+/// What will be stored: the depths and the instants of the plan for this result.
+fn set(reader: &Reader, plan: &StressPlan) -> Result<StressSet, StoreError> {
+    if !reader.header().fields.contains(&FieldKind::Pressure) {
+        return Err(reader.no_field(FieldKind::Pressure));
+    }
+    let all = reader.field_times().len();
+    let mut instants: Vec<usize> = match &plan.times {
+        None => (0..all).collect(),
+        Some(times) => times.iter().map(|time| reader.index(At::Time(*time))).collect::<Result<_, _>>()?,
+    };
+    instants.sort_unstable();
+    instants.dedup();
+    if instants.is_empty() {
+        return Err(reader.missing("pressures".into(), "none yet".into()));
+    }
+    let depths = match &plan.depths {
+        Depths::List(list) => list.clone(),
+        Depths::Auto => {
+            let grid = &reader.header().grid;
+            let mut largest = 0.0;
+            for index in &instants {
+                let pressure = reader.field(FieldKind::Pressure, At::Index(*index))?;
+                largest = f64::max(largest, contact_box(grid, pressure.as_slice().unwrap_or_default()));
+            }
+            automatic_depths(grid, boundary(reader), largest)
+        }
+    };
+    Ok(StressSet {
+        body: plan.body.clone(),
+        poisson: plan.poisson,
+        depths,
+        quantities: plan.quantities.clone(),
+        threshold: plan.threshold,
+        yield_stress: plan.yield_stress,
+        rolling: plan.rolling,
+        instants,
+    })
+}
+
+fn compute(
+    reader: &Reader,
+    plan: &StressPlan,
+    set: &StressSet,
+    interrupt: &AtomicBool,
+    observe: &mut dyn FnMut(usize, usize),
+    mut store: Option<&mut StressWriter>,
+) -> Result<Vec<super::Instant>, StressError> {
+    let grid = reader.header().grid;
+    let mut stress = SubsurfaceStress::new(grid, boundary(reader), set.poisson)?;
+    let loads = reader.series("load")?;
+    let mut field = vec![0.0; if set.quantities.is_empty() { 0 } else { grid.len() }];
+    let mut found = Vec::with_capacity(set.instants.len());
+    for (done, index) in set.instants.iter().enumerate() {
+        observe(done, set.instants.len());
+        let pressure = reader.field(FieldKind::Pressure, At::Index(*index))?;
+        stress.set_pressure(pressure.as_slice().unwrap_or_default())?;
+        drop(pressure);
+        let visit = |depth: usize, six: &[Vec<f64>; 6]| -> Result<(), StressError> {
+            if interrupt.load(Ordering::Relaxed) {
+                return Err(Error::Interrupted.into());
+            }
+            let Some(store) = store.as_deref_mut() else { return Ok(()) };
+            for quantity in &set.quantities {
+                StressQuantity::field_into(*quantity, six, &mut field);
+                // The field has the cells of the grid.
+                if let Ok(map) = ArrayView2::from_shape(grid.shape(), &field) {
+                    store.field(*quantity, *index, depth, map)?;
+                }
+            }
+            Ok(())
+        };
+        let survey = survey_with(&mut stress, &set.depths, &plan.survey(), visit)?;
+        let row = reader.field_steps()[*index];
+        let instant = super::Instant {
+            index: *index,
+            time: reader.field_times()[*index],
+            row,
+            load: loads.get(row).copied().unwrap_or(f64::NAN),
+            scalars: scalars(&grid, &survey),
+            profiles: profiles(&survey),
+        };
+        if let Some(store) = store.as_deref_mut() {
+            store.instant(*index, &instant.scalars, &instant.profiles);
+        }
+        found.push(instant);
+    }
+    observe(set.instants.len(), set.instants.len());
+    Ok(found)
+}

@@ -1,0 +1,19 @@
+//! The stress below the surface of a result: computed from its stored pressures, and stored with it.
+//!
+//! A [`StressPlan`] says which body, depths and times; it comes from `[stress]` of a case or from the words of a command.
+//! [`evaluate`] goes through the stored pressures, one at a time, and adds the arrays of [`crate::store::StressSet`] to the
+//! result. [`Below`] is what it found, to be shown. [`section`] looks at one time more closely, and
+//! [`crate::export::volume`] writes it for ParaView.
+
+mod below;
+mod evaluate;
+mod plan;
+mod section;
+mod yielding;
+
+pub use below::{Below, Instant};
+pub(crate) use evaluate::boundary;
+pub use evaluate::{StressError, evaluate, of_result};
+pub use plan::{Depths, StressBody, StressDescription, StressPlan, bodies_of};
+pub use section::{Section, below_at, section};
+pub use yielding::{FirstYield, first_yield};

@@ -1,0 +1,58 @@
+//! First yield: the load at which the von Mises stress below the surface reaches the yield stress.
+
+use serde_json::{Value, json};
+
+use super::Below;
+use crate::readable::quantity;
+
+/// Where the body begins to yield, as far as the times tell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FirstYield {
+    /// Nowhere: the yield stress is this many times the largest von Mises stress.
+    Never(f64),
+    /// At the first of the times already, or before it: (time \[s\], load \[N\]).
+    AtOnce([f64; 2]),
+    /// Between two of the times: (time \[s\], load \[N\]) of both.
+    Between([[f64; 2]; 2]),
+}
+
+/// First yield of what was found; `None` where no yield stress is given, or no time.
+pub fn first_yield(below: &Below) -> Option<FirstYield> {
+    let limit = below.set.yield_stress?;
+    let mises: Vec<f64> = below.instants.iter().map(|instant| below.number(instant, "max_mises")).collect();
+    let state = |n: usize| [below.instants[n].time, below.instants[n].load];
+    Some(match mises.iter().position(|mises| *mises >= limit) {
+        Some(0) => FirstYield::AtOnce(state(0)),
+        Some(n) => FirstYield::Between([state(n - 1), state(n)]),
+        None => FirstYield::Never(limit / mises.into_iter().reduce(f64::max)?),
+    })
+}
+
+impl FirstYield {
+    /// One sentence.
+    pub fn sentence(&self) -> String {
+        let state =
+            |[time, load]: [f64; 2]| format!("t = {} (load {})", quantity(time, "s"), quantity(load, "N"));
+        match self {
+            FirstYield::Never(safety) if safety.is_finite() => {
+                format!("no yield: the yield stress is {safety:.3} times the largest von Mises stress")
+            }
+            FirstYield::Never(_) => "no yield: there is no contact".to_owned(),
+            FirstYield::AtOnce(first) => format!("first yield at or before {}", state(*first)),
+            FirstYield::Between([before, after]) => {
+                format!("first yield between {} and {}", state(*before), state(*after))
+            }
+        }
+    }
+
+    /// As an object: `safety`, or `times` and `loads`, the two states that first yield lies between (one: at or before it).
+    pub fn to_json(self) -> Value {
+        match self {
+            FirstYield::Never(safety) => json!({ "yields": false, "safety": safety }),
+            FirstYield::AtOnce([time, load]) => json!({ "yields": true, "times": [time], "loads": [load] }),
+            FirstYield::Between([[t0, w0], [t1, w1]]) => {
+                json!({ "yields": true, "times": [t0, t1], "loads": [w0, w1] })
+            }
+        }
+    }
+}

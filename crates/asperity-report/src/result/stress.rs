@@ -1,0 +1,106 @@
+//! The stress below the surface: sections through its largest value, the map there, and the profile over depth.
+
+use asperity_io::readable::quantity;
+use asperity_io::store::{At, Reader};
+use asperity_io::stress::{Below, Instant, Section, StressPlan, below_at, section};
+use ndarray::{Array2, s};
+
+use super::{PlotError, caption};
+use crate::figure::{Axis, Colours, Curves, Figure, Map, Series, Style, Values};
+
+/// A section is this many times as wide as deep, unless the domain ends before.
+const WIDE: f64 = 3.0;
+
+/// The stress at a stored instant: what the result holds, or the largest values of its first body.
+pub(super) fn stress(reader: &Reader, at: At) -> Result<Figure, PlotError> {
+    let plan =
+        StressPlan::for_result(reader).ok_or_else(|| PlotError::NoPoisson(reader.path().to_owned()))?;
+    let stored = Below::of(reader)?;
+    let index = reader.index(at)?;
+    match stored.filter(|below| below.instants.iter().any(|instant| instant.index == index)) {
+        Some(below) => stress_figure(reader, &below, index),
+        None => stress_figure(reader, &below_at(reader, &plan, at)?, index),
+    }
+}
+
+/// The figure of a stored instant, by its number, of what was found; without a title.
+///
+/// # Errors
+/// [`PlotError`] where nothing was found at this instant, or nothing touches.
+pub fn stress_figure(reader: &Reader, below: &Below, index: usize) -> Result<Figure, PlotError> {
+    let Some(instant) = below.instants.iter().find(|instant| instant.index == index) else {
+        return Err(PlotError::NoPoisson(reader.path().to_owned()));
+    };
+    let found = section(reader, below, instant)?;
+    let [depth, x, y] = found.place;
+    let length = |value: f64| quantity(value, "m");
+    let size = reader.header().grid.size();
+    let mises = |title: String, values: &Array2<f64>, size: [f64; 2]| {
+        let mut map = Map::new(title, ["von Mises stress", "Pa"], Colours::Heat, values.view(), size);
+        if let Values::Quantity { range, .. } = &mut map.meaning {
+            *range = Some([0.0, found.largest]);
+        }
+        map
+    };
+    let cut = |values: &Array2<f64>, along: &'static str, place: f64, size: f64, title: String| {
+        let cells = values.dim().0;
+        let half = (0.5 * WIDE * found.reach).max(size / cells as f64);
+        let cell = |at: f64| (at / size * cells as f64).clamp(0.0, cells as f64) as usize;
+        let (first, end) = (cell(place - half), cell(place + half).max(cell(place - half) + 1).min(cells));
+        let part = values.slice(s![first..end, ..]).to_owned();
+        let start = first as f64 / cells as f64 * size;
+        let wide = (end - first) as f64 / cells as f64 * size;
+        mises(title, &part, [wide, found.reach]).section(along, start)
+    };
+    let title = title(reader, instant);
+    let sentence = format!(
+        "von Mises stress of {} (Poisson's ratio {}), largest {} at x = {}, y = {}, depth {}. {}",
+        below.set.body,
+        below.set.poisson,
+        quantity(found.largest, "Pa"),
+        length(x),
+        length(y),
+        length(depth),
+        caption(reader, index)?
+    );
+    let mut figure = Figure::new(title)
+        .with(cut(&found.along_x, "x", x, size[0], format!("Section y = {}", length(y))))
+        .with(cut(&found.along_y, "y", y, size[1], format!("Section x = {}", length(x))))
+        .caption(sentence);
+    for (depth, map) in &found.maps {
+        figure = figure.with(mises(format!("Depth {}", length(*depth)), map, size));
+    }
+    figure = figure.with(profile(below, instant, &found));
+    figure.panel = [300.0, 230.0];
+    Ok(figure)
+}
+
+fn title(reader: &Reader, instant: &Instant) -> String {
+    let title = &reader.header().title;
+    let what = format!("tress below the surface at t = {}", quantity(instant.time, "s"));
+    if title.is_empty() { format!("S{what}") } else { format!("{title}: s{what}") }
+}
+
+/// The largest stresses by depth.
+fn profile(below: &Below, instant: &Instant, found: &Section) -> Curves {
+    let depths = &below.set.depths;
+    let lines =
+        [("von Mises", "mises_by_depth"), ("Tresca", "tresca_by_depth"), ("principal", "tension_by_depth")];
+    let least = below.profile(instant, "tension_by_depth").iter().copied().fold(0.0, f64::min);
+    // Room for the legend above the curves.
+    let up = Axis::linear("stress", "Pa").between(least, 1.4 * found.largest);
+    let mut panel = Curves::new("Largest at each depth", Axis::linear("depth", "m"), up);
+    for (name, key) in lines {
+        panel =
+            panel.with(Series::new(name, Style::Line, depths.clone(), below.profile(instant, key).to_vec()));
+    }
+    let shear = below.profile(instant, "orthogonal_shear_by_depth");
+    if !shear.is_empty() {
+        panel = panel.with(Series::new("range of shear", Style::Dashed, depths.clone(), shear.to_vec()));
+    }
+    if let Some(limit) = below.set.yield_stress.filter(|limit| *limit < 1.4 * found.largest) {
+        let ends = vec![0.0, depths.last().copied().unwrap_or(found.reach)];
+        panel = panel.with(Series::new("yield stress", Style::Reference, ends, vec![limit; 2]));
+    }
+    panel.with(Series::new("", Style::Points, vec![found.place[0]], vec![found.largest]))
+}

@@ -1,0 +1,105 @@
+//! The depths at which the stress is looked at.
+
+use crate::error::{Error, Result};
+use crate::grid::{Boundary, Grid};
+
+/// Depths between 0 and this share of a cell are refused: they show the steps of the pressure from cell to cell.
+const SHALLOWEST: f64 = 0.25;
+/// Depths beyond this many times the domain are refused: the stress there is nothing but rounding.
+const DEEPEST: f64 = 1e9;
+/// Depths of [`automatic_depths`] below the surface.
+const AUTOMATIC: usize = 24;
+/// They reach this many cells at least.
+const CELLS: f64 = 4.0;
+/// Most depths of a survey: more are a slip.
+const MOST: usize = 10_000;
+
+/// 0, and 24 depths in geometric progression from half a cell: on a free domain to 2 sqrt(A/pi), A the area of the rectangle
+/// around the contact ([`contact_box`]; 0 where there is no contact: the domain's), on a periodic one to half its shorter side;
+/// to four cells at least.
+///
+/// ```
+/// use asperity::{Boundary, Grid, stress::automatic_depths};
+/// let grid = Grid::new([128, 128], [1e-3, 1e-3])?;
+/// let depths = automatic_depths(&grid, Boundary::Periodic, 0.0);
+/// assert_eq!((depths.len(), depths[0]), (25, 0.0));
+/// assert!((depths[1] - 0.5 * 1e-3 / 128.0).abs() < 1e-18 && (depths[24] - 0.5e-3).abs() < 1e-15);
+/// # Ok::<(), asperity::Error>(())
+/// ```
+pub fn automatic_depths(grid: &Grid, boundary: Boundary, contact_box: f64) -> Vec<f64> {
+    let ([dx, dy], [lx, ly]) = (grid.spacing(), grid.size());
+    let area = if contact_box > 0.0 { contact_box } else { grid.area() };
+    let deepest = match boundary {
+        Boundary::Periodic => 0.5 * lx.min(ly),
+        Boundary::Free => 2.0 * (area / std::f64::consts::PI).sqrt(),
+    };
+    let cell = dx.max(dy);
+    spaced_depths([0.5 * cell, deepest.max(CELLS * cell)], AUTOMATIC, true, true)
+}
+
+/// `count` depths from the first to the last, in geometric (`geometric`) or arithmetic progression; with `surface` 0 before
+/// them.
+pub fn spaced_depths([first, last]: [f64; 2], count: usize, geometric: bool, surface: bool) -> Vec<f64> {
+    let depth = |k: usize| match k {
+        0 => first,
+        k if k + 1 == count => last,
+        k => {
+            let share = k as f64 / (count - 1) as f64;
+            if geometric {
+                first * libm::exp(libm::log(last / first) * share)
+            } else {
+                first + (last - first) * share
+            }
+        }
+    };
+    surface.then_some(0.0).into_iter().chain((0..count).map(depth)).collect()
+}
+
+/// Area of the rectangle around the cells under pressure \[m^2\]; 0 where there are none.
+pub fn contact_box(grid: &Grid, pressure: &[f64]) -> f64 {
+    let ny = grid.cells()[1];
+    let touching = || pressure.iter().enumerate().filter(|(_, p)| **p > 0.0).map(|(n, _)| [n / ny, n % ny]);
+    let ends = |axis: usize| {
+        touching().fold((usize::MAX, 0), |(least, most), at| (least.min(at[axis]), most.max(at[axis])))
+    };
+    let [(x0, x1), (y0, y1)] = [ends(0), ends(1)];
+    if x0 > x1 { 0.0 } else { ((x1 - x0 + 1) * (y1 - y0 + 1)) as f64 * grid.cell_area() }
+}
+
+/// A depth may be 0, or a quarter of a cell and deeper, up to 1e9 times the domain.
+///
+/// # Errors
+/// [`Error::Invalid`] for any other.
+pub fn check_depth(grid: &Grid, depth: f64) -> Result<()> {
+    let shallowest = SHALLOWEST * grid.spacing()[0].max(grid.spacing()[1]);
+    let deepest = DEEPEST * grid.size()[0].max(grid.size()[1]);
+    if depth == 0.0 || (shallowest..=deepest).contains(&depth) {
+        return Ok(());
+    }
+    let expected = match depth > deepest {
+        true => format!("at most {deepest:e} m, a thousand million times the domain"),
+        false => format!(
+            "0, or at least {shallowest:e} m, a quarter of a cell (nearer to the surface the stress shows the steps of \
+             the pressure from cell to cell)"
+        ),
+    };
+    Err(Error::invalid("depth", format!("{depth:e} m"), expected))
+}
+
+/// Depths of a survey: 1 to 10000, each allowed, each deeper than the one before.
+///
+/// # Errors
+/// [`Error::Invalid`] with the first that is not.
+pub fn check_depths(grid: &Grid, depths: &[f64]) -> Result<()> {
+    if !(1..=MOST).contains(&depths.len()) {
+        return Err(Error::invalid("number of depths", depths.len(), format!("from 1 to {MOST}")));
+    }
+    depths.iter().try_for_each(|depth| check_depth(grid, *depth))?;
+    match depths.windows(2).find(|two| two[0] >= two[1]) {
+        Some(two) => {
+            let expected = format!("deeper than the one before it, {:e} m", two[0]);
+            Err(Error::invalid("depth", format!("{:e} m", two[1]), expected))
+        }
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,113 @@
+//! The largest stresses of one depth.
+
+use rayon::prelude::*;
+
+use super::{Invariants, Rolling, SurveyOptions, invariants};
+use crate::grid::Grid;
+use asperity_sweep::{Merge, sweep};
+
+/// The first largest value of a field.
+#[derive(Clone, Copy)]
+pub(super) struct First {
+    pub(super) value: f64,
+    pub(super) cell: usize,
+}
+
+const NOTHING: First = First { value: f64::NEG_INFINITY, cell: 0 };
+
+impl First {
+    fn or(self, next: Self) -> Self {
+        if next.value > self.value { next } else { self }
+    }
+}
+
+/// Maxima of one depth, and the cells above a threshold.
+#[derive(Clone, Copy)]
+pub(super) struct Slab {
+    pub(super) mises: First,
+    pub(super) tresca: First,
+    pub(super) tension: First,
+    /// Largest range of the orthogonal shear stress.
+    pub(super) shear: First,
+    /// Number of cells above the threshold.
+    pub(super) above: f64,
+    /// Cells seen: those of what is merged next begin there.
+    cells: usize,
+}
+
+impl Merge for Slab {
+    fn merge(self, next: Self) -> Self {
+        let join = |a: First, b: First| a.or(First { cell: self.cells + b.cell, ..b });
+        Slab {
+            mises: join(self.mises, next.mises),
+            tresca: join(self.tresca, next.tresca),
+            tension: join(self.tension, next.tension),
+            shear: join(self.shear, next.shear),
+            above: self.above + next.above,
+            cells: self.cells + next.cells,
+        }
+    }
+}
+
+/// Six slices of one length.
+type Six<'a> = (&'a [f64], &'a [f64], &'a [f64], &'a [f64], &'a [f64], &'a [f64]);
+
+impl Slab {
+    pub(super) fn of(grid: &Grid, fields: &[Vec<f64>; 6], options: &SurveyOptions) -> Slab {
+        let [xx, yy, zz, xy, xz, yz] = fields.each_ref().map(Vec::as_slice);
+        let threshold = options.threshold.unwrap_or(f64::INFINITY);
+        let found = sweep((xx, yy, zz, xy, xz, yz), &|(xx, yy, zz, xy, xz, yz): Six<'_>| {
+            let mut found = Slab {
+                mises: NOTHING,
+                tresca: NOTHING,
+                tension: NOTHING,
+                shear: NOTHING,
+                above: 0.0,
+                cells: xx.len(),
+            };
+            for cell in 0..xx.len() {
+                let tensor = [xx[cell], yy[cell], zz[cell], xy[cell], xz[cell], yz[cell]];
+                let Invariants { mises, tresca, tension, .. } = invariants(tensor);
+                found.mises = found.mises.or(First { value: mises, cell });
+                found.tresca = found.tresca.or(First { value: tresca, cell });
+                found.tension = found.tension.or(First { value: tension, cell });
+                found.above += f64::from(u8::from(mises > threshold));
+            }
+            found
+        });
+        let shear = match options.rolling {
+            Some(Rolling::X) => range_along_x(xz, grid.cells()[1]),
+            Some(Rolling::Y) => range_along_y(yz, grid.cells()[1]),
+            None => NOTHING,
+        };
+        Slab { shear, ..found }
+    }
+}
+
+/// Largest minus least value of each line along y; the first largest, with the cell at which the line begins.
+fn range_along_y(field: &[f64], ny: usize) -> First {
+    let ranges: Vec<f64> = field
+        .par_chunks(ny)
+        .map(|line| {
+            let [low, high] =
+                line.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(*v), b.max(*v)]);
+            high - low
+        })
+        .collect();
+    first(&ranges, |line| line * ny)
+}
+
+/// The same of the lines along x.
+fn range_along_x(field: &[f64], ny: usize) -> First {
+    let mut ends = vec![[f64::INFINITY, f64::NEG_INFINITY]; ny];
+    for row in field.chunks(ny) {
+        ends.iter_mut().zip(row).for_each(|([low, high], v)| (*low, *high) = (low.min(*v), high.max(*v)));
+    }
+    let ranges: Vec<f64> = ends.iter().map(|[low, high]| high - low).collect();
+    first(&ranges, |line| line)
+}
+
+fn first(ranges: &[f64], cell: impl Fn(usize) -> usize) -> First {
+    let firsts = ranges.iter().enumerate().map(|(line, value)| First { value: *value, cell: cell(line) });
+    firsts.fold(NOTHING, First::or)
+}

@@ -37,11 +37,11 @@ impl Failure {
     pub fn tell(&self) {
         match self {
             Failure::Case(errors) => tell_case(errors),
-            Failure::Input(message) | Failure::Solve(message) => eprintln!("error: {message}"),
+            Failure::Input(message) | Failure::Solve(message) => crate::talk::say!("error: {message}"),
             Failure::Strict(warnings) => {
-                eprintln!("error: {} (--strict)", crate::words::counted(*warnings, "warning"));
+                crate::talk::say!("error: {} (--strict)", crate::words::counted(*warnings, "warning"));
             }
-            Failure::Interrupted(message) => eprintln!("interrupted: {message}"),
+            Failure::Interrupted(message) => crate::talk::say!("interrupted: {message}"),
         }
     }
 }
@@ -55,16 +55,37 @@ impl From<CaseErrors> for Failure {
 /// Each fault with the lines of the case that it is in.
 fn tell_case(errors: &CaseErrors) {
     let handler = GraphicalReportHandler::new().with_width(terminal_width()).with_links(false);
+    let source = masked(&errors.source);
+    let short = source.lines().all(|line| line.len() <= LONGEST_LINE);
     for error in &errors.errors {
-        let fault = Fault { error, source: NamedSource::new(&errors.name, errors.source.clone()) };
+        let fault = Fault { error, source: NamedSource::new(&errors.name, source.clone()) };
         let mut text = String::new();
-        let drawn = error.span.is_some() && handler.render_report(&mut text, &fault).is_ok();
+        let drawn = short && error.span.is_some() && handler.render_report(&mut text, &fault).is_ok();
         if drawn {
-            eprint!("{text}");
+            crate::talk::write(&text);
         } else {
-            eprintln!("error: {}: {error}", errors.name);
+            let text = format!("{}: {error}", errors.name);
+            let cut = text.char_indices().nth(LONGEST_LINE).map_or(text.as_str(), |(end, _)| &text[..end]);
+            crate::talk::say!("error: {cut}{}", if cut.len() < text.len() { " ..." } else { "" });
         }
     }
+}
+
+/// Lines of a case file that are longer \[bytes\] are not drawn: they would bury the message.
+const LONGEST_LINE: usize = 1000;
+
+/// The source with its control characters replaced by question marks, as many bytes each.
+fn masked(source: &str) -> String {
+    let mask = |c: char| c.is_control() && c != '\n' && c != '\t' && c != '\r';
+    let mut text = String::with_capacity(source.len());
+    for c in source.chars() {
+        if mask(c) {
+            text.extend(std::iter::repeat_n('?', c.len_utf8()));
+        } else {
+            text.push(c);
+        }
+    }
+    text
 }
 
 fn terminal_width() -> usize {

@@ -7,6 +7,7 @@ mod args;
 mod commands;
 mod failure;
 mod progress;
+mod talk;
 mod terminal;
 mod trace;
 mod words;
@@ -51,7 +52,7 @@ fn main() -> ExitCode {
 /// Writes data to stdout. A reader that has gone (`asperity schema | head`) is no failure.
 fn print(text: &str) -> Result<(), Failure> {
     use std::io::Write;
-    match std::io::stdout().write_all(text.as_bytes()).and_then(|()| std::io::stdout().flush()) {
+    match std::io::stdout().write_all(talk::printable(text).as_bytes()).and_then(|()| std::io::stdout().flush()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
             Err(Failure::input(format!("cannot write to standard output: {error}")))
         }

@@ -109,7 +109,7 @@ impl Teller {
                             words::quantity(rest / COURSE as f64 * progress.end, "s")
                         ),
                     };
-                    eprintln!("row {}: {state}, {left} left", rows(progress));
+                    crate::talk::say!("row {}: {state}, {left} left", rows(progress));
                     *told = Some(Instant::now());
                 }
             }
@@ -124,7 +124,7 @@ impl Teller {
             Teller::Bar(bar, _) => bar.set_message(state),
             Teller::Lines { told, pause, .. } => {
                 if told.is_none_or(|told| told.elapsed() >= *pause) {
-                    eprintln!("{state}");
+                    crate::talk::say!("{state}");
                     *told = Some(Instant::now());
                 }
             }

@@ -26,6 +26,7 @@ pub fn listen(verbose: u8) {
         .with_writer(std::io::stderr)
         .with_target(false)
         .without_time()
+        .log_internal_errors(false)
         .with_filter(tracing_subscriber::filter::LevelFilter::WARN);
     let table = (verbose >= 2).then(Table::default);
     tracing_subscriber::registry().with(warnings).with(table).init();
@@ -50,9 +51,9 @@ impl<S: Subscriber> Layer<S> for Table {
         event.record(&mut line);
         if line.is_first() || !self.headed.swap(true, Ordering::Relaxed) {
             let headings = COLUMNS.map(|(_, heading, width)| format!("{heading:>width$}"));
-            eprintln!("{}", headings.join("  "));
+            crate::talk::say!("{}", headings.join("  "));
         }
-        eprintln!("{}", line.print());
+        crate::talk::say!("{}", line.print());
     }
 }
 

@@ -288,3 +288,42 @@ fn a_fluid_that_relaxes_to_nothing_takes_few_steps() {
     assert!(rows.len() < 3000, "{}", rows.len());
     assert!(rows.last().unwrap().load < 1e-6 * rows.iter().map(|row| row.load).fold(0.0, f64::max));
 }
+
+/// A step follows a temperature by reduced time; a load that moves, and a body with another clock, do not: adaptive steps bound
+/// the change of the rate.
+#[test]
+fn adaptive_steps_follow_a_changing_temperature() {
+    use asperity::material::{ReducedTime, Relaxation, Shift, ThermalCreep};
+    let creep = Relaxation::absolute(1e6, &[(1e8, 1.0)]).unwrap().to_creep().unwrap();
+    let shift = Shift::Wlf { c1: 8.86, c2: 101.6, reference: 293.15 };
+    let clock = ReducedTime::new(shift, &[(0.0, 263.15), (8.0, 313.15)]).unwrap();
+    let body = ThermalCreep { creep: creep.clone(), clock };
+    let grid = Grid::new([16, 16], [1e-3, 1e-3]).unwrap();
+    let shape = Shape::Sphere { radius: 5e-3 };
+    let gap = undeformed_gap(&grid, &[Part::Shape { shape, center: [0.0, 0.0] }]).unwrap();
+    let held = (Control::Approach, History::Step { value: 6e-6 }, creep);
+    let ramp = (Control::Load, History::Ramp { value: 0.02, duration: 8.0 }, asperity::material::Creep::elastic(1e-12));
+    for (control, history, creep) in [held, ramp] {
+        let base = Simulation {
+            creep,
+            thermal: vec![body.clone()],
+            loading: Loading { control, history }.into(),
+            ..Simulation::new(grid, gap.clone())
+        };
+        let of = |row: &Row| if control == Control::Approach { row.load } else { row.approach };
+        for tolerance in [1e-2, 1e-3] {
+            let found = rows(Simulation { times: adaptive(10.0, tolerance, 10.0), ..base.clone() });
+            // Each step in eight: the error of order two is 1/64.
+            let parts = found.windows(2).filter(|pair| pair[1].time > pair[0].time).flat_map(|pair| {
+                let [a, b] = [pair[0].time, pair[1].time];
+                (1..=8).map(move |n| if n == 8 { b } else { a + (b - a) * f64::from(n) / 8.0 })
+            });
+            let fine = rows(Simulation { times: TimeGrid::List(parts.collect()), ..base.clone() });
+            for row in found.iter().filter(|row| row.time > 0.1) {
+                let exact = fine.iter().rfind(|other| (other.time / row.time - 1.0).abs() < 1e-12).unwrap();
+                let off = (of(row) / of(exact) - 1.0).abs();
+                assert!(off <= 2.0 * tolerance, "{control:?} {tolerance}: {off} at {} s of {}", row.time, found.len());
+            }
+        }
+    }
+}

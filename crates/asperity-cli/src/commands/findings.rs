@@ -6,7 +6,7 @@ use crate::failure::Failure;
 
 /// One line each, on stderr.
 pub fn tell(findings: &[Finding]) {
-    findings.iter().for_each(|finding| eprintln!("{finding}"));
+    findings.iter().for_each(|finding| crate::talk::say!("{finding}"));
 }
 
 /// "2 warnings, 1 note: contact-at-border, large-strain, outliers".

@@ -56,7 +56,7 @@ fn show(args: &Show) -> Result<(), Failure> {
         )));
     }
     for specimen in &specimens {
-        specimen.warnings.iter().for_each(|warning| eprintln!("warning: {warning}"));
+        specimen.warnings.iter().for_each(|warning| crate::talk::say!("warning: {warning}"));
     }
     if let Some(path) = &args.plot {
         let materials: Vec<_> = specimens.iter().map(|s| (s.name.as_str(), &s.material)).collect();

@@ -34,6 +34,6 @@ pub fn run(args: &New) -> Result<(), Failure> {
             _ => format!("cannot write {}: {error}", path.display()),
         })
     })?;
-    eprintln!("wrote {}; run it with: asperity run {}", path.display(), path.display());
+    crate::talk::say!("wrote {}; run it with: asperity run {}", path.display(), path.display());
     Ok(())
 }

@@ -32,7 +32,7 @@ pub fn run(args: &Reproduce) -> Result<(), Failure> {
     let groups = smooth.into_iter().map(|n| vec![n]).chain((!rough.is_empty()).then_some(rough));
     for group in groups {
         let names: Vec<_> = group.iter().map(u8::to_string).collect();
-        eprintln!("figure {} ...", names.join(", "));
+        crate::talk::say!("figure {} ...", names.join(", "));
         for one in reproduce(&group, &options).map_err(failure)? {
             let file = args.output.join(format!("figure-{}.{}", one.number, args.form));
             one.figure.write(&file, args.force).map_err(|error| told(&error))?;

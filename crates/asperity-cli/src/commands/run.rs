@@ -70,7 +70,7 @@ fn tell_findings(args: &Run, findings: &[Finding], told: &[Finding]) -> Vec<Find
 fn tell_materials(args: &Run, case: &Case) {
     for report in case.materials.iter().filter(|_| !args.quiet) {
         for line in super::material::source(report) {
-            eprintln!("{}: {line}", report.body);
+            crate::talk::say!("{}: {line}", report.body);
         }
     }
 }

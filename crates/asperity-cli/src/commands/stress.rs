@@ -89,7 +89,7 @@ fn store(args: &Stress, plan: &StressPlan) -> Result<Below, Failure> {
     let mut writer = Writer::amend(&args.result).map_err(told)?;
     let tell = |done: usize, of: usize| {
         if of > 1 && !args.json && done < of {
-            eprintln!("stress below the surface: time {} of {of}", done + 1);
+            crate::talk::say!("stress below the surface: time {} of {of}", done + 1);
         }
     };
     let below = evaluate(&mut writer, plan, &super::run::on_interrupt(), tell).map_err(ended)?;

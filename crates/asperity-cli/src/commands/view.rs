@@ -35,7 +35,7 @@ pub fn run(args: &View) -> Result<(), Failure> {
         let listener = TcpListener::bind(SocketAddr::new(args.host, args.port)).await.map_err(told)?;
         let address = listener.local_addr().map_err(told)?;
         crate::print(&format!("http://{address}/\n"))?;
-        eprintln!("open this address in a browser; press Ctrl-C to stop");
+        crate::talk::say!("open this address in a browser; press Ctrl-C to stop");
         serve(listener, Live::new(&args.result), args.host).await;
         Ok(())
     })

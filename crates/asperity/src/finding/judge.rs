@@ -4,7 +4,7 @@ use super::contact::{Counted, Resolution};
 use super::energy::Balance;
 use super::expected::{ROOM, radius};
 use super::strain::Strain;
-use super::{CONTACT_AT_BORDER, ENERGY_BALANCE, Finding, LARGE_SLOPE, domain, material, surface, time};
+use super::{CONTACT_AT_BORDER, ENERGY_BALANCE, Finding, LARGE_SLOPE, STEPS_TOO_LONG, domain, material, surface, time};
 use crate::grid::{Boundary, Grid};
 use crate::load::Control;
 use crate::march::{Row, Simulation, Step};
@@ -59,6 +59,9 @@ pub struct Judge {
     resolution: Resolution,
     strain: Strain,
     balance: Balance,
+    /// What is to be said of a held approach once cells are at the hardness there, and whether they were.
+    held: Option<Finding>,
+    capped: bool,
     /// What the balance was in an earlier session of the run.
     earlier_balance: Option<Finding>,
 }
@@ -80,6 +83,8 @@ impl Judge {
             resolution: Resolution::default(),
             strain: Strain::new(simulation, radius(known.parts)),
             balance: Balance::default(),
+            held: time::held_at_hardness(simulation).filter(|_| simulation.hardness.is_finite() || simulation.hardness_map.is_some()),
+            capped: false,
             earlier_balance: None,
             grid: *grid,
         }
@@ -115,6 +120,7 @@ impl Judge {
                 });
             self.needed = self.needed.max(needed);
         }
+        self.capped |= row.capped_area > 0.0 && step.instant().control == Control::Approach;
         if let Some(balance) = step.energy_balance() {
             self.balance.see(index, balance);
         }
@@ -146,6 +152,9 @@ impl Judge {
         found.extend(self.strain.findings());
         if !found.iter().any(|finding| finding.code == LARGE_SLOPE) {
             found.extend(surface::near(&self.grid, &simulation.gap, self.deepest));
+        }
+        if !found.iter().any(|finding| finding.code == STEPS_TOO_LONG) {
+            found.extend(self.held.clone().filter(|_| self.capped));
         }
         let balances = self.balance.finding().into_iter().chain(self.earlier_balance.clone());
         found.extend(balances.reduce(|a, b| if b.value > a.value { b } else { a }));

@@ -224,6 +224,52 @@ fn large_strains_are_found_before_and_after() {
     assert!(codes(&found).contains(&UNLIKELY_UNIT), "{found:?}");
 }
 
+/// A thermal body with the terms of [`zener`], warmed from 0 to 40 °C in 10 s.
+fn warming() -> crate::material::ThermalCreep {
+    let shift = crate::material::Shift::Wlf { c1: 8.86, c2: 101.6, reference: 293.15 };
+    let clock = crate::material::ReducedTime::new(shift, &[(0.0, 273.15), (10.0, 313.15)]).unwrap();
+    crate::material::ThermalCreep { creep: zener(), clock }
+}
+
+#[test]
+fn a_temperature_that_changes_within_a_step_is_told_where_it_matters() {
+    let parts = [sphere(5e-3)];
+    let of = |steps, creep, loading| Simulation {
+        creep,
+        thermal: vec![warming()],
+        loading,
+        times: TimeGrid::Uniform { end: 10.0, steps },
+        ..simulation(&parts)
+    };
+    let held = || loaded(Control::Approach, History::Step { value: 1e-6 });
+    let ramp = || loaded(Control::Load, History::Ramp { value: 0.01, duration: 10.0 });
+    // One clock and a held approach: exact. Two clocks, or a load that moves: not.
+    assert_eq!(codes(&before(&of(5, Creep::elastic(1e-6), held()), &parts)), QUIET);
+    for few in [of(5, zener(), held()), of(5, Creep::elastic(1e-6), ramp())] {
+        let found = before(&few, &parts);
+        assert_eq!(codes(&found), [STEPS_TOO_LONG]);
+        assert!(found[0].text.contains("temperature changes the rate"), "{}", found[0].text);
+    }
+    assert_eq!(codes(&before(&of(40, zener(), held()), &parts)), QUIET);
+}
+
+#[test]
+fn a_held_approach_with_cells_at_the_hardness_needs_steps() {
+    let parts = [sphere(5e-3)];
+    let of = |steps, hardness| Simulation {
+        creep: zener(),
+        loading: loaded(Control::Approach, History::Step { value: 4e-6 }),
+        hardness,
+        times: TimeGrid::Uniform { end: 3.0, steps },
+        ..simulation(&parts)
+    };
+    let (low, high) = (2e4, 1e9);
+    let found = after(of(3, low), &parts);
+    assert!(codes(&found).contains(&STEPS_TOO_LONG), "{found:?}");
+    assert!(!codes(&after(of(3, high), &parts)).contains(&STEPS_TOO_LONG));
+    assert!(!codes(&after(of(30, low), &parts)).contains(&STEPS_TOO_LONG));
+}
+
 #[test]
 fn steps_too_long_for_a_falling_load_are_found() {
     let parts = [sphere(5e-3)];
@@ -237,16 +283,26 @@ fn steps_too_long_for_a_falling_load_are_found() {
     assert_eq!((found[0].value, found[0].rows), (Some(2.0), Some([5, 6])));
     assert_eq!(codes(&before(&of(Control::Load, 0.01, 1.0, 30), &parts)), QUIET);
     assert_eq!(codes(&before(&of(Control::Approach, 1e-6, 1.0, 6), &parts)), [STEPS_TOO_LONG]);
-    // Area and approach of a rising load are exact in any step, its heat is not.
-    let rising = |quantities| {
+    // Area and approach of a rising load are exact in any step, its pressures are not, and its heat even less.
+    let rising = |steps, list| {
         let ramp = loaded(Control::Load, History::Ramp { value: 0.01, duration: 1.0 });
-        Simulation { loading: ramp, quantities, ..of(Control::Load, 0.01, 1.0, 6) }
+        let quantities = Quantities { list, ..Quantities::default() };
+        Simulation { loading: ramp, quantities, ..of(Control::Load, 0.01, 1.0, steps) }
     };
-    assert_eq!(codes(&before(&rising(Quantities::default()), &parts)), QUIET);
-    let heat = Quantities { list: vec![Quantity::DissipatedEnergy], ..Quantities::default() };
-    let found = before(&rising(heat), &parts);
-    assert_eq!(codes(&found), [STEPS_TOO_LONG]);
-    assert!(found[0].text.contains("load rises"), "{}", found[0].text);
+    assert_eq!(codes(&before(&rising(15, vec![]), &parts)), QUIET);
+    for (steps, list, least) in [(6, vec![], 4.0), (15, vec![Quantity::DissipatedEnergy], 10.0)] {
+        let found = before(&rising(steps, list), &parts);
+        assert_eq!(codes(&found), [STEPS_TOO_LONG]);
+        assert_eq!(found[0].limit, Some(least));
+        assert!(found[0].text.contains("load rises"), "{}", found[0].text);
+    }
+    // A body without instantaneous compliance, and one with many weak terms.
+    let few = of(Control::Load, 0.01, 1.0, 6);
+    let kelvin_voigt = Simulation { creep: Creep { instantaneous: 0.0, ..zener() }, ..few.clone() };
+    assert_eq!(codes(&before(&kelvin_voigt, &parts)), [STEPS_TOO_LONG]);
+    let terms: Vec<(f64, f64)> = (0..24).map(|n| (1e6, 10f64.powf(f64::from(n) / 4.0 - 3.0))).collect();
+    let broad = crate::material::Relaxation::absolute(1e6, &terms).unwrap().to_creep().unwrap();
+    assert_eq!(codes(&before(&Simulation { creep: broad, ..few }, &parts)), [STEPS_TOO_LONG]);
     // An elastic body follows any step, and so does one that is relaxed all the time, or never.
     let elastic = Simulation { creep: Creep::elastic(1e-6), ..of(Control::Load, 0.01, 1.0, 6) };
     assert_eq!(codes(&before(&elastic, &parts)), QUIET);

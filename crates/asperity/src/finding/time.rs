@@ -1,9 +1,10 @@
 //! Steps that are too long for the history and the material.
 //!
-//! A step is exact where load or approach is held and where the contact grows, however long it is. Where the load falls,
-//! or the approach moves, the contact goes its own way inside of a step, and the material relaxes on the way: such a
-//! course must be followed in steps. So must a load that rises, where energies are asked for: approach and area are exact then,
-//! but the heat on the way there is not. A periodic load must be followed in any case: a few steps to a period show
+//! A step is exact where load or approach is held below the hardness, however long it is. Where the load falls, or the approach
+//! moves, the contact goes its own way inside of a step, and the material relaxes on the way: such a course must be followed in
+//! steps. Under a load that rises approach and area are exact, but pressures and energies are not. Under a held approach the
+//! displacement of cells at the hardness goes on. A temperature that changes the rate of a material within a step is followed
+//! by the material, but not by a load or approach that moves, nor by the other body. A periodic load must be followed in any case: a few steps to a period show
 //! another load. Adaptive steps look after themselves.
 
 use super::words::{digits, rows, si};
@@ -16,6 +17,10 @@ use crate::time::{Instant, Plan};
 const PER_PERIOD: f64 = 20.0;
 /// Steps to a course that goes one way.
 const PER_COURSE: usize = 10;
+/// Steps to a load that rises, where no energies are asked for.
+const PER_RISE: usize = 4;
+/// ln of the rate of a material may change by so much in a step: the error is about 0.15 times its square.
+const DRIFT: f64 = 0.5;
 /// Courses that move by less than this share of the largest value are scatter of a measured history.
 const SMALL: f64 = 0.05;
 /// Relaxation times that carry less than this share of the modulus do not matter.
@@ -41,13 +46,65 @@ pub(super) fn of(simulation: &Simulation) -> Vec<Finding> {
         for course in courses(stage, instants, energies) {
             let course = Piece { first: first + course.first, last: first + course.last, ..course };
             let fewer = long.as_ref().is_none_or(|other| course.steps < other.steps);
-            if course.steps < PER_COURSE && fewer && relaxes(simulation, &plan, &course) {
+            if course.steps < course.least && fewer && relaxes(simulation, &plan, &course) {
                 long = Some(course);
             }
         }
+        found.extend(drifting(simulation, &plan, instants, first));
     }
     found.extend(long.map(|course| too_long(&plan, &course)));
     found
+}
+
+/// What too few steps do to an approach that is held while cells are at the hardness.
+pub(super) fn held_at_hardness(simulation: &Simulation) -> Option<Finding> {
+    let plan = simulation.plan();
+    let stages = &simulation.loading.stages;
+    let fixed = |stage: usize| !stages[stage].times.as_ref().unwrap_or(&simulation.times).is_adaptive();
+    let mut held: Vec<Piece> = vec![];
+    for (n, pair) in plan.instants.windows(2).enumerate() {
+        let [before, now] = [pair[0], pair[1]];
+        let holds = now.dt > 0.0 && now.control == Control::Approach && before.value == now.value;
+        if !holds || !fixed(now.stage) {
+            continue;
+        }
+        match held.last_mut().filter(|piece| piece.last == n) {
+            Some(piece) => piece.add(n + 1, now.dt),
+            None => held.push(Piece::new(n + 1, now.dt, PER_COURSE, "approach is held while cells are at the hardness")),
+        }
+    }
+    let long = held.iter().filter(|piece| piece.steps < piece.least && relaxes(simulation, &plan, piece));
+    long.min_by_key(|piece| piece.steps).map(|piece| too_long(&plan, piece))
+}
+
+/// A step in which the temperature changes the rate of a material that a moving course, or another clock, depends on.
+fn drifting(simulation: &Simulation, plan: &Plan, instants: &[Instant], first: usize) -> Option<Finding> {
+    let clocks = simulation.parts().filter(|creep| !creep.terms.is_empty() || creep.fluidity > 0.0).count();
+    let mut worst = (DRIFT, 0);
+    for (n, pair) in instants.windows(2).enumerate() {
+        let [before, now] = [pair[0], pair[1]];
+        if now.dt == 0.0 || (before.value == now.value && clocks < 2) {
+            continue;
+        }
+        for body in simulation.thermal.iter().filter(|body| !body.creep.terms.is_empty()) {
+            let drift = body.clock.drift(now.time - now.dt, now.time);
+            if drift > worst.0 {
+                worst = (drift, first + n + 1);
+            }
+        }
+    }
+    let (drift, row) = worst;
+    (row > 0).then(|| {
+        let factor = libm::exp(drift);
+        let text = format!(
+            "The temperature changes the rate of a material by a factor of {} within one step ({}): load and approach are \
+             off there. Take more steps while the temperature changes, or spacing = \"adaptive\".",
+            digits(factor),
+            rows([row; 2])
+        );
+        let finding = Finding::warning(STEPS_TOO_LONG, factor, libm::exp(DRIFT), text);
+        if plan.exact { finding.at([row; 2]) } else { finding }
+    })
 }
 
 /// A part of a stage in which the value goes one way.
@@ -59,11 +116,26 @@ struct Piece {
     /// Sum of its steps and the shortest of them \[s\].
     length: f64,
     shortest: f64,
-    /// What moves, and which way.
-    moves: &'static str,
+    /// Steps that it takes.
+    least: usize,
+    /// What happens there.
+    what: &'static str,
 }
 
-/// The courses of a stage that a step does not follow by itself, or whose `energies` it does not.
+impl Piece {
+    fn new(row: usize, dt: f64, least: usize, what: &'static str) -> Self {
+        Piece { first: row, last: row, steps: 1, length: dt, shortest: dt, least, what }
+    }
+
+    fn add(&mut self, row: usize, dt: f64) {
+        self.last = row;
+        self.steps += 1;
+        self.length += dt;
+        self.shortest = self.shortest.min(dt);
+    }
+}
+
+/// The courses of a stage that a step does not follow by itself.
 fn courses(stage: &Stage, instants: &[Instant], energies: bool) -> Vec<Piece> {
     if matches!(stage.course, Course::Hold | Course::Given(History::Step { .. } | History::Sine { .. })) {
         return vec![];
@@ -88,35 +160,23 @@ fn courses(stage: &Stage, instants: &[Instant], energies: bool) -> Vec<Piece> {
         };
         match found.last_mut().filter(|_| way == going) {
             Some((course, moved)) if way != 0.0 => {
-                course.last = n;
-                course.steps += 1;
-                course.length += instant.dt;
-                course.shortest = course.shortest.min(instant.dt);
+                course.add(n, instant.dt);
                 *moved += change;
             }
-            _ if way != 0.0 => found.push((
-                Piece {
-                    first: n,
-                    last: n,
-                    steps: 1,
-                    length: instant.dt,
-                    shortest: instant.dt,
-                    moves: match instant.control {
-                        Control::Approach => "approach moves",
-                        Control::Load | Control::Pressure if way < 0.0 => "load falls",
-                        Control::Load | Control::Pressure => "load rises",
-                    },
-                },
-                change,
-            )),
+            _ if way != 0.0 => {
+                let (least, what) = match instant.control {
+                    Control::Approach => (PER_COURSE, "approach moves"),
+                    Control::Load | Control::Pressure if way < 0.0 => (PER_COURSE, "load falls"),
+                    _ if energies => (PER_COURSE, "load rises"),
+                    _ => (PER_RISE, "load rises"),
+                };
+                found.push((Piece::new(n, instant.dt, least, what), change));
+            }
             _ => {}
         }
         going = way;
     }
-    let matters = |(course, moved): &(Piece, f64)| match instants[course.first].control {
-        Control::Load | Control::Pressure if !energies => *moved < -SMALL * largest,
-        _ => moved.is_nan() || moved.abs() > SMALL * largest,
-    };
+    let matters = |(_, moved): &(Piece, f64)| moved.is_nan() || moved.abs() > SMALL * largest;
     found.into_iter().filter(matters).map(|(course, _)| course).collect()
 }
 
@@ -126,27 +186,31 @@ fn relaxes(simulation: &Simulation, plan: &Plan, course: &Piece) -> bool {
     let clocks = simulation.thermal.iter().map(|body| (&body.creep, Some(&body.clock)));
     std::iter::once((&simulation.creep, None)).chain(clocks).any(|(creep, clock)| {
         let factor = clock.map_or(1.0, |clock| clock.elapsed(end - course.length, end) / course.length);
+        let times = course.shortest * factor / NEAR..NEAR * factor * course.length;
         let Ok(relaxation) = creep.to_relaxation() else { return false };
         let stiff = relaxation.instantaneous();
-        relaxation.terms.iter().any(|term| {
-            let matters = !stiff.is_finite() || term.modulus > SHARE * stiff;
-            let times = course.shortest * factor / NEAR..NEAR * factor * course.length;
-            matters && times.contains(&term.relaxation_time)
-        })
+        if !stiff.is_finite() {
+            // A dashpot: what counts is how long the springs beside it take.
+            return creep.terms.iter().any(|term| times.contains(&term.retardation_time));
+        }
+        let relaxing = relaxation.terms.iter().filter(|term| times.contains(&term.relaxation_time));
+        relaxing.map(|term| term.modulus).sum::<f64>() > SHARE * stiff
     })
 }
 
 fn too_long(plan: &Plan, course: &Piece) -> Finding {
-    let what = course.moves;
     let at = [course.first, course.last];
     let place = if plan.exact { format!(" ({})", rows(at)) } else { String::new() };
+    let coarse = if course.what == "load rises" { "pressures and energies" } else { "load, approach and energies" };
     let text = format!(
-        "Where the {what} within {}{place} there are {} steps, less than {PER_COURSE}, while the material relaxes: load, \
-         approach and energies are coarse there. Take more steps, or spacing = \"adaptive\".",
+        "Where the {} within {}{place} there are {} steps, less than {}, while the material relaxes: {coarse} are coarse \
+         there. Take more steps, or spacing = \"adaptive\".",
+        course.what,
         si(course.length, "s"),
-        course.steps
+        course.steps,
+        course.least
     );
-    let finding = Finding::warning(STEPS_TOO_LONG, course.steps as f64, PER_COURSE as f64, text);
+    let finding = Finding::warning(STEPS_TOO_LONG, course.steps as f64, course.least as f64, text);
     if plan.exact { finding.at(at) } else { finding }
 }
 

@@ -18,6 +18,10 @@ const SAFETY: f64 = 0.9;
 /// Errors of single steps add up while the material remembers them: each may take this share.
 const SHARE: f64 = 0.25;
 
+/// ln of the rate of a clock may change in a step by this times the root of the tolerance: the error of the step is about 0.15
+/// times the square of the change.
+const DRIFT: f64 = 2.0;
+
 /// No step is shorter than this share of the time since the smooth piece began.
 const FINEST: f64 = 1e-6;
 
@@ -41,6 +45,11 @@ impl Pace {
     pub(super) fn new(tolerance: f64, first: f64, end: f64, longest: f64) -> Self {
         let first = first.min(longest);
         Pace { allowed: SHARE * tolerance, first, shortest: SHORTEST * end, longest, dt: first, elapsed: 0.0 }
+    }
+
+    /// How far ln of the rate of a clock may go in a step.
+    pub(super) fn drift(&self) -> f64 {
+        DRIFT * (self.allowed / SHARE).sqrt()
     }
 
     /// The shortest step that is tried now.

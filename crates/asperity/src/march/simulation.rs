@@ -121,7 +121,7 @@ impl Simulation {
     }
 
     /// The creep functions whose sum answers: that of laboratory time, then those of `thermal`.
-    pub(super) fn parts(&self) -> impl Iterator<Item = &Creep> {
+    pub(crate) fn parts(&self) -> impl Iterator<Item = &Creep> {
         std::iter::once(&self.creep).chain(self.thermal.iter().map(|body| &body.creep))
     }
 

@@ -176,14 +176,39 @@ impl Timeline {
         }
         let Some(stop) = self.stops.get(self.next) else { return Ok(None) };
         let rest = stop.time - time;
-        Ok(match &self.pace {
+        let longest = self.pace.as_ref().map(|pace| pace.dt.min(self.steady(simulation, time, stop, pace.drift())));
+        Ok(match longest {
             // Not a sliver before the stop.
-            Some(pace) if rest > 1.1 * pace.dt => {
-                let dt = if rest < 2.0 * pace.dt { 0.5 * rest } else { pace.dt };
+            Some(longest) if rest > 1.1 * longest => {
+                let dt = if rest < 2.0 * longest { 0.5 * rest } else { longest };
                 Some(self.inside(simulation, dt))
             }
             _ => instant(stop.time, rest, stop.before, false),
         })
+    }
+
+    /// How long a step from `time` may be until a clock has changed ln of its rate by `drift` \[s\]. A step is linear in
+    /// reduced time: right where the rate is constant, and also where one clock alone runs under a held value.
+    fn steady(&self, simulation: &Simulation, time: f64, stop: &Stop, drift: f64) -> f64 {
+        let rest = stop.time - time;
+        let held = (stop.before - self.history.after(time - self.start)).abs() <= 1e-12 * self.scale;
+        let clocks = simulation.parts().filter(|creep| !creep.terms.is_empty() || creep.fluidity > 0.0).count();
+        if held && clocks < 2 {
+            return rest;
+        }
+        let most = |dt: f64| {
+            simulation.thermal.iter().map(|body| body.clock.drift(time, time + dt)).fold(0.0, f64::max)
+        };
+        if most(rest) <= drift {
+            return rest;
+        }
+        // The temperature goes one way between two stops.
+        let [mut least, mut longest] = [0.0, rest];
+        for _ in 0..40 {
+            let middle = 0.5 * (least + longest);
+            if most(middle) <= drift { least = middle } else { longest = middle }
+        }
+        longest
     }
 
     /// The instant `dt` after the last row, within the step under way.

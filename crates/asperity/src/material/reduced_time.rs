@@ -132,6 +132,13 @@ impl ReducedTime {
         times
     }
 
+    /// |ln| of the ratio of the rates dxi/dt at both ends of a step between two [`breaks`](Self::breaks).
+    pub(crate) fn drift(&self, t0: f64, t1: f64) -> f64 {
+        let piece = &self.pieces[self.index(t0.max(0.0))];
+        let at = |t: f64| self.shift.ln_factor_unchecked(piece.temperature(t.min(piece.end)));
+        (at(t1) - at(t0)).abs()
+    }
+
     /// Integral over part of a piece, which is no steeper than the whole.
     fn part(&self, piece: &Piece, t0: f64, t1: f64) -> f64 {
         self.within(piece, t0, t1).unwrap_or(piece.length)

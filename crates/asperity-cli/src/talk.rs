@@ -1,0 +1,54 @@
+//! What is said on stderr. It is never worth a result: where it cannot be written (a closed terminal, a full disk), it is
+//! dropped.
+//!
+//! Titles, names and lines of files may hold control characters, which would move the cursor or change colours of a terminal.
+//! They are shown as escapes.
+
+use std::borrow::Cow;
+use std::fmt::Arguments;
+use std::io::Write;
+
+/// Says a line on stderr.
+macro_rules! say {
+    ($($text:tt)*) => { $crate::talk::line(format_args!($($text)*)) };
+}
+pub(crate) use say;
+
+/// See [`say`].
+pub fn line(text: Arguments<'_>) {
+    write(&format!("{}\n", printable(&text.to_string())));
+}
+
+/// Writes a text on stderr as it is, colours and all.
+pub fn write(text: &str) {
+    // Nobody can be told that nobody listens.
+    let _ = std::io::stderr().write_all(text.as_bytes());
+}
+
+/// A text whose control characters, except line feed and tab, are written as escapes.
+pub fn printable(text: &str) -> Cow<'_, str> {
+    let hidden = |c: char| c.is_control() && c != '\n' && c != '\t';
+    if !text.contains(hidden) {
+        return Cow::Borrowed(text);
+    }
+    let mut shown = String::with_capacity(text.len());
+    for c in text.chars() {
+        if hidden(c) {
+            shown.extend(c.escape_unicode());
+        } else {
+            shown.push(c);
+        }
+    }
+    Cow::Owned(shown)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn control_characters_are_shown_as_escapes() {
+        assert_eq!(printable("a\tb\n10 µm"), "a\tb\n10 µm");
+        assert_eq!(printable("a\u{1b}[2Jb\rc\u{9b}"), "a\\u{1b}[2Jb\\u{d}c\\u{9b}");
+    }
+}

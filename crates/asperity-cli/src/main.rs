@@ -31,6 +31,7 @@ fn main() -> ExitCode {
         Command::Report(report) => commands::report::run(&report),
         Command::View(view) => commands::view::run(&view),
         Command::Plot(plot) => commands::plot::run(&plot),
+        Command::Leak(leak) => commands::leak::run(&leak),
         Command::Material(material) => commands::material::run(&material),
         Command::FitIndentation(fit) => commands::fit_indentation::run(&fit),
         Command::Export(export) => commands::export::run(&export),

@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use asperity::finding::Finding;
 use asperity::march::Row;
 use asperity_io::case::Case;
+use asperity_io::leakage::LeakError;
 use asperity_io::session::{RunError, RunOptions, Summary, run as run_case};
 use asperity_io::store::Status;
 use serde_json::{Value, json};
@@ -47,7 +48,13 @@ pub fn run(args: &Run) -> Result<(), Failure> {
                 RunError::Solve { best: Some(best), .. } => format!("{error}\n{}", best_state(best)),
                 _ => error.to_string(),
             };
-            if let RunError::Solve { summary, .. } | RunError::Storage { summary, .. } = &error {
+            if let RunError::Leakage { source: LeakError::Interrupted, .. } = error {
+                return Err(Failure::Interrupted(message));
+            }
+            if let RunError::Solve { summary, .. }
+            | RunError::Storage { summary, .. }
+            | RunError::Leakage { summary, .. } = &error
+            {
                 tell_findings(args, &summary.findings, &known);
                 tell(args, summary, Some(&error))?;
             }
@@ -75,7 +82,7 @@ fn tell_materials(args: &Run, case: &Case) {
 }
 
 /// A flag that Ctrl-C raises; the second Ctrl-C ends the process at once.
-fn on_interrupt() -> Arc<AtomicBool> {
+pub(super) fn on_interrupt() -> Arc<AtomicBool> {
     let flag = Arc::new(AtomicBool::new(false));
     let raised = flag.clone();
     // Without a handler Ctrl-C still ends the process, and the result stays readable.
@@ -120,6 +127,7 @@ fn tell(args: &Run, summary: &Summary, error: Option<&RunError>) -> Result<(), F
                 quantity(last.contact_area_corrected, "m2"),
             ),
         );
+        line("mean gap", quantity(last.mean_gap, "m"));
         if last.capped_area > 0.0 {
             line("at hardness", quantity(last.capped_area, "m2"));
         }

@@ -72,9 +72,11 @@ pub use error::{CaseError, CaseErrors};
 pub use examine::{Examination, Inputs, ModulusInput, SurfaceInput};
 pub use measured::Measured;
 pub use plan::{Output, Rows, Surface};
+pub use raw::{LeakDirection, Leakage as LeakageKeys};
 pub use schema::schema;
 pub use specimen::{Specimen, specimens};
 
+use crate::leakage::Leak;
 use overrides::Override;
 use text::Text;
 
@@ -128,6 +130,8 @@ pub struct Case {
     pub solver: SolverOptions,
     /// What is stored, and where.
     pub output: Output,
+    /// The flow through the gap, where it is wanted.
+    pub leakage: Option<Leak>,
     /// Rows of the result, where known beforehand.
     rows: Option<usize>,
     /// About as many.
@@ -276,6 +280,16 @@ impl Case {
         };
         CaseErrors { name: self.name.clone(), source: self.source.clone(), errors }
     }
+}
+
+/// The leakage that keys describe which stand in no case: those of a command.
+///
+/// # Errors
+/// What is wrong, and what to do.
+pub fn leak(keys: &LeakageKeys, boundary: Boundary) -> Result<Leak, String> {
+    convert::leakage::leak(keys, boundary).map_err(|convert::leakage::Fault(message, expected, help)| {
+        format!("{message}; expected {expected}; {help}")
+    })
 }
 
 /// Whether `key` is `outer` or a key below it.

@@ -17,7 +17,7 @@ use super::words;
 
 /// The keys of the root.
 pub const SECTIONS: &[&str] =
-    &["title", "domain", "surface", "body", "load", "time", "temperature", "solver", "output"];
+    &["title", "domain", "surface", "body", "load", "time", "temperature", "leakage", "solver", "output"];
 
 /// The document, or the faults that its sections have.
 pub fn document(text: &Text<'_>) -> Result<Document, Vec<CaseError>> {
@@ -35,12 +35,13 @@ pub fn document(text: &Text<'_>) -> Result<Document, Vec<CaseError>> {
     let load = reader.required("load", HISTORY);
     let time = reader.required("time", &[]);
     let temperature = reader.optional("temperature", HISTORY);
+    let leakage = reader.optional("leakage", &[]);
     let solver = reader.optional("solver", &[]).unwrap_or_default();
     let output = reader.optional("output", &[]).unwrap_or_default();
     reader.errors.sort_by_key(|error| error.span.as_ref().map_or(usize::MAX, |span| span.start));
     match (reader.errors.is_empty(), domain, load, time) {
         (true, Some(domain), Some(load), Some(time)) => {
-            Ok(Document { title, domain, surface, body, load, time, temperature, solver, output })
+            Ok(Document { title, domain, surface, body, load, time, temperature, leakage, solver, output })
         }
         _ => Err(reader.errors),
     }

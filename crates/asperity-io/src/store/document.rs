@@ -13,6 +13,7 @@ use serde_json::{Map, Value, json};
 use super::error::{Result, StoreError, corrupt, io};
 use super::header::{self, Header, Progress};
 use super::layout::{self, ArraySpec, LEVEL};
+use super::leak::Leaks;
 use super::replace::{Way, replace};
 use crate::finding;
 
@@ -29,6 +30,8 @@ const LARGEST: u64 = 64 << 20;
 pub(super) struct Document {
     pub(super) header: Header,
     pub(super) progress: Progress,
+    /// Leaks that were computed from its fields.
+    pub(super) leaks: Option<Leaks>,
 }
 
 /// The documents as JSON, kept between steps: only a few numbers of them change.
@@ -86,7 +89,9 @@ impl Pages {
 impl Document {
     /// All arrays of the result.
     pub(super) fn arrays(&self) -> Vec<ArraySpec> {
-        layout::arrays(&self.header, self.progress.rows, self.progress.maps)
+        let mut arrays = layout::arrays(&self.header, self.progress.rows, self.progress.maps);
+        arrays.extend(self.leaks.iter().flat_map(|leaks| leaks.arrays(&self.header.grid)));
+        arrays
     }
 
     /// Reads and checks the document of the result at `root`.
@@ -107,7 +112,8 @@ impl Document {
         let findings = attributes.get("findings").map(finding::from_list).unwrap_or_default();
         let progress =
             Progress { status, work, rows: length("time")?, maps: length("field_time")?, findings };
-        let document = Document { header, progress };
+        let leaks = Leaks::of(attributes, metadata);
+        let document = Document { header, progress, leaks };
         for array in document.arrays() {
             if metadata.get(array.name).is_none_or(|stored| !same_form(stored, &array.document(LEVEL))) {
                 let what = format!("the array `{}` is missing or not of the form of a result", array.name);
@@ -136,6 +142,34 @@ pub(super) fn write_bare_group(directory: &Path, long_name: &str) -> Result<()> 
         "zarr_format": 3, "node_type": "group", "attributes": {"long_name": long_name},
     });
     replace(&directory.join(NAME), &directory.join(PARTIAL), document.to_string().as_bytes(), Way::Safe)
+}
+
+/// Replaces the arrays of a result that `old` names by new ones, whose chunks are written, and changes its attributes. Returns
+/// the names of the arrays that have gone.
+pub(super) fn exchange_arrays(
+    root: &Path,
+    old: impl Fn(&str) -> bool,
+    new: &[ArraySpec],
+    change: impl FnOnce(&mut Map<String, Value>),
+) -> Result<Vec<String>> {
+    let (file, mut group) = read_json(root)?;
+    for array in new {
+        let directory = root.join(array.name);
+        let text = array.document(LEVEL).to_string();
+        replace(&directory.join(NAME), &directory.join(PARTIAL), text.as_bytes(), Way::Safe)?;
+    }
+    let missing = || corrupt(&file, "the consolidated metadata are missing");
+    let metadata = group.pointer_mut("/consolidated_metadata/metadata").and_then(Value::as_object_mut);
+    let metadata = metadata.ok_or_else(missing)?;
+    let mut gone: Vec<String> = metadata.keys().filter(|name| old(name)).cloned().collect();
+    gone.iter().for_each(|name| drop(metadata.shift_remove(name)));
+    for array in new {
+        metadata.insert(array.name.to_owned(), array.document(LEVEL));
+        gone.retain(|name| name != array.name);
+    }
+    change(group["attributes"].as_object_mut().ok_or_else(|| corrupt(&file, "the attributes are missing"))?);
+    replace(&root.join(NAME), &root.join(GROUP_PARTIAL), group.to_string().as_bytes(), Way::Safe)?;
+    Ok(gone)
 }
 
 fn read_json(root: &Path) -> Result<(PathBuf, Value)> {

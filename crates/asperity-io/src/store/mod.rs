@@ -8,6 +8,7 @@
 //! | `pressure`, `gap`, `displacement`, `contact`, `flattening` | `field_time`, `x`, `y` | fields of the chosen steps |
 //! | `field_time`, `field_step` | `field_time` | time and row of each stored field; of a field between two rows the later |
 //! | `initial_gap` | `x`, `y` | undeformed gap |
+//! | `leak_rate`, `hydraulic_gap`, ... | `leak_time` | leakage, where it was asked for |
 //! | `x`, `y` | | centres of the cells |
 //!
 //! Numbers keep their bits. Each array has `units` and `long_name`; the attributes of the group hold
@@ -54,6 +55,7 @@ mod document;
 mod error;
 mod header;
 mod layout;
+mod leak;
 mod reader;
 mod replace;
 mod resume;
@@ -64,5 +66,6 @@ pub use error::{Result, StoreError};
 pub use header::{Header, Status, Work};
 pub(crate) use layout::coordinates;
 pub use layout::{FieldKind, SCALARS, Scalar, Series};
+pub use leak::{LeakTable, LeakWriter, Leaks};
 pub use reader::{At, Reader};
 pub use writer::{Field, Outcome, Writer};

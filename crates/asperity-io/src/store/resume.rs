@@ -47,7 +47,7 @@ impl Writer {
         let all = reader.rows()?;
         let maps = reader.field_steps().iter().take_while(|step| **step < rows).count();
 
-        let Document { header: mut kept, mut progress } = reader.into_document();
+        let Document { header: mut kept, mut progress, .. } = reader.into_document();
         let stored_maps = std::mem::replace(&mut progress.maps, maps);
         progress.rows = rows;
         progress.status = Status::Running;
@@ -58,7 +58,8 @@ impl Writer {
             kept.version = format!("{}, {}", kept.version, header.version);
         }
         kept.rows_expected = header.rows_expected;
-        let document = Document { header: kept, progress };
+        // The leaks are computed anew when the run is complete.
+        let document = Document { header: kept, progress, leaks: None };
         let mut pages = Pages::new(&document);
         pages.commit(path, &document.progress, Way::Safe)?;
         pages.write_arrays(path, Way::Safe)?;

@@ -141,7 +141,7 @@ impl Writer {
         {
             return Err(input("fields of the result", format!("{kind} twice"), "each named once"));
         }
-        let document = Document { header: header.clone(), progress: Progress::default() };
+        let document = Document { header: header.clone(), progress: Progress::default(), leaks: None };
         let lock = create::publish(path, force, |root| {
             create::write_constants(root, &document, initial_gap)?;
             let mut pages = Pages::new(&document);

@@ -89,9 +89,19 @@ pub fn write(reader: &Reader, path: &Path, options: &Options) -> Result<(), Repo
 /// [`StoreError`] where the result has no row yet or is damaged.
 pub fn page(reader: &Reader, options: &Options) -> Result<String, StoreError> {
     let maps = maps::Maps::of(reader, options)?;
-    let state = state::state(reader, &maps)?;
+    let mut state = state::state(reader, &maps)?;
+    add_leak_map(reader, &mut state);
     let blobs: String = maps.blobs.iter().map(|(name, data)| element(name, data)).collect();
     Ok(filled_page(reader, &state, &blobs))
+}
+
+/// The flow at the last instant at which the seal leaks. A page without this picture is still a page.
+fn add_leak_map(reader: &Reader, state: &mut serde_json::Value) {
+    if reader.leaks().is_some()
+        && let Ok(figure) = crate::leak::map_of(reader, crate::leak::last_leak(reader))
+    {
+        state["leak_map"] = figure.to_svg().into();
+    }
 }
 
 /// The page with its state and its maps.

@@ -22,7 +22,6 @@ use asperity_io::store::{At, FieldKind, Reader, StoreError};
 use serde_json::Value;
 
 pub(crate) use evolution::quantity_panels;
-pub(crate) use fields::contact_states;
 
 use crate::figure::{Curves, Figure, Series};
 
@@ -55,6 +54,8 @@ pub enum Plot {
     Work,
     /// The quantities that were asked for, over time.
     Quantities,
+    /// Leak rate and gaps over time, and the flow at an instant.
+    Leak,
 }
 
 /// What a figure shows of a result.
@@ -91,6 +92,9 @@ pub enum PlotError {
     /// The result does not hold what the figure shows, or is damaged.
     #[error(transparent)]
     Store(#[from] StoreError),
+    /// The flow at the instant was not solved.
+    #[error(transparent)]
+    Flow(#[from] asperity::Error),
     /// The line of a profile is outside of the area.
     #[error("the line at {axis} = {at:e} m is outside of the area, which goes from 0 to {length:e} m")]
     Outside {
@@ -105,7 +109,7 @@ pub enum PlotError {
 
 impl Plot {
     /// Every plot.
-    pub const ALL: [Plot; 13] = [
+    pub const ALL: [Plot; 14] = [
         Plot::Evolution,
         Plot::LoadDisplacement,
         Plot::Pressure,
@@ -119,6 +123,7 @@ impl Plot {
         Plot::Spots,
         Plot::Work,
         Plot::Quantities,
+        Plot::Leak,
     ];
 
     /// Its name on the command line.
@@ -137,6 +142,7 @@ impl Plot {
             Plot::Spots => "spots",
             Plot::Work => "work",
             Plot::Quantities => "quantities",
+            Plot::Leak => "leak",
         }
     }
 
@@ -158,6 +164,7 @@ pub fn figure(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, 
         Plot::LoadDisplacement => evolution::load_displacement(reader)?,
         Plot::Work => evolution::work(reader)?,
         Plot::Quantities => evolution::quantities(reader, options)?,
+        Plot::Leak => crate::leak::over_time(reader, options)?,
         Plot::Flattening => fields::map(reader, FieldKind::Flattening, options.at)?,
         Plot::Pressure => fields::map(reader, FieldKind::Pressure, options.at)?,
         Plot::Gap => fields::map(reader, FieldKind::Gap, options.at)?,
@@ -177,10 +184,10 @@ pub fn figure(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, 
 /// # Errors
 /// [`StoreError`] where the result is damaged or has no such instant.
 pub fn contact(reader: &Reader, at: At) -> Result<Option<ndarray::Array2<u8>>, StoreError> {
-    if reader.field_times().is_empty() || fields::contact_kind(reader).is_none() {
+    if reader.field_times().is_empty() || reader.contact_kind().is_none() {
         return Ok(None);
     }
-    contact_states(reader, at).map(Some)
+    reader.contact_states(at).map(Some)
 }
 
 /// The same panel with one more line that no legend names.

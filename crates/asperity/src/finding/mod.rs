@@ -14,6 +14,7 @@
 //! | `material` | moduli, and how well measured data are fitted and covered |
 //! | `time` | steps that are too long for the history and the material |
 //! | `energy` | the energy balance |
+//! | `leak` | leaks that gap, grid or fluid pressure do not carry |
 //! | `expected` | an estimate of the contact before the run |
 //!
 //! docs/findings.md lists all codes with their limits.
@@ -23,6 +24,7 @@ mod domain;
 mod energy;
 mod expected;
 mod judge;
+mod leak;
 mod material;
 mod strain;
 mod surface;
@@ -33,6 +35,7 @@ use std::borrow::Cow;
 
 pub use expected::{Contact, Expected};
 pub use judge::{Judge, Known};
+pub use leak::{LeakJudge, LeakState};
 pub use material::{beyond_data, misfit, unlikely_modulus};
 pub use surface::{hurst, of_heights};
 
@@ -117,7 +120,7 @@ impl std::fmt::Display for Finding {
 }
 
 /// Every code. A code keeps its meaning.
-pub const CODES: [&str; 17] = [
+pub const CODES: [&str; 20] = [
     CONTACT_AT_BORDER,
     GAP_NOT_PERIODIC,
     ROUGH_ON_FREE_DOMAIN,
@@ -135,6 +138,9 @@ pub const CODES: [&str; 17] = [
     HURST_UNCERTAIN,
     OUTLIERS,
     UNLIKELY_UNIT,
+    LEAK_BELOW_GAP_ERROR,
+    CONSTRICTION_UNRESOLVED,
+    FLUID_PRESSURE_LARGE,
 ];
 
 /// Contact, or the expected contact, reaches the border of a free domain.
@@ -171,6 +177,13 @@ pub const HURST_UNCERTAIN: &str = "hurst-uncertain";
 pub const OUTLIERS: &str = "outliers";
 /// A number that a slip of the unit explains best.
 pub const UNLIKELY_UNIT: &str = "unlikely-unit";
+
+/// The gap at the critical constriction of a leak is less than 30 times the error of the gap.
+pub const LEAK_BELOW_GAP_ERROR: &str = "leak-below-gap-error";
+/// The critical constriction of a leak is less than four cells wide.
+pub const CONSTRICTION_UNRESOLVED: &str = "constriction-unresolved";
+/// The drop of the fluid pressure is more than a tenth of the mean pressure in the contact.
+pub const FLUID_PRESSURE_LARGE: &str = "fluid-pressure-large";
 
 #[cfg(test)]
 mod tests;

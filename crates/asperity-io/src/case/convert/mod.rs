@@ -6,6 +6,7 @@ mod curve;
 pub(super) mod domain;
 mod hardness;
 mod history_file;
+pub(super) mod leakage;
 mod load;
 mod material;
 mod output;
@@ -28,6 +29,7 @@ use super::quantity::QuantityError;
 use super::raw::{self, At, Document};
 use super::text::{MOST_ERRORS, Text};
 use super::{Case, MaterialReport};
+use crate::store::FieldKind;
 
 /// The case that a document describes, or the faults found.
 ///
@@ -107,6 +109,15 @@ pub fn case(
     let extra = output::extra_fields(&document.solver, &document.output);
     domain::memory(&mut checks, &document.domain, grid.as_ref(), fields, extra, scheme);
 
+    let keeps_gap = document
+        .output
+        .fields
+        .as_ref()
+        .is_none_or(|fields| fields.iter().any(|at| at.value == FieldKind::Gap));
+    let boundary = document.domain.value.boundary.unwrap_or_default();
+    let leakage =
+        leakage::section(&mut checks, document.leakage.as_ref(), boundary, points, keeps_gap).flatten();
+
     checks.errors.sort_by_key(|error| error.span.as_ref().map_or(usize::MAX, |span| span.start));
     let surfaces = surfaces.zip(hardness);
     match (checks.errors.is_empty(), grid, surfaces, pair, prescription, times, output) {
@@ -123,7 +134,7 @@ pub fn case(
             name: String::new(),
             source: text.source.to_owned(),
             grid,
-            boundary: document.domain.value.boundary.unwrap_or_default(),
+            boundary,
             surfaces,
             bodies: pair.bodies,
             creep: pair.creep,
@@ -141,6 +152,7 @@ pub fn case(
             plasticity: output::plasticity(&document.solver),
             solver: output::solver(&document.solver),
             output,
+            leakage,
             usual_rows: pair.plan.instants.len() + if adaptive { time::USUAL_STEPS } else { 0 },
             rows: pair.plan.exact.then_some(pair.plan.instants.len()),
             history: prescription.span,

@@ -32,7 +32,8 @@ templates!(
     "capped-cycle",
     "periodic-rough",
     "rough-pmma",
-    "warming-rubber"
+    "warming-rubber",
+    "seal"
 );
 
 impl Template {

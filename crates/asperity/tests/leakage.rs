@@ -36,9 +36,9 @@ fn wedges_and_grooves() {
         near(transmissivity(&grid, &gap, None, Direction::X), exact, 1e-5);
     }
     // Parabola: 32/35 h0^3 b/W; triangle: h0^3 b/(2 W). Midpoint rule again.
-    let grid = Grid::new([2, 2048], [1.0, 1.0]).unwrap();
+    let grid = Grid::new([8, 2048], [1.0, 1.0]).unwrap();
     let groove = |shape: fn(f64) -> f64| {
-        Array2::from_shape_fn((2, 2048), |(_, j)| shape(((grid.y(j) - 0.5) / 0.25).abs().min(1.0)))
+        Array2::from_shape_fn((8, 2048), |(_, j)| shape(((grid.y(j) - 0.5) / 0.25).abs().min(1.0)))
     };
     near(transmissivity(&grid, &groove(|s| 1.0 - s * s), None, Direction::X), 0.228_571_428_571_428_56, 1e-5);
     near(transmissivity(&grid, &groove(|s| 1.0 - s), None, Direction::X), 0.125, 1e-5);

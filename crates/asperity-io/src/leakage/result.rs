@@ -59,7 +59,7 @@ pub fn of_result(
     let rows = reader.rows()?;
     let tolerance = reader.header().setup.get("solver_tolerance").and_then(Value::as_f64).unwrap_or(1e-6);
     let initial = reader.initial_gap()?;
-    let mut writer = LeakWriter::new(path, &grid, leak.field)?;
+    let writer = LeakWriter::new(path, &grid, leak.field)?;
     let mut judge = LeakJudge::default();
     let mut table = LeakTable::new(
         leak.fluid.as_ref().map(super::Fluid::is_gas),

@@ -76,9 +76,9 @@ pub fn of_result(
         let state = solved.map_err(|source| LeakError::Solve { source, time })?;
         let step = reader.field_steps()[index];
         let row = rows[step];
-        // Mean displacement: what the gap has gained over the undeformed one, less the approach.
-        let touchable = gap.iter().zip(&initial).filter(|(_, h0)| h0.is_finite());
-        let (sum, count) = touchable.fold((0.0, 0.0), |(sum, count), (h, h0)| (sum + (h - h0), count + 1.0));
+        // The mean displacement in the contact, to which the tolerance is relative: what the gap has gained, and the approach.
+        let touching = gap.iter().zip(&initial).zip(&contact).filter(|(_, contact)| **contact > 0);
+        let (sum, count) = touching.fold((0.0, 0.0), |(sum, count), ((h, h0), _)| (sum + (h - h0), count + 1.0));
         let displacement = if count > 0.0 { sum / count + row.approach } else { 0.0 };
         let resolved = judge.see(&LeakState {
             row: step,

@@ -185,16 +185,18 @@ def over_time(result: Result, keys: dict[str, Any]) -> xarray.Dataset:
         raise _core.CaseError("direction is 'both', the conductance of a gap that repeats, but the domain is free: use 'x' or 'y'")
     temperatures = [(float(t), float(kelvin)) for t, kelvin in (setup.get("leakage") or {}).get("temperatures", [])]
     tolerance = float(setup.get("solver_tolerance", 1e-6))
-    touchable = np.isfinite(result.initial_gap)
     rows, states = [], []
     drop = keys["inlet"] - keys["outlet"] if "inlet" in keys and "outlet" in keys else keys.get("pressure_drop")
     for index, time in enumerate(result.field_times):
         gap = result.field("gap", index=index)
+        contact = contact_of(result, index)
         found = _core.leakage(
-            np.ascontiguousarray(gap), contact_of(result, index, setup), list(result.size), json.dumps(keys), temperatures, float(time)
+            np.ascontiguousarray(gap), contact, list(result.size), json.dumps(keys), temperatures, float(time)
         )
         step = int(result._field_steps[index])
-        displacement = float(np.mean((gap - result.initial_gap)[touchable])) + float(result.approach[step])
+        touching = (gap - result.initial_gap)[contact > 0]
+        # The mean displacement in the contact, to which the tolerance is relative.
+        displacement = float(touching.mean()) + float(result.approach[step]) if touching.size else 0.0
         area = float(result.contact_area[step])
         states.append(
             (
@@ -220,7 +222,7 @@ def over_time(result: Result, keys: dict[str, Any]) -> xarray.Dataset:
     return dataset(result, result.field_times, columns, gas, conductance, pressures)
 
 
-def contact_of(result: Result, index: int, setup: dict[str, Any]) -> Any:
+def contact_of(result: Result, index: int) -> Any:
     """Where the surfaces touch: from the field that tells it."""
     if "contact" in result.fields:
         return np.ascontiguousarray(result.field("contact", index=index) != 0, dtype=np.uint8)

@@ -44,7 +44,8 @@ fn a_map_of_the_gap_leaks_as_its_closed_form() {
     let directory = place.path();
     map(directory);
     let of_map = ["leak", "--gap", "gap.txt", "--size", "160 um,40 um", "--height-unit", "um", "--json"];
-    let told = data(&[&of_map[..], &["--pressure-drop", "2 bar", "--viscosity", "1 mPa s"]].concat(), directory);
+    let told =
+        data(&[&of_map[..], &["--pressure-drop", "2 bar", "--viscosity", "1 mPa s"]].concat(), directory);
     // (1 - e^2)^(5/2)/(1 + e^2/2) with e = 1/2; 16 cells over the period leave 1e-3 at most.
     let transmissivity = told["hydraulic_gap"].as_f64().unwrap().powi(3);
     assert!((transmissivity / 0.433_012_701_892e-18 - 1.0).abs() < 2e-3, "{told}");
@@ -57,13 +58,18 @@ fn a_map_of_the_gap_leaks_as_its_closed_form() {
     let gas = ["--gas", "helium", "--inlet", "2 bar", "--outlet", "1 bar", "--plot", "flow.svg"];
     let gas = data(&[&of_map[..], &gas].concat(), directory);
     // At the constriction of 0.5 um helium is rarefied: more than the continuum's.
-    let continuum = ["--gas", "helium", "--inlet", "2 bar", "--outlet", "1 bar", "--rarefaction", "continuum"];
+    let continuum =
+        ["--gas", "helium", "--inlet", "2 bar", "--outlet", "1 bar", "--rarefaction", "continuum"];
     let continuum = data(&[&of_map[..], &continuum].concat(), directory);
     let ratio = gas["leak_rate"].as_f64().unwrap() / continuum["leak_rate"].as_f64().unwrap();
     assert!((1.5..4.0).contains(&ratio) && gas["knudsen_number"].as_f64().unwrap() > 0.1, "{gas}");
     assert!(std::fs::read_to_string(directory.join("flow.svg")).unwrap().contains("Flow"));
     // Sealed: 0, and no error.
-    let sealed = data(&[&of_map[..], &["--smallest-gap", "0.6 um", "--gas", "air", "--inlet", "1 bar", "--outlet", "0"]].concat(), directory);
+    let sealed = data(
+        &[&of_map[..], &["--smallest-gap", "0.6 um", "--gas", "air", "--inlet", "1 bar", "--outlet", "0"]]
+            .concat(),
+        directory,
+    );
     assert!(sealed["percolates"] == false && sealed["leak_rate"] == 0.0 && sealed["critical_gap"].is_null());
 
     let fault = |more: &[&str], words: &[&str]| refused(&[&of_map[..], more].concat(), directory, words);
@@ -125,7 +131,10 @@ fn a_run_stores_its_leaks_and_other_fluids_can_follow() {
     assert!(rates[5] < 0.7 * rates[0], "{rates:?}");
     assert!(told["leak_resolved"].as_array().unwrap().iter().all(|good| good == true), "{told}");
     // Another fluid takes its place, in other units.
-    let gas = data(&["leak", "seal.zarr", "--gas", "air", "--inlet", "1.001 bar", "--outlet", "1 bar", "--json"], directory);
+    let gas = data(
+        &["leak", "seal.zarr", "--gas", "air", "--inlet", "1.001 bar", "--outlet", "1 bar", "--json"],
+        directory,
+    );
     assert!(gas["leak_rate_standard"].as_array().unwrap()[0].as_f64().unwrap() > 0.0);
     let shown = text(&asperity(&["leak", "seal.zarr"], directory).stdout);
     assert!(shown.contains("mbar l/s"), "{shown}");
@@ -138,14 +147,20 @@ fn a_run_stores_its_leaks_and_other_fluids_can_follow() {
         assert!(std::fs::read_to_string(directory.join(what)).unwrap().contains("Leak rate"));
     }
     // A drop above a tenth of the contact pressure is found, in the result too.
-    let large = data(&["leak", "seal.zarr", "--pressure-drop", "1 bar", "--viscosity", "1 mPa s", "--json"], directory);
+    let large = data(
+        &["leak", "seal.zarr", "--pressure-drop", "1 bar", "--viscosity", "1 mPa s", "--json"],
+        directory,
+    );
     assert_eq!(large["findings"][0]["code"], "fluid-pressure-large");
     assert_eq!(large["leak_resolved"][0], false);
     let stored = data(&["show", "seal.zarr", "--json"], directory);
     assert_eq!(stored["findings"].as_array().unwrap().len(), 1, "{stored}");
     // A result with leaks is replaced like any other.
     data(&["run", "seal.toml", "--json", "--quiet", "--force"], directory);
-    let without = asperity(&["run", "seal.toml", "--force", "--quiet", "--set", "output.fields=[\"pressure\"]"], directory);
+    let without = asperity(
+        &["run", "seal.toml", "--force", "--quiet", "--set", "output.fields=[\"pressure\"]"],
+        directory,
+    );
     assert_eq!(without.status.code(), Some(2));
     assert!(text(&without.stderr).contains("output.fields"));
 }

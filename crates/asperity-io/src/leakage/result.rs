@@ -78,7 +78,8 @@ pub fn of_result(
         let row = rows[step];
         // The mean displacement in the contact, to which the tolerance is relative: what the gap has gained, and the approach.
         let touching = gap.iter().zip(&initial).zip(&contact).filter(|(_, contact)| **contact > 0);
-        let (sum, count) = touching.fold((0.0, 0.0), |(sum, count), ((h, h0), _)| (sum + (h - h0), count + 1.0));
+        let (sum, count) =
+            touching.fold((0.0, 0.0), |(sum, count), ((h, h0), _)| (sum + (h - h0), count + 1.0));
         let displacement = if count > 0.0 { sum / count + row.approach } else { 0.0 };
         let resolved = judge.see(&LeakState {
             row: step,

@@ -22,7 +22,7 @@ pub struct LeakState {
     pub gap_error: f64,
     /// Drop of the fluid pressure \[Pa\], where the fluid is known.
     pub pressure_drop: Option<f64>,
-    /// Load over contact area \[Pa\].
+    /// Load over contact area \[Pa\]; 0 where nothing is pressed, and then not judged.
     pub contact_pressure: f64,
 }
 
@@ -69,7 +69,7 @@ impl LeakJudge {
         }
         if let Some(drop) = state.pressure_drop {
             let limit = PRESSURE_SHARE * state.contact_pressure;
-            if drop > limit {
+            if drop > limit && state.contact_pressure > 0.0 {
                 let worse = self.pressure.is_none_or(|old| drop / limit > old.value / old.limit);
                 note(&mut self.pressure, drop, limit, worse);
             }

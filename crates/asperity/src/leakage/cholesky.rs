@@ -35,8 +35,8 @@ impl std::fmt::Debug for Cholesky {
     }
 }
 
-/// Bytes that the factor of so many unknowns takes, about: 630 per unknown at 2^20, 750 at 2^22, measured.
-pub(super) fn bytes(unknowns: usize) -> f64 {
+/// Memory that a factorisation takes for so many open cells, about \[bytes\]: 630 per cell at 2^20, 750 at 2^22, measured.
+pub fn factor_bytes(unknowns: usize) -> f64 {
     34.0 * unknowns as f64 * (unknowns.max(2) as f64).log2()
 }
 

@@ -61,6 +61,7 @@ mod passages;
 mod solve;
 mod tensor;
 
+pub use cholesky::factor_bytes;
 pub use estimate::effective_medium;
 pub use flow::{Flow, flux, leak_rate, liquid};
 pub use gas::{Gas, Rarefaction, Species};

@@ -5,7 +5,7 @@
 //! power that the flow dissipates, sum of t dP^2 over all faces, is an upper bound of the leak with an error that is quadratic
 //! in that of the pressure (Dirichlet's principle), so the iteration ends where this power has settled.
 
-use super::cholesky::{self, Cholesky};
+use super::cholesky::{Cholesky, factor_bytes};
 use super::multigrid::Multigrid;
 use super::network::Network;
 use crate::error::{Error, NotConverged, Result};
@@ -38,7 +38,7 @@ pub(super) enum Inverse {
 impl Inverse {
     pub fn new(network: &Network, options: &FlowOptions) -> Inverse {
         let unknowns = network.diagonal().iter().filter(|d| **d > 0.0).count();
-        let factor = if cholesky::bytes(unknowns) <= options.memory { Cholesky::new(network) } else { None };
+        let factor = if factor_bytes(unknowns) <= options.memory { Cholesky::new(network) } else { None };
         match factor {
             Some(factor) => Inverse::Factor(Box::new(factor)),
             None => Inverse::Cycle(Multigrid::new(network)),

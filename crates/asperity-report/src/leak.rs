@@ -36,7 +36,7 @@ fn maps(leak: &Leakage, gap: ArrayView2<'_, f64>, size: [f64; 2]) -> [Map; 2] {
     };
     let kinds = leak.cells.map(number);
     let names = KINDS.map(|(name, colour)| (name.to_owned(), colour)).to_vec();
-    let passages = Map::states("Gap", names, kinds.view(), size);
+    let passages = Map::states("", names, kinds.view(), size);
     let flow = flow(leak, gap, size);
     let marked = |map: Map| if leak.percolates { map.marked(leak.critical) } else { map };
     [marked(passages), marked(flow)]

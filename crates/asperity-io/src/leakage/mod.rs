@@ -7,15 +7,18 @@ mod result;
 
 use asperity::leakage::{
     CellKind, FlowOptions, Gas, Opening, Passages, Rarefaction, Sides, Species, conductance,
-    effective_medium, gas_flow, leak_rate, liquid, plate, standard,
+    effective_medium, factor_bytes, gas_flow, leak_rate, liquid, plate, standard,
 };
 use asperity::{Grid, Result};
 use ndarray::{Array2, ArrayView2};
 use serde::{Deserialize, Serialize};
 
 pub use crate::case::LeakDirection;
+use crate::readable::quantity;
 pub use result::{LeakError, of_result, settings};
 
+/// Fields of the gap, the network and the iteration that a flow holds besides the factor, about.
+const FIELDS: f64 = 20.0;
 /// 20 degC \[K\].
 const ROOM: f64 = 293.15;
 
@@ -133,6 +136,28 @@ pub struct Leakage {
 }
 
 impl Leak {
+    /// What is asked for in a few words, and the memory that it takes at most \[bytes\], of so many cells.
+    pub fn describe(&self, cells: usize) -> (String, f64) {
+        let fluid = match self.fluid {
+            None => "gap alone".to_owned(),
+            Some(Fluid::Liquid { pressure_drop, viscosity }) => {
+                format!("liquid of {}, drop {}", quantity(viscosity, "Pa s"), quantity(pressure_drop, "Pa"))
+            }
+            Some(Fluid::Gas { kind, inlet, outlet, .. }) => {
+                let name = match kind {
+                    GasKind::Known(species) => species.name(),
+                    GasKind::Other { .. } => "gas",
+                };
+                format!("{name} from {} to {}", quantity(inlet, "Pa"), quantity(outlet, "Pa"))
+            }
+        };
+        let limit = FlowOptions::default().memory;
+        (
+            format!("{fluid}, at the stored times"),
+            factor_bytes(cells).min(limit) + FIELDS * 8.0 * cells as f64,
+        )
+    }
+
     /// The leak through a gap \[m\] with a contact (nonzero where the bodies touch; without it, where the gap is not positive),
     /// at a time \[s\], which decides the temperature of a gas.
     ///

@@ -10,7 +10,7 @@
 //! contacts percolate until about 42 % of them are in contact, and on either side of this the estimate says little.
 
 use super::opening::Opening;
-use crate::field::{strands, sweep};
+use asperity_sweep::{strands, sweep};
 
 /// T \[m^3\] of the effective medium.
 pub fn effective_medium(opening: &Opening) -> f64 {

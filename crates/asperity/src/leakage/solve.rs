@@ -9,7 +9,7 @@ use super::cholesky::{Cholesky, factor_bytes};
 use super::multigrid::Multigrid;
 use super::network::Network;
 use crate::error::{Error, NotConverged, Result};
-use crate::field::{strands, sweep};
+use asperity_sweep::{strands, sweep};
 
 /// How flows are solved.
 #[derive(Clone, Copy, Debug, PartialEq)]

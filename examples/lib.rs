@@ -33,7 +33,8 @@ templates!(
     "capped-cycle",
     "periodic-rough",
     "rough-pmma",
-    "warming-rubber"
+    "warming-rubber",
+    "seal"
 );
 
 impl Template {

@@ -33,6 +33,7 @@ fn main() -> ExitCode {
         Command::View(view) => commands::view::run(&view),
         Command::Stress(stress) => commands::stress::run(&stress),
         Command::Plot(plot) => commands::plot::run(&plot),
+        Command::Leak(leak) => commands::leak::run(&leak),
         Command::Material(material) => commands::material::run(&material),
         Command::FitIndentation(fit) => commands::fit_indentation::run(&fit),
         Command::Export(export) => commands::export::run(&export),
@@ -52,7 +53,10 @@ fn main() -> ExitCode {
 /// Writes data to stdout. A reader that has gone (`asperity schema | head`) is no failure.
 fn print(text: &str) -> Result<(), Failure> {
     use std::io::Write;
-    match std::io::stdout().write_all(talk::printable(text).as_bytes()).and_then(|()| std::io::stdout().flush()) {
+    match std::io::stdout()
+        .write_all(talk::printable(text).as_bytes())
+        .and_then(|()| std::io::stdout().flush())
+    {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
             Err(Failure::input(format!("cannot write to standard output: {error}")))
         }

@@ -6,6 +6,7 @@ mod cycles;
 mod error;
 mod fit;
 mod indentation;
+mod leakage;
 mod march;
 mod material;
 mod session;
@@ -30,6 +31,8 @@ mod _core {
     use super::fit::{fit, fit_file};
     #[pymodule_export]
     use super::indentation::fit_indentation;
+    #[pymodule_export]
+    use super::leakage::{judge_leaks, leakage};
     #[pymodule_export]
     use super::march::{March, quantities};
     #[pymodule_export]

@@ -106,6 +106,20 @@ impl Store {
         self.reader.header().grid.size()
     }
 
+    /// Leaks over time by name, where they are stored; `conductance` as xx, xy, yx, yy of each time.
+    fn leaks<'py>(&self, py: Python<'py>) -> PyResult<HashMap<&'static str, Bound<'py, PyArray1<f64>>>> {
+        let Some(leaks) = self.reader.leaks() else { return Ok(HashMap::new()) };
+        let mut names: Vec<_> = leaks.series().into_iter().map(|series| series.name).collect();
+        names.extend(self.reader.leak("conductance").is_ok().then_some("conductance"));
+        let read = |name| Ok((name, self.reader.leak(name).map_err(file)?.into_pyarray(py)));
+        names.into_iter().map(read).collect()
+    }
+
+    /// Pressure of the fluid at a leak, by its number.
+    fn fluid_pressure<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        Ok(detached(py, || self.reader.fluid_pressure(index))?.map_err(file)?.into_pyarray(py))
+    }
+
     /// The attributes of the group, as JSON.
     #[getter]
     fn attributes(&self) -> String {

@@ -94,6 +94,31 @@ function materialPanels() {
   new Chart($("curves"), { title: "Loss tangent", x: omega, y: { label: "tan δ", unit: "" }, series: [{ name: "", x: m.omega, y: m.tangent }] });
 }
 
+const leaks = [];
+function leakPanels() {
+  const leak = state.leak;
+  $("leakage").hidden = !leak;
+  if (!leak) return;
+  // A tight seal has no place on a logarithmic axis.
+  const values = (key) => leak[key].values.map((value) => (value > 0 ? value : NaN));
+  const x = leak.leak_time.values;
+  const time = { label: "time", unit: "s", log: chosen.log };
+  const line = (name, key, dashed = false) => ({ name, x, y: values(key), dashed });
+  const specs = [
+    { title: "Gaps", x: time, y: { label: "gap", unit: "m", log: true }, series: [line("hydraulic", "hydraulic_gap"), line("critical", "critical_gap")] },
+    { title: "Open cells", x: time, y: { label: "share of the domain", unit: "" }, series: [{ name: "", x, y: leak.open_fraction.values }] },
+  ];
+  if (leak.leak_rate) {
+    specs.unshift({ title: "Leak rate", x: time, y: { label: "leak rate", unit: leak.leak_rate.units, log: true },
+      series: [line("computed", "leak_rate"), line("one junction", "leak_estimate_junction", true), line("effective medium", "leak_estimate_medium", true)] });
+  }
+  specs.forEach((spec, k) => (leaks[k] ? leaks[k].set(spec) : leaks.push(new Chart($("leaks"), spec))));
+  const open = leak.percolates.values;
+  const last = open.lastIndexOf(1);
+  $("leak-words").textContent = last < 0 ? "Tight at all stored times." : last + 1 < open.length ? `Tight from t = ${words(x[last + 1], "s")} on.` : "Leaks at the end.";
+  if (state.leak_map) $("leak-map").innerHTML = state.leak_map;
+}
+
 async function surfacePart() {
   const s = state.surface;
   $("surface").hidden = !s;
@@ -254,6 +279,7 @@ axes.forEach((button) => button.addEventListener("click", () => {
   chosen.log = button.dataset.time === "log";
   press(axes, button);
   timePanels();
+  leakPanels();
   if (state.instants.length) evolution.forEach((chart) => chart.mark(state.instants[chosen.instant].time));
 }));
 
@@ -276,6 +302,7 @@ async function start() {
   stressPart();
   timePanels();
   solverPanels();
+  leakPanels();
   materialPanels();
   if (typeof DecompressionStream === "undefined") {
     $("maps").replaceChildren(make("p", { class: "notice" }, "This browser is too old to unpack the maps (it lacks DecompressionStream); all others since 2023 can."));
@@ -300,11 +327,12 @@ async function follow() {
   const atEnd = chosen.instant >= state.instants.length - 1;
   if (next.instants.length < state.instants.length) cache.clear();
   const hadMaps = state.instants.length > 0;
-  for (const key of ["series", "status", "headline", "facts", "instants", "fields", "running", "stress"]) state[key] = next[key];
+  for (const key of ["series", "status", "headline", "facts", "instants", "fields", "running", "stress", "leak"]) state[key] = next[key];
   summary();
   stressPart();
   timePanels();
   solverPanels();
+  leakPanels();
   if (!hadMaps && state.instants.length) await mapsPart();
   else if (state.instants.length) {
     $("instant").max = state.instants.length - 1;

@@ -17,6 +17,7 @@
 //! - [`march`]: the simulation; [`contact`]: the elastic contact inside every step;
 //! - [`quantities`], [`spots`]: what each row may be asked for besides;
 //! - [`finding`]: where the numbers of a run may be off;
+//! - [`leakage`]: flow of a fluid through the gap;
 //! - [`operator`], [`kernel`], [`convolution`]: u = Kp; [`layer`]: K of bodies of layers;
 //! - [`mod@reference`], [`verification`]: closed forms and the checks against them.
 //!
@@ -31,6 +32,7 @@ pub mod grid;
 pub mod indentation;
 pub mod kernel;
 pub mod layer;
+pub mod leakage;
 pub mod load;
 pub mod march;
 pub mod material;

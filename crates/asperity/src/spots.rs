@@ -45,7 +45,7 @@ impl Spots {
         let (nx, ny) = cells.dim();
         let at = |i: usize, j: usize| i * ny + j;
         let on = |i: usize, j: usize| touches(&cells[[i, j]]);
-        let mut forest = Forest((0..nx * ny).collect());
+        let mut forest = Forest::new(nx * ny);
         for i in 0..nx {
             for j in (0..ny).filter(|j| on(i, *j)) {
                 if i > 0 && on(i - 1, j) {
@@ -90,10 +90,16 @@ impl Spots {
 }
 
 /// Cells that point to another of their spot; the least cell of a spot points to itself.
-struct Forest(Vec<usize>);
+pub(crate) struct Forest(Vec<usize>);
 
 impl Forest {
-    fn root(&mut self, mut cell: usize) -> usize {
+    /// Cells that are all apart.
+    pub(crate) fn new(cells: usize) -> Self {
+        Forest((0..cells).collect())
+    }
+
+    /// The cell that stands for its spot.
+    pub(crate) fn root(&mut self, mut cell: usize) -> usize {
         while self.0[cell] != cell {
             // Halve the path on the way.
             self.0[cell] = self.0[self.0[cell]];
@@ -102,7 +108,8 @@ impl Forest {
         cell
     }
 
-    fn join(&mut self, a: usize, b: usize) {
+    /// Makes the spots of two cells one.
+    pub(crate) fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.root(a), self.root(b));
         self.0[a.max(b)] = a.min(b);
     }

@@ -302,7 +302,11 @@ fn adaptive_steps_follow_a_changing_temperature() {
     let shape = Shape::Sphere { radius: 5e-3 };
     let gap = undeformed_gap(&grid, &[Part::Shape { shape, center: [0.0, 0.0] }]).unwrap();
     let held = (Control::Approach, History::Step { value: 6e-6 }, creep);
-    let ramp = (Control::Load, History::Ramp { value: 0.02, duration: 8.0 }, asperity::material::Creep::elastic(1e-12));
+    let ramp = (
+        Control::Load,
+        History::Ramp { value: 0.02, duration: 8.0 },
+        asperity::material::Creep::elastic(1e-12),
+    );
     for (control, history, creep) in [held, ramp] {
         let base = Simulation {
             creep,
@@ -322,7 +326,12 @@ fn adaptive_steps_follow_a_changing_temperature() {
             for row in found.iter().filter(|row| row.time > 0.1) {
                 let exact = fine.iter().rfind(|other| (other.time / row.time - 1.0).abs() < 1e-12).unwrap();
                 let off = (of(row) / of(exact) - 1.0).abs();
-                assert!(off <= 2.0 * tolerance, "{control:?} {tolerance}: {off} at {} s of {}", row.time, found.len());
+                assert!(
+                    off <= 2.0 * tolerance,
+                    "{control:?} {tolerance}: {off} at {} s of {}",
+                    row.time,
+                    found.len()
+                );
             }
         }
     }

@@ -1,5 +1,6 @@
 //! The command line: a file of arguments for each group of commands.
 
+mod leak;
 mod material;
 mod result;
 mod run;
@@ -11,6 +12,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand};
 use clap_complete::Shell;
 
+pub use leak::{FluidOptions, Leak};
 pub use material::{Fit, FitIndentation, Material, Show};
 pub use result::{Export, Plot, Report, Reproduce, ShowResult, View};
 pub use run::{Check, New, Run, Verify};
@@ -57,6 +59,8 @@ pub enum Command {
     Plot(Plot),
     /// Compute the stress below the surface of a result: largest values with places, profile over depth, first yield
     Stress(Stress),
+    /// Compute how much a fluid leaks through the gap of a result over time, or of a map of the gap
+    Leak(Leak),
     /// Show a material over time and frequency, or fit one to measured curves
     #[command(subcommand)]
     Material(Material),

@@ -49,7 +49,7 @@ pub struct Plot {
     /// The result (a Zarr directory)
     pub result: PathBuf,
     /// evolution, load-displacement, pressure, gap, displacement, contact, flattening, initial-gap, profile,
-    /// histogram, spots, work, quantities or stress
+    /// histogram, spots, work, quantities, stress or leak
     pub what: String,
     /// The file to write; its extension selects the format: png, svg or pdf [default: RESULT-WHAT.png]
     #[arg(short, long, value_name = "PATH")]

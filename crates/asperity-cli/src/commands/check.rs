@@ -181,6 +181,10 @@ fn tell(case: &Case, examined: &Examination, estimate: Option<f64>) -> String {
         ),
     );
     line("gap", d.surfaces.join(" + "));
+    if let Some(leak) = &case.leakage {
+        let (words, memory) = leak.describe(case.grid.len());
+        line("leakage", format!("{words}, up to {} of memory", bytes(memory)));
+    }
     for surface in inputs.surfaces.iter().filter_map(shape) {
         line("", surface);
     }

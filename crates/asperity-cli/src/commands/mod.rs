@@ -5,6 +5,7 @@ pub mod completions;
 pub mod export;
 pub mod findings;
 pub mod fit_indentation;
+pub mod leak;
 pub mod material;
 pub mod new;
 pub mod plot;

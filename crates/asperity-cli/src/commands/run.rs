@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use asperity::finding::Finding;
 use asperity::march::Row;
 use asperity_io::case::Case;
+use asperity_io::leakage::LeakError;
 use asperity_io::session::{RunError, RunOptions, Summary, run as run_case};
 use asperity_io::store::Status;
 use asperity_io::stress::{Below, first_yield};
@@ -48,7 +49,13 @@ pub fn run(args: &Run) -> Result<(), Failure> {
                 RunError::Solve { best: Some(best), .. } => format!("{error}\n{}", best_state(best)),
                 _ => error.to_string(),
             };
-            if let RunError::Solve { summary, .. } | RunError::Storage { summary, .. } = &error {
+            if let RunError::Leakage { source: LeakError::Interrupted, .. } = error {
+                return Err(Failure::Interrupted(message));
+            }
+            if let RunError::Solve { summary, .. }
+            | RunError::Storage { summary, .. }
+            | RunError::Leakage { summary, .. } = &error
+            {
                 tell_findings(args, &summary.findings, &known);
                 tell(args, summary, Some(&error))?;
             }
@@ -121,6 +128,7 @@ fn tell(args: &Run, summary: &Summary, error: Option<&RunError>) -> Result<(), F
                 quantity(last.contact_area_corrected, "m2"),
             ),
         );
+        line("mean gap", quantity(last.mean_gap, "m"));
         if last.capped_area > 0.0 {
             line("at hardness", quantity(last.capped_area, "m2"));
         }

@@ -114,6 +114,10 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
         "contact",
         format!("{:<14}{}", percent(last.contact_fraction), curve(|row| row.contact_fraction, &percent)),
     );
+    line(
+        "mean gap",
+        format!("{:<14}{}", quantity(last.mean_gap, "m"), curve(|row| row.mean_gap, &|v| quantity(v, "m"))),
+    );
     line("area", quantity(last.contact_area, "m2"));
     line("corrected", quantity(last.contact_area_corrected, "m2"));
     if last.capped_area > 0.0 {

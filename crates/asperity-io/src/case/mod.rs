@@ -72,9 +72,11 @@ pub use error::{CaseError, CaseErrors};
 pub use examine::{Examination, Inputs, ModulusInput, SurfaceInput};
 pub use measured::Measured;
 pub use plan::{Output, Rows, Surface};
+pub use raw::{LeakDirection, Leakage as LeakageKeys};
 pub use schema::schema;
 pub use specimen::{Specimen, specimens};
 
+use crate::leakage::Leak;
 use crate::stress::StressPlan;
 use overrides::Override;
 use text::Text;
@@ -131,6 +133,8 @@ pub struct Case {
     pub output: Output,
     /// The stress below the surface, where it is asked for.
     pub stress: Option<StressPlan>,
+    /// The flow through the gap, where it is wanted.
+    pub leakage: Option<Leak>,
     /// Rows of the result, where known beforehand.
     rows: Option<usize>,
     /// About as many.
@@ -279,6 +283,16 @@ impl Case {
         };
         CaseErrors { name: self.name.clone(), source: self.source.clone(), errors }
     }
+}
+
+/// The leakage that keys describe which stand in no case: those of a command.
+///
+/// # Errors
+/// What is wrong, and what to do.
+pub fn leak(keys: &LeakageKeys, boundary: Boundary) -> Result<Leak, String> {
+    convert::leakage::leak(keys, boundary).map_err(|convert::leakage::Fault(message, expected, help)| {
+        format!("{message}; expected {expected}; {help}")
+    })
 }
 
 /// Whether `key` is `outer` or a key below it.

@@ -16,8 +16,19 @@ use super::text::{MOST_ERRORS, Text};
 use super::words;
 
 /// The keys of the root.
-pub const SECTIONS: &[&str] =
-    &["title", "domain", "surface", "body", "load", "time", "temperature", "solver", "output", "stress"];
+pub const SECTIONS: &[&str] = &[
+    "title",
+    "domain",
+    "surface",
+    "body",
+    "load",
+    "time",
+    "temperature",
+    "leakage",
+    "solver",
+    "output",
+    "stress",
+];
 
 /// The document, or the faults that its sections have.
 pub fn document(text: &Text<'_>) -> Result<Document, Vec<CaseError>> {
@@ -35,14 +46,25 @@ pub fn document(text: &Text<'_>) -> Result<Document, Vec<CaseError>> {
     let load = reader.required("load", HISTORY);
     let time = reader.required("time", &[]);
     let temperature = reader.optional("temperature", HISTORY);
+    let leakage = reader.optional("leakage", &[]);
     let solver = reader.optional("solver", &[]).unwrap_or_default();
     let output = reader.optional("output", &[]).unwrap_or_default();
     let stress = reader.optional("stress", &[]);
     reader.errors.sort_by_key(|error| error.span.as_ref().map_or(usize::MAX, |span| span.start));
     match (reader.errors.is_empty(), domain, load, time) {
-        (true, Some(domain), Some(load), Some(time)) => {
-            Ok(Document { title, domain, surface, body, load, time, temperature, solver, output, stress })
-        }
+        (true, Some(domain), Some(load), Some(time)) => Ok(Document {
+            title,
+            domain,
+            surface,
+            body,
+            load,
+            time,
+            temperature,
+            leakage,
+            solver,
+            output,
+            stress,
+        }),
         _ => Err(reader.errors),
     }
 }

@@ -18,6 +18,7 @@ use serde_json::{Map, Value, json};
 use thiserror::Error;
 
 use crate::case::{Case, CaseErrors};
+use crate::leakage::{self, LeakError};
 use crate::store::{Field, FieldKind, Header, Outcome, Reader, Status, StoreError, Work, Writer};
 use crate::stress::{self, Below, StressError};
 
@@ -94,6 +95,14 @@ pub enum RunError {
     Storage {
         /// What failed.
         source: StoreError,
+        /// What was done.
+        summary: Box<Summary>,
+    },
+    /// The run is complete, its leakage is not.
+    #[error("{source}; the run itself is complete and stored, `asperity leak` computes its leakage")]
+    Leakage {
+        /// What failed.
+        source: LeakError,
         /// What was done.
         summary: Box<Summary>,
     },
@@ -202,7 +211,15 @@ fn run_inside(
             Err(StressError::Store(source)) => return Err(record.stop_storing(&march, source)),
         }
     }
-    record.end(Some(&march), Outcome::new(Status::Complete))
+    let mut summary = record.end(Some(&march), Outcome::new(Status::Complete))?;
+    drop(march);
+    if let Some(leak) = &case.leakage {
+        match leakage::of_result(&path, leak, &options.interrupt, |_, _| {}) {
+            Ok((_, found)) => summary.findings.extend(found),
+            Err(source) => return Err(RunError::Leakage { source, summary: Box::new(summary) }),
+        }
+    }
+    Ok(summary)
 }
 
 /// Rows and findings of the sessions before a resumed one.
@@ -404,6 +421,9 @@ fn setup(case: &Case) -> Map<String, Value> {
         setup.insert("md5_of_files".into(), json!(files));
     }
     setup.insert("solver_tolerance".into(), json!(case.solver.tolerance));
+    if let Some(leak) = &case.leakage {
+        setup.insert("leakage".into(), serde_json::to_value(leak).unwrap_or_default());
+    }
     setup
 }
 

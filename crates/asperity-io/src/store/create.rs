@@ -12,6 +12,7 @@ use super::chunks::Chunks;
 use super::document::{self, Document};
 use super::error::{Result, StoreError, input, io};
 use super::layout::{FieldKind, SCALARS, bins, coordinates};
+use super::leak;
 use super::stress;
 use super::writer::{lock, remove};
 
@@ -84,6 +85,7 @@ fn vacate(path: &Path, force: bool) -> Result<Option<Option<File>>> {
 /// Whether a result has an entry of that name.
 fn is_part(name: &str) -> bool {
     document::owns(name)
+        || leak::owns(name)
         || name == checkpoint::DIRECTORY
         || stress::names().any(|known| known == name)
         || ["field_time", "field_step", "x", "y", "initial_gap"].contains(&name)

@@ -13,6 +13,7 @@ use serde_json::{Map, Value, json};
 use super::error::{Result, StoreError, corrupt, io};
 use super::header::{self, Header, Progress};
 use super::layout::{self, ArraySpec, LEVEL};
+use super::leak::Leaks;
 use super::replace::{Way, replace};
 use super::stress::StressSet;
 use crate::finding;
@@ -32,6 +33,8 @@ pub(super) struct Document {
     pub(super) progress: Progress,
     /// The stress below the surface, where it was computed.
     pub(super) stress: Option<StressSet>,
+    /// Leaks that were computed from its fields.
+    pub(super) leaks: Option<Leaks>,
 }
 
 /// The documents as JSON, kept between steps: only a few numbers of them change.
@@ -47,6 +50,7 @@ impl Pages {
         let mut attributes = header::attributes(&document.header);
         header::put_progress(&mut attributes, &document.progress);
         attributes.extend(document.stress_attribute());
+        attributes.extend(document.leaks.iter().map(Leaks::attribute));
         let consolidated = json!({"kind": "inline", "must_understand": false, "metadata": metadata});
         let group = json!({
             "zarr_format": 3,
@@ -93,6 +97,7 @@ impl Document {
         let (cells, Progress { rows, maps, .. }) = (self.header.grid.cells(), &self.progress);
         let mut arrays = layout::arrays(&self.header, *rows, *maps);
         arrays.extend(self.stress.iter().flat_map(|set| set.arrays(cells, *maps)));
+        arrays.extend(self.leaks.iter().flat_map(|leaks| leaks.arrays(&self.header.grid)));
         arrays
     }
 
@@ -126,7 +131,8 @@ impl Document {
                 Some(set.ok_or_else(|| corrupt(&file, "the attribute `stress` is malformed"))?)
             }
         };
-        let document = Document { header, progress, stress };
+        let leaks = Leaks::of(attributes, metadata);
+        let document = Document { header, progress, stress, leaks };
         for array in document.arrays() {
             if metadata.get(array.name).is_none_or(|stored| !same_form(stored, &array.document(LEVEL))) {
                 let what = format!("the array `{}` is missing or not of the form of a result", array.name);
@@ -155,6 +161,34 @@ pub(super) fn write_bare_group(directory: &Path, long_name: &str) -> Result<()> 
         "zarr_format": 3, "node_type": "group", "attributes": {"long_name": long_name},
     });
     replace(&directory.join(NAME), &directory.join(PARTIAL), document.to_string().as_bytes(), Way::Safe)
+}
+
+/// Replaces the arrays of a result that `old` names by new ones, whose chunks are written, and changes its attributes. Returns
+/// the names of the arrays that have gone.
+pub(super) fn exchange_arrays(
+    root: &Path,
+    old: impl Fn(&str) -> bool,
+    new: &[ArraySpec],
+    change: impl FnOnce(&mut Map<String, Value>),
+) -> Result<Vec<String>> {
+    let (file, mut group) = read_json(root)?;
+    for array in new {
+        let directory = root.join(array.name);
+        let text = array.document(LEVEL).to_string();
+        replace(&directory.join(NAME), &directory.join(PARTIAL), text.as_bytes(), Way::Safe)?;
+    }
+    let missing = || corrupt(&file, "the consolidated metadata are missing");
+    let metadata = group.pointer_mut("/consolidated_metadata/metadata").and_then(Value::as_object_mut);
+    let metadata = metadata.ok_or_else(missing)?;
+    let mut gone: Vec<String> = metadata.keys().filter(|name| old(name)).cloned().collect();
+    gone.iter().for_each(|name| drop(metadata.shift_remove(name)));
+    for array in new {
+        metadata.insert(array.name.to_owned(), array.document(LEVEL));
+        gone.retain(|name| name != array.name);
+    }
+    change(group["attributes"].as_object_mut().ok_or_else(|| corrupt(&file, "the attributes are missing"))?);
+    replace(&root.join(NAME), &root.join(GROUP_PARTIAL), group.to_string().as_bytes(), Way::Safe)?;
+    Ok(gone)
 }
 
 fn read_json(root: &Path) -> Result<(PathBuf, Value)> {

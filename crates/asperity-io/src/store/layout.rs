@@ -248,7 +248,7 @@ pub(super) struct ArraySpec {
     pub(super) shape: Vec<usize>,
     pub(super) chunk: Vec<usize>,
     pub(super) compressed: bool,
-    attributes: Value,
+    pub(super) attributes: Value,
 }
 
 impl ArraySpec {
@@ -463,7 +463,7 @@ fn coordinate(name: &'static str, cells: usize, long_name: &str) -> ArraySpec {
 }
 
 /// Side of a chunk: equal pieces no longer than [`LONGEST_SIDE`], so that little is padded.
-fn side(cells: usize) -> usize {
+pub(super) fn side(cells: usize) -> usize {
     cells.div_ceil(cells.div_ceil(LONGEST_SIDE))
 }
 

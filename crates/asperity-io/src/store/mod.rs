@@ -8,6 +8,7 @@
 //! | `pressure`, `gap`, `displacement`, `contact`, `flattening` | `field_time`, `x`, `y` | fields of the chosen steps |
 //! | `field_time`, `field_step` | `field_time` | time and row of each stored field; of a field between two rows the later |
 //! | `initial_gap` | `x`, `y` | undeformed gap |
+//! | `leak_rate`, `hydraulic_gap`, ... | `leak_time` | leakage, where it was asked for |
 //! | `x`, `y` | | centres of the cells |
 //! | `max_mises`, `max_mises_depth`, ... | `field_time` | the stress below the surface, where it was computed ([`StressSet`]) |
 //! | `mises_by_depth`, ... | `field_time`, `depth` | its largest values at each depth |
@@ -57,6 +58,7 @@ mod document;
 mod error;
 mod header;
 mod layout;
+mod leak;
 mod reader;
 mod replace;
 mod resume;
@@ -68,6 +70,7 @@ pub use error::{Result, StoreError};
 pub use header::{Header, Status, Work};
 pub(crate) use layout::coordinates;
 pub use layout::{FieldKind, SCALARS, Scalar, Series};
+pub use leak::{LeakTable, LeakWriter, Leaks};
 pub use reader::{At, Reader};
 pub use stress::{StressSet, StressWriter};
 pub use writer::{Field, Outcome, Writer};

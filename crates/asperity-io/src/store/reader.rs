@@ -14,7 +14,8 @@ use super::column;
 use super::document::Document;
 use super::error::{Result, StoreError, corrupt};
 use super::header::{self, Header, Status, Work};
-use super::layout::{ArraySpec, Entry, FieldKind, SCALARS, Series};
+use super::layout::{ArraySpec, DataType, Entry, FieldKind, SCALARS, Series};
+use super::leak::Leaks;
 
 /// A result as it is at the instant of opening; a run that goes on is seen by opening it again.
 #[derive(Clone, Debug)]
@@ -247,6 +248,73 @@ impl Reader {
         chunks.read_map(&[index], self.header().grid.shape())
     }
 
+    /// The field that tells contact: the states where they were kept, else the pressure, else the gap.
+    pub fn contact_kind(&self) -> Option<FieldKind> {
+        let kept = &self.header().fields;
+        [FieldKind::Contact, FieldKind::Pressure, FieldKind::Gap].into_iter().find(|kind| kept.contains(kind))
+    }
+
+    /// The contact states at a stored instant (0 open, 1 in contact, 2 at the hardness), from whatever field tells them. (The gap
+    /// of a cell in contact is zero to rounding, and below zero at the hardness.)
+    ///
+    /// # Errors
+    /// As of [`field`](Self::field).
+    pub fn contact_states(&self, at: At) -> Result<Array2<u8>> {
+        let hardness = self.header().setup.get("hardness").and_then(Value::as_f64).unwrap_or(f64::INFINITY);
+        Ok(match self.contact_kind() {
+            Some(FieldKind::Contact) | None => self.contact(at)?,
+            Some(FieldKind::Pressure) => self
+                .field(FieldKind::Pressure, at)?
+                .mapv(|p| u8::from(p > 0.0) + u8::from(p > 0.0 && p >= hardness * (1.0 - 1e-12))),
+            Some(kind) => {
+                let gap = self.field(kind, at)?;
+                let deepest =
+                    gap.iter().copied().filter(|h| h.is_finite()).fold(0.0, |a: f64, h| a.max(h.abs()));
+                gap.mapv(|h| u8::from(h <= 1e-9 * deepest))
+            }
+        })
+    }
+
+    /// The leaks that were computed from the fields of this result.
+    pub fn leaks(&self) -> Option<&Leaks> {
+        self.document.leaks.as_ref()
+    }
+
+    /// One number of every leak, by its name in [`Leaks::series`]; of `conductance` xx, xy, yx, yy each.
+    ///
+    /// # Errors
+    /// [`StoreError::Missing`] where it is not stored, [`StoreError::Corrupt`] where a file is missing or damaged.
+    pub fn leak(&self, name: &str) -> Result<Vec<f64>> {
+        let Some(leaks) = self.leaks().filter(|leaks| leaks.names.contains(&name)) else {
+            return Err(
+                self.missing(format!("leakage `{name}`"), "none (`asperity leak RESULT` computes it)".into())
+            );
+        };
+        let spec = self.spec(name)?;
+        let index = vec![0; spec.shape.len()];
+        let numbers = leaks.rows * spec.shape[1..].iter().product::<usize>();
+        let chunks = Chunks::new(&self.root, &spec)?;
+        let mut values: Vec<f64> = match spec.data_type {
+            DataType::Int64 => chunks.read::<i64>(&index)?.into_iter().map(|count| count as f64).collect(),
+            _ => chunks.read(&index)?,
+        };
+        values.truncate(numbers);
+        Ok(values)
+    }
+
+    /// Pressure of the fluid \[Pa\] of leak number `index` (shape of the grid).
+    ///
+    /// # Errors
+    /// As of [`leak`](Self::leak).
+    pub fn fluid_pressure(&self, index: usize) -> Result<Array2<f64>> {
+        if !self.leaks().is_some_and(|leaks| leaks.has_pressure() && index < leaks.rows) {
+            let available = "none (set leakage.field = true, or `asperity leak RESULT --field`)".to_owned();
+            return Err(self.missing(format!("fluid pressure {index}"), available));
+        }
+        Chunks::new(&self.root, &self.spec("fluid_pressure")?)?
+            .read_map(&[index as u64], self.header().grid.shape())
+    }
+
     /// The undeformed gap \[m\].
     ///
     /// # Errors
@@ -285,6 +353,11 @@ impl Reader {
             format!("the fields {}", names.join(", "))
         };
         self.missing(format!("field `{kind}`"), available)
+    }
+
+    /// The error of a result without leaks.
+    pub fn no_leaks(&self) -> StoreError {
+        self.missing("leakage".into(), "none (`asperity leak RESULT` computes it)".into())
     }
 
     /// The error of a result whose case asked for no quantities.

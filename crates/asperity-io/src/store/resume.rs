@@ -48,8 +48,8 @@ impl Writer {
         let all = reader.rows()?;
         let maps = reader.field_steps().iter().take_while(|step| **step < rows).count();
 
-        // The stress is computed again at the end of the run.
-        let Document { header: mut kept, mut progress, stress: _ } = reader.into_document();
+        // Stress and leaks are computed again at the end of the run.
+        let Document { header: mut kept, mut progress, .. } = reader.into_document();
         let stored_maps = std::mem::replace(&mut progress.maps, maps);
         progress.rows = rows;
         progress.status = Status::Running;
@@ -60,7 +60,7 @@ impl Writer {
             kept.version = format!("{}, {}", kept.version, header.version);
         }
         kept.rows_expected = header.rows_expected;
-        let document = Document { header: kept, progress, stress: None };
+        let document = Document { header: kept, progress, stress: None, leaks: None };
         let mut pages = Pages::new(&document);
         pages.commit(path, &document.progress, Way::Safe)?;
         pages.write_arrays(path, Way::Safe)?;

@@ -142,7 +142,8 @@ impl Writer {
         {
             return Err(input("fields of the result", format!("{kind} twice"), "each named once"));
         }
-        let document = Document { header: header.clone(), progress: Progress::default(), stress: None };
+        let document =
+            Document { header: header.clone(), progress: Progress::default(), stress: None, leaks: None };
         let lock = create::publish(path, force, |root| {
             create::write_constants(root, &document, initial_gap)?;
             let mut pages = Pages::new(&document);
@@ -324,7 +325,9 @@ impl Writer {
 
     /// Sets the stress below the surface that readers see.
     pub(super) fn set_stress(&mut self, stress: Option<StressSet>) -> Result<()> {
-        let document = Document { header: self.header.clone(), progress: self.progress.clone(), stress };
+        let leaks = Document::read(&self.root)?.leaks;
+        let document =
+            Document { header: self.header.clone(), progress: self.progress.clone(), stress, leaks };
         self.pages = stress::publish(&self.root, &document)?;
         Ok(())
     }

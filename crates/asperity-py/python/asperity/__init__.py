@@ -35,6 +35,7 @@ from ._histories import (
     uniform,
 )
 from ._indentation import IndentationFit, fit_indentation
+from ._leakage import Leakage, leakage
 from ._materials import (
     Burgers,
     Creep,
@@ -72,6 +73,7 @@ __all__ = [
     "History",
     "IndentationFit",
     "KelvinVoigt",
+    "Leakage",
     "March",
     "Material",
     "Maxwell",
@@ -98,6 +100,7 @@ __all__ = [
     "fit_indentation",
     "fit_relaxation",
     "hold",
+    "leakage",
     "listed",
     "log",
     "march",

@@ -201,6 +201,7 @@ def trimmed(result: Result, names: tuple[str, ...]) -> Result:
         size=result.size,
         attributes=result.attributes,
         histograms=result._histograms,
+        leaks=result._leaks,
     )
 
 

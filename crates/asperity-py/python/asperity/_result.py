@@ -96,6 +96,7 @@ class Result:
         histograms: dict[str, tuple[Floats, Floats]] | None = None,
         field_times: Any = None,
         stress: dict[str, Floats] | None = None,
+        leaks: dict[str, Floats] | None = None,
     ) -> None:
         self._table = table
         self._fields = fields
@@ -110,6 +111,7 @@ class Result:
         self._path = path
         self._histograms = dict(histograms or {})
         self._stress = dict(stress or {})
+        self._leaks = dict(leaks or {})
 
     def __getattr__(self, name: str) -> Floats:
         table = self.__dict__.get("_table")
@@ -317,6 +319,52 @@ class Result:
         attributes = {**self._attributes, "findings": json.dumps(self._attributes.get("findings", []))}
         return xarray.Dataset({**rows, **maps, **dict([gap])}, coords=coordinates, attrs=attributes)
 
+    def leakage(
+        self,
+        *,
+        direction: str | None = None,
+        pressure_drop: float | None = None,
+        viscosity: float | None = None,
+        gas: str | None = None,
+        molar_mass: float | None = None,
+        temperature: float | None = None,
+        inlet: float | None = None,
+        outlet: float | None = None,
+        rarefaction: str | None = None,
+        sides: str | None = None,
+        smallest_gap: float | None = None,
+        field: bool | None = None,
+    ) -> Any:
+        """Leakage at the times of the stored fields, as xarray.Dataset over `leak_time` (see :func:`leakage` and docs/leakage.md).
+
+        Without arguments the leaks that the run stored. Otherwise those of a liquid (`pressure_drop` [Pa], `viscosity` [Pa s]), of a
+        gas (`inlet`, `outlet` [Pa, absolute], `gas`, or `viscosity` and `molar_mass` [kg/mol]; `temperature` [K]; `rarefaction`), or
+        without a fluid the gap alone. `field` adds `fluid_pressure`.
+        """
+        from ._leakage import dataset, over_time
+
+        given: dict[str, Any] = {
+            "direction": direction,
+            "pressure_drop": pressure_drop,
+            "viscosity": viscosity,
+            "gas": gas,
+            "molar_mass": molar_mass,
+            "temperature": temperature,
+            "inlet": inlet,
+            "outlet": outlet,
+            "rarefaction": rarefaction,
+            "sides": sides,
+            "smallest_gap": smallest_gap,
+            "field": field,
+        }
+        if self._leaks and all(value is None for value in given.values()):
+            columns = dict(self._leaks)
+            times = columns.pop("leak_time")
+            tensor = columns.pop("conductance", None)
+            conductance = None if tensor is None else tensor.reshape(-1, 2, 2)
+            return dataset(self, times, columns, "leak_rate_standard" in columns, conductance, None)
+        return over_time(self, given)
+
     @property
     def plot(self) -> Plots:
         """Figures by matplotlib: ``result.plot.evolution()``, ``result.plot.pressure(time=500.0)``, ..."""
@@ -447,4 +495,5 @@ def open(path: str | os.PathLike[str]) -> Result:
         attributes=attributes,
         path=os.fspath(path),
         stress=store.stress(),
+        leaks=store.leaks(),
     )

@@ -20,6 +20,7 @@ import numpy as np
 from . import _core
 from ._arrays import count
 from ._core import CaseError
+from ._leakage import LEAKS, units_of
 from ._points import Point, Solved, base_of, found, label, label_all, note, solve_point
 from ._processes import cores, shared, solved
 from ._progress import line_of
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     import xarray
 
 #: Names that a parameter may not have in the dataset.
-_TAKEN = {*ROW, *QUANTITIES, *FIELDS, "status", "error", "steps", "step", "point", "x", "y", "field_step", "field_time"}
+_TAKEN = {*ROW, *QUANTITIES, *FIELDS, *LEAKS, "leak_time", "leak_step", "status", "error", "steps", "step", "point", "x", "y", "field_step", "field_time"}
 _QUANTITY = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*([^\s\d].*?)?\s*")
 
 
@@ -325,12 +326,32 @@ def _dataset(
     columns["steps"] = (dims, steps.reshape(plan.shape), {"units": "1", "long_name": "number of rows"})
     columns["status"] = (dims, np.array([answer[0] for answer in answers]).reshape(plan.shape), {"long_name": "status"})
     columns["error"] = (dims, np.array([answer[1] for answer in answers]).reshape(plan.shape), {"long_name": "why it failed"})
+    _add_leaks(columns, coordinates, plan, dims, results)
     if names:
         _add_fields(columns, coordinates, plan, dims, results, names)
     attributes = {"asperity_version": _core.__version__}
     if case is not None:
         attributes["case"] = case
     return xarray.Dataset(columns, coords=coordinates, attrs=attributes)
+
+
+def _add_leaks(
+    columns: dict[str, Any], coordinates: dict[str, Any], plan: _Plan, dims: tuple[str, ...], results: list[Result | None]
+) -> None:
+    """Leaks that the cases ask for, at the times of their fields."""
+    leaks = [{} if result is None else result._leaks for result in results]
+    most = max((len(table["leak_time"]) for table in leaks if table), default=0)
+    gas = any("leak_rate_standard" in table for table in leaks)
+    for name in ["leak_time", *LEAKS]:
+        if not any(name in table for table in leaks):
+            continue
+        values = np.full((len(leaks), most), np.nan)
+        for n, table in enumerate(leaks):
+            if name in table:
+                values[n, : len(table[name])] = table[name]
+        unit, words = ("s", "time of the leak") if name == "leak_time" else (units_of(name, gas), LEAKS[name][1])
+        column = ((*dims, "leak_step"), values.reshape(*plan.shape, most), {"units": unit, "long_name": words})
+        (coordinates if name == "leak_time" else columns)[name] = column
 
 
 def _add_fields(

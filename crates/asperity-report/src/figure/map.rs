@@ -42,6 +42,8 @@ pub struct Map {
     pub size: [f64; 2],
     /// What its axes are.
     pub axes: Axes,
+    /// Places x, y that a circle marks \[m\].
+    pub marks: Vec<[f64; 2]>,
 }
 
 /// The axes of a map.
@@ -74,6 +76,7 @@ impl Map {
             meaning,
             size,
             axes: Axes::Area,
+            marks: vec![],
         }
     }
 
@@ -95,7 +98,22 @@ impl Map {
             meaning: Values::States(names),
             size,
             axes: Axes::Area,
+            marks: vec![],
         }
+    }
+
+    /// The same map with a circle around a place x, y \[m\].
+    pub fn marked(mut self, place: [f64; 2]) -> Map {
+        self.marks.push(place);
+        self
+    }
+
+    /// The same map with these values at the ends of its colours.
+    pub fn between(mut self, ends: [f64; 2]) -> Map {
+        if let Values::Quantity { range, .. } = &mut self.meaning {
+            *range = Some(ends);
+        }
+        self
     }
 
     pub(super) fn draw(&self, drawing: &mut Drawing, place: &Place) {
@@ -161,6 +179,11 @@ impl Map {
         drawing.image([left, top], [w, h], &picture, smooth);
         let style = format!("fill=\"none\" stroke=\"{INK}\" stroke-width=\"0.8\"");
         drawing.rect([left, top], [w, h], &style);
+        for [x, y] in &self.marks {
+            let at = [left + w * x / self.size[0], bottom - h * y / self.size[1]];
+            drawing.circle(at, 5.0, "fill=\"none\" stroke=\"#fff\" stroke-width=\"3\"");
+            drawing.circle(at, 5.0, "fill=\"none\" stroke=\"#d62728\" stroke-width=\"1.5\"");
+        }
         if h > 50.0 {
             scale_bar(drawing, [left, bottom], w, self.size[0]);
         }

@@ -61,6 +61,9 @@ impl Live {
 /// What the page knows besides its maps; the surface only the first time, as it does not change.
 fn state_of(reader: &Reader, first: bool) -> Result<serde_json::Value, StoreError> {
     let mut state = state::state(reader, &Maps::live(reader, first)?)?;
+    if first {
+        super::add_leak_map(reader, &mut state);
+    }
     state["live"] = json!(true);
     state["running"] = json!(reader.is_being_written());
     Ok(state)

@@ -6,7 +6,6 @@ use ndarray::Array2;
 use super::Options;
 use super::blob::{packed, range};
 use crate::figure::{means, states};
-use crate::result::contact_states;
 
 /// The maps of a result, ready for the page.
 pub(super) struct Maps {
@@ -88,7 +87,7 @@ impl Maps {
 /// One map, reduced.
 pub(super) fn one(reader: &Reader, kind: FieldKind, at: At, block: usize) -> Result<Array2<f64>, StoreError> {
     if kind == FieldKind::Contact {
-        return Ok(states(contact_states(reader, at)?.mapv(f64::from).view(), block));
+        return Ok(states(reader.contact_states(at)?.mapv(f64::from).view(), block));
     }
     Ok(means(reader.field(kind, at)?.view(), block))
 }

@@ -65,7 +65,19 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
         "surface": maps.surface,
         "material": material::curves(reader),
         "stress": stress::curves(reader)?,
+        "leak": leak(reader)?,
     }))
+}
+
+/// The leaks over time; null where there are none.
+fn leak(reader: &Reader) -> Result<Value, StoreError> {
+    let Some(leaks) = reader.leaks() else { return Ok(Value::Null) };
+    let mut columns = Map::new();
+    for series in leaks.series() {
+        columns
+            .insert(series.name.into(), json!({"units": series.units, "values": reader.leak(series.name)?}));
+    }
+    Ok(Value::Object(columns))
 }
 
 /// The quantities that were asked for, as panels over time: title, label, and the series by name. Energies share one.
@@ -123,6 +135,7 @@ fn headline(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
         ["approach".into(), quantity(last.approach, "m")],
         [format!("contact area, {} corrected", corrected), quantity(last.contact_area, "m2")],
         ["of the nominal area".into(), format!("{:.2} %", 100.0 * last.contact_fraction)],
+        ["mean gap".into(), quantity(last.mean_gap, "m")],
         [
             format!("largest pressure, mean {}", quantity(last.mean_pressure, "Pa")),
             quantity(last.max_pressure, "Pa"),

@@ -147,6 +147,7 @@ fn elastic(case: &Case, reader: &Reader, compliance: f64) -> Result<[f64; 2]> {
 fn plot_error(error: crate::result::PlotError) -> super::PaperError {
     match error {
         crate::result::PlotError::Store(error) => error.into(),
+        crate::result::PlotError::Flow(error) => error.into(),
         crate::result::PlotError::Outside { at, length, .. } => {
             asperity::Error::invalid("line", at, format!("0 to {length}")).into()
         }

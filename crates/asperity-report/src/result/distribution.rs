@@ -4,7 +4,7 @@ use asperity::spots::Spots;
 use asperity_io::readable::quantity;
 use asperity_io::store::{At, FieldKind, Reader, StoreError};
 
-use super::{boundary, caption, contact_states};
+use super::{boundary, caption};
 use crate::figure::{Axis, Curves, Figure, Series, Style};
 
 const BINS: usize = 60;
@@ -20,7 +20,7 @@ pub(super) fn histogram(reader: &Reader, at: At) -> Result<Figure, StoreError> {
     }
     if kept.contains(&FieldKind::Gap) {
         let gap = reader.field(FieldKind::Gap, at)?;
-        let states = contact_states(reader, at)?;
+        let states = reader.contact_states(at)?;
         let open: Vec<f64> =
             gap.iter().zip(&states).filter(|(h, s)| **s == 0 && h.is_finite()).map(|(h, _)| *h).collect();
         figure = figure.with(density("Gap out of contact", ["gap", "m"], &open));
@@ -48,7 +48,7 @@ fn density(title: &str, [label, unit]: [&str; 2], values: &[f64]) -> Curves {
 }
 
 pub(super) fn spots(reader: &Reader, at: At) -> Result<Figure, StoreError> {
-    let states = contact_states(reader, at)?;
+    let states = reader.contact_states(at)?;
     let spots = Spots::of(&reader.header().grid, boundary(reader), states.view(), |state| *state > 0);
     // How many spots are at least as large: a straight line for a power law, with no bins to choose.
     let number: Vec<f64> = (1..=spots.len()).map(|n| n as f64).collect();

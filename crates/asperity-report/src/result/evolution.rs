@@ -56,14 +56,21 @@ pub(crate) fn quantity_panels(reader: &Reader) -> Vec<QuantityPanel> {
             Quantity::ContactSpots => ("Contact spots", "number", ""),
             Quantity::ContactStiffness => ("Contact stiffness", "stiffness", ""),
             Quantity::ContactPerimeter => ("Perimeter of the contact", "length", ""),
-            _ => ("Rms gap", "rms gap", ""),
+            _ => ("Gap", "gap", "rms"),
         };
         let line = (line, quantity.name());
+        // The mean gap, which every row has, beside the rms gap.
+        let mean = (quantity == Quantity::RmsGap).then_some(("mean", "mean_gap"));
         match panels.iter_mut().find(|panel| panel.title == title) {
             Some(panel) => panel.lines.push(line),
             None => {
                 let units = if quantity.units() == "1" { "" } else { quantity.units() };
-                panels.push(QuantityPanel { title, label, units, lines: vec![line] });
+                panels.push(QuantityPanel {
+                    title,
+                    label,
+                    units,
+                    lines: std::iter::once(line).chain(mean).collect(),
+                });
             }
         }
     }

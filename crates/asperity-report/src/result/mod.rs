@@ -24,7 +24,6 @@ use asperity_io::stress::StressError;
 use serde_json::Value;
 
 pub(crate) use evolution::quantity_panels;
-pub(crate) use fields::contact_states;
 pub use stress::stress_figure;
 
 use crate::figure::{Curves, Figure, Series};
@@ -60,6 +59,8 @@ pub enum Plot {
     Quantities,
     /// Sections of the stress below the surface, a map of it, and its profile over depth, at an instant.
     Stress,
+    /// Leak rate and gaps over time, and the flow at an instant.
+    Leak,
 }
 
 /// What a figure shows of a result.
@@ -102,6 +103,9 @@ pub enum PlotError {
     /// The stress needs a Poisson's ratio that the result does not have.
     #[error("{} does not say a constant Poisson's ratio of its first body; use asperity stress --poisson NU --plot PATH", .0.display())]
     NoPoisson(std::path::PathBuf),
+    /// The flow at the instant was not solved.
+    #[error(transparent)]
+    Flow(#[from] asperity::Error),
     /// The line of a profile is outside of the area.
     #[error("the line at {axis} = {at:e} m is outside of the area, which goes from 0 to {length:e} m")]
     Outside {
@@ -116,7 +120,7 @@ pub enum PlotError {
 
 impl Plot {
     /// Every plot.
-    pub const ALL: [Plot; 14] = [
+    pub const ALL: [Plot; 15] = [
         Plot::Evolution,
         Plot::LoadDisplacement,
         Plot::Pressure,
@@ -131,6 +135,7 @@ impl Plot {
         Plot::Work,
         Plot::Quantities,
         Plot::Stress,
+        Plot::Leak,
     ];
 
     /// Its name on the command line.
@@ -150,6 +155,7 @@ impl Plot {
             Plot::Work => "work",
             Plot::Quantities => "quantities",
             Plot::Stress => "stress",
+            Plot::Leak => "leak",
         }
     }
 
@@ -170,6 +176,7 @@ pub fn figure(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, 
         Plot::LoadDisplacement => evolution::load_displacement(reader)?,
         Plot::Work => evolution::work(reader)?,
         Plot::Quantities => evolution::quantities(reader, options)?,
+        Plot::Leak => crate::leak::over_time(reader, options)?,
         Plot::Flattening => fields::map(reader, FieldKind::Flattening, options.at)?,
         Plot::Pressure => fields::map(reader, FieldKind::Pressure, options.at)?,
         Plot::Gap => fields::map(reader, FieldKind::Gap, options.at)?,
@@ -192,10 +199,10 @@ pub fn figure(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, 
 /// # Errors
 /// [`StoreError`] where the result is damaged or has no such instant.
 pub fn contact(reader: &Reader, at: At) -> Result<Option<ndarray::Array2<u8>>, StoreError> {
-    if reader.field_times().is_empty() || fields::contact_kind(reader).is_none() {
+    if reader.field_times().is_empty() || reader.contact_kind().is_none() {
         return Ok(None);
     }
-    contact_states(reader, at).map(Some)
+    reader.contact_states(at).map(Some)
 }
 
 /// The same panel with one more line that no legend names.

@@ -4,7 +4,9 @@ use super::contact::{Counted, Resolution};
 use super::energy::Balance;
 use super::expected::{ROOM, radius};
 use super::strain::Strain;
-use super::{CONTACT_AT_BORDER, ENERGY_BALANCE, Finding, LARGE_SLOPE, STEPS_TOO_LONG, domain, material, surface, time};
+use super::{
+    CONTACT_AT_BORDER, ENERGY_BALANCE, Finding, LARGE_SLOPE, STEPS_TOO_LONG, domain, material, surface, time,
+};
 use crate::grid::{Boundary, Grid};
 use crate::load::Control;
 use crate::march::{Row, Simulation, Step};
@@ -83,7 +85,8 @@ impl Judge {
             resolution: Resolution::default(),
             strain: Strain::new(simulation, radius(known.parts)),
             balance: Balance::default(),
-            held: time::held_at_hardness(simulation).filter(|_| simulation.hardness.is_finite() || simulation.hardness_map.is_some()),
+            held: time::held_at_hardness(simulation)
+                .filter(|_| simulation.hardness.is_finite() || simulation.hardness_map.is_some()),
             capped: false,
             earlier_balance: None,
             grid: *grid,

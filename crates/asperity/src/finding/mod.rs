@@ -15,6 +15,7 @@
 //! | `stress` | the stress below the surface: its resolution, and yielding |
 //! | `time` | steps that are too long for the history and the material |
 //! | `energy` | the energy balance |
+//! | `leak` | leaks that gap, grid or fluid pressure do not carry |
 //! | `expected` | an estimate of the contact before the run |
 //!
 //! docs/findings.md lists all codes with their limits.
@@ -24,6 +25,7 @@ mod domain;
 mod energy;
 mod expected;
 mod judge;
+mod leak;
 mod material;
 mod strain;
 mod stress;
@@ -35,6 +37,7 @@ use std::borrow::Cow;
 
 pub use expected::{Contact, Expected};
 pub use judge::{Judge, Known};
+pub use leak::{LeakJudge, LeakState};
 pub use material::{beyond_data, misfit, unlikely_modulus};
 pub use stress::{stress_at_deepest, stress_unresolved, yield_exceeded};
 pub use surface::{hurst, of_heights};
@@ -120,7 +123,7 @@ impl std::fmt::Display for Finding {
 }
 
 /// Every code. A code keeps its meaning.
-pub const CODES: [&str; 20] = [
+pub const CODES: [&str; 23] = [
     CONTACT_AT_BORDER,
     GAP_NOT_PERIODIC,
     ROUGH_ON_FREE_DOMAIN,
@@ -141,6 +144,9 @@ pub const CODES: [&str; 20] = [
     STRESS_UNRESOLVED,
     STRESS_AT_DEEPEST,
     YIELD_EXCEEDED,
+    LEAK_BELOW_GAP_ERROR,
+    CONSTRICTION_UNRESOLVED,
+    FLUID_PRESSURE_LARGE,
 ];
 
 /// Contact, or the expected contact, reaches the border of a free domain.
@@ -183,6 +189,13 @@ pub const STRESS_UNRESOLVED: &str = "stress-unresolved";
 pub const STRESS_AT_DEEPEST: &str = "stress-at-deepest";
 /// The von Mises stress below the surface exceeds the yield stress.
 pub const YIELD_EXCEEDED: &str = "yield-exceeded";
+
+/// The gap at the critical constriction of a leak is less than 30 times the error of the gap.
+pub const LEAK_BELOW_GAP_ERROR: &str = "leak-below-gap-error";
+/// The critical constriction of a leak is less than four cells wide.
+pub const CONSTRICTION_UNRESOLVED: &str = "constriction-unresolved";
+/// The drop of the fluid pressure is more than a tenth of the mean pressure in the contact.
+pub const FLUID_PRESSURE_LARGE: &str = "fluid-pressure-large";
 
 #[cfg(test)]
 mod tests;

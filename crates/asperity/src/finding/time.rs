@@ -70,7 +70,12 @@ pub(super) fn held_at_hardness(simulation: &Simulation) -> Option<Finding> {
         }
         match held.last_mut().filter(|piece| piece.last == n) {
             Some(piece) => piece.add(n + 1, now.dt),
-            None => held.push(Piece::new(n + 1, now.dt, PER_COURSE, "approach is held while cells are at the hardness")),
+            None => held.push(Piece::new(
+                n + 1,
+                now.dt,
+                PER_COURSE,
+                "approach is held while cells are at the hardness",
+            )),
         }
     }
     let long = held.iter().filter(|piece| piece.steps < piece.least && relaxes(simulation, &plan, piece));
@@ -201,7 +206,8 @@ fn relaxes(simulation: &Simulation, plan: &Plan, course: &Piece) -> bool {
 fn too_long(plan: &Plan, course: &Piece) -> Finding {
     let at = [course.first, course.last];
     let place = if plan.exact { format!(" ({})", rows(at)) } else { String::new() };
-    let coarse = if course.what == "load rises" { "pressures and energies" } else { "load, approach and energies" };
+    let coarse =
+        if course.what == "load rises" { "pressures and energies" } else { "load, approach and energies" };
     let text = format!(
         "Where the {} within {}{place} there are {} steps, less than {}, while the material relaxes: {coarse} are coarse \
          there. Take more steps, or spacing = \"adaptive\".",

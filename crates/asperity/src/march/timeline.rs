@@ -176,7 +176,8 @@ impl Timeline {
         }
         let Some(stop) = self.stops.get(self.next) else { return Ok(None) };
         let rest = stop.time - time;
-        let longest = self.pace.as_ref().map(|pace| pace.dt.min(self.steady(simulation, time, stop, pace.drift())));
+        let longest =
+            self.pace.as_ref().map(|pace| pace.dt.min(self.steady(simulation, time, stop, pace.drift())));
         Ok(match longest {
             // Not a sliver before the stop.
             Some(longest) if rest > 1.1 * longest => {
@@ -192,7 +193,8 @@ impl Timeline {
     fn steady(&self, simulation: &Simulation, time: f64, stop: &Stop, drift: f64) -> f64 {
         let rest = stop.time - time;
         let held = (stop.before - self.history.after(time - self.start)).abs() <= 1e-12 * self.scale;
-        let clocks = simulation.parts().filter(|creep| !creep.terms.is_empty() || creep.fluidity > 0.0).count();
+        let clocks =
+            simulation.parts().filter(|creep| !creep.terms.is_empty() || creep.fluidity > 0.0).count();
         if held && clocks < 2 {
             return rest;
         }

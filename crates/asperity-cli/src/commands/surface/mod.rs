@@ -28,7 +28,7 @@ pub fn run(command: &Surface) -> Result<(), Failure> {
 }
 
 /// Reads the file with what the command line says about it.
-fn open(file: &SurfaceFile) -> Result<Topography, Failure> {
+pub(super) fn open(file: &SurfaceFile) -> Result<Topography, Failure> {
     let size = file.size.as_deref().map(size).transpose()?;
     let height_unit = file.height_unit.as_deref().map(unit).transpose()?;
     let options = ReadOptions { size, height_unit, channel: file.channel.clone(), ..ReadOptions::default() };

@@ -6,6 +6,7 @@ mod curve;
 pub(super) mod domain;
 mod hardness;
 mod history_file;
+pub(super) mod leakage;
 mod load;
 mod material;
 mod output;
@@ -29,6 +30,7 @@ use super::quantity::QuantityError;
 use super::raw::{self, At, Document};
 use super::text::{MOST_ERRORS, Text};
 use super::{Case, MaterialReport};
+use crate::store::FieldKind;
 
 /// The case that a document describes, or the faults found.
 ///
@@ -114,6 +116,14 @@ pub fn case(
         }
         _ => None,
     };
+    let keeps_gap = document
+        .output
+        .fields
+        .as_ref()
+        .is_none_or(|fields| fields.iter().any(|at| at.value == FieldKind::Gap));
+    let boundary = document.domain.value.boundary.unwrap_or_default();
+    let leakage =
+        leakage::section(&mut checks, document.leakage.as_ref(), boundary, points, keeps_gap).flatten();
 
     checks.errors.sort_by_key(|error| error.span.as_ref().map_or(usize::MAX, |span| span.start));
     let surfaces = surfaces.zip(hardness);
@@ -131,7 +141,7 @@ pub fn case(
             name: String::new(),
             source: text.source.to_owned(),
             grid,
-            boundary: document.domain.value.boundary.unwrap_or_default(),
+            boundary,
             surfaces,
             bodies: pair.bodies,
             creep: pair.creep,
@@ -150,6 +160,7 @@ pub fn case(
             solver: output::solver(&document.solver),
             output,
             stress,
+            leakage,
             usual_rows: pair.plan.instants.len() + if adaptive { time::USUAL_STEPS } else { 0 },
             rows: pair.plan.exact.then_some(pair.plan.instants.len()),
             history: prescription.span,

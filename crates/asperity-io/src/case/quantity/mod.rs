@@ -74,6 +74,8 @@ pub mod dimension {
     dimension!(Compliance, "a compliance", "1/Pa", "1/Pa, 1/MPa, 1/GPa", "1e-3 1/MPa", [1, -1, 2, 0, 0]);
     dimension!(Frequency, "a frequency", "Hz", "Hz, kHz, 1/s, 1/min", "2 kHz", [0, 0, -1, 0, 0]);
     dimension!(Fluidity, "a fluidity", "1/(Pa s)", "1/(Pa s), 1/(MPa s)", "1e-12 1/(Pa s)", [1, -1, 1, 0, 0]);
+    dimension!(Viscosity, "a viscosity", "Pa s", "Pa s, mPa s, MPa s", "1 mPa s", [-1, 1, -1, 0, 0]);
+    dimension!(MolarMass, "a molar mass", "kg/mol", "g/mol, kg/mol", "28.96 g/mol", [0, 1, 0, 0, -1]);
     dimension!(
         TemperatureDifference,
         "a difference of temperatures",
@@ -97,7 +99,8 @@ pub mod dimension {
         macro_rules! find {
             ($($type:ident)*) => { $(if powers == $type::POWERS { return Some($type::NAME); })* };
         }
-        find!(Length Pressure Time Force Compliance Frequency Fluidity TemperatureDifference MolarEnergy Number);
+        find!(Length Pressure Time Force Compliance Frequency Fluidity Viscosity MolarMass TemperatureDifference MolarEnergy
+            Number);
         None
     }
 }
@@ -123,6 +126,10 @@ pub type Compliance<R = Finite> = Quantity<dimension::Compliance, R>;
 pub type Frequency<R = Finite> = Quantity<dimension::Frequency, R>;
 /// A fluidity, the inverse of a viscosity \[1/(Pa s)\].
 pub type Fluidity<R = Finite> = Quantity<dimension::Fluidity, R>;
+/// A viscosity \[Pa s\].
+pub type Viscosity<R = Finite> = Quantity<dimension::Viscosity, R>;
+/// A molar mass \[kg/mol\].
+pub type MolarMass<R = Finite> = Quantity<dimension::MolarMass, R>;
 /// A difference of temperatures \[K\]; a temperature itself is a [`Temperature`].
 pub type TemperatureDifference<R = Finite> = Quantity<dimension::TemperatureDifference, R>;
 /// An energy per mole \[J/mol\].

@@ -4,6 +4,7 @@
 //! dimension and range. What needs more than one key to judge is checked in `convert`.
 
 mod body;
+mod leakage;
 mod load;
 mod material;
 pub mod prepare;
@@ -23,6 +24,7 @@ use serde::de::{Error, IgnoredAny, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
 pub use body::{Body, HardnessFile};
+pub use leakage::{LeakDirection, Leakage};
 pub use load::{From, History, Load, Sine, Spacing, Stage, Table, Time, Until};
 pub use material::{
     Column, CreepTable, CreepTerm, Dma, Fit, FractionalZener, Material, Prony, RelaxationTable,
@@ -57,6 +59,9 @@ pub struct Document {
     /// The temperature of bodies whose material has a `shift`; they are at its reference if not given.
     #[schemars(example = serde_json::json!({ "history": { "kind": "constant", "value": "60 °C" } }))]
     pub temperature: Option<At<Temperature>>,
+    /// The flow of a fluid through the gap.
+    #[schemars(example = serde_json::json!({ "pressure_drop": "2 bar", "viscosity": "1 mPa s" }))]
+    pub leakage: Option<At<Leakage>>,
     /// How each step is solved.
     #[schemars(default)]
     pub solver: Solver,

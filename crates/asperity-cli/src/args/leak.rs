@@ -1,0 +1,77 @@
+//! The arguments of `leak`.
+
+use std::path::PathBuf;
+
+use asperity::leakage::{Rarefaction, Sides, Species};
+use asperity_io::leakage::LeakDirection;
+
+#[derive(Debug, clap::Args)]
+pub struct Leak {
+    /// The result (a Zarr directory); its leaks are stored in it
+    #[arg(required_unless_present = "gap", conflicts_with = "gap")]
+    pub result: Option<PathBuf>,
+    /// A map of the gap instead: a file of any format that surfaces are read from, its heights are the gap
+    #[arg(long, value_name = "FILE")]
+    pub gap: Option<PathBuf>,
+    /// A map of the contact for --gap (nonzero where the bodies touch) [default: where the gap is not above 0]
+    #[arg(long, value_name = "FILE", requires = "gap")]
+    pub contact: Option<PathBuf>,
+    /// Physical size of the map along x and y, if the file does not state it: --size '1 mm,1 mm'
+    #[arg(long, value_name = "A,B", requires = "gap")]
+    pub size: Option<String>,
+    /// Unit of the gap, if the file does not state it: --height-unit um
+    #[arg(long, value_name = "U", requires = "gap")]
+    pub height_unit: Option<String>,
+    #[command(flatten)]
+    pub fluid: FluidOptions,
+    /// The figure to write for --gap: flow, critical constriction and pockets (png, svg or pdf)
+    #[arg(long, value_name = "PATH", requires = "gap")]
+    pub plot: Option<PathBuf>,
+    /// Threads to use [default: one per core]; the results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Option<u16>,
+    /// Print one JSON object
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// The keys of `[leakage]`. Without any of them a result takes those of its case.
+#[derive(Debug, clap::Args)]
+pub struct FluidOptions {
+    /// Direction of the flow; both: also the effective conductance of a periodic gap
+    #[arg(long, value_parser = super::choice::<LeakDirection>())]
+    pub direction: Option<LeakDirection>,
+    /// Pressure drop of a liquid, e.g. '2 bar'
+    #[arg(long, value_name = "P")]
+    pub pressure_drop: Option<String>,
+    /// Viscosity of a liquid, e.g. '1 mPa s', or of a gas that --gas does not name
+    #[arg(long, value_name = "MU")]
+    pub viscosity: Option<String>,
+    /// A gas with known properties
+    #[arg(long, value_parser = super::choice::<Species>())]
+    pub gas: Option<Species>,
+    /// Molar mass of a gas that --gas does not name, e.g. '44 g/mol'
+    #[arg(long, value_name = "M")]
+    pub molar_mass: Option<String>,
+    /// Temperature of the gas, e.g. '20 degC'
+    #[arg(long, value_name = "T")]
+    pub temperature: Option<String>,
+    /// Absolute pressure of the gas at the inlet, e.g. '3 bar'
+    #[arg(long, value_name = "P")]
+    pub inlet: Option<String>,
+    /// Absolute pressure of the gas at the outlet, e.g. '1 bar'
+    #[arg(long, value_name = "P")]
+    pub outlet: Option<String>,
+    /// Law for the rarefaction of the gas [default: boltzmann]
+    #[arg(long, value_parser = super::choice::<Rarefaction>())]
+    pub rarefaction: Option<Rarefaction>,
+    /// What bounds the flow at the sides [default: periodic; closed on a free domain]
+    #[arg(long, value_parser = super::choice::<Sides>())]
+    pub sides: Option<Sides>,
+    /// Cells with a smaller gap are closed, e.g. '0.3 nm'
+    #[arg(long, value_name = "H")]
+    pub smallest_gap: Option<String>,
+    /// Store the pressure of the fluid as a field of the result
+    #[arg(long)]
+    pub field: bool,
+}

@@ -1,0 +1,180 @@
+//! `asperity leak` and `[leakage]`.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use serde_json::Value;
+
+fn asperity(arguments: &[&str], directory: &Path) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_asperity"));
+    command.args(arguments).current_dir(directory).output().unwrap()
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+#[track_caller]
+fn data(arguments: &[&str], directory: &Path) -> Value {
+    let done = asperity(arguments, directory);
+    assert!(done.status.success(), "{arguments:?}: {}", text(&done.stderr));
+    serde_json::from_slice(&done.stdout).unwrap()
+}
+
+#[track_caller]
+fn refused(arguments: &[&str], directory: &Path, words: &[&str]) {
+    let done = asperity(arguments, directory);
+    let told = text(&done.stderr);
+    assert_eq!(done.status.code(), Some(2), "{arguments:?}: {told}");
+    words.iter().for_each(|word| assert!(told.contains(word), "{arguments:?}: {told}"));
+}
+
+/// A map of 16 x 4 cells: a wave along x, the gap from 0.5 to 1.5 um.
+fn map(directory: &Path) {
+    let line = |i: usize| 1.0 + 0.5 * (std::f64::consts::TAU * (i as f64 + 0.5) / 16.0).cos();
+    // Lines of a text file run along x.
+    let row: Vec<String> = (0..16).map(|i| format!("{}", line(i))).collect();
+    let rows = vec![row.join(" "); 4].join("\n");
+    std::fs::write(directory.join("gap.txt"), rows + "\n").unwrap();
+}
+
+#[test]
+fn a_map_of_the_gap_leaks_as_its_closed_form() {
+    let place = tempfile::tempdir().unwrap();
+    let directory = place.path();
+    map(directory);
+    let of_map = ["leak", "--gap", "gap.txt", "--size", "160 um,40 um", "--height-unit", "um", "--json"];
+    let told =
+        data(&[&of_map[..], &["--pressure-drop", "2 bar", "--viscosity", "1 mPa s"]].concat(), directory);
+    // (1 - e^2)^(5/2)/(1 + e^2/2) with e = 1/2; 16 cells over the period leave 1e-3 at most.
+    let transmissivity = told["hydraulic_gap"].as_f64().unwrap().powi(3);
+    assert!((transmissivity / 0.433_012_701_892e-18 - 1.0).abs() < 2e-3, "{told}");
+    let rate = told["leak_rate"].as_f64().unwrap();
+    assert!((rate / (transmissivity * 2e5 * 0.25 / 12e-3) - 1.0).abs() < 1e-12, "{told}");
+    // Along the waves: the mean of the cubes, 1 + 3 e^2/2.
+    let along = data(&[&of_map[..], &["--direction", "y"]].concat(), directory);
+    let transmissivity = along["hydraulic_gap"].as_f64().unwrap().powi(3);
+    assert!((transmissivity / 1.375e-18 - 1.0).abs() < 1e-12 && along["leak_rate"].is_null(), "{along}");
+    let gas = ["--gas", "helium", "--inlet", "2 bar", "--outlet", "1 bar", "--plot", "flow.svg"];
+    let gas = data(&[&of_map[..], &gas].concat(), directory);
+    // At the constriction of 0.5 um helium is rarefied: more than the continuum's.
+    let continuum =
+        ["--gas", "helium", "--inlet", "2 bar", "--outlet", "1 bar", "--rarefaction", "continuum"];
+    let continuum = data(&[&of_map[..], &continuum].concat(), directory);
+    let ratio = gas["leak_rate"].as_f64().unwrap() / continuum["leak_rate"].as_f64().unwrap();
+    assert!((1.5..4.0).contains(&ratio) && gas["knudsen_number"].as_f64().unwrap() > 0.1, "{gas}");
+    assert!(std::fs::read_to_string(directory.join("flow.svg")).unwrap().contains("Flow"));
+    // Sealed: 0, and no error.
+    let sealed = data(
+        &[&of_map[..], &["--smallest-gap", "0.6 um", "--gas", "air", "--inlet", "1 bar", "--outlet", "0"]]
+            .concat(),
+        directory,
+    );
+    assert!(sealed["percolates"] == false && sealed["leak_rate"] == 0.0 && sealed["critical_gap"].is_null());
+
+    let fault = |more: &[&str], words: &[&str]| refused(&[&of_map[..], more].concat(), directory, words);
+    fault(&["--pressure-drop", "2 bar"], &["viscosity"]);
+    fault(&["--pressure-drop", "2 bar", "--viscosity", "0"], &["--viscosity", "greater than 0"]);
+    fault(&["--gas", "air", "--inlet", "1 bar", "--outlet", "2 bar"], &["not above", "exchange"]);
+    fault(&["--gas", "air", "--inlet", "1 bar"], &["outlet"]);
+    fault(&["--gas", "air", "--pressure-drop", "1 bar"], &["inlet and outlet"]);
+    refused(&["leak", "nothing.zarr"], directory, &["no such"]);
+    refused(&["leak"], directory, &["RESULT"]);
+}
+
+const CASE: &str = r#"
+title = "seal"
+[domain]
+cells = [32, 32]
+size = ["1 mm", "1 mm"]
+boundary = "periodic"
+[[surface]]
+kind = "wave"
+amplitude = "1 um"
+wavelength = ["1 mm", "1 mm"]
+[[body]]
+poisson = 0.5
+material = { model = "zener", shear = "1 MPa", shear_kelvin = "3 MPa", retardation_time = "1 s" }
+[load]
+control = "pressure"
+history = { kind = "step", value = "1.8 kPa" }
+[time]
+end = "10 s"
+steps = 20
+spacing = "log"
+[solver]
+tolerance = 1e-9
+[leakage]
+pressure_drop = "100 Pa"
+viscosity = "1 mPa s"
+field = true
+[output]
+every = 4
+"#;
+
+#[test]
+fn a_run_stores_its_leaks_and_other_fluids_can_follow() {
+    let place = tempfile::tempdir().unwrap();
+    let directory = place.path();
+    std::fs::write(directory.join("seal.toml"), CASE).unwrap();
+    data(&["run", "seal.toml", "--json", "--quiet"], directory);
+    // What the case asks for, again: the same numbers.
+    let told = data(&["leak", "seal.zarr", "--json"], directory);
+    let column = |told: &Value, name: &str| -> Vec<f64> {
+        told[name].as_array().unwrap().iter().map(|v| v.as_f64().unwrap_or(f64::NAN)).collect()
+    };
+    let rates = column(&told, "leak_rate");
+    let steps = column(&told, "leak_step");
+    assert_eq!(steps, [0.0, 4.0, 8.0, 12.0, 16.0, 20.0]);
+    // The rubber creeps: less and less.
+    assert!(rates[0] > 0.0 && rates.windows(2).all(|pair| pair[1] <= pair[0]), "{rates:?}");
+    assert!(rates[5] < 0.7 * rates[0], "{rates:?}");
+    assert!(told["leak_resolved"].as_array().unwrap().iter().all(|good| good == true), "{told}");
+    // Another fluid takes its place, in other units.
+    let gas = data(
+        &["leak", "seal.zarr", "--gas", "air", "--inlet", "1.001 bar", "--outlet", "1 bar", "--json"],
+        directory,
+    );
+    assert!(gas["leak_rate_standard"].as_array().unwrap()[0].as_f64().unwrap() > 0.0);
+    let shown = text(&asperity(&["leak", "seal.zarr"], directory).stdout);
+    assert!(shown.contains("mbar l/s"), "{shown}");
+    for what in ["seal.svg", "seal.html"] {
+        let done = match what {
+            "seal.svg" => asperity(&["plot", "seal.zarr", "leak", "-o", what], directory),
+            _ => asperity(&["report", "seal.zarr", "-o", what], directory),
+        };
+        assert!(done.status.success(), "{}", text(&done.stderr));
+        assert!(std::fs::read_to_string(directory.join(what)).unwrap().contains("Leak rate"));
+    }
+    // A drop above a tenth of the contact pressure is found, in the result too.
+    let large = data(
+        &["leak", "seal.zarr", "--pressure-drop", "1 bar", "--viscosity", "1 mPa s", "--json"],
+        directory,
+    );
+    assert_eq!(large["findings"][0]["code"], "fluid-pressure-large");
+    assert_eq!(large["leak_resolved"][0], false);
+    let stored = data(&["show", "seal.zarr", "--json"], directory);
+    assert_eq!(stored["findings"].as_array().unwrap().len(), 1, "{stored}");
+    // A result with leaks is replaced like any other.
+    data(&["run", "seal.toml", "--json", "--quiet", "--force"], directory);
+    let without = asperity(
+        &["run", "seal.toml", "--force", "--quiet", "--set", "output.fields=[\"pressure\"]"],
+        directory,
+    );
+    assert_eq!(without.status.code(), Some(2));
+    assert!(text(&without.stderr).contains("output.fields"));
+}
+
+#[test]
+fn keys_that_contradict_each_other_are_named() {
+    let place = tempfile::tempdir().unwrap();
+    let directory = place.path();
+    std::fs::write(directory.join("seal.toml"), CASE).unwrap();
+    let fault = |set: &str, words: &[&str]| {
+        refused(&["check", "seal.toml", "--set", set], directory, words);
+    };
+    fault("leakage.gas=air", &["leakage", "pressure_drop", "gas"]);
+    fault("leakage.viscosity=1 bar", &["leakage.viscosity", "a viscosity"]);
+    fault("leakage.direction=z", &["leakage.direction"]);
+    fault("leakage.smallest_gap=-1 nm", &["leakage.smallest_gap", "not less than 0"]);
+}

@@ -1,0 +1,251 @@
+//! Leakage of a gap map, and of a stored result over time.
+//!
+//! What is asked for ([`Leak`]) comes from `[leakage]` of a case or from the command line; one state is answered by
+//! [`Leak::of_gap`], a result by [`of_result`], which stores its answer in the result ([`crate::store`]).
+
+mod result;
+
+use asperity::leakage::{
+    CellKind, FlowOptions, Gas, Opening, Passages, Rarefaction, Sides, Species, conductance,
+    effective_medium, factor_bytes, gas_flow, leak_rate, liquid, plate, standard,
+};
+use asperity::{Grid, Result};
+use ndarray::{Array2, ArrayView2};
+use serde::{Deserialize, Serialize};
+
+pub use crate::case::LeakDirection;
+use crate::readable::quantity;
+pub use result::{LeakError, of_result, settings};
+
+/// Fields of the gap, the network and the iteration that a flow holds besides the factor, about.
+const FIELDS: f64 = 20.0;
+/// 20 degC \[K\].
+const ROOM: f64 = 293.15;
+
+/// What is asked for.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Leak {
+    /// Where the fluid flows.
+    pub direction: LeakDirection,
+    /// What bounds it.
+    pub sides: Sides,
+    /// Gaps up to it are closed \[m\].
+    pub smallest_gap: f64,
+    /// The fluid; without one only the gap is assessed.
+    pub fluid: Option<Fluid>,
+    /// Whether the pressure of the fluid is stored.
+    pub field: bool,
+    /// Temperature of the run over time (\[s\], \[K\]), straight in between; may be empty.
+    #[serde(default)]
+    pub temperatures: Vec<(f64, f64)>,
+}
+
+/// A fluid and what drives it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Fluid {
+    /// Newtonian and incompressible.
+    Liquid {
+        /// \[Pa\].
+        pressure_drop: f64,
+        /// \[Pa s\].
+        viscosity: f64,
+    },
+    /// Ideal and isothermal.
+    Gas {
+        /// Which.
+        kind: GasKind,
+        /// \[K\]; `None` for that of the run.
+        temperature: Option<f64>,
+        /// Absolute pressure \[Pa\].
+        inlet: f64,
+        /// Absolute pressure \[Pa\].
+        outlet: f64,
+        /// The law of the flow.
+        rarefaction: Rarefaction,
+    },
+}
+
+/// Properties of a gas.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum GasKind {
+    /// Known.
+    Known(Species),
+    /// Given.
+    Other {
+        /// \[Pa s\].
+        viscosity: f64,
+        /// \[kg/mol\].
+        molar_mass: f64,
+    },
+}
+
+impl Fluid {
+    /// Pressure of the inlet less that of the outlet \[Pa\].
+    pub fn pressure_drop(&self) -> f64 {
+        match self {
+            Fluid::Liquid { pressure_drop, .. } => *pressure_drop,
+            Fluid::Gas { inlet, outlet, .. } => inlet - outlet,
+        }
+    }
+
+    /// Whether it is a gas, whose leak is a mass per time.
+    pub fn is_gas(&self) -> bool {
+        matches!(self, Fluid::Gas { .. })
+    }
+}
+
+/// The leak of one state.
+#[derive(Clone, Debug)]
+pub struct Leakage {
+    /// Whether inlet and outlet are connected.
+    pub percolates: bool,
+    /// Gap of the parallel plates that leak as much of a liquid \[m\].
+    pub hydraulic_gap: f64,
+    /// Gap of the critical constriction \[m\]; NaN where the seal is tight.
+    pub critical_gap: f64,
+    /// Its place x, y \[m\].
+    pub critical: [f64; 2],
+    /// Open cells across it, where they are bounded.
+    pub critical_width: Option<usize>,
+    /// Hydraulic gap of Bruggeman's effective medium \[m\].
+    pub medium_gap: f64,
+    /// Area of the pockets \[m^2\].
+    pub trapped_area: f64,
+    /// Their volume \[m^3\].
+    pub trapped_volume: f64,
+    /// Share of the cells that are open.
+    pub open_fraction: f64,
+    /// Effective conductance \[m^3\], where both directions were asked for.
+    pub conductance: Option<[[f64; 2]; 2]>,
+    /// Leak \[m^3/s; gas kg/s\], where there is a fluid.
+    pub leak_rate: Option<f64>,
+    /// Leak of a gas \[Pa m^3/s at 0 degC\].
+    pub leak_rate_standard: Option<f64>,
+    /// Leak of parallel plates at the critical gap, unit as `leak_rate`.
+    pub leak_estimate_junction: Option<f64>,
+    /// Leak of the effective medium, likewise.
+    pub leak_estimate_medium: Option<f64>,
+    /// Mean free path over critical gap, of a gas.
+    pub knudsen: Option<f64>,
+    /// Pressure of the fluid \[Pa\], without one from 1 at the inlet to 0 at the outlet; NaN where there is none.
+    pub pressure: Array2<f64>,
+    /// What each cell is connected to.
+    pub cells: Array2<CellKind>,
+}
+
+impl Leak {
+    /// What is asked for in a few words, and the memory that it takes at most \[bytes\], of so many cells.
+    pub fn describe(&self, cells: usize) -> (String, f64) {
+        let fluid = match self.fluid {
+            None => "gap alone".to_owned(),
+            Some(Fluid::Liquid { pressure_drop, viscosity }) => {
+                format!("liquid of {}, drop {}", quantity(viscosity, "Pa s"), quantity(pressure_drop, "Pa"))
+            }
+            Some(Fluid::Gas { kind, inlet, outlet, .. }) => {
+                let name = match kind {
+                    GasKind::Known(species) => species.name(),
+                    GasKind::Other { .. } => "gas",
+                };
+                format!("{name} from {} to {}", quantity(inlet, "Pa"), quantity(outlet, "Pa"))
+            }
+        };
+        let limit = FlowOptions::default().memory;
+        (
+            format!("{fluid}, at the stored times"),
+            factor_bytes(cells).min(limit) + FIELDS * 8.0 * cells as f64,
+        )
+    }
+
+    /// The leak through a gap \[m\] with a contact (nonzero where the bodies touch; without it, where the gap is not positive),
+    /// at a time \[s\], which decides the temperature of a gas.
+    ///
+    /// # Errors
+    /// As of [`Opening::new`] and the flows.
+    pub fn of_gap(
+        &self,
+        grid: &Grid,
+        gap: ArrayView2<'_, f64>,
+        contact: Option<ArrayView2<'_, u8>>,
+        time: f64,
+    ) -> Result<Leakage> {
+        let direction = match self.direction {
+            LeakDirection::X | LeakDirection::Both => asperity::leakage::Direction::X,
+            LeakDirection::Y => asperity::leakage::Direction::Y,
+        };
+        let opening = Opening::new(grid, gap, contact, direction, self.sides, self.smallest_gap)?;
+        let passages = Passages::of(&opening);
+        let options = FlowOptions::default();
+        let flow = liquid(&opening, &passages, &options)?;
+        let critical = passages.constriction.map_or(0.0, |constriction| constriction.gap);
+        let medium = effective_medium(&opening).cbrt();
+        let place = passages.constriction.map_or([f64::NAN; 2], |c| [grid.x(c.cell[0]), grid.y(c.cell[1])]);
+        let mut leakage = Leakage {
+            percolates: passages.percolates(),
+            hydraulic_gap: flow.hydraulic_gap(),
+            critical_gap: if passages.percolates() { critical } else { f64::NAN },
+            critical: place,
+            critical_width: passages.constriction.and_then(|constriction| constriction.width),
+            medium_gap: medium,
+            trapped_area: passages.trapped_area,
+            trapped_volume: passages.trapped_volume,
+            open_fraction: opening.open_fraction(),
+            conductance: match self.direction {
+                LeakDirection::Both => Some(conductance(&opening, &options)?),
+                _ => None,
+            },
+            leak_rate: None,
+            leak_rate_standard: None,
+            leak_estimate_junction: None,
+            leak_estimate_medium: None,
+            knudsen: None,
+            cells: passages.map(&opening),
+            pressure: Array2::zeros((0, 0)),
+        };
+        match self.fluid {
+            None => leakage.pressure = flow.pressure,
+            Some(Fluid::Liquid { pressure_drop, viscosity }) => {
+                let of = |t: f64| leak_rate(t, &opening, pressure_drop, viscosity);
+                leakage.leak_rate = Some(of(flow.transmissivity)?);
+                leakage.leak_estimate_junction = Some(of(critical.powi(3))?);
+                leakage.leak_estimate_medium = Some(of(medium.powi(3))?);
+                leakage.pressure = flow.pressure;
+                leakage.pressure.mapv_inplace(|p| p * pressure_drop);
+            }
+            Some(Fluid::Gas { kind, temperature, inlet, outlet, rarefaction }) => {
+                drop(flow);
+                let gas = self.gas(kind, temperature, time)?;
+                let ends = [inlet, outlet];
+                let flow = gas_flow(&opening, &passages, &gas, rarefaction, ends, &options)?;
+                let of = |gap: f64| plate(&gas, rarefaction, gap, opening.size(), ends);
+                leakage.leak_rate = Some(flow.leak_rate);
+                leakage.leak_rate_standard = Some(standard(flow.leak_rate, &gas));
+                leakage.leak_estimate_junction = Some(of(critical)?);
+                leakage.leak_estimate_medium = Some(of(medium)?);
+                leakage.knudsen = Some(flow.knudsen);
+                leakage.pressure = flow.pressure;
+            }
+        }
+        Ok(leakage)
+    }
+
+    fn gas(&self, kind: GasKind, temperature: Option<f64>, time: f64) -> Result<Gas> {
+        let temperature = temperature.or_else(|| at(&self.temperatures, time)).unwrap_or(ROOM);
+        match kind {
+            GasKind::Known(species) => Gas::of(species, temperature),
+            GasKind::Other { viscosity, molar_mass } => Gas::new(viscosity, molar_mass, temperature),
+        }
+    }
+}
+
+/// The temperature at a time, straight between points; the later of two at the same time.
+fn at(points: &[(f64, f64)], time: f64) -> Option<f64> {
+    let after = points.partition_point(|point| point.0 <= time);
+    Some(match (after.checked_sub(1).and_then(|n| points.get(n)), points.get(after)) {
+        (Some(a), Some(b)) => a.1 + (b.1 - a.1) * (time - a.0) / (b.0 - a.0),
+        (Some(a), None) => a.1,
+        (None, Some(b)) => b.1,
+        (None, None) => return None,
+    })
+}

@@ -1,0 +1,256 @@
+"""Leakage: flow of a fluid through the gap."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _core
+from ._arrays import Floats, field, number, pair
+from ._findings import ResultWarning, findings_of
+
+if TYPE_CHECKING:
+    import xarray
+
+    from ._result import Result
+
+#: Numbers of a leak: unit (of a liquid) and meaning.
+LEAKS: dict[str, tuple[str, str]] = {
+    "leak_rate": ("m3/s", "leak rate"),
+    "leak_rate_standard": ("Pa m3/s", "leak rate at 0 degC"),
+    "leak_estimate_junction": ("m3/s", "leak rate of plates at the critical gap"),
+    "leak_estimate_medium": ("m3/s", "leak rate of the effective medium"),
+    "hydraulic_gap": ("m", "gap of plates that leak as much"),
+    "critical_gap": ("m", "gap at the critical constriction"),
+    "critical_x": ("m", "x of the critical constriction"),
+    "critical_y": ("m", "y of the critical constriction"),
+    "percolates": ("1", "whether inlet and outlet are connected"),
+    "leak_resolved": ("1", "whether gap, grid and fluid pressure carry the leak"),
+    "open_fraction": ("1", "share of the cells that are open"),
+    "trapped_area": ("m2", "open area connected to neither inlet nor outlet"),
+    "trapped_volume": ("m3", "volume of it"),
+    "knudsen_number": ("1", "mean free path over critical gap"),
+}
+#: Those whose unit is kg/s for a gas.
+_RATES = ("leak_rate", "leak_estimate_junction", "leak_estimate_medium")
+_FLAGS = ("percolates", "leak_resolved")
+
+
+def units_of(name: str, gas: bool) -> str:
+    """Unit of a number of a leak."""
+    return "kg/s" if gas and name in _RATES else LEAKS[name][0]
+
+
+class Leakage:
+    """The flow through one gap: numbers as attributes, lengths in m.
+
+    Whether inlet and outlet are connected (`percolates`); the gap of the parallel plates that leak as much (`hydraulic_gap`); the
+    narrowest place of the widest path (`critical_gap`, NaN for a tight seal, at `critical_x`, `critical_y`, `critical_width` open cells
+    across it or None); the hydraulic gap of Bruggeman's effective medium (`medium_gap`); `open_fraction`; pockets (`trapped_area`,
+    `trapped_volume`); `conductance` (2, 2) [m^3] where both directions were asked for. Fields of shape (nx, ny): `pressure` (1 at the
+    inlet to 0 at the outlet, NaN where there is no fluid or no connection) and `cells` (0 closed, 1 connected to inlet and outlet,
+    2 to the inlet alone, 3 to the outlet alone, 4 pocket).
+    """
+
+    percolates: bool
+    hydraulic_gap: float
+    critical_gap: float
+    critical_x: float
+    critical_y: float
+    critical_width: int | None
+    medium_gap: float
+    open_fraction: float
+    trapped_area: float
+    trapped_volume: float
+    pressure: Floats
+
+    def __init__(self, gap: Floats, contact: Any, size: tuple[float, float], keys: dict[str, Any]) -> None:
+        self._gap, self._contact, self._size, self._keys = gap, contact, size, keys
+        found = self._solved({})
+        self.cells: Any = found.pop("cells")
+        conductance = found.pop("conductance")
+        #: Effective conductance [m^3], where direction is "both".
+        self.conductance: Floats | None = None if conductance is None else np.array(conductance)
+        for name in ("leak_rate", "leak_rate_standard", "leak_estimate_junction", "leak_estimate_medium", "knudsen_number"):
+            found.pop(name)
+        self.__dict__.update(found)
+
+    def _solved(self, fluid: dict[str, Any]) -> dict[str, Any]:
+        keys = json.dumps({**self._keys, **fluid})
+        return _core.leakage(self._gap, self._contact, list(self._size), keys, [], 0.0)
+
+    def leak_rate(self, *, pressure_drop: float, viscosity: float) -> float:
+        """Leak of a liquid [m^3/s] under a pressure drop [Pa], with a viscosity [Pa s] (water: 1e-3)."""
+        along, across = self._size if self._keys["direction"] != "y" else self._size[::-1]
+        drop, mu = number("pressure_drop", pressure_drop), number("viscosity", viscosity)
+        if not (drop > 0 and mu > 0 and np.isfinite([drop, mu]).all()):
+            raise _core.CaseError(f"pressure_drop is {drop} Pa and viscosity {mu} Pa s, but both must be greater than 0")
+        return self.hydraulic_gap**3 * drop * across / (12 * mu * along)
+
+    def gas_leak_rate(
+        self,
+        *,
+        inlet: float,
+        outlet: float,
+        gas: str | None = None,
+        viscosity: float | None = None,
+        molar_mass: float | None = None,
+        temperature: float = 293.15,
+        rarefaction: str = "boltzmann",
+        standard: bool = False,
+    ) -> float:
+        """Leak of a gas [kg/s] between absolute pressures [Pa]; with `standard` in Pa m^3/s at 0 degC (1 mbar l/s = 0.1 Pa m^3/s).
+
+        Parameters
+        ----------
+        inlet, outlet : absolute pressures [Pa], the inlet above the outlet, which may be 0
+        gas : "air", "nitrogen", "oxygen", "helium" or "hydrogen"; or give `viscosity` [Pa s] and `molar_mass` [kg/mol]
+        temperature : [K]
+        rarefaction : "boltzmann", "slip" or "continuum"
+        """
+        given = {"gas": gas, "viscosity": viscosity, "molar_mass": molar_mass, "rarefaction": rarefaction}
+        numbers = {"inlet": inlet, "outlet": outlet, "temperature": temperature}
+        fluid = {name: number(name, value) for name, value in numbers.items()}
+        fluid |= {name: value for name, value in given.items() if value is not None}
+        found = self._solved(fluid)
+        rate: float = found["leak_rate_standard" if standard else "leak_rate"]
+        return rate
+
+    def __repr__(self) -> str:
+        nx, ny = self._gap.shape
+        if not self.percolates:
+            return f"<Leakage: tight, {nx} x {ny} cells, {100 * self.open_fraction:.3g} % open>"
+        return f"<Leakage: hydraulic gap {self.hydraulic_gap:.4g} m, critical gap {self.critical_gap:.4g} m, {nx} x {ny} cells>"
+
+
+def leakage(
+    gap: Any,
+    contact: Any = None,
+    *,
+    size: Sequence[float],
+    direction: str = "x",
+    sides: str = "periodic",
+    smallest_gap: float = 0.0,
+) -> Leakage:
+    """The flow of a fluid through a gap, between opposite borders of the domain, by Reynolds' equation.
+
+    Parameters
+    ----------
+    gap : gap between the surfaces [m], array (nx, ny)
+    contact : where the surfaces touch (nonzero); default: where the gap is not above 0
+    size : lengths of the domain along x and y [m]
+    direction : "x" or "y"; "both": along x, and the effective conductance of a gap that repeats in both directions
+    sides : "periodic" or "closed"
+    smallest_gap : cells with a smaller gap are closed [m]
+
+    Raises
+    ------
+    CaseError : the input is wrong
+
+    Examples
+    --------
+    A gap that varies along the flow: 1/T is the mean of 1/h^3, (1 - e^2)^(5/2)/(1 + e^2/2) for h = 1 + e cos.
+
+    >>> import asperity as asp, numpy as np
+    >>> x = (np.arange(128) + 0.5) / 128
+    >>> gap = np.tile(1e-6 * (1 + 0.5 * np.cos(2 * np.pi * x))[:, None], (1, 4))
+    >>> leak = asp.leakage(gap, size=(1e-3, 1e-4))
+    >>> bool(abs(leak.hydraulic_gap**3 / 1e-18 - 0.4330127018922193) < 1e-9)
+    True
+    >>> f"{leak.leak_rate(pressure_drop=2e5, viscosity=1e-3):.3e} m3/s"
+    '7.217e-13 m3/s'
+    >>> f"{10 * leak.gas_leak_rate(inlet=2e5, outlet=1e5, gas='air', standard=True):.2e} mbar l/s"
+    '7.80e-06 mbar l/s'
+    """
+    h = field("gap", gap)
+    touches = None if contact is None else np.ascontiguousarray(np.asarray(contact) != 0, dtype=np.uint8)
+    if touches is not None and touches.shape != h.shape:
+        raise _core.CaseError(f"contact has shape {touches.shape}, but gap has {h.shape}")
+    keys = {"direction": direction, "sides": sides, "smallest_gap": number("smallest_gap", smallest_gap)}
+    return Leakage(h, touches, pair("size", size), keys)
+
+
+def over_time(result: Result, keys: dict[str, Any]) -> xarray.Dataset:
+    """The leaks at the times of a result's fields."""
+    if "gap" not in result.fields:
+        raise _core.CaseError("leakage needs the field 'gap'; the result keeps " + (", ".join(result.fields) or "no fields"))
+    setup = json.loads(str(result.attributes.get("setup") or "{}"))
+    boundary = setup.get("boundary", "free")
+    keys = {"sides": "periodic" if boundary == "periodic" else "closed", **{k: v for k, v in keys.items() if v is not None}}
+    if keys.get("direction") == "both" and boundary != "periodic":
+        raise _core.CaseError("direction is 'both', the conductance of a gap that repeats, but the domain is free: use 'x' or 'y'")
+    temperatures = [(float(t), float(kelvin)) for t, kelvin in (setup.get("leakage") or {}).get("temperatures", [])]
+    tolerance = float(setup.get("solver_tolerance", 1e-6))
+    rows, states = [], []
+    drop = keys["inlet"] - keys["outlet"] if "inlet" in keys and "outlet" in keys else keys.get("pressure_drop")
+    for index, time in enumerate(result.field_times):
+        gap = result.field("gap", index=index)
+        contact = contact_of(result, index)
+        found = _core.leakage(
+            np.ascontiguousarray(gap), contact, list(result.size), json.dumps(keys), temperatures, float(time)
+        )
+        step = int(result._field_steps[index])
+        touching = (gap - result.initial_gap)[contact > 0]
+        # The mean displacement in the contact, to which the tolerance is relative.
+        displacement = float(touching.mean()) + float(result.approach[step]) if touching.size else 0.0
+        area = float(result.contact_area[step])
+        states.append(
+            (
+                step,
+                found["critical_gap"] if found["percolates"] else None,
+                found["critical_width"],
+                tolerance * abs(displacement),
+                drop,
+                float(result.load[step]) / area if area > 0 else 0.0,
+            )
+        )
+        rows.append(found)
+    resolved, told = _core.judge_leaks(states)
+    for row, good in zip(rows, resolved):
+        row["leak_resolved"] = good
+    for finding in findings_of(json.loads(told)):
+        if finding.severity == "warning":
+            warnings.warn(str(finding.text), ResultWarning, stacklevel=3)
+    gas = rows[0]["leak_rate_standard"] is not None
+    columns = {name: np.array([row[name] for row in rows]) for name in LEAKS if rows and rows[0][name] is not None}
+    conductance = None if rows[0]["conductance"] is None else np.array([row["conductance"] for row in rows])
+    pressures = np.array([row["pressure"] for row in rows]) if keys.get("field") else None
+    return dataset(result, result.field_times, columns, gas, conductance, pressures)
+
+
+def contact_of(result: Result, index: int) -> Any:
+    """Where the surfaces touch: from the field that tells it."""
+    if "contact" in result.fields:
+        return np.ascontiguousarray(result.field("contact", index=index) != 0, dtype=np.uint8)
+    if "pressure" in result.fields:
+        return np.ascontiguousarray(result.field("pressure", index=index) > 0, dtype=np.uint8)
+    gap = result.field("gap", index=index)
+    deepest = np.abs(gap[np.isfinite(gap)]).max(initial=0.0)
+    return np.ascontiguousarray(gap <= 1e-9 * deepest, dtype=np.uint8)
+
+
+def dataset(
+    result: Result, times: Floats, columns: dict[str, Any], gas: bool, conductance: Any, pressures: Any
+) -> xarray.Dataset:
+    """Leaks over time with their units."""
+    import xarray
+
+    def column(name: str) -> Any:
+        values = columns[name].astype(bool) if name in _FLAGS else columns[name]
+        return ("leak_time", values, {"units": units_of(name, gas), "long_name": LEAKS[name][1]})
+
+    data: dict[str, Any] = {name: column(name) for name in columns if name in LEAKS}
+    coordinates: dict[str, Any] = {"leak_time": ("leak_time", np.asarray(times), {"units": "s", "long_name": "time of the leak"})}
+    if conductance is not None:
+        words = {"units": "m3", "long_name": "effective conductance"}
+        data["conductance"] = (("leak_time", "flow_direction", "gradient_direction"), conductance, words)
+        coordinates |= {"flow_direction": ["x", "y"], "gradient_direction": ["x", "y"]}
+    if pressures is not None:
+        words = {"units": "Pa", "long_name": "pressure of the fluid"}
+        data["fluid_pressure"] = (("leak_time", "x", "y"), pressures, words)
+        coordinates |= {"x": result.x, "y": result.y}
+    return xarray.Dataset(data, coords=coordinates)

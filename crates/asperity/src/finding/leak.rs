@@ -1,0 +1,149 @@
+//! Leaks that the numbers do not carry: gaps below the error of the solver, constrictions of a few cells, fluid pressures that
+//! would move the bodies.
+
+use super::words::{digits, rows, si};
+use super::{CONSTRICTION_UNRESOLVED, FLUID_PRESSURE_LARGE, Finding, LEAK_BELOW_GAP_ERROR};
+
+/// The critical gap over the error of the gap, at least: the leak goes with its third power, so 1/30 of it is 10 %.
+const ABOVE_ERROR: f64 = 30.0;
+/// Cells across the critical constriction, at least.
+const ACROSS: f64 = 4.0;
+/// Drop of the fluid pressure over the mean pressure in the contact, at most.
+const PRESSURE_SHARE: f64 = 0.1;
+
+/// What a leak is judged by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LeakState {
+    /// Row that the gap belongs to.
+    pub row: usize,
+    /// Gap at the critical constriction \[m\], and open cells across it where it is bounded; `None` where the seal is tight.
+    pub constriction: Option<(f64, Option<usize>)>,
+    /// Error of the gap that the tolerance of the solver leaves \[m\]: the tolerance times the mean displacement.
+    pub gap_error: f64,
+    /// Drop of the fluid pressure \[Pa\], where the fluid is known.
+    pub pressure_drop: Option<f64>,
+    /// Load over contact area \[Pa\]; 0 where nothing is pressed, and then not judged.
+    pub contact_pressure: f64,
+}
+
+/// The worst number of some rows.
+#[derive(Clone, Copy, Debug)]
+struct Worst {
+    value: f64,
+    limit: f64,
+    rows: [usize; 2],
+}
+
+/// The judge of the leaks of one run.
+#[derive(Clone, Debug, Default)]
+pub struct LeakJudge {
+    below_error: Option<Worst>,
+    narrow: Option<Worst>,
+    pressure: Option<Worst>,
+}
+
+impl LeakJudge {
+    /// Judges a leak; whether nothing is found against it. A tight seal has no constriction to judge.
+    pub fn see(&mut self, state: &LeakState) -> bool {
+        let mut resolved = true;
+        // Takes in a number over its limit, where it is too small or too large by the most.
+        let mut note = |worst: &mut Option<Worst>, value: f64, limit: f64, worse: bool| {
+            resolved = false;
+            let first = worst.map_or(state.row, |worst| worst.rows[0]);
+            let (value, limit) = match *worst {
+                Some(old) if !worse => (old.value, old.limit),
+                _ => (value, limit),
+            };
+            *worst = Some(Worst { value, limit, rows: [first, state.row] });
+        };
+        if let Some((gap, width)) = state.constriction {
+            let limit = ABOVE_ERROR * state.gap_error;
+            if gap < limit {
+                let worse = self.below_error.is_none_or(|old| gap / limit < old.value / old.limit);
+                note(&mut self.below_error, gap, limit, worse);
+            }
+            if let Some(width) = width.map(|cells| cells as f64).filter(|width| *width < ACROSS) {
+                let worse = self.narrow.is_none_or(|old| width < old.value);
+                note(&mut self.narrow, width, ACROSS, worse);
+            }
+        }
+        if let Some(drop) = state.pressure_drop {
+            let limit = PRESSURE_SHARE * state.contact_pressure;
+            if drop > limit && state.contact_pressure > 0.0 {
+                let worse = self.pressure.is_none_or(|old| drop / limit > old.value / old.limit);
+                note(&mut self.pressure, drop, limit, worse);
+            }
+        }
+        resolved
+    }
+
+    /// What was found.
+    pub fn findings(&self) -> Vec<Finding> {
+        let below = self.below_error.map(|Worst { value, limit, rows: at }| {
+            let text = format!(
+                "The gap at the critical constriction is {} ({}), less than 30 times the error of the gap, {}: the leak there is an \
+                 estimate of its order at best. Lower solver.tolerance, which costs iterations only, and refine the grid.",
+                si(value, "m"),
+                rows(at),
+                si(limit / ABOVE_ERROR, "m")
+            );
+            Finding::warning(LEAK_BELOW_GAP_ERROR, value, limit, text).at(at)
+        });
+        let narrow = self.narrow.map(|Worst { value, limit, rows: at }| {
+            let text = format!(
+                "The critical constriction is {} cells wide ({}), less than {limit}: the leak depends on the grid. Refine it \
+                 (domain.cells), or leave short waves out.",
+                digits(value),
+                rows(at)
+            );
+            Finding::warning(CONSTRICTION_UNRESOLVED, value, limit, text).at(at)
+        });
+        let pressure = self.pressure.map(|Worst { value, limit, rows: at }| {
+            let text = format!(
+                "The fluid's pressure drops by {} ({}), more than a tenth of the mean pressure in the contact, {}: it would push the \
+                 bodies apart, which is not computed, so the leak is too small. Take a smaller drop, or more load.",
+                si(value, "Pa"),
+                rows(at),
+                si(limit / PRESSURE_SHARE, "Pa")
+            );
+            Finding::warning(FLUID_PRESSURE_LARGE, value, limit, text).at(at)
+        });
+        [below, narrow, pressure].into_iter().flatten().collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn leaks_are_judged_by_gap_width_and_pressure() {
+        let good = LeakState {
+            row: 0,
+            constriction: Some((31.0, Some(4))),
+            gap_error: 1.0,
+            pressure_drop: Some(1e5),
+            contact_pressure: 1e6,
+        };
+        let mut judge = LeakJudge::default();
+        assert!(judge.see(&good));
+        assert!(judge.see(&LeakState { constriction: None, gap_error: 100.0, ..good }));
+        assert!(judge.see(&LeakState { constriction: Some((1e3, None)), pressure_drop: None, ..good }));
+        assert!(judge.findings().is_empty());
+        assert!(!judge.see(&LeakState { row: 2, constriction: Some((20.0, Some(9))), ..good }));
+        assert!(!judge.see(&LeakState { row: 3, constriction: Some((10.0, Some(3))), ..good }));
+        assert!(!judge.see(&LeakState { row: 4, constriction: Some((25.0, Some(9))), ..good }));
+        assert!(!judge.see(&LeakState { row: 5, pressure_drop: Some(2e5), ..good }));
+        let found = judge.findings();
+        let numbers: Vec<_> = found.iter().map(|f| (f.code.as_ref(), f.value, f.limit, f.rows)).collect();
+        assert_eq!(
+            numbers,
+            [
+                (LEAK_BELOW_GAP_ERROR, Some(10.0), Some(30.0), Some([2, 4])),
+                (CONSTRICTION_UNRESOLVED, Some(3.0), Some(4.0), Some([3, 3])),
+                (FLUID_PRESSURE_LARGE, Some(2e5), Some(1e5), Some([5, 5])),
+            ]
+        );
+        assert!(found[0].text.contains("10 m") && found[0].text.contains("rows 2 to 4"), "{}", found[0].text);
+    }
+}

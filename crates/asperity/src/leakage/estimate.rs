@@ -1,0 +1,56 @@
+//! Bruggeman's effective medium: an estimate of the leak from the distribution of gaps alone.
+//!
+//! The transmissivity T of a medium that surrounds cells of mobility s = h^3 (0 in contact) without changing the flow in the mean,
+//!
+//! ```text
+//! sum over all cells of (s - T)/(s + T) = 0,
+//! ```
+//!
+//! in two dimensions (D. A. G. Bruggeman, Ann. Phys. 416 (1935) 636). It is 0 where half of the cells or less are open; rough
+//! contacts percolate until about 42 % of them are in contact, and on either side of this the estimate says little.
+
+use super::opening::Opening;
+use asperity_sweep::{strands, sweep};
+
+/// T \[m^3\] of the effective medium.
+pub fn effective_medium(opening: &Opening) -> f64 {
+    let largest = opening.largest();
+    let open: Vec<f64> = opening.gap.iter().filter(|h| **h > 0.0).map(|h| (h / largest).powi(3)).collect();
+    let closed = (opening.gap.len() - open.len()) as f64;
+    if open.len() as f64 <= closed {
+        return 0.0;
+    }
+    // Sum and its derivative over ln T.
+    let at = |t: f64| {
+        let [sum, slope] = sweep(&open[..], &|open: &[f64]| {
+            strands(open.len(), |i| {
+                let s = open[i];
+                [(s - t) / (s + t), -2.0 * s * t / ((s + t) * (s + t))]
+            })
+        });
+        (sum - closed, slope)
+    };
+    let (mut low, mut high) =
+        (open.iter().fold(1.0_f64, |least, s| least.min(*s)).max(1e-300).ln() - 1.0, 0.0);
+    // Below the smallest s the sum need not be positive, where cells are closed.
+    while at(f64::exp(low)).0 < 0.0 && low > -600.0 {
+        low -= 10.0;
+    }
+    let mut u = 0.5 * (low + high);
+    for _ in 0..200 {
+        let (sum, slope) = at(libm::exp(u));
+        if sum > 0.0 {
+            low = u;
+        } else {
+            high = u;
+        }
+        let newton = u - sum / slope;
+        let next = if newton > low && newton < high { newton } else { 0.5 * (low + high) };
+        if (next - u).abs() <= 1e-13 {
+            u = next;
+            break;
+        }
+        u = next;
+    }
+    libm::exp(u) * largest.powi(3)
+}

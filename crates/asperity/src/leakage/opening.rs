@@ -1,0 +1,140 @@
+//! The open part of a gap: what the fluid can flow through.
+//!
+//! A cell is closed where the bodies touch there, and where the gap is not above the smallest gap that lets molecules pass (0
+//! unless it is given). Contact is told by the contact itself, not by a gap of 0, which the solver meets to its tolerance only;
+//! where no contact is known, the gap decides alone.
+
+use ndarray::{Array2, ArrayView2};
+
+use crate::error::{Error, Result, non_negative};
+use crate::grid::Grid;
+
+/// Where the fluid flows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+pub enum Direction {
+    /// Along x.
+    #[default]
+    X,
+    /// Along y.
+    Y,
+}
+
+/// What bounds the flow at the sides.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+pub enum Sides {
+    /// The gap repeats across the flow.
+    #[default]
+    Periodic,
+    /// No flow through the sides.
+    Closed,
+}
+
+/// The open cells of a gap, turned so that the flow runs along axis 0.
+#[derive(Clone, Debug)]
+pub struct Opening {
+    /// Cells along and across the flow.
+    pub(super) cells: [usize; 2],
+    /// Their lengths \[m\].
+    pub(super) spacing: [f64; 2],
+    /// Gap \[m\], 0 where closed; C-order, the flow along axis 0.
+    pub(super) gap: Vec<f64>,
+    pub(super) sides: Sides,
+    pub(super) direction: Direction,
+}
+
+impl Opening {
+    /// The open cells of `gap` \[m\], shape (nx, ny): those where `contact` is 0 (everywhere without it) and the gap is above
+    /// `smallest_gap` \[m\].
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for shapes that are not those of the grid, a gap of an open cell that is not a finite number, a
+    /// negative smallest gap.
+    pub fn new(
+        grid: &Grid,
+        gap: ArrayView2<'_, f64>,
+        contact: Option<ArrayView2<'_, u8>>,
+        direction: Direction,
+        sides: Sides,
+        smallest_gap: f64,
+    ) -> Result<Opening> {
+        let shape = |what: &str, (nx, ny): (usize, usize)| -> Result<()> {
+            let [mx, my] = grid.cells();
+            let expected = format!("that of the grid, {mx} x {my}");
+            if [nx, ny] == [mx, my] {
+                Ok(())
+            } else {
+                Err(Error::invalid(what, format!("{nx} x {ny}"), expected))
+            }
+        };
+        shape("shape of the gap", gap.dim())?;
+        if let Some(contact) = &contact {
+            shape("shape of the contact", contact.dim())?;
+        }
+        let smallest = non_negative("smallest gap that lets the fluid pass", smallest_gap, "m")?;
+        let touches = |at: (usize, usize)| contact.as_ref().is_some_and(|contact| contact[at] != 0);
+        let ([nx, ny], [dx, dy]) = (grid.cells(), grid.spacing());
+        let (cells, spacing) = match direction {
+            Direction::X => ([nx, ny], [dx, dy]),
+            Direction::Y => ([ny, nx], [dy, dx]),
+        };
+        let mut open = Vec::with_capacity(grid.len());
+        for i in 0..cells[0] {
+            for j in 0..cells[1] {
+                let at = if direction == Direction::X { (i, j) } else { (j, i) };
+                let h = gap[at];
+                open.push(if touches(at) || h <= smallest {
+                    0.0
+                } else if h.is_finite() {
+                    h
+                } else {
+                    let what = format!("gap of cell ({}, {})", at.0, at.1);
+                    let expected =
+                        "finite: the flow where surfaces cannot touch (a gap without end) has no resistance";
+                    let expected =
+                        if h.is_nan() { "a number; fill holes of the map first" } else { expected };
+                    return Err(Error::invalid(what, h, expected));
+                });
+            }
+        }
+        Ok(Opening { cells, spacing, gap: open, sides, direction })
+    }
+
+    /// Length along the flow and width across it \[m\].
+    pub fn size(&self) -> [f64; 2] {
+        [self.cells[0] as f64 * self.spacing[0], self.cells[1] as f64 * self.spacing[1]]
+    }
+
+    /// The largest gap \[m\]; 0 where every cell is closed.
+    pub fn largest(&self) -> f64 {
+        self.gap.iter().fold(0.0, |most: f64, h| most.max(*h))
+    }
+
+    /// Share of the cells that are open.
+    pub fn open_fraction(&self) -> f64 {
+        self.gap.iter().filter(|h| **h > 0.0).count() as f64 / self.gap.len() as f64
+    }
+
+    /// Where the flow runs.
+    pub fn direction(&self) -> Direction {
+        self.direction
+    }
+
+    /// Cell (i, j) of the grid, of a cell's number.
+    pub(super) fn cell(&self, number: usize) -> [usize; 2] {
+        let (along, across) = (number / self.cells[1], number % self.cells[1]);
+        if self.direction == Direction::X { [along, across] } else { [across, along] }
+    }
+
+    /// A field turned back to shape (nx, ny).
+    pub(super) fn turned_back<T: Clone>(&self, field: &[T]) -> Array2<T> {
+        let [n, m] = self.cells;
+        match self.direction {
+            Direction::X => Array2::from_shape_fn((n, m), |(i, j)| field[i * m + j].clone()),
+            Direction::Y => Array2::from_shape_fn((m, n), |(i, j)| field[j * m + i].clone()),
+        }
+    }
+}

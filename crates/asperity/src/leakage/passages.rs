@@ -1,0 +1,180 @@
+//! Which open cells are connected, and the constriction that decides the leak.
+//!
+//! Cells that share an edge are connected; where the sides are periodic, so are the cells at opposite sides. Open cells belong to
+//! passages from inlet to outlet, to dead ends at one of them, or to pockets. The critical constriction is found by opening the
+//! cells in order of decreasing gap until inlet and outlet are connected: the cell that connects them has the largest gap that
+//! every path must pass (bottleneck path; B. N. J. Persson & C. Yang, J. Phys.: Condens. Matter 20 (2008) 315011).
+
+use ndarray::Array2;
+use rayon::prelude::*;
+
+use super::opening::{Opening, Sides};
+use crate::spots::Forest;
+
+/// What an open cell is connected to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum CellKind {
+    /// In contact, or closed.
+    Closed = 0,
+    /// Connected to inlet and outlet: fluid flows, or could.
+    Through = 1,
+    /// Connected to the inlet alone, at its pressure.
+    AtInlet = 2,
+    /// Connected to the outlet alone, at its pressure.
+    AtOutlet = 3,
+    /// Connected to neither.
+    Pocket = 4,
+}
+
+/// The narrowest place of the widest path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Constriction {
+    /// Its gap \[m\].
+    pub gap: f64,
+    /// Its cell (i, j) on the grid.
+    pub cell: [usize; 2],
+    /// Open cells across it, the shorter of the rows of open cells through it along x and along y; `None` where both reach
+    /// across the domain.
+    pub width: Option<usize>,
+}
+
+/// The connected parts of an opening.
+#[derive(Clone, Debug)]
+pub struct Passages {
+    /// The critical constriction; `None` where the seal is tight.
+    pub constriction: Option<Constriction>,
+    /// Area of the pockets \[m^2\].
+    pub trapped_area: f64,
+    /// Their volume \[m^3\].
+    pub trapped_volume: f64,
+    /// Kind of each cell, turned as the opening.
+    pub(super) kinds: Vec<CellKind>,
+}
+
+impl Passages {
+    /// Finds the passages of an opening.
+    pub fn of(opening: &Opening) -> Passages {
+        let kinds = kinds(opening);
+        let through = kinds.contains(&CellKind::Through);
+        let cell_area = opening.spacing[0] * opening.spacing[1];
+        let pockets = kinds.iter().zip(&opening.gap).filter(|(kind, _)| **kind == CellKind::Pocket);
+        let (count, sum) = pockets.fold((0usize, 0.0), |(count, sum), (_, h)| (count + 1, sum + h));
+        Passages {
+            constriction: if through { constriction(opening, &kinds) } else { None },
+            trapped_area: count as f64 * cell_area,
+            trapped_volume: sum * cell_area,
+            kinds,
+        }
+    }
+
+    /// Whether inlet and outlet are connected.
+    pub fn percolates(&self) -> bool {
+        self.constriction.is_some()
+    }
+
+    /// Kind of each cell, shape (nx, ny).
+    pub fn map(&self, opening: &Opening) -> Array2<CellKind> {
+        opening.turned_back(&self.kinds)
+    }
+}
+
+/// The neighbours of a cell that come before it in C-order, or across the sides.
+fn earlier(opening: &Opening, cell: usize) -> impl Iterator<Item = usize> {
+    let m = opening.cells[1];
+    let (i, j) = (cell / m, cell % m);
+    let above = (i > 0).then(|| cell - m);
+    let before = (j > 0).then(|| cell - 1);
+    let around = (opening.sides == Sides::Periodic && j + 1 == m && m > 1).then(|| cell + 1 - m);
+    [above, before, around].into_iter().flatten()
+}
+
+fn later(opening: &Opening, cell: usize) -> impl Iterator<Item = usize> {
+    let [n, m] = opening.cells;
+    let (i, j) = (cell / m, cell % m);
+    let below = (i + 1 < n).then(|| cell + m);
+    let after = (j + 1 < m).then(|| cell + 1);
+    let around = (opening.sides == Sides::Periodic && j == 0 && m > 1).then(|| cell + m - 1);
+    [below, after, around].into_iter().flatten()
+}
+
+/// Kind of each cell, by the connected parts and the borders that they reach.
+pub(super) fn kinds(opening: &Opening) -> Vec<CellKind> {
+    let [n, m] = opening.cells;
+    let open = |cell: usize| opening.gap[cell] > 0.0;
+    let mut forest = Forest::new(n * m);
+    for cell in (0..n * m).filter(|cell| open(*cell)) {
+        earlier(opening, cell).filter(|other| open(*other)).for_each(|other| forest.join(other, cell));
+    }
+    let mut reaches = vec![0u8; n * m];
+    for j in 0..m {
+        let (first, last) = (j, (n - 1) * m + j);
+        if open(first) {
+            reaches[forest.root(first)] |= 1;
+        }
+        if open(last) {
+            reaches[forest.root(last)] |= 2;
+        }
+    }
+    let kind = |cell: usize| match (open(cell), reaches[forest.root(cell)]) {
+        (false, _) => CellKind::Closed,
+        (true, 3) => CellKind::Through,
+        (true, 1) => CellKind::AtInlet,
+        (true, 2) => CellKind::AtOutlet,
+        (true, _) => CellKind::Pocket,
+    };
+    (0..n * m).map(kind).collect()
+}
+
+/// Opens the passages in order of decreasing gap, equal gaps in C-order.
+fn constriction(opening: &Opening, kinds: &[CellKind]) -> Option<Constriction> {
+    let [n, m] = opening.cells;
+    let (inlet, outlet) = (n * m, n * m + 1);
+    // The bits of positive numbers rise with the numbers.
+    let mut order: Vec<(u64, usize)> = (0..n * m)
+        .into_par_iter()
+        .filter(|cell| kinds[*cell] == CellKind::Through)
+        .map(|cell| (!opening.gap[cell].to_bits(), cell))
+        .collect();
+    order.par_sort_unstable();
+    let mut forest = Forest::new(n * m + 2);
+    let mut opened = vec![false; n * m];
+    for (_, cell) in order {
+        opened[cell] = true;
+        let neighbours = earlier(opening, cell).chain(later(opening, cell));
+        neighbours.filter(|other| opened[*other]).for_each(|other| forest.join(other, cell));
+        if cell < m {
+            forest.join(cell, inlet);
+        }
+        if cell >= (n - 1) * m {
+            forest.join(cell, outlet);
+        }
+        if forest.root(inlet) == forest.root(outlet) {
+            let (gap, width) = (opening.gap[cell], width(opening, cell));
+            return Some(Constriction { gap, cell: opening.cell(cell), width });
+        }
+    }
+    None
+}
+
+/// The shorter of the open rows through a cell along both axes.
+fn width(opening: &Opening, cell: usize) -> Option<usize> {
+    let [n, m] = opening.cells;
+    let (i, j) = (cell / m, cell % m);
+    let open = |i: usize, j: usize| opening.gap[i * m + j] > 0.0;
+    let along =
+        1 + (0..i).rev().take_while(|k| open(*k, j)).count() + (i + 1..n).take_while(|k| open(*k, j)).count();
+    let across = match opening.sides {
+        Sides::Closed => {
+            1 + (0..j).rev().take_while(|k| open(i, *k)).count()
+                + (j + 1..m).take_while(|k| open(i, *k)).count()
+        }
+        Sides::Periodic => {
+            let after = (1..m).take_while(|k| open(i, (j + k) % m)).count();
+            let before = (1..m - after).take_while(|k| open(i, (j + m - k) % m)).count();
+            1 + after + before
+        }
+    };
+    // A row that spans the domain is not bounded by contact.
+    [(along, n), (across, m)].into_iter().filter(|(cells, all)| cells < all).map(|(cells, _)| cells).min()
+}

@@ -1,0 +1,130 @@
+//! The linear system of a network: conjugate gradients around a factorisation, or around a multigrid cycle where the factor
+//! would not fit its memory.
+//!
+//! The residual says nothing about the leak: at a residual of 1e-6 the flux may be wrong by more than the flux itself. The
+//! power that the flow dissipates, sum of t dP^2 over all faces, is an upper bound of the leak with an error that is quadratic
+//! in that of the pressure (Dirichlet's principle), so the iteration ends where this power has settled.
+
+use super::cholesky::{Cholesky, factor_bytes};
+use super::multigrid::Multigrid;
+use super::network::Network;
+use crate::error::{Error, NotConverged, Result};
+use asperity_sweep::{strands, sweep};
+
+/// How flows are solved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlowOptions {
+    /// Memory that a factorisation may take \[bytes\]; above it the solution is iterative. Default 4 GB, for about 5 million open
+    /// cells.
+    pub memory: f64,
+    /// Most iterations of a linear system. Default 2000.
+    pub max_iterations: usize,
+}
+
+impl Default for FlowOptions {
+    fn default() -> Self {
+        FlowOptions { memory: 4e9, max_iterations: 2000 }
+    }
+}
+
+/// An approximate inverse of a network's matrix.
+pub(super) enum Inverse {
+    /// Exact up to rounding.
+    Factor(Box<Cholesky>),
+    /// One cycle.
+    Cycle(Multigrid),
+}
+
+impl Inverse {
+    pub fn new(network: &Network, options: &FlowOptions) -> Inverse {
+        let unknowns = network.diagonal().iter().filter(|d| **d > 0.0).count();
+        let factor = if factor_bytes(unknowns) <= options.memory { Cholesky::new(network) } else { None };
+        match factor {
+            Some(factor) => Inverse::Factor(Box::new(factor)),
+            None => Inverse::Cycle(Multigrid::new(network)),
+        }
+    }
+
+    fn apply(&mut self, r: &[f64], z: &mut [f64]) {
+        match self {
+            Inverse::Factor(factor) => factor.solve(r, z),
+            Inverse::Cycle(multigrid) => multigrid.cycle(r, z),
+        }
+    }
+
+    /// The power has settled where it changes by less than this share over so many iterations.
+    fn settled(&self) -> (f64, usize) {
+        match self {
+            Inverse::Factor(_) => (1e-12, 1),
+            Inverse::Cycle(_) => (1e-8, 10),
+        }
+    }
+}
+
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    sweep((a, b), &|(a, b): (&[f64], &[f64])| strands(a.len(), |i| [a[i] * b[i]]))[0]
+}
+
+/// x += s y.
+pub(super) fn add(x: &mut [f64], s: f64, y: &[f64]) {
+    sweep((x, y), &|(x, y): (&mut [f64], &[f64])| x.iter_mut().zip(y).for_each(|(x, y)| *x += s * y));
+}
+
+/// Solves A x = b from the x given. `power` is what the flow of an x dissipates, in any unit. Returns it, and the iterations.
+///
+/// Flexible conjugate gradients (Polak-Ribiere), as a multigrid cycle is not quite linear; the residual is computed anew each
+/// time, as updated ones drift where conductances span many decades.
+pub(super) fn solve(
+    network: &Network,
+    inverse: &mut Inverse,
+    b: &[f64],
+    x: &mut [f64],
+    power: &dyn Fn(&[f64]) -> f64,
+    options: &FlowOptions,
+) -> Result<(f64, usize)> {
+    let cells = x.len();
+    let [mut r, mut old, mut z, mut p, mut q] = std::array::from_fn(|_| vec![0.0; cells]);
+    network.residual(b, x, &mut r);
+    let (share, window) = inverse.settled();
+    let mut powers = vec![power(x)];
+    let mut rho = 0.0;
+    for iteration in 1..=options.max_iterations {
+        inverse.apply(&r, &mut z);
+        let new = dot(&r, &z);
+        let beta = if rho > 0.0 { (new - dot(&old, &z)) / rho } else { 0.0 };
+        let beta = if beta.is_finite() { beta.max(0.0) } else { 0.0 };
+        sweep((&mut p[..], &z[..]), &|(p, z): (&mut [f64], &[f64])| {
+            p.iter_mut().zip(z).for_each(|(p, z)| *p = z + beta * *p);
+        });
+        network.apply(&p, &mut q);
+        let curvature = dot(&p, &q);
+        if !(new > 0.0 && curvature > 0.0) {
+            return Ok((powers[powers.len() - 1], iteration)); // the residual is 0
+        }
+        let before = x.to_vec();
+        add(x, dot(&r, &p) / curvature, &p);
+        rho = new;
+        std::mem::swap(&mut old, &mut r);
+        network.residual(b, x, &mut r);
+        let now = power(x);
+        let last = powers[powers.len() - 1];
+        // The power falls in every exact step: where it rises, rounding is all that is left.
+        if now > last && iteration > 1 {
+            x.copy_from_slice(&before);
+            return Ok((last, iteration));
+        }
+        powers.push(now);
+        let past = powers.len().checked_sub(1 + window).map(|k| powers[k]);
+        if iteration > 1 && past.is_some_and(|past| (past - now).abs() <= share * now) {
+            return Ok((now, iteration));
+        }
+    }
+    Err(Error::NotConverged(NotConverged {
+        method: "the flow through the gap",
+        iterations: options.max_iterations,
+        residual: (dot(&r, &r) / dot(b, b)).sqrt(),
+        tolerance: share,
+        certificate: f64::NAN,
+        time: None,
+    }))
+}

@@ -33,7 +33,9 @@ templates!(
     "capped-cycle",
     "periodic-rough",
     "rough-pmma",
-    "warming-rubber"
+    "warming-rubber",
+    "gasket",
+    "coated-steel"
 );
 
 impl Template {

@@ -35,6 +35,7 @@ from ._histories import (
     uniform,
 )
 from ._indentation import IndentationFit, fit_indentation
+from ._layers import Body, Layer, layer_compliance
 from ._materials import (
     Burgers,
     Creep,
@@ -58,6 +59,7 @@ from ._threads import set_threads, threads
 
 __all__ = [
     "Autocorrelation",
+    "Body",
     "Burgers",
     "CaseError",
     "ConvergenceError",
@@ -72,6 +74,7 @@ __all__ = [
     "History",
     "IndentationFit",
     "KelvinVoigt",
+    "Layer",
     "March",
     "Material",
     "Maxwell",
@@ -98,6 +101,7 @@ __all__ = [
     "fit_indentation",
     "fit_relaxation",
     "hold",
+    "layer_compliance",
     "listed",
     "log",
     "march",

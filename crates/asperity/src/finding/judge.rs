@@ -4,7 +4,8 @@ use super::contact::{Counted, Resolution};
 use super::energy::Balance;
 use super::expected::{ROOM, radius};
 use super::strain::Strain;
-use super::{CONTACT_AT_BORDER, ENERGY_BALANCE, Finding, LARGE_SLOPE, domain, material, surface, time};
+use super::thin::Widest;
+use super::{CONTACT_AT_BORDER, ENERGY_BALANCE, Finding, LARGE_SLOPE, domain, material, surface, thin, time};
 use crate::grid::{Boundary, Grid};
 use crate::load::Control;
 use crate::march::{Row, Simulation, Step};
@@ -18,6 +19,8 @@ pub struct Known<'a> {
     pub parts: &'a [Part],
     /// The bodies; none where only the pair is known.
     pub bodies: &'a [Body],
+    /// Thickness of the thinnest body that is taken as a half-space \[m\], where it is known.
+    pub thickness: Option<f64>,
 }
 
 /// The judge of one run.
@@ -59,6 +62,9 @@ pub struct Judge {
     resolution: Resolution,
     strain: Strain,
     balance: Balance,
+    /// Thickness of a body on a free domain, and the contacts that it sees.
+    thickness: Option<f64>,
+    widest: Widest,
     /// What the balance was in an earlier session of the run.
     earlier_balance: Option<Finding>,
 }
@@ -80,6 +86,8 @@ impl Judge {
             resolution: Resolution::default(),
             strain: Strain::new(simulation, radius(known.parts)),
             balance: Balance::default(),
+            thickness: known.thickness.filter(|_| free),
+            widest: Widest::default(),
             earlier_balance: None,
             grid: *grid,
         }
@@ -126,6 +134,9 @@ impl Judge {
         self.deepest = self.deepest.max(row.approach);
         self.resolution.see(index, contact);
         self.strain.see(index, row, contact);
+        if let Some(thickness) = self.thickness {
+            self.widest.see(index, row.contact_area, thickness);
+        }
     }
 
     /// What is known before the run.
@@ -147,6 +158,7 @@ impl Judge {
         if !found.iter().any(|finding| finding.code == LARGE_SLOPE) {
             found.extend(surface::near(&self.grid, &simulation.gap, self.deepest));
         }
+        found.extend(self.thickness.and_then(|thickness| self.widest.finding(thickness)));
         let balances = self.balance.finding().into_iter().chain(self.earlier_balance.clone());
         found.extend(balances.reduce(|a, b| if b.value > a.value { b } else { a }));
         found
@@ -161,6 +173,9 @@ fn before(simulation: &Simulation, known: Known<'_>) -> Vec<Finding> {
     }
     .into_iter()
     .collect::<Vec<_>>();
+    if *boundary == Boundary::Periodic {
+        found.extend(known.thickness.and_then(|thickness| thin::long_waves(grid, thickness)));
+    }
     for part in known.parts {
         found.extend(surface::of_part(grid, part));
     }

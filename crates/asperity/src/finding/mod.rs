@@ -15,6 +15,7 @@
 //! | `stress` | the stress below the surface: its resolution, and yielding |
 //! | `time` | steps that are too long for the history and the material |
 //! | `energy` | the energy balance |
+//! | `thin` | half-spaces of finite thickness |
 //! | `expected` | an estimate of the contact before the run |
 //!
 //! docs/findings.md lists all codes with their limits.
@@ -28,6 +29,7 @@ mod material;
 mod strain;
 mod stress;
 mod surface;
+mod thin;
 mod time;
 mod words;
 
@@ -38,6 +40,7 @@ pub use judge::{Judge, Known};
 pub use material::{beyond_data, misfit, unlikely_modulus};
 pub use stress::{stress_at_deepest, stress_unresolved, yield_exceeded};
 pub use surface::{hurst, of_heights};
+pub use thin::thin_body;
 
 /// How much a finding matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -120,7 +123,7 @@ impl std::fmt::Display for Finding {
 }
 
 /// Every code. A code keeps its meaning.
-pub const CODES: [&str; 20] = [
+pub const CODES: [&str; 21] = [
     CONTACT_AT_BORDER,
     GAP_NOT_PERIODIC,
     ROUGH_ON_FREE_DOMAIN,
@@ -141,6 +144,7 @@ pub const CODES: [&str; 20] = [
     STRESS_UNRESOLVED,
     STRESS_AT_DEEPEST,
     YIELD_EXCEEDED,
+    THIN_BODY,
 ];
 
 /// Contact, or the expected contact, reaches the border of a free domain.
@@ -183,6 +187,8 @@ pub const STRESS_UNRESOLVED: &str = "stress-unresolved";
 pub const STRESS_AT_DEEPEST: &str = "stress-at-deepest";
 /// The von Mises stress below the surface exceeds the yield stress.
 pub const YIELD_EXCEEDED: &str = "yield-exceeded";
+/// A half-space that is thinner than the contact or the waves need.
+pub const THIN_BODY: &str = "thin-body";
 
 #[cfg(test)]
 mod tests;

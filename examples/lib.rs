@@ -34,7 +34,9 @@ templates!(
     "periodic-rough",
     "rough-pmma",
     "warming-rubber",
-    "seal"
+    "seal",
+    "gasket",
+    "coated-steel"
 );
 
 impl Template {

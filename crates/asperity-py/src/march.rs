@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::{CaseError, raised};
-use crate::material::Body;
+use crate::material::{Body, Pair};
 use crate::wait::{detached, without_python};
 
 /// The march of one simulation.
@@ -139,7 +139,7 @@ fn stage(
 #[pymethods]
 impl March {
     #[new]
-    #[pyo3(signature = (*, gap, size, boundary, bodies, stages, times, times_numbers, include, temperatures, scheme, method, tolerance,
+    #[pyo3(signature = (*, gap, size, boundary, bodies, stacks, stages, times, times_numbers, include, temperatures, scheme, method, tolerance,
                         max_iterations, hardness_map, plasticity, quantities, bins, largest_pressure, largest_gap))]
     #[allow(clippy::too_many_arguments)]
     fn new(
@@ -148,6 +148,7 @@ impl March {
         size: [f64; 2],
         boundary: &str,
         bodies: Vec<PyRef<'_, Body>>,
+        stacks: Vec<crate::material::StackParts>,
         stages: Vec<StageParts>,
         times: &str,
         times_numbers: Vec<f64>,
@@ -172,8 +173,8 @@ impl March {
                  own); give a material shift=asperity.wlf(...), or leave the temperature out",
             ));
         }
-        let (creep, thermal) =
-            crate::material::pair(&bodies, &temperatures).map_err(|error| raised(py, error))?;
+        let Pair { kernel, creep, thermal } =
+            crate::material::pair(&bodies, &stacks, &temperatures)?.map_err(|error| raised(py, error))?;
         let bodies: Vec<material::Body> = bodies.iter().map(|body| body.inner.clone()).collect();
         let grid = Grid::new([nx, ny], size).map_err(|error| raised(py, error))?;
         let list =
@@ -181,6 +182,7 @@ impl March {
         let stages = stages.into_iter().map(stage).collect::<PyResult<Vec<Stage>>>()?;
         let simulation = Simulation {
             boundary: choose("boundary", boundary)?,
+            kernel,
             creep,
             thermal,
             hardness: material::pair_hardness(&bodies),
@@ -196,7 +198,7 @@ impl March {
         };
         let interrupt = Arc::new(AtomicBool::new(false));
         let made = without_python(py, &interrupt, || {
-            let judge = Judge::new(&simulation, Known { parts: &[], bodies: &bodies });
+            let judge = Judge::new(&simulation, Known { bodies: &bodies, ..Known::default() });
             march::March::new(simulation).map(|march| (march, judge))
         })?;
         let (mut march, judge) = made.map_err(|error| raised(py, error))?;

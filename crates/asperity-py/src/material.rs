@@ -1,5 +1,9 @@
 //! Materials and bodies.
 
+use std::sync::Arc;
+
+use asperity::kernel::{HalfSpace, Kernel};
+use asperity::layer::{BodyLayer, Interface, LayeredBody, Separated, separate};
 use asperity::material::{
     self, Creep, CreepTerm, Fractional, Lateral, Material, Modulus, ReducedTime, Relaxation, Shift,
     ThermalCreep,
@@ -8,7 +12,7 @@ use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
 use crate::error::{CaseError, raised};
-use crate::march::choose;
+use crate::march::{choose, choose_among};
 
 /// One deformable body: its creep function, Poisson's ratio or bulk modulus, hardness, and how warm it is.
 #[pyclass(frozen)]
@@ -66,28 +70,107 @@ pub fn shift_factor<'py>(
     Ok(factors.map_err(|error| raised(py, error))?.into_pyarray(py))
 }
 
-/// Bodies as the march takes them: those of constant temperature in one creep function, the others on their clocks.
+/// How Python gives the layers of a body, whose materials are the next of the list: thickness \[m\] and interface of each, and
+/// whether a half-space lies below.
+pub type StackParts = (Vec<(f64, String)>, bool);
+
+/// Bodies as the march takes them.
+pub struct Pair {
+    /// How they yield in space.
+    pub kernel: Arc<dyn Kernel>,
+    /// The creep function of those of constant temperature.
+    pub creep: Creep,
+    /// The others, on their clocks.
+    pub thermal: Vec<ThermalCreep>,
+}
+
+/// `materials` are those of all bodies, from the surface down, `stacks` how many layers each body has of them.
 pub fn pair(
-    bodies: &[PyRef<'_, Body>],
+    materials: &[PyRef<'_, Body>],
+    stacks: &[StackParts],
     temperatures: &[(f64, f64)],
-) -> asperity::Result<(Creep, Vec<ThermalCreep>)> {
-    let (mut creep, mut thermal) = (Creep::default(), Vec::new());
-    for body in bodies {
-        let clock = match &body.shift {
-            Some(shift) if !temperatures.is_empty() => {
-                Some((shift, ReducedTime::new(shift.clone(), temperatures)?))
-            }
-            _ => None,
+) -> PyResult<asperity::Result<Pair>> {
+    let made: asperity::Result<Vec<_>> = materials.iter().map(|body| at(body, temperatures)).collect();
+    let made = match made {
+        Ok(made) => made,
+        Err(error) => return Ok(Err(error)),
+    };
+    if stacks.iter().all(|(layers, _)| layers.is_empty()) {
+        return Ok(half_spaces(made));
+    }
+    let (bodies, clocks): (Vec<material::Body>, Vec<Option<ReducedTime>>) = made.into_iter().unzip();
+    let mut materials = bodies.into_iter();
+    let mut bodies = vec![];
+    for (layers, on_half_space) in stacks {
+        let layer = |((thickness, interface), material): (&(f64, String), material::Body)| {
+            let interfaces = [("bonded", Interface::Bonded), ("slip", Interface::Slip)];
+            let interface = choose_among("interface", interface, &interfaces)?;
+            Ok(BodyLayer { thickness: *thickness, interface, material })
         };
-        match (clock, temperatures) {
-            (Some((shift, _)), [first, rest @ ..]) if rest.iter().all(|point| point.1 == first.1) => {
-                creep = creep.sum(&stretched(&body.inner, shift.factor(first.1)?)?.contact_creep()?);
-            }
-            (Some((_, clock)), _) => thermal.push(ThermalCreep { creep: body.inner.contact_creep()?, clock }),
-            _ => creep = creep.sum(&body.inner.contact_creep()?),
+        let layers = layers.iter().zip(&mut materials).map(layer).collect::<PyResult<Vec<_>>>()?;
+        let base = if *on_half_space { materials.next() } else { None };
+        bodies.push(LayeredBody { layers, base });
+    }
+    Ok(layered(&bodies, &clocks))
+}
+
+fn half_spaces(made: Vec<(material::Body, Option<ReducedTime>)>) -> asperity::Result<Pair> {
+    let mut pair = Pair { kernel: Arc::new(HalfSpace), creep: Creep::default(), thermal: Vec::new() };
+    for (body, clock) in made {
+        let creep = body.contact_creep()?;
+        match clock {
+            Some(clock) => pair.thermal.push(ThermalCreep { creep, clock }),
+            None => pair.creep = pair.creep.sum(&creep),
         }
     }
-    Ok((creep, thermal))
+    Ok(pair)
+}
+
+fn layered(bodies: &[LayeredBody], clocks: &[Option<ReducedTime>]) -> asperity::Result<Pair> {
+    if clocks.iter().any(|clock| *clock != clocks[0]) {
+        return Err(asperity::Error::invalid(
+            "temperature shift of the layers",
+            "not the same in all of them",
+            "the same law for all layers and bodies while the temperature changes: otherwise waves of different lengths creep \
+             differently, which is not solved yet",
+        ));
+    }
+    let Separated { kernel, creep } = separate(bodies)?;
+    let kernel: Arc<dyn Kernel> = Arc::new(kernel);
+    Ok(match &clocks[0] {
+        Some(clock) => {
+            let thermal = vec![ThermalCreep { creep, clock: clock.clone() }];
+            Pair { kernel, creep: Creep::default(), thermal }
+        }
+        None => Pair { kernel, creep, thermal: vec![] },
+    })
+}
+
+/// A body at a constant temperature, or with the clock of a changing one.
+fn at(body: &Body, temperatures: &[(f64, f64)]) -> asperity::Result<(material::Body, Option<ReducedTime>)> {
+    let (Some(shift), [first, rest @ ..]) = (&body.shift, temperatures) else {
+        return Ok((body.inner.clone(), None));
+    };
+    let clock = ReducedTime::new(shift.clone(), temperatures)?;
+    match rest.iter().all(|point| point.1 == first.1) {
+        true => Ok((stretched(&body.inner, shift.factor(first.1)?)?, None)),
+        false => Ok((body.inner.clone(), Some(clock))),
+    }
+}
+
+/// C(q, t) \[m/Pa\] of one body at wave numbers \[rad/m\].
+#[pyfunction]
+pub fn layer_compliance<'py>(
+    py: Python<'py>,
+    waves: PyReadonlyArray1<'_, f64>,
+    bodies: Vec<PyRef<'_, Body>>,
+    stack: StackParts,
+    time: f64,
+) -> PyResult<Curve<'py>> {
+    let pair = pair(&bodies, &[stack], &[])?.map_err(|error| raised(py, error))?;
+    let creep = pair.creep.value(time);
+    let values: Vec<f64> = waves.as_array().iter().map(|q| creep * pair.kernel.symbol(*q, 0.0)).collect();
+    Ok(values.into_pyarray(py))
 }
 
 impl Body {

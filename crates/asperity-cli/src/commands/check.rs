@@ -220,6 +220,21 @@ fn tell(case: &Case, examined: &Examination, estimate: Option<f64>) -> String {
         };
         line("", format!("{}: {name} {value}", modulus.body));
     }
+    if let Some(layers) = &d.layers {
+        for body in &layers.bodies {
+            line("layers", body.clone());
+        }
+        for (name, wave) in ["longest", "shortest"].iter().zip(&layers.waves) {
+            let relaxed = quantity(wave.relaxed_modulus, "Pa");
+            let modulus = match wave.instantaneous_modulus.map(|modulus| quantity(modulus, "Pa")) {
+                Some(at_once) if at_once == relaxed => at_once,
+                Some(at_once) => format!("{at_once} instantaneous, {relaxed} relaxed"),
+                None => format!("{relaxed} relaxed, instantaneously rigid"),
+            };
+            let length = quantity(wave.length, "m");
+            line("", format!("the {name} wave, {length}, sees a half-space of contact modulus {modulus}"));
+        }
+    }
     if !d.retardation_times.is_empty() {
         line("creep", retardation(&d.retardation_times));
     }

@@ -121,6 +121,12 @@ fn keys(args: &Stress) -> impl Iterator<Item = (&'static str, &str)> {
 
 /// What is asked for; what is not said is as it is stored.
 fn plan(args: &Stress, reader: &Reader) -> Result<StressPlan, Failure> {
+    if reader.header().setup.contains_key("layer_separable") {
+        let path = args.result.display();
+        let message =
+            format!("{path} is of bodies of layers: the stress below their surface is not computed yet");
+        return Err(Failure::input(message));
+    }
     let mut bodies = bodies_of(reader);
     if let Some(text) = &args.poisson {
         let ratio = read::<Number<NonNegative>>("--poisson", text, "0.3")?.get();

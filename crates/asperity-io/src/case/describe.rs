@@ -1,5 +1,7 @@
 //! What a case will do, in numbers: for `asperity check`.
 
+use asperity::kernel::Kernel;
+use asperity::layer::{Base, Interface, Layered, Stack};
 use asperity::material::Creep;
 use asperity::quantities::Quantity;
 use asperity::surface::Part;
@@ -9,6 +11,7 @@ use serde::Serialize;
 use super::plan::Surface;
 use super::{Case, Rows};
 use crate::choice;
+use crate::readable::quantity;
 use crate::stress::{StressBody, StressDescription};
 
 /// Where the material of a body comes from, and how well it is known.
@@ -69,6 +72,9 @@ pub struct Description {
     pub instantaneous_modulus: Option<f64>,
     /// Contact modulus after all creep, 1/C(infinity) \[Pa\]; 0 for a fluid.
     pub relaxed_modulus: f64,
+    /// How the layers of the bodies yield, where they have any.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub layers: Option<LayerReport>,
     /// Retardation times of the pair \[s\], of bodies whose temperature changes at their reference.
     pub retardation_times: Vec<f64>,
     /// Where the materials come from.
@@ -115,6 +121,28 @@ pub struct Sine {
     pub stage: usize,
     /// Frequency \[Hz\].
     pub frequency: f64,
+}
+
+/// How layers yield: more than the half-space of the material at the surface, or less.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LayerReport {
+    /// The layers of each body in words.
+    pub bodies: Vec<String>,
+    /// Whether the response is a function of space times one of time.
+    pub separable: bool,
+    /// The longest and the shortest wave of the domain.
+    pub waves: [WaveReport; 2],
+}
+
+/// The half-space that yields as much as the bodies under a wave of pressure.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WaveReport {
+    /// Length of the wave \[m\].
+    pub length: f64,
+    /// Its contact modulus right after a load \[Pa\]; absent for bodies that do not yield at once.
+    pub instantaneous_modulus: Option<f64>,
+    /// Its contact modulus after all creep \[Pa\]; 0 for a fluid.
+    pub relaxed_modulus: f64,
 }
 
 /// What was done to a measured surface.
@@ -167,6 +195,7 @@ impl Case {
             poisson: self.bodies.iter().map(|body| StressBody::of(body).poisson).collect(),
             instantaneous_modulus: (creep.instantaneous > 0.0).then(|| 1.0 / creep.instantaneous),
             relaxed_modulus: 1.0 / creep.long_time(),
+            layers: self.layers.as_ref().map(|layers| self.layer_report(layers, &creep)),
             retardation_times: creep.terms.iter().map(|term| term.retardation_time).collect(),
             materials: self.materials.clone(),
             warnings: self.findings.iter().map(|finding| finding.text.clone()).collect(),
@@ -189,6 +218,26 @@ impl Case {
             result_bytes: stored_rows
                 .map(|stored| (self.grid.len() as u64).saturating_mul(8 + stored as u64 * field_bytes)),
             stress,
+        }
+    }
+
+    fn layer_report(&self, layers: &Layered, creep: &Creep) -> LayerReport {
+        let longest = self.grid.size().into_iter().fold(0.0, f64::max);
+        let shortest = 2.0 * self.grid.spacing().into_iter().fold(0.0, f64::max);
+        let wave = |length: f64| {
+            let q = std::f64::consts::TAU / length;
+            let unit = 0.5 * q * layers.symbol(q, 0.0);
+            WaveReport {
+                length,
+                instantaneous_modulus: (creep.instantaneous > 0.0)
+                    .then(|| 1.0 / (unit * creep.instantaneous)),
+                relaxed_modulus: 1.0 / (unit * creep.long_time()),
+            }
+        };
+        LayerReport {
+            bodies: layers.stacks().iter().map(words_of).collect(),
+            separable: true,
+            waves: [longest, shortest].map(wave),
         }
     }
 
@@ -221,6 +270,22 @@ impl Case {
             }
         }
     }
+}
+
+/// "10 mm bonded to 2 mm slipping on a rigid base".
+fn words_of(stack: &Stack) -> String {
+    let on = |interface: Interface| match interface {
+        Interface::Bonded => "bonded to",
+        Interface::Slip => "slipping on",
+    };
+    let layers = stack.layers().iter();
+    let layers: Vec<String> =
+        layers.map(|layer| format!("{} {} ", quantity(layer.thickness, "m"), on(layer.interface))).collect();
+    let base = match stack.base() {
+        Base::Rigid => "a rigid base",
+        Base::HalfSpace { .. } => "a half-space",
+    };
+    layers.concat() + base
 }
 
 fn preparation(surface: &Surface) -> Option<Preparation> {

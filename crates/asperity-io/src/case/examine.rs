@@ -1,11 +1,11 @@
 //! What `asperity check` says of a case: what was read, what is to be expected, and what may be off.
 
-use asperity::Simulation;
 use asperity::contact::Prescribed;
-use asperity::finding::{Contact, Expected, Finding, Judge, Known};
+use asperity::finding::{Contact, Expected, Finding, Judge, Known, thin_body};
 use asperity::material::Modulus;
 use asperity::surface::statistics::{HeightStatistics, SlopeStatistics};
 use asperity::surface::{Part, Punch, Shape, Surface};
+use asperity::{Boundary, Simulation};
 use serde::Serialize;
 
 use super::{Case, CaseErrors, Description};
@@ -90,16 +90,27 @@ impl Case {
     pub fn examine(&self) -> Result<Examination, CaseErrors> {
         let parts = self.parts()?;
         let simulation = self.simulation_of(&parts)?;
-        let judge = Judge::new(&simulation, Known { parts: &parts, bodies: &self.bodies });
+        let judge =
+            Judge::new(&simulation, Known { parts: &parts, bodies: &self.bodies, thickness: self.thickness });
         let expected = Expected::of(&simulation, &parts);
         let of_case = self.findings.iter().chain(judge.known()).cloned();
         let to_come = expected.iter().flat_map(|expected| expected.findings(&simulation));
-        let findings = of_case.chain(to_come).collect();
+        let findings = of_case.chain(to_come).chain(self.thin(expected.as_ref())).collect();
         Ok(Examination {
             inputs: self.inputs(&simulation, &parts, expected),
             findings,
             description: self.describe(),
         })
+    }
+
+    /// Whether the expected contact is too wide for a body on a free domain.
+    fn thin(&self, expected: Option<&Expected>) -> Option<Finding> {
+        match (expected?.contact?, self.boundary) {
+            (Contact::Round([_, radius]), Boundary::Free) => {
+                thin_body("The expected contact", radius, self.thickness?)
+            }
+            _ => None,
+        }
     }
 
     fn inputs(&self, simulation: &Simulation, parts: &[Part], expected: Option<Expected>) -> Inputs {

@@ -59,8 +59,11 @@ mod words;
 use std::io::Read;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use asperity::finding::Finding;
+use asperity::kernel::{HalfSpace, Kernel};
+use asperity::layer::Layered;
 use asperity::material::{Body, Creep, ThermalCreep};
 use asperity::quantities::{Quantities, Quantity};
 use asperity::surface::{Part, undeformed_gap};
@@ -99,8 +102,12 @@ pub struct Case {
     pub boundary: Boundary,
     /// The parts of the undeformed gap.
     pub surfaces: Vec<Surface>,
-    /// The deformable bodies, one or two.
+    /// What the deformable bodies, one or two, consist of: each half-space, layer and base.
     pub bodies: Vec<Body>,
+    /// How the bodies yield in space, where they have layers; half-spaces otherwise.
+    pub layers: Option<Arc<Layered>>,
+    /// Thickness of the thinnest body that is taken as a half-space \[m\], where it is known.
+    pub thickness: Option<f64>,
     /// Contact creep compliance C(t) of the pair \[1/Pa\]; without the bodies of `thermal`.
     pub creep: Creep,
     /// Bodies whose temperature changes.
@@ -242,10 +249,19 @@ impl Case {
         }
     }
 
+    /// How the bodies yield in space.
+    pub fn kernel(&self) -> Arc<dyn Kernel> {
+        match &self.layers {
+            Some(layers) => layers.clone(),
+            None => Arc::new(HalfSpace),
+        }
+    }
+
     /// The simulation with a gap, without the quantities that are asked for.
     fn with_gap(&self, gap: Array2<f64>) -> Simulation {
         Simulation {
             boundary: self.boundary,
+            kernel: self.kernel(),
             creep: self.creep.clone(),
             thermal: self.thermal.clone(),
             hardness: self.hardness,

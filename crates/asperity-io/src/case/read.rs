@@ -191,7 +191,12 @@ impl<'t> Reader<'_, 't> {
 
     fn read<T: DeserializeOwned>(&mut self, value: &Spanned<DeValue<'t>>, tags: &[Tag]) -> Option<T> {
         let mut value = value.clone();
-        let lists = [("process", &[][..], "op"), ("stages", &["history"][..], "kind")];
+        let lists = [
+            ("process", &[][..], "op"),
+            ("stages", &["history"][..], "kind"),
+            ("layer", &["material", "shift"][..], "model"),
+            ("layer", &["material"][..], "model"),
+        ];
         let mut moved = lists
             .into_iter()
             .map(|(list, inside, key)| self.move_list(&mut value, list, Tag { inside, key }));
@@ -229,8 +234,8 @@ impl<'t> Reader<'_, 't> {
         self.outwards(union, tag.key)
     }
 
-    /// The steps of a measured surface, and the stages of a load, are a list inside of it: of tagged unions, or of
-    /// tables that hold one.
+    /// The steps of a measured surface, the stages of a load and the layers of a body are a list inside of it: of tagged
+    /// unions, or of tables that hold one.
     fn move_list(
         &self,
         value: &mut Spanned<DeValue<'t>>,

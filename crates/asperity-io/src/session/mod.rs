@@ -138,7 +138,8 @@ fn run_inside(
 ) -> Result<Summary, RunError> {
     let parts = case.parts()?;
     let simulation = case.simulation_of(&parts)?;
-    let judge = Judge::new(&simulation, Known { parts: &parts, bodies: &case.bodies });
+    let known = Known { parts: &parts, bodies: &case.bodies, thickness: case.thickness };
+    let judge = Judge::new(&simulation, known);
     drop(parts);
     let header = header(case, &simulation);
     let path = options.output.clone().unwrap_or_else(|| case.output.path.clone());
@@ -419,6 +420,11 @@ fn setup(case: &Case) -> Map<String, Value> {
         let files: Map<String, Value> =
             case.files.iter().map(|(path, digest)| (path.clone(), json!(digest))).collect();
         setup.insert("md5_of_files".into(), json!(files));
+    }
+    if case.layers.is_some() {
+        // Stacks that do not separate are refused, and nothing is fitted.
+        setup.insert("layer_separable".into(), json!(true));
+        setup.insert("layer_misfit".into(), json!(0.0));
     }
     setup.insert("solver_tolerance".into(), json!(case.solver.tolerance));
     if let Some(leak) = &case.leakage {

@@ -3,6 +3,7 @@
 mod errors;
 mod examples;
 mod hostile;
+mod layers;
 mod materials;
 mod measured;
 mod values;

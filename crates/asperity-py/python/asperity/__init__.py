@@ -36,6 +36,7 @@ from ._histories import (
 )
 from ._indentation import IndentationFit, fit_indentation
 from ._leakage import Leakage, leakage
+from ._layers import Body, Layer, layer_compliance
 from ._materials import (
     Burgers,
     Creep,
@@ -59,6 +60,7 @@ from ._threads import set_threads, threads
 
 __all__ = [
     "Autocorrelation",
+    "Body",
     "Burgers",
     "CaseError",
     "ConvergenceError",
@@ -74,6 +76,7 @@ __all__ = [
     "IndentationFit",
     "KelvinVoigt",
     "Leakage",
+    "Layer",
     "March",
     "Material",
     "Maxwell",
@@ -101,6 +104,7 @@ __all__ = [
     "fit_relaxation",
     "hold",
     "leakage",
+    "layer_compliance",
     "listed",
     "log",
     "march",

@@ -22,6 +22,7 @@ __all__ = [
     "fit_file",
     "fit_indentation",
     "Body",
+    "layer_compliance",
     "shift_factor",
     "case_text",
     "check",
@@ -98,6 +99,7 @@ class March:
         size: list[float],
         boundary: str,
         bodies: list[Body],
+        stacks: list[tuple[list[tuple[float, str]], bool]],
         stages: list[_Stage],
         times: str,
         times_numbers: list[float],
@@ -221,6 +223,9 @@ def fit_indentation(
     springs: int,
     limit: float,
 ) -> dict[str, Any]: ...
+def layer_compliance(
+    waves: _Floats, bodies: list[Body], stack: tuple[list[tuple[float, str]], bool], time: float
+) -> _Floats: ...
 def shift_factor(words: _Shift, temperatures: _Floats) -> _Floats: ...
 def case_text(json: str) -> str: ...
 def check(path: str, text: str | None, overrides: list[str]) -> str: ...

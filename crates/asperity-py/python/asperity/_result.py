@@ -271,6 +271,8 @@ class Result:
         from ._stress import stress
 
         setup = json.loads(self._attributes.get("setup") or "{}")
+        if "layer_separable" in setup:
+            raise CaseError("the stress below the surface is not computed for bodies of layers yet")
         if poisson is None:
             known = setup.get("poisson") or []
             if not 0 <= body < max(len(known), 1):

@@ -15,6 +15,7 @@ from ._arrays import Floats, count, field, line, number
 from ._core import CaseError
 from ._findings import Finding, findings_of, warn
 from ._histories import History, Stage, Times, as_history, as_stage, as_times, one_of
+from ._layers import Body, hardness_of, parts_of, with_hardness
 from ._materials import Material
 from ._progress import Progress
 from ._result import FIELDS, HISTOGRAMS, ROW, Result, open
@@ -112,7 +113,7 @@ class March:
 
 def march(
     surface: Any,
-    material: Material | Sequence[Material],
+    material: Material | Body | Sequence[Material | Body],
     *,
     times: Times | Sequence[float],
     load: History | float | None = None,
@@ -145,15 +146,17 @@ def march(
     """
     shape = as_surface(surface, size)
     gap = shape.gap()
-    bodies = [material] if isinstance(material, Material) else list(material)
-    if not 1 <= len(bodies) <= 2 or not all(isinstance(body, Material) for body in bodies):
-        raise CaseError(f"material is {material!r}, but must be a material, or a pair of them for two deformable bodies")
+    bodies = [material] if isinstance(material, (Material, Body)) else list(material)
+    if not 1 <= len(bodies) <= 2 or not all(isinstance(body, (Material, Body)) for body in bodies):
+        raise CaseError(
+            f"material is {material!r}, but must be a material or an asperity.Body, or a pair of them for two deformable bodies"
+        )
     cells = None
     if hardness is not None and np.ndim(hardness) == 2:
         cells = field("hardness", hardness)
     elif hardness is not None:
         limit = number("hardness", hardness)
-        bodies = [_with_hardness(body, limit) for body in bodies]
+        bodies = [with_hardness(body, limit) for body in bodies]
     given = {"load": load, "pressure": pressure, "approach": approach}
     if stages is not None:
         if any(value is not None for value in given.values()):
@@ -168,11 +171,13 @@ def march(
         programme = [as_stage(control, prescribed)]
         history = repr(prescribed)
     grid = as_times(times)
+    parts = [parts_of(body) for body in bodies]
     core = _core.March(
         gap=gap,
         size=list(shape.size),
         boundary=boundary,
-        bodies=[body._body for body in bodies],
+        bodies=[material for materials, _ in parts for material in materials],
+        stacks=[stack for _, stack in parts],
         stages=[stage._parts() for stage in programme],
         times=grid.kind,
         times_numbers=list(grid.numbers),
@@ -209,7 +214,9 @@ def march(
         setup["contact_creep_compliance_over_reduced_time"] = creeps[1:]
     if temperature is not None:
         setup["temperature"] = temperatures(temperature)
-    limits = [body._given["hardness"] for body in bodies if body._given.get("hardness") is not None]
+    if any(isinstance(body, Body) for body in bodies):
+        setup["layer_separable"], setup["layer_misfit"] = True, 0.0
+    limits = [limit for limit in map(hardness_of, bodies) if limit is not None]
     if limits:
         setup["hardness"] = float(min(limits))
     return March(core, gap, shape.size, setup)
@@ -217,7 +224,7 @@ def march(
 
 def solve(
     surface: Any,
-    material: Material | Sequence[Material],
+    material: Material | Body | Sequence[Material | Body],
     *,
     times: Times | Sequence[float],
     load: History | float | None = None,
@@ -249,7 +256,7 @@ def solve(
     Parameters
     ----------
     surface : Surface, or heights [m] as array (nx, ny) with `size`, or a SurfaceTopography or xarray array
-    material : the deformable body, or a pair of them
+    material : the deformable body (a material for a half-space, an asperity.Body for layers), or a pair of them
     times : times to solve for: uniform, log, adaptive, listed, or a sequence [s]; breaks of the history are added
     load, pressure, approach : what is prescribed [N], [Pa] or [m]: a history, or a number for a step
     stages : instead, a list of :class:`Stage` s: the control switches at a time or at an event
@@ -365,10 +372,6 @@ def solve(
             "findings": [dict(finding) for finding in found],
         },
     )
-
-
-def _with_hardness(body: Material, hardness: float) -> Material:
-    return type(body)(**{**body._given, "hardness": hardness})
 
 
 def run(

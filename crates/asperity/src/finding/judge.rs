@@ -4,8 +4,10 @@ use super::contact::{Counted, Resolution};
 use super::energy::Balance;
 use super::expected::{ROOM, radius};
 use super::strain::Strain;
+use super::thin::Widest;
 use super::{
-    CONTACT_AT_BORDER, ENERGY_BALANCE, Finding, LARGE_SLOPE, STEPS_TOO_LONG, domain, material, surface, time,
+    CONTACT_AT_BORDER, ENERGY_BALANCE, Finding, LARGE_SLOPE, STEPS_TOO_LONG, domain, material, surface, thin,
+    time,
 };
 use crate::grid::{Boundary, Grid};
 use crate::load::Control;
@@ -20,6 +22,8 @@ pub struct Known<'a> {
     pub parts: &'a [Part],
     /// The bodies; none where only the pair is known.
     pub bodies: &'a [Body],
+    /// Thickness of the thinnest body that is taken as a half-space \[m\], where it is known.
+    pub thickness: Option<f64>,
 }
 
 /// The judge of one run.
@@ -64,6 +68,9 @@ pub struct Judge {
     /// What is to be said of a held approach once cells are at the hardness there, and whether they were.
     held: Option<Finding>,
     capped: bool,
+    /// Thickness of a body on a free domain, and the contacts that it sees.
+    thickness: Option<f64>,
+    widest: Widest,
     /// What the balance was in an earlier session of the run.
     earlier_balance: Option<Finding>,
 }
@@ -88,6 +95,8 @@ impl Judge {
             held: time::held_at_hardness(simulation)
                 .filter(|_| simulation.hardness.is_finite() || simulation.hardness_map.is_some()),
             capped: false,
+            thickness: known.thickness.filter(|_| free),
+            widest: Widest::default(),
             earlier_balance: None,
             grid: *grid,
         }
@@ -135,6 +144,9 @@ impl Judge {
         self.deepest = self.deepest.max(row.approach);
         self.resolution.see(index, contact);
         self.strain.see(index, row, contact);
+        if let Some(thickness) = self.thickness {
+            self.widest.see(index, row.contact_area, thickness);
+        }
     }
 
     /// What is known before the run.
@@ -159,6 +171,7 @@ impl Judge {
         if !found.iter().any(|finding| finding.code == STEPS_TOO_LONG) {
             found.extend(self.held.clone().filter(|_| self.capped));
         }
+        found.extend(self.thickness.and_then(|thickness| self.widest.finding(thickness)));
         let balances = self.balance.finding().into_iter().chain(self.earlier_balance.clone());
         found.extend(balances.reduce(|a, b| if b.value > a.value { b } else { a }));
         found
@@ -173,6 +186,9 @@ fn before(simulation: &Simulation, known: Known<'_>) -> Vec<Finding> {
     }
     .into_iter()
     .collect::<Vec<_>>();
+    if *boundary == Boundary::Periodic {
+        found.extend(known.thickness.and_then(|thickness| thin::long_waves(grid, thickness)));
+    }
     for part in known.parts {
         found.extend(surface::of_part(grid, part));
     }

@@ -16,6 +16,7 @@
 //! | `time` | steps that are too long for the history and the material |
 //! | `energy` | the energy balance |
 //! | `leak` | leaks that gap, grid or fluid pressure do not carry |
+//! | `thin` | half-spaces of finite thickness |
 //! | `expected` | an estimate of the contact before the run |
 //!
 //! docs/findings.md lists all codes with their limits.
@@ -30,6 +31,7 @@ mod material;
 mod strain;
 mod stress;
 mod surface;
+mod thin;
 mod time;
 mod words;
 
@@ -41,6 +43,7 @@ pub use leak::{LeakJudge, LeakState};
 pub use material::{beyond_data, misfit, unlikely_modulus};
 pub use stress::{stress_at_deepest, stress_unresolved, yield_exceeded};
 pub use surface::{hurst, of_heights};
+pub use thin::thin_body;
 
 /// How much a finding matters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -123,7 +126,7 @@ impl std::fmt::Display for Finding {
 }
 
 /// Every code. A code keeps its meaning.
-pub const CODES: [&str; 23] = [
+pub const CODES: [&str; 24] = [
     CONTACT_AT_BORDER,
     GAP_NOT_PERIODIC,
     ROUGH_ON_FREE_DOMAIN,
@@ -147,6 +150,7 @@ pub const CODES: [&str; 23] = [
     LEAK_BELOW_GAP_ERROR,
     CONSTRICTION_UNRESOLVED,
     FLUID_PRESSURE_LARGE,
+    THIN_BODY,
 ];
 
 /// Contact, or the expected contact, reaches the border of a free domain.
@@ -189,6 +193,8 @@ pub const STRESS_UNRESOLVED: &str = "stress-unresolved";
 pub const STRESS_AT_DEEPEST: &str = "stress-at-deepest";
 /// The von Mises stress below the surface exceeds the yield stress.
 pub const YIELD_EXCEEDED: &str = "yield-exceeded";
+/// A half-space that is thinner than the contact or the waves need.
+pub const THIN_BODY: &str = "thin-body";
 
 /// The gap at the critical constriction of a leak is less than 30 times the error of the gap.
 pub const LEAK_BELOW_GAP_ERROR: &str = "leak-below-gap-error";

@@ -58,11 +58,11 @@ fn zener() -> Creep {
 }
 
 fn before(simulation: &Simulation, parts: &[Part]) -> Vec<Finding> {
-    Judge::new(simulation, Known { parts, bodies: &[] }).known().to_vec()
+    Judge::new(simulation, Known { parts, bodies: &[], thickness: None }).known().to_vec()
 }
 
 fn after(simulation: Simulation, parts: &[Part]) -> Vec<Finding> {
-    let mut judge = Judge::new(&simulation, Known { parts, bodies: &[] });
+    let mut judge = Judge::new(&simulation, Known { parts, bodies: &[], thickness: None });
     let mut march = March::new(simulation).unwrap();
     while let Some(step) = march.advance().unwrap() {
         judge.see(&step, &step.row());
@@ -371,7 +371,7 @@ fn moduli_radii_and_heights_of_unlikely_units_are_found() {
     };
     let parts = [sphere(5e-3)];
     let judged = |bodies: &[Body]| {
-        let judge = Judge::new(&simulation(&parts), Known { parts: &parts, bodies });
+        let judge = Judge::new(&simulation(&parts), Known { parts: &parts, bodies, thickness: None });
         codes(judge.known()).join(" ")
     };
     assert_eq!(judged(&[soft(2e-3)]), UNLIKELY_UNIT);
@@ -422,7 +422,7 @@ fn a_resumed_run_finds_what_a_whole_one_does() {
     let history = History::Triangle { peak: 0.2, rise: 1.0, fall: 1.0 };
     let times = TimeGrid::Uniform { end: 2.0, steps: 20 };
     let simulation = Simulation { loading: loaded(Control::Load, history), times, ..simulation(&parts) };
-    let known = Known { parts: &parts, bodies: &[] };
+    let known = Known { parts: &parts, bodies: &[], thickness: None };
     let mut march = March::new(simulation.clone()).unwrap();
     let mut whole = Judge::new(&simulation, known);
     let mut second = Judge::new(&simulation, known);
@@ -446,4 +446,36 @@ fn a_resumed_run_finds_what_a_whole_one_does() {
     let found = whole.findings(&simulation);
     assert!(codes(&found).contains(&CONTACT_AT_BORDER));
     assert_eq!(second.findings(&simulation), found);
+}
+
+#[test]
+fn a_half_space_that_is_thinner_than_its_contact_needs_is_told() {
+    let parts = [sphere(1e-3)];
+    let rows = |thickness: f64| {
+        let simulation = simulation(&parts);
+        let known = Known { parts: &parts, bodies: &[], thickness: Some(thickness) };
+        let mut judge = Judge::new(&simulation, known);
+        let mut march = March::new(simulation).unwrap();
+        let mut radius: f64 = 0.0;
+        while let Some(step) = march.advance().unwrap() {
+            judge.see(&step, &step.row());
+            radius = radius.max((step.row().contact_area / std::f64::consts::PI).sqrt());
+        }
+        (judge.findings(march.simulation()), radius)
+    };
+    let (deep, radius) = rows(1.0);
+    assert!(deep.iter().all(|finding| finding.code != THIN_BODY), "{deep:?}");
+    assert!(rows(10.1 * radius).0.iter().all(|finding| finding.code != THIN_BODY));
+    let (found, _) = rows(5.0 * radius);
+    let thin = found.iter().find(|finding| finding.code == THIN_BODY).expect("a fifth of the thickness");
+    assert!(thin.is_warning() && thin.value == Some(radius) && thin.rows.is_some(), "{thin:?}");
+    assert!(thin.text.contains("about 20 %"), "{}", thin.text);
+    // A periodic domain of 1.6 times the thickness has waves that see what lies below.
+    let periodic = Simulation { boundary: Boundary::Periodic, ..simulation(&parts) };
+    let side = periodic.grid.size()[0];
+    for (thickness, told) in [(side / 1.6, true), (side / 1.4, false)] {
+        let known = Known { parts: &parts, bodies: &[], thickness: Some(thickness) };
+        let judge = Judge::new(&periodic, known);
+        assert_eq!(judge.known().iter().any(|finding| finding.code == THIN_BODY), told);
+    }
 }

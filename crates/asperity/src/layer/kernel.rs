@@ -3,8 +3,8 @@
 use ndarray::Array2;
 use ndarray::parallel::prelude::*;
 
+use super::Stack;
 use super::hankel::Smooth;
-use super::{Layer, Stack};
 use crate::error::{Error, Result};
 use crate::kernel::{HalfSpace, Kernel};
 
@@ -58,9 +58,9 @@ impl Layered {
         Ok(Layered { stacks, scale })
     }
 
-    /// The layers of all bodies.
-    pub fn layers(&self) -> impl Iterator<Item = &Layer> {
-        self.stacks.iter().flat_map(Stack::layers)
+    /// The bodies; their moduli have a common factor.
+    pub fn stacks(&self) -> &[Stack] {
+        &self.stacks
     }
 }
 

@@ -1,24 +1,31 @@
 //! Bodies: from samples of materials to what the pair of them is to the contact.
 
+use std::sync::Arc;
+
 use asperity::finding::{self, Finding};
+use asperity::layer::Layered;
 use asperity::material::{Body, Creep, Lateral, Material, ReducedTime, Shift, ThermalCreep, pair_hardness};
 use asperity::time::Plan;
 
 use super::Checks;
+use super::layer::{self, Part};
 use super::material::{Model, Sample};
 use crate::case::describe::MaterialReport;
 use crate::case::raw::{self, At};
 
 /// The bodies, and what the pair of them is to the contact.
 pub struct Pair {
+    /// What they consist of: each half-space, layer and base.
     pub bodies: Vec<Body>,
+    /// How the bodies yield in space, where they have layers.
+    pub layers: Option<Arc<Layered>>,
     /// Contact creep compliance of the bodies of constant temperature [1/Pa].
     pub creep: Creep,
     /// The bodies whose temperature changes.
     pub thermal: Vec<ThermalCreep>,
     /// Hardness of the softer body [Pa]; infinite without.
     pub hardness: f64,
-    /// Where the materials come from.
+    /// Where the materials come from, one for each of `bodies`.
     pub reports: Vec<MaterialReport>,
     /// Where fits are poor, and where the run goes beyond what is known of a material.
     pub findings: Vec<Finding>,
@@ -52,6 +59,7 @@ pub struct Course<'a> {
 pub fn pair(
     checks: &mut Checks<'_, '_>,
     raw: &[At<raw::Body>],
+    parts: &[Part<'_>],
     samples: &[Option<Sample>],
     course: &Course<'_>,
 ) -> Option<Pair> {
@@ -59,10 +67,10 @@ pub fn pair(
         checks.wrong(&third.span, "one of at most two bodies", Some("a missing second body is rigid"));
         return None;
     }
-    let samples: Vec<_> = raw.iter().zip(samples).collect();
+    let samples: Vec<_> = parts.iter().zip(samples).collect();
     let warmths: Vec<Option<Warmth>> = samples
         .iter()
-        .map(|(at, sample)| checks.core(&at.value.material.span, warmth(sample.as_ref()?, course)))
+        .map(|(part, sample)| checks.core(&part.material.span, warmth(sample.as_ref()?, course)))
         .collect();
     let clocks = warmths.iter().flatten().filter_map(Warmth::clock);
     let end = course.end.unwrap_or(0.0);
@@ -70,12 +78,12 @@ pub fn pair(
     let made: Vec<_> = samples
         .into_iter()
         .zip(warmths)
-        .enumerate()
-        .map(|(n, ((at, sample), warmth))| body(checks, n, at, sample.as_ref(), warmth, &plan))
+        .map(|((part, sample), warmth)| made(checks, part, sample.as_ref(), warmth, &plan))
         .collect();
     let made = made.into_iter().collect::<Option<Vec<Made>>>()?;
     let mut pair = Pair {
         bodies: Vec::new(),
+        layers: None,
         creep: Creep::default(),
         thermal: Vec::new(),
         hardness: f64::INFINITY,
@@ -83,8 +91,18 @@ pub fn pair(
         findings: Vec::new(),
         plan,
     };
+    let layered = raw.iter().any(|at| !at.value.layer.is_empty());
+    if layered {
+        let separated = layer::separated(checks, raw, parts, &made)?;
+        pair.layers = Some(Arc::new(separated.kernel));
+        match made.first().and_then(|made| made.clock.clone()) {
+            Some(clock) => pair.thermal.push(ThermalCreep { creep: separated.creep, clock }),
+            None => pair.creep = separated.creep,
+        }
+    }
     for made in made {
         match made.clock {
+            _ if layered => {}
             Some(clock) => pair.thermal.push(ThermalCreep { creep: made.creep, clock }),
             None => pair.creep = pair.creep.sum(&made.creep),
         }
@@ -96,39 +114,37 @@ pub fn pair(
     Some(pair)
 }
 
-/// One body, ready for the contact.
-struct Made {
-    body: Body,
+/// One body or layer, ready for the contact.
+pub struct Made {
+    pub body: Body,
     creep: Creep,
-    clock: Option<ReducedTime>,
+    pub clock: Option<ReducedTime>,
     report: MaterialReport,
     findings: Vec<Finding>,
 }
 
-fn body(
+fn made(
     checks: &mut Checks<'_, '_>,
-    n: usize,
-    at: &At<raw::Body>,
+    part: &Part<'_>,
     sample: Option<&Sample>,
     warmth: Option<Warmth>,
     plan: &Plan,
 ) -> Option<Made> {
-    let raw = &at.value;
-    let keys = [("poisson", raw.poisson.is_some()), ("bulk_modulus", raw.bulk_modulus.is_some())];
-    checks.exactly_one(&at.span, &keys)?;
-    let name = raw.name.clone().unwrap_or_else(|| format!("body {}", n + 1));
-    let lateral = match (raw.poisson, raw.bulk_modulus) {
+    let keys = [("poisson", part.poisson.is_some()), ("bulk_modulus", part.bulk_modulus.is_some())];
+    checks.exactly_one(part.span, &keys)?;
+    let name = part.name.clone();
+    let lateral = match (part.poisson, part.bulk_modulus) {
         (Some(ratio), _) => Lateral::Poisson(ratio.get()),
         (_, Some(modulus)) => Lateral::BulkModulus(modulus.get()),
         (None, None) => return None,
     };
     let (sample, warmth) = (sample?, warmth?);
     let window = warmth.window(plan);
-    let (reference, report, beyond) = reference(checks, &raw.material, sample, window)?;
+    let (reference, report, beyond) = reference(checks, part.material, sample, window)?;
     let findings = findings(&name, &report, window, beyond);
     let factor = warmth.constant_factor();
     let material = match factor {
-        Some(factor) if factor != 1.0 => checks.core(&raw.material.span, reference.stretched(factor))?,
+        Some(factor) if factor != 1.0 => checks.core(&part.material.span, reference.stretched(factor))?,
         _ => reference,
     };
     let clock = match warmth {
@@ -141,8 +157,8 @@ fn body(
         terms: material.creep().terms.len(),
         ..report
     };
-    let body = Body { name, material, lateral, hardness: raw.hardness.map(|hardness| hardness.get()) };
-    let creep = checks.core(&at.span, body.contact_creep())?;
+    let body = Body { name, material, lateral, hardness: part.hardness };
+    let creep = checks.core(part.span, body.contact_creep())?;
     Some(Made { body, creep, clock, report, findings })
 }
 

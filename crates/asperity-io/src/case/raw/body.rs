@@ -3,18 +3,28 @@
 use schemars::JsonSchema;
 use serde::Deserialize;
 
+use asperity::layer::Interface;
+
 use super::{At, Material};
 use crate::case::quantity::range::{Poisson, Positive};
-use crate::case::quantity::{Number, Pressure};
+use crate::case::quantity::{Length, Number, Pressure};
 
-/// A deformable half-space.
+/// A deformable body: a half-space, or layers on a half-space or on a rigid base.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Body {
     /// Name for messages and reports.
     #[schemars(example = &"PMMA")]
     pub name: Option<String>,
-    /// Poisson's ratio, constant in time (0.5 = incompressible); this or `bulk_modulus`.
+    /// What the layers lie on; "half-space" if not given. A rigid base has no material.
+    pub base: Option<BodyBase>,
+    /// Layers from the surface down; none if not given.
+    #[serde(default)]
+    pub layer: Vec<At<Layer>>,
+    /// Thickness of a body without layers, which is solved as a half-space: a finding says where it is too thin for that.
+    #[schemars(example = "50 mm")]
+    pub thickness: Option<At<Length<Positive>>>,
+    /// Poisson's ratio, constant in time (0.5 = incompressible); this or `bulk_modulus`. With layers: of the half-space below.
     #[schemars(example = 0.38)]
     pub poisson: Option<Number<Poisson>>,
     /// Bulk modulus, constant in time; this or `poisson`.
@@ -26,9 +36,40 @@ pub struct Body {
     /// Cut-off for the pressure in each cell, from a file. Of several hardnesses the smallest counts.
     #[schemars(example = serde_json::json!({ "path": "hardness.npy", "unit": "1 MPa" }))]
     pub hardness_file: Option<At<HardnessFile>>,
-    /// Linear viscoelastic material.
+    /// Linear viscoelastic material; needed unless the base is rigid. With layers: of the half-space below.
     #[schemars(example = serde_json::json!({ "model": "elastic", "young": "2.1 GPa" }))]
+    pub material: Option<At<Material>>,
+}
+
+/// What layers lie on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum BodyBase {
+    /// A half-space of the body's material.
+    #[default]
+    HalfSpace,
+    /// A base that does not yield.
+    Rigid,
+}
+
+/// A layer of a body.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Layer {
+    /// Thickness of the layer.
+    #[schemars(example = "10 mm")]
+    pub thickness: Length<Positive>,
+    /// Poisson's ratio, constant in time (0.5 = incompressible); this or `bulk_modulus`.
+    #[schemars(example = 0.49)]
+    pub poisson: Option<Number<Poisson>>,
+    /// Bulk modulus, constant in time, of an elastic layer; this or `poisson`.
+    #[schemars(example = "4 GPa")]
+    pub bulk_modulus: Option<Pressure<Positive>>,
+    /// Linear viscoelastic material.
+    #[schemars(example = serde_json::json!({ "model": "elastic", "young": "5 MPa" }))]
     pub material: At<Material>,
+    /// To what lies below; "bonded" if not given.
+    pub interface: Option<Interface>,
 }
 
 /// A number for each cell of the domain.

@@ -23,7 +23,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, IgnoredAny, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
-pub use body::{Body, HardnessFile};
+pub use body::{Body, BodyBase, HardnessFile, Layer};
 pub use leakage::{LeakDirection, Leakage};
 pub use load::{From, History, Load, Sine, Spacing, Stage, Table, Time, Until};
 pub use material::{

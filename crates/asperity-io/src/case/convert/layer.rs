@@ -1,0 +1,144 @@
+//! Bodies of layers: which materials they consist of, and what the layers are to the contact.
+
+use std::ops::Range;
+
+use asperity::Error;
+use asperity::layer::{BodyLayer, LayeredBody, Separated, separate};
+
+use super::Checks;
+use super::body::Made;
+use crate::case::quantity::range::{Poisson, Positive};
+use crate::case::quantity::{Number, Pressure};
+use crate::case::raw::{self, At, BodyBase};
+use crate::case::words::missing_key;
+
+/// Most layers of a body.
+const MOST: usize = 100;
+
+/// A material of the case: that of a half-space, of a layer, or of what layers lie on.
+pub struct Part<'a> {
+    /// Number of its body.
+    body: usize,
+    /// The table that describes it.
+    pub span: &'a Range<usize>,
+    /// How messages call it.
+    pub name: String,
+    pub material: &'a At<raw::Material>,
+    pub poisson: Option<Number<Poisson>>,
+    pub bulk_modulus: Option<Pressure<Positive>>,
+    /// Cut-off of the pressure on it [Pa], at the surface.
+    pub hardness: Option<f64>,
+}
+
+/// The materials of all bodies, each from the surface down.
+pub fn parts<'a>(checks: &mut Checks<'_, '_>, bodies: &'a [At<raw::Body>]) -> Vec<Part<'a>> {
+    let mut parts = Vec::new();
+    for (n, at) in bodies.iter().enumerate() {
+        let body = &at.value;
+        let name = body.name.clone().unwrap_or_else(|| format!("body {}", n + 1));
+        if body.layer.len() > MOST {
+            let message = format!("the body has {} layers, but may have {MOST}", body.layer.len());
+            checks.fault(&at.span, message, "fewer layers", None);
+            continue;
+        }
+        if let (Some(thickness), false) = (&body.thickness, body.layer.is_empty()) {
+            let message =
+                "a body with [[body.layer]] has no thickness of its own: its layers have".to_owned();
+            checks.fault(&thickness.span, message, "no such key", Some("delete the line"));
+        }
+        let first = parts.len();
+        for (k, layer) in body.layer.iter().enumerate() {
+            let raw::Layer { poisson, bulk_modulus, ref material, .. } = layer.value;
+            let name = format!("{name}, layer {}", k + 1);
+            parts.push(Part {
+                body: n,
+                span: &layer.span,
+                name,
+                material,
+                poisson,
+                bulk_modulus,
+                hardness: None,
+            });
+        }
+        match (body.base.unwrap_or_default(), &body.material) {
+            (BodyBase::HalfSpace, Some(material)) => {
+                let name = if body.layer.is_empty() { name } else { format!("{name}, base") };
+                let raw::Body { poisson, bulk_modulus, .. } = *body;
+                parts.push(Part {
+                    body: n,
+                    span: &at.span,
+                    name,
+                    material,
+                    poisson,
+                    bulk_modulus,
+                    hardness: None,
+                });
+            }
+            (BodyBase::HalfSpace, None) => checks.push(|text| missing_key(text, &at.span, "material")),
+            (BodyBase::Rigid, _) => rigid(checks, at),
+        }
+        if let Some(surface) = parts.get_mut(first) {
+            surface.hardness = body.hardness.map(|hardness| hardness.get());
+        }
+    }
+    parts
+}
+
+/// A rigid base has layers on it, and no material.
+fn rigid(checks: &mut Checks<'_, '_>, at: &At<raw::Body>) {
+    let body = &at.value;
+    let keys = [
+        ("material", body.material.is_some()),
+        ("poisson", body.poisson.is_some()),
+        ("bulk_modulus", body.bulk_modulus.is_some()),
+    ];
+    if let Some((key, _)) = keys.iter().find(|key| key.1) {
+        let message = format!("a body with base = \"rigid\" has no `{key}`: the base does not yield");
+        let help = "give it in [[body.layer]], or leave out base = \"rigid\" for layers on a half-space";
+        checks.fault(&at.span, message, "no such key", Some(help));
+    }
+    if body.layer.is_empty() {
+        let message =
+            "a body with base = \"rigid\" needs a [[body.layer]]: without one nothing yields".to_owned();
+        let help = "leave a rigid body out; for a half-space leave out base = \"rigid\"";
+        checks.fault(&at.span, message, "[[body.layer]]", Some(help));
+    }
+}
+
+/// What the bodies are to the contact, where space and time separate. `made` are the `parts`, in their order.
+pub fn separated(
+    checks: &mut Checks<'_, '_>,
+    raw: &[At<raw::Body>],
+    parts: &[Part<'_>],
+    made: &[Made],
+) -> Option<Separated> {
+    let all = raw.iter().enumerate().map(|(n, at)| {
+        let of_body =
+            parts.iter().zip(made).filter(|(part, _)| part.body == n).map(|(_, made)| made.body.clone());
+        let mut materials = of_body.collect::<Vec<_>>().into_iter();
+        let layers = at.value.layer.iter().zip(&mut materials).map(|(layer, material)| BodyLayer {
+            thickness: layer.value.thickness.get(),
+            interface: layer.value.interface.unwrap_or_default(),
+            material,
+        });
+        LayeredBody { layers: layers.collect(), base: materials.next() }
+    });
+    let all: Vec<LayeredBody> = all.collect();
+    let layered = raw.iter().find(|at| !at.value.layer.is_empty())?;
+    let one_clock = made.iter().all(|one| one.clock == made[0].clock);
+    let separated = match one_clock {
+        true => separate(&all),
+        false => Err(Error::invalid(
+            "temperature shift of the layers",
+            "not the same in all of them",
+            "the same law for all layers and bodies while the temperature changes: otherwise waves of different lengths creep \
+             differently, which is not solved yet",
+        )),
+    };
+    checks.core(&layered.span, separated)
+}
+
+/// Thickness of the thinnest body that is taken as a half-space [m], where the case gives it.
+pub fn thickness(bodies: &[At<raw::Body>]) -> Option<f64> {
+    bodies.iter().filter_map(|at| at.value.thickness.as_ref()).map(|at| at.value.get()).reduce(f64::min)
+}

@@ -1,0 +1,128 @@
+//! Bodies of layers in case files: what they come to, and what is refused.
+
+use std::path::Path;
+
+use asperity::kernel::Kernel;
+use asperity::layer::{Base, Interface};
+use asperity_io::case::{Case, CaseErrors};
+
+const TREAD: &str = r#"[domain]
+cells = [32, 32]
+size = ["40 mm", "40 mm"]
+[[surface]]
+kind = "sphere"
+radius = "100 mm"
+[[body]]
+name = "tread"
+base = "rigid"
+hardness = "10 MPa"
+[[body.layer]]
+thickness = "10 mm"
+poisson = 0.49
+material = { model = "zener", shear = "5 MPa", shear_kelvin = "2 MPa", retardation_time = "10 s" }
+[[body.layer]]
+thickness = "5 mm"
+poisson = 0.4
+material = { model = "zener", shear = "10 MPa", shear_kelvin = "4 MPa", retardation_time = "10 s" }
+interface = "slip"
+[load]
+control = "load"
+history = { kind = "step", value = "5 N" }
+[time]
+end = "1 s"
+steps = 1
+"#;
+
+fn parse(text: &str) -> Result<Case, CaseErrors> {
+    Case::parse(text, Path::new("."), &[])
+}
+
+/// Replaces `old` by `new`; the only error has the key and the words.
+#[track_caller]
+fn says(old: &str, new: &str, key: &str, words: &[&str]) {
+    assert!(TREAD.contains(old), "{old:?} is not in the case");
+    let errors = parse(&TREAD.replacen(old, new, 1)).expect_err("it is refused").errors;
+    let shown: Vec<String> = errors.iter().map(ToString::to_string).collect();
+    assert_eq!(errors[0].key, key, "{shown:?}");
+    for word in words {
+        assert!(shown[0].contains(word), "{:?} lacks {word:?}", shown[0]);
+    }
+}
+
+#[test]
+fn layers_become_a_stack_from_the_surface_down() {
+    let case = parse(TREAD).unwrap_or_else(|errors| panic!("{errors}"));
+    let layers = case.layers.as_ref().unwrap();
+    let stack = &layers.stacks()[0];
+    assert_eq!(stack.base(), Base::Rigid);
+    let [top, below] = stack.layers() else { panic!("{stack:?}") };
+    assert_eq!((top.thickness, top.poisson, top.interface), (10e-3, 0.49, Interface::Bonded));
+    assert_eq!((below.thickness, below.poisson, below.interface), (5e-3, 0.4, Interface::Slip));
+    assert!((below.shear / top.shear - 2.0).abs() < 1e-12);
+    // C(0) = (1 - nu)/(2 G) of the surface.
+    assert!((case.creep.instantaneous / (0.51 / 10e6) - 1.0).abs() < 1e-14);
+    assert_eq!(case.hardness, 10e6);
+    let names: Vec<&str> = case.bodies.iter().map(|body| body.name.as_str()).collect();
+    assert_eq!(names, ["tread, layer 1", "tread, layer 2"]);
+    let report = case.describe().layers.unwrap();
+    assert_eq!(report.bodies, ["10.00 mm bonded to 5.000 mm slipping on a rigid base"]);
+    // The longest wave is carried by the base, the shortest sees the top layer.
+    let [longest, shortest] = report.waves.map(|wave| wave.instantaneous_modulus.unwrap());
+    assert!(longest > 1.5 * shortest && (shortest * case.creep.instantaneous - 1.0).abs() < 1e-3);
+    let simulation = case.simulation().unwrap_or_else(|errors| panic!("{errors}"));
+    assert_eq!(simulation.kernel.symbol(100.0, 0.0), layers.symbol(100.0, 0.0));
+}
+
+#[test]
+fn a_base_of_the_same_law_and_a_second_body_may_be_half_spaces() {
+    let material = "material = { model = \"zener\", shear = \"50 MPa\", shear_kelvin = \"20 MPa\", retardation_time = \"10 s\" }";
+    let coated = TREAD.replace("base = \"rigid\"", &format!("poisson = 0.3\n{material}"));
+    let pair = coated.replace("[load]", &format!("[[body]]\npoisson = 0.2\n{material}\n[load]"));
+    let case = parse(&pair).unwrap_or_else(|errors| panic!("{errors}"));
+    let [coated, plain] = case.layers.as_ref().unwrap().stacks() else { panic!("two bodies") };
+    assert!(matches!(coated.base(), Base::HalfSpace { poisson: 0.3, .. }) && coated.layers().len() == 2);
+    assert!(matches!(plain.base(), Base::HalfSpace { poisson: 0.2, .. }) && plain.layers().is_empty());
+    assert!((case.creep.instantaneous / (0.51 / 10e6 + 0.8 / 100e6) - 1.0).abs() < 1e-14);
+    let names: Vec<&str> = case.bodies.iter().map(|body| body.name.as_str()).collect();
+    assert_eq!(names, ["tread, layer 1", "tread, layer 2", "tread, base", "body 2"]);
+}
+
+#[test]
+fn what_is_wrong_with_layers_is_named() {
+    says("\"10 mm\"", "\"0 mm\"", "body[0].layer[0].thickness", &["is \"0 mm\""]);
+    says("\"10 mm\"", "\"-1 mm\"", "body[0].layer[0].thickness", &["-1 mm"]);
+    says("\"10 mm\"", "nan", "body[0].layer[0].thickness", &["nan"]);
+    says("\"10 mm\"", "\"10 MPa\"", "body[0].layer[0].thickness", &["length"]);
+    says("poisson = 0.49\n", "", "body[0].layer[0]", &["needs `poisson` or `bulk_modulus`"]);
+    says("poisson = 0.49\n", "poisson = 0.51\n", "body[0].layer[0].poisson", &["at most 0.5"]);
+    says("interface = \"slip\"", "interface = \"glued\"", "body[0].layer[1].interface", &["bonded", "slip"]);
+    says("base = \"rigid\"", "base = \"hard\"", "body[0].base", &["half-space", "rigid"]);
+    says("base = \"rigid\"\n", "", "body[0].material", &["is missing"]);
+    says("base = \"rigid\"", "base = \"rigid\"\npoisson = 0.3", "body[0]", &["no `poisson`"]);
+    // Layers that creep differently do not separate.
+    says(
+        "\"10 s\" }\n[[body.layer]]",
+        "\"11 s\" }\n[[body.layer]]",
+        "body[0]",
+        &["tread, layer 2", "not a multiple"],
+    );
+    says(
+        "poisson = 0.49",
+        "bulk_modulus = \"2 GPa\"",
+        "body[0]",
+        &["bulk modulus of tread, layer 1", "Poisson"],
+    );
+    says("[load]", "[stress]\n[load]", "stress", &["not computed for bodies of layers"]);
+    // A cell of 1.25 mm.
+    let errors =
+        parse(&TREAD.replace("\"10 mm\"", "\"0.3 mm\"")).unwrap().simulation().expect_err("too coarse");
+    assert!(errors.to_string().contains("4 times the thickness of the top layer"), "{errors}");
+}
+
+#[test]
+fn a_rigid_base_needs_a_layer() {
+    let bare = "[domain]\ncells = [8, 8]\nsize = [1, 1]\n[[surface]]\nkind = \"sphere\"\nradius = 9\n[[body]]\nbase = \"rigid\"\n\
+                [load]\ncontrol = \"load\"\nhistory = { kind = \"step\", value = 1 }\n[time]\nend = 1\nsteps = 1\n";
+    let errors = parse(bare).expect_err("nothing yields").errors;
+    assert!(errors[0].to_string().contains("needs a [[body.layer]]"), "{}", errors[0]);
+}

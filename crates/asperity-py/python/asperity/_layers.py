@@ -1,0 +1,132 @@
+"""Bodies of layers: a tread on its belt, a gasket on its flange, a gel on glass, a coating on steel (docs/layers.md)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._arrays import Floats, line, number
+from ._core import CaseError
+from ._materials import Material
+
+#: Thickness and interface of each layer, and whether a half-space lies below.
+Stack = tuple[list[tuple[float, str]], bool]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Layer:
+    """A layer of a body.
+
+    `thickness` in m; `material` as of a half-space, with `poisson` instead of its own where given; `interface` to what lies
+    below: "bonded", or "slip" (it slides without friction).
+    """
+
+    thickness: float
+    material: Material
+    poisson: float | None = None
+    interface: str = "bonded"
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.material, Material):
+            raise CaseError(f"material of a layer is {self.material!r}, but must be a material, such as asperity.Elastic(...)")
+        thickness = number("thickness of a layer", self.thickness)
+        if not (np.isfinite(thickness) and thickness > 0.0):
+            raise CaseError(f"thickness of a layer is {self.thickness!r} m, but must be greater than 0 m and finite")
+        if self.interface not in ("bonded", "slip"):
+            raise CaseError(f"interface is {self.interface!r}, but must be 'bonded' or 'slip'")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Body:
+    """A body of layers.
+
+    `layers` from the surface down, on a `base`: "rigid", or the material of a half-space. `hardness` [Pa] cuts off the pressure
+    on the surface. All layers (and the base, and a second body) must have the same relative creep, or be elastic.
+
+    >>> import asperity as asp
+    >>> gel = asp.Elastic(young=10e3, poisson=0.49)
+    >>> sample = asp.Body(layers=[asp.Layer(thickness=5e-6, material=gel)], base="rigid")
+    >>> sphere = asp.Surface.sphere(cells=(64, 64), size=(8e-6, 8e-6), radius=10e-6)
+    >>> thin, thick = (asp.solve(sphere, body, approach=0.2e-6, times=[1.0]).load[-1] for body in (sample, gel))
+    >>> bool(1.3 < thin / thick < 1.6)                         # the glass below stiffens the gel
+    True
+    """
+
+    layers: Sequence[Layer]
+    base: Material | str = "rigid"
+    hardness: float | None = None
+    name: str | None = field(default=None)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "layers", tuple(self.layers))
+        if not self.layers or not all(isinstance(layer, Layer) for layer in self.layers):
+            raise CaseError("layers is a list of asperity.Layer, one at least, from the surface down")
+        if not isinstance(self.base, Material) and self.base != "rigid":
+            raise CaseError(f"base is {self.base!r}, but must be 'rigid', or the material of the half-space below")
+
+    def _parts(self) -> tuple[list[_core.Body], Stack]:
+        """The materials from the surface down, and how they lie on each other."""
+        prefix = f"{self.name}, " if self.name else ""
+        materials = [_named(layer.material, f"{prefix}layer {n}", layer.poisson) for n, layer in enumerate(self.layers, 1)]
+        if self.hardness is not None:
+            materials[0] = type(materials[0])(**{**materials[0]._given, "hardness": self.hardness})
+        if isinstance(self.base, Material):
+            materials.append(_named(self.base, f"{prefix}base", None))
+        stack = [(float(layer.thickness), layer.interface) for layer in self.layers]
+        return [material._body for material in materials], (stack, isinstance(self.base, Material))
+
+
+def _named(material: Material, name: str, poisson: float | None) -> Material:
+    given = {"name": name, **material._given}
+    if poisson is not None:
+        given = {**given, "poisson": poisson, "bulk_modulus": None}
+    return type(material)(**given)
+
+
+def parts_of(body: Material | Body) -> tuple[list[_core.Body], Stack]:
+    """The materials of a body from the surface down, and how they lie on each other."""
+    return body._parts() if isinstance(body, Body) else ([body._body], ([], True))
+
+
+def hardness_of(body: Material | Body) -> float | None:
+    """The pressure that the surface of a body bears [Pa]."""
+    if isinstance(body, Material):
+        return body._given.get("hardness")
+    return body.hardness if body.hardness is not None else body.layers[0].material._given.get("hardness")
+
+
+def with_hardness(body: Material | Body, hardness: float) -> Material | Body:
+    """The same body with another hardness."""
+    if isinstance(body, Body):
+        return replace(body, hardness=hardness)
+    given: dict[str, Any] = {**body._given, "hardness": hardness}
+    return type(body)(**given)
+
+
+def layer_compliance(q: npt.ArrayLike, body: Material | Body, *, time: float = 0.0) -> Floats:
+    """C(q) [m/Pa]: the displacement of the surface under a wave of pressure of unit amplitude.
+
+    `q` are wave numbers [rad/m], of any shape; with a `time` [s] after 0 the pressure is held since 0. The half-space that
+    yields as much has the contact modulus 2/(q C).
+
+    >>> import asperity as asp
+    >>> rubber = asp.Elastic(shear=1e6, poisson=0.5)
+    >>> gasket = asp.Body(layers=[asp.Layer(thickness=2e-3, material=rubber)])
+    >>> q = 50.0                                                # long waves: d^3 q^2/(3 G)
+    >>> round(float(asp.layer_compliance(q, gasket) / (2e-3**3 * q**2 / 3e6)), 2)
+    0.98
+    """
+    if not isinstance(body, (Material, Body)):
+        raise CaseError(f"body is {body!r}, but must be an asperity.Body or a material")
+    at = np.asarray(q, dtype=np.float64)
+    waves = line("wave numbers", at.reshape(-1))
+    if not (np.isfinite(waves) & (waves > 0.0)).all():
+        raise CaseError("wave numbers must be finite and greater than 0 rad/m")
+    bodies, stack = parts_of(body)
+    values: Floats = _core.layer_compliance(waves, bodies, stack, number("time", time)).reshape(at.shape)
+    return values

@@ -1,0 +1,65 @@
+//! Half-spaces of finite thickness.
+//!
+//! A body of thickness d on a rigid base, bonded, is stiffer than a half-space by about a/d under a contact of radius a
+//! (a sphere on a layer with Poisson's ratio 0.3 carries 1.09 times the load at a/d = 0.1 and 1.32 times at 0.3, at the same
+//! approach), and under waves longer than 1.5 d by more than 2 % (docs/layers.md).
+
+use super::words::{digits, rows, si};
+use super::{Finding, THIN_BODY};
+use crate::grid::Grid;
+
+/// Contact radius over thickness.
+const WIDEST: f64 = 0.1;
+/// Length of a wave over thickness.
+const LONGEST: f64 = 1.5;
+const ADVICE: &str = "Describe it by [[body.layer]] (base = \"rigid\", or the material below).";
+
+/// A contact of that radius on a body of that thickness \[m\], called "The expected contact" or as `words` say.
+pub fn thin_body(words: &str, radius: f64, thickness: f64) -> Option<Finding> {
+    (radius > WIDEST * thickness).then(|| {
+        let text = format!(
+            "{words} has a radius of {}, and the body is {} thick: on a rigid base it would be stiffer than the half-space by \
+             about {} %. {ADVICE}",
+            si(radius, "m"),
+            si(thickness, "m"),
+            digits((100.0 * radius / thickness).round()),
+        );
+        Finding::warning(THIN_BODY, radius, WIDEST * thickness, text)
+    })
+}
+
+/// A periodic domain whose longest wave sees what lies below the body.
+pub(super) fn long_waves(grid: &Grid, thickness: f64) -> Option<Finding> {
+    let longest = grid.size().into_iter().fold(0.0, f64::max);
+    (longest > LONGEST * thickness).then(|| {
+        let text = format!(
+            "The longest wave of the domain, {}, is longer than {LONGEST} times the thickness of the body, {}: what lies below \
+             the body changes its response. {ADVICE}",
+            si(longest, "m"),
+            si(thickness, "m"),
+        );
+        Finding::warning(THIN_BODY, longest, LONGEST * thickness, text)
+    })
+}
+
+/// The largest contact of a run, and the rows whose contact is too wide.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Widest {
+    radius: f64,
+    rows: Option<[usize; 2]>,
+}
+
+impl Widest {
+    pub(super) fn see(&mut self, index: usize, area: f64, thickness: f64) {
+        let radius = (area / std::f64::consts::PI).sqrt();
+        self.radius = self.radius.max(radius);
+        if radius > WIDEST * thickness {
+            self.rows = Some(self.rows.map_or([index; 2], |[first, _]| [first, index]));
+        }
+    }
+
+    pub(super) fn finding(&self, thickness: f64) -> Option<Finding> {
+        let at = self.rows?;
+        Some(thin_body(&format!("In {} the contact", rows(at)), self.radius, thickness)?.at(at))
+    }
+}

@@ -13,6 +13,9 @@ const WIDE: f64 = 3.0;
 
 /// The stress at a stored instant: what the result holds, or the largest values of its first body.
 pub(super) fn stress(reader: &Reader, at: At) -> Result<Figure, PlotError> {
+    if reader.header().setup.contains_key("layer_separable") {
+        return Err(PlotError::Layers(reader.path().to_owned()));
+    }
     let plan =
         StressPlan::for_result(reader).ok_or_else(|| PlotError::NoPoisson(reader.path().to_owned()))?;
     let stored = Below::of(reader)?;

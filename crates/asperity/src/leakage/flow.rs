@@ -124,8 +124,8 @@ impl Channel {
         for j in 0..m {
             network.ground[j] += inlet[j];
             network.ground[(n - 1) * m + j] += outlet[j];
-            b[j] = inlet[j];
         }
+        b[..m].copy_from_slice(&inlet[..m]);
         Channel { network, inlet, outlet, b }
     }
 

@@ -12,7 +12,7 @@ use netcdf_reader::{NcAttrValue, NcFile, NcFormat, NcOpenOptions, NcType, NcVari
 use super::finish::{Lateral, Measured, Unit, choose};
 use super::unit::{LoneA, metres};
 use super::unpack::most_unpacked;
-use super::{Format, Problem, grid};
+use super::{Format, Problem, foreign, grid};
 
 /// What NetCDF writes where a variable was never written.
 const DEFAULT_FILL: f64 = 9.969_209_968_386_869e36;
@@ -28,6 +28,7 @@ pub(super) fn detect(bytes: &[u8]) -> Option<Format> {
 
 /// Reads the variable asked for, and tells NetCDF-4 from other HDF5.
 pub(super) fn read_netcdf(bytes: &[u8], channel: Option<&str>) -> Result<(Format, Measured), Problem> {
+    foreign::refuse_look_alikes(bytes)?;
     let most = usize::try_from(most_unpacked(bytes.len())).unwrap_or(usize::MAX);
     let options = NcOpenOptions { max_read_bytes: most, max_chunk_bytes: most, ..NcOpenOptions::default() };
     let file = NcFile::from_bytes_with_options(bytes, options).map_err(|e| broken("the file", e))?;

@@ -66,8 +66,8 @@ pub(super) fn refuse_look_alikes(bytes: &[u8]) -> Result<(), Problem> {
 fn foreign(name: &str, way: Way, export: &str) -> Problem {
     let elsewhere = match way {
         SurfaceTopography => {
-            "in Python, asperity.Surface.read reads it if the package SurfaceTopography is installed \
-             (pip install SurfaceTopography), or "
+            "Python's asperity.Surface.read reads it where the package SurfaceTopography is installed \
+             (pip install SurfaceTopography; .write(\"surface.npz\") keeps it for cases), or "
         }
         Gwyddion => "open it in Gwyddion (gwyddion.net) and save it as .gwy, or ",
         Export => "",

@@ -153,14 +153,17 @@ fn x3p_is_read_masked_as_a_list_and_in_layers() {
 fn gwy_channels_of_heights_come_in_their_order_with_units_and_masks() {
     let bytes = samples::gwy();
     let surface = read(&bytes);
-    // The amplitude is no height.
-    assert_eq!(surface.channels, ["Height", "Height (back)"]);
+    // The amplitude is the first channel, but no height.
+    assert_eq!(surface.channels, ["Amplitude", "Height", "Height (back)"]);
     assert_map(&surface, Format::Gwy, NM, [6e-6, 4e-6], true);
     assert_eq!(surface.metadata, [("Tip".to_owned(), "sharp".to_owned())]);
     assert_map(&channel(&bytes, "height (BACK)"), Format::Gwy, 10.0 * NM, [6e-6, 4e-6], false);
-    let wanted = ReadOptions { channel: Some("Amplitude".into()), ..Default::default() };
-    let error = read_bytes(&bytes, &wanted).unwrap_err().to_string();
-    assert!(error.contains("\"Amplitude\"") && error.contains("\"Height (back)\""), "{error}");
+    assert_map(&channel(&bytes, "2"), Format::Gwy, 10.0 * NM, [6e-6, 4e-6], false);
+    let wanted = |name: &str| ReadOptions { channel: Some(name.into()), ..Default::default() };
+    let error = read_bytes(&bytes, &wanted("Current")).unwrap_err().to_string();
+    assert!(error.contains("\"Current\"") && error.contains("2: \"Height (back)\""), "{error}");
+    let error = read_bytes(&bytes, &wanted("Amplitude")).unwrap_err().to_string();
+    assert!(error.contains("\"Amplitude\"") && error.contains("\"V\""), "{error}");
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use asperity::Error;
 use asperity_io::case::CaseErrors;
 use asperity_io::session::RunError;
+use asperity_io::topography::{Problem, TopographyError};
 use pyo3::create_exception;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -19,6 +20,13 @@ create_exception!(
     PyRuntimeError,
     "A solve stopped before it reached its tolerance. Attributes: residual, tolerance, certificate, iterations, time \
      (seconds, None outside of a march), and best: the best state that was found."
+);
+
+create_exception!(
+    asperity,
+    FormatError,
+    PyOSError,
+    "The file belongs to a format that is not read; the message names it and says what to do."
 );
 
 /// An error of the numerics.
@@ -52,6 +60,14 @@ pub fn run(py: Python<'_>, error: RunError) -> PyErr {
         RunError::Case(errors) => case(errors),
         RunError::Solve { source, .. } => raised(py, source),
         error => PyOSError::new_err(error.to_string()),
+    }
+}
+
+/// A measured surface that cannot be read.
+pub fn topography(error: TopographyError) -> PyErr {
+    match &error.problem {
+        Problem::Unrecognised | Problem::Foreign { .. } => FormatError::new_err(error.to_string()),
+        _ => file(error),
     }
 }
 

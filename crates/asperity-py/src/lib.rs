@@ -26,7 +26,7 @@ mod _core {
     #[pymodule_export]
     use super::cycles::cycles_of;
     #[pymodule_export]
-    use super::error::{CaseError, ConvergenceError};
+    use super::error::{CaseError, ConvergenceError, FormatError};
     #[pymodule_export]
     use super::fit::{fit, fit_file};
     #[pymodule_export]

@@ -16,7 +16,7 @@ use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::error::{CaseError, file, raised};
+use crate::error::{CaseError, file, raised, topography as topography_error};
 use crate::wait::detached;
 
 type Heights<'py> = Bound<'py, PyArray2<f64>>;
@@ -124,7 +124,7 @@ pub fn read_surface<'py>(
     channel: Option<String>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let options = ReadOptions { size, height_unit, channel, ..ReadOptions::default() };
-    let topography = detached(py, || read(&path, &options))?.map_err(file)?;
+    let topography = detached(py, || read(&path, &options))?.map_err(topography_error)?;
     let out = PyDict::new(py);
     out.set_item("format", topography.format.name())?;
     out.set_item("history", topography.history().collect::<Vec<_>>())?;

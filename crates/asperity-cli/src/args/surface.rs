@@ -148,7 +148,7 @@ pub struct SurfaceFile {
     /// Unit of the heights, if the file does not state it: --height-unit um
     #[arg(long, value_name = "U")]
     pub height_unit: Option<String>,
-    /// Name or number (from 0) of the channel, if the file has several
+    /// Name or number (from 0) of the channel, if the file has several; `surface info` lists them [default: the first with heights]
     #[arg(long)]
     pub channel: Option<String>,
 }

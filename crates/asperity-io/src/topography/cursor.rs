@@ -68,6 +68,7 @@ impl<'a> Cursor<'a> {
     number!(i16, i16, "Two bytes with a sign.");
     number!(u32, u32, "Four bytes without a sign.");
     number!(i32, i32, "Four bytes with a sign.");
+    number!(u64, u64, "Eight bytes without a sign.");
     number!(f32, f32, "IEEE 754 binary32.");
     number!(f64, f64, "IEEE 754 binary64.");
 }

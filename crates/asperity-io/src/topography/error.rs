@@ -27,9 +27,18 @@ pub enum Problem {
     /// The content belongs to none of the formats.
     #[error(
         "the content is none of the known formats (text, XYZ, CSV, NPY, NPZ, NetCDF, HDF5, SDF, BCR, X3P, SUR, \
-         GWY, AL3D, OPD); export it from the instrument's software as X3P, SDF or text"
+         MNT, GWY, AL3D, OPD, Nanoscope, MetroPro, PLU, IBW, NID, FRT); export it from the instrument's software as \
+         X3P, SDF or text"
     )]
     Unrecognised,
+    /// The content belongs to a known format that is not read.
+    #[error("this format is not read: {name}; {instead}")]
+    Foreign {
+        /// Format and instrument.
+        name: String,
+        /// What to do.
+        instead: String,
+    },
     /// The file states no physical size, or one without a unit.
     #[error(
         "the {format} file holds no physical size{detail}; give the lengths along x and y (`size`, --size A,B)"

@@ -2,6 +2,7 @@
 
 use ndarray::Array2;
 
+use super::unit::{LoneA, metres};
 use super::{Format, Problem, ReadOptions, Topography, grid};
 
 /// What a reader found.
@@ -111,6 +112,37 @@ fn check_options(options: &ReadOptions) -> Result<(), Problem> {
             expected: "metres per unit, greater than 0",
         }),
         _ => Ok(()),
+    }
+}
+
+/// The channel asked for by name (any case) or number; by default the first of heights, and without one the first.
+///
+/// A length is not always a height (the deflection of a cantilever is one too): names decide first.
+pub(super) fn choose_heights(
+    format: Format,
+    names: &[String],
+    unit: impl Fn(usize) -> Unit,
+    wanted: Option<&str>,
+) -> Result<usize, Problem> {
+    const NAMES: [&str; 6] = ["height", "zsensor", "z-axis", "topo", "elevation", "relief"];
+    let first = choose(format, names, wanted)?;
+    if wanted.is_some() {
+        return Ok(first);
+    }
+    let lengths = || (0..names.len()).filter(|i| matches!(unit(*i), Unit::Metres(_)));
+    let is_named = |i: &usize| {
+        let name = names[*i].to_lowercase();
+        NAMES.iter().any(|word| name.contains(word))
+    };
+    Ok(lengths().find(is_named).or_else(|| lengths().next()).unwrap_or(first))
+}
+
+/// The unit with this label; no label is no unit.
+pub(super) fn unit_of(label: &str, lone_a: LoneA) -> Unit {
+    match (metres(label, lone_a), label.trim()) {
+        (Some(metres), _) => Unit::Metres(metres),
+        (None, "") => Unit::Unstated,
+        (None, label) => Unit::Other(label.to_owned()),
     }
 }
 

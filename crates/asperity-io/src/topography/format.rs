@@ -2,12 +2,14 @@
 
 use std::{fmt, str::FromStr};
 
-use super::{al3d, bcr, gwy, netcdf, opd, sdf, sur, text, unpack};
+use super::{
+    al3d, bcr, compound, frt, gwy, ibw, metropro, nanoscope, netcdf, nid, opd, plu, sdf, sur, text, unpack,
+};
 
 /// A file format.
 ///
 /// Its name, as `Display` writes it and `FromStr` takes it, is the usual ending of the file name; text matrices are
-/// `asc`.
+/// `asc`, Nanoscope files (whose names end in .spm or a number too) `di`, MetroPro files (.dat) `metropro`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Format {
@@ -35,6 +37,20 @@ pub enum Format {
     Al3d,
     /// Wyko.
     Opd,
+    /// Digital Instruments, Veeco and Bruker Nanoscope.
+    Nanoscope,
+    /// Zygo MetroPro.
+    MetroPro,
+    /// Sensofar PLU and APX.
+    Plu,
+    /// MountainsMap document.
+    Mnt,
+    /// Igor Pro binary wave (Asylum Research).
+    Ibw,
+    /// Nanosurf.
+    Nid,
+    /// FRT MicroProf.
+    Frt,
     /// NetCDF, classic or NetCDF-4.
     NetCdf,
     /// Other HDF5.
@@ -43,7 +59,7 @@ pub enum Format {
 
 impl Format {
     /// Every format.
-    pub const ALL: [Format; 14] = [
+    pub const ALL: [Format; 21] = [
         Format::Text,
         Format::Csv,
         Format::Xyz,
@@ -56,6 +72,13 @@ impl Format {
         Format::Gwy,
         Format::Al3d,
         Format::Opd,
+        Format::Nanoscope,
+        Format::MetroPro,
+        Format::Plu,
+        Format::Mnt,
+        Format::Ibw,
+        Format::Nid,
+        Format::Frt,
         Format::NetCdf,
         Format::Hdf5,
     ];
@@ -75,6 +98,13 @@ impl Format {
             Format::Gwy => "gwy",
             Format::Al3d => "al3d",
             Format::Opd => "opd",
+            Format::Nanoscope => "di",
+            Format::MetroPro => "metropro",
+            Format::Plu => "plu",
+            Format::Mnt => "mnt",
+            Format::Ibw => "ibw",
+            Format::Nid => "nid",
+            Format::Frt => "frt",
             Format::NetCdf => "nc",
             Format::Hdf5 => "h5",
         }
@@ -95,6 +125,10 @@ impl FromStr for Format {
         let lower = match lower.as_str() {
             "text" | "txt" | "matrix" => "asc",
             "bcrf" => "bcr",
+            "spm" | "nanoscope" => "di",
+            "dat" => "metropro",
+            "apx" => "plu",
+            "ezd" => "nid",
             "netcdf" => "nc",
             "hdf5" => "h5",
             other => other,
@@ -128,12 +162,28 @@ fn detect_plain(bytes: &[u8]) -> Option<Format> {
         Some(Format::Al3d)
     } else if opd::is_opd(bytes) {
         Some(Format::Opd)
+    } else if nanoscope::is_nanoscope(bytes) {
+        Some(Format::Nanoscope)
+    } else if metropro::is_metropro(bytes) {
+        Some(Format::MetroPro)
+    } else if compound::is_compound(bytes) {
+        // Other documents are refused by the reader.
+        Some(Format::Mnt)
+    } else if ibw::is_ibw(bytes) {
+        Some(Format::Ibw)
+    } else if nid::is_nid(bytes) {
+        Some(Format::Nid)
+    } else if frt::is_frt(bytes) {
+        Some(Format::Frt)
     } else if sdf::is_sdf(bytes) {
         Some(Format::Sdf)
     } else if bcr::is_bcr(bytes) {
         Some(Format::Bcr)
     } else if let Some(format) = netcdf::detect(bytes) {
         Some(format)
+    } else if plu::is_plu(bytes) {
+        // The least certain sign: there is no signature.
+        Some(Format::Plu)
     } else {
         text::detect(bytes)
     }

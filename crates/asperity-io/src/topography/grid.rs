@@ -56,6 +56,26 @@ impl Layout {
         what: &str,
         value: impl Fn(f64) -> f64 + Sync,
     ) -> Result<Array2<f64>, Problem> {
+        self.read(bytes, what, false, value)
+    }
+
+    /// The map of a file whose lines are in the order of falling y; otherwise as [`map`](Self::map).
+    pub(super) fn map_from_bottom(
+        self,
+        bytes: &[u8],
+        what: &str,
+        value: impl Fn(f64) -> f64 + Sync,
+    ) -> Result<Array2<f64>, Problem> {
+        self.read(bytes, what, true, value)
+    }
+
+    fn read(
+        self,
+        bytes: &[u8],
+        what: &str,
+        from_bottom: bool,
+        value: impl Fn(f64) -> f64 + Sync,
+    ) -> Result<Array2<f64>, Problem> {
         let [nx, ny] = self.points;
         points(nx, ny)?;
         let line = nx.saturating_mul(self.kind.width() as u64);
@@ -67,6 +87,7 @@ impl Layout {
         let (nx, ny, stride) = (nx as usize, ny as usize, self.stride as usize);
         Ok(with_decoder!(self.kind, self.order, |WIDTH, decode| {
             transposed(nx, ny, |y, columns, out| {
+                let y = if from_bottom { ny - 1 - y } else { y };
                 let line = &bytes[y * stride..][columns.start * WIDTH..columns.end * WIDTH];
                 for (number, out) in line.as_chunks::<WIDTH>().0.iter().zip(out) {
                     *out = value(decode(*number));
@@ -162,6 +183,9 @@ mod tests {
             let error = layout.map(&bytes[1..], "the map", |v| v).unwrap_err();
             assert!(matches!(error, Problem::Truncated { needed: 318, available: 317, .. }), "{error}");
         }
+        let layout = Layout::dense([2, 3], Kind::U8, Order::Little);
+        let map = layout.map_from_bottom(&[4, 5, 2, 3, 0, 1], "the map", |v| v).unwrap();
+        assert!(map.indexed_iter().all(|((x, y), v)| *v == (2 * y + x) as f64), "{map}");
         let absurd = Layout::dense([u64::MAX, 1], Kind::F64, Order::Big);
         assert!(absurd.map(&[], "the map", |v| v).is_err());
     }

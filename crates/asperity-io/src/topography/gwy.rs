@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 use ndarray::Array2;
 
 use super::cursor::{Cursor, text};
-use super::finish::{Lateral, Measured, Unit, choose};
+use super::finish::{Lateral, Measured, Unit, choose_heights};
 use super::grid::Layout;
 use super::sample::{Kind, Order};
 use super::unit::{LoneA, metres};
@@ -38,11 +38,7 @@ pub(super) fn read_gwy(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
         Some(Value::Object(field)) if field.kind == b"GwyDataField" => Some(field),
         _ => None,
     };
-    // Channels of heights; all channels where none has a unit of length.
-    let all: Vec<(u32, &Object)> = numbers.iter().filter_map(|n| Some((*n, field(*n, "data")?))).collect();
-    let heights: Vec<_> =
-        all.iter().filter(|(_, f)| matches!(f.unit("si_unit_z"), Unit::Metres(_))).copied().collect();
-    let fields = if heights.is_empty() { all } else { heights };
+    let fields: Vec<(u32, &Object)> = numbers.iter().filter_map(|n| Some((*n, field(*n, "data")?))).collect();
     let names: Vec<String> = fields
         .iter()
         .map(|(n, _)| match container.get(&format!("/{n}/data/title")) {
@@ -50,7 +46,7 @@ pub(super) fn read_gwy(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
             _ => format!("channel {n}"),
         })
         .collect();
-    let index = choose(Format::Gwy, &names, channel)?;
+    let index = choose_heights(Format::Gwy, &names, |i| fields[i].1.unit("si_unit_z"), channel)?;
     let (n, data) = fields[index];
 
     let mut heights = data.map()?;

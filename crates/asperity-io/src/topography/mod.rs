@@ -17,20 +17,36 @@
 //! | AL3D | Alicona |
 //! | OPD | Wyko |
 //! | BCR, BCRF | Image Metrology |
+//! | Nanoscope (.di, .spm, .000) | Digital Instruments, Veeco, Bruker |
+//! | MetroPro (.dat) | Zygo |
+//! | PLU, APX | Sensofar |
+//! | MNT | MountainsMap |
+//! | IBW | Igor Pro, Asylum Research |
+//! | NID, EZD | Nanosurf |
+//! | FRT | FRT MicroProf |
 //!
 //! All text and binary formats may be packed by gzip.
 
 mod al3d;
 mod bcr;
+mod compound;
 mod cursor;
 mod error;
 mod finish;
+mod foreign;
 mod format;
+mod frt;
 mod grid;
 mod gwy;
+mod ibw;
+mod metropro;
+mod mnt;
+mod nanoscope;
 mod netcdf;
+mod nid;
 mod npy;
 mod opd;
+mod plu;
 mod sample;
 mod sdf;
 mod sur;
@@ -64,7 +80,7 @@ pub struct Topography {
     pub size: [f64; 2],
     /// Name of the channel, where the file names it.
     pub channel: Option<String>,
-    /// Names of all channels that hold heights, in the order of the file.
+    /// Names of all channels, in the order of the file. Those that are no lengths can be read with a `height_unit`.
     pub channels: Vec<String>,
     /// What else the file says (instrument, date, comment, ...), in the order of the file.
     pub metadata: Vec<(String, String)>,
@@ -125,7 +141,8 @@ pub struct ReadOptions {
     /// Metres per unit of the heights; replaces that of the file. Where a file gives lateral coordinates without a
     /// unit and `size` is not given either, it is their unit too. Default: the file's.
     pub height_unit: Option<f64>,
-    /// Name (any case) or number (from 0) of the channel. Default: the first that holds heights.
+    /// Name (any case) or number (from 0, in the order of [`Topography::channels`]) of the channel. Default: the
+    /// first that holds heights.
     pub channel: Option<String>,
     /// Format. Default: found from the content.
     pub format: Option<Format>,
@@ -167,7 +184,7 @@ fn parse(bytes: &[u8], options: &ReadOptions) -> Result<Topography, Problem> {
     let bytes = unpacked.as_deref().unwrap_or(bytes);
     let format = match options.format {
         Some(format) => format,
-        None => detect(bytes).ok_or(Problem::Unrecognised)?,
+        None => detect(bytes).ok_or_else(|| foreign::unread(bytes))?,
     };
     let channel = options.channel.as_deref();
     let (format, measured) = match format {
@@ -182,6 +199,13 @@ fn parse(bytes: &[u8], options: &ReadOptions) -> Result<Topography, Problem> {
         Format::Gwy => (format, gwy::read_gwy(bytes, channel)?),
         Format::Al3d => (format, al3d::read_al3d(bytes)?),
         Format::Opd => (format, opd::read_opd(bytes, channel)?),
+        Format::Nanoscope => (format, nanoscope::read_nanoscope(bytes, channel)?),
+        Format::MetroPro => (format, metropro::read_metropro(bytes)?),
+        Format::Plu => (format, plu::read_plu(bytes, channel)?),
+        Format::Mnt => (format, mnt::read_mnt(bytes, channel)?),
+        Format::Ibw => (format, ibw::read_ibw(bytes, channel)?),
+        Format::Nid => (format, nid::read_nid(bytes, channel)?),
+        Format::Frt => (format, frt::read_frt(bytes, channel)?),
         // NetCDF-4 is HDF5; the content tells which.
         Format::NetCdf | Format::Hdf5 => netcdf::read_netcdf(bytes, channel)?,
     };

@@ -9,10 +9,10 @@
 use ndarray::{Array2, ArrayD, Ix2};
 use netcdf_reader::{NcAttrValue, NcFile, NcFormat, NcOpenOptions, NcType, NcVariable};
 
-use super::finish::{Lateral, Measured, Unit, choose};
+use super::finish::{Lateral, Measured, Unit, choose_heights, unit_of};
 use super::unit::{LoneA, metres};
 use super::unpack::most_unpacked;
-use super::{Format, Problem, grid};
+use super::{Format, Problem, foreign, grid};
 
 /// What NetCDF writes where a variable was never written.
 const DEFAULT_FILL: f64 = 9.969_209_968_386_869e36;
@@ -28,6 +28,7 @@ pub(super) fn detect(bytes: &[u8]) -> Option<Format> {
 
 /// Reads the variable asked for, and tells NetCDF-4 from other HDF5.
 pub(super) fn read_netcdf(bytes: &[u8], channel: Option<&str>) -> Result<(Format, Measured), Problem> {
+    foreign::refuse_look_alikes(bytes)?;
     let most = usize::try_from(most_unpacked(bytes.len())).unwrap_or(usize::MAX);
     let options = NcOpenOptions { max_read_bytes: most, max_chunk_bytes: most, ..NcOpenOptions::default() };
     let file = NcFile::from_bytes_with_options(bytes, options).map_err(|e| broken("the file", e))?;
@@ -38,7 +39,10 @@ pub(super) fn read_netcdf(bytes: &[u8], channel: Option<&str>) -> Result<(Format
     let names: Vec<String> = maps.iter().map(|(name, _)| name.clone()).collect();
     let index = match names.iter().position(|n| n == "heights") {
         Some(heights) if channel.is_none() => heights,
-        _ => choose(format, &names, channel)?,
+        _ => {
+            let unit = |i: usize| unit_of(&label(maps[i].1).unwrap_or_default(), LoneA::Angstrom);
+            choose_heights(format, &names, unit, channel)?
+        }
     };
     let (name, variable) = &maps[index];
 
@@ -75,10 +79,7 @@ pub(super) fn read_netcdf(bytes: &[u8], channel: Option<&str>) -> Result<(Format
         // contact.engineering gives one unit for lengths and heights.
         lateral_label.filter(|_| name == "heights")
     });
-    let unit = match label {
-        None => Unit::Unstated,
-        Some(label) => metres(&label, LoneA::Angstrom).map_or(Unit::Other(label), Unit::Metres),
-    };
+    let unit = label.map_or(Unit::Unstated, |label| unit_of(&label, LoneA::Angstrom));
     let metadata = file.global_attributes().unwrap_or_default().iter();
     let metadata = metadata.filter_map(|a| Some((a.name.clone(), text(&a.value)?))).collect();
     let channel = Some(name.clone());

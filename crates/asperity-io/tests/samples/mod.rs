@@ -4,6 +4,8 @@
 
 #![allow(dead_code)] // each test uses its part
 
+pub mod instruments;
+
 use std::io::{Read, Write};
 
 use asperity_io::topography::{Format, ReadOptions, read_bytes, to_bytes};
@@ -421,6 +423,13 @@ pub fn files() -> Vec<(Format, Vec<u8>)> {
         (Format::Al3d, al3d()),
         (Format::Opd, opd(2)),
         (Format::Opd, opd(4)),
+        (Format::Nanoscope, instruments::Nanoscope::default().file()),
+        (Format::MetroPro, instruments::metropro(0, false)),
+        (Format::Plu, instruments::plu(3)),
+        (Format::Mnt, instruments::mnt(true)),
+        (Format::Ibw, instruments::ibw(false, true)),
+        (Format::Nid, instruments::nid(true)),
+        (Format::Frt, instruments::frt(false)),
         (Format::NetCdf, netcdf4()),
         (Format::Hdf5, hdf5()),
         (Format::Sdf, gzip(&sdf_text())),

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import _core
+from . import _core, _foreign
 from ._arrays import Floats, count, counts, field, number, pair
 from ._core import CaseError
 from ._findings import findings_of, warn
@@ -272,18 +272,23 @@ class Surface:
 
         Parameters
         ----------
-        path : text matrix, CSV, XYZ, NPY, NPZ, NetCDF, HDF5, SDF, X3P, SUR, GWY, AL3D, OPD, BCR; also packed by gzip
+        path : text matrix, CSV, XYZ, NPY, NPZ, NetCDF, HDF5, SDF, X3P, SUR, MNT, GWY, AL3D, OPD, BCR, Nanoscope, MetroPro,
+            PLU, IBW, NID, FRT; also packed by gzip. Other formats are read by the package SurfaceTopography where it is
+            installed; the metadata say so under "reader".
         size : lengths along x and y [m], needed where the file holds none
         height_unit : unit of the numbers in the file [m], needed if the file does not state it
-        channel : which one, by name or number, where the file holds several
+        channel : which one, by name or number (from 0), where the file holds several; by default the first of heights.
+            ``surface.metadata["channels"]`` lists them.
         level, fill : as the methods of that name; by default the heights are as measured, undefined points NaN
         """
-        found = _core.read_surface(
-            os.fspath(path),
-            None if size is None else list(pair("size", size)),
-            None if height_unit is None else number("height_unit", height_unit),
-            None if channel is None else str(channel),
-        )
+        path = os.fspath(path)
+        given = None if size is None else list(pair("size", size))
+        unit = None if height_unit is None else number("height_unit", height_unit)
+        name = None if channel is None else str(channel)
+        try:
+            found = _core.read_surface(path, given, unit, name)
+        except _core.FormatError as error:
+            found = _foreign.read(path, given, unit, name, error)
         heights, extent = found.pop("heights"), found.pop("size")
         surface = Surface(heights, size=extent, metadata=found)
         if level is not None:

@@ -153,7 +153,8 @@ impl<'a> Portrait<'a> {
             line("channel", channel.clone(), "");
         }
         if topography.channels.len() > 1 {
-            line("channels", topography.channels.join(", "), "");
+            let channels = topography.channels.iter().enumerate().map(|(n, name)| format!("{n}: {name}"));
+            line("channels", channels.collect::<Vec<_>>().join(", "), "");
         }
         let h = &summary.heights;
         line("heights", format!("{} to {}, mean {}", metres(h.min), metres(h.max), metres(h.mean)), "");

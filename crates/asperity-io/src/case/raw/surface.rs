@@ -169,8 +169,8 @@ pub struct Distribution {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct File {
-    /// The file, relative to the case file: SUR, SDF, X3P, GWY, AL3D, OPD, BCR, NetCDF, HDF5, NPY, NPZ, XYZ, CSV or a
-    /// text matrix, detected from the content.
+    /// The file, relative to the case file: SUR, MNT, SDF, X3P, GWY, AL3D, OPD, BCR, Nanoscope, MetroPro, PLU, IBW, NID,
+    /// FRT, NetCDF, HDF5, NPY, NPZ, XYZ, CSV or a text matrix, detected from the content.
     #[schemars(example = "roughness.sur")]
     pub path: At<String>,
     /// Channel by name or by number (from 0), if the file has several; the first one with heights if not given.

@@ -29,8 +29,16 @@ pub(crate) fn read_matrix(bytes: &[u8], channel: Option<&str>, insists: bool) ->
     let table = table(text.dialect, block)?;
     let (nx, ny) = (table.columns, table.len());
     if nx < 2 || ny < 2 || (nx == 2 && !insists && !block.header.says_matrix()) {
-        let hint = if nx == 2 { "; give the format `asc` if it is a matrix of two columns" } else { "" };
-        let detail = format!("{ny} lines of {nx} values are a profile and not an area{hint}");
+        let detail = match (nx, ny) {
+            (2, 2..) => format!(
+                "{ny} lines of 2 values are taken for a profile (position and height), not an area; if they are a matrix, \
+                 say so in its first line (\"# Width: 2 um\"), or save it as NPY"
+            ),
+            _ => format!(
+                "{ny} x {nx} values (lines x columns) are a profile, and not an area; a surface needs 2 lines and 2 \
+                 columns or more"
+            ),
+        };
         return Err(Problem::NoHeights { format: Format::Text, detail });
     }
     grid::points(nx as u64, ny as u64)?;

@@ -17,7 +17,8 @@ use crate::topography::{Format, Problem, grid};
 const MOST_CELLS_PER_POINT: usize = 8;
 
 /// Three columns are taken for points.
-const HINT: &str = "give the format `asc` if this is a matrix of three columns";
+const HINT: &str = "three columns are taken for x, y and height; if this is a matrix, say so in its first line \
+                    (\"# Width: 3 um\"), or save it as NPY";
 
 /// Positions of the x and y columns, where a row of names gives them.
 pub(super) fn named_columns(columns: &[Column]) -> Option<[usize; 2]> {

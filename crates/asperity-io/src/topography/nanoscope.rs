@@ -1,0 +1,340 @@
+//! Nanoscope, the files of the atomic force microscopes of Digital Instruments, Veeco and Bruker (.di, .spm, .000).
+//!
+//! A text header of sections (`\*Ciao image list`) with entries (`\Samps/line: 512`) ends with `\*File list end`; the
+//! integers of each image follow at its `Data offset`, line by line from the bottom up. An image is scaled by the
+//! hard value Z of `\@2:Z scale: V [Sens. Zsens] (0.005 V/LSB) 2.91 V` and the sensitivity S that the brackets name
+//! (`\@Sens. Zsens: V 20.8 nm/V`):
+//!
+//! ```text
+//! height = n Z S / 2^(8 B),   B: `Bytes/pixel`
+//! ```
+//!
+//! From version 9.2 every number takes 4 bytes, whatever B says. Files before version 4.3 have other scales and are
+//! refused. (Digital Instruments, "Nanoscope command reference manual", and the readers of Gwyddion and
+//! SurfaceTopography.)
+
+use super::cursor::Cursor;
+use super::finish::{Lateral, Measured, Unit, choose_heights, unit_of};
+use super::grid::{self, Layout};
+use super::sample::{Kind, Order};
+use super::unit::{LoneA, metres};
+use super::{Format, Problem};
+
+const FORMAT: Format = Format::Nanoscope;
+/// First words of a file; "?" in place of "\\" says that the numbers are written as text.
+const STARTS: [&str; 3] = ["*file list", "*force file list", "*ec file list"];
+/// Headers have some 100 kB.
+const LONGEST_HEADER: usize = 1 << 20;
+/// From this version on all numbers have 32 bits.
+const VERSION_OF_32_BITS: u32 = 0x0920_0000;
+
+/// Whether the bytes are a Nanoscope file.
+pub(super) fn is_nanoscope(bytes: &[u8]) -> bool {
+    let Some((b'\\' | b'?', rest)) = bytes.split_first() else { return false };
+    let starts = |start: &str| rest.get(..start.len()).is_some_and(|r| r.eq_ignore_ascii_case(start.as_bytes()));
+    STARTS.into_iter().any(starts)
+}
+
+/// Reads the image asked for.
+pub(super) fn read_nanoscope(bytes: &[u8], channel: Option<&str>) -> Result<Measured, Problem> {
+    if bytes.first() == Some(&b'?') {
+        let instead = "save it as binary, or export it as ASCII matrix from NanoScope Analysis";
+        return Err(Problem::unsupported("a Nanoscope file whose numbers are written as text", instead));
+    }
+    let header = Header::parse(bytes);
+    header.refuse_curves()?;
+    let images: Vec<&Section> = header.sections.iter().filter(|s| s.is_image()).collect();
+    let names: Vec<String> = images.iter().map(|image| image.names().0).collect();
+    if names.is_empty() {
+        return Err(none("no image in it"));
+    }
+    let unit = |i: usize| header.scale(images[i]).map_or(Unit::Unstated, |(_, unit)| unit);
+    // "Height Sensor" is the label of the image named ZSensor.
+    let by_label = channel.filter(|wanted| !names.iter().any(|n| n.eq_ignore_ascii_case(wanted)));
+    let by_label = by_label
+        .and_then(|wanted| images.iter().position(|image| image.names().1.eq_ignore_ascii_case(wanted)));
+    let index = match by_label {
+        Some(index) => index,
+        None => choose_heights(FORMAT, &names, unit, channel)?,
+    };
+    let image = images[index];
+
+    let (scale, unit) = header.scale(image)?;
+    let plane = header.plane(image)?;
+    let offset = image.whole("data offset")?;
+    let what = format!("the image {:?}", names[index]);
+    let data = Cursor::at(bytes, offset, Order::Little, &what)?.rest();
+    let layout = Layout::dense(plane.points, plane.kind, Order::Little);
+    let heights = layout.map_from_bottom(data, &what, |n| n * scale)?;
+    let (channel, metadata) = (Some(names[index].clone()), header.metadata(image));
+    Ok(Measured { heights, unit, lateral: plane.lateral, channel, channels: names, metadata })
+}
+
+fn none(detail: &str) -> Problem {
+    Problem::NoHeights { format: FORMAT, detail: detail.into() }
+}
+
+/// Entries under a title; keys and titles compare without case.
+struct Section {
+    title: String,
+    entries: Vec<(String, String)>,
+}
+
+struct Header {
+    sections: Vec<Section>,
+}
+
+/// Points, numbers and lengths of an image.
+struct Plane {
+    points: [u64; 2],
+    kind: Kind,
+    lateral: Lateral,
+}
+
+impl Header {
+    fn parse(bytes: &[u8]) -> Self {
+        let bytes = &bytes[..bytes.len().min(LONGEST_HEADER)];
+        let mut sections: Vec<Section> = Vec::new();
+        for line in bytes.split(|b| *b == b'\n') {
+            let line = super::cursor::text(line);
+            // The numbers of the first image follow the last entry.
+            let Some(entry) = line.strip_prefix('\\') else {
+                if line.is_empty() { continue } else { break }
+            };
+            if let Some(title) = entry.strip_prefix('*') {
+                if title.eq_ignore_ascii_case("file list end") {
+                    break;
+                }
+                sections.push(Section { title: title.to_lowercase(), entries: Vec::new() });
+            } else if let Some(section) = sections.last_mut() {
+                // "\Capture mode : ...": the colon before a blank, as "@2:Z scale" has one too.
+                let (key, value) = entry.split_once(": ").unwrap_or((entry.trim_end_matches(':'), ""));
+                section.entries.push((key.trim().to_owned(), value.trim().to_owned()));
+            }
+        }
+        Header { sections }
+    }
+
+    /// The first entry of this name in the sections with a title that ends like this.
+    fn get(&self, title: &str, key: &str) -> Option<&str> {
+        self.sections.iter().filter(|s| s.title.ends_with(title)).find_map(|s| s.get(key))
+    }
+
+    fn refuse_curves(&self) -> Result<(), Problem> {
+        let is = |key: &str, value: &str| {
+            self.sections.iter().any(|s| s.get(key).is_some_and(|v| v.eq_ignore_ascii_case(value)))
+        };
+        if self.sections.first().is_some_and(|s| s.title.starts_with("force"))
+            || is("operating mode", "force")
+            || self.get("file list", "start context") == Some("FOL")
+        {
+            return Err(none("force curves; an image of the same measurement has its own file"));
+        }
+        let context = self.get("file list", "start context").unwrap_or_default();
+        if context.ends_with("VAR") && !is("operating mode", "force volume") {
+            return Err(none("profiles that are not evenly spaced"));
+        }
+        Ok(())
+    }
+
+    fn version(&self) -> u32 {
+        let version = self.get("file list", "version").unwrap_or_default();
+        u32::from_str_radix(version.trim_start_matches("0x"), 16).unwrap_or(0)
+    }
+
+    /// What one unit of the image's numbers is worth, and in which unit.
+    fn scale(&self, image: &Section) -> Result<(f64, Unit), Problem> {
+        let scale = image.get("@4:z scale").or(image.get("@2:z scale")).ok_or_else(|| {
+            Problem::unsupported(
+                "a Nanoscope file without \"@2:Z scale\" (before version 4.3)",
+                "open it in NanoScope Analysis or Gwyddion and save it in a newer format",
+            )
+        })?;
+        let hard = Scale::parse(scale).ok_or_else(|| image.wrong("@2:Z scale", "like \"V [Sens. Zsens] (0.005 V/LSB) 2.9 V\""))?;
+        let bytes = image.bytes_per_number()?;
+        let per_number = hard.value / 256f64.powi(i32::try_from(bytes).unwrap_or(2));
+        let soft = hard.sensitivity.and_then(|name| {
+            let key = format!("@{name}");
+            let lists = ["scanner list", "microscope list", "scan list", "afm list", "stm list"];
+            Scale::parse(lists.into_iter().find_map(|list| self.get(list, &key))?)
+        });
+        let Some(soft) = soft else { return Ok((per_number, unit_of(hard.unit, LoneA::Ampere))) };
+        // A sensitivity without a unit is that of the hard value.
+        let Some((of, per)) = soft.unit.split_once('/') else {
+            return Ok((per_number * soft.value, unit_of(hard.unit, LoneA::Ampere)));
+        };
+        match ratio(hard.unit, per) {
+            Some(ratio) => Ok((per_number * ratio * soft.value, unit_of(of, LoneA::Ampere))),
+            None => Ok((per_number * soft.value, Unit::Other(format!("{} {}", hard.unit, soft.unit)))),
+        }
+    }
+
+    fn plane(&self, image: &Section) -> Result<Plane, Problem> {
+        let stated = [image.whole("samps/line")?, image.whole("number of lines")?];
+        let length = image.whole("data length")?;
+        let global = ["samps/line", "lines"].map(|key| self.get("scan list", key).and_then(|n| n.parse().ok()));
+        let global = match global {
+            [Some(x), Some(y)] => Some([x, y]),
+            _ => None,
+        };
+        let count = |[x, y]: [u64; 2]| grid::points(x, y).map(|n| n as u64);
+        let stated_count = count(stated)?;
+        let bytes = image.bytes_per_number()?;
+        let wide = self.version() >= VERSION_OF_32_BITS && length >= stated_count.saturating_mul(4);
+        let (kind, width) = if wide || bytes == 4 { (Kind::I32, 4) } else { (Kind::I16, 2) };
+        let [mut sx, mut sy, unit] = size(image)?;
+        let slow = self.slow_axis();
+        if let Some([x, y]) = slow {
+            (sx, sy) = (x / unit, y / unit);
+        }
+        // Some files state a wrong number of points for an image; the length of its data tells.
+        let mut points = stated;
+        if stated_count.saturating_mul(width) != length
+            && let Some(global) = global
+            && let Ok(global_count) = count(global)
+        {
+            let needed = global_count.saturating_mul(width);
+            if length == needed || (stated_count.saturating_mul(width) > length && length >= needed) {
+                if slow.is_none() {
+                    (sx, sy) = (sx * global[0] as f64 / stated[0] as f64, sy * global[1] as f64 / stated[1] as f64);
+                }
+                points = global;
+            }
+        } else if let (Some(_), Some([_, lines])) = (slow, global)
+            && stated[1] < lines
+            && image.get("aspect ratio").is_some_and(|aspect| aspect.trim() != "1:1")
+        {
+            // The scan was stopped early: the slow axis is that of the whole.
+            sy *= stated[1] as f64 / lines as f64;
+        }
+        let needed = count(points)?.saturating_mul(width);
+        if needed > length {
+            return Err(Problem::truncated("the \"Data length\" of the image", needed, length));
+        }
+        Ok(Plane { points, kind, lateral: Lateral::Metres([sx * unit, sy * unit]) })
+    }
+
+    /// Lengths of the whole scan \[m\], where the slow axis has an entry of its own.
+    fn slow_axis(&self) -> Option<[f64; 2]> {
+        let length = |key: &str| {
+            let (number, unit) = self.get("scan list", key)?.split_once(char::is_whitespace)?;
+            Some(number.parse::<f64>().ok()? * metres(unit, LoneA::Angstrom)?)
+        };
+        Some([length("scan size")?, length("slow axis size")?])
+    }
+
+    fn metadata(&self, image: &Section) -> Vec<(String, String)> {
+        let global = [("file list", "Version"), ("file list", "Date"), ("equipment list", "Description")];
+        let global = global.into_iter().filter_map(|(title, key)| Some((key.to_owned(), self.get(title, key)?.to_owned())));
+        let of_image = image.entries.iter().filter(|(_, value)| !value.is_empty()).cloned();
+        global.chain(of_image).collect()
+    }
+}
+
+/// "500 500 nm", "10 10 ~m" or, for a square, "500 nm": both lengths and metres per unit.
+fn size(image: &Section) -> Result<[f64; 3], Problem> {
+    let text = image.get("scan size").unwrap_or("missing");
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let number = |i: usize| words.get(i).and_then(|w| w.parse::<f64>().ok());
+    let (x, y, label) = match (number(0), number(1)) {
+        (Some(x), Some(y)) => (x, y, words.get(2)),
+        (Some(x), None) => (x, x, words.get(1)),
+        _ => return Err(image.wrong("Scan Size", "like \"500 500 nm\"")),
+    };
+    let unit = label.and_then(|l| metres(l, LoneA::Angstrom));
+    let unit = unit.ok_or_else(|| image.wrong("Scan Size", "two lengths and a unit of length"))?;
+    Ok([x, y, unit])
+}
+
+/// How many of the second unit are one of the first: "mV" and "V" differ by a prefix.
+fn ratio(unit: &str, other: &str) -> Option<f64> {
+    let (unit, other) = (unit.trim(), other.trim());
+    if unit == other {
+        return Some(1.0);
+    }
+    let parts = |unit: &str| -> Option<(f64, String)> {
+        let first = unit.chars().next()?;
+        let factor = match first {
+            'k' => 1e3,
+            'm' => 1e-3,
+            'u' | '\u{b5}' | '\u{3bc}' | '~' => 1e-6,
+            'n' => 1e-9,
+            'p' => 1e-12,
+            _ => return None,
+        };
+        Some((factor, unit[first.len_utf8()..].to_owned()))
+    };
+    let prefixed = |a: &str, b: &str| parts(a).filter(|(_, base)| base == b).map(|(factor, _)| factor);
+    prefixed(unit, other).or_else(|| prefixed(other, unit).map(f64::recip)).or_else(|| {
+        let ((f, a), (g, b)) = (parts(unit)?, parts(other)?);
+        (a == b && !a.is_empty()).then_some(f / g)
+    })
+}
+
+/// The value of "V [Sens. Zsens] (0.005 V/LSB) 2.91 V" or "V 20.8 nm/V".
+struct Scale<'a> {
+    sensitivity: Option<&'a str>,
+    value: f64,
+    unit: &'a str,
+}
+
+impl<'a> Scale<'a> {
+    fn parse(text: &'a str) -> Option<Self> {
+        let mut rest = text.trim().strip_prefix(['V', 'C'])?.trim_start();
+        let mut sensitivity = None;
+        if let Some(inner) = rest.strip_prefix('[') {
+            let (name, after) = inner.split_once(']')?;
+            sensitivity = Some(name.trim()).filter(|name| !name.is_empty());
+            rest = after.trim_start();
+        }
+        if rest.starts_with('(') {
+            // Units hold parentheses too: "(0.0005 log(Arb)/LSB)".
+            let mut depth = 0;
+            let end = rest.char_indices().find_map(|(at, c)| {
+                depth += i32::from(c == '(') - i32::from(c == ')');
+                (depth == 0).then_some(at + 1)
+            })?;
+            rest = rest[end..].trim_start();
+        }
+        let (number, unit) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
+        let value: f64 = number.parse().ok().filter(|v: &f64| v.is_finite())?;
+        Some(Scale { sensitivity, value, unit: unit.trim() })
+    }
+}
+
+impl Section {
+    fn is_image(&self) -> bool {
+        let title = self.title.as_str();
+        ["ciao image list", "afm image list", "stm image list", "ncafm image list", "image list"].contains(&title)
+    }
+
+    fn get(&self, key: &str) -> Option<&str> {
+        self.entries.iter().find(|(k, _)| k.eq_ignore_ascii_case(key)).map(|(_, v)| v.as_str())
+    }
+
+    /// Name and label of an image: `S [ZSensor] "Height Sensor"`.
+    fn names(&self) -> (String, String) {
+        let keys = ["@2:image data", "@3:image data", "@4:image data", "image data"];
+        let value = keys.into_iter().find_map(|key| self.get(key)).unwrap_or("no name");
+        let label = value.split('"').nth(1).unwrap_or(value).trim();
+        let name = value.split_once('[').and_then(|(_, rest)| rest.split_once(']')).map(|(name, _)| name.trim());
+        (name.filter(|n| !n.is_empty()).unwrap_or(label).to_owned(), label.to_owned())
+    }
+
+    fn bytes_per_number(&self) -> Result<u64, Problem> {
+        match self.get("bytes/pixel") {
+            None | Some("2") => Ok(2),
+            Some("4") => Ok(4),
+            Some(_) => Err(self.wrong("Bytes/pixel", "2 or 4")),
+        }
+    }
+
+    fn whole(&self, key: &str) -> Result<u64, Problem> {
+        self.get(key).and_then(|n| n.parse().ok()).ok_or_else(|| self.wrong(key, "a whole number"))
+    }
+
+    fn wrong(&self, key: &str, expected: &str) -> Problem {
+        let what = format!("{key:?} of the image {:?}", self.names().0);
+        Problem::malformed(what, self.get(key).unwrap_or("missing"), expected)
+    }
+}

@@ -1,0 +1,74 @@
+"""Formats that asperity does not read itself: by the package SurfaceTopography, where it is installed."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ._core import CaseError
+
+
+def read(path: str, size: list[float] | None, height_unit: float | None, channel: str | None, error: OSError) -> dict[str, Any]:
+    """Heights [m], size [m] and what the file says, as ``_core.read_surface`` returns them; else raises `error`."""
+    try:
+        import SurfaceTopography as other
+        from SurfaceTopography.Support.UnitConversion import get_unit_conversion_factor
+    except ImportError:
+        raise error from None
+    try:
+        reader = other.open_topography(path)
+    except Exception as why:  # its readers raise errors of many kinds
+        raise OSError(f"{error}; the package SurfaceTopography does not read it either: {why}") from why
+
+    names = [str(one.name) for one in reader.channels]
+    index = _choose(names, reader.channels.index(reader.default_channel), channel, path)
+    if reader.channels[index].dim != 2:
+        raise CaseError(f"{path}: the channel {names[index]!r} is a profile, and not an area")
+
+    def metres(unit: Any) -> float | None:
+        return None if not isinstance(unit, str) else get_unit_conversion_factor(unit, "m")
+
+    options = {}
+    if reader.channels[index].physical_sizes is None:
+        if size is None:
+            raise CaseError(f"{path}: the file holds no physical size; give the lengths along x and y (size=)")
+        options["physical_sizes"] = tuple(size)
+    try:
+        topography = reader.topography(channel_index=index, **options)
+    except Exception as why:
+        raise OSError(f"{path}: the package SurfaceTopography cannot read it: {why}") from why
+
+    unit = metres(topography.unit)
+    if height_unit is None and unit is None:
+        raise CaseError(f"{path}: the file holds no unit of length for its heights (it says {topography.unit!r}); give it (height_unit=)")
+    if size is None:
+        if unit is None:
+            raise CaseError(f"{path}: the file holds no unit for its physical size; give the lengths along x and y (size=)")
+        size = [float(length) * unit for length in topography.physical_sizes]
+    heights = np.ma.filled(np.ma.asarray(topography.heights(), dtype=np.float64), np.nan)
+    scale = unit if height_unit is None else height_unit
+    metadata = [(str(key), str(value)) for key, value in (topography.info or {}).items() if isinstance(value, (str, int, float))]
+    return {
+        "format": str(reader.format()),
+        "reader": f"SurfaceTopography {other.__version__}",
+        "history": [],
+        "size": size,
+        "channel": names[index],
+        "channels": names,
+        "metadata": metadata,
+        "heights": np.ascontiguousarray(heights * scale),
+    }
+
+
+def _choose(names: list[str], default: int, wanted: str | None, path: str) -> int:
+    """Position of the channel wanted, by name (any case) or number."""
+    if wanted is None:
+        return default
+    lower = [name.lower() for name in names]
+    if wanted.lower() in lower:
+        return lower.index(wanted.lower())
+    if wanted.isdigit() and int(wanted) < len(names):
+        return int(wanted)
+    held = ", ".join(f"{n}: {name!r}" for n, name in enumerate(names))
+    raise CaseError(f"{path}: no channel {wanted!r}; the file holds {held}")

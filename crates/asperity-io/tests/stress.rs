@@ -109,7 +109,7 @@ fn first_yield_lies_between_two_stored_times() {
     // Nothing yields under a tenth of the stress.
     let calm = solved(&CASE.replace("50 kPa", "1 MPa"), directory.path());
     let below = Below::of(&calm).unwrap().unwrap();
-    let Some(FirstYield::Never(safety)) = first_yield(&below) else { panic!("{below:?}") };
+    let Some(FirstYield::Never { safety, .. }) = first_yield(&below) else { panic!("{below:?}") };
     // The largest of all times: the contact creeps under a held load, and its stress falls.
     let largest = mises.iter().copied().fold(0.0, f64::max);
     assert!(largest > mises[4] && (safety - 1e6 / largest).abs() < 1e-9 * safety);

@@ -290,7 +290,7 @@ function stressPart() {
   $("stress").hidden = !s;
   if (!s || $("stress-facts").children.length) return;
   $("stress-facts").replaceChildren(...s.facts.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]));
-  const lines = (x) => [["von Mises", "mises"], ["Tresca", "tresca"], ["principal", "tension"]].map(([name, key]) => ({ name, x, y: s[key].map((v) => v ?? NaN) }));
+  const lines = (x) => [["von Mises", "mises"], ["shear (s1 - s3)/2", "tresca"], ["largest principal", "tension"]].map(([name, key]) => ({ name, x, y: s[key].map((v) => v ?? NaN) }));
   if (s.time.length > 1) stressCharts.push(new Chart($("stress-curves"), { title: "Largest stress over time", x: { label: "time", unit: "s" }, y: { label: "stress", unit: "Pa" }, series: lines(s.time) }));
   $("stress-figure").hidden = !s.svg && !state.live;
   if (s.svg) $("stress-picture").src = "data:image/svg+xml;base64," + s.svg;

@@ -98,6 +98,7 @@ fn store(args: &Stress, plan: &StressPlan) -> Result<Below, Failure> {
     let codes = [
         asperity::finding::STRESS_UNRESOLVED,
         asperity::finding::STRESS_AT_DEEPEST,
+        asperity::finding::STRESS_TIMES_MISS_PEAK,
         asperity::finding::YIELD_EXCEEDED,
     ];
     let others = writer.findings().iter().filter(|finding| !codes.contains(&finding.code.as_ref())).cloned();
@@ -241,7 +242,7 @@ fn text(below: &Below, shown: Option<&Instant>) -> String {
         ends[0],
         ends[1]
     );
-    for (name, key) in [("von Mises", "max_mises"), ("Tresca", "max_tresca"), ("principal", "max_tension")] {
+    for (name, key) in [("von Mises", "max_mises"), ("shear (s1 - s3)/2", "max_tresca"), ("principal", "max_tension")] {
         let head =
             ["time", "load", &format!("largest {name}"), "depth", "x", "y"].map(str::to_owned).to_vec();
         let line = |instant: &Instant| {
@@ -274,7 +275,7 @@ fn text(below: &Below, shown: Option<&Instant>) -> String {
     if let Some(instant) = shown {
         text += &format!("largest stress by depth at t = {}\n", number(instant.time, "s"));
         let profiles = set.profiles();
-        let head = profiles.iter().map(|series| series.name.trim_end_matches("_by_depth").replace('_', " "));
+        let head = profiles.iter().map(|series| series.name.trim_end_matches("_by_depth").replace('_', " ").replace("tresca", "shear (s1 - s3)/2"));
         let mut lines = vec![std::iter::once("depth".to_owned()).chain(head).collect::<Vec<_>>()];
         for (n, depth) in set.depths.iter().enumerate() {
             let numbers = profiles.iter().map(|series| number(below.profile(instant, series.name)[n], "Pa"));

@@ -79,6 +79,10 @@ pub fn volume(
             let place = (depths.len() - 1 - n) as u64 * slice;
             for (k, quantity) in quantities.iter().enumerate() {
                 quantity.field_into(&six, &mut field);
+                // z points up in the file, into the body in a result.
+                if matches!(quantity, StressQuantity::Xz | StressQuantity::Yz) {
+                    field.iter_mut().for_each(|stress| *stress = -*stress);
+                }
                 let array = start + header.first + k as u64 * (8 + slice * depths.len() as u64) + 8;
                 file.seek(SeekFrom::Start(array + place))?;
                 file.write_all(&x_fastest(&field, grid.cells()))?;

@@ -4,7 +4,10 @@ use asperity::finding::Finding;
 use asperity::stress::{Extreme, Survey};
 use asperity::{Grid, finding};
 
-use crate::store::{Reader, Result, StressSet};
+use crate::store::{At, FieldKind, Reader, Result, StressSet};
+
+/// Largest pressures that differ by less are the same.
+const SAME_PEAK: f64 = 1.02;
 
 /// What was found at one time.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,6 +33,26 @@ pub struct Below {
     pub set: StressSet,
     /// What was found at each of the times.
     pub instants: Vec<Instant>,
+    /// Time \[s\] and load \[N\] of the row with the largest pressure, where none of the times comes near it.
+    pub missed: Option<[f64; 2]>,
+}
+
+/// The load \[N\] of a stored instant. Between adaptive steps fields are interpolated: there it is the sum of the pressure.
+pub(super) fn load_at(reader: &Reader, index: usize) -> Result<f64> {
+    let row = reader.field_steps()[index];
+    let number = |series: &[f64]| series.get(row).copied().unwrap_or(f64::NAN);
+    if number(&reader.series("time")?) == reader.field_times()[index] {
+        return Ok(number(&reader.series("load")?));
+    }
+    Ok(reader.field(FieldKind::Pressure, At::Index(index))?.sum() * reader.header().grid.cell_area())
+}
+
+/// See [`Below::missed`].
+pub(super) fn missed(reader: &Reader, rows: impl Iterator<Item = usize>) -> Result<Option<[f64; 2]>> {
+    let [peaks, times, loads] = [reader.series("max_pressure")?, reader.series("time")?, reader.series("load")?];
+    let seen = rows.filter_map(|row| peaks.get(row).copied()).fold(0.0, f64::max);
+    let largest = (0..peaks.len()).reduce(|a, b| if peaks[b] > peaks[a] { b } else { a });
+    Ok(largest.filter(|row| peaks[*row] > SAME_PEAK * seen).map(|row| [times[row], loads[row]]))
 }
 
 impl Below {
@@ -43,19 +66,19 @@ impl Below {
             set.scalars().iter().map(|series| reader.stress_series(series.name)).collect::<Result<_>>()?;
         let profiles: Vec<_> =
             set.profiles().iter().map(|series| reader.stress_profile(series.name)).collect::<Result<_>>()?;
-        let loads = reader.series("load")?;
-        let instants = set.instants.iter().map(|index| {
-            let row = reader.field_steps()[*index];
-            Instant {
+        let instant = |index: &usize| -> Result<Instant> {
+            Ok(Instant {
                 index: *index,
                 time: reader.field_times()[*index],
-                row,
-                load: loads.get(row).copied().unwrap_or(f64::NAN),
+                row: reader.field_steps()[*index],
+                load: load_at(reader, *index)?,
                 scalars: scalars.iter().map(|series| series[*index]).collect(),
                 profiles: profiles.iter().map(|profile| profile.row(*index).to_vec()).collect(),
-            }
-        });
-        Ok(Some(Below { instants: instants.collect(), set: set.clone() }))
+            })
+        };
+        let instants: Vec<Instant> = set.instants.iter().map(instant).collect::<Result<_>>()?;
+        let missed = missed(reader, instants.iter().map(|instant| instant.row))?;
+        Ok(Some(Below { instants, set: set.clone(), missed }))
     }
 
     /// A number of an instant, by its name in the result; NaN where there is none.
@@ -76,19 +99,26 @@ impl Below {
         self.instants.iter().reduce(|a, b| if mises(b) > mises(a) { b } else { a })
     }
 
+    /// The deepest of several depths, where the largest von Mises stress lies there: it may be larger below.
+    pub fn ends_at(&self) -> Option<f64> {
+        let depth = self.number(self.worst()?, "max_mises_depth");
+        match self.set.depths[..] {
+            [_, .., deepest] if depth == deepest => Some(deepest),
+            _ => None,
+        }
+    }
+
     /// Where the numbers may be off, and whether the body yields.
     pub fn findings(&self, grid: &Grid) -> Vec<Finding> {
         let Some(worst) = self.worst() else { return vec![] };
         let mut found = vec![];
+        found.extend(self.missed.map(|[time, load]| finding::stress_times_miss_peak(time, load)));
         let cell = grid.spacing()[0].max(grid.spacing()[1]);
         let depth = self.number(worst, "max_mises_depth");
-        if depth > 0.0 && depth < 2.0 * cell {
-            found.push(finding::stress_unresolved(depth, cell).at([worst.row; 2]));
-        }
-        if let [_, .., deepest] = self.set.depths[..]
-            && depth == deepest
-        {
+        if let Some(deepest) = self.ends_at() {
             found.push(finding::stress_at_deepest(deepest).at([worst.row; 2]));
+        } else if depth > 0.0 && depth < 2.0 * cell {
+            found.push(finding::stress_unresolved(depth, cell).at([worst.row; 2]));
         }
         if let Some(limit) = self.set.yield_stress {
             let beyond = |instant: &&Instant| self.number(instant, "max_mises") > limit;
@@ -115,7 +145,9 @@ pub(super) fn scalars(grid: &Grid, survey: &Survey) -> Vec<f64> {
         numbers.push(extreme.value);
         numbers.extend(place(extreme));
     }
-    numbers.extend(survey.stressed_volume);
+    // One depth says nothing of a volume.
+    let volume = |volume: f64| if survey.mises_by_depth.len() > 1 { volume } else { f64::NAN };
+    numbers.extend(survey.stressed_volume.map(volume));
     if let Some(shear) = &survey.orthogonal_shear {
         numbers.extend([shear.largest.value, place(&shear.largest)[0]]);
     }

@@ -7,9 +7,10 @@ use asperity::{Boundary, Error};
 use ndarray::ArrayView2;
 use thiserror::Error as Failure;
 
-use super::below::{profiles, scalars};
+use super::below::{load_at, missed, profiles, scalars};
 use super::{Below, Depths, StressPlan};
 use crate::choice;
+use crate::readable::quantity;
 use crate::store::{At, FieldKind, Reader, StoreError, StressSet, StressWriter, Writer};
 
 /// Why the stress was not computed.
@@ -52,7 +53,8 @@ pub fn evaluate(
 pub fn of_result(reader: &Reader, plan: &StressPlan, interrupt: &AtomicBool) -> Result<Below, StressError> {
     let set = set(reader, plan)?;
     let instants = compute(reader, plan, &set, interrupt, &mut |_, _| (), None)?;
-    Ok(Below { set, instants })
+    let missed = missed(reader, instants.iter().map(|instant| instant.row))?;
+    Ok(Below { set, instants, missed })
 }
 
 /// The boundary of the domain that a result was computed on.
@@ -69,7 +71,7 @@ fn set(reader: &Reader, plan: &StressPlan) -> Result<StressSet, StoreError> {
     let all = reader.field_times().len();
     let mut instants: Vec<usize> = match &plan.times {
         None => (0..all).collect(),
-        Some(times) => times.iter().map(|time| reader.index(At::Time(*time))).collect::<Result<_, _>>()?,
+        Some(times) => times.iter().map(|time| stored_at(reader, *time)).collect::<Result<_, _>>()?,
     };
     instants.sort_unstable();
     instants.dedup();
@@ -100,6 +102,18 @@ fn set(reader: &Reader, plan: &StressPlan) -> Result<StressSet, StoreError> {
     })
 }
 
+/// The stored instant of that time \[s\].
+fn stored_at(reader: &Reader, time: f64) -> Result<usize, StoreError> {
+    let index = reader.index(At::Time(time))?;
+    let times = reader.field_times();
+    if (times[index] - time).abs() <= 1e-9 * times.iter().fold(time.abs(), |most, t| most.max(t.abs())) {
+        return Ok(index);
+    }
+    let available: Vec<String> = times.iter().take(12).map(|time| quantity(*time, "s")).collect();
+    let more = if times.len() > available.len() { ", ..." } else { "" };
+    Err(reader.missing(format!("pressure at t = {}", quantity(time, "s")), format!("those at {}{more}", available.join(", "))))
+}
+
 fn compute(
     reader: &Reader,
     plan: &StressPlan,
@@ -110,7 +124,6 @@ fn compute(
 ) -> Result<Vec<super::Instant>, StressError> {
     let grid = reader.header().grid;
     let mut stress = SubsurfaceStress::new(grid, boundary(reader), set.poisson)?;
-    let loads = reader.series("load")?;
     let mut field = vec![0.0; if set.quantities.is_empty() { 0 } else { grid.len() }];
     let mut found = Vec::with_capacity(set.instants.len());
     for (done, index) in set.instants.iter().enumerate() {
@@ -133,12 +146,11 @@ fn compute(
             Ok(())
         };
         let survey = survey_with(&mut stress, &set.depths, &plan.survey(), visit)?;
-        let row = reader.field_steps()[*index];
         let instant = super::Instant {
             index: *index,
             time: reader.field_times()[*index],
-            row,
-            load: loads.get(row).copied().unwrap_or(f64::NAN),
+            row: reader.field_steps()[*index],
+            load: load_at(reader, *index)?,
             scalars: scalars(&grid, &survey),
             profiles: profiles(&survey),
         };

@@ -8,8 +8,17 @@ use crate::readable::quantity;
 /// Where the body begins to yield, as far as the times tell.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FirstYield {
-    /// Nowhere: the yield stress is this many times the largest von Mises stress.
-    Never(f64),
+    /// At none of the times.
+    Never {
+        /// The yield stress is this many times the largest von Mises stress.
+        safety: f64,
+        /// How many times were computed.
+        times: usize,
+        /// Time \[s\] and load \[N\] of the largest pressure, where it is not among them.
+        missed: Option<[f64; 2]>,
+        /// The deepest depth \[m\], where the largest stress lies there.
+        deepest: Option<f64>,
+    },
     /// At the first of the times already, or before it: (time \[s\], load \[N\]).
     AtOnce([f64; 2]),
     /// Between two of the times: (time \[s\], load \[N\]) of both.
@@ -24,7 +33,12 @@ pub fn first_yield(below: &Below) -> Option<FirstYield> {
     Some(match mises.iter().position(|mises| *mises >= limit) {
         Some(0) => FirstYield::AtOnce(state(0)),
         Some(n) => FirstYield::Between([state(n - 1), state(n)]),
-        None => FirstYield::Never(limit / mises.into_iter().reduce(f64::max)?),
+        None => FirstYield::Never {
+            times: mises.len(),
+            safety: limit / mises.into_iter().reduce(f64::max)?,
+            missed: below.missed,
+            deepest: below.ends_at(),
+        },
     })
 }
 
@@ -34,10 +48,24 @@ impl FirstYield {
         let state =
             |[time, load]: [f64; 2]| format!("t = {} (load {})", quantity(time, "s"), quantity(load, "N"));
         match self {
-            FirstYield::Never(safety) if safety.is_finite() => {
-                format!("no yield: the yield stress is {safety:.3} times the largest von Mises stress")
+            FirstYield::Never { safety, times, missed, deepest } => {
+                let at = match times {
+                    1 => "at the one computed time".to_owned(),
+                    times => format!("at the {times} computed times"),
+                };
+                let mut sentence = if safety.is_finite() && *safety < 1e6 {
+                    format!("no yield {at}: the yield stress is {safety:.3} times the largest von Mises stress")
+                } else {
+                    format!("no yield {at}: there is no contact, or next to no stress")
+                };
+                if let Some(deepest) = deepest {
+                    sentence += &format!(" down to {}, but it may be larger below", quantity(*deepest, "m"));
+                }
+                if let Some(missed) = missed {
+                    sentence += &format!("; the largest pressure, at {}, is not among the times", state(*missed));
+                }
+                sentence
             }
-            FirstYield::Never(_) => "no yield: there is no contact".to_owned(),
             FirstYield::AtOnce(first) => format!("first yield at or before {}", state(*first)),
             FirstYield::Between([before, after]) => {
                 format!("first yield between {} and {}", state(*before), state(*after))
@@ -48,7 +76,9 @@ impl FirstYield {
     /// As an object: `safety`, or `times` and `loads`, the two states that first yield lies between (one: at or before it).
     pub fn to_json(self) -> Value {
         match self {
-            FirstYield::Never(safety) => json!({ "yields": false, "safety": safety }),
+            FirstYield::Never { safety, missed, deepest, .. } => {
+                json!({ "yields": false, "safety": safety, "missed": missed, "deepest": deepest })
+            }
             FirstYield::AtOnce([time, load]) => json!({ "yields": true, "times": [time], "loads": [load] }),
             FirstYield::Between([[t0, w0], [t1, w1]]) => {
                 json!({ "yields": true, "times": [t0, t1], "loads": [w0, w1] })

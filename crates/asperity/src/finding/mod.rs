@@ -41,7 +41,7 @@ pub use expected::{Contact, Expected};
 pub use judge::{Judge, Known};
 pub use leak::{LeakJudge, LeakState};
 pub use material::{beyond_data, misfit, unlikely_modulus};
-pub use stress::{stress_at_deepest, stress_unresolved, yield_exceeded};
+pub use stress::{stress_at_deepest, stress_times_miss_peak, stress_unresolved, yield_exceeded};
 pub use surface::{hurst, of_heights};
 pub use thin::thin_body;
 
@@ -126,7 +126,7 @@ impl std::fmt::Display for Finding {
 }
 
 /// Every code. A code keeps its meaning.
-pub const CODES: [&str; 24] = [
+pub const CODES: [&str; 25] = [
     CONTACT_AT_BORDER,
     GAP_NOT_PERIODIC,
     ROUGH_ON_FREE_DOMAIN,
@@ -146,6 +146,7 @@ pub const CODES: [&str; 24] = [
     UNLIKELY_UNIT,
     STRESS_UNRESOLVED,
     STRESS_AT_DEEPEST,
+    STRESS_TIMES_MISS_PEAK,
     YIELD_EXCEEDED,
     LEAK_BELOW_GAP_ERROR,
     CONSTRICTION_UNRESOLVED,
@@ -191,6 +192,8 @@ pub const UNLIKELY_UNIT: &str = "unlikely-unit";
 pub const STRESS_UNRESOLVED: &str = "stress-unresolved";
 /// The largest stress lies at the deepest of the depths.
 pub const STRESS_AT_DEEPEST: &str = "stress-at-deepest";
+/// The largest pressure of a run is not among the times at which the stress is computed.
+pub const STRESS_TIMES_MISS_PEAK: &str = "stress-times-miss-peak";
 /// The von Mises stress below the surface exceeds the yield stress.
 pub const YIELD_EXCEEDED: &str = "yield-exceeded";
 /// A half-space that is thinner than the contact or the waves need.

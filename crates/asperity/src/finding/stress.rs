@@ -2,7 +2,7 @@
 //! a body that yields.
 
 use super::words::{digits, si};
-use super::{Finding, STRESS_AT_DEEPEST, STRESS_UNRESOLVED, YIELD_EXCEEDED};
+use super::{Finding, STRESS_AT_DEEPEST, STRESS_TIMES_MISS_PEAK, STRESS_UNRESOLVED, YIELD_EXCEEDED};
 
 /// Cells from the surface to a maximum that the grid resolves.
 const CELLS: f64 = 2.0;
@@ -16,6 +16,17 @@ pub fn stress_unresolved(depth: f64, cell: f64) -> Finding {
         digits(depth / cell)
     );
     Finding::warning(STRESS_UNRESOLVED, depth / cell, CELLS, text)
+}
+
+/// The largest pressure of the run, at `time` \[s\] under `load` \[N\], is not among the times of the stress.
+pub fn stress_times_miss_peak(time: f64, load: f64) -> Finding {
+    let text = format!(
+        "The largest pressure of the run, at t = {} under {}, is not among the times at which the stress below the surface is \
+         computed: it was larger then. Store the fields at that time too (output.every or output.times).",
+        si(time, "s"),
+        si(load, "N")
+    );
+    Finding::warning(STRESS_TIMES_MISS_PEAK, time, time, text)
 }
 
 /// The largest von Mises stress lies at the deepest of several depths \[m\].

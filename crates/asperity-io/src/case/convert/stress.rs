@@ -58,7 +58,8 @@ pub fn stress(
             };
             if let Some(missing) = list.iter().find(|at| !stored(at.value.get())) {
                 let expected = "a time at which fields are stored: 0, the end, or one of output.times";
-                checks.wrong(&missing.span, expected, Some("add it to output.times"));
+                let help = "add it to output.times; with output.every use times = \"fields\" or \"all\"";
+                checks.wrong(&missing.span, expected, Some(help));
                 return None;
             }
             plan.times = Some(instants);

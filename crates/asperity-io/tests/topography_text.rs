@@ -168,7 +168,7 @@ fn what_could_be_read_in_two_ways_is_refused() {
         ("1,5, 2,5\n3,5, 4,5\n", "commas"),
         ("1 2\n3 4\n5 6\n", "profile"),
         ("1\n2\n3\n", "profile"),
-        ("1 2 3\n7 7 9\n4 1 2\n0 9 9.5\n", "asc"),
+        ("1 2 3\n7 7 9\n4 1 2\n0 9 9.5\n", "# Width:"),
         ("0 0 1\n0 0 2\n1 1 3\n", "again at x = 0, y = 0"),
         ("1 2 3 4\n5 6 7\n", "line 2"),
         ("1 2 3 4\n5 6 seven 8\n", "\"seven\""),

@@ -2,6 +2,7 @@
 
 import copy
 import pickle
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -175,3 +176,22 @@ def test_a_topography_of_surfacetopography_is_a_surface(rough):
     ours, other = (asp.solve(surface, material, **kw) for surface in (rough, theirs))
     # The factor of the unit rounds the heights.
     assert other.approach == pytest.approx(ours.approach, rel=1e-6)
+
+
+def test_a_format_that_is_not_read_is_named_or_left_to_another_package(tmp_path, monkeypatch):
+    path = tmp_path / "cone.vk4"
+    path.write_bytes(b"VK4_" + bytes(100))
+    # None stands for a package that is not installed.
+    monkeypatch.setitem(sys.modules, "SurfaceTopography", None)
+    with pytest.raises(OSError, match="Keyence VK4.*SurfaceTopography"):
+        asp.Surface.read(path)
+    calls = []
+
+    def other(*given):
+        calls.append(given[:4])
+        return {"heights": np.ones((3, 2)), "size": [3e-6, 2e-6], "channels": ["Height"], "format": "vk", "history": []}
+
+    monkeypatch.setattr("asperity._foreign.read", other)
+    surface = asp.Surface.read(path, channel=0)
+    assert surface.cells == (3, 2) and surface.metadata["channels"] == ["Height"]
+    assert calls == [(str(path), None, None, "0")]

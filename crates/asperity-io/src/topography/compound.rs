@@ -36,7 +36,11 @@ impl<'a> Compound<'a> {
         let at = |offset: u64| Cursor::at(bytes, offset, Order::Little, WHAT);
         let shift = at(30)?.u16(WHAT)?;
         if !matches!(shift, 9 | 12) {
-            return Err(Problem::malformed("the size of the sectors", format!("2^{shift}"), "2^9 or 2^12 bytes"));
+            return Err(Problem::malformed(
+                "the size of the sectors",
+                format!("2^{shift}"),
+                "2^9 or 2^12 bytes",
+            ));
         }
         let directory = at(48)?.u32(WHAT)?;
         let mut compound = Compound { bytes, sector: 1 << shift, next: Vec::new(), directory };
@@ -111,11 +115,14 @@ impl<'a> Compound<'a> {
 
     fn after(&self, sector: u32) -> Result<u32, Problem> {
         let next = self.next.get(sector as usize).copied();
-        next.ok_or_else(|| Problem::malformed("a chain of the compound document", sector, "a sector of the file"))
+        next.ok_or_else(|| {
+            Problem::malformed("a chain of the compound document", sector, "a sector of the file")
+        })
     }
 
     fn sector(&self, number: u32) -> Result<&'a [u8], Problem> {
         let offset = (u64::from(number) + 1) * self.sector;
-        Cursor::at(self.bytes, offset, Order::Little, WHAT)?.bytes(self.sector, "a sector of the compound document")
+        Cursor::at(self.bytes, offset, Order::Little, WHAT)?
+            .bytes(self.sector, "a sector of the compound document")
     }
 }

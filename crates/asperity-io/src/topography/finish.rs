@@ -137,6 +137,15 @@ pub(super) fn choose_heights(
     Ok(lengths().find(is_named).or_else(|| lengths().next()).unwrap_or(first))
 }
 
+/// Refuses a file of more channels than any instrument writes: every one is looked at.
+pub(super) fn check_channels(count: usize) -> Result<(), Problem> {
+    const MOST: usize = 1000;
+    match count <= MOST {
+        true => Ok(()),
+        false => Err(Problem::malformed("the number of channels", count, format!("at most {MOST}"))),
+    }
+}
+
 /// The unit with this label; no label is no unit.
 pub(super) fn unit_of(label: &str, lone_a: LoneA) -> Unit {
     match (metres(label, lone_a), label.trim()) {

@@ -18,21 +18,56 @@ use Way::{Export, Gwyddion, SurfaceTopography};
 const STARTS: [(&[u8], &str, Way, &str); 24] = [
     (b"VK3_", "Keyence VK3 (laser microscope)", SurfaceTopography, "CSV of the heights from VK Analyzer"),
     (b"VK4_", "Keyence VK4 (laser microscope)", SurfaceTopography, "CSV of the heights from VK Analyzer"),
-    (b"VK6", "Keyence VK6 (laser microscope)", SurfaceTopography, "CSV of the heights from MultiFileAnalyzer"),
-    (b"VK7", "Keyence VK7 (laser microscope)", SurfaceTopography, "CSV of the heights from MultiFileAnalyzer"),
-    (b"KPK", "Keyence ZON (digital microscope)", SurfaceTopography, "CSV of the heights from MultiFileAnalyzer"),
+    (
+        b"VK6",
+        "Keyence VK6 (laser microscope)",
+        SurfaceTopography,
+        "CSV of the heights from MultiFileAnalyzer",
+    ),
+    (
+        b"VK7",
+        "Keyence VK7 (laser microscope)",
+        SurfaceTopography,
+        "CSV of the heights from MultiFileAnalyzer",
+    ),
+    (
+        b"KPK",
+        "Keyence ZON (digital microscope)",
+        SurfaceTopography,
+        "CSV of the heights from MultiFileAnalyzer",
+    ),
     (b"VCA DATA", "Bruker OPDx (Vision64, Dektak)", SurfaceTopography, "OPD, SDF or ASCII from Vision64"),
-    (b"OLYMPUSRAWFORMAT", "Olympus OIR (laser microscope)", SurfaceTopography, "CSV of the heights from the LEXT software"),
+    (
+        b"OLYMPUSRAWFORMAT",
+        "Olympus OIR (laser microscope)",
+        SurfaceTopography,
+        "CSV of the heights from the LEXT software",
+    ),
     (b"\x01\xb0\x93\xff", "NT-MDT MDT (atomic force microscope)", SurfaceTopography, "ASCII from Nova"),
     (b"WSxM file copyright", "WSxM", SurfaceTopography, "ASCII matrix from WSxM"),
-    (b"fileType", "Agilent or Molecular Imaging MI (atomic force microscope)", SurfaceTopography, "ASCII from PicoView"),
+    (
+        b"fileType",
+        "Agilent or Molecular Imaging MI (atomic force microscope)",
+        SurfaceTopography,
+        "ASCII from PicoView",
+    ),
     (b"OmniSurf3D", "Digital Metrology OmniSurf3D", SurfaceTopography, "SDF from OmniSurf3D"),
     (b"Binary TrueMap Data File", "TrueMap TMD", SurfaceTopography, "SDF from TrueMap"),
     (b"MATLAB 5.0 MAT-file", "MATLAB MAT", SurfaceTopography, "writematrix of the heights as CSV"),
     (b":NANONIS_VERSION:", "Nanonis SXM (scanning probe microscope)", Gwyddion, "ASCII from Nanonis"),
     (b"S\0T\0i\0M\0a\0g\0e\0", "RHK SM4 (scanning probe microscope)", Gwyddion, "ASCII from RHK's software"),
-    (b";ANFATEC Parameterfile", "Anfatec (atomic force microscope)", Gwyddion, "ASCII from Anfatec's software"),
-    (b"[Parameter]", "Omicron or JEOL (scanning probe microscope)", Gwyddion, "ASCII from the instrument's software"),
+    (
+        b";ANFATEC Parameterfile",
+        "Anfatec (atomic force microscope)",
+        Gwyddion,
+        "ASCII from Anfatec's software",
+    ),
+    (
+        b"[Parameter]",
+        "Omicron or JEOL (scanning probe microscope)",
+        Gwyddion,
+        "ASCII from the instrument's software",
+    ),
     (b"ZISRAWFILE", "Zeiss CZI (microscope)", Export, "SUR or X3P from ConfoMap"),
     (b"\x70\0\0\0", "Leica LIF (microscope)", Export, "SUR from Leica Map"),
     (b"[p3dlin]", "Taylor Hobson (stylus)", SurfaceTopography, "SDF or ASCII from the instrument's software"),
@@ -87,26 +122,53 @@ fn container(bytes: &[u8]) -> Option<(&'static str, Way, &'static str)> {
         let names = unpack::Archive::open(bytes).map(|archive| archive.names()).unwrap_or_default();
         let has = |end: &str| names.iter().any(|n| n.to_lowercase().ends_with(end));
         return Some(if has("index.xml") && has(".raw") {
-            ("Sensofar PLUX (confocal microscope)", SurfaceTopography, "SUR, PLU or X3P from SensoSCAN or SensoVIEW")
+            (
+                "Sensofar PLUX (confocal microscope)",
+                SurfaceTopography,
+                "SUR, PLU or X3P from SensoSCAN or SensoVIEW",
+            )
         } else if has(".oir") || has("matlmeasurement.xml") {
-            ("Olympus POIR (laser microscope)", SurfaceTopography, "CSV of the heights from the LEXT software")
+            (
+                "Olympus POIR (laser microscope)",
+                SurfaceTopography,
+                "CSV of the heights from the LEXT software",
+            )
         } else if has(".jpk-header") || has("header.properties") {
-            ("JPK (atomic force microscope), force curves", Export, "an image of heights from JPK Data Processing")
+            (
+                "JPK (atomic force microscope), force curves",
+                Export,
+                "an image of heights from JPK Data Processing",
+            )
         } else if has(".nms") {
             ("Nanosurf NMS", SurfaceTopography, "NID from the instrument's software")
         } else if names.iter().any(|n| n == "[Content_Types].xml") {
             ("Excel or Word", Export, "the heights as CSV")
         } else {
-            ("a zip archive of another program", Export, "unpack it first, or the heights as X3P, SDF or text")
+            (
+                "a zip archive of another program",
+                Export,
+                "unpack it first, or the heights as X3P, SDF or text",
+            )
         });
     }
     if bytes.starts_with(b"II*\0") || bytes.starts_with(b"MM\0*") {
         return Some(if near(b"jpk-data-file") || near(b"JPK") {
             ("JPK (atomic force microscope)", SurfaceTopography, "text from JPK Data Processing")
         } else if near(b"TiffTagDescData") || near(b"LEXT") || near(b"OLS") {
-            ("Olympus LEXT (laser microscope)", SurfaceTopography, "CSV of the heights from the LEXT software")
-        } else if near(b"PSIA") || near(b"Park") || near(&50432u16.to_le_bytes()) && near(&50434u16.to_le_bytes()) {
-            ("Park Systems TIFF (atomic force microscope)", SurfaceTopography, "text from XEI or SmartAnalysis")
+            (
+                "Olympus LEXT (laser microscope)",
+                SurfaceTopography,
+                "CSV of the heights from the LEXT software",
+            )
+        } else if near(b"PSIA")
+            || near(b"Park")
+            || near(&50432u16.to_le_bytes()) && near(&50434u16.to_le_bytes())
+        {
+            (
+                "Park Systems TIFF (atomic force microscope)",
+                SurfaceTopography,
+                "text from XEI or SmartAnalysis",
+            )
         } else {
             ("TIFF", Export, "the heights instead of a picture of them, as X3P, SDF or text")
         });

@@ -25,7 +25,8 @@ mod tag {
 }
 
 /// Kinds of images that are lengths; others are intensities and pictures.
-const HEIGHTS: [(u32, &str); 4] = [(0x4, "Topography"), (0x80, "Thickness"), (0x800, "Sample thickness"), (0x1000, "AFM")];
+const HEIGHTS: [(u32, &str); 4] =
+    [(0x4, "Topography"), (0x80, "Thickness"), (0x800, "Sample thickness"), (0x1000, "AFM")];
 const BOTTOM_SENSOR: u32 = 0x1000_0000;
 
 /// Whether the bytes are a MicroProf file.
@@ -48,7 +49,9 @@ pub(super) fn read_frt(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
     let wide = match c.u8(H)? {
         b'0' => false,
         b'1' => true,
-        other => return Err(Problem::malformed("the version of the FRT file", char::from(other), "1.00 or 1.01")),
+        other => {
+            return Err(Problem::malformed("the version of the FRT file", char::from(other), "1.00 or 1.01"));
+        }
     };
     let count = c.u16(H)?;
     let (mut points, mut size, mut scale, mut heights) = (None, None, None, None);
@@ -61,7 +64,9 @@ pub(super) fn read_frt(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
         let content = c.bytes(length, &what)?;
         let mut c = Cursor::new(content, Order::Little);
         match tag {
-            tag::POINTS => points = Some(([u64::from(c.u32(&what)?), u64::from(c.u32(&what)?)], c.u32(&what)?)),
+            tag::POINTS => {
+                points = Some(([u64::from(c.u32(&what)?), u64::from(c.u32(&what)?)], c.u32(&what)?))
+            }
             tag::SIZE => size = Some([c.f64(&what)?, c.f64(&what)?]),
             tag::SCALE => {
                 let _range = c.u32(&what)?;
@@ -94,7 +99,14 @@ pub(super) fn read_frt(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
     let layout = Layout::dense(image.points, kind(image.bits)?, Order::Little);
     let heights = layout.map_from_bottom(image.data, &what, height)?;
     let lateral = size.map_or(Lateral::Unstated(String::new()), Lateral::Metres);
-    Ok(Measured { heights, unit: Unit::Metres(1.0), lateral, channel: Some(names[index].clone()), channels: names, metadata })
+    Ok(Measured {
+        heights,
+        unit: Unit::Metres(1.0),
+        lateral,
+        channel: Some(names[index].clone()),
+        channels: names,
+        metadata,
+    })
 }
 
 fn kind(bits: u32) -> Result<Kind, Problem> {

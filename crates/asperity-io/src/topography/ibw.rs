@@ -9,7 +9,7 @@
 //! "DeflectionRetrace" are lengths, "PhaseRetrace" is an angle.
 
 use super::cursor::{Cursor, text};
-use super::finish::{Lateral, Measured, Unit, choose_heights, unit_of};
+use super::finish::{Lateral, Measured, Unit, check_channels, choose_heights, unit_of};
 use super::grid::{self, Layout};
 use super::sample::{Kind, Order};
 use super::unit::LoneA;
@@ -41,8 +41,9 @@ pub(super) fn is_ibw(bytes: &[u8]) -> bool {
 /// Reads the layer asked for.
 pub(super) fn read_ibw(bytes: &[u8], channel: Option<&str>) -> Result<Measured, Problem> {
     const H: &str = "the header of the Igor wave";
-    let order = order(bytes)
-        .ok_or_else(|| Problem::unsupported("an Igor wave of another version than 5", "save it with Igor Pro 6 or newer"))?;
+    let order = order(bytes).ok_or_else(|| {
+        Problem::unsupported("an Igor wave of another version than 5", "save it with Igor Pro 6 or newer")
+    })?;
     let mut c = Cursor::at(bytes, 4, order, H)?;
     let mut lengths = [0; 13];
     for length in &mut lengths {
@@ -96,16 +97,17 @@ pub(super) fn read_ibw(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
         return Err(none(format!("{ny} curves ({})", labels[1].join(", "))));
     }
     let layers = layers.max(1);
+    check_channels(usize::try_from(layers).unwrap_or(usize::MAX))?;
     let layer = grid::points(nx, ny)? as u64 * kind.width() as u64;
     let data = Cursor::at(bytes, HEADER + WAVE_HEADER, order, "the Igor wave")?.rest();
     let available = data.len() as u64;
     if layer.saturating_mul(layers) > available {
         return Err(Problem::truncated("the Igor wave", layer.saturating_mul(layers), available));
     }
-    // No more names than layers that the file has room for.
     let label = |i: usize| labels[2].get(i).filter(|l| !l.is_empty());
-    let names: Vec<String> =
-        (0..layers as usize).map(|i| label(i).cloned().unwrap_or_else(|| format!("no name ({})", i + 1))).collect();
+    let names: Vec<String> = (0..layers as usize)
+        .map(|i| label(i).cloned().unwrap_or_else(|| format!("no name ({})", i + 1)))
+        .collect();
     let unit = |i: usize| match label(i) {
         Some(label) if !note.is_empty() => unit_of(&asylum_unit(label, &note), LoneA::Ampere),
         _ => unit_of(&units[0], LoneA::Ampere),
@@ -153,7 +155,10 @@ fn note_entries(note: &[u8]) -> Vec<(String, String)> {
 
 /// Unit of a layer: an entry "HeightUnit" of the note, or what the start of the label means.
 fn asylum_unit(label: &str, note: &[(String, String)]) -> String {
-    let base = label.find("Mod").filter(|at| label[at + 3..].chars().all(|c| c.is_ascii_digit())).map_or(label, |at| &label[..at]);
+    let base = label
+        .find("Mod")
+        .filter(|at| label[at + 3..].chars().all(|c| c.is_ascii_digit()))
+        .map_or(label, |at| &label[..at]);
     let base = base.strip_suffix("Retrace").or(base.strip_suffix("Trace")).unwrap_or(base);
     let key = format!("{base}Unit");
     if let Some((_, unit)) = note.iter().find(|(k, _)| *k == key) {

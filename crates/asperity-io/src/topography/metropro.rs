@@ -37,12 +37,17 @@ pub(super) fn is_metropro(bytes: &[u8]) -> bool {
 /// Reads the phases.
 pub(super) fn read_metropro(bytes: &[u8]) -> Result<Measured, Problem> {
     const H: &str = "the MetroPro header";
-    let expected = header_length(bytes)
-        .ok_or_else(|| Problem::malformed("the signature", "something else", "881b036f, 881b0370 or 881b0371"))?;
+    let expected = header_length(bytes).ok_or_else(|| {
+        Problem::malformed("the signature", "something else", "881b036f, 881b0370 or 881b0371")
+    })?;
     let at = |offset: u64| Cursor::at(bytes, offset, Order::Big, H);
     let header = at(6)?.u32(H)?;
     if header != expected {
-        return Err(Problem::malformed("the length of the MetroPro header", header, format!("{expected} bytes")));
+        return Err(Problem::malformed(
+            "the length of the MetroPro header",
+            header,
+            format!("{expected} bytes"),
+        ));
     }
     let date = at(12)?.text(30, H)?;
     let intensities = at(60)?.u32(H)?;
@@ -84,7 +89,8 @@ pub(super) fn read_metropro(bytes: &[u8]) -> Result<Measured, Problem> {
         false => Lateral::Unstated(" (its lateral resolution was not calibrated)".into()),
     };
     let metadata = [("Date", date), ("Comment", comment), ("Objective", objective), ("Part", part)];
-    let metadata = metadata.into_iter().filter(|(_, v)| !v.is_empty()).map(|(k, v)| (k.to_owned(), v)).collect();
+    let metadata =
+        metadata.into_iter().filter(|(_, v)| !v.is_empty()).map(|(k, v)| (k.to_owned(), v)).collect();
     let channel = Some(NAME.to_owned());
     Ok(Measured { heights, unit: Unit::Metres(1.0), lateral, channels: vec![NAME.into()], channel, metadata })
 }

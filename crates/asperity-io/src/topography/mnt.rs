@@ -116,7 +116,8 @@ impl<'a> Node<'a> {
     /// A mark (4) and UTF-16.
     fn text(self) -> Option<String> {
         let characters = self.0.strip_prefix(&[4])?.as_chunks::<2>().0.iter().map(|b| u16::from_le_bytes(*b));
-        let text: String = char::decode_utf16(characters).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect();
+        let text: String =
+            char::decode_utf16(characters).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER)).collect();
         Some(text.trim_matches(['\0', ' ']).to_owned())
     }
 }
@@ -136,10 +137,18 @@ impl Scale {
         let number = |tag| Ok::<_, Problem>(node.find(tag)?.and_then(Node::number));
         let text = |tag| Ok::<_, Problem>(node.find(tag)?.and_then(Node::text).unwrap_or_default());
         let step = number(0x1)?;
-        let step = step.ok_or_else(|| Problem::malformed(format!("the step of the {axis} axis"), "missing", "a number"))?;
+        let step = step.ok_or_else(|| {
+            Problem::malformed(format!("the step of the {axis} axis"), "missing", "a number")
+        })?;
         let unit = text(0x2)?;
         let display_unit = Some(text(0x3)?).filter(|u| !u.is_empty()).unwrap_or_else(|| unit.clone());
-        Ok(Scale { step, unit, display_unit, ratio: number(0x4)?.unwrap_or(1.0), origin: number(0x5)?.unwrap_or(0.0) })
+        Ok(Scale {
+            step,
+            unit,
+            display_unit,
+            ratio: number(0x4)?.unwrap_or(1.0),
+            origin: number(0x5)?.unwrap_or(0.0),
+        })
     }
 
     /// Metres per count, and the origin in metres.
@@ -223,7 +232,8 @@ impl<'a> Surface<'a> {
             // With a border of one point.
             let points = self.points.map(|n| n + 2);
             let bytes = blocks(mask, points[0].saturating_mul(points[1]), MASK)?;
-            let layout = Layout { points: self.points, kind: Kind::U8, order: Order::Little, stride: points[0] };
+            let layout =
+                Layout { points: self.points, kind: Kind::U8, order: Order::Little, stride: points[0] };
             let first = bytes.get(points[0] as usize + 1..).unwrap_or_default();
             heights.zip_mut_with(&layout.map(first, MASK, |m| m)?, |h, m| {
                 if *m != f64::from(MEASURED) {
@@ -238,7 +248,14 @@ impl<'a> Surface<'a> {
             _ => Lateral::Unstated(format!(" in a unit of length (it says {:?})", x.unit)),
         };
         let metadata = self.title.map(|title| ("Title".to_owned(), title)).into_iter().collect();
-        Ok(Measured { heights, unit, lateral, channel: Some(names[index].clone()), channels: names, metadata })
+        Ok(Measured {
+            heights,
+            unit,
+            lateral,
+            channel: Some(names[index].clone()),
+            channels: names,
+            metadata,
+        })
     }
 }
 

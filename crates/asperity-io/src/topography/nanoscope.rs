@@ -14,7 +14,7 @@
 //! SurfaceTopography.)
 
 use super::cursor::Cursor;
-use super::finish::{Lateral, Measured, Unit, choose_heights, unit_of};
+use super::finish::{Lateral, Measured, Unit, check_channels, choose_heights, unit_of};
 use super::grid::{self, Layout};
 use super::sample::{Kind, Order};
 use super::unit::{LoneA, metres};
@@ -31,7 +31,8 @@ const VERSION_OF_32_BITS: u32 = 0x0920_0000;
 /// Whether the bytes are a Nanoscope file.
 pub(super) fn is_nanoscope(bytes: &[u8]) -> bool {
     let Some((b'\\' | b'?', rest)) = bytes.split_first() else { return false };
-    let starts = |start: &str| rest.get(..start.len()).is_some_and(|r| r.eq_ignore_ascii_case(start.as_bytes()));
+    let starts =
+        |start: &str| rest.get(..start.len()).is_some_and(|r| r.eq_ignore_ascii_case(start.as_bytes()));
     STARTS.into_iter().any(starts)
 }
 
@@ -44,6 +45,7 @@ pub(super) fn read_nanoscope(bytes: &[u8], channel: Option<&str>) -> Result<Meas
     let header = Header::parse(bytes);
     header.refuse_curves()?;
     let images: Vec<&Section> = header.sections.iter().filter(|s| s.is_image()).collect();
+    check_channels(images.len())?;
     let names: Vec<String> = images.iter().map(|image| image.names().0).collect();
     if names.is_empty() {
         return Err(none("no image in it"));
@@ -98,9 +100,7 @@ impl Header {
         for line in bytes.split(|b| *b == b'\n') {
             let line = super::cursor::text(line);
             // The numbers of the first image follow the last entry.
-            let Some(entry) = line.strip_prefix('\\') else {
-                if line.is_empty() { continue } else { break }
-            };
+            let Some(entry) = line.strip_prefix('\\') else { if line.is_empty() { continue } else { break } };
             if let Some(title) = entry.strip_prefix('*') {
                 if title.eq_ignore_ascii_case("file list end") {
                     break;
@@ -150,7 +150,8 @@ impl Header {
                 "open it in NanoScope Analysis or Gwyddion and save it in a newer format",
             )
         })?;
-        let hard = Scale::parse(scale).ok_or_else(|| image.wrong("@2:Z scale", "like \"V [Sens. Zsens] (0.005 V/LSB) 2.9 V\""))?;
+        let hard = Scale::parse(scale)
+            .ok_or_else(|| image.wrong("@2:Z scale", "like \"V [Sens. Zsens] (0.005 V/LSB) 2.9 V\""))?;
         let bytes = image.bytes_per_number()?;
         let per_number = hard.value / 256f64.powi(i32::try_from(bytes).unwrap_or(2));
         let soft = hard.sensitivity.and_then(|name| {
@@ -172,7 +173,8 @@ impl Header {
     fn plane(&self, image: &Section) -> Result<Plane, Problem> {
         let stated = [image.whole("samps/line")?, image.whole("number of lines")?];
         let length = image.whole("data length")?;
-        let global = ["samps/line", "lines"].map(|key| self.get("scan list", key).and_then(|n| n.parse().ok()));
+        let global =
+            ["samps/line", "lines"].map(|key| self.get("scan list", key).and_then(|n| n.parse().ok()));
         let global = match global {
             [Some(x), Some(y)] => Some([x, y]),
             _ => None,
@@ -196,7 +198,8 @@ impl Header {
             let needed = global_count.saturating_mul(width);
             if length == needed || (stated_count.saturating_mul(width) > length && length >= needed) {
                 if slow.is_none() {
-                    (sx, sy) = (sx * global[0] as f64 / stated[0] as f64, sy * global[1] as f64 / stated[1] as f64);
+                    (sx, sy) =
+                        (sx * global[0] as f64 / stated[0] as f64, sy * global[1] as f64 / stated[1] as f64);
                 }
                 points = global;
             }
@@ -225,7 +228,9 @@ impl Header {
 
     fn metadata(&self, image: &Section) -> Vec<(String, String)> {
         let global = [("file list", "Version"), ("file list", "Date"), ("equipment list", "Description")];
-        let global = global.into_iter().filter_map(|(title, key)| Some((key.to_owned(), self.get(title, key)?.to_owned())));
+        let global = global
+            .into_iter()
+            .filter_map(|(title, key)| Some((key.to_owned(), self.get(title, key)?.to_owned())));
         let of_image = image.entries.iter().filter(|(_, value)| !value.is_empty()).cloned();
         global.chain(of_image).collect()
     }
@@ -305,7 +310,8 @@ impl<'a> Scale<'a> {
 impl Section {
     fn is_image(&self) -> bool {
         let title = self.title.as_str();
-        ["ciao image list", "afm image list", "stm image list", "ncafm image list", "image list"].contains(&title)
+        ["ciao image list", "afm image list", "stm image list", "ncafm image list", "image list"]
+            .contains(&title)
     }
 
     fn get(&self, key: &str) -> Option<&str> {
@@ -317,7 +323,8 @@ impl Section {
         let keys = ["@2:image data", "@3:image data", "@4:image data", "image data"];
         let value = keys.into_iter().find_map(|key| self.get(key)).unwrap_or("no name");
         let label = value.split('"').nth(1).unwrap_or(value).trim();
-        let name = value.split_once('[').and_then(|(_, rest)| rest.split_once(']')).map(|(name, _)| name.trim());
+        let name =
+            value.split_once('[').and_then(|(_, rest)| rest.split_once(']')).map(|(name, _)| name.trim());
         (name.filter(|n| !n.is_empty()).unwrap_or(label).to_owned(), label.to_owned())
     }
 

@@ -11,7 +11,7 @@
 //! (The readers of Gwyddion and SurfaceTopography; Nanosurf does not publish the format.)
 
 use super::cursor::{Cursor, text};
-use super::finish::{Lateral, Measured, Unit, choose_heights, unit_of};
+use super::finish::{Lateral, Measured, Unit, check_channels, choose_heights, unit_of};
 use super::grid::{self, Layout};
 use super::sample::{Kind, Order};
 use super::unit::LoneA;
@@ -60,10 +60,12 @@ pub(super) fn read_nid(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
     let signed = matches!(set.kind, Kind::I8 | Kind::I16 | Kind::I32);
     let (step, least) = (range / 2f64.powi(bits), if signed { least + range / 2.0 } else { least });
     let data = Cursor::at(data, set.offset, set.order, &what)?.rest();
-    let heights = Layout::dense(set.points, set.kind, set.order).map_from_bottom(data, &what, |n| least + step * n)?;
+    let heights =
+        Layout::dense(set.points, set.kind, set.order).map_from_bottom(data, &what, |n| least + step * n)?;
     let info = sections.iter().find(|s| s.title == "DataSet-Info").map(|s| s.entries.as_slice());
     let metadata = info.unwrap_or_default().iter().chain(&set.section.entries);
-    let metadata = metadata.filter(|(key, value)| !key.starts_with("--") && !value.is_empty()).cloned().collect();
+    let metadata =
+        metadata.filter(|(key, value)| !key.starts_with("--") && !value.is_empty()).cloned().collect();
     Ok(Measured {
         heights,
         unit: set.section.unit("Dim2Unit"),
@@ -92,7 +94,11 @@ fn header(bytes: &[u8]) -> Result<(Vec<Section>, &[u8]), Problem> {
             section.entries.push((key.trim().to_owned(), value.trim().to_owned()));
         }
     }
-    Err(Problem::truncated("the header of the Nanosurf file, up to \"#!\",", bytes.len() as u64 + 2, bytes.len() as u64))
+    Err(Problem::truncated(
+        "the header of the Nanosurf file, up to \"#!\",",
+        bytes.len() as u64 + 2,
+        bytes.len() as u64,
+    ))
 }
 
 /// The data sets in their order.
@@ -109,6 +115,7 @@ fn sets(sections: &[Section]) -> Result<Vec<Set<'_>>, Problem> {
     }
     places.sort_by_key(|(place, _)| *place);
     places.dedup_by_key(|(place, _)| *place);
+    check_channels(places.len())?;
     let mut sets = Vec::new();
     let mut offset = 0u64;
     for (_, title) in places {
@@ -140,7 +147,12 @@ fn sets(sections: &[Section]) -> Result<Vec<Set<'_>>, Problem> {
 impl Set<'_> {
     fn lateral(&self) -> Lateral {
         let length = |key: &str| self.section.number(key).ok();
-        match (length("Dim0Range"), length("Dim1Range"), self.section.unit("Dim0Unit"), self.section.unit("Dim1Unit")) {
+        match (
+            length("Dim0Range"),
+            length("Dim1Range"),
+            self.section.unit("Dim0Unit"),
+            self.section.unit("Dim1Unit"),
+        ) {
             (Some(x), Some(y), Unit::Metres(ux), Unit::Metres(uy)) => Lateral::Metres([x * ux, y * uy]),
             (Some(x), Some(y), Unit::Unstated, _) => Lateral::Bare([x, y]),
             (_, _, Unit::Other(label), _) | (_, _, _, Unit::Other(label)) => {
@@ -172,10 +184,16 @@ impl Section {
     }
 
     fn whole(&self, key: &str) -> Result<u64, Problem> {
-        self.get(key).and_then(|v| v.parse().ok()).ok_or_else(|| self.wrong(key, self.get(key), "a whole number"))
+        self.get(key)
+            .and_then(|v| v.parse().ok())
+            .ok_or_else(|| self.wrong(key, self.get(key), "a whole number"))
     }
 
     fn wrong(&self, key: &str, value: Option<&str>, expected: &str) -> Problem {
-        Problem::malformed(format!("{key} of the data set {:?}", self.title), value.unwrap_or("missing"), expected)
+        Problem::malformed(
+            format!("{key} of the data set {:?}", self.title),
+            value.unwrap_or("missing"),
+            expected,
+        )
     }
 }

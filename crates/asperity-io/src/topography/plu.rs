@@ -15,7 +15,15 @@ const UNDEFINED: f64 = 1_000_001.0;
 const UM: f64 = 1e-6;
 /// The kind of measurement that is an area; names of all kinds.
 const TOPOGRAPHY: u32 = 3;
-const KINDS: [&str; 7] = ["an image", "a profile", "several profiles", "a topography", "coordinates", "a thickness", "a custom measurement"];
+const KINDS: [&str; 7] = [
+    "an image",
+    "a profile",
+    "several profiles",
+    "a topography",
+    "coordinates",
+    "a thickness",
+    "a custom measurement",
+];
 
 struct Header {
     date: String,
@@ -45,10 +53,13 @@ impl Header {
 pub(super) fn is_plu(bytes: &[u8]) -> bool {
     let Ok(header) = Header::parse(&mut Cursor::new(bytes, Order::Little)) else { return false };
     let words: Vec<&str> = header.date.split_whitespace().collect();
-    let has_clock = words.iter().any(|w| w.split(':').count() >= 2 && w.split(':').all(|n| n.parse::<u8>().is_ok()));
-    let has_year = words.iter().flat_map(|w| w.split(['/', '-', '.'])).any(|w| w.len() == 4 && w.parse::<u16>().is_ok());
+    let has_clock =
+        words.iter().any(|w| w.split(':').count() >= 2 && w.split(':').all(|n| n.parse::<u8>().is_ok()));
+    let has_year =
+        words.iter().flat_map(|w| w.split(['/', '-', '.'])).any(|w| w.len() == 4 && w.parse::<u16>().is_ok());
     // Date and comment are text that zeros may end.
-    let is_text = |field: &[u8]| text(field).chars().all(|c| !c.is_control() || matches!(c, '\r' | '\n' | '\t'));
+    let is_text =
+        |field: &[u8]| text(field).chars().all(|c| !c.is_control() || matches!(c, '\r' | '\n' | '\t'));
     let [nx, ny] = header.points;
     has_clock
         && has_year
@@ -71,7 +82,8 @@ pub(super) fn read_plu(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
     let mut c = Cursor::new(bytes, Order::Little);
     let header = Header::parse(&mut c)?;
     if header.kind != TOPOGRAPHY {
-        let kind = KINDS.get(header.kind as usize).map_or(format!("kind {}", header.kind), |k| (*k).to_owned());
+        let kind =
+            KINDS.get(header.kind as usize).map_or(format!("kind {}", header.kind), |k| (*k).to_owned());
         return Err(Problem::NoHeights { format: Format::Plu, detail: format!("{kind}, not a topography") });
     }
     // Their meaning depends on the kind of the area, their length does not.
@@ -99,6 +111,14 @@ pub(super) fn read_plu(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
     let [nx, ny] = layer.points.map(|n| n as f64);
     let lateral = Lateral::Metres([nx * header.pixel[0] * UM, ny * header.pixel[1] * UM]);
     let metadata = [("Date", header.date), ("Comment", header.comment)];
-    let metadata = metadata.into_iter().filter(|(_, v)| !v.is_empty()).map(|(k, v)| (k.to_owned(), v)).collect();
-    Ok(Measured { heights, unit: Unit::Metres(UM), lateral, channel: Some(names[index].clone()), channels: names, metadata })
+    let metadata =
+        metadata.into_iter().filter(|(_, v)| !v.is_empty()).map(|(k, v)| (k.to_owned(), v)).collect();
+    Ok(Measured {
+        heights,
+        unit: Unit::Metres(UM),
+        lateral,
+        channel: Some(names[index].clone()),
+        channels: names,
+        metadata,
+    })
 }

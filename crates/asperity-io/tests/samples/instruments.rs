@@ -118,7 +118,11 @@ pub fn plu(kind: u32) -> Vec<u8> {
     b.extend([0, 2, 0xfb, 6, 1, 0, 0, 0, 1, 0, 0, 0]);
     for factor in [1, 2] {
         b.extend([2u32, 3].map(u32::to_le_bytes).concat());
-        b.extend(NUMBERS.iter().flat_map(|n| if *n == 60 { 1_000_001.0 } else { (factor * n) as f32 }.to_le_bytes()));
+        b.extend(
+            NUMBERS
+                .iter()
+                .flat_map(|n| if *n == 60 { 1_000_001.0 } else { (factor * n) as f32 }.to_le_bytes()),
+        );
         b.extend([0; 8]);
         b.extend([0; 18]);
     }

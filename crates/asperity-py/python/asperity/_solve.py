@@ -199,7 +199,7 @@ def march(
         "boundary": boundary,
         "bodies": [repr(body) for body in bodies],
         # None where it changes with time.
-        "poisson": [body._given.get("poisson") for body in bodies],
+        "poisson": [body._given.get("poisson") if isinstance(body, Material) else None for body in bodies],
         "control": control,
         "history": history,
         "scheme": scheme,

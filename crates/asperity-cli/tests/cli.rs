@@ -294,7 +294,7 @@ fn every_example_runs_on_a_coarse_grid() {
         // Waves long enough for the coarse grid, where the case has roughness.
         match path.file_stem().and_then(|stem| stem.to_str()) {
             Some("rough-pmma") => arguments.extend(["--set", "surface.1.shortest=2 um"]),
-            Some("periodic-rough") => arguments.extend(["--set", "surface.0.shortest=16 um"]),
+            Some("periodic-rough" | "seal") => arguments.extend(["--set", "surface.0.shortest=16 um"]),
             _ => {}
         }
         let output = asperity(dir.path(), &arguments);

@@ -197,7 +197,7 @@ mod tests {
             assert!(description_of(&resolved).len() > 5, "{name} has no description");
             let shown = resolved.get("examples").is_some()
                 || members(&resolved).iter().any(|m| m.get("const").is_some() || m.get("enum").is_some())
-                || ["domain", "surface", "body", "load", "time", "solver", "output"].contains(&name);
+                || ["domain", "surface", "body", "layer", "load", "time", "solver", "output"].contains(&name);
             assert!(shown, "{name} has no example: {resolved}");
         });
         assert!(count > 80, "{count}");

@@ -90,7 +90,7 @@ pub(super) fn unread(bytes: &[u8]) -> Problem {
 /// Files that look like another format: HDF5 of Zygo's Mx software.
 pub(super) fn refuse_look_alikes(bytes: &[u8]) -> Result<(), Problem> {
     // Its heights are phases with converters of their own; both names are in every file.
-    let holds = |name: &[u8]| memchr::memmem::find(&bytes[..bytes.len().min(1 << 22)], name).is_some();
+    let holds = |name: &[u8]| memchr::memmem::find(bytes, name).is_some();
     if holds(b"MetaData") && holds(b"Z Converter") {
         let export = "SUR, SDF or MetroPro DAT from Mx";
         return Err(foreign("Zygo DATX (interferometer)", SurfaceTopography, export));

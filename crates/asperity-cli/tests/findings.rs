@@ -141,7 +141,9 @@ fn the_examples_are_sound_before_they_run() {
             let check = asperity(&root(), &["check", path.to_str().unwrap(), "--json"]);
             assert!(check.status.success(), "{}: {}", path.display(), stderr(&check));
             let findings = object(&check)["findings"].clone();
-            assert_eq!(findings, serde_json::json!([]), "{}", path.display());
+            let warnings =
+                findings.as_array().unwrap().iter().filter(|finding| finding["severity"] == "warning");
+            assert_eq!(warnings.count(), 0, "{}: {findings}", path.display());
         }
     }
 }

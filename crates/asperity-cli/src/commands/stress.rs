@@ -242,7 +242,9 @@ fn text(below: &Below, shown: Option<&Instant>) -> String {
         ends[0],
         ends[1]
     );
-    for (name, key) in [("von Mises", "max_mises"), ("shear (s1 - s3)/2", "max_tresca"), ("principal", "max_tension")] {
+    for (name, key) in
+        [("von Mises", "max_mises"), ("shear (s1 - s3)/2", "max_tresca"), ("principal", "max_tension")]
+    {
         let head =
             ["time", "load", &format!("largest {name}"), "depth", "x", "y"].map(str::to_owned).to_vec();
         let line = |instant: &Instant| {
@@ -275,7 +277,9 @@ fn text(below: &Below, shown: Option<&Instant>) -> String {
     if let Some(instant) = shown {
         text += &format!("largest stress by depth at t = {}\n", number(instant.time, "s"));
         let profiles = set.profiles();
-        let head = profiles.iter().map(|series| series.name.trim_end_matches("_by_depth").replace('_', " ").replace("tresca", "shear (s1 - s3)/2"));
+        let head = profiles.iter().map(|series| {
+            series.name.trim_end_matches("_by_depth").replace('_', " ").replace("tresca", "shear (s1 - s3)/2")
+        });
         let mut lines = vec![std::iter::once("depth".to_owned()).chain(head).collect::<Vec<_>>()];
         for (n, depth) in set.depths.iter().enumerate() {
             let numbers = profiles.iter().map(|series| number(below.profile(instant, series.name)[n], "Pa"));

@@ -49,7 +49,8 @@ pub(super) fn load_at(reader: &Reader, index: usize) -> Result<f64> {
 
 /// See [`Below::missed`].
 pub(super) fn missed(reader: &Reader, rows: impl Iterator<Item = usize>) -> Result<Option<[f64; 2]>> {
-    let [peaks, times, loads] = [reader.series("max_pressure")?, reader.series("time")?, reader.series("load")?];
+    let [peaks, times, loads] =
+        [reader.series("max_pressure")?, reader.series("time")?, reader.series("load")?];
     let seen = rows.filter_map(|row| peaks.get(row).copied()).fold(0.0, f64::max);
     let largest = (0..peaks.len()).reduce(|a, b| if peaks[b] > peaks[a] { b } else { a });
     Ok(largest.filter(|row| peaks[*row] > SAME_PEAK * seen).map(|row| [times[row], loads[row]]))

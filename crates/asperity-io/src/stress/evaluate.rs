@@ -111,7 +111,10 @@ fn stored_at(reader: &Reader, time: f64) -> Result<usize, StoreError> {
     }
     let available: Vec<String> = times.iter().take(12).map(|time| quantity(*time, "s")).collect();
     let more = if times.len() > available.len() { ", ..." } else { "" };
-    Err(reader.missing(format!("pressure at t = {}", quantity(time, "s")), format!("those at {}{more}", available.join(", "))))
+    Err(reader.missing(
+        format!("pressure at t = {}", quantity(time, "s")),
+        format!("those at {}{more}", available.join(", ")),
+    ))
 }
 
 fn compute(

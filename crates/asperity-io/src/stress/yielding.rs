@@ -54,7 +54,9 @@ impl FirstYield {
                     times => format!("at the {times} computed times"),
                 };
                 let mut sentence = if safety.is_finite() && *safety < 1e6 {
-                    format!("no yield {at}: the yield stress is {safety:.3} times the largest von Mises stress")
+                    format!(
+                        "no yield {at}: the yield stress is {safety:.3} times the largest von Mises stress"
+                    )
                 } else {
                     format!("no yield {at}: there is no contact, or next to no stress")
                 };
@@ -62,7 +64,8 @@ impl FirstYield {
                     sentence += &format!(" down to {}, but it may be larger below", quantity(*deepest, "m"));
                 }
                 if let Some(missed) = missed {
-                    sentence += &format!("; the largest pressure, at {}, is not among the times", state(*missed));
+                    sentence +=
+                        &format!("; the largest pressure, at {}, is not among the times", state(*missed));
                 }
                 sentence
             }

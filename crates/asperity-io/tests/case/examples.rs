@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity::March;
+use asperity::{Boundary, March};
 use asperity_examples::{TEMPLATES, Template};
 use asperity_io::case::{Case, Rows};
 use asperity_io::store::FieldKind;

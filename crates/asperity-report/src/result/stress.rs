@@ -87,8 +87,11 @@ fn title(reader: &Reader, instant: &Instant) -> String {
 /// The largest stresses by depth.
 fn profile(below: &Below, instant: &Instant, found: &Section) -> Curves {
     let depths = &below.set.depths;
-    let lines =
-        [("von Mises", "mises_by_depth"), ("shear (s1 - s3)/2", "tresca_by_depth"), ("largest principal", "tension_by_depth")];
+    let lines = [
+        ("von Mises", "mises_by_depth"),
+        ("shear (s1 - s3)/2", "tresca_by_depth"),
+        ("largest principal", "tension_by_depth"),
+    ];
     let least = below.profile(instant, "tension_by_depth").iter().copied().fold(0.0, f64::min);
     // Room for the legend above the curves.
     let up = Axis::linear("stress", "Pa").between(least, 1.4 * found.largest);
@@ -99,7 +102,12 @@ fn profile(below: &Below, instant: &Instant, found: &Section) -> Curves {
     }
     let shear = below.profile(instant, "orthogonal_shear_by_depth");
     if !shear.is_empty() {
-        panel = panel.with(Series::new("range of xz shear (rolling)", Style::Dashed, depths.clone(), shear.to_vec()));
+        panel = panel.with(Series::new(
+            "range of xz shear (rolling)",
+            Style::Dashed,
+            depths.clone(),
+            shear.to_vec(),
+        ));
     }
     if let Some(limit) = below.set.yield_stress.filter(|limit| *limit < 1.4 * found.largest) {
         let ends = vec![0.0, depths.last().copied().unwrap_or(found.reach)];

@@ -46,7 +46,8 @@ pub(super) fn of(simulation: &Simulation) -> Vec<Finding> {
         for course in courses(stage, instants, energies) {
             let course = Piece { first: first + course.first, last: first + course.last, ..course };
             // The one that lacks most.
-            let fewer = long.as_ref().is_none_or(|other| course.steps * other.least < other.steps * course.least);
+            let fewer =
+                long.as_ref().is_none_or(|other| course.steps * other.least < other.steps * course.least);
             if course.steps < course.least && fewer && relaxes(simulation, &plan, &course) {
                 long = Some(course);
             }
@@ -217,8 +218,8 @@ fn too_long(plan: &Plan, course: &Piece) -> Finding {
         course.steps,
         course.least
     );
-    let tell = if course.least == PER_RISE { Finding::note } else { Finding::warning };
-    let finding = tell(STEPS_TOO_LONG, course.steps as f64, course.least as f64, text);
+    let finding = Finding::warning(STEPS_TOO_LONG, course.steps as f64, course.least as f64, text);
+    let finding = if course.least == PER_RISE { finding.as_note() } else { finding };
     if plan.exact { finding.at(at) } else { finding }
 }
 

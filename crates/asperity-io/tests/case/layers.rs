@@ -68,7 +68,7 @@ fn layers_become_a_stack_from_the_surface_down() {
     assert_eq!(report.bodies, ["10 mm bonded to 5 mm slipping on a rigid base"]);
     // The longest wave is carried by the base, the shortest sees the top layer.
     let [longest, shortest] = report.waves.map(|wave| wave.instantaneous_modulus.unwrap());
-    assert!(longest > 1.5 * shortest && (shortest * case.creep.instantaneous - 1.0).abs() < 1e-3);
+    assert!(longest > 1.3 * shortest && (shortest * case.creep.instantaneous - 1.0).abs() < 1e-3);
     let simulation = case.simulation().unwrap_or_else(|errors| panic!("{errors}"));
     assert_eq!(simulation.kernel.symbol(100.0, 0.0), layers.symbol(100.0, 0.0));
 }

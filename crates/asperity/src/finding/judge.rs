@@ -6,8 +6,8 @@ use super::expected::{ROOM, radius};
 use super::strain::Strain;
 use super::thin::Widest;
 use super::{
-    CONTACT_AT_BORDER, ENERGY_BALANCE, Finding, LARGE_SLOPE, STEPS_TOO_LONG, domain, material, surface, thin,
-    time,
+    CONTACT_AT_BORDER, ENERGY_BALANCE, Finding, LARGE_SLOPE, LARGE_STRAIN, STEPS_TOO_LONG, domain, material,
+    strain, surface, thin, time,
 };
 use crate::grid::{Boundary, Grid};
 use crate::load::Control;
@@ -165,6 +165,9 @@ impl Judge {
         }
         found.extend(self.resolution.findings());
         found.extend(self.strain.findings());
+        if !found.iter().any(|finding| finding.code == LARGE_STRAIN) {
+            found.extend(simulation.kernel.depth().and_then(|depth| strain::compressed(self.deepest, depth)));
+        }
         if !found.iter().any(|finding| finding.code == LARGE_SLOPE) {
             found.extend(surface::near(&self.grid, &simulation.gap, self.deepest));
         }

@@ -11,7 +11,7 @@
 use std::sync::Arc;
 
 use super::contact::Counted;
-use super::words::{digits, rows};
+use super::words::{digits, rows, si};
 use super::{Finding, LARGE_STRAIN, UNLIKELY_UNIT};
 use crate::kernel::Kernel;
 use crate::march::{Row, Simulation};
@@ -21,6 +21,8 @@ use crate::material::{Creep, ReducedTime};
 const WIDEST: f64 = 0.3;
 /// Pressure over modulus.
 const HARDEST: f64 = 0.2;
+/// Approach over thickness of layers on a rigid base.
+const SQUEEZED: f64 = 0.2;
 
 /// The largest of a number over the rows, and the rows beyond its limit.
 #[derive(Clone, Copy, Debug)]
@@ -177,4 +179,17 @@ impl Branches {
         self.flow += self.creep.fluidity * length * pressure;
         self.creep.instantaneous * pressure + self.strains.iter().sum::<f64>() + self.flow
     }
+}
+
+/// Layers of that thickness on a rigid base, pressed together by `approach` \[m\].
+pub(super) fn compressed(approach: f64, depth: f64) -> Option<Finding> {
+    (approach > SQUEEZED * depth).then(|| {
+        let text = format!(
+            "The bodies are pressed together by {}, {} of the thickness of the layers on their rigid base: the strains are no \
+             longer small, and linear theory is an estimate only. Check the units of load, thickness and moduli.",
+            si(approach, "m"),
+            digits(approach / depth)
+        );
+        Finding::warning(LARGE_STRAIN, approach / depth, SQUEEZED, text)
+    })
 }

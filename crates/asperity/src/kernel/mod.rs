@@ -35,6 +35,11 @@ pub trait Kernel: std::fmt::Debug + Send + Sync {
         None
     }
 
+    /// Thickness \[m\] of what lies on a rigid base, of both bodies together; `None` where a body has no rigid base.
+    fn depth(&self) -> Option<f64> {
+        None
+    }
+
     /// Whether this is the elastic half-space, for estimates that hold for it alone.
     fn is_half_space(&self) -> bool {
         false

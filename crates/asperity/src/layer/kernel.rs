@@ -3,8 +3,8 @@
 use ndarray::Array2;
 use ndarray::parallel::prelude::*;
 
-use super::Stack;
 use super::hankel::Smooth;
+use super::{Base, Stack};
 use crate::error::{Error, Result};
 use crate::kernel::{HalfSpace, Kernel};
 
@@ -88,6 +88,13 @@ impl Kernel for Layered {
     fn uniform(&self) -> Option<f64> {
         let sum: Option<f64> = self.stacks.iter().map(Stack::uniform).sum();
         sum.map(|sum| self.scale * sum)
+    }
+
+    fn depth(&self) -> Option<f64> {
+        let rigid = |stack: &&Stack| matches!(stack.base(), Base::Rigid);
+        let thickness = |stack: &Stack| stack.layers().iter().map(|layer| layer.thickness).sum::<f64>();
+        let all = self.stacks.iter().filter(rigid).count() == self.stacks.len();
+        all.then(|| self.stacks.iter().map(thickness).sum())
     }
 
     fn check(&self, cell: [f64; 2]) -> Result<()> {

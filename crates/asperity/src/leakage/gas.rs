@@ -48,6 +48,9 @@ pub enum Species {
     Hydrogen,
 }
 
+/// Temperatures at which the viscosities of the gases are known \[K\].
+const KNOWN: [f64; 2] = [200.0, 500.0];
+
 impl Species {
     /// All of them.
     pub const ALL: [Species; 5] =
@@ -138,9 +141,15 @@ impl Gas {
     /// A gas with known properties, at a temperature \[K\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the temperature is not positive.
+    /// [`Error::Invalid`] where the temperature is not between 200 K and 500 K.
     pub fn of(species: Species, temperature: f64) -> Result<Gas> {
-        positive("temperature of the gas", temperature, "K")?;
+        if !(KNOWN[0]..=KNOWN[1]).contains(&temperature) {
+            return Err(Error::invalid(
+                "temperature of the gas",
+                format!("{temperature} K"),
+                "between 200 K and 500 K, where its viscosity is known; give viscosity and molar mass outside",
+            ));
+        }
         Gas::new(species.viscosity(temperature), species.molar_mass(), temperature)
     }
 

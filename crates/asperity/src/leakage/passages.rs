@@ -34,8 +34,8 @@ pub struct Constriction {
     pub gap: f64,
     /// Its cell (i, j) on the grid.
     pub cell: [usize; 2],
-    /// Open cells across it, the shorter of the rows of open cells through it along x and along y; `None` where both reach
-    /// across the domain.
+    /// Its width in cells: the shortest row of open cells through it, along both axes and both diagonals; `None` where none of
+    /// them ends at contact on both sides.
     pub width: Option<usize>,
 }
 
@@ -157,24 +157,33 @@ fn constriction(opening: &Opening, kinds: &[CellKind]) -> Option<Constriction> {
     None
 }
 
-/// The shorter of the open rows through a cell along both axes.
+/// The shortest open row through a cell, along both axes and both diagonals, in cell widths. A row that ends at the border of the
+/// domain is not bounded by contact, and does not count.
 fn width(opening: &Opening, cell: usize) -> Option<usize> {
-    let [n, m] = opening.cells;
-    let (i, j) = (cell / m, cell % m);
-    let open = |i: usize, j: usize| opening.gap[i * m + j] > 0.0;
-    let along =
-        1 + (0..i).rev().take_while(|k| open(*k, j)).count() + (i + 1..n).take_while(|k| open(*k, j)).count();
-    let across = match opening.sides {
-        Sides::Closed => {
-            1 + (0..j).rev().take_while(|k| open(i, *k)).count()
-                + (j + 1..m).take_while(|k| open(i, *k)).count()
-        }
-        Sides::Periodic => {
-            let after = (1..m).take_while(|k| open(i, (j + k) % m)).count();
-            let before = (1..m - after).take_while(|k| open(i, (j + m - k) % m)).count();
-            1 + after + before
-        }
+    let [n, m] = opening.cells.map(|cells| cells as isize);
+    let (i, j) = (cell as isize / m, cell as isize % m);
+    let wraps = opening.sides == Sides::Periodic;
+    // Open cells from the next one on, until the first that is closed; none where the row leaves the domain or comes round.
+    let count = |di: isize, dj: isize| {
+        (1..n.max(m) + 1).find_map(|step| {
+            let (i, j) = (i + step * di, j + step * dj);
+            let j = if wraps { j.rem_euclid(m) } else { j };
+            let inside = (0..n).contains(&i) && (0..m).contains(&j);
+            match inside && opening.gap[(i * m + j) as usize] > 0.0 {
+                true => None,
+                false => Some(inside.then_some(step as usize - 1)),
+            }
+        })?
     };
-    // A row that spans the domain is not bounded by contact.
-    [(along, n), (across, m)].into_iter().filter(|(cells, all)| cells < all).map(|(cells, _)| cells).min()
+    let rows = [
+        ([1, 0], 1.0),
+        ([0, 1], 1.0),
+        ([1, 1], std::f64::consts::SQRT_2),
+        ([1, -1], std::f64::consts::SQRT_2),
+    ];
+    let length = |([di, dj], cell): ([isize; 2], f64)| {
+        let cells = 1 + count(di, dj)? + count(-di, -dj)?;
+        Some((cells as f64 * cell) as usize)
+    };
+    rows.into_iter().filter_map(length).min()
 }

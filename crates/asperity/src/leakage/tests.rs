@@ -292,3 +292,18 @@ fn the_same_bits_for_any_number_of_threads() {
         assert_eq!(on(1).to_bits(), on(5).to_bits());
     }
 }
+
+/// Two basins that meet in one cell between closed ones at two of its corners: its rows along the axes are long, its neck is one
+/// cell wide.
+#[test]
+fn a_neck_across_a_diagonal_is_as_narrow_as_it_is() {
+    let n = 16;
+    let gap = Array2::from_shape_fn((n, n), |(i, j)| match (i + j == n - 1, (i, j)) {
+        (true, (7, 8)) => 0.5e-6,
+        (true, _) => 0.0,
+        _ => 1e-6,
+    });
+    let constriction =
+        Passages::of(&opening(&gap, [1e-6; 2], Direction::X, Sides::Closed)).constriction.unwrap();
+    assert_eq!((constriction.cell, constriction.width), ([7, 8], Some(1)));
+}

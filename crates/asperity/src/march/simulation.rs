@@ -84,6 +84,10 @@ pub struct Simulation {
     pub quantities: Quantities,
 }
 
+/// Layers on a rigid base under a periodic domain may be so many times as thick as the domain is wide: the tolerance is relative
+/// to displacements that include their uniform compression.
+const DEEPEST: f64 = 1000.0;
+
 impl Simulation {
     /// A free half-space of unit compliance under no load for one second, to set the rest on.
     pub fn new(grid: Grid, gap: Array2<f64>) -> Self {
@@ -208,6 +212,20 @@ impl Simulation {
             return Err(Error::invalid("gap", "infinite everywhere", "finite in one cell at least"));
         }
         self.kernel.check(self.grid.spacing())?;
+        let widest = self.grid.size().into_iter().fold(0.0, f64::max);
+        if let Some(depth) = self.kernel.depth()
+            && self.boundary == Boundary::Periodic
+            && depth > DEEPEST * widest
+        {
+            return Err(Error::invalid(
+                "thickness of the layers on their rigid base",
+                format!("{depth:e} m"),
+                format!(
+                    "at most {DEEPEST} times the periodic domain, {widest:e} m: no wave reaches the base, but its compression \
+                     would swamp the displacements; describe the body as a half-space"
+                ),
+            ));
+        }
         self.parts().try_for_each(Creep::validate)?;
         if self.parts().all(|creep| creep.value(f64::MAX.sqrt()) <= 0.0) {
             return Err(Error::invalid(

@@ -14,6 +14,7 @@ _Stage = tuple[str, _Grid, list[tuple[float, float]], float | None, tuple[str, f
 __all__ = [
     "elastic",
     "CaseError",
+    "FormatError",
     "ConvergenceError",
     "cycles_of",
     "March",
@@ -23,6 +24,8 @@ __all__ = [
     "fit_indentation",
     "Body",
     "layer_compliance",
+    "leakage",
+    "judge_leaks",
     "shift_factor",
     "case_text",
     "check",

@@ -12,8 +12,10 @@ from ._core import CaseError
 def read(path: str, size: list[float] | None, height_unit: float | None, channel: str | None, error: OSError) -> dict[str, Any]:
     """Heights [m], size [m] and what the file says, as ``_core.read_surface`` returns them; else raises `error`."""
     try:
-        import SurfaceTopography as other
-        from SurfaceTopography.Support.UnitConversion import get_unit_conversion_factor
+        import SurfaceTopography as other  # type: ignore[import-not-found,import-untyped,unused-ignore]
+        from SurfaceTopography.Support.UnitConversion import (  # type: ignore[import-not-found,import-untyped,unused-ignore]
+            get_unit_conversion_factor,
+        )
     except ImportError:
         raise error from None
     try:
@@ -47,7 +49,7 @@ def read(path: str, size: list[float] | None, height_unit: float | None, channel
             raise CaseError(f"{path}: the file holds no unit for its physical size; give the lengths along x and y (size=)")
         size = [float(length) * unit for length in topography.physical_sizes]
     heights = np.ma.filled(np.ma.asarray(topography.heights(), dtype=np.float64), np.nan)
-    scale = unit if height_unit is None else height_unit
+    scale = height_unit if height_unit is not None else unit if unit is not None else 1.0
     metadata = [(str(key), str(value)) for key, value in (topography.info or {}).items() if isinstance(value, (str, int, float))]
     return {
         "format": str(reader.format()),

@@ -41,6 +41,9 @@ pub fn flow_factors(conductance: [[f64; 2]; 2], opening: &Opening) -> [[f64; 2];
     conductance.map(|row| row.map(|k| if mean > 0.0 { k / mean.powi(3) } else { 0.0 }))
 }
 
+/// A conductance below this share of that in the other direction is none.
+const NOTHING: f64 = 1e-28;
+
 /// Conductance of a network on a torus per cell: flux per face in direction j, in the mean, under a drop of 1 per cell in
 /// direction k.
 pub(super) fn network_conductance(mut network: Network, options: &FlowOptions) -> Result<[[f64; 2]; 2]> {
@@ -68,7 +71,10 @@ pub(super) fn network_conductance(mut network: Network, options: &FlowOptions) -
     add(&mut chi, 1.0, &other);
     // Powers have errors that are quadratic in those of chi, also that of both drops together, xx + 2 xy + yy.
     let xy = 0.5 * (network.power(&chi, [1.0; 2]) - xx - yy);
-    Ok([[xx, xy], [xy, yy]].map(|row| row.map(|k| k / (n * m) as f64)))
+    // In a direction in which nothing winds around the torus the power is the square of a rounding error.
+    let none = NOTHING * xx.max(yy);
+    let number = |k: f64| if k.abs() <= none { 0.0 } else { k / (n * m) as f64 };
+    Ok([[xx, xy], [xy, yy]].map(|row| row.map(number)))
 }
 
 /// Leaves only the parts of a torus that wind around it, each grounded at its first cell (which carries no current: the sources

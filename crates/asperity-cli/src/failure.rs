@@ -76,7 +76,8 @@ const LONGEST_LINE: usize = 1000;
 
 /// The source with its control characters replaced by question marks, as many bytes each.
 fn masked(source: &str) -> String {
-    let mask = |c: char| c.is_control() && c != '\n' && c != '\t' && c != '\r';
+    // A carriage return may end a line.
+    let mask = |c: char| crate::talk::hidden(c) && c != '\r';
     let mut text = String::with_capacity(source.len());
     for c in source.chars() {
         if mask(c) {

@@ -25,9 +25,13 @@ pub fn write(text: &str) {
     let _ = std::io::stderr().write_all(text.as_bytes());
 }
 
-/// A text whose control characters, except line feed and tab, are written as escapes.
+/// Whether a terminal would act on a character: control characters except line feed and tab.
+pub fn hidden(c: char) -> bool {
+    c.is_control() && c != '\n' && c != '\t'
+}
+
+/// A text whose [`hidden`] characters are written as escapes.
 pub fn printable(text: &str) -> Cow<'_, str> {
-    let hidden = |c: char| c.is_control() && c != '\n' && c != '\t';
     if !text.contains(hidden) {
         return Cow::Borrowed(text);
     }

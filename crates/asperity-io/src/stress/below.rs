@@ -37,14 +37,25 @@ pub struct Below {
     pub missed: Option<[f64; 2]>,
 }
 
-/// The load \[N\] of a stored instant. Between adaptive steps fields are interpolated: there it is the sum of the pressure.
-pub(super) fn load_at(reader: &Reader, index: usize) -> Result<f64> {
-    let row = reader.field_steps()[index];
-    let number = |series: &[f64]| series.get(row).copied().unwrap_or(f64::NAN);
-    if number(&reader.series("time")?) == reader.field_times()[index] {
-        return Ok(number(&reader.series("load")?));
+/// The loads of stored instants.
+pub(super) struct Loads {
+    times: Vec<f64>,
+    loads: Vec<f64>,
+}
+
+impl Loads {
+    pub(super) fn of(reader: &Reader) -> Result<Loads> {
+        Ok(Loads { times: reader.series("time")?, loads: reader.series("load")? })
     }
-    Ok(reader.field(FieldKind::Pressure, At::Index(index))?.sum() * reader.header().grid.cell_area())
+
+    /// The load of a stored instant \[N\]. Between adaptive steps fields are interpolated: there it is the sum of the pressure.
+    pub(super) fn at(&self, reader: &Reader, index: usize) -> Result<f64> {
+        let row = reader.field_steps()[index];
+        if self.times.get(row) == Some(&reader.field_times()[index]) {
+            return Ok(self.loads.get(row).copied().unwrap_or(f64::NAN));
+        }
+        Ok(reader.field(FieldKind::Pressure, At::Index(index))?.sum() * reader.header().grid.cell_area())
+    }
 }
 
 /// See [`Below::missed`].
@@ -67,12 +78,13 @@ impl Below {
             set.scalars().iter().map(|series| reader.stress_series(series.name)).collect::<Result<_>>()?;
         let profiles: Vec<_> =
             set.profiles().iter().map(|series| reader.stress_profile(series.name)).collect::<Result<_>>()?;
+        let loads = Loads::of(reader)?;
         let instant = |index: &usize| -> Result<Instant> {
             Ok(Instant {
                 index: *index,
                 time: reader.field_times()[*index],
                 row: reader.field_steps()[*index],
-                load: load_at(reader, *index)?,
+                load: loads.at(reader, *index)?,
                 scalars: scalars.iter().map(|series| series[*index]).collect(),
                 profiles: profiles.iter().map(|profile| profile.row(*index).to_vec()).collect(),
             })

@@ -7,7 +7,7 @@ use asperity::{Boundary, Error};
 use ndarray::ArrayView2;
 use thiserror::Error as Failure;
 
-use super::below::{load_at, missed, profiles, scalars};
+use super::below::{Loads, missed, profiles, scalars};
 use super::{Below, Depths, StressPlan};
 use crate::choice;
 use crate::readable::quantity;
@@ -127,6 +127,7 @@ fn compute(
 ) -> Result<Vec<super::Instant>, StressError> {
     let grid = reader.header().grid;
     let mut stress = SubsurfaceStress::new(grid, boundary(reader), set.poisson)?;
+    let loads = Loads::of(reader)?;
     let mut field = vec![0.0; if set.quantities.is_empty() { 0 } else { grid.len() }];
     let mut found = Vec::with_capacity(set.instants.len());
     for (done, index) in set.instants.iter().enumerate() {
@@ -153,7 +154,7 @@ fn compute(
             index: *index,
             time: reader.field_times()[*index],
             row: reader.field_steps()[*index],
-            load: load_at(reader, *index)?,
+            load: loads.at(reader, *index)?,
             scalars: scalars(&grid, &survey),
             profiles: profiles(&survey),
         };

@@ -1,4 +1,4 @@
-//! The computational domain: a rectangle of equal cells, x along axis 0.
+//! The computational domain: a rectangle of equal cells, x along axis 0, or a line of cells in plane strain.
 //!
 //! Cell (i, j) has its centre at ((i + 1/2) dx, (j + 1/2) dy) from the corner of the domain.
 //! Fields on the grid are C-order arrays of shape (nx, ny).
@@ -17,6 +17,7 @@ use crate::error::{Error, Result, positive};
 pub struct Grid {
     cells: [usize; 2],
     size: [f64; 2],
+    line: bool,
 }
 
 /// Boundary condition of the domain.
@@ -54,7 +55,7 @@ impl Grid {
                 "at most 2^31 in all",
             ));
         }
-        let grid = Grid { cells, size };
+        let grid = Grid { cells, size, line: false };
         let [dx, dy] = grid.spacing();
         if !(dx / dy < 1e3 && dy / dx < 1e3) {
             return Err(Error::invalid(
@@ -64,6 +65,83 @@ impl Grid {
             ));
         }
         Ok(grid)
+    }
+
+    /// A line of cells along x in plane strain: nothing changes along y. The grid has one cell along y, one metre long, so loads,
+    /// areas and energies are those of a metre: \[N/m\], \[m\] and \[J/m\].
+    ///
+    /// ```
+    /// let grid = asperity::Grid::line(4, 2e-3)?;
+    /// assert_eq!((grid.cells(), grid.spacing()), ([4, 1], [0.5e-3, 1.0]));
+    /// # Ok::<(), asperity::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where the count is 0 or more than 2^31, or the length not positive and finite.
+    pub fn line(cells: usize, length: f64) -> Result<Self> {
+        positive("size of the domain along x", length, "m")?;
+        if cells == 0 || cells > 1 << 31 {
+            return Err(Error::invalid("number of cells along x", cells, "between 1 and 2^31"));
+        }
+        Ok(Grid { cells: [cells, 1], size: [length, 1.0], line: true })
+    }
+
+    /// The same domain with other cells; of a line the number along y is 1.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] as [`Grid::new`].
+    pub fn with_cells(&self, cells: [usize; 2]) -> Result<Self> {
+        if self.line { Grid::line(cells[0], self.size[0]) } else { Grid::new(cells, self.size) }
+    }
+
+    /// Whether it is a line of cells in plane strain.
+    pub fn is_line(&self) -> bool {
+        self.line
+    }
+
+    /// Number of directions in which fields vary: 1 of a line, else 2.
+    pub fn dimensions(&self) -> usize {
+        if self.line { 1 } else { 2 }
+    }
+
+    /// The unit of a quantity whose unit on a surface is `units`: on a line forces, areas and energies are per length.
+    ///
+    /// ```
+    /// use asperity::Grid;
+    /// assert_eq!(Grid::line(4, 1e-3)?.units("N"), "N/m");
+    /// assert_eq!(Grid::new([4, 4], [1e-3, 1e-3])?.units("N"), "N");
+    /// # Ok::<(), asperity::Error>(())
+    /// ```
+    pub fn units(&self, units: &'static str) -> &'static str {
+        match units {
+            "N" if self.line => "N/m",
+            "m2" if self.line => "m",
+            "J" if self.line => "J/m",
+            "W" if self.line => "W/m",
+            "N m" if self.line => "N",
+            "N/m" if self.line => "N/m2",
+            units => units,
+        }
+    }
+
+    /// Lengths of the domain in the directions in which fields vary \[m\].
+    pub fn extents(&self) -> &[f64] {
+        &self.size[..self.dimensions()]
+    }
+
+    /// Longest side of the domain \[m\].
+    pub fn longest_side(&self) -> f64 {
+        self.extents().iter().fold(0.0, |most, side| side.max(most))
+    }
+
+    /// Shortest side of the domain \[m\].
+    pub fn shortest_side(&self) -> f64 {
+        self.extents().iter().fold(f64::INFINITY, |least, side| side.min(least))
+    }
+
+    /// Sides of a cell in the directions in which fields vary \[m\].
+    pub fn cell_sides(&self) -> impl Iterator<Item = f64> {
+        self.spacing().into_iter().take(self.dimensions())
     }
 
     /// \[nx, ny\].

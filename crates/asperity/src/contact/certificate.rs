@@ -21,9 +21,8 @@ impl Rating {
 
     /// Rounding error of g: a violation below it means nothing \[m\].
     fn rounding(&self, problem: &Problem, grid: &Grid) -> f64 {
-        let [lx, ly] = grid.size();
         let peak = self.peak.max(0.0);
-        16.0 * f64::EPSILON * (self.w.abs() + problem.compliance * peak * lx.max(ly))
+        16.0 * f64::EPSILON * (self.w.abs() + problem.compliance * peak * grid.longest_side())
     }
 
     /// The largest violation of the contact conditions over what violations are measured by, and the certificate.

@@ -1,4 +1,4 @@
-//! A cold start from coarser grids: the contact of the gap averaged over 2 x 2 cells, solved roughly (and, in its turn,
+//! A cold start from coarser grids: the contact of the gap averaged over 2 x 2 cells (two of a line), solved roughly (and, in its turn,
 //! started from a coarser one), tells where the fine grid will touch and under what pressure.
 //!
 //! Long waves cost the same number of iterations on every grid, and a quarter for each halving: the fine grid is
@@ -67,11 +67,19 @@ pub(super) fn start(
 fn coarser(grid: &Grid) -> Option<Grid> {
     let [nx, ny] = grid.cells();
     let fits = |n: usize| n.is_multiple_of(2) && n / 2 >= FEWEST;
-    (fits(nx) && fits(ny)).then(|| Grid::new([nx / 2, ny / 2], grid.size()).ok()).flatten()
+    let halves = fits(nx) && (fits(ny) || grid.is_line());
+    halves.then(|| grid.with_cells([nx / 2, ny / 2]).ok()).flatten()
 }
 
 /// Mean of 2 x 2 cells; infinite ones do not count, unless all four are.
 fn averaged(fine: &Grid, gap: &[f64]) -> Vec<f64> {
+    if fine.is_line() {
+        let mean = |two: &[f64]| match (two[0].is_finite(), two[1].is_finite()) {
+            (true, true) => 0.5 * (two[0] + two[1]),
+            _ => two[0].min(two[1]),
+        };
+        return gap.chunks_exact(2).map(mean).collect();
+    }
     let [nx, ny] = fine.cells();
     let mut coarse = vec![0.0; nx / 2 * (ny / 2)];
     coarse.par_chunks_mut(ny / 2).zip(gap.par_chunks(2 * ny)).for_each(|(row, two)| {
@@ -88,6 +96,10 @@ fn averaged(fine: &Grid, gap: &[f64]) -> Vec<f64> {
 
 /// Each cell has the pressure of the coarse one around it.
 fn prolong(coarse: &Grid, from: &[f64], to: &mut [f64]) {
+    if coarse.is_line() {
+        to.chunks_exact_mut(2).zip(from).for_each(|(two, p)| two.fill(*p));
+        return;
+    }
     let ny = coarse.cells()[1];
     to.par_chunks_mut(2 * ny).enumerate().for_each(|(i, to)| {
         let from = &from[i / 2 * ny..][..ny];

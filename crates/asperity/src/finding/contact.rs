@@ -1,42 +1,60 @@
 //! Contacts and contact spots of a few cells.
 //!
 //! The width of the spots is 4 A/P, four times the contact area over its perimeter, counted in cells and edges: d for a
-//! spot of d by d cells. A row tells both, as its corrected area is A less a share of the perimeter.
+//! spot of d by d cells. A row tells both, as its corrected area is A less a share of the perimeter. Of a line contact it is
+//! twice the length in contact over the number of ends.
+
+use ndarray::ArrayView2;
 
 use super::words::{digits, rows};
 use super::{FEW_CONTACT_CELLS, Finding, SPOTS_UNRESOLVED};
-use crate::grid::Grid;
+use crate::grid::{Boundary, Grid};
 use crate::march::{PERIMETER_SHARE, Row};
+use crate::quantities::contact_edges;
 
 /// Cells across a spot, at least: below, the pressure inside it is a guess.
 const ACROSS: f64 = 4.0;
-/// Cells of a contact, at least: the area of 50 cells is known to a tenth or so.
+/// Cells of a contact, at least: the area of 50 cells is known to a tenth or so, as the length of 16 cells on a line.
 const FEWEST: f64 = 50.0;
+const FEWEST_ON_LINE: f64 = 16.0;
 
 /// A contact in cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Counted {
     /// Cells in contact.
     pub cells: f64,
-    /// Edges between a cell in contact and one that is not.
+    /// Edges between a cell in contact and one that is not; of a line contact the ends of the spots.
     pub edges: f64,
+    /// Whether it is a line contact.
+    pub line: bool,
 }
 
 impl Counted {
+    /// What a row tells. That of a line contact does not know the ends of its spots.
     pub(super) fn of(grid: &Grid, row: &Row) -> Self {
         let cell = grid.cell_area();
         let edges = (row.contact_area - row.contact_area_corrected) / (PERIMETER_SHARE * cell);
-        Counted { cells: (row.contact_area / cell).round(), edges: edges.round() }
+        Counted { cells: (row.contact_area / cell).round(), edges: edges.round(), line: grid.is_line() }
+    }
+
+    pub(super) fn on_line(pressure: ArrayView2<'_, f64>) -> Self {
+        let cells = pressure.iter().filter(|p| **p > 0.0).count() as f64;
+        Counted { cells, edges: contact_edges(pressure, Boundary::Free).along_x as f64, line: true }
     }
 
     /// Mean width of the spots in cells; infinite where the contact has no edge.
     pub(super) fn width(self) -> f64 {
-        4.0 * self.cells / self.edges
+        if self.line { 2.0 * self.cells / self.edges } else { 4.0 * self.cells / self.edges }
     }
 
     /// Whether it is one spot without holes, more or less: a circle of cells has edges² = 64/pi cells.
     pub(super) fn is_compact(self) -> bool {
-        self.cells > 0.0 && self.edges * self.edges < 30.0 * self.cells
+        let round = self.edges * self.edges < 30.0 * self.cells;
+        self.cells > 0.0 && if self.line { self.edges <= 2.0 } else { round }
+    }
+
+    fn fewest(self) -> f64 {
+        if self.line { FEWEST_ON_LINE } else { FEWEST }
     }
 }
 
@@ -62,7 +80,7 @@ impl Resolution {
         if contact.width() < ACROSS {
             extend(&mut self.narrow);
         }
-        if contact.cells < FEWEST {
+        if contact.cells < contact.fewest() {
             extend(&mut self.few);
         }
     }
@@ -70,10 +88,10 @@ impl Resolution {
     /// Every contact begins with a cell: the largest one is judged.
     pub(super) fn findings(&self) -> Vec<Finding> {
         let Counted { cells, .. } = self.largest;
-        let width = self.largest.width();
+        let (width, fewest) = (self.largest.width(), self.largest.fewest());
         let mut found = vec![];
-        if let Some(at) = self.few.filter(|_| cells < FEWEST) {
-            found.push(few(cells, "has").at(at));
+        if let Some(at) = self.few.filter(|_| cells < fewest) {
+            found.push(few(cells, fewest, "has").at(at));
         }
         if let Some(at) = self.narrow.filter(|_| width < ACROSS) {
             found.push(narrow(width, &format!("The contact spots ({})", rows(at))).at(at));
@@ -83,13 +101,13 @@ impl Resolution {
 }
 
 /// A contact of so many cells.
-pub(super) fn few(cells: f64, has: &str) -> Finding {
+fn few(cells: f64, fewest: f64, has: &str) -> Finding {
     let text = format!(
-        "The largest contact {has} {} cells, less than {FEWEST}: area, pressure and approach are coarse. Refine the grid \
+        "The largest contact {has} {} cells, less than {fewest}: area, pressure and approach are coarse. Refine the grid \
          (domain.cells), or take a smaller domain (domain.size).",
         digits(cells.round())
     );
-    Finding::warning(FEW_CONTACT_CELLS, cells, FEWEST, text)
+    Finding::warning(FEW_CONTACT_CELLS, cells, fewest, text)
 }
 
 /// Spots of so many cells across; `spots` begins the sentence.
@@ -102,12 +120,13 @@ pub(super) fn narrow(width: f64, spots: &str) -> Finding {
     Finding::warning(SPOTS_UNRESOLVED, width, ACROSS, text)
 }
 
-/// What a round contact of this diameter in cells would be found to be.
-pub(super) fn expected(across: f64) -> Vec<Finding> {
-    let cells = std::f64::consts::FRAC_PI_4 * across * across;
+/// What a round contact of this diameter in cells, or a line contact of this length, would be found to be.
+pub(super) fn expected(across: f64, line: bool) -> Vec<Finding> {
+    let cells = if line { across } else { std::f64::consts::FRAC_PI_4 * across * across };
+    let fewest = Counted { line, ..Counted::default() }.fewest();
     let mut found = vec![];
-    if cells < FEWEST {
-        found.push(few(cells, "is expected to have"));
+    if cells < fewest {
+        found.push(few(cells, fewest, "is expected to have"));
     }
     if across < ACROSS {
         found.push(narrow(across, "Contact spots"));

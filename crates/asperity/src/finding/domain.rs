@@ -17,23 +17,20 @@ const ROUNDING: f64 = 1e-9;
 const CONFINED: f64 = 0.5;
 
 /// Whether any cell of the border of a field is positive.
-pub(super) fn touches_border(pressure: ndarray::ArrayView2<'_, f64>) -> bool {
-    let (nx, ny) = pressure.dim();
-    let any = |line: ndarray::ArrayView1<'_, f64>| line.iter().any(|p| *p > 0.0);
-    [0, nx - 1].into_iter().any(|i| any(pressure.row(i)))
-        || [0, ny - 1].into_iter().any(|j| any(pressure.column(j)))
+pub(super) fn touches_border(grid: &Grid, pressure: ndarray::ArrayView2<'_, f64>) -> bool {
+    border(grid).any(|at| pressure[at] > 0.0)
 }
 
 /// Contact at the border of a free domain, in these rows. `needed` is the side of the domain that the contact would
 /// take \[m\], where the gap tells; `contact` begins the sentence.
 pub(super) fn at_border(grid: &Grid, confined: bool, needed: Option<f64>, contact: &str) -> Finding {
-    let [lx, ly] = grid.size();
-    let side = lx.min(ly);
-    let size = format!("{} x {}", si(lx, "m"), si(ly, "m"));
+    let side = grid.shortest_side();
+    let times = |lengths: &[f64]| lengths.iter().map(|l| si(*l, "m")).collect::<Vec<_>>().join(" x ");
+    let size = times(grid.extents());
     let cure = match needed.filter(|needed| confined && *needed > side) {
         Some(needed) => {
-            let needed = si(needed, "m");
-            format!("Take a domain of at least {needed} x {needed} (domain.size), or less load.")
+            let needed = times(&vec![needed; grid.dimensions()]);
+            format!("Take a domain of at least {needed} (domain.size), or less load.")
         }
         None if confined => "Take a larger domain (domain.size), or less load.".to_owned(),
         None => "If the surface goes on beyond the domain, take boundary = \"periodic\".".to_owned(),
@@ -59,10 +56,9 @@ pub(super) fn radius(grid: &Grid, gap: &Array2<f64>) -> Option<f64> {
             (lowest, place) = (*h, at);
         }
     }
-    let (nx, ny) = gap.dim();
     let (x0, y0) = (grid.x(place.0), grid.y(place.1));
     let (mut sum, mut count) = (0.0, 0.0);
-    for (i, j) in border(nx, ny) {
+    for (i, j) in border(grid) {
         let h = gap[(i, j)] - lowest;
         let square = (grid.x(i) - x0).powi(2) + (grid.y(j) - y0).powi(2);
         if h > 0.0 && h.is_finite() && square > 0.0 {
@@ -73,30 +69,32 @@ pub(super) fn radius(grid: &Grid, gap: &Array2<f64>) -> Option<f64> {
     (count > 0.0 && sum > 0.0).then(|| count / sum)
 }
 
-fn border(nx: usize, ny: usize) -> impl Iterator<Item = (usize, usize)> {
+/// Cells of the border; of a line its ends.
+fn border(grid: &Grid) -> impl Iterator<Item = (usize, usize)> {
+    let [nx, ny] = grid.cells();
+    let sides = if grid.is_line() { 0 } else { nx };
     let ends = (0..ny).flat_map(move |j| [(0, j), (nx - 1, j)]);
-    ends.chain((0..nx).flat_map(move |i| [(i, 0), (i, ny - 1)]))
+    ends.chain((0..sides).flat_map(move |i| [(i, 0), (i, ny - 1)]))
 }
 
 /// How much wider the gap is at the border than in the mean, over its standard deviation; `None` where cells cannot
 /// touch, or where nothing varies (flat on flat, a punch as large as the domain).
-pub(super) fn widening(gap: &Array2<f64>) -> Option<f64> {
+pub(super) fn widening(grid: &Grid, gap: &Array2<f64>) -> Option<f64> {
     let cells = gap.len() as f64;
     let mean = gap.sum() / cells;
     let spread = (gap.fold(0.0, |sum, h| sum + (h - mean) * (h - mean)) / cells).sqrt();
-    let (nx, ny) = gap.dim();
-    let (sum, count) = border(nx, ny).fold((0.0, 0.0), |(sum, count), at| (sum + gap[at], count + 1.0));
+    let (sum, count) = border(grid).fold((0.0, 0.0), |(sum, count), at| (sum + gap[at], count + 1.0));
     (mean.is_finite() && spread > ROUNDING * mean.abs()).then(|| (sum / count - mean) / spread)
 }
 
 /// Whether something besides the end of the domain confines the contact.
-pub(super) fn confined(gap: &Array2<f64>) -> bool {
-    widening(gap).is_none_or(|widening| widening > CONFINED)
+pub(super) fn confined(grid: &Grid, gap: &Array2<f64>) -> bool {
+    widening(grid, gap).is_none_or(|widening| widening > CONFINED)
 }
 
 /// A surface on a free domain that nothing but the end of the domain confines.
-pub(super) fn unconfined(gap: &Array2<f64>) -> Option<Finding> {
-    let widening = widening(gap).filter(|widening| *widening <= CONFINED)?;
+pub(super) fn unconfined(grid: &Grid, gap: &Array2<f64>) -> Option<Finding> {
+    let widening = widening(grid, gap).filter(|widening| *widening <= CONFINED)?;
     Some(Finding::warning(
         ROUGH_ON_FREE_DOMAIN,
         widening,

@@ -3,6 +3,8 @@
 //! ```text
 //! paraboloid   a³ = 3 R W C / 4,  w = a²/R,  p_max C = 2a/(πR)          (Hertz)
 //! cone         a² = 2 W C / (π s),  w = π s a/2,  p_mean C = s/2         (Love, Sneddon)
+//! cylinder     a² = 4 R W C / π,  p_max C = a/(2R)                      (Hertz; W per length)
+//! wedge        a = W C / s,  p_mean C = s/2                             (Johnson, section 5.2; W per length)
 //! rough plane  A/A0 = 2 p C / h',  p_mean C = h'/2 inside the contact    (Persson; h' the rms slope)
 //! ```
 //!
@@ -27,7 +29,7 @@ const NEAR: f64 = 0.97;
 /// The expected contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Contact {
-    /// One round spot of these radii \[m\], right after the load and at the end.
+    /// One round spot of these radii \[m\], right after the load and at the end; of a line contact half its lengths.
     Round([f64; 2]),
     /// These shares of the domain.
     Share([f64; 2]),
@@ -53,6 +55,8 @@ pub struct Expected {
 enum Form {
     Paraboloid { radius: f64 },
     Cone { slope: f64 },
+    Cylinder { radius: f64 },
+    Wedge { slope: f64 },
     Punch { radius: f64 },
     Rough { slope: f64 },
 }
@@ -65,6 +69,9 @@ impl Expected {
         let cases = stages.iter().filter_map(|stage| largest(simulation, stage));
         // The formulas are those of the half-space.
         let form = match simulation.kernel.is_half_space() {
+            true if grid.is_line() => {
+                line_form(parts, || surface::slope(grid, &simulation.gap, f64::INFINITY))
+            }
             true => form(parts, || surface::slope(grid, &simulation.gap, f64::INFINITY)),
             false => None,
         };
@@ -99,7 +106,8 @@ impl Expected {
                 expected.contact = Some(Contact::Round(radii));
                 (expected.strain, expected.width) = match form {
                     Form::Paraboloid { radius } => (Some(2.0 * a / (PI * radius)), Some(a / radius)),
-                    Form::Cone { slope } => (Some(0.5 * slope), None),
+                    Form::Cylinder { radius } => (Some(0.5 * a / radius), Some(a / radius)),
+                    Form::Cone { slope } | Form::Wedge { slope } => (Some(0.5 * slope), None),
                     Form::Punch { radius } => match largest {
                         Prescribed::Load(load) => (Some(load / (PI * radius * radius) * compliance[1]), None),
                         Prescribed::Approach(w) => (Some(2.0 * w / (PI * radius)), None),
@@ -115,14 +123,15 @@ impl Expected {
     /// What will be found if the run goes as expected.
     pub fn findings(&self, simulation: &Simulation) -> Vec<Finding> {
         let Some(Contact::Round([_, radius])) = self.contact else { return vec![] };
-        let [dx, dy] = simulation.grid.spacing();
+        let grid = &simulation.grid;
         let mut found = vec![];
         if simulation.boundary == Boundary::Free && radius > NEAR * self.room {
             let words = format!("The expected contact, {} across,", si(2.0 * radius, "m"));
-            found.push(domain::at_border(&simulation.grid, true, Some(ROOM * radius), &words));
+            found.push(domain::at_border(grid, true, Some(ROOM * radius), &words));
         }
         if radius > 0.0 {
-            found.extend(contact::expected(2.0 * radius / dx.max(dy)));
+            let cell = grid.cell_sides().fold(0.0, f64::max);
+            found.extend(contact::expected(2.0 * radius / cell, grid.is_line()));
         }
         found.extend(strain::expected(self.width.unwrap_or(0.0), self.strain.unwrap_or(0.0)));
         found
@@ -147,7 +156,13 @@ impl Form {
             (Form::Paraboloid { radius }, Prescribed::Approach(w)) => (radius * w.max(0.0)).sqrt(),
             (Form::Cone { slope }, Prescribed::Load(w)) => (2.0 * w * c / (PI * slope)).sqrt().max(least(w)),
             (Form::Cone { slope }, Prescribed::Approach(w)) => 2.0 * w.max(0.0) / (PI * slope),
+            (Form::Cylinder { radius }, Prescribed::Load(w)) => {
+                (4.0 * radius * w * c / PI).sqrt().max(0.5 * w / hardness)
+            }
+            (Form::Wedge { slope }, Prescribed::Load(w)) => (w * c / slope).max(0.5 * w / hardness),
             (Form::Punch { radius }, _) => radius,
+            // The approach of a line contact depends on the domain.
+            (Form::Cylinder { .. } | Form::Wedge { .. }, Prescribed::Approach(_)) => return None,
             (Form::Rough { .. }, _) => return None,
         })
     }
@@ -169,20 +184,25 @@ fn largest(simulation: &Simulation, stage: &Stage) -> Option<(Prescribed, Option
     (most > 0.0).then_some((largest, stage.until))
 }
 
-/// Radii \[m\] of the paraboloids together along x and y; `None` without.
+/// Radii \[m\] of the paraboloids together along x and y; `None` without. A cylinder is one of them.
 fn radii(parts: &[Part]) -> Option<[f64; 2]> {
     let curvature = parts.iter().fold([0.0; 2], |[x, y], part| match part {
         Part::Shape { shape: Shape::Sphere { radius }, .. } => [x + 1.0 / radius, y + 1.0 / radius],
         Part::Shape { shape: Shape::Ellipsoid { radius_x, radius_y }, .. } => {
             [x + 1.0 / radius_x, y + 1.0 / radius_y]
         }
+        Part::Shape { shape: Shape::Cylinder { radius }, .. } => [x + 1.0 / radius, y],
         _ => [x, y],
     });
     (curvature[0] > 0.0 && curvature[1] > 0.0).then(|| curvature.map(f64::recip))
 }
 
-/// Radius of the paraboloids together \[m\].
-pub(super) fn radius(parts: &[Part]) -> Option<f64> {
+/// Radius of the paraboloids together \[m\]; on a line of their sections.
+pub(super) fn radius(grid: &Grid, parts: &[Part]) -> Option<f64> {
+    if grid.is_line() { line_radius(parts) } else { mean_radius(parts) }
+}
+
+fn mean_radius(parts: &[Part]) -> Option<f64> {
     radii(parts).map(|[x, y]| (x * y).sqrt())
 }
 
@@ -199,13 +219,45 @@ fn form(parts: &[Part], slope: impl FnOnce() -> f64) -> Option<Form> {
         Part::Shape { shape: Shape::Cone { slope }, .. } => Some(*slope),
         _ => None,
     });
-    match (radius(parts), cone, punch) {
+    match (mean_radius(parts), cone, punch) {
         (Some(radius), None, None) => Some(Form::Paraboloid { radius }),
         (None, Some(slope), None) => Some(Form::Cone { slope }),
         (None, None, Some(radius)) => parts[1..].is_empty().then_some(Form::Punch { radius }),
         (None, None, None) => Some(slope()).filter(|slope| *slope > 0.0).map(|slope| Form::Rough { slope }),
         _ => None,
     }
+}
+
+/// The same for a line contact: what counts of a shape is its section.
+fn line_form(parts: &[Part], slope: impl FnOnce() -> f64) -> Option<Form> {
+    let wedge = parts.iter().find_map(|part| match part {
+        Part::Shape { shape: Shape::Cone { slope } | Shape::Wedge { slope }, .. } => Some(*slope),
+        _ => None,
+    });
+    let punch = parts.iter().find_map(|part| match part {
+        Part::Shape { shape: Shape::FlatPunch(Punch::Circle { radius }), .. } => Some(*radius),
+        Part::Shape { shape: Shape::FlatPunch(Punch::Rectangle { size }), .. } => Some(0.5 * size[0]),
+        _ => None,
+    });
+    match (line_radius(parts), wedge, punch) {
+        (Some(radius), None, None) => Some(Form::Cylinder { radius }),
+        (None, Some(slope), None) => Some(Form::Wedge { slope }),
+        (None, None, Some(radius)) => parts[1..].is_empty().then_some(Form::Punch { radius }),
+        (None, None, None) => Some(slope()).filter(|slope| *slope > 0.0).map(|slope| Form::Rough { slope }),
+        _ => None,
+    }
+}
+
+/// Radius of the shapes together along x \[m\].
+fn line_radius(parts: &[Part]) -> Option<f64> {
+    let curvature = parts.iter().fold(0.0, |sum, part| match part {
+        Part::Shape { shape: Shape::Sphere { radius } | Shape::Cylinder { radius }, .. } => {
+            sum + 1.0 / radius
+        }
+        Part::Shape { shape: Shape::Ellipsoid { radius_x, .. }, .. } => sum + 1.0 / radius_x,
+        _ => sum,
+    });
+    (curvature > 0.0).then(|| 1.0 / curvature)
 }
 
 /// Distance from the middle of the shapes to the nearest border \[m\].
@@ -219,6 +271,6 @@ fn room(grid: &Grid, parts: &[Part]) -> f64 {
             _ => None,
         })
         .unwrap_or_default();
-    let [lx, ly] = grid.size();
-    (0.5 * lx - x0.abs()).min(0.5 * ly - y0.abs()).max(0.0)
+    let sides = grid.extents().iter().zip([x0, y0]).map(|(length, centre)| 0.5 * length - centre.abs());
+    sides.fold(f64::INFINITY, f64::min).max(0.0)
 }

@@ -83,14 +83,14 @@ impl Judge {
         Judge {
             known: before(simulation, known),
             free,
-            confined: domain::confined(gap),
+            confined: domain::confined(grid, gap),
             // The domain that a contact takes is estimated by Hertz.
             radius: if free && kernel.is_half_space() { domain::radius(grid, gap) } else { None },
             border: None,
             needed: 0.0,
             deepest: 0.0,
             resolution: Resolution::default(),
-            strain: Strain::new(simulation, radius(known.parts)),
+            strain: Strain::new(simulation, radius(grid, known.parts)),
             balance: Balance::default(),
             held: time::held_at_hardness(simulation)
                 .filter(|_| simulation.hardness.is_finite() || simulation.hardness_map.is_some()),
@@ -104,7 +104,8 @@ impl Judge {
 
     /// Takes in the rows that an earlier session of the run stored, with what it found.
     pub fn resume(&mut self, rows: &[Row], found: &[Finding]) {
-        rows.iter().enumerate().for_each(|(index, row)| self.take(index, row));
+        let grid = self.grid;
+        rows.iter().enumerate().for_each(|(index, row)| self.take(index, row, Counted::of(&grid, row)));
         // What rows alone do not tell; later rows are judged again.
         for finding in found {
             let Some([first, last]) = finding.rows.filter(|at| at[0] < rows.len()) else { continue };
@@ -122,12 +123,15 @@ impl Judge {
     /// Looks at a row.
     pub fn see(&mut self, step: &Step<'_>, row: &Row) {
         let index = step.index();
-        if self.free && row.contact_area > 0.0 && domain::touches_border(step.pressure()) {
+        if self.free && row.contact_area > 0.0 && domain::touches_border(&self.grid, step.pressure()) {
             self.border = Some(self.border.map_or([index; 2], |[first, _]| [first, index]));
             let compliance = step.simulation().compliance(row.time);
             let needed = ROOM
                 * self.radius.map_or(0.0, |radius| match step.instant().control {
                     Control::Approach => (radius * row.approach.max(0.0)).sqrt(),
+                    Control::Load | Control::Pressure if self.grid.is_line() => {
+                        (4.0 * radius * row.load * compliance / std::f64::consts::PI).sqrt()
+                    }
                     Control::Load | Control::Pressure => (0.75 * radius * row.load * compliance).cbrt(),
                 });
             self.needed = self.needed.max(needed);
@@ -136,16 +140,23 @@ impl Judge {
         if let Some(balance) = step.energy_balance() {
             self.balance.see(index, balance);
         }
-        self.take(index, row);
+        let contact = match self.grid.is_line() {
+            true => Counted::on_line(step.pressure()),
+            false => Counted::of(&self.grid, row),
+        };
+        self.take(index, row, contact);
     }
 
-    fn take(&mut self, index: usize, row: &Row) {
-        let contact = Counted::of(&self.grid, row);
+    fn take(&mut self, index: usize, row: &Row, contact: Counted) {
         self.deepest = self.deepest.max(row.approach);
         self.resolution.see(index, contact);
         self.strain.see(index, row, contact);
         if let Some(thickness) = self.thickness {
-            self.widest.see(index, row.contact_area, thickness);
+            let radius = match self.grid.is_line() {
+                true => 0.5 * row.contact_area,
+                false => (row.contact_area / std::f64::consts::PI).sqrt(),
+            };
+            self.widest.see(index, radius, thickness);
         }
     }
 
@@ -184,7 +195,7 @@ impl Judge {
 fn before(simulation: &Simulation, known: Known<'_>) -> Vec<Finding> {
     let Simulation { grid, gap, boundary, .. } = simulation;
     let mut found = match boundary {
-        Boundary::Free => domain::unconfined(gap),
+        Boundary::Free => domain::unconfined(grid, gap),
         Boundary::Periodic => domain::not_periodic(grid, gap),
     }
     .into_iter()

@@ -75,11 +75,17 @@ impl Strain {
 
     pub(super) fn see(&mut self, index: usize, row: &Row, contact: Counted) {
         let start = std::mem::replace(&mut self.time, row.time);
-        let of_hertz = if row.contact_area > 0.0 { 1.5 * row.load / row.contact_area } else { 0.0 };
+        // Largest over mean pressure of Hertz's contact.
+        let hertz = if contact.line { 4.0 / std::f64::consts::PI } else { 1.5 };
+        let of_hertz = if row.contact_area > 0.0 { hertz * row.load / row.contact_area } else { 0.0 };
         let pressure = row.max_pressure.min(of_hertz) * self.share(row, contact);
         let strain: f64 = self.bodies.iter_mut().map(|body| body.strain([start, row.time], pressure)).sum();
         self.pressure.see(index, strain);
-        if row.contact_area > 0.0 && row.approach > 0.0 {
+        if contact.line {
+            let half = 0.5 * row.contact_area;
+            self.width
+                .see(index, self.radius.filter(|_| contact.is_compact()).map_or(0.0, |radius| half / radius));
+        } else if row.contact_area > 0.0 && row.approach > 0.0 {
             let width = match (contact.is_compact(), self.radius) {
                 (true, _) => row.approach / (row.contact_area / std::f64::consts::PI).sqrt(),
                 (false, Some(radius)) => (row.approach / radius).sqrt(),
@@ -94,7 +100,10 @@ impl Strain {
         if self.kernel.is_half_space() || !contact.is_compact() {
             return 1.0;
         }
-        let q = (std::f64::consts::PI / row.contact_area).sqrt();
+        let q = match contact.line {
+            true => 2.0 / row.contact_area,
+            false => (std::f64::consts::PI / row.contact_area).sqrt(),
+        };
         0.5 * q * self.kernel.symbol(q, 0.0)
     }
 

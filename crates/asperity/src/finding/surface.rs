@@ -39,9 +39,8 @@ pub(super) fn of_part(grid: &Grid, part: &Part) -> Vec<Finding> {
 }
 
 fn of_shape(grid: &Grid, shape: &Shape) -> Vec<Finding> {
-    let [lx, ly] = grid.size();
     let [dx, dy] = grid.spacing();
-    let (size, cell) = (lx.max(ly), dx.min(dy));
+    let (size, cell) = (grid.longest_side(), grid.cell_sides().fold(f64::INFINITY, f64::min));
     let radius = |name: &str, radius: f64| {
         let large = radius.is_finite() && (radius >= LARGEST_RADIUS || radius > FLATTEST * size);
         let (limit, against) = match (large, radius < cell) {
@@ -63,10 +62,13 @@ fn of_shape(grid: &Grid, shape: &Shape) -> Vec<Finding> {
                 .filter_map(|(name, r)| radius(name, r))
                 .collect()
         }
+        Shape::Cylinder { radius: r } => radius("cylinder", *r).into_iter().collect(),
+        Shape::Wedge { slope } => steep("wedge", *slope).into_iter().collect(),
         Shape::Cone { slope } => steep("cone", *slope).into_iter().collect(),
         Shape::FlatPunch(_) => vec![],
         Shape::Wave { amplitude, wavelength } => {
             let cells = [wavelength[0] / dx, wavelength[1] / dy];
+            let cells = if grid.is_line() { [cells[0]; 2] } else { cells };
             // Mean square of the gradient of A cos(qx x) cos(qy y), and of A cos(qx x).
             let waves = wavelength.iter().filter(|l| l.is_finite()).count() as f64;
             let square: f64 =
@@ -79,13 +81,13 @@ fn of_shape(grid: &Grid, shape: &Shape) -> Vec<Finding> {
 }
 
 fn of_spectrum(grid: &Grid, surface: &SelfAffine) -> Vec<Finding> {
-    let [dx, dy] = grid.spacing();
+    let cell = grid.cell_sides().fold(0.0, f64::max);
     let slope = match surface.roughness {
         Roughness::RmsGradient(gradient) => steep("self-affine surface", gradient),
         // Known once the surface is made: see `of_given_height`.
         Roughness::RmsHeight(_) => None,
     };
-    let short = unresolved("self-affine surface", surface.shortest / dx.max(dy));
+    let short = unresolved("self-affine surface", surface.shortest / cell);
     short.into_iter().chain(slope).collect()
 }
 
@@ -120,7 +122,7 @@ pub fn of_heights(name: &str, surface: &Surface) -> Vec<Finding> {
 /// What the gap as a whole tells, where its parts did not: `unknown` where they are not known.
 pub(super) fn of_gap(grid: &Grid, gap: &Array2<f64>, unknown: bool) -> Vec<Finding> {
     let deepest = gap.iter().filter(|h| h.is_finite()).fold(0.0, |most: f64, h| most.max(*h));
-    let size = grid.size()[0].max(grid.size()[1]);
+    let size = grid.longest_side();
     let mut found = vec![];
     if deepest > DEEPEST * size {
         let text = format!(

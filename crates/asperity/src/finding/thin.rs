@@ -30,7 +30,7 @@ pub fn thin_body(words: &str, radius: f64, thickness: f64) -> Option<Finding> {
 
 /// A periodic domain whose longest wave sees what lies below the body.
 pub(super) fn long_waves(grid: &Grid, thickness: f64) -> Option<Finding> {
-    let longest = grid.size().into_iter().fold(0.0, f64::max);
+    let longest = grid.longest_side();
     (longest > LONGEST * thickness).then(|| {
         let text = format!(
             "The longest wave of the domain, {}, is longer than {LONGEST} times the thickness of the body, {}: what lies below \
@@ -50,8 +50,7 @@ pub(super) struct Widest {
 }
 
 impl Widest {
-    pub(super) fn see(&mut self, index: usize, area: f64, thickness: f64) {
-        let radius = (area / std::f64::consts::PI).sqrt();
+    pub(super) fn see(&mut self, index: usize, radius: f64, thickness: f64) {
         self.radius = self.radius.max(radius);
         if radius > WIDEST * thickness {
             self.rows = Some(self.rows.map_or([index; 2], |[first, _]| [first, index]));

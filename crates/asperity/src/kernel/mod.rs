@@ -3,15 +3,17 @@
 //! Pure functions of geometry: no grid, no material, no time.
 
 mod boussinesq;
+mod line;
 mod periodic;
 
 pub use boussinesq::love;
+pub use line::strip;
 pub use periodic::wave_kernel;
 
 use ndarray::Array2;
 use ndarray::parallel::prelude::*;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// The elastic response of a body's surface, from which an [`Operator`](crate::operator::Operator) is planned.
 ///
@@ -24,6 +26,19 @@ pub trait Kernel: std::fmt::Debug + Send + Sync {
     /// # Errors
     /// [`Error::Invalid`](crate::Error::Invalid) where they cannot be computed.
     fn influence(&self, cell: [f64; 2], count: [usize; 2]) -> Result<Array2<f64>>;
+
+    /// Displacements \[m\] at the centres of the cells 0, 1, ... `count` - 1 away from a strip of width `dx` \[m\] under unit
+    /// pressure, in plane strain. A constant is free: the smallest one is 0.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where they cannot be computed.
+    fn strip(&self, _dx: f64, _count: usize) -> Result<Vec<f64>> {
+        Err(Error::invalid(
+            "body of a line contact on a free domain",
+            "layers",
+            "a half-space, or boundary = \"periodic\": influence coefficients of layers under a line are not computed",
+        ))
+    }
 
     /// Amplitude of the displacement \[m\] under a pressure wave cos(q.x) of unit amplitude; `q` = (qx, qy) \[rad/m\] is not
     /// zero. Positive.
@@ -61,6 +76,10 @@ pub struct HalfSpace;
 impl Kernel for HalfSpace {
     fn influence(&self, cell: [f64; 2], count: [usize; 2]) -> Result<Array2<f64>> {
         Ok(self.coefficients(cell, count))
+    }
+
+    fn strip(&self, dx: f64, count: usize) -> Result<Vec<f64>> {
+        Ok(line::strip(dx, count))
     }
 
     fn symbol(&self, qx: f64, qy: f64) -> f64 {

@@ -8,7 +8,7 @@
 use crate::contact::{ContactState, Hardness};
 use crate::load::Control;
 use crate::march::record::{Remembered, Step};
-use crate::march::{March, Past, cap, undeformed};
+use crate::march::{March, Past, cap, datum, undeformed};
 use crate::time::Instant;
 use asperity_sweep::{minimum, strands, sum, sweep};
 
@@ -102,6 +102,7 @@ impl March {
             hardness: cap(&self.simulation, &self.hardness),
             dents: self.dents.as_ref(),
             meter: None,
+            datum: datum(&self.simulation, &between.displacement),
         }
     }
 }

@@ -34,6 +34,7 @@ use std::sync::atomic::AtomicBool;
 
 use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem, Solver, Start};
 use crate::error::{Error, Result};
+use crate::grid::Boundary;
 use crate::load::{Control, Event};
 use crate::operator::{Operator, plan};
 use crate::time::Instant;
@@ -114,6 +115,19 @@ fn undeformed<'a>(simulation: &'a Simulation, dents: &'a Option<Dents>) -> &'a [
 /// The cut-off of each cell.
 fn cap<'a>(simulation: &Simulation, of_cells: &'a Option<Vec<f64>>) -> Hardness<'a> {
     of_cells.as_deref().map_or(Hardness::Uniform(simulation.hardness), Hardness::Cells)
+}
+
+fn is_free_line(simulation: &Simulation) -> bool {
+    simulation.grid.is_line() && simulation.boundary == Boundary::Free
+}
+
+/// The displacement \[m\] that the displacements `u` of a contact are measured from: of a free line contact that of the domain's
+/// end, x = L, on the straight line through the last two cells; else 0.
+fn datum(simulation: &Simulation, u: &[f64]) -> f64 {
+    match u {
+        [.., before, last] if is_free_line(simulation) => last + 0.5 * (last - before),
+        _ => 0.0,
+    }
 }
 
 /// What a row reached: a stage may end or begin with it.
@@ -541,6 +555,18 @@ impl March {
             time_error: self.time_error,
             dents: self.dents.as_ref(),
             meter: Some(&self.meter),
+            datum: self.datum(),
         })
+    }
+
+    /// What the displacements of the state are measured from: see [`datum`].
+    fn datum(&self) -> f64 {
+        if !is_free_line(&self.simulation) {
+            return 0.0;
+        }
+        let mut u = vec![0.0; self.simulation.grid.len()];
+        self.past.remembered(&mut u);
+        u.iter_mut().zip(&self.state.unit_displacement).for_each(|(g, unit)| *g += self.compliance * unit);
+        datum(&self.simulation, &u)
     }
 }

@@ -18,7 +18,8 @@ pub struct Row {
     pub time: f64,
     /// W = cell area times sum p \[N\].
     pub load: f64,
-    /// w \[m\], zero at first touch of the undeformed bodies.
+    /// w \[m\], zero at first touch of the undeformed bodies. Of a free line contact it is measured from the end of the domain,
+    /// x = L: a half-space under a load on a line moves endlessly against points at infinity.
     pub approach: f64,
     /// Area of the cells with p > 0 \[m^2\].
     pub contact_area: f64,
@@ -70,6 +71,8 @@ pub struct Step<'a> {
     pub(super) dents: Option<&'a Dents>,
     /// The quantities of the row; `None` between rows.
     pub(super) meter: Option<&'a Meter>,
+    /// The displacement that displacements and approach are measured from \[m\].
+    pub(super) datum: f64,
 }
 
 /// g, the displacement that the past leaves.
@@ -120,7 +123,8 @@ impl<'a> Step<'a> {
         gap.iter_mut().zip(cells).for_each(|(gap, (u, h))| *gap = c * u + h - w);
     }
 
-    /// Normal displacement u = integral C d(Kp) of both surfaces together \[m\].
+    /// Normal displacement u = integral C d(Kp) of both surfaces together \[m\]; of a free line contact against the end of the
+    /// domain, x = L.
     pub fn displacement_into(&self, displacement: &mut Array2<f64>) {
         if let Some(displacement) = displacement.as_slice_mut() {
             match self.remembered {
@@ -129,7 +133,7 @@ impl<'a> Step<'a> {
             }
         }
         let cells = displacement.iter_mut().zip(&self.state.unit_displacement);
-        cells.for_each(|(g, u)| *g += self.compliance * u);
+        cells.for_each(|(g, u)| *g += self.compliance * u - self.datum);
     }
 
     /// 0 out of contact, 1 in contact, 2 at the hardness.
@@ -154,7 +158,7 @@ impl<'a> Step<'a> {
         Row {
             time: self.instant.time,
             load: pressure * cell,
-            approach: w,
+            approach: w - self.datum,
             contact_area,
             contact_area_corrected: contact_area - PERIMETER_SHARE * self.contact_edges() as f64 * cell,
             contact_fraction: touching / grid.len() as f64,
@@ -171,8 +175,12 @@ impl<'a> Step<'a> {
         }
     }
 
-    /// Number of edges between a touching and an open cell; the border of a free domain is none.
+    /// Number of edges between a touching and an open cell that a contour runs along; the border of a free domain is none, and
+    /// the ends of a line contact are points.
     fn contact_edges(&self) -> usize {
+        if self.simulation.grid.is_line() {
+            return 0;
+        }
         contact_edges(self.pressure(), self.simulation.boundary).number()
     }
 

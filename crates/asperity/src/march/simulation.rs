@@ -8,7 +8,7 @@ use crate::contact::{Solver, SolverOptions};
 use crate::error::{Error, Result};
 use crate::grid::{Boundary, Grid};
 use crate::kernel::{HalfSpace, Kernel};
-use crate::load::{Control, Course, History, Loading, Programme, of_stage};
+use crate::load::{Control, Course, Event, History, Loading, Programme, of_stage};
 use crate::material::{Creep, ThermalCreep};
 use crate::operator;
 use crate::quantities::{Column, ContactStiffness, Quantities, Quantity};
@@ -212,7 +212,7 @@ impl Simulation {
             return Err(Error::invalid("gap", "infinite everywhere", "finite in one cell at least"));
         }
         self.kernel.check(self.grid.spacing())?;
-        let widest = self.grid.size().into_iter().fold(0.0, f64::max);
+        let widest = self.grid.longest_side();
         if let Some(depth) = self.kernel.depth()
             && self.boundary == Boundary::Periodic
             && depth > DEEPEST * widest
@@ -238,6 +238,7 @@ impl Simulation {
             return Err(Error::invalid("hardness", format!("{} Pa", self.hardness), "greater than 0"));
         }
         self.validate_hardness_map()?;
+        self.validate_line()?;
         if self.plasticity == Plasticity::Accumulate
             && self.hardness.is_infinite()
             && self.hardness_map.is_none()
@@ -274,6 +275,41 @@ impl Simulation {
         self.validate_steps()?;
         self.validate_load()?;
         self.validate_jumps()
+    }
+
+    /// Displacements of a free line contact are known up to a constant.
+    fn validate_line(&self) -> Result<()> {
+        if !self.grid.is_line() || self.boundary != Boundary::Free {
+            return Ok(());
+        }
+        if self.grid.len() < 2 {
+            return Err(Error::invalid("number of cells of a free line contact", 1, "2 at least"));
+        }
+        for (n, stage) in self.loading.stages.iter().enumerate() {
+            let event = matches!(stage.until, Some(Event::Approach(_)));
+            if stage.control == Control::Approach || event {
+                let (what, value) = match event {
+                    true => ("event of a free line contact", "an approach"),
+                    false => ("control of a free line contact", "approach"),
+                };
+                let error = Error::invalid(
+                    what,
+                    value,
+                    "a load or a pressure: under a load on a line a half-space moves endlessly, so the approach is known up to a \
+                     constant that depends on the domain; a periodic domain (boundary = \"periodic\") has no such limit",
+                );
+                return Err(if self.loading.stages.len() > 1 { of_stage(error, n) } else { error });
+            }
+        }
+        let depends = |q: &&Quantity| q.is_energy() || **q == Quantity::ContactStiffness;
+        match self.quantities.list.iter().find(depends) {
+            Some(quantity) => Err(Error::invalid(
+                "quantity of a free line contact",
+                quantity.name(),
+                "one that does not depend on displacements, which are known up to a constant; a periodic domain has no such limit",
+            )),
+            None => Ok(()),
+        }
     }
 
     fn validate_hardness_map(&self) -> Result<()> {

@@ -3,13 +3,13 @@
 
 use std::sync::Arc;
 
-use ndarray::Array2;
+use ndarray::{Array1, Array2};
 
 use super::{ApproximateInverse, Operator};
 use crate::convolution::{Convolution, even_spectrum};
 use crate::error::{Error, Result};
 use crate::grid::{Boundary, Grid};
-use crate::kernel::{HalfSpace, Kernel};
+use crate::kernel::{HalfSpace, Kernel, strip};
 
 /// u(i, j) = sum K(i - i', j - j') p(i', j'), with no pressure outside the domain.
 pub struct Free {
@@ -26,7 +26,10 @@ impl Free {
     /// [`Error::Invalid`] where the kernel cannot be computed on the grid, or is not positive definite there.
     pub fn new(grid: Grid, kernel: Arc<dyn Kernel>) -> Result<Self> {
         kernel.check(grid.spacing())?;
-        let influence = kernel.influence(grid.spacing(), computed(&grid))?;
+        let influence = match grid.is_line() {
+            true => of_strips(kernel.strip(grid.spacing()[0], computed(&grid)[0])?, &grid),
+            false => kernel.influence(grid.spacing(), computed(&grid))?,
+        };
         plausible(&influence)?;
         let spectrum = even_spectrum(&influence, padded(&grid));
         Ok(Free::planned(grid, kernel, influence[(0, 0)], &spectrum))
@@ -34,7 +37,10 @@ impl Free {
 
     /// The operator of the elastic half-space.
     pub fn half_space(grid: Grid) -> Self {
-        let influence = HalfSpace.coefficients(grid.spacing(), computed(&grid));
+        let influence = match grid.is_line() {
+            true => of_strips(strip(grid.spacing()[0], computed(&grid)[0]), &grid),
+            false => HalfSpace.coefficients(grid.spacing(), computed(&grid)),
+        };
         let spectrum = even_spectrum(&influence, padded(&grid));
         debug_assert!(spectrum.iter().all(|s| *s > 0.0), "the kernel is positive definite");
         Free::planned(grid, Arc::new(HalfSpace), influence[(0, 0)], &spectrum)
@@ -49,6 +55,14 @@ impl Free {
     pub(super) fn bytes(grid: &Grid) -> usize {
         Convolution::bytes(grid.cells(), padded(grid))
     }
+}
+
+/// The coefficients of a line as those of a grid with one cell along y.
+fn of_strips(strips: Vec<f64>, grid: &Grid) -> Array2<f64> {
+    let [nx, ny] = computed(grid);
+    let mut influence = Array2::zeros((nx, ny));
+    influence.column_mut(0).assign(&Array1::from(strips));
+    influence
 }
 
 /// Lengths of the transforms.
@@ -127,6 +141,12 @@ mod tests {
             let spectrum =
                 even_spectrum(&HalfSpace.coefficients(grid.spacing(), computed(&grid)), padded(&grid));
             assert!(spectrum.iter().all(|s| *s > 0.0), "{cells:?} {size:?}");
+        }
+        for cells in [2, 3, 17, 64, 1000] {
+            let grid = Grid::line(cells, 1e-3).unwrap();
+            let strips = of_strips(strip(grid.spacing()[0], computed(&grid)[0]), &grid);
+            let spectrum = even_spectrum(&strips, padded(&grid));
+            assert!(spectrum.iter().all(|s| *s > 0.0), "a line of {cells}");
         }
     }
 }

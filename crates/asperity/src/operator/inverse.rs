@@ -59,6 +59,7 @@ impl ApproximateInverse {
     /// M at the grid's shortest wave \[1/m\], which no other wave exceeds: the unit of M in the plans.
     pub fn unit(&self) -> f64 {
         let [qx, qy] = self.grid.spacing().map(|d| std::f64::consts::PI / d);
+        let qy = if self.grid.is_line() { 0.0 } else { qy };
         1.0 / self.kernel.symbol(qx, qy)
     }
 
@@ -88,6 +89,7 @@ impl ApproximateInverse {
 /// The torus that leaves `apart` cells beyond a free domain.
 fn lengths(grid: &Grid, boundary: Boundary, apart: usize) -> [usize; 2] {
     match boundary {
+        Boundary::Free if grid.is_line() => [Lanes::<f32>::good_length(grid.cells()[0] + apart), 1],
         Boundary::Free => grid.cells().map(|n| Lanes::<f32>::good_length(n + apart)),
         Boundary::Periodic => grid.cells(),
     }
@@ -100,7 +102,7 @@ impl Torus {
             let [dx, dy] = grid.spacing();
             let size = [dx * lengths[0] as f64, dy * lengths[1] as f64];
             // Where a uniform pressure has no displacement of its own: half of M at the longest wave.
-            let longest = std::f64::consts::TAU / size[0].max(size[1]);
+            let longest = std::f64::consts::TAU / if grid.is_line() { size[0] } else { size[0].max(size[1]) };
             let own = kernel.uniform().filter(|uniform| *uniform > 0.0);
             let uniform = own.map_or(0.5 / kernel.symbol(longest, 0.0), |u| 1.0 / u);
             let inverse =

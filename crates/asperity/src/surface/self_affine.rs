@@ -12,6 +12,8 @@
 //! Topogr.: Metrol. Prop. 5 (2017) 013001, section 3). The sum is scaled so that this surface, not the
 //! ensemble, has the rms gradient or rms height asked for.
 //!
+//! On a line of cells the surface is a profile, and its spectrum that of a profile: C ~ q^-(1 + 2 H).
+//!
 //! The random number of a wave depends on the seed and on (kx, ky) alone. So the same seed on a finer
 //! grid samples the same surface, a smaller `shortest` adds waves and keeps the long ones in
 //! proportion, and every machine and thread count gives the same bits.
@@ -116,7 +118,9 @@ impl SelfAffine {
     ) -> Result<Array2<f64>> {
         self.validate(grid)?;
         let waves = Waves::new(grid, TAU / self.shortest);
-        let amplitude = |qx: f64, qy: f64| self.spectrum(seen(qx, qy)).sqrt();
+        // Along a line the waves of a surface of exponent -2 (1 + H) have the exponent -(1 + 2 H).
+        let exponent = if grid.is_line() { -1.0 - 2.0 * self.hurst } else { -2.0 * (1.0 + self.hurst) };
+        let amplitude = |qx: f64, qy: f64| self.spectrum(seen(qx, qy), exponent).sqrt();
         let (mut columns, moments) = waves.amplitudes(self.seed, amplitude);
         if moments.height <= 0.0 {
             return Err(Error::invalid(
@@ -141,12 +145,12 @@ impl SelfAffine {
         }
     }
 
-    /// Power spectrum up to a factor: 1 on the flat part, (q / q_rolloff)^(-2 (1 + H)) beyond.
-    fn spectrum(&self, q: f64) -> f64 {
+    /// Power spectrum up to a factor: 1 on the flat part, (q / q_rolloff)^exponent beyond.
+    fn spectrum(&self, q: f64, exponent: f64) -> f64 {
         if q < TAU / self.longest * (1.0 - SAME) || q > TAU / self.shortest * (1.0 + SAME) {
             return 0.0;
         }
-        libm::pow((q * self.roll_off / TAU).max(1.0), -2.0 * (1.0 + self.hurst))
+        libm::pow((q * self.roll_off / TAU).max(1.0), exponent)
     }
 
     /// Checks the numbers, also against the grid.
@@ -165,8 +169,7 @@ impl SelfAffine {
         positive("shortest wavelength", self.shortest, "m")?;
         positive("roll-off wavelength", self.roll_off, "m")?;
         let meters = |l: f64| format!("{l:e} m");
-        let [dx, dy] = grid.spacing();
-        let (two_cells, domain) = (2.0 * dx.max(dy), grid.size()[0].max(grid.size()[1]));
+        let (two_cells, domain) = (2.0 * grid.cell_sides().fold(0.0, f64::max), grid.longest_side());
         if self.shortest < two_cells * (1.0 - SAME) {
             return Err(Error::invalid(
                 "shortest wavelength",

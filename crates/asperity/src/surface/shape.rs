@@ -3,7 +3,9 @@
 //! ```text
 //! sphere       r^2 / (2 R)                       the paraboloid of Hertz's theory
 //! ellipsoid    x^2 / (2 Rx) + y^2 / (2 Ry)
+//! cylinder     x^2 / (2 R), straight along y
 //! cone         slope r
+//! wedge        slope |x|, straight along y
 //! flat punch   0 inside, never touching outside
 //! wave         A (1 - cos(2 pi x / lx) cos(2 pi y / ly))
 //! ```
@@ -30,6 +32,16 @@ pub enum Shape {
         radius_x: f64,
         /// Principal radius along y \[m\].
         radius_y: f64,
+    },
+    /// h = x^2 / (2 radius): a cylinder along y. An infinite radius is a flat.
+    Cylinder {
+        /// Radius R \[m\].
+        radius: f64,
+    },
+    /// h = slope |x|: a wedge along y.
+    Wedge {
+        /// Rise per length, the cotangent of the half angle.
+        slope: f64,
     },
     /// h = slope r.
     Cone {
@@ -73,6 +85,8 @@ impl Shape {
         match self {
             Shape::Sphere { .. } => "sphere",
             Shape::Ellipsoid { .. } => "ellipsoid",
+            Shape::Cylinder { .. } => "cylinder",
+            Shape::Wedge { .. } => "wedge",
             Shape::Cone { .. } => "cone",
             Shape::FlatPunch(_) => "flat punch",
             Shape::Wave { .. } => "wave",
@@ -91,6 +105,8 @@ impl Shape {
         match self {
             Shape::Sphere { radius } => (x * x + y * y) / (2.0 * radius),
             Shape::Ellipsoid { radius_x, radius_y } => x * x / (2.0 * radius_x) + y * y / (2.0 * radius_y),
+            Shape::Cylinder { radius } => x * x / (2.0 * radius),
+            Shape::Wedge { slope } => slope * x.abs(),
             Shape::Cone { slope } => slope * (x * x + y * y).sqrt(),
             Shape::FlatPunch(punch) => {
                 if punch.covers(x, y) {
@@ -117,6 +133,8 @@ impl Shape {
                 radius_or_flat("radius of the ellipsoid along x", *radius_x)?;
                 radius_or_flat("radius of the ellipsoid along y", *radius_y)
             }
+            Shape::Cylinder { radius } => radius_or_flat("radius of the cylinder", *radius),
+            Shape::Wedge { slope } => positive("slope of the wedge", *slope, "").map(drop),
             Shape::Cone { slope } => positive("slope of the cone", *slope, "").map(drop),
             Shape::FlatPunch(Punch::Circle { radius }) => radius_or_flat("radius of the flat punch", *radius),
             Shape::FlatPunch(Punch::Rectangle { size }) => {

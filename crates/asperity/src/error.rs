@@ -69,7 +69,11 @@ pub enum Error {
 #[error(
     "{method} stopped after {iterations} iterations at residual {residual:.2e} (tolerance {tolerance:.1e}, \
      certified energy-norm error {certificate:.1e}){}; loosen the tolerance or allow more iterations",
-    match .time { Some(t) => format!(" at t = {t} s"), None => String::new() }
+    match (.time, .velocity) {
+        (Some(t), _) => format!(" at t = {t} s"),
+        (None, Some(v)) => format!(" at {v} m/s"),
+        (None, None) => String::new(),
+    }
 )]
 pub struct NotConverged {
     /// Solver name.
@@ -84,6 +88,8 @@ pub struct NotConverged {
     pub certificate: f64,
     /// Time of the step, where the solve belongs to a march \[s\].
     pub time: Option<f64>,
+    /// Velocity of a steady state of motion \[m/s\].
+    pub velocity: Option<f64>,
 }
 
 /// Result of this crate.

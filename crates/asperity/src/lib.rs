@@ -17,6 +17,7 @@
 //! - [`march`]: the simulation; [`contact`]: the elastic contact inside every step;
 //! - [`quantities`], [`spots`]: what each row may be asked for besides;
 //! - [`finding`]: where the numbers of a run may be off;
+//! - [`sliding`]: bodies that slide and roll;
 //! - [`leakage`]: flow of a fluid through the gap;
 //! - [`operator`], [`kernel`], [`convolution`]: u = Kp; [`layer`]: K of bodies of layers;
 //! - [`mod@reference`], [`verification`]: closed forms and the checks against them.
@@ -40,6 +41,7 @@ pub mod operator;
 pub mod quantities;
 pub mod reference;
 mod set;
+pub mod sliding;
 pub mod spots;
 pub mod stress;
 pub mod surface;

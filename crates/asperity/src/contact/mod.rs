@@ -173,6 +173,23 @@ impl Solver {
     }
 }
 
+/// How far a state with this pressure and this U, of whatever operator, is from the contact of `problem`; sets its approach. The
+/// certificate holds for every operator with a positive symmetric part.
+pub(crate) fn rate(problem: &Problem, grid: &Grid, tolerance: f64, state: &mut ContactState) -> Outcome {
+    state.approach = rating::find_approach(problem, state);
+    let rating = rating::Rating::of(problem, state, state.approach);
+    rating.outcome(problem, grid, tolerance)
+}
+
+/// Clips a pressure to its bounds and gives it the load of `problem` again.
+///
+/// # Errors
+/// [`Error::Infeasible`].
+pub(crate) fn make_feasible(problem: &Problem, grid: &Grid, state: &mut ContactState) -> Result<()> {
+    let mut touchable = vec![0; grid.len().div_ceil(8)];
+    start::make_feasible(problem, grid.cell_area(), state, &mut touchable)
+}
+
 /// The error of a solve that stopped early.
 fn not_converged(method: &'static str, options: &SolverOptions, outcome: &Outcome) -> Error {
     Error::NotConverged(NotConverged {
@@ -182,6 +199,7 @@ fn not_converged(method: &'static str, options: &SolverOptions, outcome: &Outcom
         tolerance: options.tolerance,
         certificate: outcome.certificate,
         time: None,
+        velocity: None,
     })
 }
 

@@ -7,7 +7,7 @@
 use std::f64::consts::FRAC_2_PI;
 
 /// Cells from which the series in (half a cell / distance)² holds all digits.
-const FAR: usize = 4;
+const FAR: f64 = 4.0;
 /// Terms of the series: (1/8)^(2 TERMS) is a rounding error.
 const TERMS: usize = 9;
 
@@ -26,11 +26,21 @@ pub fn strip(dx: f64, count: usize) -> Vec<f64> {
     (0..count).map(|i| FRAC_2_PI * dx * (last - mean_logarithm(i))).collect()
 }
 
+/// The displacement \[m\] at any distance x \[m\] from the middle of a strip of width `dx` \[m\] under unit pressure, up to a constant:
+/// -(2/π) ∫ ln(|x - s|/dx) ds over the strip.
+pub(crate) fn strip_at(x: f64, dx: f64) -> f64 {
+    -FRAC_2_PI * dx * mean_logarithm_at((x / dx).abs())
+}
+
 /// Mean of ln|i - s| over -1/2 < s < 1/2.
 fn mean_logarithm(i: usize) -> f64 {
-    let x = i as f64;
-    if i < FAR {
-        let part = |u: f64| u * libm::log(u.abs());
+    mean_logarithm_at(i as f64)
+}
+
+/// The same at any x >= 0.
+fn mean_logarithm_at(x: f64) -> f64 {
+    if x < FAR {
+        let part = |u: f64| if u == 0.0 { 0.0 } else { u * libm::log(u.abs()) };
         return part(x + 0.5) - part(x - 0.5) - 1.0;
     }
     // ln x - Σ (1/2x)^(2k) / (2k (2k + 1))
@@ -45,7 +55,7 @@ mod tests {
 
     #[test]
     fn the_series_goes_on_where_the_closed_form_ends() {
-        for i in FAR..12 {
+        for i in 4..12 {
             let x = i as f64;
             let closed = (x + 0.5) * (x + 0.5).ln() - (x - 0.5) * (x - 0.5).ln() - 1.0;
             // roundings of terms of size x ln x

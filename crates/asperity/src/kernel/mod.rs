@@ -8,6 +8,7 @@ mod periodic;
 
 pub use boussinesq::love;
 pub use line::strip;
+pub(crate) use line::strip_at;
 pub use periodic::wave_kernel;
 
 use ndarray::Array2;

@@ -152,5 +152,6 @@ pub fn gas_flow(
         tolerance: SETTLED,
         certificate: f64::NAN,
         time: None,
+        velocity: None,
     }))
 }

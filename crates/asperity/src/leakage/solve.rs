@@ -126,5 +126,6 @@ pub(super) fn solve(
         tolerance: share,
         certificate: f64::NAN,
         time: None,
+        velocity: None,
     }))
 }

@@ -103,6 +103,7 @@ impl March {
             dents: self.dents.as_ref(),
             meter: None,
             datum: datum(&self.simulation, &between.displacement),
+            friction: None,
         }
     }
 }

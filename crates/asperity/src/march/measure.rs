@@ -6,12 +6,13 @@ use crate::contact::Hardness;
 use crate::error::Result;
 use crate::operator::Operator;
 use crate::quantities::{Column, ContactStiffness, Quantity, contact_edges, densities, spot_classes};
+use crate::sliding::Friction;
 use crate::spots::Spots;
 use asperity_sweep::{strands, sweep};
 
 /// What takes the quantities of a march, and those of the last row.
 #[derive(Default)]
-pub(super) struct Meter {
+pub(crate) struct Meter {
     columns: Vec<Column>,
     /// The numbers of all columns, one after the other.
     values: Vec<f64>,
@@ -29,6 +30,11 @@ impl Meter {
             energy: Energy::new(past).filter(|_| has(&Quantity::is_energy)),
             columns,
         }
+    }
+
+    /// For these columns of a state that is no row of a march.
+    pub(crate) fn of_state(columns: Vec<Column>) -> Self {
+        Meter { values: vec![f64::NAN; columns.iter().map(Column::width).sum()], columns, ..Meter::default() }
     }
 
     pub(super) fn columns(&self) -> &[Column] {
@@ -139,7 +145,7 @@ impl March {
 
 impl Step<'_> {
     /// Writes the quantities of the row into `meter`.
-    fn fill(&self, meter: &mut Meter, stiffness: f64) {
+    pub(crate) fn fill(&self, meter: &mut Meter, stiffness: f64) {
         let Meter { columns, values, energy, .. } = meter;
         let grid = &self.simulation.grid;
         let boundary = self.simulation.boundary;
@@ -150,6 +156,7 @@ impl Step<'_> {
             .then(|| Spots::of(grid, boundary, pressure, |p| *p > 0.0));
         let of_spots = |of: fn(&Spots) -> f64| spots.as_ref().map_or(f64::NAN, of);
         let energy = |of: fn(&Energy) -> f64| energy.as_ref().map_or(f64::NAN, of);
+        let moving = |of: fn(&Friction) -> f64| self.friction.as_ref().map_or(f64::NAN, of);
         let (c, w) = (self.compliance, self.state.approach);
         let gaps = || {
             let fields = self.state.unit_displacement.iter().zip(self.gap).zip(&self.state.pressure);
@@ -170,6 +177,15 @@ impl Step<'_> {
                 Quantity::DissipatedEnergy => energy(|e| e.dissipated),
                 Quantity::FlatteningWork => energy(|e| e.flattening),
                 Quantity::ExternalWork => energy(|e| e.work),
+                Quantity::Velocity => moving(|f| f.velocity),
+                Quantity::SlidingDistance => moving(|f| f.distance),
+                Quantity::FrictionForce => moving(|f| f.force),
+                Quantity::SideForce => moving(|f| f.side),
+                Quantity::FrictionCoefficient => moving(|f| f.coefficient),
+                Quantity::FrictionCoefficientTotal => moving(|f| f.total),
+                Quantity::FrictionUncertainty => moving(|f| f.uncertainty),
+                Quantity::RollingMoment => moving(|f| f.moment),
+                Quantity::DissipatedPower => moving(|f| f.power),
                 Quantity::SpotHistogram => {
                     if let Some(spots) = &spots {
                         spot_classes(spots, grid.cell_area(), own);

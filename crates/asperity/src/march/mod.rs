@@ -25,7 +25,7 @@ mod warm_start;
 
 pub use checkpoint::Checkpoint;
 pub use dense::Between;
-pub(crate) use record::PERIMETER_SHARE;
+pub(crate) use record::{Lone, PERIMETER_SHARE};
 pub use record::{Row, Step};
 pub use simulation::{Plasticity, Scheme, Simulation};
 
@@ -43,7 +43,7 @@ use constant::Constant;
 use dents::Dents;
 use direct::Direct;
 use event::{Enclosure, MET};
-use measure::Meter;
+pub(crate) use measure::Meter;
 use memory::{Drive, Ends, Interval, Memory};
 use record::Remembered;
 use timeline::{Accepted, Timeline};
@@ -123,7 +123,7 @@ fn is_free_line(simulation: &Simulation) -> bool {
 
 /// The displacement \[m\] that the displacements `u` of a contact are measured from: of a free line contact that of the domain's
 /// end, x = L, on the straight line through the last two cells; else 0.
-fn datum(simulation: &Simulation, u: &[f64]) -> f64 {
+pub(crate) fn datum(simulation: &Simulation, u: &[f64]) -> f64 {
     match u {
         [.., before, last] if is_free_line(simulation) => last + 0.5 * (last - before),
         _ => 0.0,
@@ -556,6 +556,7 @@ impl March {
             dents: self.dents.as_ref(),
             meter: Some(&self.meter),
             datum: self.datum(),
+            friction: None,
         })
     }
 

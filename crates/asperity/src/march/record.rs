@@ -8,6 +8,7 @@ use crate::march::dents::Dents;
 use crate::march::measure::Meter;
 use crate::march::{Past, Simulation};
 use crate::quantities::{Column, Quantity, contact_edges};
+use crate::sliding::Friction;
 use crate::time::Instant;
 use asperity_sweep::{Max, sweep};
 
@@ -73,6 +74,46 @@ pub struct Step<'a> {
     pub(super) meter: Option<&'a Meter>,
     /// The displacement that displacements and approach are measured from \[m\].
     pub(super) datum: f64,
+    /// The forces of a contact in motion.
+    pub(super) friction: Option<Friction>,
+}
+
+/// A state that no march made, with the numbers of its solve.
+pub(crate) struct Lone<'a> {
+    pub(crate) index: usize,
+    pub(crate) instant: Instant,
+    pub(crate) simulation: &'a Simulation,
+    pub(crate) state: &'a ContactState,
+    /// Undeformed gap \[m\].
+    pub(crate) gap: &'a [f64],
+    /// u = compliance U.
+    pub(crate) compliance: f64,
+    pub(crate) outcome: Outcome,
+    pub(crate) friction: Friction,
+    pub(crate) datum: f64,
+}
+
+impl<'a> Lone<'a> {
+    /// As a row, with the quantities in `meter` where they are taken.
+    pub(crate) fn row(self, meter: Option<&'a Meter>) -> Step<'a> {
+        let Lone { index, instant, simulation, state, gap, compliance, outcome, friction, datum } = self;
+        Step {
+            index,
+            instant,
+            simulation,
+            hardness: Hardness::Uniform(simulation.hardness),
+            state,
+            gap,
+            compliance,
+            outcome,
+            remembered: Remembered::Nothing,
+            time_error: None,
+            dents: None,
+            meter,
+            datum,
+            friction: Some(friction),
+        }
+    }
 }
 
 /// g, the displacement that the past leaves.
@@ -82,6 +123,8 @@ pub(super) enum Remembered<'a> {
     Past(&'a Past),
     /// Itself.
     Field(&'a [f64]),
+    /// None.
+    Nothing,
 }
 
 impl<'a> Step<'a> {
@@ -111,6 +154,11 @@ impl<'a> Step<'a> {
         self.outcome.saturated
     }
 
+    /// The forces of a contact in motion.
+    pub fn friction(&self) -> Option<Friction> {
+        self.friction
+    }
+
     /// Pressure \[Pa\], shape (nx, ny).
     pub fn pressure(&self) -> ArrayView2<'a, f64> {
         to_view(self.simulation.grid.shape(), &self.state.pressure)
@@ -130,6 +178,7 @@ impl<'a> Step<'a> {
             match self.remembered {
                 Remembered::Past(past) => past.remembered(displacement),
                 Remembered::Field(g) => displacement.copy_from_slice(g),
+                Remembered::Nothing => displacement.fill(0.0),
             }
         }
         let cells = displacement.iter_mut().zip(&self.state.unit_displacement);

@@ -14,6 +14,12 @@
 //! | `spot_histogram` | | number of spots per class of area, by powers of two of the cell |
 //! | `pressure_histogram` | 1/Pa | probability density of the pressure of the cells in contact |
 //! | `gap_histogram` | 1/m | probability density of the gap of the open cells |
+//! | `velocity`, `sliding_distance` | m/s, m | velocity of a contact in motion, and how far it has moved |
+//! | `friction_force`, `side_force` | N | force against motion and across it |
+//! | `friction_coefficient`, `friction_coefficient_total` | | friction force over load, without and with a shear stress on the contact |
+//! | `friction_uncertainty` | | difference of two estimates of the friction force |
+//! | `rolling_moment` | N m | moment of the pressure about the middle of the shapes |
+//! | `dissipated_power` | W | power lost in the bodies |
 //!
 //! What each costs and how it is derived: docs/theory.md ("Energy and other
 //! quantities of a row", "Permanent flattening"). A march takes them by
@@ -76,11 +82,29 @@ pub enum Quantity {
     PressureHistogram,
     /// Probability density of the gap of the open cells, in 1/m.
     GapHistogram,
+    /// Velocity of the contact, in m/s; of a contact in motion, as all that follow.
+    Velocity,
+    /// Distance that the contact has moved, in m.
+    SlidingDistance,
+    /// Force of the bodies against motion, Σ p dh/ds, in N.
+    FrictionForce,
+    /// Force across the direction of motion, in N.
+    SideForce,
+    /// Friction force over load.
+    FrictionCoefficient,
+    /// Friction coefficient with the share of a given shear stress on the area in contact.
+    FrictionCoefficientTotal,
+    /// Difference of the friction force from its second estimate, -Σ p du/ds, over the force.
+    FrictionUncertainty,
+    /// Moment of the pressure about the middle of the shapes, in N m.
+    RollingMoment,
+    /// Power lost in the bodies, in W.
+    DissipatedPower,
 }
 
 impl Quantity {
     /// Every quantity.
-    pub const ALL: [Quantity; 13] = [
+    pub const ALL: [Quantity; 22] = [
         Quantity::ContactStiffness,
         Quantity::ContactSpots,
         Quantity::LargestSpot,
@@ -94,6 +118,27 @@ impl Quantity {
         Quantity::SpotHistogram,
         Quantity::PressureHistogram,
         Quantity::GapHistogram,
+        Quantity::Velocity,
+        Quantity::SlidingDistance,
+        Quantity::FrictionForce,
+        Quantity::SideForce,
+        Quantity::FrictionCoefficient,
+        Quantity::FrictionCoefficientTotal,
+        Quantity::FrictionUncertainty,
+        Quantity::RollingMoment,
+        Quantity::DissipatedPower,
+    ];
+
+    /// Those of a contact in motion, which each of its rows has.
+    pub const OF_MOTION: [Quantity; 8] = [
+        Quantity::Velocity,
+        Quantity::SlidingDistance,
+        Quantity::FrictionForce,
+        Quantity::SideForce,
+        Quantity::FrictionCoefficient,
+        Quantity::FrictionUncertainty,
+        Quantity::RollingMoment,
+        Quantity::DissipatedPower,
     ];
 
     /// Its name in case files and results.
@@ -112,6 +157,15 @@ impl Quantity {
             Quantity::SpotHistogram => "spot_histogram",
             Quantity::PressureHistogram => "pressure_histogram",
             Quantity::GapHistogram => "gap_histogram",
+            Quantity::Velocity => "velocity",
+            Quantity::SlidingDistance => "sliding_distance",
+            Quantity::FrictionForce => "friction_force",
+            Quantity::SideForce => "side_force",
+            Quantity::FrictionCoefficient => "friction_coefficient",
+            Quantity::FrictionCoefficientTotal => "friction_coefficient_total",
+            Quantity::FrictionUncertainty => "friction_uncertainty",
+            Quantity::RollingMoment => "rolling_moment",
+            Quantity::DissipatedPower => "dissipated_power",
         }
     }
 
@@ -133,6 +187,15 @@ impl Quantity {
             | Quantity::ExternalWork => "J",
             Quantity::PressureHistogram => "1/Pa",
             Quantity::GapHistogram => "1/m",
+            Quantity::Velocity => "m/s",
+            Quantity::SlidingDistance => "m",
+            Quantity::FrictionForce => "N",
+            Quantity::SideForce => "N",
+            Quantity::FrictionCoefficient => "1",
+            Quantity::FrictionCoefficientTotal => "1",
+            Quantity::FrictionUncertainty => "1",
+            Quantity::RollingMoment => "N m",
+            Quantity::DissipatedPower => "W",
         }
     }
 
@@ -152,6 +215,15 @@ impl Quantity {
             Quantity::SpotHistogram => "number of contact spots per class of area",
             Quantity::PressureHistogram => "probability density of the contact pressure",
             Quantity::GapHistogram => "probability density of the open gap",
+            Quantity::Velocity => "velocity",
+            Quantity::SlidingDistance => "distance moved",
+            Quantity::FrictionForce => "friction force",
+            Quantity::SideForce => "side force",
+            Quantity::FrictionCoefficient => "friction coefficient of the loss in the bulk",
+            Quantity::FrictionCoefficientTotal => "friction coefficient with the shear stress on the contact",
+            Quantity::FrictionUncertainty => "difference of two estimates of friction, relative",
+            Quantity::RollingMoment => "rolling moment",
+            Quantity::DissipatedPower => "power lost in the bodies",
         }
     }
 
@@ -169,6 +241,11 @@ impl Quantity {
                 | Quantity::FlatteningWork
                 | Quantity::ExternalWork
         )
+    }
+
+    /// Whether it belongs to a contact in motion.
+    pub fn is_of_motion(self) -> bool {
+        Quantity::OF_MOTION.contains(&self) || self == Quantity::FrictionCoefficientTotal
     }
 
     /// Whether it is about contact spots.

@@ -121,6 +121,7 @@ impl ContactStiffness {
             tolerance: SMALLEST_SHARE,
             certificate: f64::NAN,
             time: None,
+            velocity: None,
         }))
     }
 

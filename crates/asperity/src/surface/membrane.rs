@@ -128,6 +128,7 @@ impl Membrane {
             tolerance: TOLERANCE,
             certificate: f64::INFINITY,
             time: None,
+            velocity: None,
         }
         .into())
     }

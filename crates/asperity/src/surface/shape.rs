@@ -121,6 +121,33 @@ impl Shape {
         }
     }
 
+    /// Slopes \[dh/dx, dh/dy\] at the offset (x, y) \[m\] from the shape's centre; 0 on the tip of a cone or the edge of a wedge,
+    /// and under a punch.
+    ///
+    /// ```
+    /// use asperity::surface::Shape;
+    /// assert_eq!(Shape::Sphere { radius: 2.0 }.slope(0.1, -0.2), [0.05, -0.1]);
+    /// ```
+    pub fn slope(&self, x: f64, y: f64) -> [f64; 2] {
+        let sign = |x: f64| if x == 0.0 { 0.0 } else { x.signum() };
+        match self {
+            Shape::Sphere { radius } => [x / radius, y / radius],
+            Shape::Ellipsoid { radius_x, radius_y } => [x / radius_x, y / radius_y],
+            Shape::Cylinder { radius } => [x / radius, 0.0],
+            Shape::Wedge { slope } => [slope * sign(x), 0.0],
+            Shape::Cone { slope } => {
+                let r = (x * x + y * y).sqrt();
+                if r > 0.0 { [slope * x / r, slope * y / r] } else { [0.0; 2] }
+            }
+            Shape::FlatPunch(_) => [0.0; 2],
+            Shape::Wave { amplitude, wavelength: [lx, ly] } => {
+                let (sin_x, cos_x) = libm::sincos(TAU * x / lx);
+                let (sin_y, cos_y) = libm::sincos(TAU * y / ly);
+                [amplitude * TAU / lx * sin_x * cos_y, amplitude * TAU / ly * cos_x * sin_y]
+            }
+        }
+    }
+
     /// Checks the shape's numbers.
     ///
     /// # Errors

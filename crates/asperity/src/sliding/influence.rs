@@ -1,0 +1,206 @@
+//! The influence coefficients of a half-space whose material streams by, for free domains.
+//!
+//! ```text
+//! k_v = C0 k + Σ C_j k_j,    k_j(x) = ∫ e^(-s/l)/l k(x + s) ds over s > 0,    l = λ_j v
+//! ```
+//!
+//! with k the coefficient of the elastic half-space as a function of x: the memory looks ahead, since the point below x was
+//! earlier at x + s. On cells the integral goes backwards,
+//!
+//! k_j(x_i) = e^(-dx/l) k_j(x_(i+1)) + ∫ e^(-s/l)/l k(x_i + s) ds over 0 < s < dx,
+//!
+//! which is stable. k has kinks x ln|x| at the ends of a cell, ±dx/2, towards which the panels of the quadrature are graded.
+
+use rayon::prelude::*;
+
+use crate::grid::Grid;
+use crate::kernel::{love, strip_at};
+
+/// Nodes and weights of the Gauss-Legendre rule of 12 points on [-1, 1], one half (Abramowitz & Stegun, table 25.4).
+const GAUSS: [(f64, f64); 6] = [
+    (0.125_233_408_511_468_92, 0.249_147_045_813_402_77),
+    (0.367_831_498_998_180_2, 0.233_492_536_538_354_8),
+    (0.587_317_954_286_617_5, 0.203_167_426_723_065_92),
+    (0.769_902_674_194_304_7, 0.160_078_328_543_346_23),
+    (0.904_117_256_370_474_9, 0.106_939_325_995_318_43),
+    (0.981_560_634_246_719_3, 0.047_175_336_386_511_83),
+];
+/// Cells beside the kinks whose panels are graded.
+const NEAR: i64 = 3;
+/// Grading of the panels towards a kink, and their number.
+const RATIO: f64 = 0.25;
+const PANELS: usize = 14;
+/// e^(-45) is a rounding error.
+const END: f64 = 45.0;
+
+/// One branch: its compliance \[1/Pa\] and how far its memory reaches, l \[m\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Branch {
+    pub(super) compliance: f64,
+    pub(super) length: f64,
+}
+
+/// Coefficients k_v(i dx, j dy), -N <= i <= N with N = `reach`\[0\], 0 <= j <= `reach`\[1\], in rows of constant j: at
+/// `j * (2 N + 1) + i + N`.
+///
+/// Of a line contact a constant is free; that of k is chosen here as its value N cells away.
+pub(super) fn influence(grid: &Grid, reach: [usize; 2], instantaneous: f64, branches: &[Branch]) -> Vec<f64> {
+    let [dx, dy] = grid.spacing();
+    let (n, rows) = (reach[0], reach[1] + 1);
+    let mut all = vec![0.0; (2 * n + 1) * rows];
+    let far = strip_at(n as f64 * dx, dx);
+    all.par_chunks_mut(2 * n + 1).enumerate().for_each(|(j, row)| {
+        let y = j as f64 * dy;
+        let k = |x: f64| if grid.is_line() { strip_at(x, dx) - far } else { love(x, y, [dx, dy]) };
+        let centre = |i: usize| (i as f64 - n as f64) * dx;
+        row.iter_mut().enumerate().for_each(|(i, to)| *to = instantaneous * k(centre(i)));
+        let quadrature = Quadrature::new(dx, n, &k);
+        for branch in branches {
+            quadrature.add(*branch, row);
+        }
+    });
+    all
+}
+
+/// The elastic coefficient at the nodes of all cells, which every branch shares.
+struct Quadrature<'a, K> {
+    dx: f64,
+    reach: usize,
+    k: &'a K,
+    /// (s, weight, k(x_i + s)) of the cells from -N on.
+    nodes: Vec<Vec<(f64, f64, f64)>>,
+}
+
+impl<'a, K: Fn(f64) -> f64> Quadrature<'a, K> {
+    fn new(dx: f64, reach: usize, k: &'a K) -> Self {
+        let nodes = (-(reach as i64)..reach as i64)
+            .map(|i| {
+                let x = i as f64 * dx;
+                let mut nodes = vec![];
+                for (a, b) in panels(i, dx) {
+                    gauss(a, b, |s, weight| nodes.push((s, weight, k(x + s))));
+                }
+                nodes
+            })
+            .collect();
+        Quadrature { dx, reach, k, nodes }
+    }
+
+    /// row += C_j k_j.
+    fn add(&self, branch: Branch, row: &mut [f64]) {
+        let Branch { compliance, length: l } = branch;
+        let (dx, n) = (self.dx, self.reach as i64);
+        let decay = libm::exp(-dx / l);
+        let mut k = self.ahead(n as f64 * dx, l);
+        row[2 * self.reach] += compliance * k;
+        for i in (-n..n).rev() {
+            let gained = if l >= 0.5 * dx {
+                let nodes = &self.nodes[(i + n) as usize];
+                nodes.iter().map(|(s, weight, k)| weight * libm::exp(-s / l) * k).sum::<f64>() / l
+            } else {
+                self.within(i, l)
+            };
+            k = decay * k + gained;
+            row[(i + n) as usize] += compliance * k;
+        }
+    }
+
+    /// ∫ e^(-s/l)/l k(x + s) ds over s > 0 where k is smooth ahead of x.
+    fn ahead(&self, x: f64, l: f64) -> f64 {
+        let (mut sum, mut start, mut panel) = (0.0, 0.0, (0.5 * x).min(l));
+        while start < END * l {
+            let end = (start + panel).min(END * l);
+            gauss(start, end, |s, weight| sum += weight * libm::exp(-s / l) * (self.k)(x + s));
+            (start, panel) = (end, (1.5 * panel).min(2.0 * l));
+        }
+        sum / l
+    }
+
+    /// ∫ e^(-s/l)/l k(x_i + s) ds over a cell that is long against l.
+    fn within(&self, i: i64, l: f64) -> f64 {
+        let x = i as f64 * self.dx;
+        let mut sum = 0.0;
+        for (a, b) in panels(i, self.dx) {
+            let (mut start, end) = (a, b.min(END * l));
+            while start < end {
+                let stop = (start + 2.0 * l).min(end);
+                gauss(start, stop, |s, weight| sum += weight * libm::exp(-s / l) * (self.k)(x + s));
+                start = stop;
+            }
+        }
+        sum / l
+    }
+}
+
+/// The panels of cell i, 0 < s < dx: two halves, graded towards the middle where x_i + s comes near a kink there.
+fn panels(i: i64, dx: f64) -> Vec<(f64, f64)> {
+    let middle = 0.5 * dx;
+    if !(-1 - NEAR..=NEAR).contains(&i) {
+        return vec![(0.0, middle), (middle, dx)];
+    }
+    // Kinks at x = -dx/2 and dx/2: the middles of the cells -1 and 0. Near by, halves are graded too: they cost little.
+    let mut ends = vec![0.0];
+    let mut width = middle;
+    for _ in 0..PANELS {
+        width *= RATIO;
+        ends.push(middle - width);
+    }
+    ends.push(middle);
+    for _ in 0..PANELS {
+        ends.push(middle + width);
+        width /= RATIO;
+    }
+    ends.push(dx);
+    ends.windows(2).map(|pair| (pair[0], pair[1])).collect()
+}
+
+/// Calls `at(s, weight)` for the nodes of a panel.
+fn gauss(a: f64, b: f64, mut at: impl FnMut(f64, f64)) {
+    let (middle, half) = (0.5 * (a + b), 0.5 * (b - a));
+    for (node, weight) in GAUSS {
+        at(middle - half * node, half * weight);
+        at(middle + half * node, half * weight);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// ∫ e^(-s/l)/l k(x + s) ds by a fine midpoint rule in t = e^(-s/l) away from the kinks.
+    fn slow(k: &dyn Fn(f64) -> f64, x: f64, l: f64) -> f64 {
+        let n = 400_000;
+        (0..n).map(|m| k(x - l * ((m as f64 + 0.5) / n as f64).ln())).sum::<f64>() / n as f64
+    }
+
+    #[test]
+    fn the_recursion_is_the_integral() {
+        for grid in [Grid::new([8, 8], [8.0, 4.0]).unwrap(), Grid::line(8, 8.0).unwrap()] {
+            for l in [0.02, 0.3, 1.0, 7.0, 300.0] {
+                let n = 8;
+                let found = influence(&grid, [n, 3], 0.0, &[Branch { compliance: 1.0, length: l }]);
+                for (i, j) in [(-8_i64, 0_usize), (-3, 2), (0, 0), (-1, 0), (1, 1), (8, 3)] {
+                    let j = if grid.is_line() { 0 } else { j };
+                    let dy = grid.spacing()[1];
+                    let k = |x: f64| match grid.is_line() {
+                        true => strip_at(x, 1.0) - strip_at(8.0, 1.0),
+                        false => love(x, j as f64 * dy, [1.0, dy]),
+                    };
+                    let exact = slow(&k, i as f64, l);
+                    let value = found[j * (2 * n + 1) + (i + n as i64) as usize];
+                    // the midpoint rule's error, of coefficients of order 1
+                    assert!((value - exact).abs() < 3e-5, "{i} {j} l = {l}: {value} {exact}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_short_memory_is_the_elastic_body_and_a_long_one_none() {
+        let grid = Grid::new([4, 4], [4.0, 4.0]).unwrap();
+        let of = |l: f64| influence(&grid, [4, 0], 0.0, &[Branch { compliance: 1.0, length: l }]);
+        let short = of(1e-6);
+        assert!((short[4] - love(0.0, 0.0, [1.0, 1.0])).abs() < 1e-5);
+        assert!(of(1e9).iter().all(|k| k.abs() < 1e-6));
+    }
+}

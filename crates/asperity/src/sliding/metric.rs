@@ -1,0 +1,113 @@
+//! The symmetric operator M = |A|²/Re A of the metric iteration, as the contact solver takes it.
+
+use std::sync::Arc;
+
+use ndarray::Array2;
+
+use super::streaming::Streaming;
+use super::torus::Spectrum;
+use crate::convolution::Convolution;
+use crate::error::{Error, Result};
+use crate::grid::{Boundary, Grid};
+use crate::kernel::Kernel;
+use crate::operator::{ApproximateInverse, Operator};
+
+/// u = M p.
+pub(super) struct Metric {
+    grid: Grid,
+    boundary: Boundary,
+    kernel: Arc<dyn Kernel>,
+    convolution: Convolution,
+    self_influence: f64,
+    determines_mean: bool,
+}
+
+impl Metric {
+    /// From the spectrum of A on a torus of these lengths; `kernel` is near M on an endless plane.
+    pub(super) fn new(
+        grid: Grid,
+        boundary: Boundary,
+        spectrum: &Spectrum,
+        [mx, my]: [usize; 2],
+        kernel: Arc<dyn Kernel>,
+    ) -> Self {
+        let of = |(kx, ky): (usize, usize)| {
+            let a = spectrum.0[ky * mx + kx];
+            if a.re > 0.0 { a.norm_sqr() / a.re } else { 0.0 }
+        };
+        let quarter = Array2::from_shape_fn((mx / 2 + 1, my / 2 + 1), of);
+        let times = |k: usize, m: usize| if k == 0 || 2 * k == m { 1.0 } else { 2.0 };
+        let sum: f64 = quarter.indexed_iter().map(|((kx, ky), s)| times(kx, mx) * times(ky, my) * s).sum();
+        Metric {
+            convolution: Convolution::new(grid.cells(), [mx, my], quarter.view()),
+            self_influence: sum / (mx as f64 * my as f64),
+            determines_mean: quarter[(0, 0)] > 0.0,
+            grid,
+            boundary,
+            kernel,
+        }
+    }
+}
+
+impl Operator for Metric {
+    fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    fn boundary(&self) -> Boundary {
+        self.boundary
+    }
+
+    fn apply_into(&mut self, p: &[f64], u: &mut [f64]) {
+        self.convolution.apply_into(p, u);
+    }
+
+    fn self_influence(&self) -> f64 {
+        self.self_influence
+    }
+
+    fn determines_mean(&self) -> bool {
+        self.determines_mean
+    }
+
+    fn approximate_inverse(&self) -> ApproximateInverse {
+        ApproximateInverse::new(self.grid, self.boundary, self.kernel.clone())
+    }
+
+    fn on_grid(&self, _grid: Grid) -> Option<Box<dyn Operator>> {
+        None
+    }
+}
+
+/// The symbol of M on an endless plane, for the preconditioner.
+#[derive(Debug)]
+pub(super) struct MetricKernel {
+    /// That of the elastic bodies.
+    pub(super) elastic: Arc<dyn Kernel>,
+    pub(super) streaming: Streaming,
+    /// Velocity of the material along x and y \[m/s\].
+    pub(super) velocity: [f64; 2],
+    /// The compliance that counts as 1 \[1/Pa\].
+    pub(super) unit: f64,
+}
+
+impl MetricKernel {
+    fn over(&self, omega: f64) -> f64 {
+        let c = self.streaming.at(omega);
+        c.norm_sqr() / (c.re * self.unit)
+    }
+}
+
+impl Kernel for MetricKernel {
+    fn influence(&self, _cell: [f64; 2], _count: [usize; 2]) -> Result<Array2<f64>> {
+        Err(Error::invalid("kernel of the metric", "influence coefficients", "its symbol"))
+    }
+
+    fn symbol(&self, qx: f64, qy: f64) -> f64 {
+        self.elastic.symbol(qx, qy) * self.over(qx * self.velocity[0] + qy * self.velocity[1])
+    }
+
+    fn uniform(&self) -> Option<f64> {
+        self.elastic.uniform().map(|uniform| uniform * self.over(0.0))
+    }
+}

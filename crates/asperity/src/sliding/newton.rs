@@ -1,0 +1,116 @@
+//! Newton's method on a predicted contact set: A p = w - h on the free cells D, the load kept, by right-preconditioned GMRES
+//! (Saad & Schultz, SIAM J. Sci. Stat. Comput. 7 (1986) 856).
+//!
+//! The unknown is a change d of the pressure on D of zero sum. With P the projection that takes the mean over D away, the
+//! equation is P A d = -P r, and P F⁻¹[1/A^] the preconditioner.
+
+use super::torus::{Spectrum, Torus};
+
+/// The residual falls by this factor, in at most so many vectors.
+const REDUCTION: f64 = 0.02;
+const VECTORS: usize = 40;
+
+/// The operator A on a set of cells, and its approximate inverse.
+pub(super) struct OnSet<'a> {
+    pub(super) torus: &'a mut Torus,
+    pub(super) operator: &'a Spectrum,
+    pub(super) inverse: &'a Spectrum,
+    /// Numbers of the cells of D.
+    pub(super) cells: &'a [usize],
+    /// Two fields of work.
+    pub(super) work: [&'a mut Vec<f64>; 2],
+    pub(super) convolutions: usize,
+}
+
+impl OnSet<'_> {
+    fn apply(&mut self, inverse: bool, x: &[f64]) -> Vec<f64> {
+        let [input, output] = &mut self.work;
+        input.fill(0.0);
+        self.cells.iter().zip(x).for_each(|(cell, x)| input[*cell] = *x);
+        let spectrum = if inverse { self.inverse } else { self.operator };
+        self.torus.apply_into(spectrum, input, output);
+        self.convolutions += 1;
+        let mut y: Vec<f64> = self.cells.iter().map(|cell| output[*cell]).collect();
+        centre(&mut y);
+        y
+    }
+
+    /// d of zero sum with P A d = -P `residual`, roughly.
+    pub(super) fn solve(&mut self, residual: &[f64]) -> Vec<f64> {
+        let mut v: Vec<f64> = residual.iter().map(|r| -r).collect();
+        centre(&mut v);
+        let size = norm(&v);
+        if size == 0.0 {
+            return v;
+        }
+        scale(&mut v, 1.0 / size);
+        let mut basis = vec![v];
+        let mut preconditioned: Vec<Vec<f64>> = vec![];
+        // Columns of the triangular factor, rotations, and the rotated right-hand side.
+        let (mut triangle, mut rotations): (Vec<Vec<f64>>, Vec<[f64; 2]>) = (vec![], vec![]);
+        let mut right = vec![size];
+        for k in 0..VECTORS.min(residual.len()) {
+            let z = self.apply(true, &basis[k]);
+            let mut y = self.apply(false, &z);
+            preconditioned.push(z);
+            let mut column = Vec::with_capacity(k + 2);
+            for v in &basis {
+                let product = dot(v, &y);
+                y.iter_mut().zip(v).for_each(|(y, v)| *y -= product * v);
+                column.push(product);
+            }
+            let length = norm(&y);
+            column.push(length);
+            for (i, [c, s]) in rotations.iter().enumerate() {
+                let [a, b] = [column[i], column[i + 1]];
+                (column[i], column[i + 1]) = (c * a + s * b, c * b - s * a);
+            }
+            let radius = libm::hypot(column[k], length);
+            if !(radius > 0.0 && radius.is_finite()) {
+                preconditioned.pop();
+                break;
+            }
+            let [c, s] = [column[k] / radius, length / radius];
+            column[k] = radius;
+            column.truncate(k + 1);
+            rotations.push([c, s]);
+            triangle.push(column);
+            let last = right[k];
+            right[k] = c * last;
+            right.push(-s * last);
+            if right[k + 1].abs() <= REDUCTION * size || length <= f64::EPSILON * radius {
+                break;
+            }
+            scale(&mut y, 1.0 / length);
+            basis.push(y);
+        }
+        let mut weights = vec![0.0; triangle.len()];
+        for i in (0..triangle.len()).rev() {
+            let known: f64 = (i + 1..triangle.len()).map(|j| triangle[j][i] * weights[j]).sum();
+            weights[i] = (right[i] - known) / triangle[i][i];
+        }
+        let mut d = vec![0.0; residual.len()];
+        for (z, weight) in preconditioned.iter().zip(&weights) {
+            d.iter_mut().zip(z).for_each(|(d, z)| *d += weight * z);
+        }
+        d
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn norm(a: &[f64]) -> f64 {
+    dot(a, a).sqrt()
+}
+
+fn scale(a: &mut [f64], factor: f64) {
+    a.iter_mut().for_each(|a| *a *= factor);
+}
+
+/// Takes the mean away.
+fn centre(a: &mut [f64]) {
+    let mean = a.iter().sum::<f64>() / a.len().max(1) as f64;
+    a.iter_mut().for_each(|a| *a -= mean);
+}

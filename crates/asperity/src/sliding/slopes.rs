@@ -1,0 +1,160 @@
+//! The slopes of the undeformed gap, which friction comes from.
+
+use ndarray::Array2;
+use rustfft::num_complex::Complex64;
+
+use super::torus::Torus;
+use crate::error::{Error, Result};
+use crate::grid::{Boundary, Grid};
+use crate::surface::{Part, Shape};
+
+/// dh/dx and dh/dy of the undeformed gap at the cell centres, and the place that moments are taken about.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Slopes {
+    /// dh/dx, shape (nx, ny).
+    pub x: Array2<f64>,
+    /// dh/dy.
+    pub y: Array2<f64>,
+    /// The middle of the first shape that has one, else the cell of the smallest gap \[m\], from the corner of the domain.
+    pub centre: [f64; 2],
+}
+
+impl Slopes {
+    /// Of the gap that these parts make. Shapes have closed forms; heights are differentiated as sums of waves on a periodic
+    /// domain, else by central differences.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] for a flat punch, whose edge has no slope, and for heights of another shape than the grid's.
+    pub fn of(grid: &Grid, boundary: Boundary, parts: &[Part], gap: &Array2<f64>) -> Result<Slopes> {
+        let [x0, y0] = grid.centre();
+        let mut slopes =
+            Slopes { x: Array2::zeros(grid.shape()), y: Array2::zeros(grid.shape()), centre: [x0, y0] };
+        let mut middle = None;
+        for part in parts {
+            match part {
+                Part::Shape { shape: Shape::FlatPunch(_), .. } => {
+                    return Err(Error::invalid(
+                        "surface of a contact in motion",
+                        "a flat punch",
+                        "a shape with slopes: the force on the edge of a punch cannot be computed from its slope",
+                    ));
+                }
+                Part::Shape { shape, center } => {
+                    let at = [x0 + center[0], y0 + center[1]];
+                    let slope = |(i, j): (usize, usize)| shape.slope(grid.x(i) - at[0], grid.y(j) - at[1]);
+                    slopes.x.indexed_iter_mut().for_each(|(cell, s)| *s += slope(cell)[0]);
+                    slopes.y.indexed_iter_mut().for_each(|(cell, s)| *s += slope(cell)[1]);
+                    if !matches!(shape, Shape::Wave { .. }) {
+                        middle = middle.or(Some(at));
+                    }
+                }
+                Part::SelfAffine(surface) => slopes.subtract(grid, boundary, &surface.heights(grid)?),
+                Part::Synthesis(surface) => slopes.subtract(grid, boundary, &surface.heights(grid)?),
+                Part::Heights { heights, .. } => slopes.subtract(grid, boundary, heights),
+            }
+        }
+        slopes.centre = middle.unwrap_or_else(|| {
+            let lowest = gap
+                .indexed_iter()
+                .fold(((0, 0), f64::INFINITY), |low, (cell, h)| if *h < low.1 { (cell, *h) } else { low });
+            [grid.x(lowest.0.0), grid.y(lowest.0.1)]
+        });
+        Ok(slopes)
+    }
+
+    /// Takes the slopes of heights off.
+    fn subtract(&mut self, grid: &Grid, boundary: Boundary, heights: &Array2<f64>) {
+        let [x, y] = derivatives(grid, boundary, heights);
+        self.x -= &x;
+        self.y -= &y;
+    }
+}
+
+/// dz/dx and dz/dy of a field.
+pub(super) fn derivatives(grid: &Grid, boundary: Boundary, z: &Array2<f64>) -> [Array2<f64>; 2] {
+    match boundary {
+        Boundary::Periodic => spectral(grid, z),
+        Boundary::Free => [0, 1].map(|axis| central(grid, z, axis)),
+    }
+}
+
+fn spectral(grid: &Grid, z: &Array2<f64>) -> [Array2<f64>; 2] {
+    let cells = grid.cells();
+    let mut torus = Torus::new(cells, cells);
+    let input: Vec<f64> = z.iter().copied().collect();
+    [0, 1].map(|axis| {
+        let mut out = Array2::zeros(grid.shape());
+        let fundamental = std::f64::consts::TAU / grid.size()[axis];
+        let spectrum = torus.spectrum(|kx, ky| {
+            let k = [kx, ky][axis];
+            // A wave of two cells has no slope at their centres in the mean of its two phases.
+            let alternates = 2 * k.unsigned_abs() as usize == cells[axis];
+            Complex64::new(0.0, if alternates { 0.0 } else { fundamental * k as f64 })
+        });
+        if let Some(out) = out.as_slice_mut() {
+            torus.apply_into(&spectrum, &input, out);
+        }
+        out
+    })
+}
+
+fn central(grid: &Grid, z: &Array2<f64>, axis: usize) -> Array2<f64> {
+    let (cells, step) = (grid.cells()[axis], grid.spacing()[axis]);
+    Array2::from_shape_fn(grid.shape(), |(i, j)| {
+        let n = [i, j][axis];
+        let (before, after) = (n.saturating_sub(1), (n + 1).min(cells - 1));
+        if after == before {
+            return 0.0;
+        }
+        let at = |n: usize| if axis == 0 { z[(n, j)] } else { z[(i, n)] };
+        (at(after) - at(before)) / (step * (after - before) as f64)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::surface::undeformed_gap;
+
+    #[test]
+    fn the_slopes_of_shapes_are_the_difference_quotients_of_their_gaps() {
+        let grid = Grid::new([40, 30], [4.0, 3.0]).unwrap();
+        for shape in [
+            Shape::Sphere { radius: 3.0 },
+            Shape::Ellipsoid { radius_x: 2.0, radius_y: 5.0 },
+            Shape::Cylinder { radius: 2.0 },
+            Shape::Wedge { slope: 0.3 },
+            Shape::Cone { slope: 0.2 },
+            Shape::Wave { amplitude: 0.1, wavelength: [2.0, 3.0] },
+            Shape::Wave { amplitude: 0.1, wavelength: [2.0, f64::INFINITY] },
+        ] {
+            for (x, y) in [(0.7, 0.2), (-0.4, 1.1), (-1.3, -0.6)] {
+                let h = 1e-5;
+                let [sx, sy] = shape.slope(x, y);
+                let quotient = (shape.gap(x + h, y) - shape.gap(x - h, y)) / (2.0 * h);
+                let across = (shape.gap(x, y + h) - shape.gap(x, y - h)) / (2.0 * h);
+                // h² of numbers of order 1
+                assert!((sx - quotient).abs() < 1e-8 && (sy - across).abs() < 1e-8, "{shape:?}");
+            }
+        }
+        let parts = [Part::Shape { shape: Shape::Sphere { radius: 3.0 }, center: [0.5, -0.25] }];
+        let gap = undeformed_gap(&grid, &parts).unwrap();
+        let slopes = Slopes::of(&grid, Boundary::Free, &parts, &gap).unwrap();
+        assert_eq!(slopes.centre, [2.5, 1.25]);
+        assert!((slopes.x[(0, 0)] - (0.05 - 2.5) / 3.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn waves_on_a_periodic_domain_are_differentiated_exactly() {
+        let grid = Grid::new([16, 9], [1.0, 1.0]).unwrap();
+        let tau = std::f64::consts::TAU;
+        let wave = |x: f64, y: f64| (tau * (2.0 * x - y) + 0.3).sin();
+        let z = Array2::from_shape_fn((16, 9), |(i, j)| wave(grid.x(i), grid.y(j)));
+        let [x, y] = derivatives(&grid, Boundary::Periodic, &z);
+        for ((i, j), slope) in x.indexed_iter() {
+            let cos = (tau * (2.0 * grid.x(i) - grid.y(j)) + 0.3).cos();
+            // roundings of a transform, of numbers of order 10
+            assert!((slope - 2.0 * tau * cos).abs() < 1e-12 && (y[(i, j)] + tau * cos).abs() < 1e-12);
+        }
+    }
+}

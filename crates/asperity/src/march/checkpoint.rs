@@ -2,6 +2,7 @@
 
 use ndarray::{Array2, CowArray, Ix2};
 
+use super::motion::Moving;
 use super::{March, Past, Reached, Simulation, Timeline, record};
 use crate::error::{Error, Result};
 
@@ -47,6 +48,7 @@ impl March {
         scalars.extend([self.reached.approach, self.reached.load]);
         scalars.extend([self.state.approach, self.previous.approach]);
         scalars.extend([self.state.rounding, self.previous.rounding]);
+        scalars.extend(self.moving.as_ref().map(|_| self.friction.force));
         scalars.extend(memory_scalars);
         scalars.extend(self.meter.save());
         fields.extend(memory.into_iter().enumerate().map(|(k, cells)| {
@@ -75,8 +77,20 @@ impl March {
             return Err(foreign("of another programme".into()));
         }
         march.reached = Reached { approach: *approach, load: *load };
+        if let Some(last) = march.timeline.last() {
+            march.move_gap(last.time)?;
+            march.moving.iter_mut().for_each(Moving::settle);
+        }
         (march.state.rounding, march.previous.rounding) = (*rounding, *rounding_before);
         (march.state.approach, march.previous.approach) = (approaches[0], approaches[1]);
+        let scalars = match (&mut march.moving, scalars.split_first()) {
+            (None, _) => scalars,
+            (Some(_), Some((force, scalars))) => {
+                march.friction.force = *force;
+                scalars
+            }
+            (Some(_), None) => return Err(foreign("one without motion".into())),
+        };
         let mut fields = checkpoint.fields.iter();
         let mut next = |name: &str| -> Result<Vec<f64>> {
             match fields.next() {

@@ -54,7 +54,7 @@ impl March {
         };
         let pressure = mix(ends.before.0, ends.now.0, hardness);
         let unit = mix(ends.before.1, ends.now.1, Hardness::Uniform(f64::INFINITY));
-        let rigid = undeformed(&self.simulation, &self.dents);
+        let rigid = undeformed(&self.simulation, &self.dents, &self.moving);
         let mut displacement = vec![0.0; unit.len()];
         let of_end = if memory.is_elastic() { &unit } else { &self.state.unit_displacement };
         memory.displaced(&lengths, moment, (of_end, &self.gap, rigid), &mut displacement);

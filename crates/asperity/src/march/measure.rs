@@ -27,7 +27,7 @@ impl Meter {
         Meter {
             values: vec![f64::NAN; columns.iter().map(Column::width).sum()],
             stiffness: has(&|q| q == Quantity::ContactStiffness).then(|| ContactStiffness::new(operator)),
-            energy: Energy::new(past).filter(|_| has(&Quantity::is_energy)),
+            energy: Energy::new(past).filter(|_| has(&|q| q.is_energy() || q == Quantity::DissipatedPower)),
             columns,
         }
     }
@@ -122,7 +122,13 @@ impl March {
                 },
                 jump,
             };
+            let before = energy.dissipated;
             energy.take(&self.past, self.ends(), cell_area, end);
+            energy.work += self.slid.work;
+            self.friction.power = match self.slid.dt > 0.0 {
+                true => (energy.dissipated - before) / self.slid.dt,
+                false => 0.0,
+            };
         }
         let Some(step) = self.last() else { return Ok(()) };
         step.fill(meter, stiffness);

@@ -18,6 +18,7 @@ mod event;
 mod locate;
 mod measure;
 mod memory;
+mod motion;
 mod record;
 mod simulation;
 mod timeline;
@@ -25,6 +26,7 @@ mod warm_start;
 
 pub use checkpoint::Checkpoint;
 pub use dense::Between;
+pub use motion::{Motion, in_contact_frame};
 pub(crate) use record::{Lone, PERIMETER_SHARE};
 pub use record::{Row, Step};
 pub use simulation::{Plasticity, Scheme, Simulation};
@@ -37,6 +39,7 @@ use crate::error::{Error, Result};
 use crate::grid::Boundary;
 use crate::load::{Control, Event};
 use crate::operator::{Operator, plan};
+use crate::sliding::Friction;
 use crate::time::Instant;
 use asperity_sweep::{minimum, sum};
 use constant::Constant;
@@ -45,6 +48,7 @@ use direct::Direct;
 use event::{Enclosure, MET};
 pub(crate) use measure::Meter;
 use memory::{Drive, Ends, Interval, Memory};
+use motion::{Moving, Slid};
 use record::Remembered;
 use timeline::{Accepted, Timeline};
 
@@ -99,16 +103,25 @@ pub struct March {
     meter: Meter,
     /// Estimated error of the last step.
     time_error: Option<f64>,
+    /// The gap that moves, the forces of the last row, and what its step did along the path.
+    moving: Option<Moving>,
+    friction: Friction,
+    slid: Slid,
     /// What the last row reached, where stages ask for it.
     reached: Reached,
     interrupt: Option<Arc<AtomicBool>>,
 }
 
 /// The undeformed gap h0 with its dents.
-fn undeformed<'a>(simulation: &'a Simulation, dents: &'a Option<Dents>) -> &'a [f64] {
-    match dents {
-        Some(dents) => dents.gap(),
-        None => simulation.gap.as_slice().unwrap_or_default(),
+fn undeformed<'a>(
+    simulation: &'a Simulation,
+    dents: &'a Option<Dents>,
+    moving: &'a Option<Moving>,
+) -> &'a [f64] {
+    match (dents, moving) {
+        (Some(dents), _) => dents.gap(),
+        (None, Some(moving)) => &moving.gap,
+        (None, None) => simulation.gap.as_slice().unwrap_or_default(),
     }
 }
 
@@ -163,6 +176,10 @@ impl March {
     /// hardness times the area that can touch.
     pub fn new(simulation: Simulation) -> Result<Self> {
         simulation.validate()?;
+        let of_motion = simulation.quantities.list.iter().find(|quantity| quantity.is_of_motion());
+        if let (Some(quantity), None) = (of_motion, &simulation.motion) {
+            return Err(Error::invalid("quantity of a contact that does not move", quantity, "another one"));
+        }
         let timeline = Timeline::new(&simulation);
         let options = &simulation.solver;
         let operator = plan(simulation.grid, simulation.boundary, simulation.kernel.clone())?;
@@ -180,6 +197,9 @@ impl March {
             hardness: simulation.hardness_of_cells(),
             time_error: None,
             reached: Reached::default(),
+            moving: simulation.motion.as_ref().map(Moving::new).transpose()?,
+            friction: Friction::default(),
+            slid: Slid::default(),
             lengths: vec![0.0; simulation.parts().count()],
             simulation,
             timeline,
@@ -244,6 +264,7 @@ impl March {
             error = self.local_error(instant);
         }
         self.settle(instant);
+        self.find_friction(instant);
         self.measure(instant.dt == 0.0)?;
         self.dent();
         self.time_error = error;
@@ -281,16 +302,18 @@ impl March {
     fn begin(&mut self, instant: &mut Instant) -> Result<(bool, Start)> {
         self.set(*instant)?;
         let turn = self.locate(instant)?;
-        Ok((turn, self.guess(*instant)))
+        let start = self.guess_moved(*instant).unwrap_or_else(|| self.guess(*instant));
+        Ok((turn, start))
     }
 
     /// Takes in the last row, and sets the contact of the next step: its compliance and its gap.
     fn set(&mut self, instant: Instant) -> Result<()> {
         self.measure_step(instant);
+        self.move_gap(instant.time)?;
         self.meter.clear();
         let drive = self.drive(instant);
         let unit = &self.state.unit_displacement;
-        let rigid = undeformed(&self.simulation, &self.dents);
+        let rigid = undeformed(&self.simulation, &self.dents, &self.moving);
         let lengths = &self.lengths;
         self.compliance = match &mut self.past {
             Past::Memory(m) => m.begin(Interval { lengths, drive }, unit, rigid, &mut self.gap)?,
@@ -304,7 +327,8 @@ impl March {
     /// Sets the contact of the step under way at another length.
     fn reset(&mut self, instant: Instant, drive: Drive) -> Result<()> {
         self.measure_step(instant);
-        let rigid = undeformed(&self.simulation, &self.dents);
+        self.move_gap(instant.time)?;
+        let rigid = undeformed(&self.simulation, &self.dents, &self.moving);
         let lengths = &self.lengths;
         self.compliance = match &mut self.past {
             Past::Memory(m) => m.retry(Interval { lengths, drive }, rigid, &mut self.gap)?,
@@ -321,7 +345,7 @@ impl March {
         *instant = self.timeline.inside(&self.simulation, dt);
         self.reset(*instant, self.drive(*instant))?;
         let turn = self.locate(instant)?;
-        let start = self.guess_again(*instant, tried);
+        let start = self.guess_moved(*instant).unwrap_or_else(|| self.guess_again(*instant, tried));
         self.solve(*instant, start)?;
         Ok(turn)
     }
@@ -408,13 +432,13 @@ impl March {
     /// Estimated error of the stress at the end of the step, where steps are adaptive.
     fn local_error(&self, instant: Instant) -> Option<f64> {
         let (Past::Memory(memory), Some(_)) = (&self.past, self.timeline.pace()) else { return None };
-        let rigid = undeformed(&self.simulation, &self.dents);
+        let rigid = undeformed(&self.simulation, &self.dents, &self.moving);
         Some(if instant.jump { 0.0 } else { memory.error(self.ends(), &self.gap, rigid) })
     }
 
     fn keep_as_third(&mut self) {
         let Past::Memory(memory) = &mut self.past else { return };
-        let rigid = undeformed(&self.simulation, &self.dents);
+        let rigid = undeformed(&self.simulation, &self.dents, &self.moving);
         memory.keep_as_third(&self.state.unit_displacement, &self.gap, rigid);
     }
 
@@ -556,7 +580,7 @@ impl March {
             dents: self.dents.as_ref(),
             meter: Some(&self.meter),
             datum: self.datum(),
-            friction: None,
+            friction: self.moving.as_ref().map(|_| self.friction),
         })
     }
 

@@ -9,6 +9,7 @@ use crate::error::{Error, Result};
 use crate::grid::{Boundary, Grid};
 use crate::kernel::{HalfSpace, Kernel};
 use crate::load::{Control, Course, Event, History, Loading, Programme, of_stage};
+use crate::march::Motion;
 use crate::material::{Creep, ThermalCreep};
 use crate::operator;
 use crate::quantities::{Column, ContactStiffness, Quantities, Quantity};
@@ -82,6 +83,8 @@ pub struct Simulation {
     pub solver: SolverOptions,
     /// Quantities that each row has besides those of [`Row`](super::Row).
     pub quantities: Quantities,
+    /// How the contact moves over the bodies; `None` where it stays.
+    pub motion: Option<Motion>,
 }
 
 /// Layers on a rigid base under a periodic domain may be so many times as thick as the domain is wide: the tolerance is relative
@@ -107,15 +110,24 @@ impl Simulation {
             scheme: Scheme::default(),
             solver: SolverOptions::default(),
             quantities: Quantities::default(),
+            motion: None,
         }
     }
 
     /// The rows as far as they are known beforehand: t = 0+, the steps, the breaks and jumps of the histories, those
     /// of the temperature, the ends of the stages.
     pub fn plan(&self) -> Plan {
-        let mut include = self.include.clone();
+        let mut include = self.stops();
         include.extend(self.thermal.iter().flat_map(|body| body.clock.breaks(self.times.end())));
         self.loading.plan(&self.times, &include)
+    }
+
+    /// The instants besides those of the grid at which steps end.
+    pub(super) fn stops(&self) -> Vec<f64> {
+        let mut stops = self.include.clone();
+        // A travel that is too long is refused by `validate`.
+        stops.extend(self.motion.iter().flat_map(|motion| motion.stops(self).unwrap_or_default()));
+        stops
     }
 
     /// Whether the steps of a stage are adaptive.
@@ -272,6 +284,9 @@ impl Simulation {
             ));
         }
         self.solver.validate()?;
+        if let Some(motion) = &self.motion {
+            motion.validate(self)?;
+        }
         self.validate_steps()?;
         self.validate_load()?;
         self.validate_jumps()
@@ -301,7 +316,10 @@ impl Simulation {
                 return Err(if self.loading.stages.len() > 1 { of_stage(error, n) } else { error });
             }
         }
-        let depends = |q: &&Quantity| q.is_energy() || **q == Quantity::ContactStiffness;
+        let moves = self.motion.is_some();
+        let depends = |q: &&Quantity| {
+            q.is_energy() || **q == Quantity::ContactStiffness || **q == Quantity::DissipatedPower && moves
+        };
         match self.quantities.list.iter().find(depends) {
             Some(quantity) => Err(Error::invalid(
                 "quantity of a free line contact",

@@ -11,6 +11,8 @@ const STEPS_PER_PERIOD: f64 = 40.0;
 
 pub(super) struct Timeline {
     kinks: Vec<f64>,
+    /// Instants besides those of the grid at which steps end.
+    include: Vec<f64>,
     /// The stage under way, when it began, and the value that its quantity had then.
     stage: usize,
     start: f64,
@@ -79,7 +81,10 @@ impl Timeline {
     pub(super) fn new(simulation: &Simulation) -> Self {
         let end = simulation.times.end();
         let mut timeline = Timeline {
-            kinks: simulation.thermal.iter().flat_map(|body| body.clock.breaks(end)).collect(),
+            kinks: (simulation.thermal.iter().flat_map(|body| body.clock.breaks(end)))
+                .chain(simulation.motion.iter().flat_map(|motion| motion.path.breaks(end)))
+                .collect(),
+            include: simulation.stops(),
             stage: 0,
             start: 0.0,
             reached: 0.0,
@@ -312,7 +317,7 @@ impl Timeline {
             start,
             end,
             run_end,
-            include: &simulation.include,
+            include: &self.include,
             kinks: &self.kinks,
             turns: next.until.is_some(),
         };

@@ -12,7 +12,9 @@
 mod friction;
 mod influence;
 mod metric;
+mod moving;
 mod newton;
+mod path;
 mod slopes;
 mod steady;
 mod streaming;
@@ -20,6 +22,8 @@ mod torus;
 
 pub use friction::{Direction, Friction};
 pub(crate) use friction::{Forces, gap_force};
+pub use moving::MovingGap;
+pub use path::Path;
 pub use slopes::Slopes;
 pub use steady::{Steady, SteadyMotion};
 pub use streaming::Streaming;

@@ -119,6 +119,21 @@ impl Torus {
         sums.iter().sum::<f64>() / (mx as f64 * my as f64)
     }
 
+    /// u = F⁻¹[ S T ] of a transform T and a spectrum S.
+    pub(super) fn back_from(&mut self, transform: &Spectrum, spectrum: &Spectrum, u: &mut [f64]) {
+        let (mx, nx) = (self.lengths[0], self.cells[0]);
+        let scale = 1.0 / (mx as f64 * self.lengths[1] as f64);
+        let fft = &self.columns_back;
+        self.columns.par_chunks_mut(nx).enumerate().for_each(|(ky, column)| {
+            let own = ky * mx..(ky + 1) * mx;
+            let pairs = transform.0[own.clone()].iter().zip(&spectrum.0[own]);
+            let mut wave: Vec<Complex64> = pairs.map(|(a, b)| a * b * scale).collect();
+            fft.process(&mut wave);
+            column.copy_from_slice(&wave[..nx]);
+        });
+        self.back(u);
+    }
+
     fn forward(&mut self, p: &[f64]) {
         let (ny, half, fft) = (self.cells[1], self.lengths[1] / 2 + 1, &self.rows_forward);
         self.rows.par_chunks_mut(half).zip(p.par_chunks(ny)).for_each_init(

@@ -1,0 +1,223 @@
+//! How far the contact has moved: a path, or a velocity, over time.
+
+use crate::error::{Error, Result};
+use crate::load::History;
+
+/// Where the contact is over time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Path {
+    /// Velocity \[m/s\], or position \[m\], over the time since `start`.
+    history: History,
+    of_velocity: bool,
+    start: f64,
+}
+
+/// Cells that a run may travel.
+const MOST: f64 = 1e7;
+
+impl Path {
+    /// A velocity \[m/s\] over the time since `start` \[s\]; before it nothing moves.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where the history or the start is.
+    pub fn of_velocity(history: History, start: f64) -> Result<Self> {
+        Path::new(history, true, start)
+    }
+
+    /// A position \[m\] over the time since `start` \[s\]; it begins with 0 and has no jumps.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where the history or the start is, or the position jumps.
+    pub fn of_position(history: History, start: f64) -> Result<Self> {
+        let mut times = history.breaks(f64::INFINITY);
+        times.push(0.0);
+        let jump = times.into_iter().find(|t| (history.after(*t) - history.before(*t)).abs() > 0.0);
+        if let Some(t) = jump {
+            return Err(Error::invalid(
+                format!("jump of the path at {t} s"),
+                format!("{} m to {} m", history.before(t), history.after(t)),
+                "none: a body moves with a finite velocity, from 0 m",
+            ));
+        }
+        Path::new(history, false, start)
+    }
+
+    fn new(history: History, of_velocity: bool, start: f64) -> Result<Self> {
+        history.validate()?;
+        if !(start.is_finite() && start >= 0.0) {
+            return Err(Error::invalid(
+                "start of the motion",
+                format!("{start} s"),
+                "finite and not negative",
+            ));
+        }
+        Ok(Path { history, of_velocity, start })
+    }
+
+    /// Distance moved at time t \[m\]; less where the motion turns back.
+    pub fn position(&self, t: f64) -> f64 {
+        let inside = t - self.start;
+        if inside <= 0.0 {
+            return 0.0;
+        }
+        if !self.of_velocity {
+            return self.history.before(inside);
+        }
+        if let History::Sine { mean, amplitude, frequency } = self.history {
+            let omega = std::f64::consts::TAU * frequency;
+            // Sines begin at their mean.
+            return mean * inside + amplitude * (1.0 - libm::cos(omega * inside)) / omega;
+        }
+        let mut sum = 0.0;
+        let mut last = 0.0;
+        for end in self.history.breaks(inside).into_iter().filter(|t| *t < inside).chain([inside]) {
+            sum += 0.5 * (self.history.after(last) + self.history.before(end)) * (end - last);
+            last = end;
+        }
+        sum
+    }
+
+    /// Velocity at time t \[m/s\], from before it.
+    pub fn velocity(&self, t: f64) -> f64 {
+        let inside = t - self.start;
+        if inside <= 0.0 {
+            return 0.0;
+        }
+        if self.of_velocity {
+            return self.history.before(inside);
+        }
+        let last = self.history.breaks(inside).into_iter().filter(|t| *t < inside).fold(0.0, f64::max);
+        match self.history {
+            History::Sine { amplitude, frequency, .. } => {
+                let omega = std::f64::consts::TAU * frequency;
+                amplitude * omega * libm::cos(omega * inside)
+            }
+            _ => {
+                let dt = 0.5 * (inside - last);
+                (self.history.before(inside) - self.history.after(inside - dt)) / dt
+            }
+        }
+    }
+
+    /// Where the motion starts, bends or jumps, up to `end` \[s\].
+    pub fn breaks(&self, end: f64) -> Vec<f64> {
+        let inside = self.history.breaks(end - self.start).into_iter().map(|t| self.start + t);
+        std::iter::once(self.start).filter(|t| *t > 0.0).chain(inside).filter(|t| *t < end).collect()
+    }
+
+    /// The instants up to `end` \[s\] at which the position is a multiple of `step` \[m\].
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where they are more than ten millions.
+    pub fn crossings(&self, step: f64, end: f64) -> Result<Vec<f64>> {
+        let mut ends = vec![self.start.min(end)];
+        ends.extend(self.breaks(end).into_iter().filter(|t| *t > self.start));
+        ends.push(end);
+        let mut turns = vec![ends[0]];
+        for pair in ends.windows(2) {
+            turns.extend(self.turns(pair[0], pair[1]));
+            turns.push(pair[1]);
+        }
+        let travel: f64 = turns.windows(2).map(|t| (self.position(t[1]) - self.position(t[0])).abs()).sum();
+        if travel / step > MOST {
+            return Err(Error::invalid(
+                "travel in cells",
+                format!("{:e}", travel / step),
+                format!("at most {MOST:e}; a steady state ([motion.steady]) needs no travel"),
+            ));
+        }
+        let mut found = vec![];
+        for pair in turns.windows(2) {
+            let [a, b] = [pair[0], pair[1]].map(|t| self.position(t) / step);
+            let (low, high) = (a.min(b), a.max(b));
+            let mut marks: Vec<f64> = ((low - 1e-9).ceil() as i64..=(high + 1e-9).floor() as i64)
+                .map(|k| k as f64)
+                .filter(|k| *k > low + 1e-9 && *k < high - 1e-9)
+                .map(|k| self.reaches(k * step, pair[0], pair[1]))
+                .collect();
+            marks.sort_by(f64::total_cmp);
+            found.extend(marks);
+            found.push(pair[1]);
+        }
+        found.retain(|t| *t > 0.0 && *t <= end);
+        found.dedup();
+        Ok(found)
+    }
+
+    /// Where the velocity changes its sign within a smooth piece.
+    fn turns(&self, from: f64, to: f64) -> Vec<f64> {
+        let n = match self.history {
+            History::Sine { frequency, .. } => {
+                (8.0 * frequency * (to - from)).ceil().clamp(1.0, 1e6) as usize
+            }
+            _ => 1,
+        };
+        let at = |k: usize| from + (to - from) * k as f64 / n as f64;
+        let just = |t: f64, side: f64| self.velocity(t + side * 1e-9 * (to - from) / n as f64);
+        (0..n)
+            .filter_map(|k| {
+                let (mut a, mut b) = (at(k), at(k + 1));
+                let sign = just(a, 1.0);
+                if sign * just(b, -1.0) >= 0.0 {
+                    return None;
+                }
+                for _ in 0..80 {
+                    let middle = 0.5 * (a + b);
+                    if self.velocity(middle) * sign > 0.0 { a = middle } else { b = middle }
+                }
+                Some(0.5 * (a + b))
+            })
+            .collect()
+    }
+
+    /// The instant in a piece without turns at which the position is `x`.
+    fn reaches(&self, x: f64, mut from: f64, mut to: f64) -> f64 {
+        let rising = self.position(to) > self.position(from);
+        for _ in 0..80 {
+            let middle = 0.5 * (from + to);
+            if (self.position(middle) < x) == rising { from = middle } else { to = middle }
+        }
+        0.5 * (from + to)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_position_is_the_integral_of_the_velocity() {
+        let table = History::Table { points: vec![(0.0, 0.0), (1.0, 2.0), (3.0, 2.0), (5.0, -2.0)] };
+        for history in [
+            History::Step { value: 3.0 },
+            History::Ramp { value: 2.0, duration: 1.5 },
+            History::Triangle { peak: 1.0, rise: 1.0, fall: 2.0 },
+            History::Sine { mean: 0.5, amplitude: 1.0, frequency: 0.3 },
+            table,
+        ] {
+            let path = Path::of_velocity(history.clone(), 0.7).unwrap();
+            for t in [0.2, 0.9, 2.0, 4.4, 6.0] {
+                let n = 200_000;
+                let dt = t / f64::from(n);
+                let sum: f64 = (0..n).map(|k| path.velocity((f64::from(k) + 0.5) * dt) * dt).sum();
+                // the midpoint rule across a jump
+                assert!((path.position(t) - sum).abs() < 1e-4, "{history:?} {t}: {} {sum}", path.position(t));
+            }
+        }
+    }
+
+    #[test]
+    fn crossings_are_whole_steps_there_and_back() {
+        let points = vec![(0.0, 1.0), (2.0, 1.0), (4.0, -1.0), (6.0, -1.0)];
+        let path = Path::of_velocity(History::Table { points }, 1.0).unwrap();
+        let times = path.crossings(0.25, 6.0).unwrap();
+        assert!(times.windows(2).all(|t| t[0] < t[1]));
+        for pair in times.windows(2) {
+            let moved = path.position(pair[1]) - path.position(pair[0]);
+            assert!(moved.abs() <= 0.25 + 1e-9, "{pair:?}: {moved}");
+        }
+        let whole = times.iter().filter(|t| (path.position(**t) / 0.25).fract().abs() < 1e-6).count();
+        assert!(whole > 12, "{times:?}");
+        assert!(path.crossings(1e-9, 6.0).is_err());
+    }
+}

@@ -14,7 +14,7 @@
 //! contact where no waves shorter than 2 pi/q are seen. With P = S = 1, at high pressure, mu s0 is exact
 //! ([`full_contact_friction`](crate::reference::full_contact_friction)). In partial contact it is an estimate: the theory has no
 //! shape of contact spots, and it loses its meaning once the motion itself shrinks the contact (S. Sukhomlinov and M. H.
-//! Mueser, Tribol. Lett. 69 (2021) 13).
+//! Mueser, Appl. Surf. Sci. Adv. 6 (2021) 100182).
 
 use rayon::prelude::*;
 
@@ -201,7 +201,7 @@ impl Persson {
 
     /// Mean of S P over a shell in which G rises evenly between the squares of two roots.
     fn mean_share(&self, from: f64, to: f64) -> f64 {
-        /// Below this width the middle stands for the shell, to 1e-7.
+        /// Below this width the middle stands for the shell, to some 1e-7.
         const NARROW: f64 = 1e-3;
         if !to.is_finite() {
             return 0.0;

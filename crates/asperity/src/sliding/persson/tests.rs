@@ -139,8 +139,9 @@ fn the_mean_over_a_shell_is_the_integral_over_g() {
     };
     for (from, to) in [(1e-3, 0.2), (0.2, 0.7), (1e-9, 3.0), (1.0, 1e4), (0.4, 0.4009)] {
         let exact = (integral(to) - integral(from)) / (to * to - from * from);
-        // 16 points on pieces of half a unit or an octave; the middle of a narrow shell to 1e-7; cancellation of the difference.
-        let room = if to - from < 1e-3 { 2e-7 } else { 1e-9 };
+        // 16 points on pieces of half a unit or an octave, and cancellation in the difference; the middle of a narrow shell is
+        // off by width^2/24 of the curvature, which is below ten times the value.
+        let room = if to - from < 1e-3 { 4e-7 } else { 1e-9 };
         assert!(
             (plain.mean_share(from, to) / exact - 1.0).abs() < room,
             "{from} {to}: {}",
@@ -185,19 +186,20 @@ fn the_contact_shrinks_from_the_relaxed_to_the_glassy_one() {
     let isotropic =
         |creep: &Creep| Persson::of_spectrum(&q, &power, creep, 1e-3, Correction::YangPersson).unwrap();
     let surface = rough([40, 40], 7);
-    let of_waves = |creep: &Creep| theory(&surface, creep, 1e-3);
+    // Oblique, so that all waves have slopes along the motion.
+    let of_waves =
+        |creep: &Creep| Persson::of_surface(&surface, 0.3, creep, 1e-3, Correction::YangPersson).unwrap();
     let of: [&dyn Fn(&Creep) -> Persson; 2] = [&isotropic, &of_waves];
-    for (theory, all_directions_move) in of.into_iter().zip([true, false]) {
+    for theory in of {
         let moving = theory(&rubber());
         let at_rest = |compliance: f64| theory(&Creep::elastic(compliance)).at(0.0).unwrap().contact_fraction;
         let (relaxed, glassy) = (at_rest(rubber().long_time()), at_rest(1.0));
         let contact: Vec<f64> =
             (-14..=14).map(|n| moving.at(10f64.powi(n)).unwrap().contact_fraction).collect();
         assert!(contact.windows(2).all(|w| w[1] <= w[0]), "{contact:?}");
-        // Six decades beyond the slowest and the fastest frequency, and the few waves that lie along the motion.
+        // Six decades beyond the slowest and the fastest frequency.
         assert!((contact[0] / relaxed - 1.0).abs() < 1e-6, "{contact:?} {relaxed}");
-        let room = if all_directions_move { 1e-4 } else { 0.05 };
-        assert!((contact[28] / glassy - 1.0).abs() < room, "{contact:?} {glassy}");
+        assert!((contact[28] / glassy - 1.0).abs() < 1e-4, "{contact:?} {glassy}");
         assert!((moving.at(0.0).unwrap().contact_fraction / relaxed - 1.0).abs() < 1e-12); // rounding
     }
 }

@@ -94,7 +94,7 @@ def test_the_temperature_moves_the_curve_along_the_velocity():
         (dict(velocities=["fast"]), "velocities"),
         (dict(correction="half"), "'yang-persson' or 'none'"),
         (dict(direction="z"), "'x', 'y'"),
-        (dict(direction=float("inf")), "angle"),
+        (dict(direction=float("inf")), "direction"),
         (dict(temperature=300.0), "temperature is given"),
     ],
 )

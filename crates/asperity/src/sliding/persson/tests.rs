@@ -187,8 +187,9 @@ fn the_contact_shrinks_from_the_relaxed_to_the_glassy_one() {
         |creep: &Creep| Persson::of_spectrum(&q, &power, creep, 1e-3, Correction::YangPersson).unwrap();
     let surface = rough([40, 40], 7);
     // Oblique, so that all waves have slopes along the motion.
-    let of_waves =
-        |creep: &Creep| Persson::of_surface(&surface, 0.3, creep, 1e-3, Correction::YangPersson).unwrap();
+    let of_waves = |creep: &Creep| {
+        Persson::of_surface(&surface, Direction::Angle(0.3), creep, 1e-3, Correction::YangPersson).unwrap()
+    };
     let of: [&dyn Fn(&Creep) -> Persson; 2] = [&isotropic, &of_waves];
     for theory in of {
         let moving = theory(&rubber());

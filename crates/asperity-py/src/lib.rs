@@ -10,6 +10,7 @@ mod leakage;
 mod march;
 mod material;
 mod session;
+mod sliding;
 mod store;
 mod stress;
 mod surface;
@@ -39,6 +40,8 @@ mod _core {
     use super::material::{Body, layer_compliance, shift_factor};
     #[pymodule_export]
     use super::session::{case_text, check, report, run};
+    #[pymodule_export]
+    use super::sliding::Persson;
     #[pymodule_export]
     use super::store::{Store, save};
     #[pymodule_export]

@@ -50,6 +50,7 @@ from ._materials import (
     Springpot,
     Zener,
 )
+from ._persson import Magnification, PerssonFriction, persson_friction
 from ._result import Cycle, Result, open
 from ._shifts import Shift, arrhenius, shift_table, wlf
 from ._solve import March, Step, check, march, run, solve
@@ -77,9 +78,11 @@ __all__ = [
     "KelvinVoigt",
     "Leakage",
     "Layer",
+    "Magnification",
     "March",
     "Material",
     "Maxwell",
+    "PerssonFriction",
     "Prony",
     "Result",
     "ResultWarning",
@@ -109,6 +112,7 @@ __all__ = [
     "log",
     "march",
     "open",
+    "persson_friction",
     "ramp",
     "ramp_to",
     "run",

@@ -31,6 +31,7 @@ __all__ = [
     "check",
     "report",
     "run",
+    "Persson",
     "Store",
     "save",
     "stress_check",
@@ -131,6 +132,22 @@ class March:
     def times(self) -> list[float]: ...
     def row(self) -> dict[str, Any]: ...
     def field(self, name: str) -> Any: ...
+
+@final
+class Persson:
+    def __new__(
+        cls,
+        heights: _Floats,
+        size: list[float],
+        body: Body,
+        temperature: float | None,
+        pressure: float,
+        direction: str,
+        angle: float,
+        correction: str,
+    ) -> Persson: ...
+    def sweep(self, velocities: _Floats) -> tuple[_Floats, _Floats]: ...
+    def magnification(self, velocity: float) -> tuple[_Floats, _Floats, _Floats]: ...
 
 @final
 class Store:

@@ -4,7 +4,7 @@
 //! dashpot in series (the generalised Kelvin model). See J. D. Ferry, Viscoelastic Properties of
 //! Polymers (3rd ed., 1980), chapter 3.
 
-use crate::error::{Error, Result, non_negative};
+use crate::error::{Error, Result, non_negative, positive};
 use crate::material::series;
 
 /// C(t) = C0 + sum_j C_j (1 - exp(-t/lambda_j)) + t/eta, per pascal; 0 for t < 0.
@@ -198,6 +198,17 @@ impl Creep {
             return Err(Error::invalid("sum of the compliances", all, "finite"));
         }
         Ok(())
+    }
+
+    /// Also refuses a fluid, which sinks in without end, and a rigid body.
+    pub(crate) fn validate_solid(&self) -> Result<()> {
+        self.validate()?;
+        if self.fluidity > 0.0 {
+            let expected =
+                "0 1/(Pa s): a fluid has no steady state of motion; give the material an equilibrium modulus";
+            return Err(Error::invalid("fluidity", self.fluidity, expected));
+        }
+        positive("compliance at long times", self.long_time(), "1/Pa").map(drop)
     }
 }
 

@@ -176,47 +176,14 @@ fn axis_ratio(radii: f64) -> f64 {
     root(radii.ln(), 0.0, mismatch).exp().min(1.0)
 }
 
-/// A cylinder of radius R on an elastic half-space, per length.
-///
-/// ```text
-/// a^2 = 4 R W' / (pi E*),   p = p0 sqrt(1 - x^2/a^2),   p0 = 2 W' / (pi a)
-/// ```
-///
-/// (Johnson 1985, eqs 4.43-4.45.) In two dimensions the approach is not determined.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HertzLine {
-    /// Half the width of the contact a \[m\].
-    pub half_width: f64,
-    /// Pressure in the middle p0 \[Pa\].
-    pub peak_pressure: f64,
-}
-
-impl HertzLine {
-    /// From the load per length W' >= 0 \[N/m\].
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] where the radius or the modulus is not positive or the load is negative.
-    pub fn under_load(radius: f64, contact_modulus: f64, load_per_length: f64) -> Result<Self> {
-        check(radius, contact_modulus)?;
-        non_negative("load per length", load_per_length, "N/m")?;
-        let half_width = (4.0 * radius * load_per_length / (PI * contact_modulus)).sqrt();
-        Ok(HertzLine { half_width, peak_pressure: contact_modulus * half_width / (2.0 * radius) })
-    }
-
-    /// Pressure at the distance x from the middle \[Pa\].
-    pub fn pressure(&self, x: f64) -> f64 {
-        let a = self.half_width;
-        if x.abs() < a { self.peak_pressure * ((a - x) * (a + x)).sqrt() / a } else { 0.0 }
-    }
-}
-
-fn check(radius: f64, contact_modulus: f64) -> Result<()> {
+pub(super) fn check(radius: f64, contact_modulus: f64) -> Result<()> {
     positive("radius", radius, "m")?;
     positive("contact modulus", contact_modulus, "Pa").map(drop)
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::HertzLine;
     use super::super::quadrature::integrate;
     use super::*;
 
@@ -285,13 +252,10 @@ mod tests {
     }
 
     #[test]
-    fn pressures_carry_the_load() {
+    fn the_pressure_carries_the_load() {
         let sphere = HertzSphere::under_load(1.0, 3.0, 2.0).unwrap();
         let a = sphere.contact_radius;
         let load = integrate(0.0, a, |r| 2.0 * PI * r * sphere.pressure(r));
-        assert!((load / 2.0 - 1.0).abs() < 1e-14);
-        let line = HertzLine::under_load(1.0, 3.0, 2.0).unwrap();
-        let load = 2.0 * integrate(0.0, line.half_width, |x| line.pressure(x));
         assert!((load / 2.0 - 1.0).abs() < 1e-14);
     }
 
@@ -303,7 +267,6 @@ mod tests {
             (HertzSphere::under_load(1.0, 1.0, -1.0).map(drop), "load"),
             (HertzEllipse::under_load([1.0, f64::INFINITY], 1.0, 1.0).map(drop), "radius"),
             (HertzEllipse::under_load([1.0, 1e13], 1.0, 1.0).map(drop), "line contact"),
-            (HertzLine::under_load(1.0, 1.0, f64::INFINITY).map(drop), "load per length"),
         ] {
             let message = result.unwrap_err().to_string();
             assert!(message.contains(word), "{message:?} lacks {word:?}");

@@ -1,30 +1,43 @@
 //! Closed forms and one-dimensional solutions to check against.
 //!
-//! Independent of the solver: nothing here uses a grid or a convolution.
+//! Independent of the solver: nothing here uses a convolution, and only [`full_contact_friction`] a grid.
 //!
 //! | case | type | source |
 //! |---|---|---|
 //! | elastic sphere, ellipsoid, cylinder | [`HertzSphere`], [`HertzEllipse`], [`HertzLine`] | Hertz 1881 |
 //! | elastic sphere with hardness | [`CappedHertz`] | ring displacements of Love 1929 |
 //! | elastic cone, flat punch; punch under any history | [`SneddonCone`], [`CircularPunch`] | Sneddon 1965 |
+//! | periodic flat strips on an elastic body | [`StripPunch`] | Johnson 1985 |
 //! | elastic waves; wave on a viscoelastic body | [`Westergaard`], [`JohnsonWave`], [`WestergaardStep`] | Westergaard 1939, Johnson et al. 1985 |
 //! | sphere on a viscoelastic body, contact growing then shrinking | [`Ting`] | Ting 1966 |
 //! | sphere, cone on a viscoelastic body, any history | [`Mdr`] | Popov & Hess 2015 |
+//! | cylinder that rolls or slides on a viscoelastic body | [`HunterCylinder`] | Hunter 1961 |
+//! | sphere that slides slowly or fast on a viscoelastic body | [`SlidingSphere`] | Hertz 1881, first order in the speed |
+//! | waves that slide on a viscoelastic body in full contact | [`FullContactWave`], [`full_contact_friction`] | Persson 2001 |
 
+mod bessel;
 mod capped_hertz;
 mod elliptic;
 mod hereditary;
 mod hertz;
+mod hunter;
+mod line_hertz;
 mod mdr;
 mod quadrature;
+mod sliding;
 mod sneddon;
+mod strip_punch;
 mod ting;
 mod westergaard;
 
 pub use capped_hertz::CappedHertz;
 pub use elliptic::{Elliptic, elliptic};
-pub use hertz::{HertzEllipse, HertzLine, HertzSphere};
+pub use hertz::{HertzEllipse, HertzSphere};
+pub use hunter::HunterCylinder;
+pub use line_hertz::HertzLine;
 pub use mdr::{Mdr, MdrOptions, MdrProfile, MdrState, MdrTarget};
+pub use sliding::{FullContactWave, SlidingSphere, full_contact_friction};
 pub use sneddon::{CircularPunch, SneddonCone};
+pub use strip_punch::StripPunch;
 pub use ting::{Ting, TingState};
 pub use westergaard::{JohnsonWave, Westergaard, WestergaardStep};

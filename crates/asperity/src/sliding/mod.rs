@@ -5,7 +5,8 @@
 //! front of each bump, and friction is its component along the slopes, F = Σ p dh/dx.
 //!
 //! - [`Steady`]: one steady state for each velocity;
-//! - motion in time is part of the [march](crate::march): the gap moves over a body that keeps its memory.
+//! - motion in time is part of the [march](crate::march): the gap moves over a body that keeps its memory;
+//! - [`Persson`]: the estimate of Persson's theory from the power spectrum, for comparison.
 //!
 //! docs/sliding.md has the theory, what is computed and how it was checked.
 
@@ -15,6 +16,8 @@ mod metric;
 mod moving;
 mod newton;
 mod path;
+mod persson;
+mod shells;
 mod slopes;
 mod steady;
 mod streaming;
@@ -24,6 +27,7 @@ pub use friction::{Direction, Friction};
 pub(crate) use friction::{Forces, gap_force};
 pub use moving::MovingGap;
 pub use path::Path;
+pub use persson::{Correction, Magnification, Persson, PerssonFriction};
 pub use slopes::Slopes;
 pub use steady::{Steady, SteadyMotion};
 pub use streaming::Streaming;

@@ -257,7 +257,8 @@ mod tests {
             let (mut power, mut count) = (0.0, 0);
             for seed in 0..200 {
                 let s = SelfAffine { seed, ..surface() };
-                let (columns, _) = waves.amplitudes(seed, |qx, qy| s.spectrum(qx.hypot(qy)).sqrt());
+                let exponent = -2.0 * (1.0 + s.hurst);
+                let (columns, _) = waves.amplitudes(seed, |qx, qy| s.spectrum(qx.hypot(qy), exponent).sqrt());
                 for (ky, column) in columns.iter().enumerate() {
                     for (i, a) in column.iter().enumerate() {
                         let kx = if i < 32 { i as i64 } else { i as i64 - 64 };

@@ -27,6 +27,6 @@ pub use bearing::{BearingCurve, height_distribution};
 pub use correlation::{Autocorrelation, Extent};
 pub use fit::SelfAffineFit;
 pub use heights::{HeightStatistics, mean, rms_height};
-pub use power::{PowerSpectrum, RadialSpectrum, Rings, SpectralLay, SpectralMoments, rms_gradient};
+pub use power::{PowerSpectrum, RadialSpectrum, Rings, SpectralLay, SpectralMoments, Wave, rms_gradient};
 pub use slopes::SlopeStatistics;
 pub use summary::{Summary, Waves};

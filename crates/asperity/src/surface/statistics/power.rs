@@ -91,6 +91,31 @@ impl PowerSpectrum {
         Ok(PowerSpectrum { grid: *grid, power })
     }
 
+    /// All waves but the mean.
+    ///
+    /// ```
+    /// use asperity::{Grid, surface::{Surface, statistics::PowerSpectrum}};
+    /// let grid = Grid::new([16, 16], [1.0, 1.0])?;
+    /// let wave = |(i, _): (usize, usize)| (std::f64::consts::TAU * 3.0 * grid.x(i)).cos();
+    /// let surface = Surface::new(grid, ndarray::Array2::from_shape_fn((16, 16), wave))?;
+    /// let spectrum = PowerSpectrum::of(&surface)?;
+    /// // The powers add up to the mean square height.
+    /// assert!((spectrum.waves().map(|wave| wave.power).sum::<f64>() - 0.5).abs() < 1e-14);
+    /// # Ok::<(), asperity::Error>(())
+    /// ```
+    pub fn waves(&self) -> impl Iterator<Item = Wave> {
+        let [nx, ny] = self.grid.cells();
+        self.power.indexed_iter().skip(1).map(move |((i, j), power)| {
+            let [qx, qy] = wave_vector(&self.grid, (i, j));
+            let slopes = [if 2 * i == nx { 0.0 } else { qx }, if 2 * j == ny { 0.0 } else { qy }];
+            Wave {
+                wave_number: libm::hypot(qx, qy),
+                wave_vector: slopes,
+                power: count(&self.grid, j) * power,
+            }
+        })
+    }
+
     /// Radially averaged spectrum.
     ///
     /// # Errors
@@ -230,6 +255,18 @@ impl PowerSpectrum {
             .collect();
         rows.iter().fold([0.0; 3], |sum, row| std::array::from_fn(|n| sum[n] + row[n]))
     }
+}
+
+/// A wave A exp(i q.x) of a surface, alone or together with its conjugate: the powers of all waves add up to the mean
+/// square height.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wave {
+    /// Length of the wave vector |q| \[1/m\].
+    pub wave_number: f64,
+    /// Wave vector q \[1/m\]; 0 along an axis on whose Nyquist frequency the wave lies, as it has no slope there.
+    pub wave_vector: [f64; 2],
+    /// Mean square height: |A|^2 of a wave, twice that of a wave and its conjugate \[m^2\].
+    pub power: f64,
 }
 
 /// The direction in which a surface is smoothest.

@@ -1,0 +1,88 @@
+//! Friction of moving contacts.
+
+use asperity::Grid;
+use asperity::sliding::{self, Correction, Direction};
+use asperity::surface::Surface;
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+
+use crate::error::{CaseError, raised};
+use crate::march::choose_among;
+use crate::material::{Body, pair};
+use crate::wait::detached;
+
+type Curve<'py> = Bound<'py, PyArray1<f64>>;
+
+/// Persson's theory for one surface, material and nominal pressure.
+#[pyclass(frozen)]
+pub struct Persson {
+    inner: sliding::Persson,
+}
+
+#[pymethods]
+impl Persson {
+    /// `direction` is "x", "y" or "angle", with its `angle` in rad; `temperature` in kelvin.
+    #[new]
+    #[pyo3(signature = (heights, size, body, temperature, pressure, direction, angle, correction))]
+    #[allow(clippy::too_many_arguments)]
+    fn new(
+        py: Python<'_>,
+        heights: PyReadonlyArray2<'_, f64>,
+        size: [f64; 2],
+        body: PyRef<'_, Body>,
+        temperature: Option<f64>,
+        pressure: f64,
+        direction: &str,
+        angle: f64,
+        correction: &str,
+    ) -> PyResult<Self> {
+        let corrections = [("yang-persson", Correction::YangPersson), ("none", Correction::None)];
+        let correction = choose_among("correction", correction, &corrections)?;
+        let directions = [("x", Direction::X), ("y", Direction::Y), ("angle", Direction::Angle(angle))];
+        let direction = choose_among("direction", direction, &directions)?;
+        if temperature.is_some() && !body.is_thermal() {
+            return Err(CaseError::new_err(
+                "temperature is given, but the material does not depend on it: it has no shift (without a temperature of its \
+                 own); give it shift=asperity.wlf(...), or leave the temperature out",
+            ));
+        }
+        let temperatures: Vec<_> = temperature.iter().map(|kelvin| (0.0, *kelvin)).collect();
+        let half_space = (vec![], true);
+        let creep = pair(&[body], &[half_space], &temperatures)?.map_err(|error| raised(py, error))?.creep;
+        let heights = heights.as_array().to_owned();
+        let inner = detached(py, || {
+            let (nx, ny) = heights.dim();
+            let surface = Surface::new(Grid::new([nx, ny], size)?, heights)?;
+            sliding::Persson::of_surface(&surface, direction, &creep, pressure, correction)
+        })?;
+        Ok(Persson { inner: inner.map_err(|error| raised(py, error))? })
+    }
+
+    /// Friction coefficients and contact fractions at velocities.
+    fn sweep<'py>(
+        &self,
+        py: Python<'py>,
+        velocities: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<(Curve<'py>, Curve<'py>)> {
+        let velocities: Vec<f64> = velocities.as_array().to_vec();
+        let found = detached(py, || self.inner.sweep(&velocities))?.map_err(|error| raised(py, error))?;
+        let (friction, contact): (Vec<f64>, Vec<f64>) =
+            found.iter().map(|at| (at.friction_coefficient, at.contact_fraction)).unzip();
+        Ok((friction.into_pyarray(py), contact.into_pyarray(py)))
+    }
+
+    /// Wave numbers, contact fractions and friction coefficients over the magnification.
+    fn magnification<'py>(
+        &self,
+        py: Python<'py>,
+        velocity: f64,
+    ) -> PyResult<(Curve<'py>, Curve<'py>, Curve<'py>)> {
+        let curve =
+            detached(py, || self.inner.magnification(velocity))?.map_err(|error| raised(py, error))?;
+        Ok((
+            curve.wave_number.into_pyarray(py),
+            curve.contact_fraction.into_pyarray(py),
+            curve.friction_coefficient.into_pyarray(py),
+        ))
+    }
+}

@@ -1,0 +1,121 @@
+//! A cylinder on an elastic half-space in plane strain: H. Hertz, J. reine angew. Math. 92 (1881) 156; K. L. Johnson,
+//! Contact Mechanics (Cambridge, 1985), section 4.2(c).
+
+use std::f64::consts::PI;
+
+use super::hertz::check;
+use crate::error::{Result, non_negative};
+
+/// A cylinder of radius R on an elastic half-space, per length.
+///
+/// ```text
+/// a^2 = 4 R W' / (pi E*),   p = p0 sqrt(1 - x^2/a^2),   p0 = 2 W' / (pi a)
+/// ```
+///
+/// (Johnson 1985, eqs 4.43-4.45.) In plane strain a displacement is known up to a constant, and so is the approach: only
+/// differences of displacements are determined.
+///
+/// ```
+/// use asperity::reference::HertzLine;
+/// let contact = HertzLine::under_load(1.0, 1.0, std::f64::consts::FRAC_PI_4)?;
+/// assert!((contact.half_width - 1.0).abs() < 1e-15 && (contact.peak_pressure - 0.5).abs() < 1e-15);
+/// // Inside, the surface takes the shape of the cylinder, x^2/(2R).
+/// assert!((contact.displacement_difference(0.5) + 0.125).abs() < 1e-15);
+/// # Ok::<(), asperity::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HertzLine {
+    /// Radius of the cylinder R \[m\].
+    pub radius: f64,
+    /// Load per length W' \[N/m\].
+    pub load_per_length: f64,
+    /// Half the width of the contact a \[m\].
+    pub half_width: f64,
+    /// Pressure in the middle p0 \[Pa\].
+    pub peak_pressure: f64,
+}
+
+impl HertzLine {
+    /// From the load per length W' >= 0 \[N/m\].
+    ///
+    /// # Errors
+    /// [`Error::Invalid`](crate::Error::Invalid) where the radius or the modulus is not positive or the load is negative.
+    pub fn under_load(radius: f64, contact_modulus: f64, load_per_length: f64) -> Result<Self> {
+        check(radius, contact_modulus)?;
+        non_negative("load per length", load_per_length, "N/m")?;
+        let half_width = (4.0 * radius * load_per_length / (PI * contact_modulus)).sqrt();
+        let peak_pressure = contact_modulus * half_width / (2.0 * radius);
+        Ok(HertzLine { radius, load_per_length, half_width, peak_pressure })
+    }
+
+    /// Pressure at the distance x from the middle \[Pa\].
+    pub fn pressure(&self, x: f64) -> f64 {
+        let a = self.half_width;
+        if x.abs() < a { self.peak_pressure * ((a - x) * (a + x)).sqrt() / a } else { 0.0 }
+    }
+
+    /// Displacement at the distance x from the middle less that in the middle, u(x) - u(0) \[m\]; not positive:
+    ///
+    /// ```text
+    /// |x| <= a:  -x^2 / (2 R),   |x| > a:  -(x^2 - |x| sqrt(x^2 - a^2) + a^2 acosh(|x|/a)) / (2 R)
+    /// ```
+    ///
+    /// (the integral of du/dx = -(2 p0 / (E* a)) (x - sqrt(x^2 - a^2)), Johnson 1985, section 2.5).
+    pub fn displacement_difference(&self, x: f64) -> f64 {
+        let (a, x) = (self.half_width, x.abs());
+        if a == 0.0 {
+            return 0.0;
+        }
+        if x <= a {
+            return -x * x / (2.0 * self.radius);
+        }
+        let root = ((x - a) * (x + a)).sqrt();
+        // x^2 - x sqrt(x^2 - a^2) without cancellation.
+        let shape = x * a * (a / (x + root));
+        -(shape + a * a * ((x + root) / a).ln()) / (2.0 * self.radius)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::quadrature::integrate;
+    use super::*;
+
+    #[test]
+    fn the_pressure_carries_the_load_and_makes_the_slope() {
+        let (modulus, radius) = (3.0, 1.0);
+        let line = HertzLine::under_load(radius, modulus, 2.0).unwrap();
+        let a = line.half_width;
+        let load = 2.0 * integrate(0.0, a, |x| line.pressure(x));
+        assert!((load / 2.0 - 1.0).abs() < 1e-14); // rounding
+        // u(x) - u(y) = -(2 / (pi E*)) int p(s) ln((x - s) / (y - s)) ds outside the contact.
+        let (x, y) = (2.5 * a, 1.25 * a);
+        let sum = integrate(-a, a, |s| line.pressure(s) * ((x - s) / (y - s)).ln());
+        let got = line.displacement_difference(x) - line.displacement_difference(y);
+        assert!((got + 2.0 / (PI * modulus) * sum).abs() < 1e-14, "{got} {sum}"); // rounding
+        assert_eq!(line.displacement_difference(-x), line.displacement_difference(x));
+    }
+
+    #[test]
+    fn the_displacement_is_continuous_at_the_edge_and_logarithmic_far_away() {
+        let line = HertzLine::under_load(1.0, 1.0, 1.0).unwrap();
+        let a = line.half_width;
+        let across = line.displacement_difference(a * (1.0 + 1e-12)) - line.displacement_difference(a);
+        assert!(across.abs() < 1e-11); // the slope is -a/R
+        // u(x) - u(y) = -(2 W' / (pi E*)) ln(x / y), next term of order (a/x)^2.
+        let far = line.displacement_difference(1e5 * a) - line.displacement_difference(1e4 * a);
+        assert!((far + 2.0 / PI * 10f64.ln()).abs() < 1e-7);
+        assert_eq!(HertzLine::under_load(1.0, 1.0, 0.0).unwrap().displacement_difference(1.0), 0.0);
+    }
+
+    #[test]
+    fn absurd_numbers_are_named() {
+        for (result, word) in [
+            (HertzLine::under_load(-1.0, 1.0, 1.0), "radius"),
+            (HertzLine::under_load(1.0, 0.0, 1.0), "contact modulus"),
+            (HertzLine::under_load(1.0, 1.0, f64::INFINITY), "load per length"),
+        ] {
+            assert!(result.unwrap_err().to_string().contains(word));
+        }
+    }
+}

@@ -373,6 +373,11 @@ impl Reader {
         spec.ok_or_else(|| self.missing(format!("array `{name}`"), "the arrays of a result".into()))
     }
 
+    /// The error of a line contact that lacks what needs a plane.
+    pub(crate) fn on_line(&self, what: &str) -> StoreError {
+        self.missing(what.into(), "a line contact".into())
+    }
+
     pub(crate) fn missing(&self, what: String, available: String) -> StoreError {
         StoreError::Missing { path: self.root.clone(), what, available }
     }

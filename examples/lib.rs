@@ -29,6 +29,7 @@ templates!(
     "creep-decades",
     "pmma-indentation",
     "flat-punch",
+    "cylinder",
     "subsurface-stress",
     "capped-cycle",
     "periodic-rough",

@@ -14,20 +14,23 @@ const PREFIXES: [(i32, &str); 8] =
     [(-4, "p"), (-3, "n"), (-2, "µ"), (-1, "m"), (0, ""), (1, "k"), (2, "M"), (3, "G")];
 
 /// Units that take prefixes, with the smallest and the largest that is in use.
-const PREFIXED: [(&str, i32, i32); 8] = [
+const PREFIXED: [(&str, i32, i32); 11] = [
     ("m", -4, 0),
     ("s", -3, 0),
     ("Pa", -1, 3),
     ("N", -3, 2),
     ("N/m", -3, 3),
+    ("N/m2", -1, 3),
     ("J", -4, 1),
+    ("J/m", -4, 1),
     ("W", -4, 1),
+    ("W/m", -4, 1),
     ("Hz", -2, 3),
 ];
 
 /// The unit to show numbers in whose largest magnitude is `largest` in the SI unit `unit`.
 ///
-/// `unit` is one of m, s, Pa, N, N/m, J, W, Hz with an exponent (`m2`) or below one (`1/Pa`, `1/m2`), or any other
+/// `unit` is one of m, s, Pa, N, N/m, N/m2, J, J/m, W, W/m, Hz; the first ones with an exponent (`m2`) or below one (`1/Pa`, `1/m2`), or any other
 /// text, which is shown as it is.
 ///
 /// ```
@@ -42,7 +45,9 @@ pub fn shown(unit: &str, largest: f64) -> Shown {
         Some(base) => (true, base),
         None => (false, unit),
     };
-    let letters = base.trim_end_matches(|c: char| c.is_ascii_digit());
+    // The prefix of a quotient is that of its first unit, to the first power.
+    let trimmed = base.trim_end_matches(|c: char| c.is_ascii_digit());
+    let letters = if base.contains('/') { base } else { trimmed };
     let power: i32 = base[letters.len()..].parse().unwrap_or(1);
     let known = PREFIXED.iter().find(|(name, ..)| *name == letters);
     let exponent = if inverse { -power } else { power };
@@ -50,7 +55,7 @@ pub fn shown(unit: &str, largest: f64) -> Shown {
     let name = PREFIXES.iter().find(|(k, _)| *k == prefix).map_or("", |(_, name)| name);
     let power = if power == 1 { String::new() } else { superscript(power) };
     let text = match known {
-        Some(_) => format!("{}{name}{letters}{power}", if inverse { "1/" } else { "" }),
+        Some(_) => format!("{}{name}{}{power}", if inverse { "1/" } else { "" }, letters.replace("m2", "m²")),
         None => unit.to_owned(),
     };
     Shown { factor: 10f64.powi(-3 * prefix * exponent), text }
@@ -163,6 +168,8 @@ mod tests {
         assert_eq!(quantity(500.0, "s"), "500 s");
         assert_eq!(quantity(5.0696e-9, "m2"), "5070 µm²");
         assert_eq!(quantity(4.2e6, "N/m"), "4.2 MN/m");
+        assert_eq!(quantity(4.2e6, "N/m2"), "4.2 MN/m²");
+        assert_eq!(quantity(2e-3, "J/m"), "2 mJ/m");
         assert_eq!(quantity(0.0, "m"), "0 m");
         assert_eq!(quantity(f64::NAN, "m"), "NaN m");
         assert_eq!(quantity(3e8, "s"), "3.000e8 s");

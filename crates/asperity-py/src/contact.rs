@@ -4,13 +4,13 @@ use std::sync::atomic::AtomicBool;
 
 use asperity::contact::Hardness;
 use asperity::operator::half_space;
-use asperity::{ContactState, Grid, Prescribed, Problem, Solver};
+use asperity::{Boundary, ContactState, Prescribed, Problem, Solver};
 use numpy::{IntoPyArray, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::{CaseError, raised};
-use crate::march::{choose, solver as solver_of};
+use crate::march::{choose, grid_of, solver as solver_of};
 use crate::wait::without_python;
 
 /// Pressure, displacement and approach of an elastic contact, and how good they are.
@@ -20,7 +20,7 @@ use crate::wait::without_python;
 pub fn elastic<'py>(
     py: Python<'py>,
     gap: PyReadonlyArray2<'_, f64>,
-    size: [f64; 2],
+    size: Vec<f64>,
     contact_modulus: f64,
     load: Option<f64>,
     approach: Option<f64>,
@@ -32,7 +32,15 @@ pub fn elastic<'py>(
     max_iterations: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (nx, ny) = gap.as_array().dim();
-    let grid = Grid::new([nx, ny], size).map_err(|error| raised(py, error))?;
+    let grid = grid_of(py, (nx, ny), &size)?;
+    let boundary: Boundary = choose("boundary", boundary)?;
+    let free_line = grid.is_line() && boundary == Boundary::Free;
+    if free_line && (approach.is_some() || nx < 2) {
+        return Err(CaseError::new_err(
+            "a free line contact needs two cells at least, and a load: under a load on a line a half-space moves endlessly, so the \
+             approach is known up to a constant; boundary=\"periodic\" has no such limit",
+        ));
+    }
     let prescribed = match (load, approach) {
         (Some(load), None) => Prescribed::Load(load),
         (None, Some(approach)) => Prescribed::Approach(approach),
@@ -62,7 +70,6 @@ pub fn elastic<'py>(
         let words = format!("hardness holds {value}, but must be finite and greater than 0 Pa in every cell");
         return Err(CaseError::new_err(words));
     }
-    let boundary = choose("boundary", boundary)?;
     let options = solver_of(method, tolerance, max_iterations)?;
     options.validate().map_err(|error| raised(py, error))?;
     let interrupt = AtomicBool::new(false);
@@ -86,13 +93,18 @@ pub fn elastic<'py>(
             return Err(raised);
         }
     };
+    // Of a free line contact displacements are measured from the domain's end, x = L, as those of a march are.
+    let datum = match state.unit_displacement.as_slice() {
+        [.., before, last] if free_line => (last + 0.5 * (last - before)) / contact_modulus,
+        _ => 0.0,
+    };
     let out = PyDict::new(py);
     let sum: f64 = state.pressure.iter().sum();
     let touching = state.pressure.iter().filter(|p| **p > 0.0).count();
     out.set_item("load", sum * grid.cell_area())?;
-    out.set_item("approach", state.approach)?;
+    out.set_item("approach", state.approach - datum)?;
     out.set_item("contact_area", touching as f64 * grid.cell_area())?;
-    let displacement = state.unit_displacement.iter().map(|u| u / contact_modulus).collect();
+    let displacement = state.unit_displacement.iter().map(|u| u / contact_modulus - datum).collect();
     out.set_item("displacement", map(displacement)?)?;
     out.set_item("pressure", map(state.pressure)?)?;
     out.set_item("residual", outcome.residual)?;

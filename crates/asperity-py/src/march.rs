@@ -51,6 +51,16 @@ pub fn solver(method: &str, tolerance: f64, max_iterations: usize) -> PyResult<S
     Ok(SolverOptions { method, tolerance, max_iterations })
 }
 
+/// The grid of a field: a plane with two lengths, a line with one.
+pub fn grid_of(py: Python<'_>, (nx, ny): (usize, usize), size: &[f64]) -> PyResult<Grid> {
+    let grid = match *size {
+        [length] if ny == 1 => Grid::line(nx, length),
+        [lx, ly] => Grid::new([nx, ny], [lx, ly]),
+        _ => return Err(CaseError::new_err("size needs two lengths, along x and y, or one for a line of cells")),
+    };
+    grid.map_err(|error| raised(py, error))
+}
+
 /// (name, unit, meaning, whether it is a histogram) of all quantities.
 #[pyfunction]
 pub fn quantities() -> Vec<(&'static str, &'static str, &'static str, bool)> {
@@ -145,7 +155,7 @@ impl March {
     fn new(
         py: Python<'_>,
         gap: PyReadonlyArray2<'_, f64>,
-        size: [f64; 2],
+        size: Vec<f64>,
         boundary: &str,
         bodies: Vec<PyRef<'_, Body>>,
         stacks: Vec<crate::material::StackParts>,
@@ -166,7 +176,6 @@ impl March {
         largest_gap: Option<f64>,
     ) -> PyResult<March> {
         let gap = gap.as_array().as_standard_layout().into_owned();
-        let (nx, ny) = gap.dim();
         if !temperatures.is_empty() && !bodies.iter().any(|body| body.is_thermal()) {
             return Err(CaseError::new_err(
                 "temperature is given, but no body depends on it: none has a shift (without a temperature of its \
@@ -176,7 +185,7 @@ impl March {
         let Pair { kernel, creep, thermal } =
             crate::material::pair(&bodies, &stacks, &temperatures)?.map_err(|error| raised(py, error))?;
         let bodies: Vec<material::Body> = bodies.iter().map(|body| body.inner.clone()).collect();
-        let grid = Grid::new([nx, ny], size).map_err(|error| raised(py, error))?;
+        let grid = grid_of(py, gap.dim(), &size)?;
         let list =
             quantities.iter().map(|name| choose("quantity", name)).collect::<PyResult<Vec<Quantity>>>()?;
         let stages = stages.into_iter().map(stage).collect::<PyResult<Vec<Stage>>>()?;

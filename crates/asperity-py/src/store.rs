@@ -3,7 +3,6 @@
 use std::collections::HashMap;
 use std::path::PathBuf;
 
-use asperity::Grid;
 use asperity::quantities::Column;
 use asperity_io::store::{At, Field, FieldKind, Header, Outcome, Reader, Row, Status, Writer};
 use ndarray::{ArrayView3, Axis};
@@ -11,8 +10,8 @@ use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2,
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::error::{CaseError, file, raised};
-use crate::march::choose;
+use crate::error::{CaseError, file};
+use crate::march::{choose, grid_of};
 use crate::wait::detached;
 
 /// The ends of the bins, and the numbers of all rows.
@@ -97,13 +96,14 @@ impl Store {
     }
 
     #[getter]
-    fn cells(&self) -> [usize; 2] {
-        self.reader.header().grid.cells()
+    fn cells(&self) -> Vec<usize> {
+        let grid = &self.reader.header().grid;
+        grid.cells()[..grid.dimensions()].to_vec()
     }
 
     #[getter]
-    fn size(&self) -> [f64; 2] {
-        self.reader.header().grid.size()
+    fn size(&self) -> Vec<f64> {
+        self.reader.header().grid.extents().to_vec()
     }
 
     /// Leaks over time by name, where they are stored; `conductance` as xx, xy, yx, yy of each time.
@@ -181,7 +181,7 @@ pub fn save(
     force: bool,
     title: String,
     setup: &str,
-    size: [f64; 2],
+    size: Vec<f64>,
     initial_gap: PyReadonlyArray2<'_, f64>,
     columns: HashMap<String, PyReadonlyArray1<'_, f64>>,
     fields: Vec<(String, Bound<'_, PyAny>)>,
@@ -191,7 +191,7 @@ pub fn save(
     findings: &str,
 ) -> PyResult<()> {
     let (nx, ny) = initial_gap.as_array().dim();
-    let grid = Grid::new([nx, ny], size).map_err(|error| raised(py, error))?;
+    let grid = grid_of(py, (nx, ny), &size)?;
     let setup = serde_json::from_str(setup).map_err(|error| CaseError::new_err(error.to_string()))?;
     let findings = serde_json::from_str(findings).map_err(|error| CaseError::new_err(error.to_string()))?;
     let findings = asperity_io::finding::from_list(&findings);

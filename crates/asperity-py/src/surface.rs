@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use asperity::Grid;
 use asperity::surface::statistics::{
     Autocorrelation, BearingCurve, Extent, RadialSpectrum, Rings, SelfAffineFit, Summary,
 };
@@ -17,13 +16,11 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::error::{CaseError, file, raised, topography as topography_error};
+use crate::march::grid_of;
 use crate::wait::detached;
 
 type Heights<'py> = Bound<'py, PyArray2<f64>>;
 
-fn grid(py: Python<'_>, cells: (usize, usize), size: [f64; 2]) -> PyResult<Grid> {
-    Grid::new([cells.0, cells.1], size).map_err(|error| raised(py, error))
-}
 
 /// Heights of a self-affine surface.
 #[pyfunction]
@@ -32,7 +29,7 @@ fn grid(py: Python<'_>, cells: (usize, usize), size: [f64; 2]) -> PyResult<Grid>
 pub fn self_affine<'py>(
     py: Python<'py>,
     cells: (usize, usize),
-    size: [f64; 2],
+    size: Vec<f64>,
     hurst: f64,
     rms_gradient: Option<f64>,
     rms_height: Option<f64>,
@@ -47,7 +44,7 @@ pub fn self_affine<'py>(
         _ => return Err(CaseError::new_err("give rms_gradient or rms_height, exactly one of them")),
     };
     let roll_off = roll_off.unwrap_or(longest);
-    let grid = grid(py, cells, size)?;
+    let grid = grid_of(py, cells, &size)?;
     let made =
         detached(py, || SelfAffine { hurst, roughness, longest, shortest, roll_off, seed }.heights(&grid))?;
     Ok(made.map_err(|error| raised(py, error))?.into_pyarray(py))
@@ -61,11 +58,13 @@ pub fn shape<'py>(
     numbers: Vec<f64>,
     center: [f64; 2],
     cells: (usize, usize),
-    size: [f64; 2],
+    size: Vec<f64>,
 ) -> PyResult<Heights<'py>> {
     let shape = match (kind, numbers.as_slice()) {
         ("sphere", [radius]) => Shape::Sphere { radius: *radius },
         ("ellipsoid", [x, y]) => Shape::Ellipsoid { radius_x: *x, radius_y: *y },
+        ("cylinder", [radius]) => Shape::Cylinder { radius: *radius },
+        ("wedge", [slope]) => Shape::Wedge { slope: *slope },
         ("cone", [slope]) => Shape::Cone { slope: *slope },
         ("flat-punch", [radius]) => Shape::FlatPunch(surface::Punch::Circle { radius: *radius }),
         ("flat-punch", [a, b]) => Shape::FlatPunch(surface::Punch::Rectangle { size: [*a, *b] }),
@@ -78,9 +77,9 @@ pub fn shape<'py>(
         }
     };
     shape.validate().map_err(|error| raised(py, error))?;
-    let grid = grid(py, cells, size)?;
-    let [lx, ly] = size;
-    let at = |i: usize, j: usize| (grid.x(i) - (0.5 * lx + center[0]), grid.y(j) - (0.5 * ly + center[1]));
+    let grid = grid_of(py, cells, &size)?;
+    let [x0, y0] = grid.centre();
+    let at = |i: usize, j: usize| (grid.x(i) - (x0 + center[0]), grid.y(j) - (y0 + center[1]));
     let heights = Array2::from_shape_fn(grid.shape(), |(i, j)| {
         let (x, y) = at(i, j);
         -shape.gap(x, y)
@@ -93,10 +92,10 @@ pub fn shape<'py>(
 pub fn gap<'py>(
     py: Python<'py>,
     heights: PyReadonlyArray2<'_, f64>,
-    size: [f64; 2],
+    size: Vec<f64>,
 ) -> PyResult<Heights<'py>> {
     let heights = heights.as_array().as_standard_layout().into_owned();
-    let grid = grid(py, heights.dim(), size)?;
+    let grid = grid_of(py, heights.dim(), &size)?;
     if heights.iter().all(|z| z.is_finite()) {
         let part = Part::Heights { name: "surface".into(), heights };
         let gap = detached(py, || undeformed_gap(&grid, &[part]))?.map_err(|error| raised(py, error))?;
@@ -156,7 +155,7 @@ pub fn write_surface(
 
 /// Synthetic roughness from the keys of a case (`cells`, `size`, `hurst`, `lay.angle`, ...): heights and size.
 #[pyfunction]
-pub fn roughness<'py>(py: Python<'py>, keys: Vec<(String, String)>) -> PyResult<(Heights<'py>, [f64; 2])> {
+pub fn roughness<'py>(py: Python<'py>, keys: Vec<(String, String)>) -> PyResult<(Heights<'py>, Vec<f64>)> {
     let keys: Vec<(&str, &str)> = keys.iter().map(|(key, text)| (key.as_str(), text.as_str())).collect();
     let (grid, part) = fragment::roughness(&keys).map_err(|faults| {
         let told = |fault: &fragment::Fault| {
@@ -171,7 +170,7 @@ pub fn roughness<'py>(py: Python<'py>, keys: Vec<(String, String)>) -> PyResult<
         Part::Heights { heights, .. } => Ok(heights),
         Part::Shape { shape, .. } => Err(asperity::Error::invalid("kind", shape.name(), "self-affine")),
     })?;
-    Ok((heights.map_err(|error| raised(py, error))?.into_pyarray(py), grid.size()))
+    Ok((heights.map_err(|error| raised(py, error))?.into_pyarray(py), grid.extents().to_vec()))
 }
 
 /// Steps of a preparation, each in words as `asperity surface process --op` takes them: heights, size, and one
@@ -180,9 +179,9 @@ pub fn roughness<'py>(py: Python<'py>, keys: Vec<(String, String)>) -> PyResult<
 pub fn process<'py>(
     py: Python<'py>,
     heights: PyReadonlyArray2<'_, f64>,
-    size: [f64; 2],
+    size: Vec<f64>,
     steps: Vec<String>,
-) -> PyResult<(Heights<'py>, [f64; 2], Vec<String>)> {
+) -> PyResult<(Heights<'py>, Vec<f64>, Vec<String>)> {
     let steps = steps.iter().map(|words| fragment::step(words).map_err(CaseError::new_err));
     let steps = steps.collect::<PyResult<Vec<Step>>>()?;
     let map = map(py, heights, size)?;
@@ -193,7 +192,7 @@ pub fn process<'py>(
             reason.replace("as `cells` of the step or as `domain.cells` of the case", "cells=(nx, ny)"),
         )
     })?;
-    let size = prepared.surface.grid().size();
+    let size = prepared.surface.grid().extents().to_vec();
     Ok((prepared.surface.into_heights().into_pyarray(py), size, prepared.history))
 }
 
@@ -207,7 +206,7 @@ fn extent(periodic: bool) -> Extent {
 pub fn describe<'py>(
     py: Python<'py>,
     heights: PyReadonlyArray2<'_, f64>,
-    size: [f64; 2],
+    size: Vec<f64>,
     periodic: bool,
     band: Option<[f64; 2]>,
 ) -> PyResult<Bound<'py, PyDict>> {
@@ -267,7 +266,7 @@ pub fn describe<'py>(
 pub fn bearing_curve<'py>(
     py: Python<'py>,
     heights: PyReadonlyArray2<'_, f64>,
-    size: [f64; 2],
+    size: Vec<f64>,
     levels: usize,
 ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
     let map = map(py, heights, size)?;
@@ -281,7 +280,7 @@ pub fn bearing_curve<'py>(
 pub fn height_distribution<'py>(
     py: Python<'py>,
     heights: PyReadonlyArray2<'_, f64>,
-    size: [f64; 2],
+    size: Vec<f64>,
     bins: usize,
 ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
     let map = map(py, heights, size)?;
@@ -296,7 +295,7 @@ pub fn height_distribution<'py>(
 pub fn autocorrelation<'py>(
     py: Python<'py>,
     heights: PyReadonlyArray2<'_, f64>,
-    size: [f64; 2],
+    size: Vec<f64>,
     periodic: bool,
 ) -> PyResult<(Heights<'py>, Option<f64>, Option<f64>)> {
     let map = map(py, heights, size)?;
@@ -315,7 +314,7 @@ pub fn autocorrelation<'py>(
 pub fn power_spectrum<'py>(
     py: Python<'py>,
     heights: PyReadonlyArray2<'_, f64>,
-    size: [f64; 2],
+    size: Vec<f64>,
     per_decade: u32,
 ) -> PyResult<(Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>)> {
     let map = map(py, heights, size)?;
@@ -324,8 +323,8 @@ pub fn power_spectrum<'py>(
     Ok((spectrum.wave_number.into_pyarray(py), spectrum.power.into_pyarray(py)))
 }
 
-fn map(py: Python<'_>, heights: PyReadonlyArray2<'_, f64>, size: [f64; 2]) -> PyResult<Surface> {
+fn map(py: Python<'_>, heights: PyReadonlyArray2<'_, f64>, size: Vec<f64>) -> PyResult<Surface> {
     let heights = heights.as_array().to_owned();
-    let grid = grid(py, heights.dim(), size)?;
+    let grid = grid_of(py, heights.dim(), &size)?;
     Surface::new(grid, heights).map_err(|error| raised(py, error))
 }

@@ -38,7 +38,9 @@ function summary() {
 
 /** The panels over time: their series by name. */
 const PANELS = [
-  ["Contact area", "contact area", [["counted", "contact_area"], ["corrected", "contact_area_corrected"], ["at hardness", "capped_area"]]],
+  state.grid.line
+    ? ["Contact length", "contact length", [["", "contact_area"], ["at hardness", "capped_area"]]]
+    : ["Contact area", "contact area", [["counted", "contact_area"], ["corrected", "contact_area_corrected"], ["at hardness", "capped_area"]]],
   ["Approach", "approach", [["", "approach"]]],
   ["Load", "load", [["", "load"]]],
   ["Pressure", "pressure", [["mean", "mean_pressure"], ["largest", "max_pressure"]]],
@@ -69,7 +71,7 @@ const loadingPath = () => ({
   title: "Load over approach",
   free: true,
   x: { label: "approach", unit: "m" },
-  y: { label: "load", unit: "N" },
+  y: { label: "load", unit: state.units.load },
   series: [{ name: "", x: state.series.approach, y: state.series.load }],
 });
 
@@ -139,20 +141,64 @@ async function showMap() {
   const map = await load(`${kind.name}-${chosen.instant}`);
   if (!map || kind !== field() || instant !== state.instants[chosen.instant]) return;
   const range = $("fixed").checked && kind.range ? kind.range : [map.min, map.max];
-  view.show({ map, colours: kind.colours, low: range[0], high: range[1], unit: kind.unit, label: kind.label }, { along: chosen.along, share: chosen.share });
+  if (state.grid.line) await showOverTime(kind, instant);
+  else view.show({ map, colours: kind.colours, low: range[0], high: range[1], unit: kind.unit, label: kind.label }, { along: chosen.along, share: chosen.share });
   const row = instant.row;
-  $("instant-words").textContent = `t = ${words(instant.time, "s")}, load ${words(state.series.load[row], "N")}, contact ${digits(100 * state.series.contact_fraction[row])} %`;
+  $("instant-words").textContent = `t = ${words(instant.time, "s")}, load ${words(state.series.load[row], state.units.load)}, contact ${digits(100 * state.series.contact_fraction[row])} %`;
   $("instant").setAttribute("aria-valuetext", `t = ${words(instant.time, "s")}`);
   evolution.forEach((chart) => chart.mark(instant.time));
   await showProfile(kind, map);
-  await showRelief(instant);
+  await (state.grid.line ? showSurfaces(instant) : showRelief(instant));
+}
+
+/** A line contact over x and time, at each time the nearest stored instant; the line is the instant shown. */
+async function showOverTime(kind, instant) {
+  const times = state.instants.map((one) => one.time), first = times[0], last = times[times.length - 1];
+  $("map").closest("figure").hidden = !(last > first);
+  if (!(last > first)) return;
+  const rows = 128;
+  let nearest = 0, picture = null, low = Infinity, high = -Infinity;
+  for (let k = 0; k < rows; k++) {
+    const time = first + ((k + 0.5) / rows) * (last - first);
+    while (nearest + 1 < times.length && Math.abs(times[nearest + 1] - time) <= Math.abs(times[nearest] - time)) nearest += 1;
+    const one = await load(`${kind.name}-${nearest}`);
+    if (!one) return;
+    if (!picture) picture = { nx: one.nx, ny: rows, values: new Float32Array(one.nx * rows) };
+    for (let i = 0; i < one.nx; i++) picture.values[i * rows + k] = one.values[i];
+    [low, high] = [Math.min(low, one.min), Math.max(high, one.max)];
+  }
+  if (kind !== field() || instant !== state.instants[chosen.instant]) return;
+  const ends = kind.range ?? [low, high];
+  const share = (instant.time - first) / (last - first);
+  view.show({ map: picture, colours: kind.colours, low: ends[0], high: ends[1], unit: kind.unit, label: kind.label }, { along: "x", share });
+}
+
+/** Both surfaces in a line contact: z = -u and z = h0 - w, with u = h - h0 + w. */
+let surfaces = null;
+async function showSurfaces(instant) {
+  const has = (name) => state.fields.some((f) => f.name === name);
+  const name = has("gap") ? "gap" : has("displacement") ? "displacement" : null;
+  $("relief-part").hidden = true;
+  const map = name && (await load(`${name}-${chosen.instant}`)), before = await load("initial");
+  if (!map || !before) return;
+  const approach = state.series.approach[instant.row];
+  const place = Array.from({ length: map.nx }, (_, k) => ((k + 0.5) / map.nx) * state.grid.size[0]);
+  const other = Array.from(before.values, (h0) => h0 - approach);
+  const deformed = Array.from(map.values, (v, n) => (name === "gap" ? other[n] - v : -v));
+  const finite = deformed.filter((z) => isFinite(z));
+  const low = finite.reduce((a, b) => Math.min(a, b), Infinity), high = finite.reduce((a, b) => Math.max(a, b), -Infinity);
+  const seen = other.map((z) => (z <= high + (high - low) ? z : NaN));
+  const spec = { title: "Surfaces in contact", x: { label: "x", unit: "m" }, y: { label: "height", unit: "m" },
+    series: [{ name: "deformed surface", x: place, y: deformed }, { name: "other surface", x: place, y: seen, dashed: true }] };
+  if (surfaces) surfaces.set(spec);
+  else surfaces = new Chart($("profile"), spec);
 }
 
 /** Values along the line. */
 function along(map) {
   const count = chosen.along === "x" ? map.nx : map.ny, other = chosen.along === "x" ? map.ny : map.nx;
   const at = Math.min(Math.floor(chosen.share * other), other - 1);
-  const length = state.grid.size[chosen.along === "x" ? 0 : 1];
+  const length = state.grid.size[chosen.along === "x" ? 0 : 1]; // a line has x alone
   const place = Array.from({ length: count }, (_, k) => ((k + 0.5) / count) * length);
   const value = Array.from({ length: count }, (_, k) => map.values[chosen.along === "x" ? k * map.ny + at : at * map.ny + k]);
   return [place, value, at, other];
@@ -170,7 +216,8 @@ async function showProfile(kind, map) {
       series.push({ name: "undeformed", x: x0, y: y0, dashed: true });
     }
   }
-  const spec = { title: `${kind.title} at ${across} = ${words(where, "m")}`, x: { label: chosen.along, unit: "m" }, y: { label: kind.label, unit: kind.unit === "1" ? "" : kind.unit }, series };
+  const title = state.grid.line ? kind.title : `${kind.title} at ${across} = ${words(where, "m")}`;
+  const spec = { title, x: { label: chosen.along, unit: "m" }, y: { label: kind.label, unit: kind.unit === "1" ? "" : kind.unit }, series };
   if (profile) {
     profile.box.querySelector("h3").textContent = spec.title;
     profile.set(spec);
@@ -221,6 +268,11 @@ function mapsPart() {
   });
   $("fixed").addEventListener("change", showMap);
   const lines = [...document.querySelectorAll("[data-line]")];
+  if (state.grid.line) {
+    lines[0].parentElement.hidden = true;
+    $("h-maps").textContent = "Fields";
+    $("probe").textContent = "Over x and time, at each time the nearest stored instant. Point at it for values; drag to choose the instant.";
+  }
   lines.forEach((button) => button.addEventListener("click", () => {
     chosen.along = button.dataset.line;
     press(lines, button);
@@ -250,6 +302,7 @@ function mapsPart() {
     if (!view.what) return;
     const { map, unit, label, colours } = view.what, [i, j] = view.cell(event), [lx, ly] = state.grid.size;
     const value = map.values[i * map.ny + j];
+    if (state.grid.line) return overTime(event, map, i, j, value, unit, label, colours);
     const text = colours === "states" ? (isNaN(value) ? "undefined" : STATES[Math.round(value)][0]) : words(value, unit);
     $("probe").textContent = `x = ${words(((i + 0.5) / map.nx) * lx, "m")}, y = ${words(((j + 0.5) / map.ny) * ly, "m")}: ${label} ${text}`;
     if (event.buttons || event.type === "pointerdown") {
@@ -257,9 +310,22 @@ function mapsPart() {
       redraw();
     }
   };
+  function overTime(event, map, i, j, value, unit, label, colours) {
+    const times = state.instants.map((one) => one.time);
+    const time = times[0] + ((j + 0.5) / map.ny) * (times[times.length - 1] - times[0]);
+    const text = colours === "states" ? STATES[Math.round(value)]?.[0] ?? "undefined" : words(value, unit);
+    $("probe").textContent = `x = ${words(((i + 0.5) / map.nx) * state.grid.size[0], "m")}, t = ${words(time, "s")}: ${label} ${text}`;
+    if (!event.buttons && event.type !== "pointerdown") return;
+    const nearest = times.reduce((best, t, n) => (Math.abs(t - time) <= Math.abs(times[best] - time) ? n : best), 0);
+    if (nearest === chosen.instant) return;
+    chosen.instant = nearest;
+    $("instant").value = nearest;
+    showMap();
+  }
   canvas.addEventListener("pointermove", move);
   canvas.addEventListener("pointerdown", (event) => { canvas.setPointerCapture(event.pointerId); move(event); });
   canvas.addEventListener("keydown", (event) => {
+    if (state.grid.line) return;
     const step = chosen.along === "x" ? { ArrowUp: 1, ArrowDown: -1 }[event.key] : { ArrowRight: 1, ArrowLeft: -1 }[event.key];
     if (!step || !view.what) return;
     event.preventDefault();

@@ -92,11 +92,12 @@ class MapView {
   render() {
     const { map, colours, low, high, unit, label } = this.what;
     const [lx, ly] = state.grid.size;
-    const [context, width, height] = sharp(this.canvas, Math.min(Math.max(ly / lx, 0.12), 2.5));
+    // Over x and time the height is free.
+    const [context, width, height] = sharp(this.canvas, state.grid.line ? 0.6 : Math.min(Math.max(ly / lx, 0.12), 2.5));
     const image = picture(map, colours, low, high);
     context.imageSmoothingEnabled = map.nx > width;
     context.drawImage(image, 0, 0, width, height);
-    this.scaleBar(context, width, height, lx);
+    if (!state.grid.line) this.scaleBar(context, width, height, lx);
     if (this.line) {
       const { along, share } = this.line;
       const at = along === "x" ? (1 - share) * height : share * width;

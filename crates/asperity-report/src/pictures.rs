@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use asperity_io::store::{At, FieldKind, Reader, StoreError};
 
-use crate::figure::{FigureError, Panel, Values};
+use crate::figure::{Curves, Figure, FigureError, Panel, Values};
+use crate::result::line::{curve, over_time};
 use crate::result::{Options, Plot, PlotError, figure};
 
 /// Why pictures cannot be written.
@@ -72,8 +73,21 @@ pub fn pictures(
             FieldKind::Flattening => Plot::Flattening,
         };
         let range = range(reader, *kind)?;
+        let line = reader.header().grid.is_line();
+        if line && let Some(map) = over_time(reader, *kind)? {
+            let picture = Figure { panel: [430.0, 260.0], ..Figure::new("").with(map) };
+            fs::write(place(format!("{}_over_time.png", kind.name())), picture.to_png(150.0)?).map_err(failed)?;
+        }
         for n in 0..reader.field_times().len() {
             let mut picture = figure(reader, plot, &Options { at: At::Index(n), ..Options::default() })?;
+            if line {
+                let curve = curve(reader, *kind, At::Index(n))?;
+                let y = match range {
+                    Some([low, high]) => curve.y.clone().between(low, high),
+                    None => curve.y.clone(),
+                };
+                picture.panels = vec![Curves { y, ..curve }.into()];
+            }
             for panel in &mut picture.panels {
                 if let Panel::Map(map) = panel
                     && let Values::Quantity { range: ends, .. } = &mut map.meaning

@@ -55,7 +55,7 @@ fn retardation(times: &[f64]) -> String {
 /// Rows times convolutions times what one takes here, timed on a small grid and scaled as N log N.
 fn seconds(case: &Case, description: &Description) -> Option<f64> {
     let cells = case.grid.cells().map(|n| n.min(TIMED));
-    let grid = Grid::new(cells, case.grid.size()).ok()?;
+    let grid = case.grid.with_cells(cells).ok()?;
     let mut operator = half_space(grid, case.boundary);
     let pressure = vec![1.0; grid.len()];
     let mut displacement = vec![0.0; grid.len()];
@@ -83,7 +83,7 @@ fn seconds(case: &Case, description: &Description) -> Option<f64> {
 /// "radius 10.00 mm", "Sq 1.000 µm, Sdq 0.1"; nothing for what its name says.
 fn shape(surface: &SurfaceInput) -> Option<String> {
     let length = |value: f64| quantity(value, "m");
-    let radius = surface.radius.map(|[x, y]| match x == y {
+    let radius = surface.radius.map(|[x, y]| match x == y || y.is_infinite() {
         true => format!("radius {}", length(x)),
         false => format!("radii {} and {}", length(x), length(y)),
     });
@@ -101,11 +101,11 @@ fn range([first, last]: [f64; 2], words: impl Fn(f64) -> String) -> String {
 }
 
 /// What is prescribed at most, and the contact to be expected: lines of a name and a value.
-fn prospects(inputs: &Inputs) -> Vec<[String; 2]> {
+fn prospects(grid: &Grid, inputs: &Inputs) -> Vec<[String; 2]> {
     let mut lines = vec![];
     let mut line = |name: &str, value: String| lines.push([name.to_owned(), value]);
     if let (Some(load), Some(pressure)) = (inputs.largest_load, inputs.largest_mean_pressure) {
-        let (load, pressure) = (quantity(load, "N"), quantity(pressure, "Pa"));
+        let (load, pressure) = (quantity(load, grid.units("N")), quantity(pressure, "Pa"));
         line("load", format!("{load} at most, {pressure} over the domain"));
     }
     if let Some(approach) = inputs.largest_approach {
@@ -114,7 +114,8 @@ fn prospects(inputs: &Inputs) -> Vec<[String; 2]> {
     let strain = inputs.expected_pressure_over_modulus.map_or(String::new(), |p| format!(", p/E* {p:.2e}"));
     if let (Some(radii), Some(cells)) = (inputs.expected_contact_radius, inputs.expected_cells_across) {
         let radius = range(radii, |radius| quantity(radius, "m"));
-        line("expected", format!("contact radius {radius}, {cells:.0} cells across{strain}"));
+        let of = if grid.is_line() { "half-width of the contact" } else { "contact radius" };
+        line("expected", format!("{of} {radius}, {cells:.0} cells across{strain}"));
     } else if let Some(shares) = inputs.expected_contact_share {
         let share = range(shares, |share| format!("{:.2} %", 100.0 * share));
         line("expected", format!("contact of {share} of the domain{strain}"));
@@ -163,22 +164,26 @@ fn stress_lines(stress: &StressDescription, seconds: Option<f64>) -> Vec<[String
     lines
 }
 
+/// "1 mm x 2 mm".
+fn lengths(sides: &[f64]) -> String {
+    let sides: Vec<String> = sides.iter().map(|side| quantity(*side, "m")).collect();
+    sides.join(" x ")
+}
+
 fn tell(case: &Case, examined: &Examination, estimate: Option<f64>) -> String {
     let (d, inputs) = (&examined.description, &examined.inputs);
     let title = d.title.as_deref().unwrap_or(&case.name);
-    let [nx, ny] = d.cells;
     let mut text = format!("{title}\n");
     let mut line = |name: &str, value: String| text += &format!("  {name:<12}{value}\n");
     line(
         "domain",
-        format!(
-            "{nx} x {ny} cells of {} x {}, {} x {}, {}",
-            quantity(d.spacing[0], "m"),
-            quantity(d.spacing[1], "m"),
-            quantity(d.size[0], "m"),
-            quantity(d.size[1], "m"),
-            d.boundary
-        ),
+        match (d.cells.as_slice(), lengths(&d.spacing), lengths(&d.size)) {
+            ([n], cell, size) => format!("a line of {n} cells of {cell}, {size}, {}, plane strain", d.boundary),
+            (cells, cell, size) => {
+                let cells: Vec<String> = cells.iter().map(usize::to_string).collect();
+                format!("{} cells of {cell}, {size}, {}", cells.join(" x "), d.boundary)
+            }
+        },
     );
     line("gap", d.surfaces.join(" + "));
     if let Some(leak) = &case.leakage {
@@ -256,7 +261,7 @@ fn tell(case: &Case, examined: &Examination, estimate: Option<f64>) -> String {
     if let Some([least, most]) = d.hardness_of_cells {
         line("hardness", format!("{} to {}, by cell", quantity(least, "Pa"), quantity(most, "Pa")));
     }
-    for [name, value] in prospects(inputs) {
+    for [name, value] in prospects(&case.grid, inputs) {
         line(&name, value);
     }
     let end = quantity(d.end, "s");

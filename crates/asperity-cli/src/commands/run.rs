@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use asperity::Grid;
 use asperity::finding::Finding;
 use asperity::march::Row;
 use asperity_io::case::Case;
@@ -35,7 +36,7 @@ pub fn run(args: &Run) -> Result<(), Failure> {
     match done {
         Ok(summary) => {
             tell_findings(args, &summary.findings, &known);
-            tell(args, &summary, None)?;
+            tell(args, &case.grid, &summary, None)?;
             if summary.status != Status::Interrupted {
                 return super::findings::strict(args.strict, &summary.findings);
             }
@@ -46,7 +47,7 @@ pub fn run(args: &Run) -> Result<(), Failure> {
         Err(error @ RunError::Output(_)) => Err(Failure::input(error.to_string())),
         Err(error) => {
             let message = match &error {
-                RunError::Solve { best: Some(best), .. } => format!("{error}\n{}", best_state(best)),
+                RunError::Solve { best: Some(best), .. } => format!("{error}\n{}", best_state(best, &case.grid)),
                 _ => error.to_string(),
             };
             if let RunError::Leakage { source: LeakError::Interrupted, .. } = error {
@@ -57,7 +58,7 @@ pub fn run(args: &Run) -> Result<(), Failure> {
             | RunError::Leakage { summary, .. } = &error
             {
                 tell_findings(args, &summary.findings, &known);
-                tell(args, summary, Some(&error))?;
+                tell(args, &case.grid, summary, Some(&error))?;
             }
             Err(Failure::Solve(message))
         }
@@ -95,18 +96,18 @@ pub(super) fn on_interrupt() -> Arc<AtomicBool> {
     flag
 }
 
-fn best_state(best: &Row) -> String {
+fn best_state(best: &Row, grid: &Grid) -> String {
     format!(
         "  best state at t = {}: load {}, approach {}, contact {:.4} %, largest pressure {}",
         quantity(best.time, "s"),
-        quantity(best.load, "N"),
+        quantity(best.load, grid.units("N")),
         quantity(best.approach, "m"),
         100.0 * best.contact_fraction,
         quantity(best.max_pressure, "Pa"),
     )
 }
 
-fn tell(args: &Run, summary: &Summary, error: Option<&RunError>) -> Result<(), Failure> {
+fn tell(args: &Run, grid: &Grid, summary: &Summary, error: Option<&RunError>) -> Result<(), Failure> {
     if args.json {
         return crate::print(&format!("{}\n", json_object(summary, error)));
     }
@@ -117,20 +118,20 @@ fn tell(args: &Run, summary: &Summary, error: Option<&RunError>) -> Result<(), F
     let mut line = |name: &str, value: String| text += &format!("{name:<13}{value}\n");
     if let Some(last) = &summary.last {
         line("time", quantity(last.time, "s"));
-        line("load", quantity(last.load, "N"));
+        line("load", quantity(last.load, grid.units("N")));
         line("approach", quantity(last.approach, "m"));
-        line(
-            "contact area",
-            format!(
-                "{} ({:.3} % of the domain; corrected for its perimeter {})",
-                quantity(last.contact_area, "m2"),
-                100.0 * last.contact_fraction,
-                quantity(last.contact_area_corrected, "m2"),
-            ),
-        );
+        let area = quantity(last.contact_area, grid.units("m2"));
+        let share = 100.0 * last.contact_fraction;
+        if grid.is_line() {
+            line("contact", format!("{area} ({share:.3} % of the domain)"));
+        } else {
+            let corrected = quantity(last.contact_area_corrected, "m2");
+            let value = format!("{area} ({share:.3} % of the domain; corrected for its perimeter {corrected})");
+            line("contact area", value);
+        }
         line("mean gap", quantity(last.mean_gap, "m"));
         if last.capped_area > 0.0 {
-            line("at hardness", quantity(last.capped_area, "m2"));
+            line("at hardness", quantity(last.capped_area, grid.units("m2")));
         }
         line(
             "pressure",

@@ -1,5 +1,6 @@
 //! `asperity show`: a result in the terminal.
 
+use asperity::Grid;
 use asperity::quantities::Quantity;
 use asperity_io::case::quantity::Time;
 use asperity_io::cycles;
@@ -67,6 +68,15 @@ fn cycles_json(part: &cycles::Cyclic) -> serde_json::Value {
     json!({ "stage": part.stage, "frequency": part.frequency, "cycles": list })
 }
 
+/// "256 x 256 cells, 1 mm x 1 mm", or "a line of 256 cells, 1 mm".
+fn domain(grid: &Grid) -> String {
+    let ([nx, ny], [lx, ly]) = (grid.cells(), grid.size());
+    match grid.is_line() {
+        true => format!("a line of {nx} cells, {}", quantity(lx, "m")),
+        false => format!("{nx} x {ny} cells, {} x {}", quantity(lx, "m"), quantity(ly, "m")),
+    }
+}
+
 fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
     let header = reader.header();
     let mut text = String::new();
@@ -89,9 +99,8 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
     for finding in reader.findings() {
         line(finding.severity.as_str(), format!("{} [{}]", finding.text, finding.code));
     }
-    let [nx, ny] = header.grid.cells();
-    let [lx, ly] = header.grid.size();
-    line("domain", format!("{nx} x {ny} cells, {} x {}", quantity(lx, "m"), quantity(ly, "m")));
+    let grid = &header.grid;
+    line("domain", domain(grid));
     let rows = reader.rows()?;
     let Some(last) = rows.last() else { return Ok(text) };
     // A curve over the rows, with its ends.
@@ -103,9 +112,10 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
         let ends = if low == high { "unchanged".to_owned() } else { format!("{low} to {high}") };
         format!("{}  {ends}", sparkline(&values, SPARKS))
     };
+    let (force, area) = (grid.units("N"), grid.units("m2"));
     let percent = |share: f64| format!("{:.3} %", 100.0 * share);
     line("time", quantity(last.time, "s"));
-    line("load", format!("{:<14}{}", quantity(last.load, "N"), curve(|row| row.load, &|v| quantity(v, "N"))));
+    line("load", format!("{:<14}{}", quantity(last.load, force), curve(|row| row.load, &|v| quantity(v, force))));
     line(
         "approach",
         format!("{:<14}{}", quantity(last.approach, "m"), curve(|row| row.approach, &|v| quantity(v, "m"))),
@@ -118,10 +128,14 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
         "mean gap",
         format!("{:<14}{}", quantity(last.mean_gap, "m"), curve(|row| row.mean_gap, &|v| quantity(v, "m"))),
     );
-    line("area", quantity(last.contact_area, "m2"));
-    line("corrected", quantity(last.contact_area_corrected, "m2"));
+    if grid.is_line() {
+        line("length", quantity(last.contact_area, area));
+    } else {
+        line("area", quantity(last.contact_area, area));
+        line("corrected", quantity(last.contact_area_corrected, area));
+    }
     if last.capped_area > 0.0 {
-        line("at hardness", quantity(last.capped_area, "m2"));
+        line("at hardness", quantity(last.capped_area, area));
     }
     let pressure = [last.mean_pressure, last.max_pressure].map(|p| quantity(p, "Pa"));
     line("pressure", format!("mean {}, largest {}", pressure[0], pressure[1]));
@@ -172,8 +186,8 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
             text += &format!(
                 "      {:<13}{:<13}{:<13}{:<13}{:.4}\n",
                 quantity(cycle.span[1], "s"),
-                quantity(cycle.dissipated_energy, "J"),
-                quantity(cycle.stiffness, "N/m"),
+                quantity(cycle.dissipated_energy, grid.units("J")),
+                quantity(cycle.stiffness, grid.units("N/m")),
                 format!("{:.3}°", cycle.loss_angle.to_degrees()),
                 cycle.loss_angle.tan()
             );
@@ -182,7 +196,7 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
     if let Some(states) = contact(reader, at)? {
         let time = reader.field_times()[reader.index(at)?];
         text += &format!("\ncontact at t = {}\n", quantity(time, "s"));
-        text += &shares(states.mapv(|state| state > 0).view(), COLUMNS, ly / lx);
+        text += &shares(states.mapv(|state| state > 0).view(), COLUMNS, grid.size()[1] / grid.size()[0]);
     }
     Ok(text)
 }

@@ -52,12 +52,12 @@ pub struct MaterialReport {
 pub struct Description {
     /// Title of the case.
     pub title: Option<String>,
-    /// Number of cells along x and y.
-    pub cells: [usize; 2],
-    /// Size of the domain \[m\].
-    pub size: [f64; 2],
-    /// Size of a cell \[m\].
-    pub spacing: [f64; 2],
+    /// Number of cells along x and y; of a line along x.
+    pub cells: Vec<usize>,
+    /// Size of the domain \[m\], likewise.
+    pub size: Vec<f64>,
+    /// Size of a cell \[m\], likewise.
+    pub spacing: Vec<f64>,
     /// "free" or "periodic".
     pub boundary: &'static str,
     /// The parts of the gap ("sphere", "self-affine", a file's path).
@@ -185,9 +185,9 @@ impl Case {
         let field_bytes: u64 = self.output.fields.iter().map(|field| field.bytes()).sum();
         Description {
             title: self.title.clone(),
-            cells: self.grid.cells(),
-            size: self.grid.size(),
-            spacing: self.grid.spacing(),
+            cells: self.grid.cells()[..self.grid.dimensions()].to_vec(),
+            size: self.grid.extents().to_vec(),
+            spacing: self.grid.cell_sides().collect(),
             boundary: choice::word(&self.boundary),
             surfaces: self.surfaces.iter().map(name).collect(),
             preparation: self.surfaces.iter().filter_map(preparation).collect(),
@@ -222,8 +222,8 @@ impl Case {
     }
 
     fn layer_report(&self, layers: &Layered, creep: &Creep) -> LayerReport {
-        let longest = self.grid.size().into_iter().fold(0.0, f64::max);
-        let shortest = 2.0 * self.grid.spacing().into_iter().fold(0.0, f64::max);
+        let longest = self.grid.longest_side();
+        let shortest = 2.0 * self.grid.cell_sides().fold(0.0, f64::max);
         let wave = |length: f64| {
             let q = std::f64::consts::TAU / length;
             let unit = 0.5 * q * layers.symbol(q, 0.0);

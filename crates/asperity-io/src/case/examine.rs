@@ -34,13 +34,13 @@ pub struct Inputs {
     pub surfaces: Vec<SurfaceInput>,
     /// The moduli of the bodies.
     pub moduli: Vec<ModulusInput>,
-    /// Largest load \[N\], where a load or a pressure is prescribed.
+    /// Largest load \[N, on a line N/m\], where a load or a pressure is prescribed.
     pub largest_load: Option<f64>,
     /// The same over the domain \[Pa\].
     pub largest_mean_pressure: Option<f64>,
     /// Largest approach \[m\], where that is prescribed.
     pub largest_approach: Option<f64>,
-    /// Expected radius of a round contact right after the load and at the end \[m\].
+    /// Expected radius of a round contact, half the width of a line contact, right after the load and at the end \[m\].
     pub expected_contact_radius: Option<[f64; 2]>,
     /// Expected share of the domain in contact right after the load and at the end.
     pub expected_contact_share: Option<[f64; 2]>,
@@ -55,10 +55,11 @@ pub struct Inputs {
 pub struct SurfaceInput {
     /// "sphere", a file's path, ...
     pub name: String,
-    /// Radii along x and y \[m\], of spheres, ellipsoids and round punches; null where infinite.
+    /// Radii along x and y \[m\], of spheres, ellipsoids, cylinders and round punches; null where infinite. Of a punch on a line
+    /// the first is half its width.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub radius: Option<[f64; 2]>,
-    /// Slope of a cone.
+    /// Slope of a cone or wedge.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub slope: Option<f64>,
     /// Sq: rms height about the mean \[m\], of rough surfaces and waves.
@@ -143,7 +144,7 @@ impl Case {
         match expected.contact {
             Some(Contact::Round(radii)) => {
                 inputs.expected_contact_radius = Some(radii);
-                let cell = simulation.grid.spacing().into_iter().fold(0.0, f64::max);
+                let cell = simulation.grid.cell_sides().fold(0.0, f64::max);
                 inputs.expected_cells_across = Some(2.0 * radii[1] / cell);
             }
             Some(Contact::Share(shares)) => inputs.expected_contact_share = Some(shares),
@@ -170,11 +171,16 @@ fn surface(grid: &asperity::Grid, part: &Part) -> SurfaceInput {
     let (name, radius, slope) = match part {
         Part::Shape { shape, .. } => {
             let radius = match shape {
+                Shape::FlatPunch(Punch::Circle { radius }) if grid.is_line() => Some([*radius, f64::INFINITY]),
                 Shape::Sphere { radius } | Shape::FlatPunch(Punch::Circle { radius }) => Some([*radius; 2]),
+                Shape::Cylinder { radius } => Some([*radius, f64::INFINITY]),
                 Shape::Ellipsoid { radius_x, radius_y } => Some([*radius_x, *radius_y]),
                 _ => None,
             };
-            let slope = if let Shape::Cone { slope } = shape { Some(*slope) } else { None };
+            let slope = match shape {
+                Shape::Cone { slope } | Shape::Wedge { slope } => Some(*slope),
+                _ => None,
+            };
             (shape.name().to_owned(), radius, slope)
         }
         Part::SelfAffine(_) | Part::Synthesis(_) => ("self-affine".to_owned(), None, None),

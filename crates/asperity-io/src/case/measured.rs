@@ -87,8 +87,21 @@ impl Measured {
     /// A sentence: the file cannot be read, a step fails, or the surface does not fit the grid.
     pub fn part(&self, grid: &Grid) -> Result<Part, String> {
         let prepared = self.prepared(Some(grid.cells()))?;
-        let ([mx, my], [nx, ny]) = (prepared.surface.grid().cells(), grid.cells());
         let name = self.path.display().to_string();
+        let line = prepared.surface.grid().is_line();
+        if line != grid.is_line() {
+            return Err(match line {
+                true => format!(
+                    "{name} holds a profile, but the domain is a plane; a profile is for a line contact, with one value in \
+                     domain.cells and domain.size"
+                ),
+                false => format!(
+                    "{name} holds a surface over a plane, but the domain is a line of cells; give domain.cells and domain.size \
+                     two values, or the file of a profile with two columns, position and height"
+                ),
+            });
+        }
+        let ([mx, my], [nx, ny]) = (prepared.surface.grid().cells(), grid.cells());
         let (size, domain) = (prepared.surface.grid().size(), grid.size());
         let agree = |axis: usize| (size[axis] - domain[axis]).abs() <= SAME * domain[axis];
         if !(agree(0) && agree(1)) {

@@ -5,7 +5,7 @@ use ndarray::Array2;
 use serde_json::Value;
 
 use super::error::Result;
-use crate::store::{At, FieldKind, Reader, coordinates};
+use crate::store::{At, FieldKind, Reader, Series, coordinates};
 
 /// A result as variables over dimensions.
 pub(super) struct Contents<'a> {
@@ -63,7 +63,12 @@ impl<'a> Contents<'a> {
         let grid = &reader.header().grid;
         let [nx, ny] = grid.cells();
         let rows = reader.rows()?;
-        let mut dimensions = vec![("time", rows.len()), ("field_time", instants.len()), ("x", nx), ("y", ny)];
+        let mut dimensions = vec![("time", rows.len()), ("field_time", instants.len()), ("x", nx)];
+        // A line has no dimension y.
+        let over: &[usize] = if grid.is_line() { &[X] } else { &[X, Y] };
+        if !grid.is_line() {
+            dimensions.push(("y", ny));
+        }
         let mut variables = Vec::new();
         let mut add = |name, units, long_name, dimensions: &[usize], data| {
             variables.push(Variable { name, units, long_name, dimensions: dimensions.to_vec(), data });
@@ -80,25 +85,28 @@ impl<'a> Contents<'a> {
         }
         for column in reader.header().quantities.iter().filter(|column| column.quantity.is_histogram()) {
             let (kind, place) = (column.quantity, dimensions.len());
-            for (n, (series, numbers)) in coordinates(column).into_iter().enumerate() {
+            for (n, (series, numbers)) in coordinates(column, grid).into_iter().enumerate() {
                 dimensions.push((series.name, numbers.len()));
                 add(series.name, series.units, series.long_name, &[place + n], Data::Reals(numbers));
             }
             let (_, rows) = reader.histogram(kind)?;
             let numbers = rows.into_raw_vec_and_offset().0;
-            add(kind.name(), kind.units(), kind.long_name(), &[TIME, place], Data::Reals(numbers));
+            let series = Series::of_quantity(kind, grid);
+            add(series.name, series.units, series.long_name, &[TIME, place], Data::Reals(numbers));
         }
         let times = instants.iter().map(|index| reader.field_times()[*index]).collect();
         add("field_time", "s", "time of the fields", &[FIELD_TIME], Data::Reals(times));
         let steps = instants.iter().map(|index| count(reader.field_steps()[*index])).collect();
         add("field_step", "1", "row of the fields", &[FIELD_TIME], Data::Counts(steps));
         let x = (0..nx).map(|i| grid.x(i)).collect();
-        let y = (0..ny).map(|j| grid.y(j)).collect();
         add("x", "m", "x, centres of the cells", &[X], Data::Reals(x));
-        add("y", "m", "y, centres of the cells", &[Y], Data::Reals(y));
-        add("initial_gap", "m", "undeformed gap", &[X, Y], Data::InitialGap);
+        if !grid.is_line() {
+            let y = (0..ny).map(|j| grid.y(j)).collect();
+            add("y", "m", "y, centres of the cells", &[Y], Data::Reals(y));
+        }
+        add("initial_gap", "m", "undeformed gap", over, Data::InitialGap);
         for kind in fields {
-            let over = [FIELD_TIME, X, Y];
+            let over = [&[FIELD_TIME], over].concat();
             add(kind.name(), kind.units(), kind.long_name(), &over, Data::Field(*kind));
         }
         if let Some(set) = reader.stress() {

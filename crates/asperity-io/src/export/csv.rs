@@ -1,12 +1,12 @@
 //! Comma-separated values (RFC 4180), for spreadsheets.
 //!
 //! One row per step under a line of names with units. Chosen fields go to files beside it, as matrices: the
-//! first line holds y, the first column x, in metres.
+//! first line holds y, the first column x, in metres; of a line contact, as two columns, x and the value.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::contents::{Contents, Data, Map, TIME};
+use super::contents::{Contents, Data, Map, TIME, Variable};
 use super::error::{Result, WriteError};
 use super::output::{self, Output};
 
@@ -26,9 +26,10 @@ pub(super) fn export(contents: &Contents<'_>, path: &Path, force: bool) -> Resul
     maps.iter().try_for_each(|(.., path)| output::check(path, force))?;
     let mut made = output::file(path, force, |file| series(contents, file))?;
     for (variable, n, path) in &maps {
+        let heading = named(variable);
         made.extend(output::file(path, force, |file| match contents.map(&variable.data, *n)? {
-            Some(Map::Real(map)) => matrix(contents, file, |i, j| number(map[(i, j)])),
-            Some(Map::Byte(map)) => matrix(contents, file, |i, j| map[(i, j)].to_string()),
+            Some(Map::Real(map)) => matrix(contents, file, &heading, |i, j| number(map[(i, j)])),
+            Some(Map::Byte(map)) => matrix(contents, file, &heading, |i, j| map[(i, j)].to_string()),
             None => Ok(()),
         })?);
     }
@@ -37,11 +38,7 @@ pub(super) fn export(contents: &Contents<'_>, path: &Path, force: bool) -> Resul
 
 fn series(contents: &Contents<'_>, file: &mut Output) -> Result<(), WriteError> {
     let columns: Vec<_> = contents.variables.iter().filter(|v| v.dimensions == [TIME]).collect();
-    let names = columns.iter().map(|v| match v.units {
-        "1" => v.name.to_owned(),
-        units => format!("{} [{units}]", v.name),
-    });
-    line(file, names)?;
+    line(file, columns.iter().map(|variable| named(variable)))?;
     for row in 0..contents.dimensions[TIME].1 {
         line(
             file,
@@ -55,13 +52,27 @@ fn series(contents: &Contents<'_>, file: &mut Output) -> Result<(), WriteError> 
     Ok(())
 }
 
+/// "pressure [Pa]".
+fn named(variable: &Variable) -> String {
+    match variable.units {
+        "1" => variable.name.to_owned(),
+        units => format!("{} [{units}]", variable.name),
+    }
+}
+
+/// A map as a matrix; on a line a column of places and one of values.
 fn matrix(
     contents: &Contents<'_>,
     file: &mut Output,
+    heading: &str,
     cell: impl Fn(usize, usize) -> String,
 ) -> Result<(), WriteError> {
     let grid = &contents.reader().header().grid;
     let [nx, ny] = grid.cells();
+    if grid.is_line() {
+        line(file, ["x [m]".to_owned(), heading.to_owned()].into_iter())?;
+        return (0..nx).try_for_each(|i| line(file, [number(grid.x(i)), cell(i, 0)].into_iter()));
+    }
     let corner = std::iter::once("x [m] / y [m]".to_owned());
     line(file, corner.chain((0..ny).map(|j| number(grid.y(j)))))?;
     for i in 0..nx {

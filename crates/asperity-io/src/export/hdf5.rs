@@ -77,10 +77,16 @@ fn write_data(contents: &Contents<'_>, data: &Data, data_set: &H5Dataset) -> Res
         Data::Reals(reals) => data_set.write_raw(reals)?,
         Data::Counts(counts) => data_set.write_raw(counts)?,
         data => {
+            // Axes before those of a map.
+            let lead = match data {
+                Data::Field(_) => 1,
+                Data::Stress(_) => 2,
+                _ => 0,
+            };
             for n in 0..contents.maps(data) {
                 match contents.map(data, n)? {
-                    Some(Map::Real(map)) => write_map(data_set, n, map.as_slice().unwrap_or_default())?,
-                    Some(Map::Byte(map)) => write_map(data_set, n, map.as_slice().unwrap_or_default())?,
+                    Some(Map::Real(map)) => write_map(data_set, lead, n, map.as_slice().unwrap_or_default())?,
+                    Some(Map::Byte(map)) => write_map(data_set, lead, n, map.as_slice().unwrap_or_default())?,
                     None => {}
                 }
             }
@@ -89,13 +95,12 @@ fn write_data(contents: &Contents<'_>, data: &Data, data_set: &H5Dataset) -> Res
     Ok(())
 }
 
-/// Writes the `n`th map of a data set: all of it, or its part at index `n` of the axes before the last two.
-fn write_map<T: H5Type>(data_set: &H5Dataset, n: usize, map: &[T]) -> Result<(), Hdf5Error> {
+/// Writes the `n`th map of a data set: all of it, or its part at index `n` of its first `lead` axes.
+fn write_map<T: H5Type>(data_set: &H5Dataset, lead: usize, n: usize, map: &[T]) -> Result<(), Hdf5Error> {
     let mut starts = vec![0; data_set.ndims()];
     let mut counts = data_set.shape();
-    let depths = if counts.len() == 4 { counts[1] } else { 1 };
-    for (axis, index) in [n / depths, n % depths].into_iter().enumerate().take(counts.len().saturating_sub(2))
-    {
+    let depths = if lead == 2 { counts[1] } else { 1 };
+    for (axis, index) in [n / depths, n % depths].into_iter().enumerate().take(lead) {
         starts[axis] = index;
         counts[axis] = 1;
     }

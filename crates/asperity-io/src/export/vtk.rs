@@ -103,7 +103,9 @@ fn image(contents: &Contents<'_>, path: &Path, variables: &[&Variable], n: usize
             file,
             r#"<VTKFile type="ImageData" version="1.0" byte_order="LittleEndian" header_type="UInt64">"#
         )?;
-        let extent = format!("0 {nx} 0 {ny} 0 0");
+        // A line of cells has no extent along y.
+        let (my, dy) = if grid.is_line() { (0, dx) } else { (ny, dy) };
+        let extent = format!("0 {nx} 0 {my} 0 0");
         writeln!(
             file,
             r#"  <ImageData WholeExtent="{extent}" Origin="0 0 0" Spacing="{dx:e} {dy:e} {dx:e}">"#

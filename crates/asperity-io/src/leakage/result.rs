@@ -51,6 +51,9 @@ pub fn of_result(
     if !reader.header().fields.contains(&FieldKind::Gap) {
         return Err(reader.no_field(FieldKind::Gap).into());
     }
+    if reader.header().grid.is_line() {
+        return Err(reader.on_line("gap over a plane, which leakage needs").into());
+    }
     let times = reader.field_times().to_vec();
     if times.is_empty() {
         return Err(reader.no_rows().into());

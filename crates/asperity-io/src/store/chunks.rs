@@ -106,7 +106,7 @@ impl Chunks {
         Ok(())
     }
 
-    /// Writes a map over the last two dimensions; `lead` holds the index of the dimension before them.
+    /// Writes a map over the last two dimensions, or the last one of a line; `lead` holds the index of the dimensions before.
     pub(super) fn write_map<T>(&self, lead: &[u64], map: ArrayView2<'_, T>) -> Result<()>
     where
         T: Element + PartialEq + Copy + Send + Sync,
@@ -115,7 +115,7 @@ impl Chunks {
         for block in &blocks {
             let path = self.path(&block.index);
             let directory = path.parent().unwrap_or(&self.root);
-            if block.index.last() == Some(&0) {
+            if block.y.start == 0 {
                 fs::create_dir_all(directory).map_err(io("make", directory))?;
             }
         }
@@ -157,11 +157,13 @@ impl Chunks {
         Ok(map)
     }
 
-    /// The chunks that cover a map, and the sides of a chunk.
+    /// The chunks that cover a map, and the sides of a chunk. An array with one dimension after those of `lead` holds a line.
     fn blocks(&self, lead: &[u64], (nx, ny): (usize, usize)) -> (Vec<Block>, [usize; 2]) {
-        let sides = match self.chunk[..] {
-            [.., side_x, side_y] => [side_x, side_y],
-            _ => [nx, ny],
+        let own = self.chunk.get(lead.len()..).unwrap_or_default();
+        let (line, sides) = match *own {
+            [side] => (true, [side, 1]),
+            [side_x, side_y] => (false, [side_x, side_y]),
+            _ => (false, [nx, ny]),
         };
         let pieces = |cells: usize, side: usize| {
             (0..cells.div_ceil(side)).map(move |k| (k as u64, k * side..cells.min((k + 1) * side)))
@@ -169,7 +171,8 @@ impl Chunks {
         let mut blocks = Vec::new();
         for (i, x) in pieces(nx, sides[0]) {
             for (j, y) in pieces(ny, sides[1]) {
-                let index = lead.iter().copied().chain([i, j]).collect();
+                let place = [i, j].into_iter().take(if line { 1 } else { 2 });
+                let index = lead.iter().copied().chain(place).collect();
                 blocks.push(Block { index, x: x.clone(), y });
             }
         }

@@ -37,6 +37,13 @@ pub struct Header {
     pub setup: Map<String, Value>,
 }
 
+impl Header {
+    /// Whether it is a line contact of half-spaces without period, whose displacements are known up to a constant.
+    pub fn is_free_line(&self) -> bool {
+        self.grid.is_line() && self.setup.get("boundary").and_then(Value::as_str) != Some("periodic")
+    }
+}
+
 /// How far a run has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Status {
@@ -109,8 +116,7 @@ impl Default for Progress {
 /// Attributes of the group. Flat, of numbers and text only (but for the findings), so that xarray can pass them on to
 /// NetCDF.
 pub(super) fn attributes(header: &Header) -> Map<String, Value> {
-    let [nx, ny] = header.grid.cells();
-    let [lx, ly] = header.grid.size();
+    let (cells, size) = (header.grid.cells(), header.grid.extents());
     let fields: Vec<_> = header.fields.iter().map(|kind| kind.name()).collect();
     let mut map = Map::new();
     let mut put = |key: &str, value: Value| map.insert(key.to_owned(), value);
@@ -120,8 +126,9 @@ pub(super) fn attributes(header: &Header) -> Map<String, Value> {
     put("version", json!(header.version));
     put("case", json!(header.case_text));
     put("setup", json!(Value::Object(header.setup.clone()).to_string()));
-    put("cells", json!([nx, ny]));
-    put("size", json!([lx, ly]));
+    // One number each of a line.
+    put("cells", json!(cells[..header.grid.dimensions()]));
+    put("size", json!(size));
     put("fields", json!(fields.join(" ")));
     if !header.quantities.is_empty() {
         let columns = header.quantities.iter();
@@ -169,22 +176,23 @@ pub(super) fn parse(
     let missing = |key: &str| corrupt(file, format_args!("the attribute `{key}` is missing or malformed"));
     let text = |key: &str| attributes.get(key).and_then(Value::as_str).ok_or_else(|| missing(key));
     let count = |key: &str| attributes.get(key).and_then(Value::as_u64);
-    let pair = |key: &str| match attributes.get(key).and_then(Value::as_array).map(Vec::as_slice) {
-        Some([a, b]) => Ok((a.clone(), b.clone())),
-        _ => Err(missing(key)),
-    };
+    let list = |key: &str| attributes.get(key).and_then(Value::as_array).map(Vec::as_slice);
 
     let version = text("version")?.to_owned();
     let schema = count("schema").ok_or_else(|| missing("schema"))?;
     if schema > SCHEMA {
         return Err(StoreError::Newer { path: path.to_owned(), version, schema, known: SCHEMA });
     }
-    let (nx, ny) = pair("cells")?;
-    let (lx, ly) = pair("size")?;
-    let (Some(nx), Some(ny)) = (nx.as_u64(), ny.as_u64()) else { return Err(missing("cells")) };
-    let (Some(lx), Some(ly)) = (lx.as_f64(), ly.as_f64()) else { return Err(missing("size")) };
-    let cells = [usize::try_from(nx), usize::try_from(ny)].map(|n| n.unwrap_or(usize::MAX));
-    let grid = Grid::new(cells, [lx, ly]).map_err(|error| corrupt(file, error))?;
+    let number = |value: &Value| Some(usize::try_from(value.as_u64()?).unwrap_or(usize::MAX));
+    let cells: Option<Vec<usize>> = list("cells").and_then(|list| list.iter().map(number).collect());
+    let size: Option<Vec<f64>> = list("size").and_then(|list| list.iter().map(Value::as_f64).collect());
+    let grid = match (cells.as_deref(), size.as_deref()) {
+        (Some(&[n]), Some(&[length])) => Grid::line(n, length),
+        (Some(&[nx, ny]), Some(&[lx, ly])) => Grid::new([nx, ny], [lx, ly]),
+        (Some([_] | [_, _]), _) => return Err(missing("size")),
+        _ => return Err(missing("cells")),
+    };
+    let grid = grid.map_err(|error| corrupt(file, error))?;
     let fields = text("fields")?
         .split_whitespace()
         .map(|name| FieldKind::from_name(name).ok_or_else(|| missing("fields")))

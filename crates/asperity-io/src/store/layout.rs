@@ -1,5 +1,6 @@
 //! Names, units, dimensions and chunks of the arrays of a result.
 
+use asperity::Grid;
 use asperity::march::Row;
 use asperity::quantities::{Column as Quantity, Quantity as Kind};
 use schemars::JsonSchema;
@@ -15,6 +16,8 @@ pub(super) const ROWS_PER_CHUNK: usize = 4096;
 const HISTOGRAMS_PER_CHUNK: usize = 256;
 /// Longest side of a field's chunk: 512 KiB of doubles, enough chunks of a map for every core.
 const LONGEST_SIDE: usize = 256;
+/// Longest chunk of a field on a line: as many bytes.
+const LONGEST_LINE: usize = LONGEST_SIDE * LONGEST_SIDE;
 
 /// A field on the grid that a result may keep over time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, JsonSchema)]
@@ -107,15 +110,34 @@ pub struct Series {
     pub long_name: &'static str,
 }
 
-impl From<&Scalar> for Series {
-    fn from(scalar: &Scalar) -> Self {
-        Series { name: scalar.name, units: scalar.units, long_name: scalar.long_name }
+impl Series {
+    /// A scalar of a result: on a line forces and areas are per length, and what is measured from the end of a free line says so.
+    pub(super) fn of_scalar(scalar: &Scalar, header: &Header) -> Series {
+        let long_name = match scalar.name {
+            "approach" if header.is_free_line() => {
+                "rigid-body approach, measured from the end of the domain (known up to a constant on a free line)"
+            }
+            "contact_area" if header.grid.is_line() => "contact length",
+            "contact_area_corrected" if header.grid.is_line() => "contact length (without correction on a line)",
+            "contact_fraction" if header.grid.is_line() => "contact length over length of the domain",
+            "capped_area" if header.grid.is_line() => "length at the hardness",
+            "load" if header.grid.is_line() => "normal load per length along y",
+            "mean_pressure" if header.grid.is_line() => "load over length of the domain",
+            _ => scalar.long_name,
+        };
+        Series { name: scalar.name, units: header.grid.units(scalar.units), long_name }
     }
-}
 
-impl From<Kind> for Series {
-    fn from(kind: Kind) -> Self {
-        Series { name: kind.name(), units: kind.units(), long_name: kind.long_name() }
+    /// A quantity of a result. The border of a contact on a line are its ends, which are counted.
+    pub(crate) fn of_quantity(kind: Kind, grid: &Grid) -> Series {
+        let (units, long_name) = match kind {
+            Kind::ContactPerimeter if grid.is_line() => ("1", "number of ends of the contact"),
+            Kind::LargestSpot if grid.is_line() => ("m", "length of the largest contact spot"),
+            Kind::MeanSpot if grid.is_line() => ("m", "mean length of a contact spot"),
+            Kind::SpotHistogram if grid.is_line() => ("1", "number of contact spots per class of length"),
+            _ => (grid.units(kind.units()), kind.long_name()),
+        };
+        Series { name: kind.name(), units, long_name }
     }
 }
 
@@ -151,14 +173,15 @@ pub(crate) fn bins(kind: Kind) -> Option<Bins> {
 }
 
 /// The coordinates of a histogram, with their numbers: middles, then ends.
-pub(crate) fn coordinates(column: &Quantity) -> Vec<(Series, Vec<f64>)> {
-    let Some(bins) = bins(column.quantity) else { return vec![] };
+pub(crate) fn coordinates(column: &Quantity, grid: &Grid) -> Vec<(Series, Vec<f64>)> {
+    let Some(Bins { middles: of_middles, edges: of_edges }) = bins(column.quantity) else { return vec![] };
+    let on = |series: Series| Series { units: grid.units(series.units), ..series };
     let middle = |pair: &[f64]| match column.quantity {
         Kind::SpotHistogram => (pair[0] * pair[1]).sqrt(),
         _ => 0.5 * (pair[0] + pair[1]),
     };
     let middles = column.edges.windows(2).map(middle).collect();
-    vec![(bins.middles, middles), (bins.edges, column.edges.clone())]
+    vec![(on(of_middles), middles), (on(of_edges), column.edges.clone())]
 }
 
 /// Where a row keeps a scalar.
@@ -336,34 +359,32 @@ pub(super) const LEVEL: u8 = 1;
 
 /// All arrays of a result with `rows` rows and `maps` instants of its fields.
 pub(super) fn arrays(header: &Header, rows: usize, maps: usize) -> Vec<ArraySpec> {
-    let [nx, ny] = header.grid.cells();
+    let grid = &header.grid;
+    let [nx, ny] = grid.cells();
     let mut arrays: Vec<_> = SCALARS
         .iter()
-        .map(|s| series(s.name, s.entry.data_type(), "time", rows, s.units, s.long_name))
+        .map(|s| {
+            let Series { name, units, long_name } = Series::of_scalar(s, header);
+            series(name, s.entry.data_type(), "time", rows, units, long_name)
+        })
         .collect();
     for column in &header.quantities {
         let kind = column.quantity;
+        let Series { name, units, long_name } = Series::of_quantity(kind, grid);
         match dimensions(kind) {
-            None => arrays.push(series(
-                kind.name(),
-                DataType::Float64,
-                "time",
-                rows,
-                kind.units(),
-                kind.long_name(),
-            )),
+            None => arrays.push(series(name, DataType::Float64, "time", rows, units, long_name)),
             Some(dimensions) => {
                 arrays.push(ArraySpec {
-                    name: kind.name(),
+                    name,
                     data_type: DataType::Float64,
                     dimensions,
                     shape: vec![rows, column.width()],
                     chunk: vec![HISTOGRAMS_PER_CHUNK, column.width()],
                     compressed: false,
-                    attributes: json!({"units": kind.units(), "long_name": kind.long_name()}),
+                    attributes: json!({"units": units, "long_name": long_name}),
                 });
                 arrays.extend(
-                    coordinates(column).into_iter().map(|(series, numbers)| line(&series, numbers.len())),
+                    coordinates(column, grid).into_iter().map(|(series, numbers)| line(&series, numbers.len())),
                 );
             }
         }
@@ -371,18 +392,28 @@ pub(super) fn arrays(header: &Header, rows: usize, maps: usize) -> Vec<ArraySpec
     arrays.push(series("field_time", DataType::Float64, "field_time", maps, "s", "time of the fields"));
     arrays.push(series("field_step", DataType::Int64, "field_time", maps, "1", "row of the fields"));
     arrays.push(coordinate("x", nx, "x, centres of the cells"));
-    arrays.push(coordinate("y", ny, "y, centres of the cells"));
+    // Nothing changes along y of a line: it has no such dimension.
+    let (shape, chunk) = match grid.is_line() {
+        true => (vec![nx], vec![nx.div_ceil(nx.div_ceil(LONGEST_LINE))]),
+        false => (vec![nx, ny], vec![side(nx), side(ny)]),
+    };
+    if !grid.is_line() {
+        arrays.push(coordinate("y", ny, "y, centres of the cells"));
+    }
     arrays.push(ArraySpec {
         name: "initial_gap",
         data_type: DataType::Float64,
-        dimensions: &["x", "y"],
-        shape: vec![nx, ny],
-        chunk: vec![side(nx), side(ny)],
+        dimensions: if grid.is_line() { &["x"] } else { &["x", "y"] },
+        shape: shape.clone(),
+        chunk: chunk.clone(),
         compressed: true,
         attributes: json!({"units": "m", "long_name": "undeformed gap"}),
     });
     for kind in FieldKind::ALL.into_iter().filter(|kind| header.fields.contains(kind)) {
         let mut attributes = json!({"units": kind.units(), "long_name": kind.long_name()});
+        if kind == FieldKind::Displacement && header.is_free_line() {
+            attributes["long_name"] = json!("normal displacement, measured from the end of the domain");
+        }
         if kind == FieldKind::Contact {
             attributes["flag_values"] = json!([0, 1, 2]);
             attributes["flag_meanings"] = json!("out_of_contact in_contact at_hardness");
@@ -390,9 +421,9 @@ pub(super) fn arrays(header: &Header, rows: usize, maps: usize) -> Vec<ArraySpec
         arrays.push(ArraySpec {
             name: kind.name(),
             data_type: if kind == FieldKind::Contact { DataType::UInt8 } else { DataType::Float64 },
-            dimensions: &["field_time", "x", "y"],
-            shape: vec![maps, nx, ny],
-            chunk: vec![1, side(nx), side(ny)],
+            dimensions: if grid.is_line() { &["field_time", "x"] } else { &["field_time", "x", "y"] },
+            shape: [&[maps], shape.as_slice()].concat(),
+            chunk: [&[1], chunk.as_slice()].concat(),
             compressed: true,
             attributes,
         });

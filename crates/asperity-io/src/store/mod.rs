@@ -14,6 +14,9 @@
 //! | `mises_by_depth`, ... | `field_time`, `depth` | its largest values at each depth |
 //! | `stress_mises`, ... | `field_time`, `depth`, `x`, `y` | stress fields that were asked for |
 //!
+//! A line contact has no dimension `y`: its fields are over (`field_time`, `x`) and `initial_gap` over `x`, forces and areas are
+//! per length along y, and the attributes `cells` and `size` hold one number each.
+//!
 //! Numbers keep their bits. Each array has `units` and `long_name`; the attributes of the group hold
 //! the case file as text (`case`), its numbers as JSON text (`setup`), the `version`, the `status` and the
 //! work done. `checkpoint` holds the state from which a stopped run goes on.

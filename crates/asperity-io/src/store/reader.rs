@@ -130,11 +130,14 @@ impl Reader {
         Ok(rows)
     }
 
-    /// What each row has one number of: the [`SCALARS`], and the quantities that were asked for.
+    /// What each row has one number of: the [`SCALARS`], and the quantities that were asked for; with the units that they have on
+    /// the grid of the result.
     pub fn scalars(&self) -> Vec<Series> {
-        let asked = self.header().quantities.iter().map(|column| column.quantity);
+        let header = self.header();
+        let asked = header.quantities.iter().map(|column| column.quantity);
         let asked = asked.filter(|quantity| !quantity.is_histogram());
-        SCALARS.iter().map(Series::from).chain(asked.map(Series::from)).collect()
+        let asked = asked.map(|quantity| Series::of_quantity(quantity, &header.grid));
+        SCALARS.iter().map(|scalar| Series::of_scalar(scalar, header)).chain(asked).collect()
     }
 
     /// A histogram that was asked for: the ends of its bins, and its rows (shape: rows, bins).
@@ -368,6 +371,11 @@ impl Reader {
     pub(super) fn spec(&self, name: &str) -> Result<ArraySpec> {
         let spec = self.document.arrays().into_iter().find(|spec| spec.name == name);
         spec.ok_or_else(|| self.missing(format!("array `{name}`"), "the arrays of a result".into()))
+    }
+
+    /// The error of a line contact that lacks what needs a plane.
+    pub(crate) fn on_line(&self, what: &str) -> StoreError {
+        self.missing(what.into(), "a line contact".into())
     }
 
     pub(crate) fn missing(&self, what: String, available: String) -> StoreError {

@@ -103,7 +103,10 @@ fn compare(path: &Path, stored: &Header, given: &Header) -> Result<()> {
     if stored.grid != given.grid {
         let name = |header: &Header| {
             let ([nx, ny], [lx, ly]) = (header.grid.cells(), header.grid.size());
-            format!("{nx} x {ny} cells over {lx:e} m x {ly:e} m")
+            match header.grid.is_line() {
+                true => format!("a line of {nx} cells over {lx:e} m"),
+                false => format!("{nx} x {ny} cells over {lx:e} m x {ly:e} m"),
+            }
         };
         return mismatch("the grid", name(stored), name(given));
     }

@@ -65,6 +65,9 @@ pub(crate) fn boundary(reader: &Reader) -> Boundary {
 
 /// What will be stored: the depths and the instants of the plan for this result.
 fn set(reader: &Reader, plan: &StressPlan) -> Result<StressSet, StoreError> {
+    if reader.header().grid.is_line() {
+        return Err(reader.on_line("pressure over a plane, which the stress below the surface needs"));
+    }
     if !reader.header().fields.contains(&FieldKind::Pressure) {
         return Err(reader.no_field(FieldKind::Pressure));
     }

@@ -4,6 +4,7 @@ mod errors;
 mod examples;
 mod hostile;
 mod layers;
+mod line;
 mod materials;
 mod measured;
 mod values;

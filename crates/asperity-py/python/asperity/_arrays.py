@@ -52,6 +52,34 @@ def pair(what: str, value: Any) -> tuple[float, float]:
     return number(f"{what} along x", x), number(f"{what} along y", y)
 
 
+def lengths(what: str, value: Any) -> tuple[float, ...]:
+    """Numbers along the directions of a grid: two, along x and y, or one of a line, which may stand without a list."""
+    if isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool):
+        return (number(what, value),)
+    if not isinstance(value, (str, bytes)) and np.ndim(value) == 1 and len(value) == 1:
+        return (number(what, value[0]),)
+    try:
+        return pair(what, value)
+    except CaseError:
+        raise CaseError(f"{what} is {value!r}, but must be two numbers, along x and y, or one for a line of cells") from None
+
+
+def cell_counts(what: str, value: Any) -> tuple[int, ...]:
+    """Whole numbers along the directions of a grid, as :func:`lengths`."""
+    found = lengths(what, value)
+    # The numbers as they were given keep all their digits.
+    given = [value] if np.ndim(value) == 0 else list(value)
+    return tuple(count(what, n) for n in given[: len(found)])
+
+
+def along(what: str, value: Any, dimensions: int, along_y: float = 0.0) -> list[float]:
+    """Two numbers of a plane; of a line the one along x, and `along_y`."""
+    found = lengths(what, value)
+    if len(found) != dimensions and not (dimensions == 1 and len(found) == 2 and found[1] == along_y):
+        raise CaseError(f"{what} is {value!r}, but must be {'one number on a line' if dimensions == 1 else 'two numbers, along x and y'}")
+    return [found[0], along_y] if dimensions == 1 else list(found)
+
+
 def counts(what: str, value: Any) -> tuple[int, int]:
     """Two whole numbers, along x and y."""
     x, y = pair(what, value)
@@ -65,18 +93,40 @@ def plain(array: Any) -> Floats:
     return out
 
 
-def field(what: str, value: Any) -> Floats:
-    """A two-dimensional array of real numbers as C-ordered float64; no copy where it is one already."""
+def field(what: str, value: Any, line: bool = False) -> Floats:
+    """A two-dimensional array of real numbers as C-ordered float64; no copy where it is one already. With `line` one of one
+    dimension counts too."""
     mask = np.ma.getmask(value)
     array = np.asarray(np.ma.getdata(value))
     if array.dtype.kind not in "fiu":
         raise CaseError(f"{what} has dtype {array.dtype}, but must hold real numbers")
-    if array.ndim != 2 or array.size == 0:
-        raise CaseError(f"{what} has shape {array.shape}, but must be two-dimensional, (nx, ny)")
+    if array.ndim not in ((1, 2) if line else (2,)) or array.size == 0:
+        raise CaseError(
+            f"{what} has shape {array.shape}, but must be two-dimensional, (nx, ny)" + (", or (n,) for a line of cells" if line else "")
+        )
     out = plain(array)
     if mask is not np.ma.nomask and np.any(mask):
         out = np.where(mask, np.nan, out)
     return out
+
+
+def as_plane(array: Floats) -> Floats:
+    """The array as the core takes it: that of a line, (n,), as (n, 1)."""
+    return array.reshape(-1, 1) if array.ndim == 1 else array
+
+
+def size_of(what: str, array: Floats, size: Any) -> list[float]:
+    """The lengths of the domain [m] of an array: two of (nx, ny), one of (n,)."""
+    found = lengths("size", size)
+    if len(found) != array.ndim:
+        words = "two lengths, size=(Lx, Ly)" if array.ndim == 2 else "one length, size=(L,)"
+        raise CaseError(f"size is {size!r}, but {what} has shape {array.shape}, which needs {words}")
+    return list(found)
+
+
+def cells_of(array: Floats) -> str:
+    """In words: 128 x 64 cells, a line of 128 cells."""
+    return f"a line of {array.shape[0]} cells" if array.ndim == 1 else f"{array.shape[0]} x {array.shape[1]} cells"
 
 
 def line(what: str, value: Any) -> Floats:

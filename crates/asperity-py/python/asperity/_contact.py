@@ -11,13 +11,13 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, count, field, number, pair
+from ._arrays import Floats, as_plane, cells_of, count, field, number, size_of
 from ._surface import as_surface
 
 
 @dataclass(frozen=True, eq=False)
 class ElasticContact:
-    """The solution of one elastic contact, fields of shape (nx, ny)."""
+    """The solution of one elastic contact, fields of shape (nx, ny), of a line contact (n,)."""
 
     #: Pressure [Pa], positive in compression.
     pressure: Floats
@@ -25,11 +25,11 @@ class ElasticContact:
     displacement: Floats
     #: Gap of the deformed surfaces [m]; below zero where the pressure is cut off.
     gap: Floats
-    #: Load [N].
+    #: Load [N]; of a line contact per length [N/m].
     load: float
-    #: Approach [m].
+    #: Approach [m]; of a free line contact measured from the end of the domain.
     approach: float
-    #: Area of the cells with pressure [m^2].
+    #: Area of the cells with pressure [m^2]; of a line contact its length [m].
     contact_area: float
     #: Largest violation of the contact conditions over the mean displacement.
     residual: float
@@ -40,22 +40,22 @@ class ElasticContact:
     convolutions: int
 
     def _repr_html_(self) -> str:
-        nx, ny = self.pressure.shape
+        on_line = self.pressure.ndim == 1
         lines = [
-            ("load", f"{self.load:.6g} N"),
+            ("load", f"{self.load:.6g} {'N/m' if on_line else 'N'}"),
             ("approach", f"{self.approach:.6g} m"),
-            ("contact area", f"{self.contact_area:.6g} m²"),
+            ("contact length" if on_line else "contact area", f"{self.contact_area:.6g} {'m' if on_line else 'm²'}"),
             ("largest pressure", f"{self.pressure.max():.6g} Pa"),
             ("certified error", f"{self.certificate:.1e}"),
         ]
         rows = "".join(f"<tr><th style='text-align:left'>{a}</th><td>{b}</td></tr>" for a, b in lines)
-        return f"<b>Elastic contact</b>, {nx} x {ny} cells<table>{rows}</table>"
+        return f"<b>Elastic contact</b>, {cells_of(self.pressure)}<table>{rows}</table>"
 
     def __repr__(self) -> str:
-        nx, ny = self.pressure.shape
+        load, area = ("N/m", "length") if self.pressure.ndim == 1 else ("N", "area")
         return (
-            f"<ElasticContact: {nx} x {ny} cells, load {self.load:.4g} N, approach {self.approach:.4g} m, "
-            f"area {self.contact_area:.4g} m^2, certified error {self.certificate:.1e}>"
+            f"<ElasticContact: {cells_of(self.pressure)}, load {self.load:.4g} {load}, approach {self.approach:.4g} m, "
+            f"{area} {self.contact_area:.4g} {'m' if area == 'length' else 'm^2'}, certified error {self.certificate:.1e}>"
         )
 
 
@@ -65,7 +65,7 @@ def elastic(
     *,
     load: float | None = None,
     approach: float | None = None,
-    size: Sequence[float] | None = None,
+    size: float | Sequence[float] | None = None,
     hardness: float | npt.ArrayLike | None = None,
     boundary: str = "free",
     method: str = "projected-cg",
@@ -76,10 +76,11 @@ def elastic(
 
     Parameters
     ----------
-    gap : undeformed gap [m] as array (nx, ny), infinite where nothing can touch; or a Surface
+    gap : undeformed gap [m] as array (nx, ny), infinite where nothing can touch; or a Surface. An array (n,) is a line contact in
+        plane strain: nothing changes along y, and the load is per length [N/m]
     contact_modulus : E* [Pa], (1 - nu1^2)/E1 + (1 - nu2^2)/E2 = 1/E*
     load, approach : normal load [N] or approach [m], exactly one of them
-    size : lengths of the domain along x and y [m], where the gap is an array
+    size : lengths of the domain along x and y [m], of a line its length, where the gap is an array
     hardness : largest pressure [Pa], of all cells or as array (nx, ny)
     boundary : "free" or "periodic"
     method : "projected-cg" or "polonsky-keer"
@@ -103,19 +104,21 @@ def elastic(
         gap, size = surface.gap(), surface.size
     elif size is None:
         raise _core.CaseError("the gap is an array, so that its size in m is needed: size=(Lx, Ly)")
-    h0 = field("gap", gap)
-    cells = field("hardness", hardness) if hardness is not None and np.ndim(hardness) == 2 else None
+    h0 = field("gap", gap, line=True)
+    cells = field("hardness", hardness, line=True) if hardness is not None and np.ndim(hardness) == h0.ndim else None
     out = _core.elastic(
-        h0,
-        list(pair("size", size)),
+        as_plane(h0),
+        size_of("gap", h0, size),
         number("contact_modulus", contact_modulus),
         None if load is None else number("load", load),
         None if approach is None else number("approach", approach),
         math.inf if hardness is None or cells is not None else number("hardness", hardness),
-        cells,
+        None if cells is None else as_plane(cells),
         boundary,
         method,
         number("tolerance", tolerance),
         count("max_iterations", max_iterations),
     )
+    for name in ("pressure", "displacement"):
+        out[name] = out[name].reshape(h0.shape)
     return ElasticContact(gap=h0 + out["displacement"] - out["approach"], **out)

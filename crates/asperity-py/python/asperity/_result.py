@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from . import _core
-from ._arrays import Floats, number, plain
+from ._arrays import Floats, as_plane, cells_of, number, plain
 from ._core import CaseError
 from ._findings import Finding, findings_of
 
@@ -59,6 +59,18 @@ HISTOGRAMS: dict[str, tuple[str, str, str, str]] = {
 }
 
 
+#: Units on a line contact, where forces, areas and energies are per length along y.
+ON_LINE = {"N": "N/m", "m2": "m", "J": "J/m", "N/m": "N/m2"}
+
+
+def units_of(name: str, unit: str, line: bool) -> str:
+    """The unit of a number of a row, of a line contact where `line`."""
+    if not line:
+        return unit
+    # The border of a contact on a line are its ends.
+    return "1" if name == "contact_perimeter" else ON_LINE.get(unit, unit)
+
+
 class Cycle(NamedTuple):
     """One period of a cyclic load; made by :meth:`Result.cycles`."""
 
@@ -90,7 +102,7 @@ class Result:
         fields: dict[str, Any],
         field_steps: Any,
         initial_gap: Any,
-        size: tuple[float, float],
+        size: tuple[float, ...],
         attributes: dict[str, Any],
         path: str | None = None,
         histograms: dict[str, tuple[Floats, Floats]] | None = None,
@@ -106,7 +118,7 @@ class Result:
             np.asarray(table["time"])[self._field_steps] if field_times is None else np.asarray(field_times, dtype=np.float64)
         )
         self._initial_gap = initial_gap
-        self._size = (float(size[0]), float(size[1]))
+        self._size = tuple(float(length) for length in size)
         self._attributes = attributes
         self._path = path
         self._histograms = dict(histograms or {})
@@ -207,15 +219,27 @@ class Result:
         return [Cycle(*numbers) for numbers in found]
 
     @property
-    def size(self) -> tuple[float, float]:
-        """Lengths of the domain along x and y [m]."""
+    def size(self) -> tuple[float, ...]:
+        """Lengths of the domain along x and y [m]; of a line contact along x."""
         return self._size
 
     @property
-    def cells(self) -> tuple[int, int]:
-        """Number of cells along x and y."""
-        nx, ny = self.initial_gap.shape
-        return nx, ny
+    def is_line(self) -> bool:
+        """Whether it is a line contact: loads are per length along y [N/m], the contact area is a length [m], and fields have one
+        dimension."""
+        return len(self._size) == 1
+
+    @property
+    def cells(self) -> tuple[int, ...]:
+        """Number of cells along x and y; of a line contact along x."""
+        return self.initial_gap.shape
+
+    def units(self, name: str) -> str:
+        """The unit of a number of the rows by its name, "1" where it has none: "N" or, of a line contact, "N/m" of the load."""
+        known = {**ROW, **QUANTITIES}
+        if name not in known:
+            raise CaseError(f"{name!r} is no number of a row; there are {', '.join(known)}")
+        return units_of(name, known[name][0], self.is_line)
 
     @property
     def x(self) -> Floats:
@@ -225,18 +249,21 @@ class Result:
     @property
     def y(self) -> Floats:
         """Cell centres along y [m]."""
+        if self.is_line:
+            raise CaseError("a line contact has no y: nothing changes along it")
         return _centres(self.cells[1], self._size[1])
 
     @property
     def initial_gap(self) -> Floats:
         """Undeformed gap [m], shape (nx, ny)."""
         if isinstance(self._initial_gap, _core.Store):
-            self._initial_gap = self._initial_gap.initial_gap()
+            stored = self._initial_gap.initial_gap()
+            self._initial_gap = stored[:, 0] if self.is_line else stored
         gap: Floats = self._initial_gap
         return gap
 
     def field(self, name: str, *, time: float | None = None, index: int | None = None) -> Floats:
-        """A field of shape (nx, ny) at the stored time nearest to `time` [s], or with that index; default the last.
+        """A field of shape (nx, ny), of a line contact (n,), at the stored time nearest to `time` [s], or with that index; default the last.
 
         "pressure" [Pa], "gap", "displacement", "flattening" [m], "contact" (0 out of contact, 1 in contact, 2 at the hardness).
         """
@@ -273,6 +300,8 @@ class Result:
         setup = json.loads(self._attributes.get("setup") or "{}")
         if "layer_separable" in setup:
             raise CaseError("the stress below the surface is not computed for bodies of layers yet")
+        if self.is_line:
+            raise CaseError("the stress below the surface is not computed for line contacts yet")
         if poisson is None:
             known = setup.get("poisson") or []
             if not 0 <= body < max(len(known), 1):
@@ -289,12 +318,13 @@ class Result:
         import xarray
 
         rows = {
-            name: ("time", np.asarray(self._table[name]), {"units": unit, "long_name": words})
-            for name, (unit, words) in {**ROW, **QUANTITIES}.items()
+            name: ("time", np.asarray(self._table[name]), {"units": self.units(name), "long_name": words})
+            for name, (_, words) in {**ROW, **QUANTITIES}.items()
             if name != "time" and name in self._table
         }
+        over = ("x",) if self.is_line else ("x", "y")
         maps = {
-            name: (("field_time", "x", "y"), self._stack(name), {"units": FIELDS[name][0], "long_name": FIELDS[name][1]})
+            name: (("field_time", *over), self._stack(name), {"units": FIELDS[name][0], "long_name": FIELDS[name][1]})
             for name in self._fields
         }
         for name, values in self._stress.items():
@@ -302,18 +332,20 @@ class Result:
                 unit = "m3" if name == "stressed_volume" else "m" if name.endswith(("_depth", "_x", "_y")) and "_by_" not in name else "Pa"
                 dimensions = ("field_time", "depth")[: values.ndim]
                 maps[name] = (dimensions, values, {"units": unit, "long_name": name.replace("_", " ")})  # type: ignore[assignment]
-        gap = ("initial_gap", (("x", "y"), self.initial_gap, {"units": "m", "long_name": "undeformed gap"}))
+        gap = ("initial_gap", (over, self.initial_gap, {"units": "m", "long_name": "undeformed gap"}))
         coordinates = {
             "time": ("time", np.asarray(self._table["time"]), {"units": "s", "long_name": "time"}),
             "field_time": ("field_time", self.field_times, {"units": "s", "long_name": "time of the fields"}),
             "x": ("x", self.x, {"units": "m", "long_name": "x"}),
-            "y": ("y", self.y, {"units": "m", "long_name": "y"}),
         }
+        if not self.is_line:
+            coordinates["y"] = ("y", self.y, {"units": "m", "long_name": "y"})
         if "depth" in self._stress:
             coordinates["depth"] = ("depth", self._stress["depth"], {"units": "m", "long_name": "depth below the surface"})
         for name, (edges, numbers) in self._histograms.items():
             along, ends, unit, words = HISTOGRAMS[name]
             middle = np.sqrt(edges[1:] * edges[:-1]) if name == "spot_histogram" else 0.5 * (edges[1:] + edges[:-1])
+            unit = units_of(along, unit, self.is_line)
             rows[name] = (("time", along), numbers, dict(zip(("units", "long_name"), QUANTITIES[name])))  # type: ignore[assignment]
             coordinates[along] = (along, middle, {"units": unit, "long_name": f"middle of {words}"})
             coordinates[ends] = (ends, edges, {"units": unit, "long_name": f"ends of {words}"})
@@ -391,9 +423,9 @@ class Result:
             str(attributes.get("title") or ""),
             str(attributes.get("setup") or "{}"),
             list(self._size),
-            plain(self.initial_gap),
+            plain(as_plane(self.initial_gap)),
             {name: plain(self._table[name]) for name in ROW},
-            [(name, np.require(self._stack(name), None, ["C_CONTIGUOUS", "ALIGNED"])) for name in self._fields],
+            [(name, np.require(self._planes(name), None, ["C_CONTIGUOUS", "ALIGNED"])) for name in self._fields],
             [int(n) for n in self._field_steps],
             [float(t) for t in self._field_times],
             [
@@ -424,22 +456,23 @@ class Result:
 
     def __repr__(self) -> str:
         title = self._attributes.get("title") or "Result"
-        nx, ny = self.cells
+        cells = cells_of(self.initial_gap)
         if len(self) == 0:
-            return f"<{title}: no rows yet, {nx} x {ny} cells>"
+            return f"<{title}: no rows yet, {cells}>"
         return (
-            f"<{title}: {len(self)} rows to t = {self.time[-1]:g} s, {nx} x {ny} cells; "
+            f"<{title}: {len(self)} rows to t = {self.time[-1]:g} s, {cells}; "
             f"approach {self.approach[-1]:.4g} m, contact {100 * self.contact_fraction[-1]:.4g} %; "
             f"fields {', '.join(self._fields) or 'none'} at {len(self._field_steps)} times>"
         )
 
     def _repr_html_(self) -> str:
         def lines() -> list[tuple[str, str]]:
-            nx, ny = self.cells
-            first = [("cells", f"{nx} x {ny} on {self._size[0]:g} m x {self._size[1]:g} m"), ("rows", str(len(self)))]
+            size = " x ".join(f"{length:g} m" for length in self._size)
+            first = [("domain", f"{cells_of(self.initial_gap)}, {size}"), ("rows", str(len(self)))]
             if len(self) == 0:
                 return first
-            last = [(words, f"{self._table[name][-1]:.6g} {'' if unit == '1' else unit}") for name, (unit, words) in ROW.items()]
+            units = {name: "" if self.units(name) == "1" else self.units(name) for name in ROW}
+            last = [(words, f"{self._table[name][-1]:.6g} {units[name]}") for name, (_, words) in ROW.items()]
             return [*first, *last]
 
         title = html.escape(str(self._attributes.get("title") or "Result"))
@@ -464,8 +497,16 @@ class Result:
 
     def _one(self, name: str, index: int) -> Floats:
         held = self._fields[name]
-        out: Floats = held.field(name, index) if isinstance(held, _core.Store) else held[index]
-        return out
+        if not isinstance(held, _core.Store):
+            out: Floats = held[index]
+            return out
+        stored: Floats = held.field(name, index)
+        return stored[:, 0] if self.is_line else stored
+
+    def _planes(self, name: str) -> Floats:
+        """The fields of all kept times, of a line contact as (times, n, 1)."""
+        stack = self._stack(name)
+        return stack[:, :, np.newaxis] if self.is_line else stack
 
     def _stack(self, name: str) -> Floats:
         held = self._fields[name]
@@ -473,7 +514,7 @@ class Result:
             out: Floats = held
             return out
         shape = (0, *self.cells)
-        maps = [held.field(name, n) for n in range(len(self._field_steps))]
+        maps = [self._one(name, n) for n in range(len(self._field_steps))]
         return np.array(maps) if maps else np.empty(shape)
 
 
@@ -485,7 +526,6 @@ def open(path: str | os.PathLike[str]) -> Result:
     """Opens a result on disk, finished or not; its fields are read when they are used."""
     store = _core.Store(os.fspath(path))
     attributes: dict[str, Any] = json.loads(store.attributes)
-    nx, ny = store.size
     return Result(
         table={name: store.series(name) for name in [*ROW, *(q for q in store.quantities if q not in HISTOGRAMS)]},
         histograms={name: store.histogram(name) for name in store.quantities if name in HISTOGRAMS},
@@ -493,7 +533,7 @@ def open(path: str | os.PathLike[str]) -> Result:
         field_steps=store.field_steps,
         field_times=store.field_times,
         initial_gap=store,
-        size=(nx, ny),
+        size=tuple(store.size),
         attributes=attributes,
         path=os.fspath(path),
         stress=store.stress(),

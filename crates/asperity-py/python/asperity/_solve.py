@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, count, field, line, number
+from ._arrays import Floats, as_plane, count, field, line, number
 from ._core import CaseError
 from ._findings import Finding, findings_of, warn
 from ._histories import History, Stage, Times, as_history, as_stage, as_times, one_of
@@ -47,11 +47,11 @@ class Step:
 
     def field(self, name: str) -> Floats:
         """The field "pressure" [Pa], "gap", "displacement", "flattening" [m] or "contact" (0, 1, 2), shape (nx, ny), as a new
-        array."""
+        array; of a line contact (n,), as all fields."""
         if self._march._core.done != self._index + 1:
             raise CaseError(f"the march has moved on from row {self._index}: read fields before the next row")
         values: Floats = self._march._core.field(name)
-        return values
+        return values.reshape(self._march.initial_gap.shape)
 
     @property
     def pressure(self) -> Floats:
@@ -70,9 +70,9 @@ class Step:
             raise AttributeError(f"a step has no {name!r}; it has {', '.join(ROW)} and field(name)") from None
 
     def __repr__(self) -> str:
-        row = self._row
+        row, unit = self._row, "N/m" if self._march.initial_gap.ndim == 1 else "N"
         return (
-            f"Step({self._index}, t = {row['time']:g} s, load {row['load']:g} N, approach {row['approach']:g} m, "
+            f"Step({self._index}, t = {row['time']:g} s, load {row['load']:g} {unit}, approach {row['approach']:g} m, "
             f"contact {100 * row['contact_fraction']:.3g} %)"
         )
 
@@ -80,11 +80,11 @@ class Step:
 class March:
     """A simulation that is solved step by step: iterate over it for its :class:`Step` s. Made by :func:`march`."""
 
-    def __init__(self, core: _core.March, initial_gap: Floats, size: tuple[float, float], setup: dict[str, Any]) -> None:
+    def __init__(self, core: _core.March, initial_gap: Floats, size: tuple[float, ...], setup: dict[str, Any]) -> None:
         self._core = core
-        #: Undeformed gap [m], shape (nx, ny).
+        #: Undeformed gap [m], shape (nx, ny), of a line contact (n,).
         self.initial_gap = initial_gap
-        #: Lengths of the domain along x and y [m].
+        #: Lengths of the domain along x and y [m], of a line contact along x.
         self.size = size
         self._setup = setup
 
@@ -120,7 +120,7 @@ def march(
     pressure: History | float | None = None,
     approach: History | float | None = None,
     stages: Sequence[Stage] | None = None,
-    size: Sequence[float] | None = None,
+    size: float | Sequence[float] | None = None,
     hardness: float | npt.ArrayLike | None = None,
     temperature: float | Sequence[tuple[float, float]] | None = None,
     boundary: str = "free",
@@ -152,8 +152,8 @@ def march(
             f"material is {material!r}, but must be a material or an asperity.Body, or a pair of them for two deformable bodies"
         )
     cells = None
-    if hardness is not None and np.ndim(hardness) == 2:
-        cells = field("hardness", hardness)
+    if hardness is not None and np.ndim(hardness) == gap.ndim:
+        cells = field("hardness", hardness, line=True)
     elif hardness is not None:
         limit = number("hardness", hardness)
         bodies = [with_hardness(body, limit) for body in bodies]
@@ -173,7 +173,7 @@ def march(
     grid = as_times(times)
     parts = [parts_of(body) for body in bodies]
     core = _core.March(
-        gap=gap,
+        gap=as_plane(gap),
         size=list(shape.size),
         boundary=boundary,
         bodies=[material for materials, _ in parts for material in materials],
@@ -187,7 +187,7 @@ def march(
         method=method,
         tolerance=number("tolerance", tolerance),
         max_iterations=count("max_iterations", max_iterations),
-        hardness_map=cells,
+        hardness_map=None if cells is None else as_plane(cells),
         plasticity=plasticity,
         quantities=[str(name) for name in quantities],
         bins=count("bins", bins),
@@ -231,7 +231,7 @@ def solve(
     pressure: History | float | None = None,
     approach: History | float | None = None,
     stages: Sequence[Stage] | None = None,
-    size: Sequence[float] | None = None,
+    size: float | Sequence[float] | None = None,
     hardness: float | npt.ArrayLike | None = None,
     temperature: float | Sequence[tuple[float, float]] | None = None,
     boundary: str = "free",
@@ -255,7 +255,9 @@ def solve(
 
     Parameters
     ----------
-    surface : Surface, or heights [m] as array (nx, ny) with `size`, or a SurfaceTopography or xarray array
+    surface : Surface, or heights [m] as array (nx, ny) with `size`, or a SurfaceTopography or xarray array. A surface of one
+        dimension, (n,) with size=(L,), is a line contact in plane strain: loads and energies are per length [N/m], [J/m], the
+        contact area is a length [m], and fields have the shape (n,)
     material : the deformable body (a material for a half-space, an asperity.Body for layers), or a pair of them
     times : times to solve for: uniform, log, adaptive, listed, or a sequence [s]; breaks of the history are added
     load, pressure, approach : what is prescribed [N], [Pa] or [m]: a history, or a number for a step

@@ -314,7 +314,8 @@ def _dataset(
         for n, result in enumerate(results):
             if result is not None and name in result._table:
                 table[n, : steps[n]] = result._table[name]
-        attributes = {"units": unit, "long_name": words}
+        units = {result.units(name) for result in results if result is not None}
+        attributes = {"units": " or ".join(sorted(units)) or unit, "long_name": words}
         if name == "time":
             whole = table[steps == most] if most else table
             if len(whole) and bool(np.all(whole == whole[0])) and bool(np.all((steps == most) | (steps == 0))):
@@ -377,7 +378,9 @@ def _add_fields(
     words = {"units": "s", "long_name": "time of the fields"}
     coordinates["field_time"] = ((*dims, "field_step"), times.reshape(*plan.shape, most), words)
     coordinates["x"] = ("x", first.x, {"units": "m", "long_name": "x"})
-    coordinates["y"] = ("y", first.y, {"units": "m", "long_name": "y"})
+    over = ("x",) if first.is_line else ("x", "y")
+    if not first.is_line:
+        coordinates["y"] = ("y", first.y, {"units": "m", "long_name": "y"})
     for name in names:
         stack = np.full((len(results), most, *first.cells), np.nan)
         for n, result in enumerate(results):
@@ -385,7 +388,7 @@ def _add_fields(
                 stack[n, : len(result.field_times)] = result._stack(name)
         unit, long_name = FIELDS[name]
         shape = (*plan.shape, most, *first.cells)
-        columns[name] = ((*dims, "field_step", "x", "y"), stack.reshape(shape), {"units": unit, "long_name": long_name})
+        columns[name] = ((*dims, "field_step", *over), stack.reshape(shape), {"units": unit, "long_name": long_name})
 
 
 def _coordinate(column: list[Any]) -> tuple[Any, dict[str, str]]:

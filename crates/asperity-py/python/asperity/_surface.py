@@ -1,4 +1,4 @@
-"""Surfaces: heights over a rectangle."""
+"""Surfaces: heights over a rectangle, or along a line."""
 
 from __future__ import annotations
 
@@ -11,7 +11,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core, _foreign
-from ._arrays import Floats, count, counts, field, number, pair
+from ._arrays import (
+    Floats,
+    along,
+    as_plane,
+    cell_counts,
+    cells_of,
+    count,
+    counts,
+    field,
+    lengths,
+    number,
+    pair,
+    size_of,
+)
 from ._core import CaseError
 from ._findings import findings_of, warn
 
@@ -36,29 +49,35 @@ class Autocorrelation:
 
 @dataclass(frozen=True, eq=False)
 class Surface:
-    """Heights [m] at the cell centres of a rectangle, shape (nx, ny), pointing out of their body.
+    """Heights [m] at the cell centres of a rectangle, shape (nx, ny), or of a line, shape (n,), pointing out of their body.
+
+    A line is for line contacts in plane strain, in which nothing changes along y; its `size` is one length, (L,).
 
     NaN where a measurement has no value; minus infinity where a punch cannot touch. Surfaces of the same cells and
     size add up: a sphere plus roughness, one rough surface against another.
     """
 
     heights: Floats
-    size: tuple[float, float]
+    size: tuple[float, ...]
     metadata: dict[str, Any] = dataclass_field(default_factory=dict)
 
-    def __init__(self, heights: Any, *, size: Sequence[float], metadata: dict[str, Any] | None = None) -> None:
-        object.__setattr__(self, "heights", field("heights", heights))
-        object.__setattr__(self, "size", pair("size", size))
+    def __init__(self, heights: Any, *, size: float | Sequence[float], metadata: dict[str, Any] | None = None) -> None:
+        object.__setattr__(self, "heights", field("heights", heights, line=True))
+        object.__setattr__(self, "size", tuple(size_of("heights", self.heights, size)))
         object.__setattr__(self, "metadata", dict(metadata or {}))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _surface, (self.heights, self.size, self.metadata)
 
     @property
-    def cells(self) -> tuple[int, int]:
-        """Number of cells along x and y."""
-        nx, ny = self.heights.shape
-        return nx, ny
+    def cells(self) -> tuple[int, ...]:
+        """Number of cells along x and y; of a line one number."""
+        return self.heights.shape
+
+    @property
+    def is_line(self) -> bool:
+        """Whether it is a line of cells, for a line contact."""
+        return self.heights.ndim == 1
 
     def __add__(self, other: Surface) -> Surface:
         if not isinstance(other, Surface):
@@ -71,12 +90,11 @@ class Surface:
         return Surface(self.heights + other.heights, size=self.size)
 
     def __repr__(self) -> str:
-        nx, ny = self.cells
-        return f"Surface({nx} x {ny} cells, {self.size[0]:g} m x {self.size[1]:g} m)"
+        return f"Surface({cells_of(self.heights)}, {' x '.join(f'{length:g} m' for length in self.size)})"
 
     def gap(self) -> Floats:
         """The undeformed gap against a flat [m]: least value 0, infinite where nothing can touch."""
-        return _core.gap(self.heights, list(self.size))
+        return _core.gap(as_plane(self.heights), list(self.size)).reshape(self.heights.shape)
 
     @property
     def history(self) -> list[str]:
@@ -95,7 +113,7 @@ class Surface:
         >>> flat.cells, bool(np.all(abs(flat.heights) < 1e-13)), flat.history[1]
         ((4, 4), True, 'crop to 4 x 4 cells from (3, 2)')
         """
-        heights, size, done = _core.process(self.heights, list(self.size), [str(step) for step in steps])
+        heights, size, done = _core.process(self._plane("process"), list(self.size), [str(step) for step in steps])
         metadata = {**self.metadata, "history": [*self.history, *done]}
         return Surface(heights, size=size, metadata=metadata)
 
@@ -201,7 +219,7 @@ class Surface:
                 from_ if longest is None else number("longest", longest),
                 to if shortest is None else number("shortest", shortest),
             ]
-        found = _core.describe(self.heights, list(self.size), self._repeats(periodic), band)
+        found = _core.describe(self._plane("statistics"), list(self.size), self._repeats(periodic), band)
         warn(findings_of(json.loads(found.pop("findings", "[]"))), 2)
         return found
 
@@ -210,21 +228,27 @@ class Surface:
 
         The surface is taken as periodic, so that the mean of z^2 is the integral of C d^2q / (2 pi)^2.
         """
-        return _core.power_spectrum(self.heights, list(self.size), count("per_decade", per_decade, 0, 1000))
+        return _core.power_spectrum(self._plane("power_spectrum"), list(self.size), count("per_decade", per_decade, 0, 1000))
 
     def bearing_curve(self, levels: int = 200) -> tuple[Floats, Floats]:
         """Heights [m] and the share of the points at or above each (Abbott and Firestone 1933)."""
-        return _core.bearing_curve(self.heights, list(self.size), count("levels", levels, 2))
+        return _core.bearing_curve(as_plane(self.heights), list(self.size), count("levels", levels, 2))
 
     def height_distribution(self, bins: int = 100) -> tuple[Floats, Floats]:
         """Heights [m], the middles of bins, and the density of points there [1/m]."""
-        return _core.height_distribution(self.heights, list(self.size), count("bins", bins))
+        return _core.height_distribution(as_plane(self.heights), list(self.size), count("bins", bins))
 
     def autocorrelation(self, *, periodic: bool | None = None) -> Autocorrelation:
         """The autocorrelation function and the spatial parameters Sal and Str (ISO 25178-2)."""
-        values, length, aspect = _core.autocorrelation(self.heights, list(self.size), self._repeats(periodic))
+        values, length, aspect = _core.autocorrelation(self._plane("autocorrelation"), list(self.size), self._repeats(periodic))
         lags: list[Floats] = [np.asarray((np.arange(n) - n // 2) * (side / n), dtype=np.float64) for n, side in zip(self.cells, self.size)]
         return Autocorrelation(values, lags[0], lags[1], length, aspect)
+
+    def _plane(self, what: str) -> Floats:
+        """The heights over a plane, which the method `what` needs."""
+        if self.is_line:
+            raise CaseError(f"{what} is for surfaces over a plane, but this one is a line of {self.cells[0]} cells")
+        return self.heights
 
     def _repeats(self, periodic: bool | None) -> bool:
         # A file's surface knows its format.
@@ -241,14 +265,14 @@ class Surface:
         import html
 
         finite = self.heights[np.isfinite(self.heights)]
-        lines = [("size", f"{self.size[0]:g} m x {self.size[1]:g} m")]
+        lines = [("size", " x ".join(f"{length:g} m" for length in self.size))]
         if finite.size:
             lines.append(("heights", f"{finite.min():.4g} m to {finite.max():.4g} m, Sq {finite.std():.4g} m"))
         if missing := self.heights.size - finite.size:
             lines.append(("undefined", f"{missing} of {self.heights.size} points"))
         lines += [("history" if n == 0 else "", step) for n, step in enumerate(self.history)]
         rows = "".join(f"<tr><th style='text-align:left'>{a}</th><td style='text-align:left'>{html.escape(b)}</td></tr>" for a, b in lines)
-        return f"<b>Surface</b>, {self.cells[0]} x {self.cells[1]} cells<table>{rows}</table>"
+        return f"<b>Surface</b>, {cells_of(self.heights)}<table>{rows}</table>"
 
     def write(self, path: str | os.PathLike[str], *, format: str | None = None, force: bool = False) -> None:
         """Writes NPZ, GWY, X3P, SDF, NetCDF or text, selected by the path's extension or by `format`."""
@@ -256,7 +280,7 @@ class Surface:
         if not force and os.path.exists(path):
             raise FileExistsError(f"{path} already exists; choose another file or give force=True")
         form = format or os.path.splitext(path)[1].lstrip(".")
-        _core.write_surface(path, self.heights, list(self.size), form, self.history)
+        _core.write_surface(path, self._plane("write"), list(self.size), form, self.history)
 
     @staticmethod
     def read(
@@ -298,8 +322,8 @@ class Surface:
     @staticmethod
     def self_affine(
         *,
-        cells: Sequence[int],
-        size: Sequence[float],
+        cells: int | Sequence[int],
+        size: float | Sequence[float],
         hurst: float,
         longest: float,
         shortest: float,
@@ -317,7 +341,8 @@ class Surface:
         The spectrum is flat from wavelength `longest` to `roll_off` and falls as q^(-2 - 2 hurst) to `shortest` [m].
         The rms gradient, or the rms height [m], is exact. With a lay the waves are `lay_ratio` times longer along the
         direction `lay_angle` [rad from x towards y]; with `skewness` or `kurtosis` the heights are distributed so, exactly,
-        and the spectrum is as close as that allows.
+        and the spectrum is as close as that allows. With one number of cells and one length it is a profile of such a surface,
+        whose spectrum falls as q^(-1 - 2 hurst), for a line contact.
 
         >>> import asperity as asp
         >>> surface = asp.Surface.self_affine(cells=(64, 64), size=(1e-3, 1e-3), hurst=0.8, rms_height=1e-6,
@@ -325,7 +350,7 @@ class Surface:
         >>> round(surface.statistics()["sq"] * 1e6, 12)
         1.0
         """
-        extent = pair("size", size)
+        extent, grid = lengths("size", size), cell_counts("cells", cells)
         special = {
             "lay.angle": lay_angle,
             "lay.ratio": lay_ratio,
@@ -334,9 +359,12 @@ class Surface:
         }
         if any(value is not None for value in special.values()):
             plain = dict(hurst=hurst, rms_gradient=rms_gradient, rms_height=rms_height, longest=longest, shortest=shortest)
-            return _roughness(cells, extent, seed, {**plain, "roll_off": roll_off, **special})
+            if len(grid) == 1:
+                raise CaseError("a profile has no lay, and heights of a normal distribution: leave lay, skewness and kurtosis out")
+            return _roughness(cells, pair("size", size), seed, {**plain, "roll_off": roll_off, **special})
+        check_dimensions(grid, extent)
         heights = _core.self_affine(
-            counts("cells", cells),
+            (grid[0], grid[1] if len(grid) == 2 else 1),
             list(extent),
             number("hurst", hurst),
             None if rms_gradient is None else number("rms_gradient", rms_gradient),
@@ -346,7 +374,7 @@ class Surface:
             None if roll_off is None else number("roll_off", roll_off),
             count("seed", seed, 0, 2**64 - 1),
         )
-        return Surface(heights, size=extent)
+        return Surface(heights.reshape(grid), size=extent)
 
     @staticmethod
     def contact_mechanics_challenge(*, cells: Sequence[int], seed: int = 0) -> Surface:
@@ -377,6 +405,27 @@ class Surface:
         return _shape("ellipsoid", radii, center, cells, size)
 
     @staticmethod
+    def cylinder(
+        *, cells: int | Sequence[int], size: float | Sequence[float], radius: float, center: float | Sequence[float] = 0.0
+    ) -> Surface:
+        """A cylinder along y, as a parabola of that radius [m]; `center` [m] along x from the middle of the domain.
+
+        >>> import asperity as asp, numpy as np
+        >>> cylinder = asp.Surface.cylinder(cells=512, size=2e-3, radius=10e-3)      # a line contact
+        >>> hertz = asp.elastic(cylinder, 1e9, load=20e3)                            # 20 N/mm
+        >>> bool(abs(hertz.pressure.max() / np.sqrt(20e3 * 1e9 / (np.pi * 10e-3)) - 1) < 1e-3)
+        True
+        """
+        return _shape("cylinder", [number("radius", radius)], center, cells, size)
+
+    @staticmethod
+    def wedge(
+        *, cells: int | Sequence[int], size: float | Sequence[float], slope: float, center: float | Sequence[float] = 0.0
+    ) -> Surface:
+        """A wedge along y that rises by `slope` per length; `center` [m] along x from the middle of the domain."""
+        return _shape("wedge", [number("slope", slope)], center, cells, size)
+
+    @staticmethod
     def cone(
         *, cells: Sequence[int], size: Sequence[float], slope: float, center: Sequence[float] = (0.0, 0.0)
     ) -> Surface:
@@ -386,24 +435,26 @@ class Surface:
     @staticmethod
     def flat_punch(
         *,
-        cells: Sequence[int],
-        size: Sequence[float],
+        cells: int | Sequence[int],
+        size: float | Sequence[float],
         radius: float | None = None,
-        sides: Sequence[float] | None = None,
-        center: Sequence[float] = (0.0, 0.0),
+        sides: float | Sequence[float] | None = None,
+        center: float | Sequence[float] = (0.0, 0.0),
     ) -> Surface:
-        """A flat circle of that radius, or rectangle of those sides [m]; cells outside cannot touch."""
+        """A flat circle of that radius, or rectangle of those sides [m]; cells outside cannot touch. On a line of cells a strip of
+        half the width `radius`, or of the width `sides`."""
         if (radius is None) == (sides is None):
             raise CaseError("give radius or sides, exactly one of them")
-        numbers = [number("radius", radius)] if sides is None else list(pair("sides", sides))
+        dimensions = len(lengths("size", size))
+        numbers = [number("radius", radius)] if sides is None else along("sides", sides, dimensions, np.inf)
         return _shape("flat-punch", numbers, center, cells, size)
 
     @staticmethod
     def wave(
-        *, cells: Sequence[int], size: Sequence[float], amplitude: float, wavelength: Sequence[float]
+        *, cells: int | Sequence[int], size: float | Sequence[float], amplitude: float, wavelength: float | Sequence[float]
     ) -> Surface:
-        """A wave of that amplitude and those wavelengths along x and y [m]; an infinite one: a ridge."""
-        x, y = pair("wavelength", wavelength)
+        """A wave of that amplitude and those wavelengths along x and y [m]; an infinite one: a ridge. On a line one wavelength."""
+        x, y = along("wavelength", wavelength, len(lengths("size", size)), np.inf)
         return _shape("wave", [number("amplitude", amplitude), x, y], (0.0, 0.0), cells, size)
 
 
@@ -421,13 +472,32 @@ def _roughness(
     return Surface(heights, size=extent)
 
 
-def _shape(kind: str, numbers: list[float], center: Sequence[float], cells: Sequence[int], size: Sequence[float]) -> Surface:
-    extent = pair("size", size)
-    heights = _core.shape(kind, numbers, list(pair("center", center)), counts("cells", cells), list(extent))
-    return Surface(heights, size=extent)
+def _shape(
+    kind: str,
+    numbers: list[float],
+    center: float | Sequence[float],
+    cells: int | Sequence[int],
+    size: float | Sequence[float],
+) -> Surface:
+    extent, grid = lengths("size", size), cell_counts("cells", cells)
+    check_dimensions(grid, extent)
+    straight = kind in ("cylinder", "wedge")
+    if len(grid) == 1 and kind in ("sphere", "ellipsoid", "cone"):
+        instead = "wedge" if kind == "cone" else "cylinder"
+        raise CaseError(f"a {kind} is not straight along y, but cells is one number: use Surface.{instead} for a line contact")
+    # What is straight along y has no place along it.
+    x, y = (along("center", center, 1) if straight and np.size(center) == 1 else along("center", center, len(grid)))
+    heights = _core.shape(kind, numbers, [x, y], (grid[0], grid[1] if len(grid) == 2 else 1), list(extent))
+    return Surface(heights.reshape(grid), size=extent)
 
 
-def as_surface(value: Any, size: Sequence[float] | None) -> Surface:
+def check_dimensions(cells: tuple[int, ...], size: tuple[float, ...]) -> None:
+    """Cells and size are both those of a plane, or both those of a line."""
+    if len(cells) != len(size):
+        raise CaseError(f"cells is {cells} and size {size}, but both must have two numbers, or both one for a line of cells")
+
+
+def as_surface(value: Any, size: float | Sequence[float] | None) -> Surface:
     """A surface; heights as an array need their size; topographies of SurfaceTopography and xarray are understood."""
     if isinstance(value, Surface):
         return value
@@ -436,11 +506,11 @@ def as_surface(value: Any, size: Sequence[float] | None) -> Surface:
     if hasattr(value, "coords") and hasattr(value, "dims"):
         return _from_xarray(value, size)
     if size is None:
-        raise CaseError("the surface is an array, so that its size in m is needed: size=(Lx, Ly)")
+        raise CaseError("the surface is an array, so that its size in m is needed: size=(Lx, Ly), or size=(L,) of a line")
     return Surface(value, size=size)
 
 
-def _from_surface_topography(topography: Any, size: Sequence[float] | None) -> Surface:
+def _from_surface_topography(topography: Any, size: float | Sequence[float] | None) -> Surface:
     units = {"m": 1.0, "mm": 1e-3, "µm": 1e-6, "um": 1e-6, "nm": 1e-9, "pm": 1e-12, "Å": 1e-10}
     unit = getattr(topography, "unit", None)
     if unit not in units:
@@ -450,14 +520,14 @@ def _from_surface_topography(topography: Any, size: Sequence[float] | None) -> S
     return Surface(np.ma.filled(np.ma.asarray(topography.heights(), dtype=float), np.nan) * factor, size=extent)
 
 
-def _from_xarray(array: Any, size: Sequence[float] | None) -> Surface:
+def _from_xarray(array: Any, size: float | Sequence[float] | None) -> Surface:
     if tuple(array.dims) == ("y", "x"):
         array = array.transpose("x", "y")
-    if tuple(array.dims) != ("x", "y"):
-        raise CaseError(f"the array has dimensions {tuple(array.dims)}, but must have x and y")
+    if tuple(array.dims) not in (("x", "y"), ("x",)):
+        raise CaseError(f"the array has dimensions {tuple(array.dims)}, but must have x and y, or x alone")
     if size is None:
         try:
-            axes = [np.asarray(array.coords[name], dtype=float) for name in ("x", "y")]
+            axes = [np.asarray(array.coords[name], dtype=float) for name in array.dims]
             size = [(axis[-1] - axis[0]) / (len(axis) - 1) * len(axis) for axis in axes]
         except (KeyError, ZeroDivisionError, IndexError):
             raise CaseError("the array has no coordinates x and y in m, so that its size is needed: size=(Lx, Ly)") from None

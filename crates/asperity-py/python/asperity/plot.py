@@ -37,10 +37,12 @@ class Plots:
 
         result = self._result
         _, axes = plt.subplots(2, 2, figsize=(8, 5.4), layout="constrained")
+        area = ("contact area", "m", 2, [("counted", "contact_area"), ("corrected", "contact_area_corrected")])
+        length = ("contact length", "m", 1, [("", "contact_area")])
         panels = [
-            ("contact area", "m", 2, [("counted", "contact_area"), ("corrected", "contact_area_corrected")]),
+            length if result.is_line else area,
             ("approach", "m", 1, [("", "approach")]),
-            ("load", "N", 1, [("", "load")]),
+            ("load", result.units("load"), 1, [("", "load")]),
             ("pressure", "Pa", 1, [("mean", "mean_pressure"), ("largest", "max_pressure")]),
         ]
         for ax, (title, unit, power, names) in zip(axes.flat, panels):
@@ -61,14 +63,14 @@ class Plots:
         """Load over approach."""
         ax = _axes(ax)
         result = self._result
-        along, across = (_shown(float(np.max(np.abs(v), initial=0.0)), u) for v, u in ((result.approach, "m"), (result.load, "N")))
+        along, across = (_shown(float(np.max(np.abs(v), initial=0.0)), u) for v, u in ((result.approach, "m"), (result.load, result.units("load"))))
         ax.plot(result.approach * along[0], result.load * across[0])
         ax.set_xlabel(f"approach [{along[1]}]")
         ax.set_ylabel(f"load [{across[1]}]")
         return ax
 
     def pressure(self, *, time: float | None = None, ax: Any = None) -> Any:
-        """Map of the pressure at the stored time nearest to `time` [s]; default the last."""
+        """Map of the pressure at the stored time nearest to `time` [s]; default the last. Of a line contact a curve over x."""
         return self._map("pressure", "Pa", "inferno", time, ax)
 
     def gap(self, *, time: float | None = None, ax: Any = None) -> Any:
@@ -90,6 +92,13 @@ class Plots:
         else:
             states = (result.field("pressure", time=time) > 0).astype(float)
         ax = _axes(ax)
+        if result.is_line:
+            along = _shown(result.size[0], "m")
+            ax.step(result.x * along[0], states, where="mid")
+            ax.set_xlabel(f"x [{along[1]}]")
+            ax.set_yticks([0, 1, 2], ["open", "contact", "at hardness"])
+            ax.margins(x=0)
+            return ax
         colours = ["#f0f0ee", "#0072b2", "#d55e00"]
         self._image(ax, states, cmap=ListedColormap(colours), vmin=0, vmax=2)
         names = ["open", "contact", "at hardness"][: int(np.max(states, initial=0)) + 1]
@@ -100,6 +109,8 @@ class Plots:
     def profile(self, *, time: float | None = None, y: float | None = None, ax: Any = None) -> Any:
         """Pressure along x at `y` [m]; default through the middle."""
         result = self._result
+        if result.is_line:
+            return self._curve("pressure", "Pa", time, ax)
         p = result.field("pressure", time=time)
         at = 0.5 * result.size[1] if y is None else number("y", y)
         j = int(np.argmin(np.abs(result.y - at)))
@@ -111,7 +122,22 @@ class Plots:
         ax.margins(x=0)
         return ax
 
+    def _curve(self, name: str, unit: str, time: float | None, ax: Any) -> Any:
+        """A field of a line contact over x."""
+        result = self._result
+        values = result.field(name, time=time)
+        values = np.where(np.isfinite(values), values, np.nan)
+        along, across = _shown(result.size[0], "m"), _shown(float(np.nanmax(np.abs(values), initial=0.0)), unit)
+        ax = _axes(ax)
+        ax.plot(result.x * along[0], values * across[0])
+        ax.set_xlabel(f"x [{along[1]}]")
+        ax.set_ylabel(f"{name} [{across[1]}]")
+        ax.margins(x=0)
+        return ax
+
     def _map(self, name: str, unit: str, colours: str, time: float | None, ax: Any) -> Any:
+        if self._result.is_line:
+            return self._curve(name, unit, time, ax)
         values = self._result.field(name, time=time)
         values = np.where(np.isfinite(values), values, np.nan)
         factor, text = _shown(float(np.nanmax(np.abs(values), initial=0.0)), unit)
@@ -136,13 +162,20 @@ class SurfacePlots:
         self._surface = surface
 
     def heights(self, *, ax: Any = None) -> Any:
-        """Map of the heights about their mean; undefined points are left white."""
+        """Map of the heights about their mean, undefined points left white; of a profile a curve."""
         surface = self._surface
         z = np.where(np.isfinite(surface.heights), surface.heights, np.nan)
         z = z - np.nanmean(z)
         along = _shown(max(surface.size), "m")
         across = _shown(float(np.nanmax(np.abs(z), initial=0.0)), "m")
         ax = _axes(ax)
+        if surface.is_line:
+            x = (np.arange(surface.cells[0]) + 0.5) * (surface.size[0] / surface.cells[0])
+            ax.plot(x * along[0], z * across[0])
+            ax.set_xlabel(f"x [{along[1]}]")
+            ax.set_ylabel(f"height [{across[1]}]")
+            ax.margins(x=0)
+            return ax
         lx, ly = (length * along[0] for length in surface.size)
         image = ax.imshow(z.T * across[0], origin="lower", extent=(0, lx, 0, ly), interpolation="nearest", cmap="viridis")
         ax.set_xlabel(f"x [{along[1]}]")

@@ -58,6 +58,11 @@ pub enum Axes {
         /// Where the section begins \[m\].
         start: f64,
     },
+    /// x to the right, and the time upwards, not to one scale.
+    Times {
+        /// Where the time begins \[s\].
+        start: f64,
+    },
 }
 
 impl Map {
@@ -83,6 +88,11 @@ impl Map {
     /// The same map as a section whose second axis is the depth.
     pub fn section(self, along: &'static str, start: f64) -> Map {
         Map { axes: Axes::Section { along, start }, ..self }
+    }
+
+    /// The same map with the time \[s\] as its second axis, from `start` on; its size along that axis is a duration \[s\].
+    pub fn over_time(self, start: f64) -> Map {
+        Map { axes: Axes::Times { start }, ..self }
     }
 
     /// A map of states.
@@ -134,32 +144,40 @@ impl Map {
         let foot = TEXT + SMALL + 12.0;
         let head = if self.title.is_empty() { 8.0 } else { TEXT + 9.0 };
 
-        // Both axes in the same unit, and as long on paper as they are in truth.
-        let (names, start) = match self.axes {
-            Axes::Area => (["x", "y"], 0.0),
-            Axes::Section { along, start } => ([along, "depth"], start),
+        // Both axes in the same unit, and as long on paper as they are in truth; but for time.
+        let (names, starts) = match self.axes {
+            Axes::Area => (["x", "y"], [0.0; 2]),
+            Axes::Section { along, start } => ([along, "depth"], [start, 0.0]),
+            Axes::Times { start } => (["x", "time"], [0.0, start]),
         };
-        let unit = shown("m", (start + self.size[0]).max(self.size[1]));
-        let axis = |name: &str, start: f64, length: f64| {
-            let label = format!("{name} [{}]", unit.text);
-            Axis::linear(label, "").between(start * unit.factor, (start + length) * unit.factor)
+        let [over_x, over_y] = [0, 1].map(|axis| starts[axis] + self.size[axis]);
+        let of_times = matches!(self.axes, Axes::Times { .. });
+        let units = match of_times {
+            true => [shown("m", over_x), shown("s", over_y)],
+            false => [(); 2].map(|()| shown("m", over_x.max(over_y))),
         };
-        let [across, up] = [axis(names[0], start, self.size[0]), axis(names[1], 0.0, self.size[1])];
+        let [across, up] = [0, 1].map(|axis| {
+            let (unit, start) = (&units[axis], starts[axis]);
+            let label = format!("{} [{}]", names[axis], unit.text);
+            Axis::linear(label, "").between(start * unit.factor, (start + self.size[axis]) * unit.factor)
+        });
         let room_y = height - foot - head;
         let y = Ruler::new(&up, [0.0, 1.0], 0.0, room_y / 32.0);
         let labels = y.ticks.iter().map(|(_, text)| font::width(text, SMALL)).fold(0.0, f64::max);
         let margin = TEXT + labels + 13.0;
         let room_x = width - margin - 8.0 - legend;
         let points = (room_x / self.size[0]).min(room_y / self.size[1]);
-        // A strip keeps a visible breadth.
-        let [w, h] =
-            [(self.size[0] * points).max(12.0).min(room_x), (self.size[1] * points).max(12.0).min(room_y)];
+        let [w, h] = match of_times {
+            true => [room_x, room_y],
+            // A strip keeps a visible breadth.
+            false => [0, 1].map(|axis| (self.size[axis] * points).max(12.0).min([room_x, room_y][axis])),
+        };
         let left = x0 + margin;
         let (right, top) = (left + w, y0 + head + 0.5 * (room_y - h));
         let bottom = top + h;
         let x = Ruler::new(&across, [0.0, 1.0], 0.0, w / 42.0).placed(left, right);
         let y = Ruler::new(&up, [0.0, 1.0], 0.0, h / 32.0);
-        let down = self.axes != Axes::Area;
+        let down = matches!(self.axes, Axes::Section { .. });
         let y = if down { y.placed(top, bottom) } else { y.placed(bottom, top) };
 
         if !self.title.is_empty() {
@@ -184,7 +202,7 @@ impl Map {
             drawing.circle(at, 5.0, "fill=\"none\" stroke=\"#fff\" stroke-width=\"3\"");
             drawing.circle(at, 5.0, "fill=\"none\" stroke=\"#d62728\" stroke-width=\"1.5\"");
         }
-        if h > 50.0 {
+        if h > 50.0 && !of_times {
             scale_bar(drawing, [left, bottom], w, self.size[0]);
         }
         if let Some((ruler, ends, colours)) = bar {

@@ -32,6 +32,7 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
     let grid = &reader.header().grid;
     let note = match maps.block {
         1 => String::new(),
+        block if grid.is_line() => format!("Curves show means over {block} of {} cells.", grid.cells()[0]),
         block => format!(
             "Maps show means over {block} × {block} cells (of the contact state: the most frequent value) of {} × {}.",
             grid.cells()[0],
@@ -50,7 +51,7 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
         "headline": headline(reader)?,
         "facts": facts(reader)?,
         "case": reader.header().case_text,
-        "grid": {"cells": grid.cells(), "size": grid.size()},
+        "grid": {"cells": grid.cells(), "size": grid.size(), "line": grid.is_line()},
         "series": series,
         "units": units,
         "quantities": quantities(reader),
@@ -128,13 +129,18 @@ fn status(reader: &Reader) -> String {
 fn headline(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
     let rows = reader.rows()?;
     let Some(last) = rows.last() else { return Ok(vec![]) };
-    let corrected = quantity(last.contact_area_corrected, "m2");
+    let grid = &reader.header().grid;
+    let (force, area) = (grid.units("N"), grid.units("m2"));
+    let contact = match grid.is_line() {
+        true => "contact length".to_owned(),
+        false => format!("contact area, {} corrected", quantity(last.contact_area_corrected, area)),
+    };
     let mut lines = vec![
         [format!("at time (last of {} rows)", rows.len()), quantity(last.time, "s")],
-        ["load".into(), quantity(last.load, "N")],
+        ["load".into(), quantity(last.load, force)],
         ["approach".into(), quantity(last.approach, "m")],
-        [format!("contact area, {} corrected", corrected), quantity(last.contact_area, "m2")],
-        ["of the nominal area".into(), format!("{:.2} %", 100.0 * last.contact_fraction)],
+        [contact, quantity(last.contact_area, area)],
+        [if grid.is_line() { "of the domain" } else { "of the nominal area" }.into(), format!("{:.2} %", 100.0 * last.contact_fraction)],
         ["mean gap".into(), quantity(last.mean_gap, "m")],
         [
             format!("largest pressure, mean {}", quantity(last.mean_pressure, "Pa")),
@@ -142,7 +148,7 @@ fn headline(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
         ],
     ];
     if last.capped_area > 0.0 {
-        lines.push(["at the hardness".into(), quantity(last.capped_area, "m2")]);
+        lines.push(["at the hardness".into(), quantity(last.capped_area, area)]);
     }
     Ok(lines)
 }
@@ -155,7 +161,10 @@ fn facts(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
     let [lx, ly] = header.grid.size();
     let mut lines = vec![[
         "Domain".to_owned(),
-        format!("{nx} × {ny} cells, {} × {}", quantity(lx, "m"), quantity(ly, "m")),
+        match header.grid.is_line() {
+            true => format!("a line of {nx} cells, {}, plane strain", quantity(lx, "m")),
+            false => format!("{nx} × {ny} cells, {} × {}", quantity(lx, "m"), quantity(ly, "m")),
+        },
     ]];
     let mut line =
         |name: &str, value: Option<String>| lines.extend(value.map(|value| [name.to_owned(), value]));

@@ -16,6 +16,9 @@ const SMOOTH: f64 = 1e-9;
 
 /// Heights without their quadratic form, and what is said of them; `None` for smooth or mostly undefined surfaces.
 pub(super) fn surface(reader: &Reader) -> Result<Option<(Array2<f64>, Value)>, StoreError> {
+    if reader.header().grid.is_line() {
+        return Ok(None);
+    }
     // Heights of one rough surface against a plane: the gap upside down.
     let gap = reader.initial_gap()?;
     let Ok(heights) = level(gap.mapv(|h| -h).view(), Level::Quadratic) else { return Ok(None) };

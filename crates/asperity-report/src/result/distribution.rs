@@ -52,14 +52,16 @@ pub(super) fn spots(reader: &Reader, at: At) -> Result<Figure, StoreError> {
     let spots = Spots::of(&reader.header().grid, boundary(reader), states.view(), |state| *state > 0);
     // How many spots are at least as large: a straight line for a power law, with no bins to choose.
     let number: Vec<f64> = (1..=spots.len()).map(|n| n as f64).collect();
-    let panel = Curves::new("", Axis::log("area of a spot", "m2"), Axis::log("spots at least as large", ""))
+    let grid = &reader.header().grid;
+    let (size, units) = if grid.is_line() { ("length", "m") } else { ("area", "m2") };
+    let panel = Curves::new("", Axis::log(format!("{size} of a spot"), units), Axis::log("spots at least as large", ""))
         .with(Series::new("", Style::Points, spots.areas.clone(), number));
     let largest = spots.areas.first().copied().unwrap_or(0.0);
     let sizes = format!(
-        "{} spots, mean area {}, largest {}. {}",
+        "{} spots, mean {size} {}, largest {}. {}",
         spots.len(),
-        quantity(spots.mean_area(), "m2"),
-        quantity(largest, "m2"),
+        quantity(spots.mean_area(), units),
+        quantity(largest, units),
         caption(reader, reader.index(at)?)?
     );
     let mut figure = Figure::new("").with(panel).caption(sizes);

@@ -12,14 +12,19 @@ pub(super) fn evolution(reader: &Reader, options: &Options) -> Result<Figure, St
     let line = |name: &str, series: &str| -> Result<Series, StoreError> {
         Ok(Series::new(name, Style::Line, time.clone(), reader.series(series)?))
     };
-    let mut area = Curves::new("Contact area", axis(), Axis::linear("contact area", "m2"))
-        .with(line("counted", "contact_area")?)
-        .with(line("corrected", "contact_area_corrected")?);
+    let grid = &reader.header().grid;
+    let mut area = match grid.is_line() {
+        true => Curves::new("Contact length", axis(), Axis::linear("contact length", "m"))
+            .with(line("", "contact_area")?),
+        false => Curves::new("Contact area", axis(), Axis::linear("contact area", "m2"))
+            .with(line("counted", "contact_area")?)
+            .with(line("corrected", "contact_area_corrected")?),
+    };
     if reader.series("capped_area")?.iter().any(|area| *area > 0.0) {
         area = area.with(line("at the hardness", "capped_area")?);
     }
     let approach = Curves::new("Approach", axis(), Axis::linear("approach", "m"));
-    let load = Curves::new("Load", axis(), Axis::linear("load", "N"));
+    let load = Curves::new("Load", axis(), Axis::linear("load", grid.units("N")));
     let pressure = Curves::new("Pressure", axis(), Axis::linear("pressure", "Pa"))
         .with(line("mean", "mean_pressure")?)
         .with(line("largest", "max_pressure")?);
@@ -43,6 +48,8 @@ pub(crate) struct QuantityPanel {
 /// one for each other.
 pub(crate) fn quantity_panels(reader: &Reader) -> Vec<QuantityPanel> {
     let mut panels: Vec<QuantityPanel> = vec![];
+    let scalars = reader.scalars();
+    let line = reader.header().grid.is_line();
     for column in &reader.header().quantities {
         let quantity = column.quantity;
         let (title, label, line) = match quantity {
@@ -51,10 +58,13 @@ pub(crate) fn quantity_panels(reader: &Reader) -> Vec<QuantityPanel> {
             Quantity::DissipatedEnergy => ("Energy", "energy", "dissipated"),
             Quantity::FlatteningWork => ("Energy", "energy", "flattening"),
             Quantity::ExternalWork => ("Energy", "energy", "work of the load"),
+            Quantity::LargestSpot if line => ("Lengths of contact spots", "length", "largest"),
+            Quantity::MeanSpot if line => ("Lengths of contact spots", "length", "mean"),
             Quantity::LargestSpot => ("Areas of contact spots", "area", "largest"),
             Quantity::MeanSpot => ("Areas of contact spots", "area", "mean"),
             Quantity::ContactSpots => ("Contact spots", "number", ""),
             Quantity::ContactStiffness => ("Contact stiffness", "stiffness", ""),
+            Quantity::ContactPerimeter if line => ("Ends of the contact", "number", ""),
             Quantity::ContactPerimeter => ("Perimeter of the contact", "length", ""),
             _ => ("Gap", "gap", "rms"),
         };
@@ -64,7 +74,8 @@ pub(crate) fn quantity_panels(reader: &Reader) -> Vec<QuantityPanel> {
         match panels.iter_mut().find(|panel| panel.title == title) {
             Some(panel) => panel.lines.push(line),
             None => {
-                let units = if quantity.units() == "1" { "" } else { quantity.units() };
+                let units = scalars.iter().find(|series| series.name == quantity.name()).map_or("", |s| s.units);
+                let units = if units == "1" { "" } else { units };
                 panels.push(QuantityPanel {
                     title,
                     label,
@@ -97,7 +108,7 @@ pub(super) fn quantities(reader: &Reader, options: &Options) -> Result<Figure, S
 
 pub(super) fn load_displacement(reader: &Reader) -> Result<Figure, StoreError> {
     times(reader)?;
-    let panel = Curves::new("", Axis::linear("approach", "m"), Axis::linear("load", "N"));
+    let panel = Curves::new("", Axis::linear("approach", "m"), Axis::linear("load", reader.header().grid.units("N")));
     Ok(Figure::new("").with(nameless(panel, &reader.series("approach")?, reader.series("load")?)))
 }
 

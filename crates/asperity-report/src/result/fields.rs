@@ -2,7 +2,7 @@
 
 use asperity_io::store::{At, FieldKind, Reader, StoreError};
 
-use super::caption;
+use super::{caption, line};
 use crate::figure::{Colours, Figure, Map, Panel};
 
 /// Names and colours of the contact states.
@@ -10,6 +10,9 @@ pub(super) const CONTACT_STATES: [(&str, [u8; 3]); 3] =
     [("open", [240, 240, 238]), ("contact", [0, 114, 178]), ("at hardness", [213, 94, 0])];
 
 pub(super) fn map(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, StoreError> {
+    if reader.header().grid.is_line() {
+        return line::field(reader, kind, at);
+    }
     let values = reader.field(kind, at)?;
     let index = reader.index(at)?;
     let (title, colours) = match kind {
@@ -25,6 +28,9 @@ pub(super) fn map(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, St
 }
 
 pub(super) fn contact(reader: &Reader, at: At) -> Result<Figure, StoreError> {
+    if reader.header().grid.is_line() {
+        return line::field(reader, FieldKind::Contact, at);
+    }
     let states = reader.contact_states(at)?;
     let names = CONTACT_STATES.map(|(name, colour)| (name.to_owned(), colour)).to_vec();
     let map = Map::states("", names, states.mapv(f64::from).view(), reader.header().grid.size());
@@ -32,6 +38,9 @@ pub(super) fn contact(reader: &Reader, at: At) -> Result<Figure, StoreError> {
 }
 
 pub(super) fn initial_gap(reader: &Reader) -> Result<Figure, StoreError> {
+    if reader.header().grid.is_line() {
+        return line::initial_gap(reader);
+    }
     let values = reader.initial_gap()?;
     let size = reader.header().grid.size();
     let map = Map::new("", ["undeformed gap", "m"], Colours::Sequential, values.view(), size);

@@ -13,6 +13,7 @@
 mod distribution;
 mod evolution;
 mod fields;
+pub(crate) mod line;
 mod profile;
 mod stress;
 
@@ -35,7 +36,7 @@ pub enum Plot {
     Evolution,
     /// Load over approach.
     LoadDisplacement,
-    /// Map of the pressure at an instant.
+    /// Map of the pressure at an instant; of a line contact a curve, and a picture over x and time. So are the other maps.
     Pressure,
     /// Map of the gap at an instant.
     Gap,
@@ -106,6 +107,14 @@ pub enum PlotError {
     /// The stress is that of half-spaces.
     #[error("{} is of bodies of layers: the stress below their surface is not computed yet", .0.display())]
     Layers(std::path::PathBuf),
+    /// A line contact has no such figure.
+    #[error("{} is a line contact, in which nothing changes along y: {what}", path.display())]
+    OnLine {
+        /// The result.
+        path: std::path::PathBuf,
+        /// What there is not, or what to do instead.
+        what: &'static str,
+    },
     /// The flow at the instant was not solved.
     #[error(transparent)]
     Flow(#[from] asperity::Error),
@@ -174,6 +183,15 @@ impl Plot {
 /// [`PlotError::Store`] where the result has no row yet, does not hold the field or the instant, or is damaged;
 /// [`PlotError::Outside`] where the line of a profile does not cross the area.
 pub fn figure(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, PlotError> {
+    if reader.header().grid.is_line() {
+        let refused = |what| Err(PlotError::OnLine { path: reader.path().to_owned(), what });
+        match plot {
+            Plot::Stress => return refused("the stress below its surface is not computed yet"),
+            Plot::Leak => return refused("it has no leakage"),
+            Plot::Profile if matches!(options.line, Line::AlongY(_)) => return refused("take the profile along x"),
+            _ => {}
+        }
+    }
     let figure = match plot {
         Plot::Evolution => evolution::evolution(reader, options)?,
         Plot::LoadDisplacement => evolution::load_displacement(reader)?,
@@ -213,28 +231,32 @@ fn nameless(curves: Curves, x: &[f64], y: Vec<f64>) -> Curves {
     curves.with(Series::new("", crate::figure::Style::Line, x, y))
 }
 
-/// "t = 500 s, load 500 mN, approach 3.93 µm": the instant of a map, for captions.
-fn caption(reader: &Reader, index: usize) -> Result<String, StoreError> {
+/// A number of each row at a stored instant of the fields; of fields within a step between its ends.
+fn at_instant(reader: &Reader, index: usize, name: &str) -> Result<f64, StoreError> {
     let time = reader.field_times()[index];
     let row = reader.field_steps()[index];
     let times = reader.series("time")?;
-    // Fields within a step: between its ends.
     let share = match (row.checked_sub(1).and_then(|n| times.get(n)), times.get(row)) {
         (Some(before), Some(after)) if time < *after && after > before => (time - before) / (after - before),
         _ => 1.0,
     };
-    let at = |name: &str| {
-        let series = reader.series(name)?;
-        let value = series.get(row).copied().unwrap_or(f64::NAN);
-        let before = if share < 1.0 { series.get(row - 1).copied().unwrap_or(value) } else { value };
-        Ok::<_, StoreError>(before + share * (value - before))
-    };
+    let series = reader.series(name)?;
+    let value = series.get(row).copied().unwrap_or(f64::NAN);
+    let before = if share < 1.0 { series.get(row - 1).copied().unwrap_or(value) } else { value };
+    Ok(before + share * (value - before))
+}
+
+/// "t = 500 s, load 500 mN, approach 3.93 µm": the instant of a map, for captions.
+fn caption(reader: &Reader, index: usize) -> Result<String, StoreError> {
+    let at = |name: &str| at_instant(reader, index, name);
+    let grid = &reader.header().grid;
+    let [area, domain] = if grid.is_line() { ["length", "domain"] } else { ["area", "nominal area"] };
     Ok(format!(
-        "t = {}: load {}, approach {}, contact area {} ({:.2} % of the nominal area).",
-        quantity(time, "s"),
-        quantity(at("load")?, "N"),
+        "t = {}: load {}, approach {}, contact {area} {} ({:.2} % of the {domain}).",
+        quantity(reader.field_times()[index], "s"),
+        quantity(at("load")?, grid.units("N")),
         quantity(at("approach")?, "m"),
-        quantity(at("contact_area")?, "m2"),
+        quantity(at("contact_area")?, grid.units("m2")),
         100.0 * at("contact_fraction")?,
     ))
 }

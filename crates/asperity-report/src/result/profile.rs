@@ -40,6 +40,9 @@ pub(super) fn profile(reader: &Reader, options: &Options) -> Result<Figure, Plot
             .with(Series::new("now", Style::Line, place.clone(), line(gap.view(), along, row).to_vec()))
             .with(Series::new("undeformed", Style::Dashed, place.clone(), start));
         figure = figure.with(panel);
+        if grid.is_line() {
+            figure = figure.with(super::line::surfaces(reader, index, &gap)?);
+        }
     }
     if kept.contains(&FieldKind::Displacement) {
         let displacement = reader.field(FieldKind::Displacement, options.at)?;
@@ -48,6 +51,9 @@ pub(super) fn profile(reader: &Reader, options: &Options) -> Result<Figure, Plot
     }
     if figure.panels.is_empty() {
         return Err(reader.no_field(FieldKind::Pressure).into());
+    }
+    if grid.is_line() {
+        return Ok(figure.caption(caption(reader, index)?));
     }
     let exact = (row as f64 + 0.5) * grid.spacing()[1 - along];
     Ok(figure.caption(format!(

@@ -4,28 +4,36 @@ use std::ops::Range;
 
 use asperity::{Grid, Scheme};
 
-use super::Checks;
+use super::{Checks, axes};
 use crate::case::measured::Measured;
 use crate::case::memory;
 use crate::case::raw::{self, At};
 use crate::case::words;
 
-/// The grid and the place of its number of cells. What the domain does not say is that of the measured surface,
-/// where there is exactly one; `files` are the measured surfaces, `None` for one whose keys are wrong.
+/// The grid. What the domain does not say is that of the measured surface, where there is exactly one; `files` are the
+/// measured surfaces, `None` for one whose keys are wrong.
 pub fn grid(
     checks: &mut Checks<'_, '_>,
     domain: &At<raw::Domain>,
     files: &[Option<&Measured>],
 ) -> Option<Grid> {
-    let cells = domain.value.cells.as_ref().map(|at| at.value.map(|count| count.count()));
-    let size = domain.value.size.as_ref().map(|at| at.value.map(|length| length.get()));
-    let place = cells_place(domain);
+    let (raw, place) = (&domain.value, cells_place(domain));
+    if let (Some(cells), Some(size)) = (&raw.cells, &raw.size)
+        && cells.value.is_line() != size.value.is_line()
+    {
+        axes::wrong_number(checks, &size.span, cells.value.is_line());
+        return None;
+    }
+    let said = said(domain);
+    let cells = raw.cells.as_ref().map(|at| at.value.map(1, |count| count.count()));
+    // Of a line, the length along y that its grid has.
+    let size = raw.size.as_ref().map(|at| at.value.map(1.0, |length| length.get()));
     // A count that no machine can hold is refused by `memory`, with its numbers.
     if cells.is_some_and(|cells| memory::estimate(cells, 0) > memory::physical()) {
         return None;
     }
     if let (Some(cells), Some(size)) = (cells, size) {
-        return checks.core(place, Grid::new(cells, size));
+        return checks.core(place, grid_of(cells, size, said == Some(true)));
     }
     let missing: Vec<&str> =
         [("cells", cells.is_none()), ("size", size.is_none())].iter().filter(|k| k.1).map(|k| k.0).collect();
@@ -41,8 +49,12 @@ pub fn grid(
             match file.prepared(cells) {
                 Ok(prepared) => {
                     let of_file = prepared.surface.grid();
+                    if said.is_some_and(|line| line != of_file.is_line()) {
+                        axes::wrong_number(checks, given_place(domain), of_file.is_line());
+                        return None;
+                    }
                     let (cells, size) = (cells.unwrap_or(of_file.cells()), size.unwrap_or(of_file.size()));
-                    checks.core(place, Grid::new(cells, size))
+                    checks.core(place, grid_of(cells, size, of_file.is_line()))
                 }
                 Err(reason) => {
                     checks.fault(&file.span, reason, "", None);
@@ -67,6 +79,21 @@ pub fn grid(
     }
 }
 
+/// Whether the domain says that it is a line: one value in `cells` or `size`; `None` where it gives neither.
+pub fn said(domain: &At<raw::Domain>) -> Option<bool> {
+    let of_cells = domain.value.cells.as_ref().map(|at| at.value.is_line());
+    of_cells.or(domain.value.size.as_ref().map(|at| at.value.is_line()))
+}
+
+fn grid_of(cells: [usize; 2], size: [f64; 2], line: bool) -> asperity::Result<Grid> {
+    if line { Grid::line(cells[0], size[0]) } else { Grid::new(cells, size) }
+}
+
+/// Where the domain gives its cells or its size.
+fn given_place(domain: &At<raw::Domain>) -> &Range<usize> {
+    domain.value.size.as_ref().map_or_else(|| cells_place(domain), |at| &at.span)
+}
+
 /// Where the number of cells stands, or the domain that leaves it out.
 fn cells_place(domain: &At<raw::Domain>) -> &Range<usize> {
     domain.value.cells.as_ref().map_or(&domain.span, |at| &at.span)
@@ -81,7 +108,7 @@ pub fn memory(
     extra: usize,
     scheme: Scheme,
 ) {
-    let written = domain.value.cells.as_ref().map(|at| at.value.map(|count| count.count()));
+    let written = domain.value.cells.as_ref().map(|at| at.value.map(1, |count| count.count()));
     let Some(cells) = written.or(grid.map(Grid::cells)) else { return };
     let (needed, present) = (memory::estimate(cells, fields.saturating_add(extra)), memory::physical());
     if needed <= present {
@@ -93,8 +120,9 @@ pub fn memory(
         (_, 0) => String::new(),
         _ => format!(" with {fields} retarded terms"),
     };
+    let count = if said(domain) == Some(true) { nx.to_string() } else { format!("{nx} x {ny}") };
     let message = format!(
-        "{nx} x {ny} cells{detail} need about {}, but this machine has {}",
+        "{count} cells{detail} need about {}, but this machine has {}",
         memory::words(needed),
         memory::words(present)
     );

@@ -28,10 +28,11 @@ struct Place {
     largest: Range<usize>,
 }
 
-/// `times` makes the grid of a stage from its keys and its course.
+/// On a `line` loads are per length. `times` makes the grid of a stage from its keys and its course.
 pub fn prescription(
     checks: &mut Checks<'_, '_>,
     load: &At<raw::Load>,
+    line: bool,
     mut times: impl FnMut(&mut Checks<'_, '_>, &At<raw::Stage>, Option<&Course>) -> Option<Option<TimeGrid>>,
 ) -> Option<Prescription> {
     let raw = &load.value;
@@ -58,7 +59,7 @@ pub fn prescription(
             .iter()
             .enumerate()
             .map(|(n, at)| {
-                let made = stage(checks, at, n == last, &mut files);
+                let made = stage(checks, at, line, n == last, &mut files);
                 let own = times(checks, at, made.as_ref().map(|(stage, _)| &stage.course));
                 let made = made?;
                 Some((Stage { times: own?, ..made.0 }, made.1))
@@ -81,7 +82,7 @@ pub fn prescription(
         checks.fault(&at.span, "there is no earlier value to hold".to_owned(), "another kind", Some(help));
         return None;
     }
-    let (course, place) = course(checks, control, at, &mut files)?;
+    let (course, place) = course(checks, Kind { control, line }, at, &mut files)?;
     let programme = Programme::new(vec![Stage::new(control, course)]);
     let programme = checks.core(&at.span, programme.validate().map(|()| programme))?;
     Some(Prescription { programme, places: vec![place], files, span: at.span.clone() })
@@ -90,6 +91,7 @@ pub fn prescription(
 fn stage(
     checks: &mut Checks<'_, '_>,
     at: &At<raw::Stage>,
+    line: bool,
     last: bool,
     files: &mut Vec<(String, String)>,
 ) -> Option<(Stage, Place)> {
@@ -102,15 +104,20 @@ fn stage(
         return None;
     }
     let control = raw.control;
-    let (course, place) = course(checks, control, &raw.history, files)?;
+    let (course, place) = course(checks, Kind { control, line }, &raw.history, files)?;
+    let until = match raw.until.as_ref().map(|at| &at.value) {
+        None => None,
+        Some(raw::Until::ContactLost) => Some(Event::ContactLost),
+        Some(raw::Until::Approach(value)) => Some(Event::Approach(value.get())),
+        Some(raw::Until::Pressure(value)) => Some(Event::Pressure(value.get())),
+        Some(raw::Until::Load(at)) => {
+            let load = Kind { control: Control::Load, line };
+            Some(Event::Load(checks.quantity(at, load.resolve(&at.value))?))
+        }
+    };
     let stage = Stage {
         duration: raw.duration.as_ref().map(|at| at.value.get()),
-        until: raw.until.as_ref().map(|at| match &at.value {
-            raw::Until::ContactLost => Event::ContactLost,
-            raw::Until::Approach(value) => Event::Approach(value.get()),
-            raw::Until::Load(value) => Event::Load(value.get()),
-            raw::Until::Pressure(value) => Event::Pressure(value.get()),
-        }),
+        until,
         after_jump: raw.after_jump,
         ..Stage::new(control, course)
     };
@@ -120,19 +127,19 @@ fn stage(
 /// The course, checked.
 fn course(
     checks: &mut Checks<'_, '_>,
-    control: Control,
+    kind: Kind,
     at: &At<raw::History>,
     files: &mut Vec<(String, String)>,
 ) -> Option<(Course, Place)> {
     let (course, largest) = match &at.value {
         raw::History::Hold(_) => (Course::Hold, at.span.clone()),
         raw::History::Ramp(ramp) if ramp.from == raw::From::Current => {
-            let value = checks.quantity(&ramp.value, resolve(&ramp.value.value, control))?;
+            let value = checks.quantity(&ramp.value, kind.resolve(&ramp.value.value))?;
             (Course::RampTo { value, duration: ramp.duration.get() }, ramp.value.span.clone())
         }
         _ => {
             let mut file = None;
-            let (history, largest) = history(checks, control, at, &mut file)?;
+            let (history, largest) = history(checks, kind, at, &mut file)?;
             files.extend(file);
             let history = checks.core(&at.span, history.validate().map(|()| history))?;
             (Course::Given(history), largest)
@@ -155,19 +162,20 @@ pub fn possible(
         if let Some(grid) = grid {
             bearable(checks, stage, &place.largest, end, grid, pair);
         }
-        jumps(checks, stage, n == 0, &place.history, end, pair);
+        let line = grid.is_some_and(Grid::is_line);
+        jumps(checks, stage, Kind { control: stage.control, line }, n == 0, &place.history, end, pair);
     }
 }
 
 /// The history, and the place of its largest value.
 fn history(
     checks: &mut Checks<'_, '_>,
-    control: Control,
+    kind: Kind,
     at: &At<raw::History>,
     read: &mut Option<(String, String)>,
 ) -> Option<(History, Range<usize>)> {
     let one = |checks: &mut Checks<'_, '_>, value: &At<Prescribed>| {
-        checks.quantity(value, resolve(&value.value, control))
+        checks.quantity(value, kind.resolve(&value.value))
     };
     Some(match &at.value {
         raw::History::Step(step) => {
@@ -189,11 +197,11 @@ fn history(
             let [rise, hold, fall] = [trapezoid.rise.get(), trapezoid.hold.get(), trapezoid.fall.get()];
             (History::Trapezoid { peak, rise, hold, fall }, trapezoid.peak.span.clone())
         }
-        raw::History::Sine(sine) => (sinusoid(checks, control, sine)?, sine.mean.span.clone()),
-        raw::History::Table(table) => table_points(checks, control, table)?,
+        raw::History::Sine(sine) => (sinusoid(checks, kind, sine)?, sine.mean.span.clone()),
+        raw::History::Table(table) => table_points(checks, kind, table)?,
         raw::History::File(file) => {
             let path = checks.file(&file.path)?;
-            match history_file::read(&path, |value| resolve(value, control)) {
+            match history_file::read(&path, |value| kind.resolve(value)) {
                 Ok(history) => {
                     *read = Some((file.path.value.clone(), history.digest));
                     (History::Table { points: history.points }, file.path.span.clone())
@@ -208,31 +216,61 @@ fn history(
     })
 }
 
-/// The value in SI, in the dimension that the control has. A load presses; an approach may be negative.
-fn resolve(value: &Prescribed, control: Control) -> Result<f64, QuantityError> {
-    match control {
-        Control::Load => value.resolve::<dimension::Force, NonNegative>().map(|v| v.get()),
-        Control::Pressure => value.resolve::<dimension::Pressure, NonNegative>().map(|v| v.get()),
-        Control::Approach => value.resolve::<dimension::Length, Finite>().map(|v| v.get()),
-    }
-    .map_err(|error| match (control, error.help) {
-        (Control::Load | Control::Pressure, None) => {
-            let help = "there is no adhesion; to pull the bodies apart prescribe the approach";
-            QuantityError { expected: error.expected, help: Some(help.into()) }
-        }
-        (_, help) => QuantityError { expected: error.expected, help },
-    })
+/// What a prescribed value is: load, pressure or approach, and whether loads are per length.
+#[derive(Clone, Copy)]
+struct Kind {
+    control: Control,
+    line: bool,
 }
 
-fn sinusoid(checks: &mut Checks<'_, '_>, control: Control, sine: &raw::Sine) -> Option<History> {
-    let mean = checks.quantity(&sine.mean, resolve(&sine.mean.value, control));
-    let amplitude = checks.quantity(&sine.amplitude, resolve(&sine.amplitude.value, control));
+impl Kind {
+    /// The value in SI, in the dimension that the control has. A load presses; an approach may be negative.
+    fn resolve(self, value: &Prescribed) -> Result<f64, QuantityError> {
+        let si = match self.control {
+            Control::Load if self.line => {
+                value.resolve::<dimension::ForcePerLength, NonNegative>().map(|v| v.get())
+            }
+            Control::Load => value.resolve::<dimension::Force, NonNegative>().map(|v| v.get()),
+            Control::Pressure => value.resolve::<dimension::Pressure, NonNegative>().map(|v| v.get()),
+            Control::Approach => value.resolve::<dimension::Length, Finite>().map(|v| v.get()),
+        };
+        si.map_err(|QuantityError { expected, help }| {
+            let help = match (self.control, help) {
+                (Control::Load, Some(help)) if self.line && help.contains("unit of a force;") => {
+                    format!("{help}; the domain is a line of cells, so the load is per length along y")
+                }
+                (Control::Load, Some(help)) if !self.line && help.contains("unit of a force per length") => {
+                    format!("{help}; loads per length are for a line contact, with cells = [N] and size = [\"L\"]")
+                }
+                (Control::Load | Control::Pressure, None) => {
+                    "there is no adhesion; to pull the bodies apart prescribe the approach".to_owned()
+                }
+                (_, help) => return QuantityError { expected, help },
+            };
+            QuantityError { expected, help: Some(help) }
+        })
+    }
+
+    /// Its SI unit.
+    fn unit(self) -> &'static str {
+        match self.control {
+            Control::Load if self.line => "N/m",
+            Control::Load => "N",
+            Control::Pressure => "Pa",
+            Control::Approach => "m",
+        }
+    }
+}
+
+fn sinusoid(checks: &mut Checks<'_, '_>, kind: Kind, sine: &raw::Sine) -> Option<History> {
+    let mean = checks.quantity(&sine.mean, kind.resolve(&sine.mean.value));
+    let amplitude = checks.quantity(&sine.amplitude, kind.resolve(&sine.amplitude.value));
     let (mean, amplitude) = (mean?, amplitude?);
-    if control != Control::Approach && amplitude > mean {
+    if kind.control != Control::Approach && amplitude > mean {
         let help = "the load would become negative; raise the mean or lower the amplitude";
         checks.wrong(
             &sine.amplitude.span,
-            &format!("at most the mean, {} {}", number(mean), unit(control)),
+            &format!("at most the mean, {} {}", number(mean), kind.unit()),
             Some(help),
         );
         return None;
@@ -242,7 +280,7 @@ fn sinusoid(checks: &mut Checks<'_, '_>, control: Control, sine: &raw::Sine) -> 
 
 fn table_points(
     checks: &mut Checks<'_, '_>,
-    control: Control,
+    kind: Kind,
     table: &raw::Table,
 ) -> Option<(History, Range<usize>)> {
     let mut points = Vec::with_capacity(table.points.value.len());
@@ -258,7 +296,7 @@ fn table_points(
             let expected = format!("a point at {} s or later, as the point before it", number(*before));
             checks.wrong(&point.span, &expected, Some("list the points in order of time"));
         }
-        match checks.quantity(value, resolve(&value.value, control)) {
+        match checks.quantity(value, kind.resolve(&value.value)) {
             Some(value_si) => {
                 if value_si > largest.0 {
                     largest = (value_si, value.span.clone());
@@ -301,9 +339,10 @@ fn bearable(
     if largest <= limit * (1.0 + 1e-12) {
         return;
     }
-    let unit = unit(stage.control);
+    let unit = Kind { control: stage.control, line: grid.is_line() }.unit();
     let [reached, limit, hardness] = [largest, limit, pair.hardness].map(number);
     let area = match stage.control {
+        Control::Load if grid.is_line() => format!(" times the length {} m", number(grid.area())),
         Control::Load => format!(" times the area {} m^2", number(grid.area())),
         _ => String::new(),
     };
@@ -319,6 +358,7 @@ fn bearable(
 fn jumps(
     checks: &mut Checks<'_, '_>,
     stage: &Stage,
+    kind: Kind,
     first: bool,
     place: &Range<usize>,
     end: f64,
@@ -329,7 +369,7 @@ fn jumps(
     let instants = first.then_some(0.0).into_iter().chain(history.breaks(end));
     let jump = instants.map(|t| (t, history.before(t), history.after(t))).find(|(_, b, a)| a != b);
     let Some((t, before, after)) = jump else { return };
-    let unit = unit(stage.control);
+    let unit = kind.unit();
     let [t, before, after] = [t, before, after].map(number);
     let message = format!(
         "the history jumps from {before} to {after} {unit} at t = {t} s, but the bodies have no instantaneous \
@@ -337,12 +377,4 @@ fn jumps(
     );
     let help = "use a ramp, or a material with an instantaneous modulus (zener, prony)";
     checks.fault(place, message, "a history without jumps", Some(help));
-}
-
-fn unit(control: Control) -> &'static str {
-    match control {
-        Control::Load => "N",
-        Control::Pressure => "Pa",
-        Control::Approach => "m",
-    }
 }

@@ -1,6 +1,7 @@
 //! From what is written to what is solved: the checks that need more than one key, and the conversion into
 //! the objects of the solver.
 
+mod axes;
 mod body;
 mod curve;
 pub(super) mod domain;
@@ -23,7 +24,7 @@ use std::path::{Path, PathBuf};
 use asperity::load::Course;
 use asperity::material::Material;
 use asperity::time::Plan;
-use asperity::{Scheme, TimeGrid};
+use asperity::{Grid, Scheme, TimeGrid};
 
 use super::error::CaseError;
 use super::plan::Rows;
@@ -46,7 +47,8 @@ pub fn case(
     let measured = surface::files(&mut checks, &document.surface);
     let of_grid: Vec<_> = measured.iter().flatten().map(Option::as_ref).collect();
     let grid = domain::grid(&mut checks, &document.domain, &of_grid);
-    let surfaces = surface::surfaces(&mut checks, &document.surface, &measured, grid.as_ref());
+    let line = grid.as_ref().map(Grid::is_line).or(domain::said(&document.domain)).unwrap_or(false);
+    let surfaces = surface::surfaces(&mut checks, &document.surface, &measured, grid.as_ref(), line);
     let parts = layer::parts(&mut checks, &document.body);
     let samples: Vec<_> = parts.iter().map(|part| material::sample(&mut checks, part.material)).collect();
     let temperatures = temperature::temperatures(&mut checks, document.temperature.as_ref(), &samples);
@@ -57,7 +59,7 @@ pub fn case(
     let stages = document.load.value.stages.as_ref().map(|list| list.value.as_slice()).unwrap_or_default();
     let own = |stage: &At<raw::Stage>| stage.value.steps.is_some() || stage.value.spacing.is_some();
     let all_own = !stages.is_empty() && stages.iter().all(own);
-    let prescription = load::prescription(&mut checks, &document.load, |checks, stage, course| {
+    let prescription = load::prescription(&mut checks, &document.load, line, |checks, stage, course| {
         time::of_stage(checks, stage, |end| first_step(end, course))
     });
     let programme = prescription.as_ref().map(|prescription| &prescription.programme);
@@ -117,9 +119,9 @@ pub fn case(
             checks.fault(&at.span, message, "bodies without layers", Some("delete the section"));
             None
         }
-        (Some(at), _, Some(pair), _, _) if pair.layers.is_some() => {
-            let message = "the stress below the surface is not computed for bodies of layers yet".to_owned();
-            checks.fault(&at.span, message, "half-spaces", Some("leave [stress] out"));
+        (Some(at), ..) if line => {
+            let message = "the stress below the surface is not computed for line contacts yet".to_owned();
+            checks.fault(&at.span, message, "a domain with two values in cells", Some("delete the section"));
             None
         }
         (Some(at), Some(grid), Some(pair), Some(output), Some(times)) => {
@@ -133,6 +135,11 @@ pub fn case(
         .as_ref()
         .is_none_or(|fields| fields.iter().any(|at| at.value == FieldKind::Gap));
     let boundary = document.domain.value.boundary.unwrap_or_default();
+    if let (Some(at), true) = (&document.leakage, line) {
+        let message = "leakage needs a gap over a plane: on a line of cells nothing flows along y".to_owned();
+        let help = "delete the section, or give domain.cells and domain.size two values";
+        checks.fault(&at.span, message, "a domain with two values in cells", Some(help));
+    }
     let leakage =
         leakage::section(&mut checks, document.leakage.as_ref(), boundary, points, keeps_gap).flatten();
 

@@ -5,13 +5,13 @@ use asperity::surface::{
     HeightDistribution, Lay, Level, Part, Punch, Roughness, SelfAffine, Shape, Synthesis, level,
 };
 
-use super::{Checks, prepare};
+use super::{Checks, axes, prepare};
 use crate::case::measured::Measured;
 use crate::case::plan::Surface;
 use crate::case::quantity::range::Positive;
 use crate::case::quantity::unit::Unit;
 use crate::case::quantity::{Dimension, Length, dimension};
-use crate::case::raw::{self, At, Two};
+use crate::case::raw::{self, At};
 use crate::case::words;
 use crate::topography::{ReadOptions, read};
 
@@ -29,6 +29,7 @@ pub fn surfaces(
     surfaces: &[At<raw::Surface>],
     files: &[Option<Option<Measured>>],
     grid: Option<&Grid>,
+    line: bool,
 ) -> Option<Vec<Surface>> {
     // All of them are looked at, also after one that is wrong.
     let parts: Vec<_> = surfaces
@@ -36,40 +37,79 @@ pub fn surfaces(
         .zip(files)
         .map(|(surface, file)| match file {
             Some(file) => file.clone().map(Surface::File),
-            None => part(checks, surface, grid),
+            None => part(checks, surface, grid, line),
         })
         .collect();
     parts.into_iter().collect()
 }
 
-fn part(checks: &mut Checks<'_, '_>, surface: &At<raw::Surface>, grid: Option<&Grid>) -> Option<Surface> {
+fn part(
+    checks: &mut Checks<'_, '_>,
+    surface: &At<raw::Surface>,
+    grid: Option<&Grid>,
+    line: bool,
+) -> Option<Surface> {
+    if line {
+        on_a_line(checks, surface)?;
+    }
     let (shape, center) = match &surface.value {
-        raw::Surface::Sphere(sphere) => (Shape::Sphere { radius: sphere.radius.get() }, sphere.center),
+        raw::Surface::Sphere(sphere) => (Shape::Sphere { radius: sphere.radius.get() }, &sphere.center),
         raw::Surface::Ellipsoid(ellipsoid) => {
             let [radius_x, radius_y] = [ellipsoid.radius_x.get(), ellipsoid.radius_y.get()];
-            (Shape::Ellipsoid { radius_x, radius_y }, ellipsoid.center)
+            (Shape::Ellipsoid { radius_x, radius_y }, &ellipsoid.center)
         }
-        raw::Surface::Cone(cone) => (Shape::Cone { slope: cone.slope.get() }, cone.center),
+        raw::Surface::Cylinder(cylinder) => {
+            (Shape::Cylinder { radius: cylinder.radius.get() }, &cylinder.center)
+        }
+        raw::Surface::Wedge(wedge) => (Shape::Wedge { slope: wedge.slope.get() }, &wedge.center),
+        raw::Surface::Cone(cone) => (Shape::Cone { slope: cone.slope.get() }, &cone.center),
         raw::Surface::FlatPunch(punch) => {
             let keys = [("radius", punch.value.radius.is_some()), ("size", punch.value.size.is_some())];
             checks.exactly_one(&punch.span, &keys)?;
-            let outline = match (punch.value.radius, punch.value.size) {
+            let outline = match (punch.value.radius, &punch.value.size) {
                 (Some(radius), _) => Punch::Circle { radius: radius.get() },
-                (_, Some(size)) => Punch::Rectangle { size: size.map(|length| length.get()) },
+                (_, Some(at)) => {
+                    let size = axes::values(checks, at, line, f64::INFINITY, |length| length.get())?;
+                    Punch::Rectangle { size }
+                }
                 (None, None) => return None,
             };
-            (Shape::FlatPunch(outline), punch.value.center)
+            (Shape::FlatPunch(outline), &punch.value.center)
         }
         raw::Surface::Wave(wave) => {
-            let wavelength = wave.wavelength.map(|length| length.get());
-            (Shape::Wave { amplitude: wave.amplitude.get(), wavelength }, wave.center)
+            let wavelength =
+                axes::values(checks, &wave.wavelength, line, f64::INFINITY, |length| length.get())?;
+            (Shape::Wave { amplitude: wave.amplitude.get(), wavelength }, &wave.center)
         }
         raw::Surface::SelfAffine(roughness) => return self_affine(checks, roughness, grid),
         raw::Surface::File(_) => return None, // see `files`
     };
     checks.core(&surface.span, shape.validate())?;
-    let center = center.map_or([0.0, 0.0], |center: Two<Length>| center.map(|length| length.get()));
+    let center = match center {
+        None => [0.0, 0.0],
+        Some(at) => axes::values(checks, at, line, 0.0, |length| length.get())?,
+    };
     Some(Surface::Part(Part::Shape { shape, center }))
+}
+
+/// Refuses shapes that no line contact has.
+fn on_a_line(checks: &mut Checks<'_, '_>, surface: &At<raw::Surface>) -> Option<()> {
+    let (name, instead) = match &surface.value {
+        raw::Surface::Sphere(_) => ("a sphere", "cylinder"),
+        raw::Surface::Ellipsoid(_) => ("an ellipsoid", "cylinder"),
+        raw::Surface::Cone(_) => ("a cone", "wedge"),
+        raw::Surface::SelfAffine(at) => {
+            let Some(lay) = &at.value.lay else { return Some(()) };
+            let message = "a profile has no lay: the domain is a line of cells".to_owned();
+            checks.fault(&lay.span, message, "roughness without a lay", Some("leave `lay` out"));
+            return None;
+        }
+        _ => return Some(()),
+    };
+    let message = format!("{name} is not straight along y, but the domain is a line of cells");
+    let help = format!("use kind = \"{instead}\", or give domain.cells and domain.size two values");
+    checks.fault(&surface.span, message, "a cylinder, wedge, flat punch, wave, roughness or profile", Some(&help));
+    None
 }
 
 /// Synthetic roughness; checked against the grid where there is one.

@@ -80,7 +80,7 @@ fn capital(text: &str) -> String {
     characters.next().map(|c| c.to_uppercase().chain(characters).collect()).unwrap_or_default()
 }
 
-/// A value whose dimension another key decides: a load \[N\], a mean pressure \[Pa\] or an approach \[m\].
+/// A value whose dimension another key decides: a load \[N\], on a line \[N/m\], a mean pressure \[Pa\] or an approach \[m\].
 #[derive(Clone, Debug, PartialEq)]
 pub enum Prescribed {
     /// A bare number, in SI.
@@ -103,7 +103,7 @@ impl Prescribed {
 }
 
 const PRESCRIBED: &str =
-    "a load (\"0.5 N\"), a pressure (\"2 MPa\") or an approach (\"1 um\"), as load.control says";
+    "a load (\"0.5 N\", on a line \"2 N/mm\"), a pressure (\"2 MPa\") or an approach (\"1 um\"), as load.control says";
 
 impl<'de> Deserialize<'de> for Prescribed {
     fn deserialize<S: Deserializer<'de>>(deserializer: S) -> Result<Self, S::Error> {
@@ -144,7 +144,7 @@ impl JsonSchema for Prescribed {
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         json_schema!({
-            "description": "A force, a pressure or a length with its unit, as load.control says; or a bare number in SI.",
+            "description": "A force (on a line a force per length), a pressure or a length with its unit, as load.control says; or a bare number in SI.",
             "anyOf": [{ "type": "string", "pattern": NUMBER_WITH_UNIT }, { "type": "number" }],
             "examples": ["0.5 N", "2 MPa", "1 um"],
         })

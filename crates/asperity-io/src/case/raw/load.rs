@@ -7,7 +7,7 @@ use serde::Deserialize;
 use super::{At, Two};
 use crate::case::quantity::range::{NonNegative, Positive};
 use crate::case::quantity::{
-    Force, Frequency, Length, Number, Prescribed, Pressure, Time as Duration, Whole,
+    Frequency, Length, Number, Prescribed, Pressure, Time as Duration, Whole,
 };
 
 /// What presses the bodies together.
@@ -75,7 +75,7 @@ pub enum Until {
     Approach(Length),
     /// The load crosses a value.
     #[schemars(example = "0.1 N")]
-    Load(Force<NonNegative>),
+    Load(At<Prescribed>),
     /// The mean pressure crosses a value.
     #[schemars(example = "1 MPa")]
     Pressure(Pressure<NonNegative>),

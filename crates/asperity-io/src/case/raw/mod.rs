@@ -3,6 +3,7 @@
 //! The comments on the fields are the descriptions in the JSON Schema; the types of the fields carry
 //! dimension and range. What needs more than one key to judge is checked in `convert`.
 
+mod axes;
 mod body;
 mod leakage;
 mod load;
@@ -23,6 +24,7 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, IgnoredAny, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
+pub use axes::Axes;
 pub use body::{Body, BodyBase, HardnessFile, Layer};
 pub use leakage::{LeakDirection, Leakage};
 pub use load::{From, History, Load, Sine, Spacing, Stage, Table, Time, Until};
@@ -44,7 +46,7 @@ pub struct Document {
     /// Title of the case, stored in the result.
     #[schemars(example = "PMMA rough sphere, step load")]
     pub title: Option<String>,
-    /// The computational domain: a rectangle of equal cells.
+    /// The computational domain: a rectangle of equal cells, or a line of them.
     pub domain: At<Domain>,
     /// The parts whose sum is the undeformed gap.
     #[schemars(length(min = 1))]
@@ -73,17 +75,19 @@ pub struct Document {
     pub stress: Option<At<Stress>>,
 }
 
-/// A rectangle of equal cells.
+/// A rectangle of equal cells; or a line of cells, with one value in `cells` and `size`: a line contact in plane strain, in which
+/// nothing changes along y.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Domain {
-    /// Number of cells along x and y; any numbers, also not square and not powers of two. Those of the measured
-    /// surface if not given; needed without a measured surface.
-    #[schemars(example = [1024, 1024])]
-    pub cells: Option<At<Two<Whole<1>>>>,
-    /// Length of the domain along x and y. That of the measured surface if not given; needed without a measured surface.
-    #[schemars(example = ["0.1 mm", "0.1 mm"])]
-    pub size: Option<At<Two<Length<Positive>>>>,
+    /// Number of cells along x and y; any numbers, also not square and not powers of two. One number for a line contact.
+    /// Those of the measured surface if not given; needed without a measured surface.
+    #[schemars(example = [1024, 1024], example = [1024])]
+    pub cells: Option<At<Axes<Whole<1>>>>,
+    /// Length of the domain along x and y; one length for a line contact. That of the measured surface if not given; needed
+    /// without a measured surface.
+    #[schemars(example = ["0.1 mm", "0.1 mm"], example = ["2 mm"])]
+    pub size: Option<At<Axes<Length<Positive>>>>,
     /// Boundary condition of the domain; "free" if not given.
     pub boundary: Option<Boundary>,
 }

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::prepare::{Crop, Filter, Operation, Outliers, Window};
-use super::{At, Two};
+use super::{At, Axes, Two};
 use crate::case::quantity::range::{Hurst, Positive, PositiveOrInfinite, Share};
 use crate::case::quantity::{Angle, Label, Length, Number, Signed, Whole};
 
@@ -19,6 +19,10 @@ pub enum Surface {
     Sphere(Sphere),
     /// An ellipsoid, as the paraboloid x^2/(2 Rx) + y^2/(2 Ry).
     Ellipsoid(Ellipsoid),
+    /// A cylinder along y, as the parabola x^2/(2 R).
+    Cylinder(Cylinder),
+    /// A wedge along y, edge towards the other body.
+    Wedge(Wedge),
     /// A cone, tip towards the other body.
     Cone(Cone),
     /// A flat punch: cells outside its face cannot touch.
@@ -37,9 +41,9 @@ pub struct Sphere {
     /// Radius of curvature.
     #[schemars(example = "0.5 mm")]
     pub radius: Length<PositiveOrInfinite>,
-    /// Position from the centre of the domain; ["0 m", "0 m"] if not given.
+    /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
     #[schemars(example = ["0 mm", "0.02 mm"])]
-    pub center: Option<Two<Length>>,
+    pub center: Option<At<Axes<Length>>>,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -51,9 +55,31 @@ pub struct Ellipsoid {
     /// Radius of curvature in the y-z plane; "inf" makes a cylinder along y.
     #[schemars(example = "2 mm")]
     pub radius_y: Length<PositiveOrInfinite>,
-    /// Position from the centre of the domain; ["0 m", "0 m"] if not given.
+    /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
     #[schemars(example = ["0 mm", "0.02 mm"])]
-    pub center: Option<Two<Length>>,
+    pub center: Option<At<Axes<Length>>>,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Cylinder {
+    /// Radius of curvature; "inf" for a flat.
+    #[schemars(example = "10 mm")]
+    pub radius: Length<PositiveOrInfinite>,
+    /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
+    #[schemars(example = ["0.02 mm"])]
+    pub center: Option<At<Axes<Length>>>,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Wedge {
+    /// Rise per length: tan of the angle between the flank and the undeformed surface.
+    #[schemars(example = 0.1)]
+    pub slope: Number<Positive>,
+    /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
+    #[schemars(example = ["0.02 mm"])]
+    pub center: Option<At<Axes<Length>>>,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -62,23 +88,23 @@ pub struct Cone {
     /// Rise per length: tan of the angle between the flank and the undeformed surface.
     #[schemars(example = 0.1)]
     pub slope: Number<Positive>,
-    /// Position from the centre of the domain; ["0 m", "0 m"] if not given.
+    /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
     #[schemars(example = ["0 mm", "0.02 mm"])]
-    pub center: Option<Two<Length>>,
+    pub center: Option<At<Axes<Length>>>,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FlatPunch {
-    /// Radius of a circular face; this or `size`.
+    /// Radius of a circular face, or half the width on a line; this or `size`.
     #[schemars(example = "20 um")]
     pub radius: Option<Length<Positive>>,
-    /// Sides of a rectangular face along x and y; this or `radius`.
+    /// Sides of a rectangular face along x and y, or the width on a line; this or `radius`.
     #[schemars(example = ["20 um", "40 um"])]
-    pub size: Option<Two<Length<Positive>>>,
-    /// Position from the centre of the domain; ["0 m", "0 m"] if not given.
+    pub size: Option<At<Axes<Length<Positive>>>>,
+    /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
     #[schemars(example = ["0 mm", "0.02 mm"])]
-    pub center: Option<Two<Length>>,
+    pub center: Option<At<Axes<Length>>>,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -87,12 +113,12 @@ pub struct Wave {
     /// Amplitude: half the height from trough to crest.
     #[schemars(example = "1 um")]
     pub amplitude: Length,
-    /// Wavelength along x and y; "inf" for no variation along that axis.
+    /// Wavelength along x and y; "inf" for no variation along that axis. On a line one value.
     #[schemars(example = ["50 um", "inf"])]
-    pub wavelength: Two<Length<PositiveOrInfinite>>,
-    /// Position from the centre of the domain; ["0 m", "0 m"] if not given.
+    pub wavelength: At<Axes<Length<PositiveOrInfinite>>>,
+    /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
     #[schemars(example = ["0 mm", "0.02 mm"])]
-    pub center: Option<Two<Length>>,
+    pub center: Option<At<Axes<Length>>>,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -100,7 +126,7 @@ pub struct Wave {
 pub struct SelfAffine {
     /// A published roughness by its name; its numbers are the defaults of the other keys.
     pub preset: Option<Preset>,
-    /// Hurst exponent: the spectrum falls as q^(-2 (1 + hurst)). Needed without `preset`.
+    /// Hurst exponent: the spectrum falls as q^(-2 (1 + hurst)), on a line as q^(-1 - 2 hurst). Needed without `preset`.
     #[schemars(example = 0.8)]
     pub hurst: Option<Number<Hurst>>,
     /// Root mean square of the gradient; this or `rms_height`.

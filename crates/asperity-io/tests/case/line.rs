@@ -1,0 +1,163 @@
+//! Line contacts: one value in `cells` and `size`, loads per length, and what is refused on a line.
+
+use std::path::Path;
+
+use asperity::{Control, Event, Grid};
+use asperity_io::case::{Case, CaseError};
+
+const GOOD: &str = r#"
+[domain]
+cells = [64]
+size = ["2 mm"]
+[[surface]]
+kind = "cylinder"
+radius = "10 mm"
+[[body]]
+poisson = 0.5
+material = { model = "elastic", young = "100 MPa" }
+[load]
+control = "load"
+history = { kind = "ramp", value = "2 N/mm", duration = "1 s" }
+[time]
+end = "1 s"
+steps = 2
+"#;
+
+fn case(text: &str) -> Case {
+    Case::parse(text, Path::new("."), &[]).unwrap_or_else(|errors| panic!("{errors}"))
+}
+
+fn edited(from: &str, to: &str) -> String {
+    assert!(GOOD.contains(from), "{from}");
+    GOOD.replace(from, to)
+}
+
+fn fault(text: &str) -> CaseError {
+    let errors = Case::parse(text, Path::new("."), &[]).err().unwrap_or_else(|| panic!("accepted:\n{text}")).errors;
+    assert_eq!(errors.len(), 1, "{errors:?}");
+    errors.into_iter().next().unwrap()
+}
+
+#[test]
+fn one_value_in_cells_and_size_is_a_line() {
+    let case = case(GOOD);
+    assert_eq!(case.grid, Grid::line(64, 2e-3).unwrap());
+    let simulation = case.simulation().unwrap();
+    assert_eq!(simulation.gap.dim(), (64, 1));
+    // A cell beside the middle: x^2 / 2 R, less the least, which is there.
+    assert_eq!(simulation.gap[(31, 0)], 0.0);
+    let description = case.describe();
+    assert_eq!((description.cells, description.size), (vec![64], vec![2e-3]));
+}
+
+#[test]
+fn loads_are_per_length_in_every_place() {
+    let largest = |text: &str| case(text).loading.stages[0].course.resolve(0.0).range(1.0)[1];
+    for (history, newtons_per_metre) in [
+        ("{ kind = \"step\", value = \"2 N/mm\" }", 2000.0),
+        ("{ kind = \"step\", value = \"3 kN/m\" }", 3000.0),
+        ("{ kind = \"step\", value = 7 }", 7.0),
+        ("{ kind = \"triangle\", peak = \"2 N/mm\", rise = \"0.5 s\", fall = \"0.5 s\" }", 2000.0),
+        ("{ kind = \"table\", points = [[\"0 s\", \"0 N/m\"], [\"1 s\", \"5 mN/um\"]] }", 5000.0),
+    ] {
+        let text = edited("{ kind = \"ramp\", value = \"2 N/mm\", duration = \"1 s\" }", history);
+        assert_eq!(largest(&text), newtons_per_metre, "{history}");
+    }
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("load.csv"), "time [s], load [N/mm]\n0, 0\n1, 4\n").unwrap();
+    let text = edited("{ kind = \"ramp\", value = \"2 N/mm\", duration = \"1 s\" }", "{ kind = \"file\", path = \"load.csv\" }");
+    let case = Case::parse(&text, directory.path(), &[]).unwrap();
+    assert_eq!(case.loading.stages[0].course.resolve(0.0).range(1.0)[1], 4000.0);
+    let stages = edited(
+        "control = \"load\"\nhistory = { kind = \"ramp\", value = \"2 N/mm\", duration = \"1 s\" }",
+        "stages = [{ control = \"load\", history = { kind = \"ramp\", value = \"2 N/mm\", duration = \"1 s\" }, until = { load = \"1 N/mm\" } }]",
+    );
+    let case = self::case(&stages);
+    assert_eq!(case.loading.stages[0].until, Some(Event::Load(1000.0)));
+    assert_eq!(case.loading.stages[0].control, Control::Load);
+}
+
+#[test]
+fn a_load_of_the_wrong_kind_names_the_right_one() {
+    let error = fault(&edited("\"2 N/mm\"", "\"2 N\""));
+    assert_eq!((error.key.as_str(), error.line), ("load.history.value", Some(13)));
+    assert!(error.expected.contains("a force per length"), "{error:?}");
+    assert!(error.help.as_deref().is_some_and(|help| help.contains("the load is per length")), "{error:?}");
+
+    let plane = GOOD.replace("[64]", "[64, 64]").replace("[\"2 mm\"]", "[\"2 mm\", \"2 mm\"]");
+    let error = fault(&plane);
+    assert!(error.expected.starts_with("a force not less than 0"), "{error:?}");
+    assert!(error.help.as_deref().is_some_and(|help| help.contains("for a line contact")), "{error:?}");
+
+    let until = edited(
+        "control = \"load\"\nhistory = { kind = \"ramp\", value = \"2 N/mm\", duration = \"1 s\" }",
+        "stages = [{ control = \"load\", history = { kind = \"ramp\", value = \"2 N/mm\", duration = \"1 s\" }, until = { load = \"1 N\" } }]",
+    );
+    let error = fault(&until);
+    assert_eq!(error.key, "load.stages[0].until.load");
+}
+
+#[test]
+fn lists_have_one_value_on_a_line_and_two_on_a_plane() {
+    let table = [
+        ("size = [\"2 mm\"]", "size = [\"2 mm\", \"2 mm\"]", "domain.size", "one value"),
+        ("cells = [64]", "cells = [64, 64]", "domain.size", "two values"),
+        ("cells = [64]", "cells = [64, 64, 64]", "domain.cells", "two values"),
+        ("cells = [64]", "cells = []", "domain.cells", "two values"),
+        ("radius = \"10 mm\"", "radius = \"10 mm\"\ncenter = [\"0 mm\", \"0 mm\"]", "surface[0].center", "one value"),
+        (
+            "kind = \"cylinder\"\nradius = \"10 mm\"",
+            "kind = \"wave\"\namplitude = \"1 um\"\nwavelength = [\"1 mm\", \"1 mm\"]",
+            "surface[0].wavelength",
+            "one value",
+        ),
+        (
+            "kind = \"cylinder\"\nradius = \"10 mm\"",
+            "kind = \"flat-punch\"\nsize = [\"1 mm\", \"1 mm\"]",
+            "surface[0].size",
+            "one value",
+        ),
+    ];
+    for (from, to, key, words) in table {
+        let error = fault(&edited(from, to));
+        assert_eq!(error.key, key, "{to}: {error:?}");
+        assert!(error.expected.contains(words), "{to}: {error:?}");
+        assert!(error.line.is_some());
+    }
+    for shape in [
+        "kind = \"wedge\"\nslope = 0.1",
+        "kind = \"flat-punch\"\nsize = [\"1 mm\"]\ncenter = [\"0.1 mm\"]",
+        "kind = \"flat-punch\"\nradius = \"0.5 mm\"",
+        "kind = \"wave\"\namplitude = \"1 um\"\nwavelength = [\"0.5 mm\"]",
+        "kind = \"self-affine\"\nhurst = 0.8\nrms_height = \"1 um\"\nlongest = \"1 mm\"\nshortest = \"0.2 mm\"\nseed = 1",
+    ] {
+        let case = case(&edited("kind = \"cylinder\"\nradius = \"10 mm\"", shape));
+        assert!(case.simulation().is_ok(), "{shape}");
+    }
+    // A cylinder and a wedge are straight along y on a plane too.
+    let plane = edited("\"2 N/mm\"", "\"2 N\"")
+        .replace("[64]", "[64, 32]")
+        .replace("[\"2 mm\"]", "[\"2 mm\", \"1 mm\"]");
+    let gap = case(&plane).gap().unwrap();
+    assert!((0..64).all(|i| (0..32).all(|j| gap[(i, j)] == gap[(i, 0)])) && gap[(0, 0)] > 0.0);
+}
+
+#[test]
+fn what_a_line_contact_cannot_do_is_refused_where_it_stands() {
+    let table = [
+        ("kind = \"cylinder\"", "kind = \"sphere\"", "surface[0]", "straight along y"),
+        ("[time]", "[leakage]\npressure_drop = \"1 bar\"\nviscosity = \"1 mPa s\"\n[time]", "leakage", "plane"),
+        ("[time]", "[stress]\ndepths = \"auto\"\n[time]", "stress", "line contacts"),
+    ];
+    for (from, to, key, words) in table {
+        let error = fault(&edited(from, to));
+        assert_eq!(error.key, key, "{error:?}");
+        assert!(error.message.contains(words), "{error:?}");
+    }
+    // A free line contact has no approach to prescribe; a periodic one has.
+    let approach = GOOD.replace("control = \"load\"", "control = \"approach\"").replace("2 N/mm", "2 um");
+    let message = case(&approach).simulation().unwrap_err().to_string();
+    assert!(message.contains("approach") && message.contains("periodic"), "{message}");
+    let periodic = approach.replace("size = [\"2 mm\"]", "size = [\"2 mm\"]\nboundary = \"periodic\"");
+    assert!(case(&periodic).simulation().is_ok());
+}

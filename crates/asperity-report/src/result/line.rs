@@ -1,0 +1,124 @@
+//! Figures of a line contact: where a plane has maps, curves over x at an instant and pictures over x and time.
+
+use asperity_io::store::{At, FieldKind, Reader, StoreError};
+use ndarray::Array2;
+
+use super::fields::CONTACT_STATES;
+use super::{caption, nameless};
+use crate::figure::{Axis, Colours, Curves, Figure, Map, Series, Style, means, states};
+
+/// Rows of a picture over time, and most columns.
+const ROWS: usize = 256;
+const COLUMNS: usize = 1024;
+
+/// A field over x at an instant, and over x and time where several instants are stored.
+pub(super) fn field(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, StoreError> {
+    let index = reader.index(at)?;
+    let mut figure = Figure::new("").columns(1).with(curve(reader, kind, At::Index(index))?);
+    figure.panel = [430.0, 180.0];
+    let mut words = caption(reader, index)?;
+    if let Some(map) = over_time(reader, kind)? {
+        figure = figure.with(map);
+        words += " Below: over x and time, at each time the nearest stored instant.";
+    }
+    Ok(figure.caption(words))
+}
+
+/// The undeformed gap over x.
+pub(super) fn initial_gap(reader: &Reader) -> Result<Figure, StoreError> {
+    let panel = Curves::new("", Axis::linear("x", "m"), Axis::linear("undeformed gap", "m"));
+    let gap = reader.initial_gap()?.into_raw_vec_and_offset().0;
+    let mut figure = Figure::new("").with(nameless(panel, &places(reader), gap));
+    figure.panel = [430.0, 180.0];
+    Ok(figure)
+}
+
+/// Both surfaces in the contact, the deformed one and the other, which stays as it is: z = -u and z = h0 - w, so that their
+/// distance is the gap h = h0 - w + u. `gap` is h.
+pub(super) fn surfaces(reader: &Reader, index: usize, gap: &Array2<f64>) -> Result<Curves, StoreError> {
+    let approach = super::at_instant(reader, index, "approach")?;
+    let before = reader.initial_gap()?;
+    let other: Vec<f64> = before.iter().map(|h0| h0 - approach).collect();
+    let deformed: Vec<f64> = other.iter().zip(gap).map(|(z, h)| z - h).collect();
+    // Far from the contact the other body rises out of sight: twice the depth of the contact shows what happens.
+    let lowest = deformed.iter().copied().filter(|z| z.is_finite()).fold(f64::INFINITY, f64::min);
+    let highest = deformed.iter().copied().filter(|z| z.is_finite()).fold(f64::NEG_INFINITY, f64::max);
+    let top = highest + (highest - lowest).max(f64::MIN_POSITIVE);
+    let seen = other.into_iter().map(|z| if z <= top { z } else { f64::NAN }).collect::<Vec<_>>();
+    let x = places(reader);
+    Ok(Curves::new("", Axis::linear("x", "m"), Axis::linear("height", "m"))
+        .with(Series::new("deformed surface", Style::Line, x.clone(), deformed))
+        .with(Series::new("other surface", Style::Dashed, x, seen)))
+}
+
+/// A field over x at a stored instant.
+pub(crate) fn curve(reader: &Reader, kind: FieldKind, at: At) -> Result<Curves, StoreError> {
+    let values = one(reader, kind, at)?.into_raw_vec_and_offset().0;
+    let (label, units) = match kind {
+        FieldKind::Contact => ("state: 1 contact, 2 at hardness", ""),
+        kind => (title(kind), kind.units()),
+    };
+    let panel = Curves::new("", Axis::linear("x", "m"), Axis::linear(label, units));
+    Ok(nameless(panel, &places(reader), values))
+}
+
+/// A field over x and time; `None` where fewer than two instants are stored.
+pub(crate) fn over_time(reader: &Reader, kind: FieldKind) -> Result<Option<Map>, StoreError> {
+    let times = reader.field_times();
+    let (Some(first), Some(last)) = (times.first().copied(), times.last().copied()) else { return Ok(None) };
+    if last <= first {
+        return Ok(None);
+    }
+    let block = reader.header().grid.cells()[0].div_ceil(COLUMNS);
+    let columns = reader.header().grid.cells()[0].div_ceil(block);
+    let mut picture = Array2::zeros((columns, ROWS));
+    let mut held: Option<(usize, Array2<f64>)> = None;
+    for k in 0..ROWS {
+        let time = first + (k as f64 + 0.5) / ROWS as f64 * (last - first);
+        let index = reader.index(At::Time(time))?;
+        let values = match held.take() {
+            Some((of, values)) if of == index => values,
+            _ => {
+                let values = one(reader, kind, At::Index(index))?;
+                if kind == FieldKind::Contact { states(values.view(), block) } else { means(values.view(), block) }
+            }
+        };
+        picture.column_mut(k).assign(&values.column(0));
+        held = Some((index, values));
+    }
+    let size = [reader.header().grid.size()[0], last - first];
+    let map = match kind {
+        FieldKind::Contact => {
+            let names = CONTACT_STATES.map(|(name, colour)| (name.to_owned(), colour)).to_vec();
+            Map::states("", names, picture.view(), size)
+        }
+        kind => {
+            let colours = if kind == FieldKind::Pressure { Colours::Heat } else { Colours::Sequential };
+            Map::new("", [title(kind), kind.units()], colours, picture.view(), size)
+        }
+    };
+    Ok(Some(map.over_time(first)))
+}
+
+/// Centres of the cells \[m\].
+pub(super) fn places(reader: &Reader) -> Vec<f64> {
+    let grid = &reader.header().grid;
+    (0..grid.cells()[0]).map(|i| grid.x(i)).collect()
+}
+
+fn one(reader: &Reader, kind: FieldKind, at: At) -> Result<Array2<f64>, StoreError> {
+    match kind {
+        FieldKind::Contact => Ok(reader.contact_states(at)?.mapv(f64::from)),
+        kind => reader.field(kind, at),
+    }
+}
+
+fn title(kind: FieldKind) -> &'static str {
+    match kind {
+        FieldKind::Pressure => "pressure",
+        FieldKind::Gap => "gap",
+        FieldKind::Displacement => "displacement",
+        FieldKind::Flattening => "permanent flattening",
+        FieldKind::Contact => "contact",
+    }
+}

@@ -6,9 +6,11 @@
 mod args;
 mod commands;
 mod failure;
+mod interrupt;
 mod progress;
 mod talk;
 mod terminal;
+mod threads;
 mod trace;
 mod words;
 
@@ -22,13 +24,24 @@ use failure::Failure;
 fn main() -> ExitCode {
     let args = Args::parse();
     trace::listen(if let Command::Run(run) = &args.command { run.verbose } else { 0 });
-    let done = match args.command {
+    match threads::start(&args.command).and_then(|()| run(args.command)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.tell();
+            ExitCode::from(failure.code())
+        }
+    }
+}
+
+fn run(command: Command) -> Result<(), Failure> {
+    match command {
         Command::Run(run) => commands::run::run(&run),
         Command::Check(check) => commands::check::run(&check),
         Command::New(new) => commands::new::run(&new),
         Command::Verify(verify) => commands::verify::run(&verify),
         Command::Surface(surface) => commands::surface::run(&surface),
         Command::Show(show) => commands::show::run(&show),
+        Command::VerifyResult(verify) => commands::verify_result::run(&verify),
         Command::Report(report) => commands::report::run(&report),
         Command::View(view) => commands::view::run(&view),
         Command::Stress(stress) => commands::stress::run(&stress),
@@ -40,13 +53,6 @@ fn main() -> ExitCode {
         Command::Reproduce(reproduce) => commands::reproduce::run(&reproduce),
         Command::Schema => commands::schema::run(),
         Command::Completions { shell } => commands::completions::run(shell),
-    };
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            failure.tell();
-            ExitCode::from(failure.code())
-        }
     }
 }
 

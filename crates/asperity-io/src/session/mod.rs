@@ -19,6 +19,7 @@ use thiserror::Error;
 
 use crate::case::{Case, CaseErrors};
 use crate::leakage::{self, LeakError};
+use crate::resources::free_disk;
 use crate::store::{Field, FieldKind, Header, Outcome, Reader, Status, StoreError, Work, Writer};
 use crate::stress::{self, Below, StressError};
 
@@ -149,6 +150,7 @@ fn run_inside(
         let (writer, checkpoint) = resumed.map_err(RunError::Output)?;
         (writer, checkpoint, earlier)
     } else {
+        check_disk(case, &path).map_err(RunError::Output)?;
         let writer = Writer::create(&path, &header, simulation.gap.view(), options.force);
         (writer.map_err(RunError::Output)?, None, Earlier::default())
     };
@@ -221,6 +223,22 @@ fn run_inside(
         }
     }
     Ok(summary)
+}
+
+/// How much fields are compressed at best where contact is sparse: zeros take next to nothing.
+const BEST_COMPRESSION: u64 = 10;
+
+/// Refuses a result that cannot fit on its disk, and warns of one that may not.
+fn check_disk(case: &Case, path: &Path) -> Result<(), StoreError> {
+    let (Some(needed), Some(free)) = (case.describe().result_bytes, free_disk(path)) else { return Ok(()) };
+    let error = StoreError::NoSpace { path: path.to_owned(), needed, free };
+    if needed / BEST_COMPRESSION > free {
+        return Err(error);
+    }
+    if needed > free {
+        tracing::warn!("{error}");
+    }
+    Ok(())
 }
 
 /// Rows and findings of the sessions before a resumed one.

@@ -232,11 +232,22 @@ pub const SCALARS: [Scalar; 16] = scalars![
     Count stage ["1"] "stage of the load";
 ];
 
+/// Type of the numbers of an array.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum DataType {
     Float64,
     Int64,
     UInt8,
+}
+
+impl DataType {
+    /// Bytes of a number.
+    pub(super) fn width(self) -> usize {
+        match self {
+            DataType::Float64 | DataType::Int64 => 8,
+            DataType::UInt8 => 1,
+        }
+    }
 }
 
 /// One array of the group.
@@ -248,6 +259,9 @@ pub(super) struct ArraySpec {
     pub(super) shape: Vec<usize>,
     pub(super) chunk: Vec<usize>,
     pub(super) compressed: bool,
+    /// Whether each chunk ends with its CRC-32C. Chunks that grow row by row have none: the group's document holds the
+    /// checksum of all rows (see [`super::checksum`]).
+    pub(super) summed: bool,
     pub(super) attributes: Value,
 }
 
@@ -265,6 +279,7 @@ impl ArraySpec {
             shape: vec![length],
             chunk: vec![length],
             compressed: false,
+            summed: true,
             attributes: json!({"units": series.units, "long_name": series.long_name}),
         }
     }
@@ -283,6 +298,7 @@ impl ArraySpec {
         ArraySpec {
             chunk: vec![HISTOGRAMS_PER_CHUNK, shape[1]],
             shape: shape.to_vec(),
+            summed: false,
             ..ArraySpec::coordinate_of(series, dimensions, 0)
         }
     }
@@ -301,6 +317,17 @@ impl ArraySpec {
         }
     }
 
+    /// Whether it grows row by row.
+    pub(super) fn grows(&self) -> bool {
+        matches!(self.dimensions[0], "time" | "field_time") && !self.compressed
+    }
+
+    /// The same array as results of form 1 have it, without checksums.
+    pub(super) fn of_form(mut self, form: u64) -> ArraySpec {
+        self.summed &= form > 1;
+        self
+    }
+
     /// Metadata document (`zarr.json`) of the array, its chunks deflated with `level`.
     pub(super) fn document(&self, level: u8) -> Value {
         let mut codecs = vec![match self.data_type {
@@ -309,6 +336,9 @@ impl ArraySpec {
         }];
         if self.compressed {
             codecs.push(json!({"name": "gzip", "configuration": {"level": level}}));
+        }
+        if self.summed {
+            codecs.push(json!({"name": "crc32c"}));
         }
         // Filled with what no run produces, so that a lost chunk cannot pass for data.
         let (data_type, fill_value) = match self.data_type {
@@ -360,6 +390,7 @@ pub(super) fn arrays(header: &Header, rows: usize, maps: usize) -> Vec<ArraySpec
                     shape: vec![rows, column.width()],
                     chunk: vec![HISTOGRAMS_PER_CHUNK, column.width()],
                     compressed: false,
+                    summed: false,
                     attributes: json!({"units": kind.units(), "long_name": kind.long_name()}),
                 });
                 arrays.extend(
@@ -379,6 +410,7 @@ pub(super) fn arrays(header: &Header, rows: usize, maps: usize) -> Vec<ArraySpec
         shape: vec![nx, ny],
         chunk: vec![side(nx), side(ny)],
         compressed: true,
+        summed: true,
         attributes: json!({"units": "m", "long_name": "undeformed gap"}),
     });
     for kind in FieldKind::ALL.into_iter().filter(|kind| header.fields.contains(kind)) {
@@ -394,6 +426,7 @@ pub(super) fn arrays(header: &Header, rows: usize, maps: usize) -> Vec<ArraySpec
             shape: vec![maps, nx, ny],
             chunk: vec![1, side(nx), side(ny)],
             compressed: true,
+            summed: true,
             attributes,
         });
     }
@@ -427,6 +460,7 @@ fn line(series: &Series, length: usize) -> ArraySpec {
         shape: vec![length],
         chunk: vec![length],
         compressed: false,
+        summed: true,
         attributes: json!({"units": series.units, "long_name": series.long_name}),
     }
 }
@@ -446,6 +480,7 @@ fn series(
         shape: vec![length],
         chunk: vec![ROWS_PER_CHUNK],
         compressed: false,
+        summed: false,
         attributes: json!({"units": units, "long_name": long_name}),
     }
 }
@@ -458,6 +493,7 @@ fn coordinate(name: &'static str, cells: usize, long_name: &str) -> ArraySpec {
         shape: vec![cells],
         chunk: vec![cells],
         compressed: false,
+        summed: true,
         attributes: json!({"units": "m", "long_name": long_name}),
     }
 }

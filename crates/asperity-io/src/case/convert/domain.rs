@@ -9,6 +9,7 @@ use crate::case::measured::Measured;
 use crate::case::memory;
 use crate::case::raw::{self, At};
 use crate::case::words;
+use crate::resources::available_memory;
 
 /// The grid and the place of its number of cells. What the domain does not say is that of the measured surface,
 /// where there is exactly one; `files` are the measured surfaces, `None` for one whose keys are wrong.
@@ -21,7 +22,7 @@ pub fn grid(
     let size = domain.value.size.as_ref().map(|at| at.value.map(|length| length.get()));
     let place = cells_place(domain);
     // A count that no machine can hold is refused by `memory`, with its numbers.
-    if cells.is_some_and(|cells| memory::estimate(cells, 0) > memory::physical()) {
+    if cells.is_some_and(|cells| memory::estimate(cells, 0) > present()) {
         return None;
     }
     if let (Some(cells), Some(size)) = (cells, size) {
@@ -67,6 +68,11 @@ pub fn grid(
     }
 }
 
+/// Memory that the run may take.
+fn present() -> u128 {
+    available_memory().into()
+}
+
 /// Where the number of cells stands, or the domain that leaves it out.
 fn cells_place(domain: &At<raw::Domain>) -> &Range<usize> {
     domain.value.cells.as_ref().map_or(&domain.span, |at| &at.span)
@@ -83,7 +89,7 @@ pub fn memory(
 ) {
     let written = domain.value.cells.as_ref().map(|at| at.value.map(|count| count.count()));
     let Some(cells) = written.or(grid.map(Grid::cells)) else { return };
-    let (needed, present) = (memory::estimate(cells, fields.saturating_add(extra)), memory::physical());
+    let (needed, present) = (memory::estimate(cells, fields.saturating_add(extra)), present());
     if needed <= present {
         return;
     }
@@ -94,7 +100,7 @@ pub fn memory(
         _ => format!(" with {fields} retarded terms"),
     };
     let message = format!(
-        "{nx} x {ny} cells{detail} need about {}, but this machine has {}",
+        "{nx} x {ny} cells{detail} need about {}, but this machine has {} available",
         memory::words(needed),
         memory::words(present)
     );

@@ -1,7 +1,7 @@
 //! The command `asperity`.
 //!
-//! Data goes to stdout, talk to stderr. Exit codes: 0 done; 1 the solve failed; 2 the input is wrong;
-//! 130 interrupted.
+//! Data goes to stdout, talk to stderr. Exit codes: 0 done; 1 the solve or the system failed, or a result is damaged; 2 the
+//! input is wrong; 130 interrupted.
 
 mod args;
 mod commands;

@@ -247,7 +247,8 @@ fn a_killed_run_is_readable_and_resumes_to_the_same_bits() {
 fn an_interrupted_run_ends_with_130_and_goes_on() {
     let (_keep, dir) = small();
     let child = started(&dir, 3);
-    let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    // Not SIGINT, which is ignored where the tests themselves run in the background of a script.
+    let kill = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
     assert!(kill.success());
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));

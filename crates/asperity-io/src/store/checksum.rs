@@ -35,11 +35,11 @@ const GUARDED: [&str; 11] = [
     "stress",
 ];
 
-/// Sets the attribute. Results of form 1 have none.
-pub(super) fn put(attributes: &mut Map<String, Value>, progress: &Progress) {
+/// Sets the attribute, given the checksum of the [`guarded`] attributes. Results of form 1 have none.
+pub(super) fn put(attributes: &mut Map<String, Value>, guarded: u32, progress: &Progress) {
     if form(attributes) > 1 {
         let mut all = json!(progress.sums);
-        all[DOCUMENT] = json!(document(attributes, progress));
+        all[DOCUMENT] = json!(document(guarded, progress));
         attributes.insert(ATTRIBUTE.to_owned(), json!(all.to_string()));
     }
 }
@@ -59,7 +59,7 @@ pub(super) fn of(attributes: &Map<String, Value>) -> Result<Sums, String> {
 /// What is wrong, as the rest of a sentence.
 pub(super) fn check(attributes: &Map<String, Value>, progress: &Progress) -> Result<(), String> {
     match parsed(attributes)? {
-        Some(all) if all.get(DOCUMENT) != Some(&document(attributes, progress)) => {
+        Some(all) if all.get(DOCUMENT) != Some(&document(guarded(attributes), progress)) => {
             Err("its attributes do not have the checksum that it states".to_owned())
         }
         _ => Ok(()),
@@ -79,9 +79,12 @@ fn form(attributes: &Map<String, Value>) -> u64 {
     attributes.get("schema").and_then(Value::as_u64).unwrap_or(1)
 }
 
-fn document(attributes: &Map<String, Value>, progress: &Progress) -> u32 {
+/// The checksum of the attributes that numbers depend on and that do not change from step to step.
+pub(super) fn guarded(attributes: &Map<String, Value>) -> u32 {
     let guarded = GUARDED.iter().filter_map(|name| Some((name, attributes.get(*name)?)));
-    let sum = guarded
-        .fold(0, |sum, (name, value)| crc32c::crc32c_append(sum, format!("{name}: {value}\n").as_bytes()));
-    crc32c::crc32c_append(sum, format!("{} {}", progress.rows, progress.maps).as_bytes())
+    guarded.fold(0, |sum, (name, value)| crc32c::crc32c_append(sum, format!("{name}: {value}\n").as_bytes()))
+}
+
+fn document(guarded: u32, progress: &Progress) -> u32 {
+    crc32c::crc32c_append(guarded, format!("{} {}", progress.rows, progress.maps).as_bytes())
 }

@@ -45,6 +45,8 @@ pub(super) struct Document {
 /// The documents as JSON, kept between steps: only a few numbers of them change.
 pub(super) struct Pages {
     group: Value,
+    /// Checksum of the attributes that do not change.
+    guarded: u32,
 }
 
 impl Pages {
@@ -56,6 +58,7 @@ impl Pages {
         header::put_progress(&mut attributes, &document.progress);
         attributes.extend(document.stress_attribute());
         attributes.extend(document.leaks.iter().map(Leaks::attribute));
+        let guarded = checksum::guarded(&attributes);
         let consolidated = json!({"kind": "inline", "must_understand": false, "metadata": metadata});
         let group = json!({
             "zarr_format": 3,
@@ -63,7 +66,7 @@ impl Pages {
             "attributes": attributes,
             "consolidated_metadata": consolidated,
         });
-        Pages { group }
+        Pages { group, guarded }
     }
 
     /// Names of the arrays.
@@ -76,7 +79,7 @@ impl Pages {
     pub(super) fn commit(&mut self, root: &Path, progress: &Progress, way: Way) -> Result<()> {
         if let Some(attributes) = self.group["attributes"].as_object_mut() {
             header::put_progress(attributes, progress);
-            checksum::put(attributes, progress);
+            checksum::put(attributes, self.guarded, progress);
         }
         if let Some(arrays) = self.group["consolidated_metadata"]["metadata"].as_object_mut() {
             for array in arrays.values_mut() {

@@ -137,20 +137,22 @@ fn run_inside(
     options: &RunOptions,
     observe: &mut (dyn FnMut(Progress) + Send),
 ) -> Result<Summary, RunError> {
+    let path = options.output.clone().unwrap_or_else(|| case.output.path.clone());
+    if !options.resume {
+        check_disk(case, &path).map_err(RunError::Output)?;
+    }
     let parts = case.parts()?;
     let simulation = case.simulation_of(&parts)?;
     let known = Known { parts: &parts, bodies: &case.bodies, thickness: case.thickness };
     let judge = Judge::new(&simulation, known);
     drop(parts);
     let header = header(case, &simulation);
-    let path = options.output.clone().unwrap_or_else(|| case.output.path.clone());
     let (writer, checkpoint, earlier) = if options.resume {
         let earlier = earlier(&path).map_err(RunError::Output)?;
         let resumed = Writer::resume(&path, &header, simulation.gap.view());
         let (writer, checkpoint) = resumed.map_err(RunError::Output)?;
         (writer, checkpoint, earlier)
     } else {
-        check_disk(case, &path).map_err(RunError::Output)?;
         let writer = Writer::create(&path, &header, simulation.gap.view(), options.force);
         (writer.map_err(RunError::Output)?, None, Earlier::default())
     };

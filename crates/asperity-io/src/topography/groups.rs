@@ -20,7 +20,7 @@ use super::Problem;
 /// Most groups inside each other.
 const DEEPEST: usize = 32;
 /// Most objects of the tree.
-const MOST: u64 = 100_000;
+const MOST: u64 = 20_000;
 /// Every group knows the dimensions of those around it: most of them, summed over all groups of the tree.
 const MOST_DIMENSIONS: u64 = 4_000_000;
 
@@ -30,7 +30,7 @@ pub(super) fn check(bytes: Arc<[u8]>, options: OpenOptions) -> Result<(), Proble
     let mut walk = Walk::default();
     let tree = walk.visit(&file.root_group().map_err(broken)?, 0)?;
     if tree.dimensions > MOST_DIMENSIONS {
-        return Err(too_large(tree.dimensions));
+        return Err(too_large());
     }
     Ok(())
 }
@@ -75,12 +75,12 @@ impl Walk {
             tree.objects = tree.objects.saturating_add(inner.objects);
             tree.dimensions = tree.dimensions.saturating_add(inner.dimensions);
             if tree.objects > MOST {
-                return Err(too_large(tree.objects));
+                return Err(too_large());
             }
         }
         tree.dimensions = tree.dimensions.saturating_add(tree.groups.saturating_mul(sets));
         if tree.objects > MOST {
-            return Err(too_large(tree.objects));
+            return Err(too_large());
         }
         self.trees.insert(group.address(), Some(tree));
         Ok(tree)
@@ -91,8 +91,8 @@ const NO_LOOPS: &str =
     "a group below the one that links to it; remove the link or copy the map into a file of its own";
 const COPY: &str = "no larger than that of measured heights; copy the map into a file of its own";
 
-fn too_large(objects: u64) -> Problem {
-    let many = format!("of more than {objects} groups and data sets, each counted under all of its names");
+fn too_large() -> Problem {
+    let many = format!("of more than {MOST} groups and data sets, each counted under all of its names");
     Problem::malformed("the tree of the groups", many, COPY)
 }
 

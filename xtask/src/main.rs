@@ -1,4 +1,4 @@
-//! Tasks of the project: `cargo xtask test | bench | peers | sanitize | figures | verification`.
+//! Tasks of the project: `cargo xtask test | bench | peers | sanitize | miri | figures | verification`.
 
 mod peers;
 mod surfaces;
@@ -9,12 +9,15 @@ use std::process::{Command, ExitCode};
 const HELP: &str = "\
 cargo xtask TASK
 
-  test          format, lints, all tests, documentation, Python's view of the results; installs the Python packages that
+  test          format, lints, all tests, documentation, licences and advisories of the dependencies (where cargo-deny is
+                installed), Python's view of the results; installs the Python packages that
                 it needs below target/, and fails where it cannot, unless told --without-python
   bench         times convolution, elastic contact, creep and surfaces, and prints tables (a quiet machine, please);
                 with --quick up to 1024 x 1024 cells
   peers         times other programs and this one on the same surfaces, and writes target/peers/peers.md
   sanitize      tests the crate that holds the unsafe code under the address sanitizer (needs a nightly toolchain)
+  miri          tests the same crates, without their instructions for one processor, in the interpreter Miri, which finds
+                undefined behaviour (needs: rustup +nightly component add miri rust-src); hours
   figures       draws the pictures of the documentation
   verification  writes docs/verification.md from `asperity verify`
 ";
@@ -49,6 +52,7 @@ fn main() -> ExitCode {
         Some("bench") => bench(std::env::args().any(|a| a == "--quick")),
         Some("peers") => peers::peers(std::env::args().any(|a| a == "--quick")),
         Some("sanitize") => sanitize(),
+        Some("miri") => miri(),
         Some("figures") => figures(),
         Some("verification") => verification(),
         _ => {
@@ -87,6 +91,7 @@ fn cargo(arguments: &[&str]) -> Command {
 fn test(without_python: bool) -> Done {
     run(&mut cargo(&["fmt", "--all", "--check"]))?;
     run(&mut cargo(&["clippy", "--workspace", "--all-targets", "--", "-D", "warnings"]))?;
+    supply_chain()?;
     let mut tests = cargo(&["test", "--workspace", "--no-fail-fast"]);
     if without_python {
         eprintln!("xtask: the checks in Python are left out, as --without-python says");
@@ -100,6 +105,15 @@ fn test(without_python: bool) -> Done {
     run(cargo(&["doc", "--workspace", "--no-deps"]).env("RUSTDOCFLAGS", "-D warnings"))?;
     // Last, so that the runner's closing lines close the output.
     run(&mut tests)
+}
+
+/// Licences, advisories and sources of the dependencies, by deny.toml. The list of advisories comes from the network.
+fn supply_chain() -> Done {
+    if !cargo(&["deny", "--version"]).output().is_ok_and(|output| output.status.success()) {
+        eprintln!("xtask: cargo-deny is not installed: licences and advisories are not checked");
+        return Ok(());
+    }
+    run(&mut cargo(&["deny", "check"]))
 }
 
 /// A Python with the packages that the checks need, in a virtual environment below target/.
@@ -180,6 +194,27 @@ fn sanitize() -> Done {
         ])
         .env("RUSTFLAGS", "-Zsanitizer=address")
         .env("CARGO_TARGET_DIR", root().join("target/sanitize")))
+}
+
+/// The parts with unsafe code in the interpreter Miri.
+fn miri() -> Done {
+    // It knows no vector instructions of one processor beyond the oldest: the portable forms run.
+    run(Command::new("rustup")
+        .args([
+            "run",
+            "nightly",
+            "cargo",
+            "miri",
+            "test",
+            "-p",
+            "asperity-sweep",
+            "-p",
+            "asperity-convolution",
+        ])
+        .arg("--lib")
+        .env("MIRIFLAGS", "-Zmiri-disable-isolation -Zmiri-tree-borrows")
+        .env("PROPTEST_CASES", "1")
+        .env("CARGO_TARGET_DIR", root().join("target/miri")))
 }
 
 fn figures() -> Done {

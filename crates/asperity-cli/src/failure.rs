@@ -12,6 +12,8 @@ pub enum Failure {
     Input(String),
     /// The solve failed.
     Solve(String),
+    /// The system refuses what the program needs.
+    System(String),
     /// Warnings, where they are to be errors.
     Strict(usize),
     /// Somebody pressed Ctrl-C; the message says how to go on.
@@ -24,10 +26,10 @@ impl Failure {
         Failure::Input(message.into())
     }
 
-    /// 1 the solve failed, or there are warnings under --strict; 2 the input is wrong; 130 interrupted.
+    /// 1 the solve or the system failed, or there are warnings under --strict; 2 the input is wrong; 130 interrupted.
     pub fn code(&self) -> u8 {
         match self {
-            Failure::Solve(_) | Failure::Strict(_) => 1,
+            Failure::Solve(_) | Failure::System(_) | Failure::Strict(_) => 1,
             Failure::Case(_) | Failure::Input(_) => 2,
             Failure::Interrupted(_) => 130,
         }
@@ -37,7 +39,9 @@ impl Failure {
     pub fn tell(&self) {
         match self {
             Failure::Case(errors) => tell_case(errors),
-            Failure::Input(message) | Failure::Solve(message) => crate::talk::say!("error: {message}"),
+            Failure::Input(message) | Failure::Solve(message) | Failure::System(message) => {
+                crate::talk::say!("error: {message}");
+            }
             Failure::Strict(warnings) => {
                 crate::talk::say!("error: {} (--strict)", crate::words::counted(*warnings, "warning"));
             }

@@ -1,14 +1,16 @@
 //! The command `asperity`.
 //!
-//! Data goes to stdout, talk to stderr. Exit codes: 0 done; 1 the solve failed; 2 the input is wrong;
-//! 130 interrupted.
+//! Data goes to stdout, talk to stderr. Exit codes: 0 done; 1 the solve or the system failed, or a result is damaged; 2 the
+//! input is wrong; 130 interrupted.
 
 mod args;
 mod commands;
 mod failure;
+mod interrupt;
 mod progress;
 mod talk;
 mod terminal;
+mod threads;
 mod trace;
 mod words;
 
@@ -22,13 +24,24 @@ use failure::Failure;
 fn main() -> ExitCode {
     let args = Args::parse();
     trace::listen(if let Command::Run(run) = &args.command { run.verbose } else { 0 });
-    let done = match args.command {
+    match threads::start(&args.command).and_then(|()| run(args.command)) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.tell();
+            ExitCode::from(failure.code())
+        }
+    }
+}
+
+fn run(command: Command) -> Result<(), Failure> {
+    match command {
         Command::Run(run) => commands::run::run(&run),
         Command::Check(check) => commands::check::run(&check),
         Command::New(new) => commands::new::run(&new),
         Command::Verify(verify) => commands::verify::run(&verify),
         Command::Surface(surface) => commands::surface::run(&surface),
         Command::Show(show) => commands::show::run(&show),
+        Command::VerifyResult(verify) => commands::verify_result::run(&verify),
         Command::Report(report) => commands::report::run(&report),
         Command::View(view) => commands::view::run(&view),
         Command::Stress(stress) => commands::stress::run(&stress),
@@ -40,13 +53,6 @@ fn main() -> ExitCode {
         Command::Reproduce(reproduce) => commands::reproduce::run(&reproduce),
         Command::Schema => commands::schema::run(),
         Command::Completions { shell } => commands::completions::run(shell),
-    };
-    match done {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            failure.tell();
-            ExitCode::from(failure.code())
-        }
     }
 }
 

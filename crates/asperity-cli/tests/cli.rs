@@ -247,7 +247,8 @@ fn a_killed_run_is_readable_and_resumes_to_the_same_bits() {
 fn an_interrupted_run_ends_with_130_and_goes_on() {
     let (_keep, dir) = small();
     let child = started(&dir, 3);
-    let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    // Not SIGINT, which is ignored where the tests themselves run in the background of a script.
+    let kill = Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap();
     assert!(kill.success());
     let output = child.wait_with_output().unwrap();
     assert_eq!(output.status.code(), Some(130), "{}", stderr(&output));
@@ -259,6 +260,143 @@ fn an_interrupted_run_ends_with_130_and_goes_on() {
     let resumed = asperity(&dir, &arguments);
     assert!(resumed.status.success(), "{}", stderr(&resumed));
     assert_eq!(Reader::open(&dir.join("small.zarr")).unwrap().len(), LONG);
+}
+
+/// `nohup` starts a process with SIGHUP ignored.
+#[cfg(unix)]
+#[test]
+fn a_signal_that_is_ignored_stays_ignored() {
+    let (_keep, dir) = small();
+    let mut child = Command::new("sh")
+        .args(["-c", "trap '' HUP; exec \"$@\"", "sh", env!("CARGO_BIN_EXE_asperity"), "run", "small.toml"])
+        .args(["--verbose", "--set", "time.steps=400"])
+        .current_dir(&dir)
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut lines = std::io::BufRead::lines(std::io::BufReader::new(child.stderr.take().unwrap()));
+    lines.find(|line| line.as_ref().is_ok_and(|line| line.starts_with("row "))).unwrap().unwrap();
+    assert!(Command::new("kill").args(["-HUP", &child.id().to_string()]).status().unwrap().success());
+    lines.for_each(drop);
+    assert!(child.wait().unwrap().success());
+    assert_eq!(Reader::open(&dir.join("small.zarr")).unwrap().status(), Status::Complete);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_name_that_is_not_utf_8_is_told_in_json() {
+    use std::os::unix::ffi::OsStrExt;
+    let (_keep, dir) = small();
+    let output = Command::new(env!("CARGO_BIN_EXE_asperity"))
+        .args(["run", "small.toml", "--json", "--quiet", "-o"])
+        .arg(std::ffi::OsStr::from_bytes(b"r\xff.zarr"))
+        .current_dir(&dir)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", stderr(&output));
+    let object: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!((&object["status"], &object["result"]), (&"complete".into(), &"r\u{fffd}.zarr".into()));
+}
+
+#[cfg(unix)]
+#[test]
+fn pipes_and_devices_are_refused_at_once() {
+    let (_keep, dir) = small();
+    assert!(Command::new("mkfifo").arg(dir.join("pipe")).status().unwrap().success());
+    for (arguments, word) in [
+        (&["run", "pipe"][..], "a pipe"),
+        (&["check", "/dev/zero"], "a device"),
+        (&["surface", "info", "pipe"], "a pipe"),
+        (&["surface", "info", "/dev/zero"], "a device"),
+        (&["material", "fit", "pipe"], "a pipe"),
+    ] {
+        let output = asperity(&dir, arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(stderr(&output).contains(word), "{arguments:?}: {}", stderr(&output));
+    }
+}
+
+/// A file of unknown format is not read beyond its head, however long: here 1 TiB that takes no space on the disk.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_long_file_of_unknown_format_is_refused_by_its_head() {
+    let dir = tempfile::tempdir().unwrap();
+    std::fs::File::create(dir.path().join("long.dat")).unwrap().set_len(1 << 40).unwrap();
+    let output = asperity(dir.path(), &["surface", "info", "long.dat"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("none of the known formats"), "{}", stderr(&output));
+    // Of a format that the user names, it is the memory that does not do.
+    std::fs::write(dir.path().join("head.npy"), b"\x93NUMPY\x01\0").unwrap();
+    let file = std::fs::OpenOptions::new().write(true).open(dir.path().join("head.npy")).unwrap();
+    file.set_len(1 << 40).unwrap();
+    let output = asperity(dir.path(), &["surface", "info", "head.npy"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("need about 3.0 TiB of memory"), "{}", stderr(&output));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_result_that_no_disk_holds_is_refused_before_the_run() {
+    let (_keep, dir) = small();
+    let output = asperity(
+        &dir,
+        &[
+            &["run", "small.toml", "--set", "domain.cells=[1024, 1024]"][..],
+            &["--set", "time.steps=10000000", "--set", "output.every=1"],
+        ]
+        .concat(),
+    );
+    assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+    assert!(stderr(&output).contains("free on its disk"), "{}", stderr(&output));
+    assert!(!dir.join("small.zarr").exists());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn threads_that_the_system_refuses_are_told() {
+    let (_keep, dir) = small();
+    // Stacks of 8 GB each have no place in an address space of 4 GB.
+    let output = Command::new("sh")
+        .args(["-c", "ulimit -v 4000000; exec \"$@\"", "sh", env!("CARGO_BIN_EXE_asperity")])
+        .args(["run", "small.toml", "--threads", "4"])
+        .env("RUST_MIN_STACK", "8000000000")
+        .current_dir(&dir)
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1), "{}", stderr(&output));
+    assert!(stderr(&output).contains("cannot start 4 threads"), "{}", stderr(&output));
+}
+
+#[test]
+fn a_result_is_verified_and_its_damage_listed() {
+    let (_keep, dir) = small();
+    assert!(asperity(&dir, &["run", "small.toml", "--quiet"]).status.success());
+    let output = asperity(&dir, &["verify-result", "small.zarr"]);
+    assert!(
+        output.status.success() && stdout(&output).contains("all with their checksums"),
+        "{}",
+        stdout(&output)
+    );
+    for file in ["max_pressure/c/0", "gap/c/1/0/0"] {
+        let path = dir.join("small.zarr").join(file);
+        let mut bytes = std::fs::read(&path).unwrap();
+        bytes[40] ^= 1;
+        std::fs::write(&path, bytes).unwrap();
+    }
+    let output = asperity(&dir, &["verify-result", "small.zarr", "--json"]);
+    assert_eq!(output.status.code(), Some(1));
+    let object: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!((&object["ok"], object["damage"].as_array().unwrap().len()), (&false.into(), 2));
+    let text = stdout(&asperity(&dir, &["verify-result", "small.zarr"]));
+    assert!(text.contains("max_pressure") && text.contains("gap/c/1/0/0"), "{text}");
+    for command in ["show", "report", "export"] {
+        let to: &[&str] = if command == "export" { &["--to", "npz"] } else { &[] };
+        let output = asperity(&dir, &[&[command, "small.zarr"], to].concat());
+        assert_eq!(output.status.code(), Some(2), "{command}");
+        assert!(stderr(&output).contains("is damaged"), "{command}: {}", stderr(&output));
+    }
+    assert_eq!(asperity(&dir, &["verify-result", "small.toml"]).status.code(), Some(2));
 }
 
 #[test]
@@ -484,9 +622,21 @@ fn what_a_result_does_not_hold_is_told() {
     told(&["plot", "small.zarr", "evolution"], &["approach", "damaged"]);
 }
 
+/// Status and content of the answer to a request; `host` may hold further headers.
+fn ask_plain(address: &str, path: &str, host: &str) -> (String, Vec<u8>) {
+    use std::io::{Read, Write};
+    let mut stream = std::net::TcpStream::connect(address).unwrap();
+    write!(stream, "GET {path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n").unwrap();
+    let mut answer = Vec::new();
+    stream.read_to_end(&mut answer).unwrap();
+    let end = answer.windows(4).position(|w| w == b"\r\n\r\n").unwrap();
+    let status = String::from_utf8_lossy(&answer[9..12]).into_owned();
+    (status, answer[end + 4..].to_vec())
+}
+
 #[test]
-fn a_result_is_served_to_this_machine_only() {
-    use std::io::{BufRead, BufReader, Read, Write};
+fn a_result_is_served_to_those_who_know_its_address() {
+    use std::io::{BufRead, BufReader};
     let (dir, _) = small();
     assert!(asperity(dir.path(), &["run", "small.toml", "--quiet"]).status.success());
     let mut server = Command::new(env!("CARGO_BIN_EXE_asperity"))
@@ -498,16 +648,12 @@ fn a_result_is_served_to_this_machine_only() {
         .unwrap();
     let mut url = String::new();
     BufReader::new(server.stdout.take().unwrap()).read_line(&mut url).unwrap();
-    let address = url.trim().strip_prefix("http://").unwrap().trim_end_matches('/').to_owned();
-    assert!(address.starts_with("127.0.0.1:"), "{address}");
+    let (address, token) = url.trim().strip_prefix("http://").unwrap().split_once('/').unwrap();
+    let address = address.to_owned();
+    assert!(address.starts_with("127.0.0.1:") && token.len() == 33 && token.ends_with('/'), "{url}");
     let ask = |path: &str, host: &str| {
-        let mut stream = std::net::TcpStream::connect(&address).unwrap();
-        write!(stream, "GET {path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n").unwrap();
-        let mut answer = Vec::new();
-        stream.read_to_end(&mut answer).unwrap();
-        let end = answer.windows(4).position(|w| w == b"\r\n\r\n").unwrap();
-        let status = String::from_utf8_lossy(&answer[9..12]).into_owned();
-        (status, answer[end + 4..].to_vec())
+        let path = format!("/{token}{}", path.strip_prefix('/').unwrap());
+        ask_plain(&address, &path, host)
     };
     let (status, page) = ask("/", &address);
     assert_eq!(status, "200");
@@ -526,6 +672,18 @@ fn a_result_is_served_to_this_machine_only() {
         assert_eq!(ask(path, &address).0, "404", "{path}");
     }
     assert_eq!(ask("/", "example.org").0, "403");
+    // Without the token nothing is read, nor from the pages of others.
+    for path in
+        ["/", "/state", "/map/pressure-2", &format!("/{}/state", "0".repeat(32)), &format!("/{token}x")]
+    {
+        assert_eq!(
+            ask_plain(&address, path, &address).0,
+            if path.ends_with('x') { "404" } else { "403" },
+            "{path}"
+        );
+    }
+    let foreign = format!("{address}\r\nSec-Fetch-Site: cross-site");
+    assert_eq!(ask("/state", &foreign).0, "403");
     server.kill().unwrap();
     server.wait().unwrap();
 }

@@ -10,6 +10,7 @@ pub mod finding;
 pub mod leakage;
 pub mod preparation;
 pub mod readable;
+pub mod resources;
 pub mod session;
 pub mod store;
 pub mod stress;

@@ -9,6 +9,8 @@ use asperity::surface::process::{self, Resampling};
 use asperity::surface::{Operation, Surface};
 use asperity::{Error, Result};
 
+use crate::resources;
+
 /// One step of a preparation.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Step {
@@ -81,6 +83,7 @@ pub fn prepare(surface: Surface, steps: &[Step], domain: Option<[usize; 2]>) -> 
     for (n, step) in steps.iter().enumerate() {
         let done = step.settle(&prepared.surface, domain).and_then(|operation| {
             let undefined = prepared.surface.undefined();
+            check_memory_of(&operation)?;
             let surface = operation.apply(&prepared.surface)?;
             let sentence = sentence(&operation, undefined, surface.undefined());
             Ok((surface, sentence))
@@ -90,6 +93,18 @@ pub fn prepare(surface: Surface, steps: &[Step], domain: Option<[usize; 2]>) -> 
         prepared.history.push(sentence);
     }
     Ok(prepared)
+}
+
+/// Bytes per point of a resampled surface: itself, its transpose, and what comes after it (statistics, the file).
+const BYTES_PER_POINT: u64 = 32;
+
+/// Refuses an operation whose result does not fit into the memory.
+fn check_memory_of(operation: &Operation) -> Result<()> {
+    let Operation::Resample { cells: [nx, ny], .. } = operation else { return Ok(()) };
+    let bytes = (*nx as u64).saturating_mul(*ny as u64).saturating_mul(BYTES_PER_POINT);
+    resources::check_memory("so many points", bytes).map_err(|reason| {
+        Error::invalid("number of cells to resample to", format!("{nx} x {ny}"), format!("less: {reason}"))
+    })
 }
 
 /// The operation and, where it changes them, the numbers of undefined points.
@@ -184,6 +199,13 @@ mod tests {
         assert_eq!(crop(Crop::Lengths { size, corner: Some([1.0, 1.5]) }).unwrap(), (13.0, cells));
         assert_eq!(crop(Crop::Lengths { size, corner: None }).unwrap(), (32.0, cells));
         assert_eq!(crop(Crop::Defined).unwrap(), (0.0, [10, 6]));
+    }
+
+    #[test]
+    fn more_points_than_the_memory_holds_are_refused_before_they_are_made() {
+        let step = Step::Resample { cells: Some([1 << 22, 1 << 22]), method: Resampling::Bilinear };
+        let error = prepare(surface(), &[step], None).unwrap_err().to_string();
+        assert!(error.contains("4194304 x 4194304") && error.contains("512.0 TiB of memory"), "{error}");
     }
 
     #[test]

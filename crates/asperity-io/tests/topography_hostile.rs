@@ -111,3 +111,25 @@ fn every_other_format_is_refused_when_insisted_on() {
         }
     }
 }
+
+/// A link makes a group part of itself, or thirty groups a tree of 2^30.
+#[test]
+fn groups_of_hdf5_without_a_finite_small_tree_are_refused() {
+    let file = |name: &str| {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/regressions");
+        std::fs::read(folder.join(name)).unwrap()
+    };
+    for name in ["h5-link-to-root", "h5-soft-link-to-root", "h5-cycle"] {
+        let error = read(&file(name), None).unwrap_err().to_string();
+        assert!(error.contains("a link to a group that it lies in"), "{name}: {error}");
+    }
+    for (name, what) in [("h5-fan-out", "groups and data sets"), ("h5-deep", "32 groups deep")] {
+        let error = read(&file(name), None).unwrap_err().to_string();
+        assert!(error.contains(what), "{name}: {error}");
+    }
+    // Several names of one group are no harm: the map is a channel under each.
+    let surface = read(&file("h5-two-names"), None).unwrap();
+    assert_eq!(surface.heights.dim(), (3, 2));
+    let names = ["direct", "default/heights", "scan/heights", "soft/heights"];
+    assert!(names.iter().all(|name| surface.channels.iter().any(|c| c == name)), "{:?}", surface.channels);
+}

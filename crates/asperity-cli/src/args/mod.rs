@@ -14,7 +14,7 @@ use clap_complete::Shell;
 
 pub use leak::{FluidOptions, Leak};
 pub use material::{Fit, FitIndentation, Material, Show};
-pub use result::{Export, Plot, Report, Reproduce, ShowResult, View};
+pub use result::{Export, Plot, Report, Reproduce, ShowResult, VerifyResult, View};
 pub use run::{Check, New, Run, Verify};
 pub use stress::Stress;
 pub use surface::{
@@ -51,6 +51,8 @@ pub enum Command {
     Surface(Surface),
     /// Print a summary of a result with a small map of the contact
     Show(ShowResult),
+    /// Compare every number of a result with its checksum and list what is damaged; exit code 1 where anything is
+    VerifyResult(VerifyResult),
     /// Write a result as one HTML page with maps, curves and numbers; it needs no network
     Report(Report),
     /// View a result in the browser with maps at full resolution, also while it is being written

@@ -15,6 +15,15 @@ pub struct ShowResult {
 }
 
 #[derive(Debug, clap::Args)]
+pub struct VerifyResult {
+    /// The result (a Zarr directory)
+    pub result: PathBuf,
+    /// Print one JSON object: {result, ok, checksums, arrays, chunks, damage}
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, clap::Args)]
 pub struct Report {
     /// The result (a Zarr directory)
     pub result: PathBuf,

@@ -25,7 +25,6 @@ const TIMED: usize = 512;
 
 /// Validates the case, builds its gap, and says what will be solved.
 pub fn run(args: &Check) -> Result<(), Failure> {
-    super::use_threads(args.common.threads)?;
     let case = Case::read(&args.case, &args.common.set)?;
     // The files are read and the gap is built: what `run` would refuse is refused here.
     let examined = case.examine()?;

@@ -18,7 +18,6 @@ use crate::words::{quantity, read};
 
 /// Computes the leakage and prints it.
 pub fn run(args: &args::Leak) -> Result<(), Failure> {
-    super::use_threads(args.threads)?;
     match (&args.result, &args.gap) {
         (Some(result), _) => result_leak(args, result),
         (None, Some(gap)) => gap_leak(args, gap),
@@ -43,7 +42,7 @@ fn result_leak(args: &args::Leak, path: &Path) -> Result<(), Failure> {
         },
     };
     drop(reader);
-    let interrupt = super::run::on_interrupt();
+    let interrupt = crate::interrupt::flag();
     let terminal = std::io::IsTerminal::is_terminal(&std::io::stderr());
     let observe = |done: usize, of: usize| {
         if terminal {

@@ -3,13 +3,11 @@
 use asperity_report::paper::{FIGURES, Options, PaperError, reproduce};
 use serde_json::json;
 
-use super::use_threads;
 use crate::args::Reproduce;
 use crate::failure::Failure;
 
 /// Computes the figures one after another, writes each, and prints how far they are from what is independent.
 pub fn run(args: &Reproduce) -> Result<(), Failure> {
-    use_threads(args.threads)?;
     let told = |error: &dyn std::fmt::Display| Failure::input(error.to_string());
     let mut numbers = if args.figures.is_empty() { FIGURES.to_vec() } else { args.figures.clone() };
     numbers.sort_unstable();

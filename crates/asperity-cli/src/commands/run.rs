@@ -1,8 +1,5 @@
 //! `asperity run`.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-
 use asperity::Grid;
 use asperity::finding::Finding;
 use asperity::march::Row;
@@ -20,7 +17,6 @@ use crate::words::{bytes, duration, quantity};
 
 /// Runs the case, tells the progress on stderr and a summary on stdout.
 pub fn run(args: &Run) -> Result<(), Failure> {
-    super::use_threads(args.common.threads)?;
     let case = Case::read(&args.case, &args.common.set)?;
     tell_materials(args, &case);
     let known = tell_findings(args, &case.findings, &[]);
@@ -28,7 +24,7 @@ pub fn run(args: &Run) -> Result<(), Failure> {
         output: args.output.clone(),
         force: args.force,
         resume: args.resume,
-        interrupt: on_interrupt(),
+        interrupt: crate::interrupt::flag(),
     };
     let mut teller = Teller::new(args.quiet, args.verbose > 0);
     let done = run_case(&case, &options, |progress| teller.tell(&progress));
@@ -81,19 +77,6 @@ fn tell_materials(args: &Run, case: &Case) {
             crate::talk::say!("{}: {line}", report.body);
         }
     }
-}
-
-/// A flag that Ctrl-C raises; the second Ctrl-C ends the process at once.
-pub(super) fn on_interrupt() -> Arc<AtomicBool> {
-    let flag = Arc::new(AtomicBool::new(false));
-    let raised = flag.clone();
-    // Without a handler Ctrl-C still ends the process, and the result stays readable.
-    let _ = ctrlc::set_handler(move || {
-        if raised.swap(true, Ordering::Relaxed) {
-            std::process::exit(130);
-        }
-    });
-    flag
 }
 
 fn best_state(best: &Row, grid: &Grid) -> String {
@@ -195,7 +178,7 @@ fn json_object(summary: &Summary, error: Option<&RunError>) -> Value {
         "convolutions": summary.convolutions,
         "iterations": summary.iterations,
         "peak_memory_bytes": summary.peak_memory_bytes,
-        "result": summary.result,
+        "result": summary.result.to_string_lossy(),
         "findings": asperity_io::finding::list(&summary.findings),
     });
     if let Some(error) = error {

@@ -24,7 +24,6 @@ const USUAL: [StressQuantity; 3] = [StressQuantity::Mises, StressQuantity::Tresc
 
 /// Computes and stores the stress, or shows the one that is stored; then draws and writes what is asked for.
 pub fn run(args: &Stress) -> Result<(), Failure> {
-    super::use_threads(args.threads)?;
     if let Some(path) = &args.plot {
         Form::of(path).map_err(told)?;
     }
@@ -37,7 +36,7 @@ pub fn run(args: &Stress) -> Result<(), Failure> {
     let stored = if asked { None } else { Below::of(&reader).map_err(told)? };
     let below = match stored {
         Some(below) => below,
-        None if args.no_store => of_result(&reader, &plan, &super::run::on_interrupt()).map_err(ended)?,
+        None if args.no_store => of_result(&reader, &plan, &crate::interrupt::flag()).map_err(ended)?,
         None => store(args, &plan)?,
     };
     let at = match &args.time {
@@ -92,7 +91,7 @@ fn store(args: &Stress, plan: &StressPlan) -> Result<Below, Failure> {
             crate::talk::say!("stress below the surface: time {} of {of}", done + 1);
         }
     };
-    let below = evaluate(&mut writer, plan, &super::run::on_interrupt(), tell).map_err(ended)?;
+    let below = evaluate(&mut writer, plan, &crate::interrupt::flag(), tell).map_err(ended)?;
     let reader = Reader::open(&args.result).map_err(told)?;
     let new = below.findings(&reader.header().grid);
     let codes = [

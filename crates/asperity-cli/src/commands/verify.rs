@@ -8,7 +8,6 @@ use crate::failure::Failure;
 
 /// Runs the cases and prints case, quantity, error, tolerance.
 pub fn run(args: &Verify) -> Result<(), Failure> {
-    super::use_threads(args.threads)?;
     if let Some(unknown) = args.cases.iter().find(|name| CASES.iter().all(|(case, _)| case != name)) {
         let names: Vec<_> = CASES.iter().map(|(name, _)| *name).collect();
         return Err(Failure::input(format!(

@@ -1,7 +1,11 @@
-//! `asperity view`: the page of a result, served to a browser on this machine.
+//! `asperity view`: the page of a result, served to a browser.
+//!
+//! Whoever knows the address may read the result. Its first part is a random token, as other users of the machine can find
+//! the port. The header `Host` must name this machine, so that no page of another name that leads here reads results.
 
 use std::convert::Infallible;
 use std::net::{IpAddr, SocketAddr};
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -15,34 +19,74 @@ use hyper::service::service_fn;
 use hyper::{Method, Request, Response, StatusCode};
 use hyper_util::rt::{TokioIo, TokioTimer};
 use tokio::net::TcpListener;
-use tokio::sync::Semaphore;
+use tokio::sync::{OwnedSemaphorePermit, Semaphore};
+use tokio::time::timeout;
 
+use super::patience::Patient;
 use crate::args::View;
 use crate::failure::Failure;
 
 /// Connections at a time: more than browsers open.
-const CONNECTIONS: usize = 32;
-/// Time for a request to arrive.
-const PATIENCE: Duration = Duration::from_secs(20);
+const CONNECTIONS: usize = 128;
+/// Answers at a time that may be as large as a map; they are held in memory until they are sent.
+const LARGE_ANSWERS: usize = 4;
+/// Time for a request to arrive, for a client to take more of an answer, and for a large answer to find a place.
+const PATIENCE: Duration = Duration::from_secs(10);
+/// Time for an answer to be sent in all.
+const LONGEST: Duration = Duration::from_secs(600);
 
 /// Serves until it is interrupted.
 pub fn run(args: &View) -> Result<(), Failure> {
     // What cannot be shown is told before anything listens.
     Reader::open(&args.result).map_err(|error| Failure::input(error.to_string()))?;
     let told = |error: std::io::Error| Failure::input(format!("cannot listen at {}: {error}", args.host));
+    let token = token()?;
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(told)?;
     runtime.block_on(async {
         let listener = TcpListener::bind(SocketAddr::new(args.host, args.port)).await.map_err(told)?;
         let address = listener.local_addr().map_err(told)?;
-        crate::print(&format!("http://{address}/\n"))?;
-        crate::talk::say!("open this address in a browser; press Ctrl-C to stop");
-        serve(listener, Live::new(&args.result), args.host).await;
+        crate::print(&format!("http://{address}/{token}/\n"))?;
+        crate::talk::say!(
+            "open this address in a browser; who knows it can read the result; press Ctrl-C to stop"
+        );
+        serve(listener, Server::new(&args.result, args.host, token)).await;
         Ok(())
     })
 }
 
-async fn serve(listener: TcpListener, live: Live, host: IpAddr) {
-    let live = Arc::new(live);
+/// 128 random bits.
+fn token() -> Result<String, Failure> {
+    let mut bytes = [0; 16];
+    getrandom::fill(&mut bytes)
+        .map_err(|error| Failure::System(format!("the system gives no random numbers: {error}")))?;
+    Ok(bytes.iter().map(|byte| format!("{byte:02x}")).collect())
+}
+
+/// What is served, and to whom.
+struct Server {
+    live: Live,
+    host: IpAddr,
+    token: String,
+    /// Name of this machine, where the system tells.
+    name: Option<String>,
+    large: Arc<Semaphore>,
+}
+
+impl Server {
+    fn new(result: &Path, host: IpAddr, token: String) -> Server {
+        let name = std::fs::read_to_string("/proc/sys/kernel/hostname").ok();
+        Server {
+            live: Live::new(result),
+            host,
+            token,
+            name: name.map(|name| name.trim().to_lowercase()),
+            large: Arc::new(Semaphore::new(LARGE_ANSWERS)),
+        }
+    }
+}
+
+async fn serve(listener: TcpListener, server: Server) {
+    let server = Arc::new(server);
     let places = Arc::new(Semaphore::new(CONNECTIONS));
     loop {
         let Ok(place) = places.clone().acquire_owned().await else { return };
@@ -51,13 +95,14 @@ async fn serve(listener: TcpListener, live: Live, host: IpAddr) {
             tokio::time::sleep(Duration::from_millis(100)).await;
             continue;
         };
-        let live = live.clone();
+        let server = server.clone();
         tokio::spawn(async move {
-            let service = service_fn(|request| answer(request, live.clone(), host));
+            let service = service_fn(|request| answer(request, server.clone()));
             let mut connection = http1::Builder::new();
             connection.timer(TokioTimer::new()).header_read_timeout(PATIENCE).keep_alive(false);
+            let stream = Patient::new(TokioIo::new(stream), PATIENCE);
             // A browser that hangs up early is no failure.
-            let _ = connection.serve_connection(TokioIo::new(stream), service).await;
+            let _ = timeout(LONGEST, connection.serve_connection(stream, service)).await;
             drop(place);
         });
     }
@@ -65,52 +110,91 @@ async fn serve(listener: TcpListener, live: Live, host: IpAddr) {
 
 async fn answer(
     request: Request<Incoming>,
-    live: Arc<Live>,
-    host: IpAddr,
+    server: Arc<Server>,
 ) -> Result<Response<Full<Bytes>>, Infallible> {
-    let asked = request.headers().get(header::HOST).and_then(|host| host.to_str().ok());
-    if host.is_loopback() && !is_this_machine(asked) {
-        // A page from elsewhere whose name leads here must not read results.
-        return Ok(text(StatusCode::FORBIDDEN, "only requests to localhost are answered".into()));
+    let header = |name| request.headers().get(name).and_then(|value: &HeaderValue| value.to_str().ok());
+    if !is_this_machine(header("host"), server.host, server.name.as_deref()) {
+        return Ok(text(StatusCode::FORBIDDEN, "only requests to this machine by its name are answered"));
+    }
+    if header("sec-fetch-site") == Some("cross-site") {
+        return Ok(text(StatusCode::FORBIDDEN, "requests of other sites are not answered"));
     }
     if request.method() != Method::GET {
-        return Ok(text(StatusCode::METHOD_NOT_ALLOWED, "only GET".into()));
+        return Ok(text(StatusCode::METHOD_NOT_ALLOWED, "only GET"));
     }
-    let path = request.uri().path().to_owned();
+    let path = request.uri().path().strip_prefix('/').unwrap_or_default();
+    let (token, path) = path.split_at_checked(server.token.len()).unwrap_or_default();
+    if !same(token, &server.token) || !path.starts_with('/') {
+        return Ok(text(StatusCode::FORBIDDEN, "open the address that `asperity view` printed, all of it"));
+    }
+    let path = path.to_owned();
+    let place = match timeout(PATIENCE, server.large.clone().acquire_owned()).await {
+        Ok(Ok(place)) => place,
+        _ => return Ok(text(StatusCode::SERVICE_UNAVAILABLE, "too many requests at a time; try again")),
+    };
     // Reading and packing a map takes a while; others are answered meanwhile.
-    let answered = tokio::task::spawn_blocking(move || live.answer(&path)).await;
+    let answered = tokio::task::spawn_blocking(move || server.live.answer(&path)).await;
     Ok(match answered {
-        Ok(Ok(Some(answer))) => content(answer),
-        Ok(Ok(None)) => text(StatusCode::NOT_FOUND, "there is nothing here".into()),
-        Ok(Err(error)) => text(StatusCode::NOT_FOUND, error.to_string()),
-        Err(error) => text(StatusCode::INTERNAL_SERVER_ERROR, error.to_string()),
+        Ok(Ok(Some(answer))) => content(answer, place),
+        Ok(Ok(None)) => text(StatusCode::NOT_FOUND, "there is nothing here"),
+        Ok(Err(error)) => text(StatusCode::NOT_FOUND, &error.to_string()),
+        Err(error) => text(StatusCode::INTERNAL_SERVER_ERROR, &error.to_string()),
     })
 }
 
-/// Whether a request names this machine as the one it wants.
-fn is_this_machine(host: Option<&str>) -> bool {
+/// Whether two texts are the same, in a time that does not tell where they differ.
+fn same(one: &str, other: &str) -> bool {
+    let differences = one.bytes().zip(other.bytes()).fold(0, |all, (a, b)| all | (a ^ b));
+    one.len() == other.len() && differences == 0
+}
+
+/// Whether a request names this machine as the one it wants. A server for this machine alone answers to its loopback names;
+/// one for others also to addresses, which no foreign page can have as its name, and to the `machine`'s own name.
+fn is_this_machine(host: Option<&str>, listening: IpAddr, machine: Option<&str>) -> bool {
     let Some(host) = host else { return false };
     let name =
         host.rsplit_once(':').filter(|(_, port)| port.parse::<u16>().is_ok()).map_or(host, |(name, _)| name);
-    let address = name.trim_start_matches('[').trim_end_matches(']');
-    name == "localhost" || address.parse::<IpAddr>().is_ok_and(|address| address.is_loopback())
+    let address = name.trim_start_matches('[').trim_end_matches(']').parse::<IpAddr>();
+    if name == "localhost" || address.as_ref().is_ok_and(IpAddr::is_loopback) {
+        return true;
+    }
+    let name = name.to_lowercase();
+    let first = |name: &str| name.split('.').next().unwrap_or_default().to_owned();
+    let is_named =
+        machine.is_some_and(|machine| !machine.is_empty() && (name == machine || name == first(machine)));
+    !listening.is_loopback() && (address.is_ok() || is_named)
 }
 
-fn content(answer: Answer) -> Response<Full<Bytes>> {
-    response(StatusCode::OK, answer.content_type, answer.content)
+/// An answer, whose place among the large ones is free again when it is sent or given up.
+struct Held {
+    content: Vec<u8>,
+    _place: OwnedSemaphorePermit,
 }
 
-fn text(status: StatusCode, words: String) -> Response<Full<Bytes>> {
-    response(status, "text/plain; charset=utf-8", words.into_bytes())
+impl AsRef<[u8]> for Held {
+    fn as_ref(&self) -> &[u8] {
+        &self.content
+    }
 }
 
-fn response(status: StatusCode, content_type: &'static str, content: Vec<u8>) -> Response<Full<Bytes>> {
-    let mut response = Response::new(Full::new(Bytes::from(content)));
+fn content(answer: Answer, place: OwnedSemaphorePermit) -> Response<Full<Bytes>> {
+    let held = Held { content: answer.content, _place: place };
+    response(StatusCode::OK, answer.content_type, Bytes::from_owner(held))
+}
+
+fn text(status: StatusCode, words: &str) -> Response<Full<Bytes>> {
+    response(status, "text/plain; charset=utf-8", words.to_owned().into())
+}
+
+fn response(status: StatusCode, content_type: &'static str, content: Bytes) -> Response<Full<Bytes>> {
+    let mut response = Response::new(Full::new(content));
     *response.status_mut() = status;
     let headers = response.headers_mut();
     headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(content_type));
     headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("no-store"));
     headers.insert(header::X_CONTENT_TYPE_OPTIONS, HeaderValue::from_static("nosniff"));
+    // The address holds the token.
+    headers.insert(header::REFERRER_POLICY, HeaderValue::from_static("no-referrer"));
     headers.insert(
         header::CONTENT_SECURITY_POLICY,
         HeaderValue::from_static("default-src 'self' 'unsafe-inline'; frame-ancestors 'none'"),
@@ -120,16 +204,31 @@ fn response(status: StatusCode, content_type: &'static str, content: Vec<u8>) ->
 
 #[cfg(test)]
 mod tests {
-    use super::is_this_machine;
+    use super::{is_this_machine, same, token};
+    use std::net::IpAddr;
 
     #[test]
     fn only_names_of_this_machine_are_answered() {
+        let loopback: IpAddr = "127.0.0.1".parse().unwrap();
+        let any: IpAddr = "0.0.0.0".parse().unwrap();
+        let named = |name: &str, listening| is_this_machine(Some(name), listening, Some("lab7.example.org"));
         for name in ["localhost", "localhost:8000", "127.0.0.1", "127.0.0.1:80", "[::1]:9000", "[::1]"] {
-            assert!(is_this_machine(Some(name)), "{name}");
+            assert!(named(name, loopback) && named(name, any), "{name}");
         }
-        for name in ["example.org", "localhost.example.org:80", "192.168.1.4", "127.0.0.1.example.org", ""] {
-            assert!(!is_this_machine(Some(name)), "{name}");
+        for name in ["192.168.1.4", "192.168.1.4:8000", "[fe80::1]:80", "lab7", "LAB7.example.org:80"] {
+            assert!(!named(name, loopback) && named(name, any), "{name}");
         }
-        assert!(!is_this_machine(None));
+        for name in ["example.org", "localhost.example.org:80", "127.0.0.1.example.org", "lab7.evil.org", ""]
+        {
+            assert!(!named(name, loopback) && !named(name, any), "{name}");
+        }
+        assert!(!is_this_machine(None, any, None));
+    }
+
+    #[test]
+    fn tokens_are_long_and_differ() {
+        let (one, other) = (token().unwrap(), token().unwrap());
+        assert_eq!(one.len(), 32);
+        assert!(same(&one, &one) && !same(&one, &other) && !same(&one, &one[1..]) && !same("", &one));
     }
 }

@@ -1,4 +1,4 @@
-//! How much memory a run needs, and how much there is.
+//! How much memory a run needs.
 
 /// Bytes per cell of a run whose bodies remember nothing: spectrum and rows of the padded transform, the solver's
 /// and the march's fields, a checkpoint while it is written, what is stored. An upper bound.
@@ -6,26 +6,11 @@ const BYTES_PER_CELL: u128 = 200;
 /// Bytes per cell and remembered field: the field, and its copy in a checkpoint.
 const BYTES_PER_FIELD: u128 = 16;
 
-/// Where the system does not say how much memory it has.
-const ASSUMED: u128 = 64 << 30;
-
 /// Bytes that a run takes whose bodies remember `fields` fields: one per retarded term and one for flow; one per
 /// row where the full hereditary sum is taken.
 pub fn estimate(cells: [usize; 2], fields: usize) -> u128 {
     let cells = cells[0] as u128 * cells[1] as u128;
     cells.saturating_mul(BYTES_PER_CELL + BYTES_PER_FIELD * fields as u128)
-}
-
-/// Memory of the machine in bytes; 64 GiB where the system does not tell.
-pub fn physical() -> u128 {
-    std::fs::read_to_string("/proc/meminfo").ok().and_then(|text| total(&text)).unwrap_or(ASSUMED)
-}
-
-/// The line "MemTotal:  24689764 kB" of /proc/meminfo, in bytes.
-fn total(meminfo: &str) -> Option<u128> {
-    let line = meminfo.lines().find_map(|line| line.strip_prefix("MemTotal:"))?;
-    let kibibytes: u128 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(kibibytes * 1024)
 }
 
 /// "3.2 GB".
@@ -70,14 +55,7 @@ mod tests {
             }
         }
         assert_eq!(estimate([1024, 1024], 2), 232 << 20);
-        assert!(estimate([usize::MAX, usize::MAX], usize::MAX) > ASSUMED); // no overflow
-    }
-
-    #[test]
-    fn the_total_is_read_from_meminfo() {
-        assert_eq!(total("MemTotal:       24689764 kB\nMemFree: 1 kB\n"), Some(24_689_764 * 1024));
-        assert_eq!(total("MemFree: 1 kB"), None);
-        assert_eq!(total("MemTotal: many"), None);
+        assert!(estimate([usize::MAX, usize::MAX], usize::MAX) > u128::from(u64::MAX)); // no overflow
     }
 
     #[test]

@@ -339,7 +339,7 @@ fn overridden(name: &str, source: String, overrides: &[String]) -> Result<(Strin
 
 /// The text of the file; or what is wrong and what to do.
 fn file_text(path: &Path) -> Result<String, (String, String)> {
-    let file = std::fs::File::open(path).map_err(|error| match error.kind() {
+    let file = crate::resources::open(path).map_err(|error| match error.kind() {
         std::io::ErrorKind::NotFound => {
             ("there is no such file".to_owned(), "`asperity new TEMPLATE` writes a starter case".to_owned())
         }

@@ -157,7 +157,7 @@ impl Curves {
 
 fn bytes(path: &Path) -> Result<Vec<u8>, CurveError> {
     let mut bytes = Vec::new();
-    std::fs::File::open(path)
+    crate::resources::open(path)
         .and_then(|file| file.take(MOST_BYTES + 1).read_to_end(&mut bytes))
         .map_err(|error| fault(format!("cannot be read: {error}")).of(path))?;
     if bytes.len() as u64 > MOST_BYTES {

@@ -19,6 +19,7 @@ use thiserror::Error;
 
 use crate::case::{Case, CaseErrors};
 use crate::leakage::{self, LeakError};
+use crate::resources::free_disk;
 use crate::store::{Field, FieldKind, Header, Outcome, Reader, Status, StoreError, Work, Writer};
 use crate::stress::{self, Below, StressError};
 
@@ -136,13 +137,16 @@ fn run_inside(
     options: &RunOptions,
     observe: &mut (dyn FnMut(Progress) + Send),
 ) -> Result<Summary, RunError> {
+    let path = options.output.clone().unwrap_or_else(|| case.output.path.clone());
+    if !options.resume {
+        check_disk(case, &path).map_err(RunError::Output)?;
+    }
     let parts = case.parts()?;
     let simulation = case.simulation_of(&parts)?;
     let known = Known { parts: &parts, bodies: &case.bodies, thickness: case.thickness };
     let judge = Judge::new(&simulation, known);
     drop(parts);
     let header = header(case, &simulation);
-    let path = options.output.clone().unwrap_or_else(|| case.output.path.clone());
     let (writer, checkpoint, earlier) = if options.resume {
         let earlier = earlier(&path).map_err(RunError::Output)?;
         let resumed = Writer::resume(&path, &header, simulation.gap.view());
@@ -221,6 +225,22 @@ fn run_inside(
         }
     }
     Ok(summary)
+}
+
+/// How much fields are compressed at best where contact is sparse: zeros take next to nothing.
+const BEST_COMPRESSION: u64 = 10;
+
+/// Refuses a result that cannot fit on its disk, and warns of one that may not.
+fn check_disk(case: &Case, path: &Path) -> Result<(), StoreError> {
+    let (Some(needed), Some(free)) = (case.describe().result_bytes, free_disk(path)) else { return Ok(()) };
+    let error = StoreError::NoSpace { path: path.to_owned(), needed, free };
+    if needed / BEST_COMPRESSION > free {
+        return Err(error);
+    }
+    if needed > free {
+        tracing::warn!("{error}");
+    }
+    Ok(())
 }
 
 /// Rows and findings of the sessions before a resumed one.

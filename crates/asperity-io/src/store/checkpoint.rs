@@ -16,11 +16,17 @@ use serde::{Deserialize, Serialize};
 
 use super::document::write_bare_group;
 use super::error::{Result, StoreError, io};
+use super::sync;
 
 /// Directory of the checkpoint in a result.
 pub(super) const DIRECTORY: &str = "checkpoint";
 const FILE: &str = "state.bin";
 const PARTIAL: &str = "state.bin.partial";
+/// Copy of the group's document as it was when all was brought to the medium, for results whose own a loss of power cut.
+pub(super) const GROUP: &str = "group.json";
+pub(super) const GROUP_PARTIAL: &str = "group.json.partial";
+/// Names of the files in the directory.
+pub(super) const FILES: [&str; 4] = [FILE, PARTIAL, GROUP, GROUP_PARTIAL];
 /// Ends with the number of the form.
 const MAGIC: &[u8; 8] = b"ASPCHK\0\x01";
 const LONGEST_HEADER: u64 = 1 << 20;
@@ -38,22 +44,27 @@ struct FieldShape {
     shape: (usize, usize),
 }
 
-/// Replaces the checkpoint of the result at `root`.
-pub(super) fn write(root: &Path, checkpoint: &Checkpoint) -> Result<()> {
+/// Replaces the checkpoint of the result at `root`; with `is_synced` it is on the medium when this returns.
+pub(super) fn write(root: &Path, checkpoint: &Checkpoint, is_synced: bool) -> Result<()> {
     let directory = root.join(DIRECTORY);
     if !directory.is_dir() {
         fs::create_dir(&directory).map_err(io("make", &directory))?;
         write_bare_group(&directory, "state from which the run goes on")?;
     }
     let (path, partial) = (directory.join(FILE), directory.join(PARTIAL));
-    let written = write_file(&partial, checkpoint).and_then(|()| fs::rename(&partial, &path));
+    let written = write_file(&partial, checkpoint, is_synced).and_then(|()| fs::rename(&partial, &path));
     written.map_err(|source| {
         let _ = fs::remove_file(&partial);
         StoreError::Io { path, action: "write", source }
-    })
+    })?;
+    if is_synced {
+        sync::directory(&directory);
+        sync::directory(root);
+    }
+    Ok(())
 }
 
-fn write_file(path: &Path, checkpoint: &Checkpoint) -> std::io::Result<()> {
+fn write_file(path: &Path, checkpoint: &Checkpoint, is_synced: bool) -> std::io::Result<()> {
     let fields = checkpoint.fields.iter();
     let contents = Contents {
         step: checkpoint.step,
@@ -71,7 +82,8 @@ fn write_file(path: &Path, checkpoint: &Checkpoint) -> std::io::Result<()> {
         file.put_numbers(field.as_slice().unwrap_or_default())?;
     }
     let sum = file.crc.sum();
-    file.put(&sum.to_le_bytes())
+    file.put(&sum.to_le_bytes())?;
+    if is_synced { file.inner.sync_data() } else { Ok(()) }
 }
 
 /// The checkpoint of the result at `root`, or `None` where none was written.

@@ -1,10 +1,12 @@
 //! Chunks: the files that hold the numbers, encoded and decoded by zarrs.
 
 use std::fs;
+use std::io::Read;
 use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use flate2::read::GzDecoder;
 use ndarray::{Array2, ArrayView2, s};
 use rayon::prelude::*;
 use zarrs::array::{
@@ -22,11 +24,17 @@ pub(super) struct Chunks {
     /// Codecs that squeeze, and those of the same format that only wrap.
     deflated: Array<()>,
     wrapped: Array<()>,
+    /// The codec of the numbers alone.
+    plain: Array<()>,
+    /// Bytes of the numbers of a chunk.
+    length: u64,
+    compressed: bool,
+    summed: bool,
 }
 
 impl Chunks {
     pub(super) fn new(root: &Path, spec: &ArraySpec) -> Result<Self> {
-        let array = |level| {
+        let array = |spec: &ArraySpec, level| {
             let path = format!("/{}", spec.name);
             let malformed = |error: &dyn std::fmt::Display| corrupt(&root.join(spec.name), error);
             let metadata = serde_json::from_value(spec.document(level)).map_err(|e| malformed(&e))?;
@@ -36,8 +44,12 @@ impl Chunks {
             root: root.to_owned(),
             chunk: spec.chunk.clone(),
             sides: spec.chunk.iter().filter_map(|side| NonZeroU64::new(*side as u64)).collect(),
-            deflated: array(LEVEL)?,
-            wrapped: array(0)?,
+            deflated: array(spec, LEVEL)?,
+            wrapped: array(spec, 0)?,
+            plain: array(&ArraySpec { compressed: false, summed: false, ..spec.clone() }, 0)?,
+            length: (spec.chunk.iter().product::<usize>() * spec.data_type.width()) as u64,
+            compressed: spec.compressed,
+            summed: spec.summed,
         })
     }
 
@@ -66,8 +78,8 @@ impl Chunks {
     /// Reads one chunk; a lost or damaged one is an error.
     pub(super) fn read<T: ElementOwned>(&self, index: &[u64]) -> Result<Vec<T>> {
         let path = self.path(index);
-        let bytes = self.bytes(index)?;
-        let array = &self.deflated;
+        let bytes = self.unpacked(&path, self.verified(index)?)?;
+        let array = &self.plain;
         let decode = || {
             let sides: Vec<u64> = self.sides.iter().map(|side| side.get()).collect();
             let options = CodecOptions::default().with_concurrent_target(1);
@@ -77,6 +89,48 @@ impl Chunks {
             Vec::<T>::from_array_bytes(decoded.into_owned(), &sides, array.data_type())
         };
         decode().map_err(|error| corrupt(&path, error))
+    }
+
+    /// Compares a chunk with its checksum; in results of form 1, that of its compression.
+    pub(super) fn verify(&self, index: &[u64]) -> Result<()> {
+        let bytes = self.verified(index)?;
+        if !self.summed {
+            self.unpacked(&self.path(index), bytes)?;
+        }
+        Ok(())
+    }
+
+    /// The bytes of a chunk before their checksum.
+    fn verified(&self, index: &[u64]) -> Result<Vec<u8>> {
+        let mut bytes = self.bytes(index)?;
+        if self.summed {
+            let sum = bytes.split_last_chunk().map(|(_, sum)| u32::from_le_bytes(*sum));
+            bytes.truncate(bytes.len().saturating_sub(4));
+            if sum != Some(crc32c::crc32c(&bytes)) {
+                return Err(corrupt(&self.path(index), "its checksum is wrong"));
+            }
+        }
+        Ok(bytes)
+    }
+
+    /// The bytes of the numbers; what would unpack to more is refused before it does.
+    fn unpacked(&self, path: &Path, bytes: Vec<u8>) -> Result<Vec<u8>> {
+        let plain = if self.compressed {
+            let mut plain = Vec::with_capacity(self.length as usize);
+            let unpacked = GzDecoder::new(&bytes[..]).take(self.length + 1).read_to_end(&mut plain);
+            unpacked.map_err(|error| corrupt(path, error))?;
+            plain
+        } else {
+            bytes
+        };
+        if plain.len() as u64 != self.length {
+            let more = if plain.len() as u64 > self.length { "more" } else { "fewer" };
+            return Err(corrupt(
+                path,
+                format_args!("it holds {more} than the {} bytes of its numbers", self.length),
+            ));
+        }
+        Ok(plain)
     }
 
     /// The file of a chunk as it is.
@@ -96,8 +150,7 @@ impl Chunks {
             }
             Err(source) => return Err(StoreError::Io { path, action: "read", source }),
         };
-        let plain = self.chunk.iter().product::<usize>() as u64 * 8;
-        if length > plain + plain / 4 + 1024 {
+        if length > self.length + self.length / 4 + 1024 {
             return Err(corrupt(
                 &path,
                 format_args!("the chunk has {length} bytes, more than its numbers need"),
@@ -131,6 +184,16 @@ impl Chunks {
             }
             self.write(&block.index, &cells)
         })
+    }
+
+    /// The files of a map.
+    pub(super) fn paths(&self, lead: &[u64], shape: (usize, usize)) -> Vec<PathBuf> {
+        self.blocks(lead, shape).0.iter().map(|block| self.path(&block.index)).collect()
+    }
+
+    /// Compares all chunks of a map with their checksums.
+    pub(super) fn verify_map(&self, lead: &[u64], shape: (usize, usize)) -> Result<()> {
+        self.blocks(lead, shape).0.par_iter().try_for_each(|block| self.verify(&block.index))
     }
 
     /// The inverse of [`write_map`](Self::write_map).

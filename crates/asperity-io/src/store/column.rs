@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use asperity::march::Row;
 
+use super::checksum::Sums;
 use super::chunks::Chunks;
 use super::error::{Result, corrupt, io};
 use super::layout::{ArraySpec, Entry};
@@ -18,6 +19,12 @@ pub(super) struct Column {
     chunks: Chunks,
     layout: Layout,
     open: Option<(u64, PathBuf, File)>,
+    name: &'static str,
+    /// Rows that readers see, and their checksum.
+    rows: usize,
+    sum: u32,
+    /// The checksum after each row written beyond them.
+    later: Vec<u32>,
 }
 
 /// How the rows lie in the chunks.
@@ -47,8 +54,29 @@ impl Layout {
 }
 
 impl Column {
-    pub(super) fn new(root: &Path, spec: &ArraySpec) -> Result<Self> {
-        Ok(Column { chunks: Chunks::new(root, spec)?, layout: Layout::of(spec), open: None })
+    /// After the first `rows` rows, whose checksum is in `sums`.
+    pub(super) fn new(root: &Path, spec: &ArraySpec, rows: usize, sums: &Sums) -> Result<Self> {
+        let (chunks, layout) = (Chunks::new(root, spec)?, Layout::of(spec));
+        let sum = sums.get(spec.name).copied().unwrap_or(0);
+        Ok(Column { chunks, layout, open: None, name: spec.name, rows, sum, later: Vec::new() })
+    }
+
+    /// The checksum of the first `rows` rows, set in `sums`.
+    pub(super) fn sum(&self, rows: usize, sums: &mut Sums) {
+        let later = rows.checked_sub(self.rows + 1).and_then(|n| self.later.get(n));
+        sums.insert(self.name.to_owned(), later.copied().unwrap_or(self.sum));
+    }
+
+    /// Readers see the first `rows` rows now.
+    pub(super) fn commit(&mut self, rows: usize) {
+        let new = rows.saturating_sub(self.rows).min(self.later.len());
+        self.sum = self.later.drain(..new).next_back().unwrap_or(self.sum);
+        self.rows += new;
+    }
+
+    /// The file that is written now.
+    pub(super) fn file(&self) -> Option<(&Path, &File)> {
+        self.open.as_ref().map(|(_, path, file)| (path.as_path(), file))
     }
 
     /// Writes number `index`.
@@ -67,6 +95,10 @@ impl Column {
             let file = OpenOptions::new().write(true).create(true).truncate(false).open(&path);
             let file = file.map_err(io("open", &path))?;
             file.set_len(layout.bytes()).map_err(io("write", &path))?;
+            // Later synchronisations reach the file that is open then.
+            if let Some((_, path, file)) = &self.open {
+                file.sync_data().map_err(io("write", path))?;
+            }
             self.open = Some((chunk, path, file));
         }
         if let Some((_, path, file)) = &mut self.open {
@@ -75,12 +107,32 @@ impl Column {
                 .and_then(|_| file.write_all(bytes))
                 .map_err(io("write", path))?;
         }
+        // A row that could not be committed may be written again.
+        self.later.truncate(index.saturating_sub(self.rows));
+        let before = self.later.last().copied().unwrap_or(self.sum);
+        self.later.push(crc32c::crc32c_append(before, bytes));
         Ok(())
     }
 }
 
-/// The first `length` rows of a per-step array, as the bytes of their numbers.
-pub(super) fn read(root: &Path, spec: &ArraySpec, length: usize) -> Result<Vec<[u8; 8]>> {
+/// The checksum of rows.
+pub(super) fn sum(numbers: &[[u8; 8]]) -> u32 {
+    crc32c::crc32c(numbers.as_flattened())
+}
+
+/// All rows of a per-step array, `length` in number, as the bytes of their numbers; compared with their checksum where
+/// `sums` has one.
+pub(super) fn read(root: &Path, spec: &ArraySpec, length: usize, sums: &Sums) -> Result<Vec<[u8; 8]>> {
+    let numbers = read_unchecked(root, spec, length)?;
+    match sums.get(spec.name) {
+        Some(stored) if *stored != sum(&numbers) => {
+            Err(corrupt(&root.join(spec.name), "its rows do not have the checksum in zarr.json"))
+        }
+        _ => Ok(numbers),
+    }
+}
+
+fn read_unchecked(root: &Path, spec: &ArraySpec, length: usize) -> Result<Vec<[u8; 8]>> {
     let chunks = Chunks::new(root, spec)?;
     let layout = Layout::of(spec);
     let mut numbers = Vec::new();

@@ -11,12 +11,16 @@ use super::checkpoint;
 use super::chunks::Chunks;
 use super::document::{self, Document};
 use super::error::{Result, StoreError, input, io};
-use super::layout::{FieldKind, SCALARS, bins, coordinates};
+use super::header::Header;
+use super::layout::{self, ArraySpec, FieldKind, SCALARS, bins, coordinates};
 use super::leak;
+use super::leftovers;
+use super::replace;
 use super::stress;
-use super::writer::{lock, remove};
+use super::writer::lock;
 
-/// Lets `build` fill a new directory, which then appears at `path`; returns its lock.
+/// Lets `build` fill a new directory, which then appears at `path`; returns its lock. Of a result that was there only its
+/// own files are removed, once the new one is in its place.
 pub(super) fn publish(
     path: &Path,
     force: bool,
@@ -24,19 +28,19 @@ pub(super) fn publish(
 ) -> Result<Option<File>> {
     // Without a closing slash, which would look through a link.
     let path: &Path = &path.components().collect::<PathBuf>();
+    check_name(path)?;
+    leftovers::sweep(path);
     let old = vacate(path, force)?;
     let partial = make_beside(path, "partial")?;
-    let built = build(&partial).and_then(|()| lock(&partial)).and_then(|held| {
-        if old.is_some() {
-            let aside = free_name(path, "old")?;
-            fs::rename(path, &aside).map_err(io("replace", path))?;
-            fs::rename(&partial, path).map_err(|source| {
-                let _ = fs::rename(&aside, path);
-                StoreError::Io { path: path.to_owned(), action: "write", source }
-            })?;
-            remove(&aside)?;
-        } else {
-            fs::rename(&partial, path).map_err(io("write", path))?;
+    // Held from here on: others see that somebody is at work.
+    let built = lock(&partial).and_then(|held| {
+        build(&partial)?;
+        match &old {
+            Some(_) => {
+                let aside = put_in_place(&partial, path)?;
+                leftovers::remove(&aside, path);
+            }
+            None => fs::rename(&partial, path).map_err(|error| taken(path, error))?,
         }
         Ok(held)
     });
@@ -51,6 +55,46 @@ pub(super) fn publish(
             other => other,
         }
     })
+}
+
+/// Exchanges a new result for the old one at `path`; returns where the old one is.
+fn put_in_place(partial: &Path, path: &Path) -> Result<PathBuf> {
+    // At no instant is there nothing at the path, where the system can do that.
+    if replace::exchange(path, partial).is_ok() {
+        return Ok(partial.to_owned());
+    }
+    let aside = free_name(path, "old")?;
+    fs::rename(path, &aside).map_err(io("replace", path))?;
+    fs::rename(partial, path).map_err(|source| {
+        let _ = fs::rename(&aside, path);
+        StoreError::Io { path: path.to_owned(), action: "write", source }
+    })?;
+    Ok(aside)
+}
+
+/// The error of a path that was free when the work began.
+fn taken(path: &Path, source: std::io::Error) -> StoreError {
+    if !matches!(source.kind(), ErrorKind::DirectoryNotEmpty | ErrorKind::AlreadyExists) {
+        return StoreError::Io { path: path.to_owned(), action: "write", source };
+    }
+    match lock(path) {
+        Err(busy) => busy,
+        Ok(_) => StoreError::Exists { path: path.to_owned() },
+    }
+}
+
+/// Longest name of a result, in bytes: file systems take 255, of which the names of its unfinished forms need 20 more.
+const LONGEST_NAME: usize = 235;
+
+/// Refuses a name that the file system would refuse later.
+fn check_name(path: &Path) -> Result<()> {
+    match path.file_name().map_or(0, |name| name.as_encoded_bytes().len()) {
+        length if length > LONGEST_NAME => {
+            let given = format!("{length} bytes long");
+            Err(input("name of the result", given, format!("at most {LONGEST_NAME} bytes long")))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Whether `path` may be written: `None` where it is free, the lock of the old result where it may be replaced.
@@ -83,7 +127,7 @@ fn vacate(path: &Path, force: bool) -> Result<Option<Option<File>>> {
 }
 
 /// Whether a result has an entry of that name.
-fn is_part(name: &str) -> bool {
+pub(super) fn is_part(name: &str) -> bool {
     document::owns(name)
         || leak::owns(name)
         || name == checkpoint::DIRECTORY
@@ -100,37 +144,60 @@ fn is_part(name: &str) -> bool {
 
 /// A new directory beside `path`.
 fn make_beside(path: &Path, role: &str) -> Result<PathBuf> {
-    let directory = free_name(path, role)?;
-    match fs::create_dir(&directory) {
-        Ok(()) => Ok(directory),
-        Err(source) => {
-            let parent = directory.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-            let (path, action) = match source.kind() {
-                ErrorKind::NotFound | ErrorKind::NotADirectory => (parent, "write into"),
-                _ => (path, "make"),
-            };
-            Err(StoreError::Io { path: path.to_owned(), action, source })
+    for directory in names_beside(path, role)? {
+        match fs::create_dir(&directory) {
+            Ok(()) => return Ok(directory),
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+            Err(source) => {
+                let parent =
+                    directory.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+                let (path, action) = match source.kind() {
+                    ErrorKind::NotFound | ErrorKind::NotADirectory => (parent, "write into"),
+                    _ => (path, "make"),
+                };
+                return Err(StoreError::Io { path: path.to_owned(), action, source });
+            }
         }
     }
+    Err(StoreError::Busy { path: path.to_owned() })
 }
 
 /// A name beside `path` that is not taken.
 fn free_name(path: &Path, role: &str) -> Result<PathBuf> {
+    let mut free = names_beside(path, role)?.filter(|name| fs::symlink_metadata(name).is_err());
+    free.next().ok_or_else(|| StoreError::Busy { path: path.to_owned() })
+}
+
+/// Names beside `path` for what this process works on: `.NAME.ROLE-PID`, `.NAME.ROLE-PID-1`, ...
+fn names_beside(path: &Path, role: &str) -> Result<impl Iterator<Item = PathBuf>> {
     let Some(name) = path.file_name() else {
         return Err(input("path of the result", path.display(), "the path of a directory to be made"));
     };
-    let mut beside = std::ffi::OsString::from(".");
-    beside.push(name);
-    beside.push(format!(".{role}-{}", std::process::id()));
-    let base = path.with_file_name(beside);
-    let names = (0..100).map(|n| {
-        let mut name = base.clone().into_os_string();
+    let mut base = std::ffi::OsString::from(".");
+    base.push(name);
+    base.push(format!(".{role}-{}", std::process::id()));
+    let path = path.to_owned();
+    Ok((0..100).map(move |n| {
+        let mut name = base.clone();
         if n > 0 {
             name.push(format!("-{n}"));
         }
-        PathBuf::from(name)
-    });
-    Ok(names.into_iter().find(|name| fs::symlink_metadata(name).is_err()).unwrap_or(base))
+        path.with_file_name(name)
+    }))
+}
+
+/// The files of what does not change over time.
+pub(super) fn constants(root: &Path, header: &Header, form: u64) -> Result<Vec<PathBuf>> {
+    let mut files = Vec::new();
+    let is_constant = |spec: &ArraySpec| !matches!(spec.dimensions[0], "time" | "field_time");
+    for spec in layout::arrays(header, 0, 0).into_iter().filter(is_constant) {
+        let chunks = Chunks::new(root, &spec.clone().of_form(form))?;
+        match spec.name {
+            "initial_gap" => files.extend(chunks.paths(&[], header.grid.shape())),
+            _ => files.push(chunks.path(&[0])),
+        }
+    }
+    Ok(files)
 }
 
 /// Writes what does not change over time: the coordinates x and y, those of the histograms, and the undeformed gap.

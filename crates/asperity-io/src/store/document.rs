@@ -10,25 +10,30 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value, json};
 
+use super::checkpoint;
+use super::checksum;
 use super::error::{Result, StoreError, corrupt, io};
 use super::header::{self, Header, Progress};
 use super::layout::{self, ArraySpec, LEVEL};
 use super::leak::Leaks;
 use super::replace::{Way, replace};
 use super::stress::StressSet;
+use super::sync;
 use crate::finding;
 
-const NAME: &str = "zarr.json";
+pub(super) const NAME: &str = "zarr.json";
 /// Where documents are written first; that of the group in an array's directory, where no reader of the
 /// hierarchy looks.
-const PARTIAL: &str = "zarr.json.partial";
-const GROUP_PARTIAL: &str = "time/group.json.partial";
+pub(super) const PARTIAL: &str = "zarr.json.partial";
+pub(super) const GROUP_PARTIAL: &str = "time/group.json.partial";
 /// Documents larger than this are not read (a result's has tens of kilobytes and its case file).
 const LARGEST: u64 = 64 << 20;
 
 /// What the group's document says.
 #[derive(Clone, Debug)]
 pub(super) struct Document {
+    /// Number of the form: 1 has no checksums.
+    pub(super) form: u64,
     pub(super) header: Header,
     pub(super) progress: Progress,
     /// The stress below the surface, where it was computed.
@@ -40,6 +45,8 @@ pub(super) struct Document {
 /// The documents as JSON, kept between steps: only a few numbers of them change.
 pub(super) struct Pages {
     group: Value,
+    /// Checksum of the attributes that do not change.
+    guarded: u32,
 }
 
 impl Pages {
@@ -47,10 +54,11 @@ impl Pages {
         let arrays = document.arrays();
         let metadata: Map<_, _> =
             arrays.iter().map(|array| (array.name.to_owned(), array.document(LEVEL))).collect();
-        let mut attributes = header::attributes(&document.header);
+        let mut attributes = header::attributes(&document.header, document.form);
         header::put_progress(&mut attributes, &document.progress);
         attributes.extend(document.stress_attribute());
         attributes.extend(document.leaks.iter().map(Leaks::attribute));
+        let guarded = checksum::guarded(&attributes);
         let consolidated = json!({"kind": "inline", "must_understand": false, "metadata": metadata});
         let group = json!({
             "zarr_format": 3,
@@ -58,13 +66,20 @@ impl Pages {
             "attributes": attributes,
             "consolidated_metadata": consolidated,
         });
-        Pages { group }
+        Pages { group, guarded }
+    }
+
+    /// Names of the arrays.
+    pub(super) fn names(&self) -> Vec<String> {
+        let arrays = self.group["consolidated_metadata"]["metadata"].as_object();
+        arrays.into_iter().flatten().map(|(name, _)| name.clone()).collect()
     }
 
     /// Replaces the group's document: from now on readers see `progress`.
     pub(super) fn commit(&mut self, root: &Path, progress: &Progress, way: Way) -> Result<()> {
         if let Some(attributes) = self.group["attributes"].as_object_mut() {
             header::put_progress(attributes, progress);
+            checksum::put(attributes, self.guarded, progress);
         }
         if let Some(arrays) = self.group["consolidated_metadata"]["metadata"].as_object_mut() {
             for array in arrays.values_mut() {
@@ -76,6 +91,15 @@ impl Pages {
             }
         }
         replace(&root.join(NAME), &root.join(GROUP_PARTIAL), self.group.to_string().as_bytes(), way)
+    }
+
+    /// Keeps a copy of the group's document, as it was committed last, with the checkpoint; it is on the medium when this
+    /// returns.
+    pub(super) fn write_copy(&self, root: &Path) -> Result<()> {
+        let directory = root.join(checkpoint::DIRECTORY);
+        let (path, partial) = (directory.join(checkpoint::GROUP), directory.join(checkpoint::GROUP_PARTIAL));
+        replace(&path, &partial, self.group.to_string().as_bytes(), Way::Safe)?;
+        sync::files(root, &[path])
     }
 
     /// Brings the arrays' own documents up to what was committed.
@@ -98,7 +122,7 @@ impl Document {
         let mut arrays = layout::arrays(&self.header, *rows, *maps);
         arrays.extend(self.stress.iter().flat_map(|set| set.arrays(cells, *maps)));
         arrays.extend(self.leaks.iter().flat_map(|leaks| leaks.arrays(&self.header.grid)));
-        arrays
+        arrays.into_iter().map(|array| array.of_form(self.form)).collect()
     }
 
     /// The attribute `stress` of the group.
@@ -111,7 +135,7 @@ impl Document {
         let (file, document) = read_json(root)?;
         let empty = Map::new();
         let attributes = document.get("attributes").and_then(Value::as_object).unwrap_or(&empty);
-        let (header, status, work) = header::parse(attributes, root, &file)?;
+        let (header, status, work, form) = header::parse(attributes, root, &file)?;
         let metadata = document
             .pointer("/consolidated_metadata/metadata")
             .and_then(Value::as_object)
@@ -122,8 +146,9 @@ impl Document {
             length.ok_or_else(|| corrupt(&file, format_args!("the array `{name}` is missing or malformed")))
         };
         let findings = attributes.get("findings").map(finding::from_list).unwrap_or_default();
-        let progress =
-            Progress { status, work, rows: length("time")?, maps: length("field_time")?, findings };
+        let sums = checksum::of(attributes).map_err(|what| corrupt(&file, what))?;
+        let (rows, maps) = (length("time")?, length("field_time")?);
+        let progress = Progress { status, work, rows, maps, findings, sums };
         let stress = match attributes.get("stress") {
             None => None,
             Some(text) => {
@@ -132,13 +157,14 @@ impl Document {
             }
         };
         let leaks = Leaks::of(attributes, metadata);
-        let document = Document { header, progress, stress, leaks };
+        let document = Document { form, header, progress, stress, leaks };
         for array in document.arrays() {
             if metadata.get(array.name).is_none_or(|stored| !same_form(stored, &array.document(LEVEL))) {
                 let what = format!("the array `{}` is missing or not of the form of a result", array.name);
                 return Err(corrupt(&file, what));
             }
         }
+        checksum::check(attributes, &document.progress).map_err(|what| corrupt(&file, what))?;
         Ok(document)
     }
 }
@@ -207,8 +233,12 @@ fn read_json(root: &Path) -> Result<(PathBuf, Value)> {
         return Err(corrupt(&file, format_args!("{length} bytes, more than a result's document has")));
     }
     let bytes = fs::read(&file).map_err(io("read", &file))?;
-    let document = serde_json::from_slice(&bytes).map_err(|error| corrupt(&file, error))?;
-    Ok((file, document))
+    let document = serde_json::from_slice(&bytes).or_else(|error| {
+        // A loss of power may leave less than the text that was written last.
+        let copy = fs::read(root.join(checkpoint::DIRECTORY).join(checkpoint::GROUP));
+        copy.ok().and_then(|bytes| serde_json::from_slice(&bytes).ok()).ok_or(error)
+    });
+    Ok((file.clone(), document.map_err(|error| corrupt(&file, error))?))
 }
 
 /// Same array but for its attributes.

@@ -5,6 +5,8 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+use crate::readable::bytes;
+
 /// The error of every call of the result store.
 #[derive(Debug, Error)]
 #[non_exhaustive]
@@ -98,6 +100,16 @@ pub enum StoreError {
         what: String,
         /// What is there instead.
         available: String,
+    },
+    /// The result would not fit on the disk.
+    #[error("{} would take up to {} (numbers that repeat take less), but {} are free on its disk; keep fewer fields (output.fields, output.every) or choose another disk", .path.display(), bytes(*.needed as f64), bytes(*.free as f64))]
+    NoSpace {
+        /// The output asked for.
+        path: PathBuf,
+        /// Size of its numbers before compression \[byte\].
+        needed: u64,
+        /// Free space of the disk \[byte\].
+        free: u64,
     },
     /// What was given to the store does not fit the result.
     #[error("{what} is {value}, but must be {expected}")]

@@ -7,6 +7,7 @@ use asperity::finding::Finding;
 use asperity::quantities::{Column, Quantity};
 use serde_json::{Map, Value, json};
 
+use super::checksum::Sums;
 use super::error::{Result, StoreError, corrupt};
 use super::layout::FieldKind;
 use crate::finding;
@@ -14,7 +15,8 @@ use crate::finding;
 /// Value of the attribute `format`: marks the directories that this store may replace.
 const FORMAT: &str = "asperity-result";
 /// Number of the form described in [`super`]; it grows when an older reader would misread a newer result.
-const SCHEMA: u64 = 1;
+/// Form 1 had no checksums.
+pub(super) const SCHEMA: u64 = 2;
 
 /// What is known of a run before it starts.
 #[derive(Clone, Debug, PartialEq)]
@@ -105,24 +107,27 @@ pub(super) struct Progress {
     pub(super) maps: usize,
     /// What the run found about itself.
     pub(super) findings: Vec<Finding>,
+    /// Checksums of the per-step arrays.
+    pub(super) sums: Sums,
 }
 
 impl Default for Progress {
     fn default() -> Self {
-        Progress { status: Status::Running, work: Work::default(), rows: 0, maps: 0, findings: vec![] }
+        let (work, sums) = (Work::default(), Sums::new());
+        Progress { status: Status::Running, work, rows: 0, maps: 0, findings: vec![], sums }
     }
 }
 
 /// Attributes of the group. Flat, of numbers and text only (but for the findings), so that xarray can pass them on to
 /// NetCDF.
-pub(super) fn attributes(header: &Header) -> Map<String, Value> {
+pub(super) fn attributes(header: &Header, form: u64) -> Map<String, Value> {
     let (cells, size) = (header.grid.cells(), header.grid.extents());
     let fields: Vec<_> = header.fields.iter().map(|kind| kind.name()).collect();
     let mut map = Map::new();
     let mut put = |key: &str, value: Value| map.insert(key.to_owned(), value);
     put("title", json!(header.title));
     put("format", json!(FORMAT));
-    put("schema", json!(SCHEMA));
+    put("schema", json!(form));
     put("version", json!(header.version));
     put("case", json!(header.case_text));
     put("setup", json!(Value::Object(header.setup.clone()).to_string()));
@@ -168,7 +173,7 @@ pub(super) fn parse(
     attributes: &Map<String, Value>,
     path: &Path,
     file: &Path,
-) -> Result<(Header, Status, Work)> {
+) -> Result<(Header, Status, Work, u64)> {
     if !is_marked(attributes) {
         let why = format!("its Zarr group lacks the attribute format = \"{FORMAT}\"");
         return Err(StoreError::NotAResult { path: path.to_owned(), why });
@@ -222,7 +227,7 @@ pub(super) fn parse(
         threads: count("work_threads").and_then(|n| usize::try_from(n).ok()),
         message: attributes.get("status_message").and_then(Value::as_str).map(str::to_owned),
     };
-    Ok((header, status, work))
+    Ok((header, status, work, schema))
 }
 
 /// The inverse of the attribute `quantities`; `None` where it is malformed.

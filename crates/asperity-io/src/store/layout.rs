@@ -255,11 +255,22 @@ pub const SCALARS: [Scalar; 16] = scalars![
     Count stage ["1"] "stage of the load";
 ];
 
+/// Type of the numbers of an array.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum DataType {
     Float64,
     Int64,
     UInt8,
+}
+
+impl DataType {
+    /// Bytes of a number.
+    pub(super) fn width(self) -> usize {
+        match self {
+            DataType::Float64 | DataType::Int64 => 8,
+            DataType::UInt8 => 1,
+        }
+    }
 }
 
 /// One array of the group.
@@ -271,6 +282,9 @@ pub(super) struct ArraySpec {
     pub(super) shape: Vec<usize>,
     pub(super) chunk: Vec<usize>,
     pub(super) compressed: bool,
+    /// Whether each chunk ends with its CRC-32C. Chunks that grow row by row have none: the group's document holds the
+    /// checksum of all rows (see [`super::checksum`]).
+    pub(super) summed: bool,
     pub(super) attributes: Value,
 }
 
@@ -288,6 +302,7 @@ impl ArraySpec {
             shape: vec![length],
             chunk: vec![length],
             compressed: false,
+            summed: true,
             attributes: json!({"units": series.units, "long_name": series.long_name}),
         }
     }
@@ -306,6 +321,7 @@ impl ArraySpec {
         ArraySpec {
             chunk: vec![HISTOGRAMS_PER_CHUNK, shape[1]],
             shape: shape.to_vec(),
+            summed: false,
             ..ArraySpec::coordinate_of(series, dimensions, 0)
         }
     }
@@ -324,6 +340,17 @@ impl ArraySpec {
         }
     }
 
+    /// Whether it grows row by row.
+    pub(super) fn grows(&self) -> bool {
+        matches!(self.dimensions[0], "time" | "field_time") && !self.compressed
+    }
+
+    /// The same array as results of form 1 have it, without checksums.
+    pub(super) fn of_form(mut self, form: u64) -> ArraySpec {
+        self.summed &= form > 1;
+        self
+    }
+
     /// Metadata document (`zarr.json`) of the array, its chunks deflated with `level`.
     pub(super) fn document(&self, level: u8) -> Value {
         let mut codecs = vec![match self.data_type {
@@ -332,6 +359,9 @@ impl ArraySpec {
         }];
         if self.compressed {
             codecs.push(json!({"name": "gzip", "configuration": {"level": level}}));
+        }
+        if self.summed {
+            codecs.push(json!({"name": "crc32c"}));
         }
         // Filled with what no run produces, so that a lost chunk cannot pass for data.
         let (data_type, fill_value) = match self.data_type {
@@ -381,6 +411,7 @@ pub(super) fn arrays(header: &Header, rows: usize, maps: usize) -> Vec<ArraySpec
                     shape: vec![rows, column.width()],
                     chunk: vec![HISTOGRAMS_PER_CHUNK, column.width()],
                     compressed: false,
+                    summed: false,
                     attributes: json!({"units": units, "long_name": long_name}),
                 });
                 arrays.extend(
@@ -407,6 +438,7 @@ pub(super) fn arrays(header: &Header, rows: usize, maps: usize) -> Vec<ArraySpec
         shape: shape.clone(),
         chunk: chunk.clone(),
         compressed: true,
+        summed: true,
         attributes: json!({"units": "m", "long_name": "undeformed gap"}),
     });
     for kind in FieldKind::ALL.into_iter().filter(|kind| header.fields.contains(kind)) {
@@ -425,6 +457,7 @@ pub(super) fn arrays(header: &Header, rows: usize, maps: usize) -> Vec<ArraySpec
             shape: [&[maps], shape.as_slice()].concat(),
             chunk: [&[1], chunk.as_slice()].concat(),
             compressed: true,
+            summed: true,
             attributes,
         });
     }
@@ -458,6 +491,7 @@ fn line(series: &Series, length: usize) -> ArraySpec {
         shape: vec![length],
         chunk: vec![length],
         compressed: false,
+        summed: true,
         attributes: json!({"units": series.units, "long_name": series.long_name}),
     }
 }
@@ -477,6 +511,7 @@ fn series(
         shape: vec![length],
         chunk: vec![ROWS_PER_CHUNK],
         compressed: false,
+        summed: false,
         attributes: json!({"units": units, "long_name": long_name}),
     }
 }
@@ -489,6 +524,7 @@ fn coordinate(name: &'static str, cells: usize, long_name: &str) -> ArraySpec {
         shape: vec![cells],
         chunk: vec![cells],
         compressed: false,
+        summed: true,
         attributes: json!({"units": "m", "long_name": long_name}),
     }
 }

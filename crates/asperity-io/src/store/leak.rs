@@ -149,6 +149,7 @@ fn spec(name: &'static str, rows: usize, grid: &Grid, gas: bool) -> ArraySpec {
             shape: vec![rows, nx, ny],
             chunk: vec![1, side(nx), side(ny)],
             compressed: true,
+            summed: true,
             attributes,
         };
     }
@@ -165,6 +166,7 @@ fn spec(name: &'static str, rows: usize, grid: &Grid, gas: bool) -> ArraySpec {
         shape: if tensor { vec![rows, 2, 2] } else { vec![rows] },
         chunk: if tensor { vec![rows.max(1), 2, 2] } else { vec![rows.max(1)] },
         compressed: false,
+        summed: true,
         attributes: json!({
             "units": if gas { known.gas_units } else { known.units },
             "long_name": known.long_name,
@@ -249,6 +251,8 @@ pub struct LeakWriter {
     root: PathBuf,
     grid: Grid,
     field: bool,
+    /// Form of the result.
+    form: u64,
     _lock: Option<fs::File>,
 }
 
@@ -259,7 +263,8 @@ impl LeakWriter {
     /// [`StoreError::Busy`](super::StoreError::Busy) where a run is writing it, [`StoreError::Io`](super::StoreError::Io).
     pub fn new(root: &Path, grid: &Grid, field: bool) -> Result<LeakWriter> {
         let held = lock(root)?;
-        Ok(LeakWriter { root: root.to_owned(), grid: *grid, field, _lock: held })
+        let form = document::Document::read(root)?.form;
+        Ok(LeakWriter { root: root.to_owned(), grid: *grid, field, form, _lock: held })
     }
 
     /// Writes the pressure of the fluid \[Pa\] of number `index`.
@@ -267,8 +272,8 @@ impl LeakWriter {
     /// # Errors
     /// [`StoreError::Io`](super::StoreError::Io) where the system refuses.
     pub fn put_pressure(&self, index: usize, pressure: ArrayView2<'_, f64>) -> Result<()> {
-        Chunks::new(&self.root, &spec(PRESSURE, index + 1, &self.grid, false))?
-            .write_map(&[index as u64], pressure)
+        let spec = spec(PRESSURE, index + 1, &self.grid, false).of_form(self.form);
+        Chunks::new(&self.root, &spec)?.write_map(&[index as u64], pressure)
     }
 
     /// Writes the numbers and makes all of it visible.
@@ -279,7 +284,7 @@ impl LeakWriter {
         let rows = table.len();
         let mut specs = vec![];
         for (name, numbers) in &table.columns {
-            let spec = spec(name, rows, &self.grid, table.gas);
+            let spec = spec(name, rows, &self.grid, table.gas).of_form(self.form);
             let chunks = Chunks::new(&self.root, &spec)?;
             let index = vec![0; spec.shape.len()];
             let path = chunks.path(&index);
@@ -294,7 +299,7 @@ impl LeakWriter {
             specs.push(spec);
         }
         if self.field {
-            specs.push(spec(PRESSURE, rows, &self.grid, table.gas));
+            specs.push(spec(PRESSURE, rows, &self.grid, table.gas).of_form(self.form));
         }
         let add_findings = |attributes: &mut Map<String, Value>| {
             let earlier = attributes.get("findings").map(finding::from_list).unwrap_or_default();

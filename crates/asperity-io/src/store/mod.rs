@@ -54,6 +54,7 @@
 //! ```
 
 mod checkpoint;
+mod checksum;
 mod chunks;
 mod column;
 mod create;
@@ -62,10 +63,13 @@ mod error;
 mod header;
 mod layout;
 mod leak;
+mod leftovers;
 mod reader;
 mod replace;
 mod resume;
 mod stress;
+mod sync;
+mod verify;
 mod writer;
 
 pub use asperity::march::{Checkpoint, Row};
@@ -76,4 +80,5 @@ pub use layout::{FieldKind, SCALARS, Scalar, Series};
 pub use leak::{LeakTable, LeakWriter, Leaks};
 pub use reader::{At, Reader};
 pub use stress::{StressSet, StressWriter};
+pub use verify::{Damage, Verification, verify};
 pub use writer::{Field, Outcome, Writer};

@@ -49,8 +49,8 @@ impl Reader {
         let mut reader =
             Reader { root: path.to_owned(), document, field_times: Vec::new(), field_steps: Vec::new() };
         let maps = reader.document.progress.maps;
-        let times = column::read(path, &reader.spec("field_time")?, maps)?;
-        let steps = column::read(path, &reader.spec("field_step")?, maps)?;
+        let times = reader.column("field_time", maps)?;
+        let steps = reader.column("field_step", maps)?;
         reader.field_times = times.into_iter().map(f64::from_le_bytes).collect();
         let rows = reader.document.progress.rows;
         let step = |bytes| usize::try_from(i64::from_le_bytes(bytes)).ok().filter(|step| *step < rows);
@@ -77,7 +77,7 @@ impl Reader {
 
     /// The attributes of the group, as in the file: `title`, `case`, `version`, `status`, `work_...`.
     pub fn attributes(&self) -> Map<String, Value> {
-        let mut attributes = header::attributes(self.header());
+        let mut attributes = header::attributes(self.header(), self.document.form);
         header::put_progress(&mut attributes, &self.document.progress);
         attributes.extend(self.document.stress_attribute());
         attributes
@@ -117,7 +117,7 @@ impl Reader {
     pub fn rows(&self) -> Result<Vec<Row>> {
         let mut rows = Vec::new();
         for scalar in SCALARS {
-            let numbers = column::read(&self.root, &self.spec(scalar.name)?, self.len())?;
+            let numbers = self.column(scalar.name, self.len())?;
             // The length is trusted once the files have shown to hold it.
             rows.resize(numbers.len(), Row::default());
             column::fill(&mut rows, scalar.entry, &numbers)
@@ -152,7 +152,7 @@ impl Reader {
             let names = if names.is_empty() { "no histograms".to_owned() } else { names.join(", ") };
             return Err(self.missing(format!("histogram `{quantity}`"), names));
         };
-        let numbers = column::read(&self.root, &self.spec(quantity.name())?, self.len())?;
+        let numbers = self.column(quantity.name(), self.len())?;
         let numbers: Vec<f64> = numbers.into_iter().map(f64::from_le_bytes).collect();
         let shape = (numbers.len() / column.width(), column.width());
         let rows = Array2::from_shape_vec(shape, numbers)
@@ -171,7 +171,7 @@ impl Reader {
             return Err(self.missing(format!("series `{name}`"), names.join(", ")));
         }
         let entry = SCALARS.iter().find(|scalar| scalar.name == name).map(|scalar| scalar.entry);
-        let numbers = column::read(&self.root, &self.spec(name)?, self.len())?;
+        let numbers = self.column(name, self.len())?;
         Ok(numbers
             .into_iter()
             .map(|bytes| match entry {
@@ -324,6 +324,11 @@ impl Reader {
     /// [`StoreError::Corrupt`] where a file is missing or damaged, [`StoreError::Io`] where the system refuses.
     pub fn initial_gap(&self) -> Result<Array2<f64>> {
         Chunks::new(&self.root, &self.spec("initial_gap")?)?.read_map(&[], self.header().grid.shape())
+    }
+
+    /// All rows of a per-step array.
+    pub(super) fn column(&self, name: &str, length: usize) -> Result<Vec<[u8; 8]>> {
+        column::read(&self.root, &self.spec(name)?, length, &self.document.progress.sums)
     }
 
     pub(super) fn document(&self) -> &Document {

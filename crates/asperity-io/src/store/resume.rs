@@ -6,9 +6,13 @@ use asperity::march::Checkpoint;
 use ndarray::ArrayView2;
 
 use super::checkpoint;
+use super::checksum::Sums;
+use super::chunks::Chunks;
+use super::column;
 use super::document::{Document, Pages};
 use super::error::{Result, StoreError};
 use super::header::{Header, Status};
+use super::layout::ArraySpec;
 use super::reader::Reader;
 use super::replace::Way;
 use super::stress;
@@ -47,11 +51,19 @@ impl Writer {
         }
         let all = reader.rows()?;
         let maps = reader.field_steps().iter().take_while(|step| **step < rows).count();
+        for kind in &reader.header().fields {
+            let chunks = Chunks::new(path, &reader.spec(kind.name())?)?;
+            for map in 0..maps {
+                chunks.verify_map(&[map as u64], reader.header().grid.shape())?;
+            }
+        }
+        let sums = kept_sums(&reader, rows, maps)?;
 
         // Stress and leaks are computed again at the end of the run.
-        let Document { header: mut kept, mut progress, .. } = reader.into_document();
+        let Document { form, header: mut kept, mut progress, .. } = reader.into_document();
         let stored_maps = std::mem::replace(&mut progress.maps, maps);
         progress.rows = rows;
+        progress.sums = sums;
         progress.status = Status::Running;
         progress.work.message = None;
         progress.work.iterations = all[..rows].iter().map(|row| row.iterations as u64).sum();
@@ -60,7 +72,7 @@ impl Writer {
             kept.version = format!("{}, {}", kept.version, header.version);
         }
         kept.rows_expected = header.rows_expected;
-        let document = Document { header: kept, progress, stress: None, leaks: None };
+        let document = Document { form, header: kept, progress, stress: None, leaks: None };
         let mut pages = Pages::new(&document);
         pages.commit(path, &document.progress, Way::Safe)?;
         pages.write_arrays(path, Way::Safe)?;
@@ -78,6 +90,24 @@ impl Writer {
         let last_time = all[..rows].last().map_or(f64::NEG_INFINITY, |row| row.time);
         Ok((Writer::attach(path, document, held, last_time)?, checkpoint))
     }
+}
+
+/// The checksums of the first rows and fields. All rows of each array are compared with their own first.
+fn kept_sums(reader: &Reader, rows: usize, maps: usize) -> Result<Sums> {
+    let mut sums = Sums::new();
+    if reader.document().form < 2 {
+        return Ok(sums);
+    }
+    let arrays = reader.document().arrays();
+    let is_kept = |array: &&ArraySpec| array.grows() && !stress::names().any(|name| name == array.name);
+    for array in arrays.iter().filter(is_kept) {
+        let of_rows = array.dimensions[0] == "time";
+        let (kept, all) = if of_rows { (rows, reader.len()) } else { (maps, reader.field_times().len()) };
+        let width: usize = array.chunk[1..].iter().product();
+        let numbers = reader.column(array.name, all)?;
+        sums.insert(array.name.to_owned(), column::sum(&numbers[..kept * width]));
+    }
+    Ok(sums)
 }
 
 /// Compares what decides the numbers of a run.

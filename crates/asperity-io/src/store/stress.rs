@@ -7,8 +7,9 @@ use asperity::stress::{Rolling, StressQuantity};
 use ndarray::{Array2, ArrayView2};
 use serde_json::{Value, json};
 
+use super::checksum::Sums;
 use super::chunks::Chunks;
-use super::column::{self, Column};
+use super::column::Column;
 use super::document::{Document, Pages};
 use super::error::{Result, corrupt, io};
 use super::layout::{ArraySpec, Series};
@@ -194,7 +195,9 @@ impl StressWriter {
     /// [`super::StoreError`] where it is no result.
     pub fn new(root: &Path, set: &StressSet, maps: usize) -> Result<StressWriter> {
         let reader = Reader::open(root)?;
+        let form = reader.document().form;
         let specs = set.arrays(reader.header().grid.cells(), maps);
+        let specs: Vec<ArraySpec> = specs.into_iter().map(|spec| spec.of_form(form)).collect();
         let chunks = |(quantity, series): &(StressQuantity, Series)| {
             let spec = specs.iter().find(|spec| spec.name == series.name);
             let spec = spec.ok_or_else(|| reader.missing(series.name.into(), "no such array".into()))?;
@@ -233,8 +236,9 @@ impl StressWriter {
         self.profiles[map] = profiles.to_vec();
     }
 
-    /// Writes all numbers.
-    fn finish(&self) -> Result<()> {
+    /// Writes all numbers; returns the checksums of the per-step arrays.
+    fn finish(&self) -> Result<Sums> {
+        let mut sums = Sums::new();
         let bytes = |numbers: &[f64]| numbers.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>();
         let find = |name: &str| self.specs.iter().find(|spec| spec.name == name);
         if let Some(spec) = find(DEPTH) {
@@ -246,19 +250,21 @@ impl StressWriter {
         }
         for (n, series) in self.set.scalars().iter().enumerate() {
             let Some(spec) = find(series.name) else { continue };
-            let mut column = Column::new(&self.root, spec)?;
+            let mut column = Column::new(&self.root, spec, 0, &Sums::new())?;
             for (map, numbers) in self.scalars.iter().enumerate() {
                 column.put_row(map, &bytes(&numbers[n..=n]))?;
             }
+            column.sum(self.scalars.len(), &mut sums);
         }
         for (n, series) in self.set.profiles().iter().enumerate() {
             let Some(spec) = find(series.name) else { continue };
-            let mut column = Column::new(&self.root, spec)?;
+            let mut column = Column::new(&self.root, spec, 0, &Sums::new())?;
             for (map, profiles) in self.profiles.iter().enumerate() {
                 column.put_row(map, &bytes(&profiles[n]))?;
             }
+            column.sum(self.profiles.len(), &mut sums);
         }
-        Ok(())
+        Ok(sums)
     }
 }
 
@@ -281,7 +287,7 @@ impl Writer {
     /// # Errors
     /// [`super::StoreError::Io`] where the system refuses.
     pub fn remove_stress(&mut self) -> Result<()> {
-        self.set_stress(None)?;
+        self.set_stress(None, Sums::new())?;
         clear(self.path())
     }
 
@@ -290,8 +296,8 @@ impl Writer {
     /// # Errors
     /// [`super::StoreError::Io`] where the system refuses.
     pub fn add_stress(&mut self, store: StressWriter) -> Result<()> {
-        store.finish()?;
-        self.set_stress(Some(store.set))
+        let sums = store.finish()?;
+        self.set_stress(Some(store.set), sums)
     }
 }
 
@@ -345,7 +351,7 @@ impl Reader {
             };
             return Err(self.missing(format!("`{name}`"), available));
         }
-        let numbers = column::read(self.path(), &self.spec(name)?, self.field_times().len())?;
+        let numbers = self.column(name, self.field_times().len())?;
         Ok(numbers.into_iter().map(f64::from_le_bytes).collect())
     }
 

@@ -9,20 +9,24 @@ use asperity::march::{Checkpoint, Row};
 use ndarray::ArrayView2;
 
 use super::checkpoint;
+use super::checksum::Sums;
 use super::chunks::Chunks;
 use super::column::Column;
 use super::create;
 use super::document::{Document, Pages};
 use super::error::{Result, StoreError, input, io};
-use super::header::{Header, Progress, Status, Work};
+use super::header::{Header, Progress, SCHEMA, Status, Work};
 use super::layout::{Entry, FieldKind, SCALARS};
 use super::replace::Way;
 use super::stress::{self, StressSet};
+use super::sync;
 
 /// Steps that follow each other faster than this are committed the quick way (see [`super::replace`]).
 const QUICK: Duration = Duration::from_millis(20);
 /// The arrays' own documents are brought up to date when they have lagged this long.
 const LAG: Duration = Duration::from_secs(1);
+/// Least time between two synchronisations with the medium. One takes some 50 ms at 1024 x 1024 cells: 1 % of it.
+const SYNC_PAUSE: Duration = Duration::from_secs(5);
 /// A checkpoint is due when the time since the last is this many times what its writing took.
 const CHECKPOINT_SHARE: u32 = 100;
 
@@ -87,10 +91,13 @@ impl Outcome {
 ///
 /// A step is handed to the operating system as a whole before [`append`](Self::append) returns, so that
 /// a process killed at any instant leaves a readable result with every step appended before.
-/// (Nothing is synchronised to the medium: what a loss of power takes is up to the file system.)
+/// At a checkpoint, but no more often than every five seconds, all of that is also brought to the medium: a loss of
+/// power takes what came after it.
 /// Dropped without [`finish`](Self::finish), the result stays as that of a killed run.
 pub struct Writer {
     root: PathBuf,
+    /// Number of the form of the result.
+    form: u64,
     header: Header,
     progress: Progress,
     pages: Pages,
@@ -110,6 +117,8 @@ pub struct Writer {
     documents_written: Instant,
     documents_behind: bool,
     checkpoint: Option<(Instant, Duration)>,
+    /// What has not been brought to the medium.
+    unsynced: Unsynced,
     _lock: Option<File>,
 }
 
@@ -142,8 +151,8 @@ impl Writer {
         {
             return Err(input("fields of the result", format!("{kind} twice"), "each named once"));
         }
-        let document =
-            Document { header: header.clone(), progress: Progress::default(), stress: None, leaks: None };
+        let (header, progress) = (header.clone(), Progress::default());
+        let document = Document { form: SCHEMA, header, progress, stress: None, leaks: None };
         let lock = create::publish(path, force, |root| {
             create::write_constants(root, &document, initial_gap)?;
             let mut pages = Pages::new(&document);
@@ -164,16 +173,19 @@ impl Writer {
         let spec = |name: &str| {
             specs.iter().find(|spec| spec.name == name).ok_or_else(|| input("array", name, "one of a result"))
         };
-        let columns = SCALARS.iter().map(|s| Ok((s.entry, Column::new(root, spec(s.name)?)?)));
+        let Progress { rows, maps, sums, .. } = &document.progress;
+        let per_row = |name: &str| Column::new(root, spec(name)?, *rows, sums);
+        let per_map = |name: &str| Column::new(root, spec(name)?, *maps, sums);
+        let columns = SCALARS.iter().map(|s| Ok((s.entry, per_row(s.name)?)));
         let quantities = document.header.quantities.iter();
-        let quantities = quantities.map(|q| Ok((q.width(), Column::new(root, spec(q.quantity.name())?)?)));
+        let quantities = quantities.map(|q| Ok((q.width(), per_row(q.quantity.name())?)));
         let fields = document.header.fields.iter();
         let fields = fields.map(|kind| Ok((*kind, Chunks::new(root, spec(kind.name())?)?)));
         Ok(Writer {
             columns: columns.collect::<Result<_>>()?,
             quantities: quantities.collect::<Result<_>>()?,
-            field_time: Column::new(root, spec("field_time")?)?,
-            field_step: Column::new(root, spec("field_step")?)?,
+            field_time: per_map("field_time")?,
+            field_step: per_map("field_step")?,
             fields: fields.collect::<Result<_>>()?,
             root: root.to_owned(),
             last_time,
@@ -185,7 +197,9 @@ impl Writer {
             documents_written: Instant::now(),
             documents_behind: false,
             checkpoint: None,
+            unsynced: Unsynced::new(*maps),
             pages: Pages::new(&document),
+            form: document.form,
             header: document.header,
             progress: document.progress,
             _lock: lock,
@@ -268,9 +282,19 @@ impl Writer {
         progress.work.iterations += row.iterations as u64;
         progress.work.convolutions += row.convolutions as u64;
         progress.work.wall_s = self.wall();
+        if self.form > 1 {
+            let (rows, maps, sums) = (progress.rows, progress.maps, &mut progress.sums);
+            self.columns.iter().for_each(|(_, column)| column.sum(rows, sums));
+            self.quantities.iter().for_each(|(_, column)| column.sum(rows, sums));
+            [&self.field_time, &self.field_step].into_iter().for_each(|column| column.sum(maps, sums));
+        }
         let way = if self.committed.elapsed() < QUICK { Way::Quick } else { Way::Safe };
         self.pages.commit(&self.root, &progress, way)?;
         self.committed = Instant::now();
+        let (rows, maps) = (progress.rows, progress.maps);
+        self.columns.iter_mut().for_each(|(_, column)| column.commit(rows));
+        self.quantities.iter_mut().for_each(|(_, column)| column.commit(rows));
+        [&mut self.field_time, &mut self.field_step].into_iter().for_each(|column| column.commit(maps));
         self.progress = progress;
         self.staged = 0;
         self.last_time = row.time;
@@ -323,11 +347,15 @@ impl Writer {
         self.field_step.put(map, (self.progress.rows as i64).to_le_bytes())
     }
 
-    /// Sets the stress below the surface that readers see.
-    pub(super) fn set_stress(&mut self, stress: Option<StressSet>) -> Result<()> {
+    /// Sets the stress below the surface that readers see; `sums` are the checksums of its per-step arrays.
+    pub(super) fn set_stress(&mut self, stress: Option<StressSet>, sums: Sums) -> Result<()> {
+        self.progress.sums.retain(|name, _| !stress::names().any(|own| own == name));
+        if self.form > 1 {
+            self.progress.sums.extend(sums);
+        }
         let leaks = Document::read(&self.root)?.leaks;
-        let document =
-            Document { header: self.header.clone(), progress: self.progress.clone(), stress, leaks };
+        let (form, header, progress) = (self.form, self.header.clone(), self.progress.clone());
+        let document = Document { form, header, progress, stress, leaks };
         self.pages = stress::publish(&self.root, &document)?;
         Ok(())
     }
@@ -351,10 +379,10 @@ impl Writer {
         self.pages.commit(&self.root, &self.progress, Way::Quick)
     }
 
-    /// Whether writing a checkpoint now keeps the writing of all of them below 1 % of the time. A killed run
-    /// repeats what came after its last checkpoint.
+    /// Whether writing a checkpoint now keeps the writing of all of them below 1 % of the time. They are five seconds apart
+    /// at least. A killed run repeats what came after its last checkpoint.
     pub fn checkpoint_due(&self) -> bool {
-        self.checkpoint.is_none_or(|(at, cost)| at.elapsed() > CHECKPOINT_SHARE * cost)
+        self.checkpoint.is_none_or(|(at, cost)| at.elapsed() > (CHECKPOINT_SHARE * cost).max(SYNC_PAUSE))
     }
 
     /// Replaces the checkpoint by the state after the last row appended.
@@ -368,8 +396,36 @@ impl Writer {
             return Err(input("step of the checkpoint", checkpoint.step, expected));
         }
         let start = Instant::now();
-        checkpoint::write(&self.root, checkpoint)?;
+        let is_synced = self.unsynced.since.elapsed() >= SYNC_PAUSE;
+        if is_synced {
+            self.synchronise()?;
+        }
+        checkpoint::write(&self.root, checkpoint, is_synced)?;
+        if is_synced {
+            self.pages.write_copy(&self.root)?;
+        }
         self.checkpoint = Some((Instant::now(), start.elapsed()));
+        Ok(())
+    }
+
+    /// Brings rows, fields and documents to the medium.
+    fn synchronise(&mut self) -> Result<()> {
+        let columns = self.columns.iter().map(|(_, column)| column);
+        let columns = columns.chain(self.quantities.iter().map(|(_, column)| column));
+        for (path, file) in columns.chain([&self.field_time, &self.field_step]).filter_map(Column::file) {
+            file.sync_data().map_err(io("write", path))?;
+        }
+        for (_, chunks) in &self.fields {
+            for map in self.unsynced.maps..self.progress.maps {
+                sync::files(&self.root, &chunks.paths(&[map as u64], self.header.grid.shape()))?;
+            }
+        }
+        if !self.unsynced.constants {
+            sync::documents(&self.root, &self.pages.names())?;
+            sync::files(&self.root, &create::constants(&self.root, &self.header, self.form)?)?;
+        }
+        sync::document(&self.root)?;
+        self.unsynced = Unsynced { constants: true, ..Unsynced::new(self.progress.maps) };
         Ok(())
     }
 
@@ -388,6 +444,10 @@ impl Writer {
         work.wall_s = wall;
         self.pages.commit(&self.root, &self.progress, Way::Safe)?;
         self.flush_documents(Way::Safe)?;
+        if self.unsynced.since.elapsed() >= SYNC_PAUSE {
+            self.unsynced.constants = false; // the arrays' own documents are new
+            self.synchronise()?;
+        }
         if outcome.status == Status::Complete {
             checkpoint::remove(&self.root)?;
         }
@@ -433,6 +493,21 @@ impl Drop for Writer {
     }
 }
 
+/// What a loss of power may take.
+struct Unsynced {
+    since: Instant,
+    /// First of the maps.
+    maps: usize,
+    /// Whether what is written once is on the medium: the gap, the coordinates, the documents of the arrays.
+    constants: bool,
+}
+
+impl Unsynced {
+    fn new(maps: usize) -> Self {
+        Unsynced { since: Instant::now(), maps, constants: false }
+    }
+}
+
 /// Takes the result at `root` for writing. The system frees it when the process ends, however it ends.
 pub(super) fn lock(root: &Path) -> Result<Option<File>> {
     // Not every file system can lock, nor can every system open a directory: there, nothing is held.
@@ -462,5 +537,40 @@ pub(super) fn remove(path: &Path) -> Result<()> {
     match removed {
         Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(io("remove", path)(error)),
         _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use asperity::Grid;
+    use ndarray::Array2;
+
+    #[test]
+    fn a_checkpoint_after_the_pause_is_on_the_medium_with_a_copy_of_the_document() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("result.zarr");
+        let header = Header {
+            title: String::new(),
+            case_text: String::new(),
+            version: "0".into(),
+            grid: Grid::new([4, 3], [1.0, 1.0]).unwrap(),
+            fields: vec![FieldKind::Pressure],
+            quantities: vec![],
+            rows_expected: None,
+            setup: Default::default(),
+        };
+        let map = Array2::zeros((4, 3));
+        let mut writer = Writer::create(&path, &header, map.view(), false).unwrap();
+        let copy = path.join(checkpoint::DIRECTORY).join(checkpoint::GROUP);
+        for step in 1..=2 {
+            writer.append(&Row::default(), &[Field::Pressure(map.view())]).unwrap();
+            writer.checkpoint(&Checkpoint { step, scalars: vec![], fields: vec![] }).unwrap();
+            assert_eq!(copy.exists(), step == 2);
+            assert!(!writer.checkpoint_due());
+            writer.unsynced.since = Instant::now().checked_sub(SYNC_PAUSE).unwrap();
+        }
+        assert_eq!(fs::read(copy).unwrap(), fs::read(path.join("zarr.json")).unwrap());
+        assert_eq!((writer.unsynced.maps, writer.unsynced.constants), (2, true));
     }
 }

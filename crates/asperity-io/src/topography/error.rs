@@ -24,6 +24,9 @@ pub enum Problem {
     /// The operating system refuses.
     #[error("{0}")]
     Io(#[from] std::io::Error),
+    /// The file takes more memory than there is.
+    #[error("{0}; crop or thin it out first")]
+    TooLarge(String),
     /// The content belongs to none of the formats.
     #[error(
         "the content is none of the known formats (text, XYZ, CSV, NPY, NPZ, NetCDF, HDF5, SDF, BCR, X3P, SUR, \

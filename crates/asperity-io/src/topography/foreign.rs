@@ -87,6 +87,11 @@ pub(super) fn unread(bytes: &[u8]) -> Problem {
     }
 }
 
+/// Whether the kind of file is known by its end too: the table of a zip archive, the texts of a TIFF.
+pub(super) fn told_by_end(head: &[u8]) -> bool {
+    [&b"PK\x03\x04"[..], b"II*\0", b"MM\0*"].iter().any(|start| head.starts_with(start))
+}
+
 /// Files that look like another format: HDF5 of Zygo's Mx software.
 pub(super) fn refuse_look_alikes(bytes: &[u8]) -> Result<(), Problem> {
     // Its heights are phases with converters of their own; both names are in every file.

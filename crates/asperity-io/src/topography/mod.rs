@@ -37,6 +37,7 @@ mod foreign;
 mod format;
 mod frt;
 mod grid;
+mod groups;
 mod gwy;
 mod ibw;
 mod metropro;
@@ -56,6 +57,7 @@ mod unpack;
 mod write;
 mod x3p;
 
+use std::io::Read;
 use std::path::Path;
 
 use ndarray::Array2;
@@ -64,6 +66,7 @@ pub use error::{Problem, TopographyError};
 pub use format::{Format, detect};
 pub use write::{to_bytes, write};
 
+use crate::resources;
 use finish::finish;
 pub(crate) use text::{dialect, is_numbers, to_text};
 
@@ -155,8 +158,33 @@ pub struct ReadOptions {
 /// unit that neither the file nor `options` state.
 pub fn read(path: &Path, options: &ReadOptions) -> Result<Topography, TopographyError> {
     let in_file = |problem| TopographyError { path: Some(path.to_owned()), problem };
-    let bytes = std::fs::read(path).map_err(|e| in_file(Problem::Io(e)))?;
+    let bytes = bytes_of(path, options).map_err(in_file)?;
     parse(&bytes, options).map_err(in_file)
+}
+
+/// Bytes that tell the format of a file.
+const HEAD: u64 = 1 << 20;
+/// Memory that reading takes, per byte of the file: the file, its numbers, and their copy on the grid.
+const MEMORY_PER_BYTE: u64 = 3;
+
+/// The bytes of a file. A large one is read whole only where its head is that of a known format and the memory is there.
+fn bytes_of(path: &Path, options: &ReadOptions) -> Result<Vec<u8>, Problem> {
+    let mut file = resources::open(path)?;
+    let length = file.metadata()?.len();
+    let mut bytes = Vec::new();
+    file.by_ref().take(HEAD).read_to_end(&mut bytes)?;
+    if (bytes.len() as u64) < HEAD {
+        return Ok(bytes);
+    }
+    if options.format.is_none() && detect(&bytes).is_none() && !foreign::told_by_end(&bytes) {
+        return Err(foreign::unread(&bytes));
+    }
+    resources::check_memory("the contents of the file", length.saturating_mul(MEMORY_PER_BYTE))
+        .map_err(Problem::TooLarge)?;
+    bytes.reserve_exact(usize::try_from(length.saturating_sub(HEAD)).unwrap_or(0));
+    // No further than the length above, should the file grow meanwhile.
+    file.take(length.saturating_sub(HEAD)).read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 /// Reads a topography from the bytes of a file; see [`read`].

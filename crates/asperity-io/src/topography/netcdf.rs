@@ -6,13 +6,15 @@
 //! two-dimensional variable of numbers is a channel, the first dimension is x unless the names say (y, x), and the
 //! coordinates give the size where they are equally spaced.
 
+use std::sync::Arc;
+
 use ndarray::{Array2, ArrayD, Ix2};
 use netcdf_reader::{NcAttrValue, NcFile, NcFormat, NcOpenOptions, NcType, NcVariable};
 
 use super::finish::{Lateral, Measured, Unit, choose_heights, unit_of};
 use super::unit::{LoneA, metres};
 use super::unpack::most_unpacked;
-use super::{Format, Problem, foreign, grid};
+use super::{Format, Problem, foreign, grid, groups};
 
 /// What NetCDF writes where a variable was never written.
 const DEFAULT_FILL: f64 = 9.969_209_968_386_869e36;
@@ -30,8 +32,14 @@ pub(super) fn detect(bytes: &[u8]) -> Option<Format> {
 pub(super) fn read_netcdf(bytes: &[u8], channel: Option<&str>) -> Result<(Format, Measured), Problem> {
     foreign::refuse_look_alikes(bytes)?;
     let most = usize::try_from(most_unpacked(bytes.len())).unwrap_or(usize::MAX);
-    let options = NcOpenOptions { max_read_bytes: most, max_chunk_bytes: most, ..NcOpenOptions::default() };
-    let file = NcFile::from_bytes_with_options(bytes, options).map_err(|e| broken("the file", e))?;
+    let options =
+        || NcOpenOptions { max_read_bytes: most, max_chunk_bytes: most, ..NcOpenOptions::default() };
+    let bytes: Arc<[u8]> = bytes.into();
+    if detect(&bytes) == Some(Format::Hdf5) {
+        groups::check(bytes.clone(), options().into())?;
+    }
+    let available = bytes.len() as u64;
+    let file = NcFile::from_owner(bytes, options()).map_err(|e| broken("the file", e))?;
     let maps = maps(&file)?;
     let is_netcdf = !matches!(file.format(), NcFormat::Nc4 | NcFormat::Nc4Classic)
         || file.dimensions().is_ok_and(|d| !d.is_empty());
@@ -50,7 +58,7 @@ pub(super) fn read_netcdf(bytes: &[u8], channel: Option<&str>) -> Result<(Format
     let points = grid::points(shape[0], shape[1])?;
     // Classic files hold every number; packed ones are bounded by `most_unpacked`.
     if (points as u64).saturating_mul(width(&variable.dtype)) > most as u64 {
-        return Err(Problem::truncated(format!("the variable {name:?}"), points as u64, bytes.len() as u64));
+        return Err(Problem::truncated(format!("the variable {name:?}"), points as u64, available));
     }
     let mut heights = two_dimensional(file.read_variable_unpacked_masked(name), name)?;
     let fill = |h: f64| (h / DEFAULT_FILL - 1.0).abs() < 1e-6;
@@ -86,7 +94,7 @@ pub(super) fn read_netcdf(bytes: &[u8], channel: Option<&str>) -> Result<(Format
     Ok((format, Measured { heights, unit, lateral, channel, channels: names, metadata }))
 }
 
-fn broken(what: &str, error: impl std::fmt::Display) -> Problem {
+pub(super) fn broken(what: &str, error: impl std::fmt::Display) -> Problem {
     let error = error.to_string();
     // The library names filters and features that it does not know.
     if error.contains("unsupported") {

@@ -62,7 +62,7 @@ for options in ({}, {"chunks": None}, {"consolidated": True}):
     (lx, ly) = ds.attrs["size"]
     assert np.array_equal(ds.x.values, (np.arange(nx) + 0.5) * (lx / nx))
     assert np.array_equal(ds.y.values, (np.arange(ny) + 0.5) * (ly / ny))
-    assert ds.attrs["format"] == "asperity-result" and ds.attrs["schema"] == 1
+    assert ds.attrs["format"] == "asperity-result" and ds.attrs["schema"] == 2
     assert ds.attrs["status"] == status, ds.attrs["status"]
     assert ds.attrs["title"] == 'rough "sphere" \u00b5m' and "[domain]" in ds.attrs["case"]
     assert ds.attrs["work_convolutions"] == sum(2 * n + 1 for n in range(rows))

@@ -82,6 +82,99 @@ fn a_result_that_holds_other_files_is_not_removed() {
     assert_eq!(fs::read_to_string(path.join("notes.txt")).unwrap(), "mine");
 }
 
+/// Arrays are directories that people put notes into.
+#[test]
+fn files_inside_the_arrays_of_a_replaced_result_are_kept() {
+    let case = Case::new([4, 3], &[FieldKind::Pressure]);
+    let (directory, path) = place();
+    let mut writer = Writer::create(&path, &case.header, case.gap.view(), false).unwrap();
+    case.run(&mut writer, 0, 3);
+    writer.checkpoint(&case.checkpoint(3)).unwrap();
+    drop(writer);
+    let mine = ["pressure/notes.txt", "pressure/c/1/notes.txt", "checkpoint/notes.txt"];
+    mine.iter().for_each(|name| fs::write(path.join(name), "mine").unwrap());
+    drop(Writer::create(&path, &case.header, case.gap.view(), true).unwrap());
+    assert_eq!(Reader::open(&path).unwrap().len(), 0);
+    assert_eq!(names(directory.path()), ["result.zarr", "result.zarr.old"]);
+    let old = directory.path().join("result.zarr.old");
+    assert_eq!(names(&old), ["checkpoint", "pressure"]);
+    for name in mine {
+        assert_eq!(fs::read_to_string(old.join(name)).unwrap(), "mine");
+    }
+    assert_eq!(names(&old.join("pressure/c")), ["1"]);
+}
+
+#[test]
+fn what_killed_starts_left_is_swept_and_what_others_hold_is_not() {
+    let case = Case::new([4, 3], &[]);
+    let (directory, path) = place();
+    let left = |name: &str| {
+        let left = directory.path().join(name);
+        drop(Writer::create(&left, &case.header, case.gap.view(), false).unwrap());
+        left
+    };
+    let dead = left(".result.zarr.partial-4194305");
+    let held = left(".result.zarr.partial-7-1");
+    let young = left(".result.zarr.old-8");
+    let other = left(".result.zarr.partial-x");
+    let old = std::time::SystemTime::now() - std::time::Duration::from_secs(60);
+    let age = |path: &Path| fs::File::open(path).unwrap().set_modified(old).unwrap();
+    [&dead, &held, &other].into_iter().for_each(|path| age(path));
+    let lock = fs::File::open(&held).unwrap();
+    lock.try_lock().unwrap();
+    drop(Writer::create(&path, &case.header, case.gap.view(), false).unwrap());
+    assert!(!dead.exists());
+    assert!(held.exists() && young.exists() && other.exists());
+}
+
+/// Killed between putting the old result aside and putting the new one in its place.
+#[test]
+fn a_result_that_was_put_aside_comes_back() {
+    let case = Case::new([4, 3], &[]);
+    let (directory, path) = place();
+    let aside = directory.path().join(".result.zarr.old-4194305");
+    let mut writer = Writer::create(&aside, &case.header, case.gap.view(), false).unwrap();
+    case.run(&mut writer, 0, 2);
+    drop(writer);
+    let old = std::time::SystemTime::now() - std::time::Duration::from_secs(60);
+    fs::File::open(&aside).unwrap().set_modified(old).unwrap();
+    let error = Writer::create(&path, &case.header, case.gap.view(), false).unwrap_err();
+    assert!(matches!(error, StoreError::Exists { .. }), "{error}");
+    assert_eq!(Reader::open(&path).unwrap().len(), 2);
+}
+
+#[test]
+fn of_starts_at_the_same_time_one_runs_and_the_others_say_busy() {
+    let case = Case::new([64, 64], &[]);
+    for _ in 0..5 {
+        let (directory, path) = place();
+        let starts: Vec<_> = std::thread::scope(|scope| {
+            let start = || Writer::create(&path, &case.header, case.gap.view(), false);
+            let threads: Vec<_> = (0..4).map(|_| scope.spawn(start)).collect();
+            threads.into_iter().map(|thread| thread.join().unwrap()).collect()
+        });
+        assert_eq!(starts.iter().filter(|start| start.is_ok()).count(), 1);
+        for error in starts.iter().filter_map(|start| start.as_ref().err()) {
+            // One that came later found the result there.
+            assert!(matches!(error, StoreError::Busy { .. } | StoreError::Exists { .. }), "{error}");
+        }
+        assert_eq!(names(directory.path()), ["result.zarr"]);
+    }
+}
+
+#[test]
+fn a_name_too_long_for_its_unfinished_forms_is_refused_at_once() {
+    let case = Case::new([4, 3], &[]);
+    let (directory, _) = place();
+    let create = |length: usize| {
+        let path = directory.path().join("z".repeat(length));
+        Writer::create(&path, &case.header, case.gap.view(), false).map(drop)
+    };
+    create(235).unwrap();
+    let error = create(236).unwrap_err().to_string();
+    assert!(error.contains("236 bytes long") && error.contains("at most 235"), "{error}");
+}
+
 #[test]
 fn a_place_that_cannot_be_written_is_named_and_nothing_is_left() {
     let case = Case::new([4, 3], &[]);

@@ -4,7 +4,8 @@
 use std::sync::{Arc, OnceLock};
 
 use resvg::usvg::fontdb;
-use ttf_parser::Face;
+use skrifa::instance::{LocationRef, Size};
+use skrifa::{FontRef, MetadataProvider};
 
 /// Latin, Greek and the signs of mathematics.
 static DATA: &[u8] = include_bytes!("../../fonts/DejaVuSans.ttf");
@@ -14,12 +15,16 @@ pub(super) const FAMILY: &str = "DejaVu Sans, Verdana, Helvetica, Arial, sans-se
 
 /// Width of a text \[points\] at a size \[points\]; 0.6 of the size for a letter that the typeface lacks.
 pub(super) fn width(text: &str, size: f64) -> f64 {
-    static FACE: OnceLock<Option<Face<'static>>> = OnceLock::new();
-    let face = FACE.get_or_init(|| Face::parse(DATA, 0).ok());
+    static FACE: OnceLock<Option<FontRef<'static>>> = OnceLock::new();
+    let face = FACE.get_or_init(|| FontRef::new(DATA).ok());
+    // In units of the design, of which the size has so many.
+    let metrics = face.as_ref().map(|face| {
+        let (size, location) = (Size::unscaled(), LocationRef::default());
+        (face.charmap(), face.glyph_metrics(size, location), face.metrics(size, location).units_per_em)
+    });
     let advance = |c: char| {
-        let face = face.as_ref()?;
-        let units = face.glyph_hor_advance(face.glyph_index(c)?)?;
-        Some(f64::from(units) / f64::from(face.units_per_em()))
+        let (letters, glyphs, units_per_em) = metrics.as_ref()?;
+        Some(f64::from(glyphs.advance_width(letters.map(c)?)?) / f64::from(*units_per_em))
     };
     size * text.chars().map(|c| advance(c).unwrap_or(0.6)).sum::<f64>()
 }

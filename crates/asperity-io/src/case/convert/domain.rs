@@ -9,6 +9,7 @@ use crate::case::measured::Measured;
 use crate::case::memory;
 use crate::case::raw::{self, At};
 use crate::case::words;
+use crate::resources::available_memory;
 
 /// The grid. What the domain does not say is that of the measured surface, where there is exactly one; `files` are the
 /// measured surfaces, `None` for one whose keys are wrong.
@@ -29,7 +30,7 @@ pub fn grid(
     // Of a line, the length along y that its grid has.
     let size = raw.size.as_ref().map(|at| at.value.map(1.0, |length| length.get()));
     // A count that no machine can hold is refused by `memory`, with its numbers.
-    if cells.is_some_and(|cells| memory::estimate(cells, 0) > memory::physical()) {
+    if cells.is_some_and(|cells| memory::estimate(cells, 0) > present()) {
         return None;
     }
     if let (Some(cells), Some(size)) = (cells, size) {
@@ -94,6 +95,11 @@ fn given_place(domain: &At<raw::Domain>) -> &Range<usize> {
     domain.value.size.as_ref().map_or_else(|| cells_place(domain), |at| &at.span)
 }
 
+/// Memory that the run may take.
+fn present() -> u128 {
+    available_memory().into()
+}
+
 /// Where the number of cells stands, or the domain that leaves it out.
 fn cells_place(domain: &At<raw::Domain>) -> &Range<usize> {
     domain.value.cells.as_ref().map_or(&domain.span, |at| &at.span)
@@ -110,7 +116,7 @@ pub fn memory(
 ) {
     let written = domain.value.cells.as_ref().map(|at| at.value.map(1, |count| count.count()));
     let Some(cells) = written.or(grid.map(Grid::cells)) else { return };
-    let (needed, present) = (memory::estimate(cells, fields.saturating_add(extra)), memory::physical());
+    let (needed, present) = (memory::estimate(cells, fields.saturating_add(extra)), present());
     if needed <= present {
         return;
     }
@@ -122,7 +128,7 @@ pub fn memory(
     };
     let count = if said(domain) == Some(true) { nx.to_string() } else { format!("{nx} x {ny}") };
     let message = format!(
-        "{count} cells{detail} need about {}, but this machine has {}",
+        "{count} cells{detail} need about {}, but this machine has {} available",
         memory::words(needed),
         memory::words(present)
     );

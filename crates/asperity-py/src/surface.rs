@@ -21,7 +21,6 @@ use crate::wait::detached;
 
 type Heights<'py> = Bound<'py, PyArray2<f64>>;
 
-
 /// Heights of a self-affine surface.
 #[pyfunction]
 #[pyo3(signature = (cells, size, hurst, rms_gradient, rms_height, longest, shortest, roll_off, seed))]

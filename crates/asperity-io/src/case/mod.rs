@@ -66,6 +66,7 @@ use asperity::kernel::{HalfSpace, Kernel};
 use asperity::layer::Layered;
 use asperity::material::{Body, Creep, ThermalCreep};
 use asperity::quantities::{Quantities, Quantity};
+use asperity::sliding::{MovingGap, SteadyMotion};
 use asperity::surface::{Part, undeformed_gap};
 use asperity::{Boundary, Error, Grid, Plasticity, Programme, Scheme, Simulation, SolverOptions, TimeGrid};
 use ndarray::Array2;
@@ -74,7 +75,7 @@ pub use describe::{Description, MaterialReport, Preparation};
 pub use error::{CaseError, CaseErrors};
 pub use examine::{Examination, Inputs, ModulusInput, SurfaceInput};
 pub use measured::Measured;
-pub use plan::{Output, Rows, Surface};
+pub use plan::{Motion, Output, Rows, Surface, Travel};
 pub use raw::{LeakDirection, Leakage as LeakageKeys};
 pub use schema::schema;
 pub use specimen::{Specimen, specimens};
@@ -142,6 +143,8 @@ pub struct Case {
     pub stress: Option<StressPlan>,
     /// The flow through the gap, where it is wanted.
     pub leakage: Option<Leak>,
+    /// How the contact moves, where it does.
+    pub motion: Option<Motion>,
     /// Rows of the result, where known beforehand.
     rows: Option<usize>,
     /// About as many.
@@ -239,7 +242,11 @@ impl Case {
     /// # Errors
     /// As [`simulation`](Self::simulation).
     pub fn simulation_of(&self, parts: &[Part]) -> Result<Simulation, CaseErrors> {
-        let simulation = self.with_gap(self.gap_of(parts)?);
+        let gap = match &self.motion {
+            Some(motion) => self.moving_gap(parts, motion)?,
+            None => self.gap_of(parts)?,
+        };
+        let simulation = Simulation { motion: self.motion_of(parts)?, ..self.with_gap(gap) };
         let simulation = Simulation { quantities: self.quantities(&simulation), ..simulation };
         match simulation.validate() {
             Ok(()) => Ok(simulation),
@@ -247,6 +254,56 @@ impl Case {
             Err(error @ Error::Infeasible { .. }) => Err(self.fault(&self.history, error.to_string())),
             Err(error) => Err(CaseErrors::without_place(&self.name, error.to_string(), "", None)),
         }
+    }
+
+    /// The gap of parts that may move.
+    fn moving(&self, parts: &[Part], motion: &Motion) -> Result<MovingGap, CaseErrors> {
+        let parts: Vec<(Part, bool)> = parts.iter().cloned().zip(motion.moves.iter().copied()).collect();
+        MovingGap::new(&self.grid, self.boundary, &parts)
+            .map_err(|error| self.fault(&motion.span, error.to_string()))
+    }
+
+    /// The gap at the start of a motion.
+    fn moving_gap(&self, parts: &[Part], motion: &Motion) -> Result<Array2<f64>, CaseErrors> {
+        let gap = self.moving(parts, motion)?.at(0.0, motion.direction);
+        gap.map(|(gap, _)| gap).map_err(|error| self.fault(&motion.span, error.to_string()))
+    }
+
+    /// The motion in time, where there is one.
+    fn motion_of(&self, parts: &[Part]) -> Result<Option<asperity::march::Motion>, CaseErrors> {
+        let Some((motion, Travel::Path(path))) = self.motion.as_ref().map(|motion| (motion, &motion.travel))
+        else {
+            return Ok(None);
+        };
+        Ok(Some(asperity::march::Motion {
+            path: path.clone(),
+            direction: motion.direction,
+            gap: self.moving(parts, motion)?,
+            cells_per_step: motion.cells_per_step,
+            shear_stress: motion.shear_stress,
+        }))
+    }
+
+    /// The steady states of motion that are asked for, with the slopes of their gap.
+    ///
+    /// # Errors
+    /// [`CaseErrors`] where the gap cannot move.
+    pub fn steady_of(&self, parts: &[Part]) -> Result<Option<SteadyMotion>, CaseErrors> {
+        let Some((motion, Travel::Steady(velocities))) =
+            self.motion.as_ref().map(|motion| (motion, &motion.travel))
+        else {
+            return Ok(None);
+        };
+        let (_, slopes) = self
+            .moving(parts, motion)?
+            .at(0.0, motion.direction)
+            .map_err(|error| self.fault(&motion.span, error.to_string()))?;
+        Ok(Some(SteadyMotion {
+            direction: motion.direction,
+            velocities: velocities.clone(),
+            slopes,
+            shear_stress: motion.shear_stress,
+        }))
     }
 
     /// How the bodies yield in space.
@@ -286,6 +343,22 @@ impl Case {
                 known && simulation.columns_of(&alone).is_ok()
             };
             wanted.list = Quantity::ALL.into_iter().filter(possible).collect();
+        }
+        if let Some(motion) = &self.motion {
+            let steady = matches!(motion.travel, Travel::Steady(_));
+            // What steady states have no row of, or what a free line contact does not determine.
+            let known = |quantity: &Quantity| match quantity {
+                Quantity::Velocity | Quantity::SlidingDistance => !steady,
+                Quantity::DissipatedPower => {
+                    steady
+                        || simulation.scheme != Scheme::Direct
+                            && !(self.grid.is_line() && self.boundary == Boundary::Free)
+                }
+                _ => true,
+            };
+            wanted.list.retain(|quantity| !quantity.is_of_motion());
+            wanted.list.extend(Quantity::OF_MOTION.into_iter().filter(known));
+            wanted.list.extend(motion.shear_stress.map(|_| Quantity::FrictionCoefficientTotal));
         }
         wanted
     }

@@ -1,9 +1,11 @@
 //! What is stored of a run, and the parts of the gap as a case names them.
 
 use std::collections::BTreeSet;
+use std::ops::Range;
 use std::path::PathBuf;
 
 use asperity::quantities::Quantities;
+use asperity::sliding::{Direction, Path};
 use asperity::surface::Part;
 
 use super::measured::Measured;
@@ -16,6 +18,34 @@ pub enum Surface {
     Part(Part),
     /// A topography file, read when the gap is built.
     File(Measured),
+}
+
+/// How the contact moves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    /// How far, or how fast.
+    pub travel: Travel,
+    /// Which way.
+    pub direction: Direction,
+    /// Whether each of the surfaces moves.
+    pub moves: Vec<bool>,
+    /// Whether it rolls over both bodies.
+    pub rolls: bool,
+    /// Cells that it moves in a step, at most.
+    pub cells_per_step: f64,
+    /// A shear stress on the area in contact \[Pa\].
+    pub shear_stress: Option<f64>,
+    /// Where in the case it stands.
+    pub span: Range<usize>,
+}
+
+/// A motion in time, or steady states.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Travel {
+    /// In time.
+    Path(Path),
+    /// At these velocities \[m/s\], rising.
+    Steady(Vec<f64>),
 }
 
 /// What is stored, and where.

@@ -11,7 +11,7 @@ use toml::de::{DeString, DeTable, DeValue, ValueDeserializer};
 use super::error::CaseError;
 use super::quantity::range::{Poisson, Positive};
 use super::quantity::{Number, Pressure};
-use super::raw::{At, Document, Domain, Material, Stress, Surface};
+use super::raw::{At, Document, Domain, Material, Motion, Stress, Surface, Time};
 use super::text::{MOST_ERRORS, Text};
 use super::words;
 
@@ -24,6 +24,7 @@ pub const SECTIONS: &[&str] = &[
     "load",
     "time",
     "temperature",
+    "motion",
     "leakage",
     "solver",
     "output",
@@ -44,7 +45,12 @@ pub fn document(text: &Text<'_>) -> Result<Document, Vec<CaseError>> {
     let surface = reader.list("surface", &[Tag { inside: &[], key: "kind" }]);
     let body = reader.list("body", MATERIAL);
     let load = reader.required("load", HISTORY);
-    let time = reader.required("time", &[]);
+    let motion = reader.motion();
+    // Steady states of motion have no times.
+    let time = match motion.as_ref().filter(|motion| motion.value.steady.is_some()) {
+        Some(motion) if !text.root.contains_key("time") => timeless(motion.span.clone()),
+        _ => reader.required("time", &[]),
+    };
     let temperature = reader.optional("temperature", HISTORY);
     let leakage = reader.optional("leakage", &[]);
     let solver = reader.optional("solver", &[]).unwrap_or_default();
@@ -60,6 +66,7 @@ pub fn document(text: &Text<'_>) -> Result<Document, Vec<CaseError>> {
             load,
             time,
             temperature,
+            motion,
             leakage,
             solver,
             output,
@@ -144,7 +151,25 @@ struct Reader<'r, 't> {
     misspelt: Vec<&'static str>,
 }
 
+/// What stands for `[time]` where a case has none.
+fn timeless(span: std::ops::Range<usize>) -> Option<At<Time>> {
+    toml::from_str("end = \"1 s\"\nsteps = 1").ok().map(|value| At { span, value })
+}
+
 impl<'t> Reader<'_, 't> {
+    /// `[motion]`: its velocity is a text, or a history with a tag.
+    fn motion(&mut self) -> Option<At<Motion>> {
+        const PATH: Tag = Tag { inside: &["path"], key: "kind" };
+        const VELOCITY: Tag = Tag { inside: &["velocity"], key: "kind" };
+        let velocity = match self.text.root.get("motion").map(Spanned::get_ref) {
+            Some(DeValue::Table(motion)) => motion.get("velocity").map(Spanned::get_ref),
+            _ => None,
+        };
+        let tags: &[Tag] =
+            if matches!(velocity, Some(DeValue::Table(_))) { &[PATH, VELOCITY] } else { &[PATH] };
+        self.optional("motion", tags)
+    }
+
     fn required<T: DeserializeOwned>(&mut self, key: &'static str, tags: &[Tag]) -> Option<T> {
         match self.text.root.get(key) {
             Some(value) => self.read(value, tags),

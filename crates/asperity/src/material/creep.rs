@@ -95,6 +95,11 @@ impl Creep {
         self.instantaneous + self.terms.iter().map(|c| c.compliance).sum::<f64>()
     }
 
+    /// Whether it changes in time.
+    pub fn remembers(&self) -> bool {
+        !self.terms.is_empty() || self.fluidity > 0.0
+    }
+
     /// Storage and loss compliance (J', J'') \[1/Pa\] at the angular frequency `omega` > 0 \[rad/s\]:
     /// the complex compliance is J' - i J'' = C0 + sum_j C_j / (1 + i omega lambda_j) + 1/(i omega eta).
     pub fn complex(&self, omega: f64) -> (f64, f64) {

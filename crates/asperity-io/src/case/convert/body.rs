@@ -19,6 +19,8 @@ pub struct Pair {
     pub bodies: Vec<Body>,
     /// How the bodies yield in space, where they have layers.
     pub layers: Option<Arc<Layered>>,
+    /// Contact creep compliance [1/Pa] of each body without layers, and its clock where its temperature changes.
+    pub creeps: Vec<(Creep, Option<ReducedTime>)>,
     /// Contact creep compliance of the bodies of constant temperature [1/Pa].
     pub creep: Creep,
     /// The bodies whose temperature changes.
@@ -34,6 +36,19 @@ pub struct Pair {
 }
 
 impl Pair {
+    /// Adds the bodies up.
+    pub fn sum(&mut self) {
+        (self.creep, self.thermal) = (Creep::default(), Vec::new());
+        for (creep, clock) in &self.creeps {
+            match clock {
+                Some(clock) => {
+                    self.thermal.push(ThermalCreep { creep: creep.clone(), clock: clock.clone() });
+                }
+                None => self.creep = self.creep.sum(creep),
+            }
+        }
+    }
+
     /// C(0+) [1/Pa].
     pub fn instantaneous(&self) -> f64 {
         self.creep.instantaneous + self.thermal.iter().map(|body| body.creep.instantaneous).sum::<f64>()
@@ -84,6 +99,7 @@ pub fn pair(
     let mut pair = Pair {
         bodies: Vec::new(),
         layers: None,
+        creeps: Vec::new(),
         creep: Creep::default(),
         thermal: Vec::new(),
         hardness: f64::INFINITY,
@@ -101,14 +117,15 @@ pub fn pair(
         }
     }
     for made in made {
-        match made.clock {
-            _ if layered => {}
-            Some(clock) => pair.thermal.push(ThermalCreep { creep: made.creep, clock }),
-            None => pair.creep = pair.creep.sum(&made.creep),
+        if !layered {
+            pair.creeps.push((made.creep, made.clock));
         }
         pair.bodies.push(made.body);
         pair.findings.extend(made.findings);
         pair.reports.push(made.report);
+    }
+    if !layered {
+        pair.sum();
     }
     pair.hardness = pair_hardness(&pair.bodies);
     Some(pair)

@@ -82,7 +82,7 @@ pub fn prescription(
         checks.fault(&at.span, "there is no earlier value to hold".to_owned(), "another kind", Some(help));
         return None;
     }
-    let (course, place) = course(checks, Kind { control, line }, at, &mut files)?;
+    let (course, place) = course(checks, Kind::of(control, line), at, &mut files)?;
     let programme = Programme::new(vec![Stage::new(control, course)]);
     let programme = checks.core(&at.span, programme.validate().map(|()| programme))?;
     Some(Prescription { programme, places: vec![place], files, span: at.span.clone() })
@@ -104,14 +104,14 @@ fn stage(
         return None;
     }
     let control = raw.control;
-    let (course, place) = course(checks, Kind { control, line }, &raw.history, files)?;
+    let (course, place) = course(checks, Kind::of(control, line), &raw.history, files)?;
     let until = match raw.until.as_ref().map(|at| &at.value) {
         None => None,
         Some(raw::Until::ContactLost) => Some(Event::ContactLost),
         Some(raw::Until::Approach(value)) => Some(Event::Approach(value.get())),
         Some(raw::Until::Pressure(value)) => Some(Event::Pressure(value.get())),
         Some(raw::Until::Load(at)) => {
-            let load = Kind { control: Control::Load, line };
+            let load = Kind::of(Control::Load, line);
             Some(Event::Load(checks.quantity(at, load.resolve(&at.value))?))
         }
     };
@@ -139,7 +139,7 @@ fn course(
         }
         _ => {
             let mut file = None;
-            let (history, largest) = history(checks, kind, at, &mut file)?;
+            let (history, largest) = history(checks, kind, &at.value, &mut file)?;
             files.extend(file);
             let history = checks.core(&at.span, history.validate().map(|()| history))?;
             (Course::Given(history), largest)
@@ -163,21 +163,21 @@ pub fn possible(
             bearable(checks, stage, &place.largest, end, grid, pair);
         }
         let line = grid.is_some_and(Grid::is_line);
-        jumps(checks, stage, Kind { control: stage.control, line }, n == 0, &place.history, end, pair);
+        jumps(checks, stage, Kind::of(stage.control, line), n == 0, &place.history, end, pair);
     }
 }
 
 /// The history, and the place of its largest value.
-fn history(
+pub fn history(
     checks: &mut Checks<'_, '_>,
     kind: Kind,
-    at: &At<raw::History>,
+    history: &raw::History,
     read: &mut Option<(String, String)>,
 ) -> Option<(History, Range<usize>)> {
     let one = |checks: &mut Checks<'_, '_>, value: &At<Prescribed>| {
         checks.quantity(value, kind.resolve(&value.value))
     };
-    Some(match &at.value {
+    Some(match history {
         raw::History::Step(step) => {
             (History::Step { value: one(checks, &step.value)? }, step.value.span.clone())
         }
@@ -216,33 +216,53 @@ fn history(
     })
 }
 
-/// What a prescribed value is: load, pressure or approach, and whether loads are per length.
-#[derive(Clone, Copy)]
-struct Kind {
-    control: Control,
-    line: bool,
+/// What a prescribed value is.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Kind {
+    Load,
+    /// Of a line contact.
+    LoadPerLength,
+    Pressure,
+    Approach,
+    Velocity,
+    Position,
 }
 
 impl Kind {
+    fn of(control: Control, line: bool) -> Self {
+        match control {
+            Control::Load if line => Kind::LoadPerLength,
+            Control::Load => Kind::Load,
+            Control::Pressure => Kind::Pressure,
+            Control::Approach => Kind::Approach,
+        }
+    }
+
+    /// Whether it may not be negative.
+    fn presses(self) -> bool {
+        matches!(self, Kind::Load | Kind::LoadPerLength | Kind::Pressure)
+    }
+
     /// The value in SI, in the dimension that the control has. A load presses; an approach may be negative.
     fn resolve(self, value: &Prescribed) -> Result<f64, QuantityError> {
-        let si = match self.control {
-            Control::Load if self.line => {
-                value.resolve::<dimension::ForcePerLength, NonNegative>().map(|v| v.get())
-            }
-            Control::Load => value.resolve::<dimension::Force, NonNegative>().map(|v| v.get()),
-            Control::Pressure => value.resolve::<dimension::Pressure, NonNegative>().map(|v| v.get()),
-            Control::Approach => value.resolve::<dimension::Length, Finite>().map(|v| v.get()),
+        let si = match self {
+            Kind::LoadPerLength => value.resolve::<dimension::ForcePerLength, NonNegative>().map(|v| v.get()),
+            Kind::Load => value.resolve::<dimension::Force, NonNegative>().map(|v| v.get()),
+            Kind::Pressure => value.resolve::<dimension::Pressure, NonNegative>().map(|v| v.get()),
+            Kind::Approach | Kind::Position => value.resolve::<dimension::Length, Finite>().map(|v| v.get()),
+            Kind::Velocity => value.resolve::<dimension::Velocity, Finite>().map(|v| v.get()),
         };
         si.map_err(|QuantityError { expected, help }| {
-            let help = match (self.control, help) {
-                (Control::Load, Some(help)) if self.line && help.contains("unit of a force;") => {
+            let help = match (self, help) {
+                (Kind::LoadPerLength, Some(help)) if help.contains("unit of a force;") => {
                     format!("{help}; the domain is a line of cells, so the load is per length along y")
                 }
-                (Control::Load, Some(help)) if !self.line && help.contains("unit of a force per length") => {
-                    format!("{help}; loads per length are for a line contact, with cells = [N] and size = [\"L\"]")
+                (Kind::Load, Some(help)) if help.contains("unit of a force per length") => {
+                    format!(
+                        "{help}; loads per length are for a line contact, with cells = [N] and size = [\"L\"]"
+                    )
                 }
-                (Control::Load | Control::Pressure, None) => {
+                (kind, None) if kind.presses() => {
                     "there is no adhesion; to pull the bodies apart prescribe the approach".to_owned()
                 }
                 (_, help) => return QuantityError { expected, help },
@@ -253,11 +273,12 @@ impl Kind {
 
     /// Its SI unit.
     fn unit(self) -> &'static str {
-        match self.control {
-            Control::Load if self.line => "N/m",
-            Control::Load => "N",
-            Control::Pressure => "Pa",
-            Control::Approach => "m",
+        match self {
+            Kind::LoadPerLength => "N/m",
+            Kind::Load => "N",
+            Kind::Pressure => "Pa",
+            Kind::Approach | Kind::Position => "m",
+            Kind::Velocity => "m/s",
         }
     }
 }
@@ -266,7 +287,7 @@ fn sinusoid(checks: &mut Checks<'_, '_>, kind: Kind, sine: &raw::Sine) -> Option
     let mean = checks.quantity(&sine.mean, kind.resolve(&sine.mean.value));
     let amplitude = checks.quantity(&sine.amplitude, kind.resolve(&sine.amplitude.value));
     let (mean, amplitude) = (mean?, amplitude?);
-    if kind.control != Control::Approach && amplitude > mean {
+    if kind.presses() && amplitude > mean {
         let help = "the load would become negative; raise the mean or lower the amplitude";
         checks.wrong(
             &sine.amplitude.span,
@@ -339,7 +360,7 @@ fn bearable(
     if largest <= limit * (1.0 + 1e-12) {
         return;
     }
-    let unit = Kind { control: stage.control, line: grid.is_line() }.unit();
+    let unit = Kind::of(stage.control, grid.is_line()).unit();
     let [reached, limit, hardness] = [largest, limit, pair.hardness].map(number);
     let area = match stage.control {
         Control::Load if grid.is_line() => format!(" times the length {} m", number(grid.area())),

@@ -11,6 +11,7 @@ mod layer;
 pub(super) mod leakage;
 mod load;
 mod material;
+mod motion;
 mod output;
 pub(super) mod prepare;
 pub(super) mod stress;
@@ -27,7 +28,7 @@ use asperity::time::Plan;
 use asperity::{Grid, Scheme, TimeGrid};
 
 use super::error::CaseError;
-use super::plan::Rows;
+use super::plan::{Output, Rows, Travel};
 use super::quantity::QuantityError;
 use super::raw::{self, At, Document};
 use super::text::{MOST_ERRORS, Text};
@@ -64,14 +65,31 @@ pub fn case(
     });
     let programme = prescription.as_ref().map(|prescription| &prescription.programme);
     let course = programme.and_then(|programme| programme.stages.first()).map(|stage| &stage.course);
-    let times = time::times(&mut checks, &document.time, all_own, |end| first_step(end, course));
+    let motion = motion::motion(&mut checks, document.motion.as_ref(), &document.surface);
+    let steady = motion.iter().flatten().any(|motion| matches!(motion.travel, Travel::Steady(_)));
+    if steady && text.root.contains_key("time") {
+        let message = "steady states of motion have no times, but the case has a [time]".to_owned();
+        checks.fault(&document.time.span, message, "[motion.steady] or [time]", Some("leave [time] out"));
+    }
+    let times = match (motion.iter().flatten().next(), grid.as_ref()) {
+        (Some(motion), Some(grid)) if steady => motion::times(motion, grid),
+        _ => time::times(&mut checks, &document.time, all_own, |end| first_step(end, course)),
+    };
     let output = output::output(&mut checks, &document.output, times.as_ref(), programme, output);
+    let swept = match motion.iter().flatten().next().map(|motion| &motion.travel) {
+        Some(Travel::Steady(velocities)) => Some(velocities.len()),
+        _ => None,
+    };
+    let output = output.map(|output| match (swept, &document.output.every, &document.output.times) {
+        (Some(count), None, None) => Output { rows: Rows::Every((count / 10).max(1)), ..output },
+        _ => output,
+    });
     let grids =
         programme.iter().flat_map(|programme| &programme.stages).filter_map(|stage| stage.times.as_ref());
     let adaptive = times.iter().chain(grids).any(TimeGrid::is_adaptive);
     let include = match output.as_ref().map(|output| &output.rows) {
         // States between adaptive steps are interpolated; other steps end there.
-        Some(Rows::At(times)) if !adaptive => times.clone(),
+        Some(Rows::At(times)) if !adaptive || motion.iter().flatten().next().is_some() => times.clone(),
         _ => Vec::new(),
     };
     let mut files: Vec<_> = samples.iter().flatten().filter_map(|sample| sample.file.clone()).collect();
@@ -85,10 +103,15 @@ pub fn case(
         _ => Plan { instants: Vec::new(), exact: true },
     };
     let course = body::Course { end: times.as_ref().map(TimeGrid::end), plan: &plan, temperatures: points };
-    let pair = match temperatures {
+    let mut pair = match temperatures {
         Some(_) => body::pair(&mut checks, &document.body, &parts, &samples, &course),
         None => None, // a fault
     };
+    if let (Some(raw), Some(motion), Some(pair)) =
+        (&document.motion, motion.iter().flatten().next(), &mut pair)
+    {
+        motion::of_pair(&mut checks, raw, motion, &document.body, pair);
+    }
     if let (Some(times), Some(prescription), Some(pair)) = (&times, &prescription, &pair) {
         load::possible(&mut checks, prescription, times, grid.as_ref(), pair);
     }
@@ -181,7 +204,10 @@ pub fn case(
             output,
             stress,
             leakage,
-            usual_rows: pair.plan.instants.len() + if adaptive { time::USUAL_STEPS } else { 0 },
+            motion: motion.flatten(),
+            usual_rows: swept.unwrap_or_default()
+                + pair.plan.instants.len()
+                + if adaptive { time::USUAL_STEPS } else { 0 },
             rows: pair.plan.exact.then_some(pair.plan.instants.len()),
             history: prescription.span,
         }),

@@ -72,6 +72,7 @@ pub mod dimension {
     dimension!(Time, "a time", "s", "us, ms, s, min, h, day", "8.93 s", [0, 0, 1, 0, 0]);
     dimension!(Force, "a force", "N", "nN, uN, mN, N, kN", "0.5 N", [1, 1, -2, 0, 0]);
     dimension!(ForcePerLength, "a force per length", "N/m", "N/m, N/mm, kN/m", "2 N/mm", [0, 1, -2, 0, 0]);
+    dimension!(Velocity, "a velocity", "m/s", "um/s, mm/s, m/s, km/h", "10 mm/s", [1, 0, -1, 0, 0]);
     dimension!(Compliance, "a compliance", "1/Pa", "1/Pa, 1/MPa, 1/GPa", "1e-3 1/MPa", [1, -1, 2, 0, 0]);
     dimension!(Frequency, "a frequency", "Hz", "Hz, kHz, 1/s, 1/min", "2 kHz", [0, 0, -1, 0, 0]);
     dimension!(Fluidity, "a fluidity", "1/(Pa s)", "1/(Pa s), 1/(MPa s)", "1e-12 1/(Pa s)", [1, -1, 1, 0, 0]);
@@ -100,7 +101,7 @@ pub mod dimension {
         macro_rules! find {
             ($($type:ident)*) => { $(if powers == $type::POWERS { return Some($type::NAME); })* };
         }
-        find!(Length Pressure Time Force ForcePerLength Compliance Frequency Fluidity Viscosity MolarMass TemperatureDifference MolarEnergy
+        find!(Length Pressure Time Force ForcePerLength Velocity Compliance Frequency Fluidity Viscosity MolarMass TemperatureDifference MolarEnergy
             Number);
         None
     }
@@ -123,6 +124,8 @@ pub type Time<R = Finite> = Quantity<dimension::Time, R>;
 pub type Force<R = Finite> = Quantity<dimension::Force, R>;
 /// A force per length \[N/m\].
 pub type ForcePerLength<R = Finite> = Quantity<dimension::ForcePerLength, R>;
+/// A velocity \[m/s\].
+pub type Velocity<R = Finite> = Quantity<dimension::Velocity, R>;
 /// A compliance \[1/Pa\].
 pub type Compliance<R = Finite> = Quantity<dimension::Compliance, R>;
 /// A frequency \[Hz\].

@@ -8,6 +8,7 @@ mod body;
 mod leakage;
 mod load;
 mod material;
+mod motion;
 pub mod prepare;
 mod run;
 mod stress;
@@ -31,6 +32,7 @@ pub use load::{From, History, Load, Sine, Spacing, Stage, Table, Time, Until};
 pub use material::{
     Column, CreepTable, CreepTerm, Dma, Fit, FractionalZener, Material, Prony, RelaxationTable,
 };
+pub use motion::{Heading, Motion, MotionKind, RangeSpacing, Speed, Velocities};
 pub use run::{Output, Quantities, Solver};
 pub use stress::{Depths, Progression, Stress, Times as StressTimes, Which};
 pub use surface::{Distribution, File, Preset, SelfAffine, Surface};
@@ -56,11 +58,14 @@ pub struct Document {
     pub body: Vec<At<Body>>,
     /// What presses the bodies together.
     pub load: At<Load>,
-    /// The times of the solution.
+    /// The times of the solution; not for steady states of motion.
     pub time: At<Time>,
     /// The temperature of bodies whose material has a `shift`; they are at its reference if not given.
     #[schemars(example = serde_json::json!({ "history": { "kind": "constant", "value": "60 °C" } }))]
     pub temperature: Option<At<Temperature>>,
+    /// Motion of the contact over the bodies; nothing moves if not given.
+    #[schemars(example = serde_json::json!({ "velocity": "10 mm/s" }))]
+    pub motion: Option<At<Motion>>,
     /// The flow of a fluid through the gap.
     #[schemars(example = serde_json::json!({ "pressure_drop": "2 bar", "viscosity": "1 mPa s" }))]
     pub leakage: Option<At<Leakage>>,

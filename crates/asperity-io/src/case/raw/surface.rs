@@ -35,12 +35,31 @@ pub enum Surface {
     File(Box<File>),
 }
 
+impl Surface {
+    /// Whether the part moves with the contact, where that is said.
+    pub fn moves(&self) -> Option<bool> {
+        match self {
+            Surface::Sphere(shape) => shape.moves,
+            Surface::Ellipsoid(shape) => shape.moves,
+            Surface::Cylinder(shape) => shape.moves,
+            Surface::Wedge(shape) => shape.moves,
+            Surface::Cone(shape) => shape.moves,
+            Surface::FlatPunch(shape) => shape.value.moves,
+            Surface::Wave(shape) => shape.moves,
+            Surface::SelfAffine(surface) => surface.value.moves,
+            Surface::File(file) => file.moves,
+        }
+    }
+}
+
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Sphere {
     /// Radius of curvature.
     #[schemars(example = "0.5 mm")]
     pub radius: Length<PositiveOrInfinite>,
+    /// Whether the part moves with the contact (`[motion]`); true if not given.
+    pub moves: Option<bool>,
     /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
     #[schemars(example = ["0 mm", "0.02 mm"])]
     pub center: Option<At<Axes<Length>>>,
@@ -55,6 +74,8 @@ pub struct Ellipsoid {
     /// Radius of curvature in the y-z plane; "inf" makes a cylinder along y.
     #[schemars(example = "2 mm")]
     pub radius_y: Length<PositiveOrInfinite>,
+    /// Whether the part moves with the contact (`[motion]`); true if not given.
+    pub moves: Option<bool>,
     /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
     #[schemars(example = ["0 mm", "0.02 mm"])]
     pub center: Option<At<Axes<Length>>>,
@@ -66,6 +87,8 @@ pub struct Cylinder {
     /// Radius of curvature; "inf" for a flat.
     #[schemars(example = "10 mm")]
     pub radius: Length<PositiveOrInfinite>,
+    /// Whether the part moves with the contact (`[motion]`); true if not given.
+    pub moves: Option<bool>,
     /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
     #[schemars(example = ["0.02 mm"])]
     pub center: Option<At<Axes<Length>>>,
@@ -77,6 +100,8 @@ pub struct Wedge {
     /// Rise per length: tan of the angle between the flank and the undeformed surface.
     #[schemars(example = 0.1)]
     pub slope: Number<Positive>,
+    /// Whether the part moves with the contact (`[motion]`); true if not given.
+    pub moves: Option<bool>,
     /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
     #[schemars(example = ["0.02 mm"])]
     pub center: Option<At<Axes<Length>>>,
@@ -88,6 +113,8 @@ pub struct Cone {
     /// Rise per length: tan of the angle between the flank and the undeformed surface.
     #[schemars(example = 0.1)]
     pub slope: Number<Positive>,
+    /// Whether the part moves with the contact (`[motion]`); true if not given.
+    pub moves: Option<bool>,
     /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
     #[schemars(example = ["0 mm", "0.02 mm"])]
     pub center: Option<At<Axes<Length>>>,
@@ -102,6 +129,8 @@ pub struct FlatPunch {
     /// Sides of a rectangular face along x and y, or the width on a line; this or `radius`.
     #[schemars(example = ["20 um", "40 um"])]
     pub size: Option<At<Axes<Length<Positive>>>>,
+    /// Whether the part moves with the contact (`[motion]`); true if not given.
+    pub moves: Option<bool>,
     /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
     #[schemars(example = ["0 mm", "0.02 mm"])]
     pub center: Option<At<Axes<Length>>>,
@@ -116,6 +145,8 @@ pub struct Wave {
     /// Wavelength along x and y; "inf" for no variation along that axis. On a line one value.
     #[schemars(example = ["50 um", "inf"])]
     pub wavelength: At<Axes<Length<PositiveOrInfinite>>>,
+    /// Whether the part moves with the contact (`[motion]`); true if not given.
+    pub moves: Option<bool>,
     /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
     #[schemars(example = ["0 mm", "0.02 mm"])]
     pub center: Option<At<Axes<Length>>>,
@@ -124,6 +155,8 @@ pub struct Wave {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SelfAffine {
+    /// Whether the part moves with the contact (`[motion]`); true if not given.
+    pub moves: Option<bool>,
     /// A published roughness by its name; its numbers are the defaults of the other keys.
     pub preset: Option<Preset>,
     /// Hurst exponent: the spectrum falls as q^(-2 (1 + hurst)), on a line as q^(-1 - 2 hurst). Needed without `preset`.
@@ -195,6 +228,8 @@ pub struct Distribution {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct File {
+    /// Whether the part moves with the contact (`[motion]`); true if not given.
+    pub moves: Option<bool>,
     /// The file, relative to the case file: SUR, MNT, SDF, X3P, GWY, AL3D, OPD, BCR, Nanoscope, MetroPro, PLU, IBW, NID,
     /// FRT, NetCDF, HDF5, NPY, NPZ, XYZ, CSV or a text matrix, detected from the content.
     #[schemars(example = "roughness.sur")]

@@ -147,7 +147,7 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
         let values = reader.series(series.name)?;
         let value = values.last().copied().unwrap_or(f64::NAN);
         let words = if series.units == "1" { format!("{value}") } else { quantity(value, series.units) };
-        line(if n == 0 { "quantities" } else { "" }, format!("{:<20}{words}", series.name));
+        line(if n == 0 { "quantities" } else { "" }, format!("{:<27}{words}", series.name));
     }
     if let Some(below) = Below::of(reader)?
         && let Some(worst) = below.worst()

@@ -63,7 +63,9 @@ impl<'a> Contents<'a> {
         let grid = &reader.header().grid;
         let [nx, ny] = grid.cells();
         let rows = reader.rows()?;
-        let mut dimensions = vec![("time", rows.len()), ("field_time", instants.len()), ("x", nx)];
+        let header = reader.header();
+        let [row, map] = ["time", "field_time"].map(|name| header.stored(name));
+        let mut dimensions = vec![(row, rows.len()), (map, instants.len()), ("x", nx)];
         // A line has no dimension y.
         let over: &[usize] = if grid.is_line() { &[X] } else { &[X, Y] };
         if !grid.is_line() {
@@ -95,7 +97,9 @@ impl<'a> Contents<'a> {
             add(series.name, series.units, series.long_name, &[TIME, place], Data::Reals(numbers));
         }
         let times = instants.iter().map(|index| reader.field_times()[*index]).collect();
-        add("field_time", "s", "time of the fields", &[FIELD_TIME], Data::Reals(times));
+        let (units, what) =
+            if header.is_sweep() { ("m/s", "velocity of the fields") } else { ("s", "time of the fields") };
+        add(map, units, what, &[FIELD_TIME], Data::Reals(times));
         let steps = instants.iter().map(|index| count(reader.field_steps()[*index])).collect();
         add("field_step", "1", "row of the fields", &[FIELD_TIME], Data::Counts(steps));
         let x = (0..nx).map(|i| grid.x(i)).collect();

@@ -4,20 +4,21 @@
 //! numbers wherever it is started.
 
 mod memory;
+mod steady;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use asperity::finding::{Finding, Judge, Known};
-use asperity::march::{March, Row, Step};
+use asperity::march::{March, Row, Step, in_contact_frame};
 use asperity::material::Creep;
 use asperity::{Error, Simulation};
 use ndarray::Array2;
 use serde_json::{Map, Value, json};
 use thiserror::Error;
 
-use crate::case::{Case, CaseErrors};
+use crate::case::{Case, CaseErrors, Travel};
 use crate::leakage::{self, LeakError};
 use crate::resources::free_disk;
 use crate::store::{Field, FieldKind, Header, Outcome, Reader, Status, StoreError, Work, Writer};
@@ -143,6 +144,9 @@ fn run_inside(
     }
     let parts = case.parts()?;
     let simulation = case.simulation_of(&parts)?;
+    if let Some(motion) = case.steady_of(&parts)? {
+        return steady::run(case, &parts, simulation, motion, options, observe);
+    }
     let known = Known { parts: &parts, bodies: &case.bodies, thickness: case.thickness };
     let judge = Judge::new(&simulation, known);
     drop(parts);
@@ -167,28 +171,28 @@ fn run_inside(
     };
     let mut march = match march {
         Ok(march) => march,
-        Err(source) => return Err(record.fail(None, source)),
+        Err(source) => return Err(record.fail(None, None, source)),
     };
     march.interrupt_with(options.interrupt.clone());
     let (total, resumed, end_time) = (march.rows_expected(), march.done(), case.times.end());
-    let mut maps = Maps::new(case, &march);
+    let mut maps = Maps::new(case, march.simulation().grid.shape());
     loop {
         let row = match march.advance().map(|step| step.is_some()) {
             Ok(false) => break,
             Ok(true) => match record.store(&mut maps, &march) {
                 Ok(Some(row)) => row,
                 Ok(None) => break,
-                Err(source) => return Err(record.stop_storing(&march, source)),
+                Err(source) => return Err(record.stop_storing(Some(march.simulation()), source)),
             },
             Err(Error::Interrupted) => {
                 // The step under way is lost: a resumed run repeats what came after the last checkpoint.
-                return record.end(Some(&march), Outcome::new(Status::Interrupted));
+                return record.end(Some(march.simulation()), Outcome::new(Status::Interrupted));
             }
-            Err(source) => return Err(record.fail(Some(&march), source)),
+            Err(source) => return Err(record.fail(Some(march.simulation()), best(&march), source)),
         };
         let due = case.output.checkpoint && !march.finished() && record.writer.checkpoint_due();
         if due && let Err(source) = record.checkpoint(&march) {
-            return Err(record.stop_storing(&march, source));
+            return Err(record.stop_storing(Some(march.simulation()), source));
         }
         let finished = march.finished();
         observe(Progress {
@@ -210,13 +214,17 @@ fn run_inside(
         match stress::evaluate(&mut record.writer, plan, &options.interrupt, tell) {
             Ok(below) => record.stress = Some(below),
             Err(StressError::Solve(Error::Interrupted)) => {
-                return record.end(Some(&march), Outcome::new(Status::Interrupted));
+                return record.end(Some(march.simulation()), Outcome::new(Status::Interrupted));
             }
-            Err(StressError::Solve(source)) => return Err(record.fail(Some(&march), source)),
-            Err(StressError::Store(source)) => return Err(record.stop_storing(&march, source)),
+            Err(StressError::Solve(source)) => {
+                return Err(record.fail(Some(march.simulation()), best(&march), source));
+            }
+            Err(StressError::Store(source)) => {
+                return Err(record.stop_storing(Some(march.simulation()), source));
+            }
         }
     }
-    let mut summary = record.end(Some(&march), Outcome::new(Status::Complete))?;
+    let mut summary = record.end(Some(march.simulation()), Outcome::new(Status::Complete))?;
     drop(march);
     if let Some(leak) = &case.leakage {
         match leakage::of_result(&path, leak, &options.interrupt, |_, _| {}) {
@@ -241,6 +249,11 @@ fn check_disk(case: &Case, path: &Path) -> Result<(), StoreError> {
         tracing::warn!("{error}");
     }
     Ok(())
+}
+
+/// The numbers of the state that a failed step reached.
+fn best(march: &March) -> Option<Box<Row>> {
+    march.last().map(|step| Box::new(step.row()))
 }
 
 /// Rows and findings of the sessions before a resumed one.
@@ -289,9 +302,9 @@ impl Record<'_> {
     }
 
     /// What was found so far: of the materials, and of the run.
-    fn findings(&self, march: Option<&March>) -> Vec<Finding> {
-        let of_run = match march {
-            Some(march) => self.judge.findings(march.simulation()),
+    fn findings(&self, simulation: Option<&Simulation>) -> Vec<Finding> {
+        let of_run = match simulation {
+            Some(simulation) => self.judge.findings(simulation),
             None => self.judge.known().to_vec(),
         };
         let of_stress = self.stress.iter().flat_map(|below| below.findings(&self.case.grid));
@@ -300,24 +313,23 @@ impl Record<'_> {
 
     /// Stores what was found, and the state from which the run goes on.
     fn checkpoint(&mut self, march: &March) -> Result<(), StoreError> {
-        self.writer.note(self.findings(Some(march)))?;
+        self.writer.note(self.findings(Some(march.simulation())))?;
         self.writer.checkpoint(&march.checkpoint())
     }
 
     /// Ends a run whose step was not solved.
-    fn fail(self, march: Option<&March>, source: Error) -> RunError {
-        let best = march.and_then(|march| march.last()).map(|step| Box::new(step.row()));
+    fn fail(self, simulation: Option<&Simulation>, best: Option<Box<Row>>, source: Error) -> RunError {
         let outcome = Outcome { message: Some(source.to_string()), ..Outcome::new(Status::Failed) };
-        match self.end(march, outcome) {
+        match self.end(simulation, outcome) {
             Ok(summary) => RunError::Solve { source, summary: Box::new(summary), best },
             Err(error) => error,
         }
     }
 
     /// Ends a run whose step could not be stored; that this cannot be stored either is no news.
-    fn stop_storing(self, march: &March, source: StoreError) -> RunError {
+    fn stop_storing(self, simulation: Option<&Simulation>, source: StoreError) -> RunError {
         let outcome = Outcome { message: Some(source.to_string()), ..Outcome::new(Status::Failed) };
-        let summary = match self.end(Some(march), outcome) {
+        let summary = match self.end(simulation, outcome) {
             Ok(summary) => Box::new(summary),
             Err(RunError::Storage { summary, .. }) => summary,
             Err(error) => return error,
@@ -326,8 +338,8 @@ impl Record<'_> {
     }
 
     /// Ends the result.
-    fn end(mut self, march: Option<&March>, outcome: Outcome) -> Result<Summary, RunError> {
-        let findings = self.findings(march);
+    fn end(mut self, simulation: Option<&Simulation>, outcome: Outcome) -> Result<Summary, RunError> {
+        let findings = self.findings(simulation);
         self.writer.set_findings(findings.clone());
         let (rows, before) = (self.writer.len(), self.writer.work().clone());
         let outcome = Outcome {
@@ -361,6 +373,7 @@ impl Record<'_> {
 /// The fields of the rows that keep them, in memory of their own.
 struct Maps<'a> {
     case: &'a Case,
+    pressure: Array2<f64>,
     gap: Array2<f64>,
     displacement: Array2<f64>,
     flattening: Array2<f64>,
@@ -368,12 +381,12 @@ struct Maps<'a> {
 }
 
 impl<'a> Maps<'a> {
-    fn new(case: &'a Case, march: &March) -> Self {
-        let shape = march.simulation().grid.shape();
+    fn new(case: &'a Case, shape: (usize, usize)) -> Self {
         let keeps = |field| case.output.fields.contains(&field);
         let map = |kept: bool| Array2::zeros(if kept { shape } else { (0, 0) });
         Maps {
             case,
+            pressure: map(false),
             gap: map(keeps(FieldKind::Gap)),
             displacement: map(keeps(FieldKind::Displacement)),
             flattening: map(keeps(FieldKind::Flattening)),
@@ -386,6 +399,9 @@ impl<'a> Maps<'a> {
         let output = &self.case.output;
         let keeps = |field| output.fields.contains(&field);
         let mut fields = vec![];
+        if step.frame_shift() != [0; 2] {
+            return self.in_contact_frame(step);
+        }
         if keeps(FieldKind::Pressure) {
             fields.push(Field::Pressure(step.pressure()));
         }
@@ -406,6 +422,40 @@ impl<'a> Maps<'a> {
             fields.push(Field::Flattening(self.flattening.view()));
         }
         fields
+    }
+}
+
+impl<'a> Maps<'a> {
+    /// The fields of a contact that has moved, in its frame. Beyond the ends of a free track nothing is known but that there is no
+    /// pressure.
+    fn in_contact_frame<'b>(&'b mut self, step: &Step<'b>) -> Vec<Field<'b>> {
+        let (shift, boundary) = (step.frame_shift(), step.simulation().boundary);
+        let keeps = |field| self.case.output.fields.contains(&field);
+        let moved = |field: &Array2<f64>, beyond| in_contact_frame(field.view(), boundary, shift, beyond);
+        let (pressure, gap) = (keeps(FieldKind::Pressure), keeps(FieldKind::Gap));
+        let (displacement, contact) = (keeps(FieldKind::Displacement), keeps(FieldKind::Contact));
+        if pressure {
+            self.pressure = in_contact_frame(step.pressure(), boundary, shift, 0.0);
+        }
+        if gap {
+            step.gap_into(&mut self.gap);
+            self.gap = moved(&self.gap, f64::NAN);
+        }
+        if displacement {
+            step.displacement_into(&mut self.displacement);
+            self.displacement = moved(&self.displacement, f64::NAN);
+        }
+        if contact {
+            step.contact_into(&mut self.contact);
+            self.contact = in_contact_frame(self.contact.view(), boundary, shift, 0);
+        }
+        let all = [
+            (pressure, Field::Pressure(self.pressure.view())),
+            (gap, Field::Gap(self.gap.view())),
+            (displacement, Field::Displacement(self.displacement.view())),
+            (contact, Field::Contact(self.contact.view())),
+        ];
+        all.into_iter().filter_map(|(kept, field)| kept.then_some(field)).collect()
     }
 }
 
@@ -445,6 +495,15 @@ fn setup(case: &Case) -> Map<String, Value> {
         // Stacks that do not separate are refused, and nothing is fitted.
         setup.insert("layer_separable".into(), json!(true));
         setup.insert("layer_misfit".into(), json!(0.0));
+    }
+    if let Some(motion) = &case.motion {
+        let steady = matches!(motion.travel, Travel::Steady(_));
+        let [x, y] = motion.direction.unit();
+        let shear = motion.shear_stress;
+        setup.insert(
+            "motion".into(),
+            json!({ "steady": steady, "direction": [x, y], "rolls": motion.rolls, "shear_stress": shear }),
+        );
     }
     setup.insert("solver_tolerance".into(), json!(case.solver.tolerance));
     if let Some(leak) = &case.leakage {

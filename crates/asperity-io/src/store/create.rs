@@ -132,7 +132,7 @@ pub(super) fn is_part(name: &str) -> bool {
         || leak::owns(name)
         || name == checkpoint::DIRECTORY
         || stress::names().any(|known| known == name)
-        || ["field_time", "field_step", "x", "y", "initial_gap"].contains(&name)
+        || ["field_time", "field_step", "velocity", "field_velocity", "x", "y", "initial_gap"].contains(&name)
         || SCALARS.iter().any(|scalar| scalar.name == name)
         || FieldKind::from_name(name).is_some()
         || Quantity::from_name(name).is_some()
@@ -189,7 +189,9 @@ fn names_beside(path: &Path, role: &str) -> Result<impl Iterator<Item = PathBuf>
 /// The files of what does not change over time.
 pub(super) fn constants(root: &Path, header: &Header, form: u64) -> Result<Vec<PathBuf>> {
     let mut files = Vec::new();
-    let is_constant = |spec: &ArraySpec| !matches!(spec.dimensions[0], "time" | "field_time");
+    let is_constant = |spec: &ArraySpec| {
+        !(layout::is_of_rows(spec.dimensions[0]) || layout::is_of_maps(spec.dimensions[0]))
+    };
     for spec in layout::arrays(header, 0, 0).into_iter().filter(is_constant) {
         let chunks = Chunks::new(root, &spec.clone().of_form(form))?;
         match spec.name {

@@ -25,7 +25,7 @@ pub(super) const NAME: &str = "zarr.json";
 /// Where documents are written first; that of the group in an array's directory, where no reader of the
 /// hierarchy looks.
 pub(super) const PARTIAL: &str = "zarr.json.partial";
-pub(super) const GROUP_PARTIAL: &str = "time/group.json.partial";
+pub(super) const GROUP_PARTIAL: &str = "x/group.json.partial";
 /// Documents larger than this are not read (a result's has tens of kilobytes and its case file).
 const LARGEST: u64 = 64 << 20;
 
@@ -84,8 +84,12 @@ impl Pages {
         if let Some(arrays) = self.group["consolidated_metadata"]["metadata"].as_object_mut() {
             for array in arrays.values_mut() {
                 match array["dimension_names"][0].as_str() {
-                    Some("time") => array["shape"][0] = json!(progress.rows),
-                    Some("field_time") => array["shape"][0] = json!(progress.maps),
+                    Some(dimension) if layout::is_of_rows(dimension) => {
+                        array["shape"][0] = json!(progress.rows)
+                    }
+                    Some(dimension) if layout::is_of_maps(dimension) => {
+                        array["shape"][0] = json!(progress.maps)
+                    }
                     _ => {}
                 }
             }
@@ -147,7 +151,7 @@ impl Document {
         };
         let findings = attributes.get("findings").map(finding::from_list).unwrap_or_default();
         let sums = checksum::of(attributes).map_err(|what| corrupt(&file, what))?;
-        let (rows, maps) = (length("time")?, length("field_time")?);
+        let (rows, maps) = (length(header.stored("time"))?, length(header.stored("field_time"))?);
         let progress = Progress { status, work, rows, maps, findings, sums };
         let stress = match attributes.get("stress") {
             None => None,

@@ -44,6 +44,21 @@ impl Header {
     pub fn is_free_line(&self) -> bool {
         self.grid.is_line() && self.setup.get("boundary").and_then(Value::as_str) != Some("periodic")
     }
+
+    /// Whether its rows are steady states of motion: they have a velocity in place of a time.
+    pub fn is_sweep(&self) -> bool {
+        self.setup.get("motion").and_then(|motion| motion.get("steady")).and_then(Value::as_bool)
+            == Some(true)
+    }
+
+    /// The name that an array or a dimension has in this result: in a sweep the velocity takes the place of the time.
+    pub(crate) fn stored(&self, name: &'static str) -> &'static str {
+        match name {
+            "time" if self.is_sweep() => "velocity",
+            "field_time" if self.is_sweep() => "field_velocity",
+            name => name,
+        }
+    }
 }
 
 /// How far a run has come.

@@ -125,9 +125,14 @@ impl Series {
             "capped_area" if header.grid.is_line() => "length at the hardness",
             "load" if header.grid.is_line() => "normal load per length along y",
             "mean_pressure" if header.grid.is_line() => "load over length of the domain",
+            "time" if header.is_sweep() => "velocity",
             _ => scalar.long_name,
         };
-        Series { name: scalar.name, units: header.grid.units(scalar.units), long_name }
+        let units = match scalar.name {
+            "time" if header.is_sweep() => "m/s",
+            _ => header.grid.units(scalar.units),
+        };
+        Series { name: header.stored(scalar.name), units, long_name }
     }
 
     /// A quantity of a result. The border of a contact on a line are its ends, which are counted.
@@ -344,7 +349,7 @@ impl ArraySpec {
 
     /// Whether it grows row by row.
     pub(super) fn grows(&self) -> bool {
-        matches!(self.dimensions[0], "time" | "field_time") && !self.compressed
+        (is_of_rows(self.dimensions[0]) || is_of_maps(self.dimensions[0])) && !self.compressed
     }
 
     /// The same array as results of form 1 have it, without checksums.
@@ -389,8 +394,41 @@ impl ArraySpec {
 /// Level of the deflated chunks and of the metadata.
 pub(super) const LEVEL: u8 = 1;
 
+/// Whether a dimension is that of the rows, or that of the fields.
+pub(super) fn is_of_rows(dimension: &str) -> bool {
+    matches!(dimension, "time" | "velocity")
+}
+
+pub(super) fn is_of_maps(dimension: &str) -> bool {
+    matches!(dimension, "field_time" | "field_velocity")
+}
+
 /// All arrays of a result with `rows` rows and `maps` instants of its fields.
 pub(super) fn arrays(header: &Header, rows: usize, maps: usize) -> Vec<ArraySpec> {
+    let mut arrays = over_time(header, rows, maps);
+    if header.is_sweep() {
+        for array in &mut arrays {
+            if array.name == "field_time" {
+                array.attributes = json!({"units": "m/s", "long_name": "velocity of the fields"});
+            }
+            array.name = header.stored(array.name);
+            array.dimensions = match *array.dimensions {
+                ["time"] => &["velocity"],
+                ["field_time"] => &["field_velocity"],
+                ["field_time", "x"] => &["field_velocity", "x"],
+                ["field_time", "x", "y"] => &["field_velocity", "x", "y"],
+                ["time", "spot_bin"] => &["velocity", "spot_bin"],
+                ["time", "pressure_bin"] => &["velocity", "pressure_bin"],
+                ["time", "gap_bin"] => &["velocity", "gap_bin"],
+                _ => array.dimensions,
+            };
+        }
+    }
+    arrays
+}
+
+/// The arrays of a run in time.
+fn over_time(header: &Header, rows: usize, maps: usize) -> Vec<ArraySpec> {
     let grid = &header.grid;
     let [nx, ny] = grid.cells();
     let mut arrays: Vec<_> = SCALARS

@@ -374,6 +374,11 @@ impl Reader {
     }
 
     pub(super) fn spec(&self, name: &str) -> Result<ArraySpec> {
+        let name = match name {
+            "time" => self.header().stored("time"),
+            "field_time" => self.header().stored("field_time"),
+            name => name,
+        };
         let spec = self.document.arrays().into_iter().find(|spec| spec.name == name);
         spec.ok_or_else(|| self.missing(format!("array `{name}`"), "the arrays of a result".into()))
     }

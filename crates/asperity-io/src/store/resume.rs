@@ -101,7 +101,7 @@ fn kept_sums(reader: &Reader, rows: usize, maps: usize) -> Result<Sums> {
     let arrays = reader.document().arrays();
     let is_kept = |array: &&ArraySpec| array.grows() && !stress::names().any(|name| name == array.name);
     for array in arrays.iter().filter(is_kept) {
-        let of_rows = array.dimensions[0] == "time";
+        let of_rows = super::layout::is_of_rows(array.dimensions[0]);
         let (kept, all) = if of_rows { (rows, reader.len()) } else { (maps, reader.field_times().len()) };
         let width: usize = array.chunk[1..].iter().product();
         let numbers = reader.column(array.name, all)?;

@@ -48,7 +48,11 @@ pub fn verify(path: &Path) -> Result<Verification> {
     for array in reader.document().arrays() {
         found.arrays += 1;
         if array.grows() {
-            let rows = if array.dimensions[0] == "time" { reader.len() } else { reader.field_times().len() };
+            let rows = if super::layout::is_of_rows(array.dimensions[0]) {
+                reader.len()
+            } else {
+                reader.field_times().len()
+            };
             found.chunks += rows.div_ceil(array.chunk[0].max(1)) as u64;
             found.note(reader.column(array.name, rows).map(drop))?;
             continue;

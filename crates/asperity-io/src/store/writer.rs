@@ -170,12 +170,14 @@ impl Writer {
         last_time: f64,
     ) -> Result<Writer> {
         let specs = document.arrays();
-        let spec = |name: &str| {
+        let header = document.header.clone();
+        let spec = |name: &'static str| {
+            let name = header.stored(name);
             specs.iter().find(|spec| spec.name == name).ok_or_else(|| input("array", name, "one of a result"))
         };
         let Progress { rows, maps, sums, .. } = &document.progress;
-        let per_row = |name: &str| Column::new(root, spec(name)?, *rows, sums);
-        let per_map = |name: &str| Column::new(root, spec(name)?, *maps, sums);
+        let per_row = |name: &'static str| Column::new(root, spec(name)?, *rows, sums);
+        let per_map = |name: &'static str| Column::new(root, spec(name)?, *maps, sums);
         let columns = SCALARS.iter().map(|s| Ok((s.entry, per_row(s.name)?)));
         let quantities = document.header.quantities.iter();
         let quantities = quantities.map(|q| Ok((q.width(), per_row(q.quantity.name())?)));

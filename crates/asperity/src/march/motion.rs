@@ -33,14 +33,7 @@ pub struct Motion {
 impl Motion {
     /// Length of a step along the path, at most \[m\].
     fn step(&self, simulation: &Simulation) -> f64 {
-        let [cx, cy] = self.direction.unit();
-        let [dx, dy] = simulation.grid.spacing();
-        let cell = match self.direction {
-            Direction::X => dx,
-            Direction::Y => dy,
-            Direction::Angle(_) => (dx / cx.abs().max(1e-300)).min(dy / cy.abs().max(1e-300)),
-        };
-        self.cells_per_step * cell
+        self.cells_per_step * self.direction.cell(&simulation.grid)
     }
 
     /// The instants at which steps end because of the motion, and those of them at which the velocity bends or jumps.
@@ -195,7 +188,7 @@ impl March {
         let Simulation { grid, boundary, .. } = &self.simulation;
         let shape = grid.shape();
         let pressure = to_view(shape, &self.state.pressure);
-        let mut forces = Forces::of(grid, pressure, &moving.slopes, motion.direction);
+        let mut forces = Forces::of(grid, *boundary, pressure, &moving.slopes, motion.direction);
         if self.simulation.parts().all(|creep| creep.terms.is_empty() && creep.fluidity == 0.0) {
             // Bodies that remember nothing lose nothing: what the sums are is the error of the grid.
             (forces.force, forces.side) = (0.0, 0.0);

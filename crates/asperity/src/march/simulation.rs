@@ -118,6 +118,7 @@ impl Simulation {
     /// of the temperature, the ends of the stages.
     pub fn plan(&self) -> Plan {
         let mut include = self.stops();
+        include.extend(self.motion.iter().flat_map(|motion| motion.path.breaks(self.times.end())));
         include.extend(self.thermal.iter().flat_map(|body| body.clock.breaks(self.times.end())));
         self.loading.plan(&self.times, &include)
     }

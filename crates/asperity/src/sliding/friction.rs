@@ -17,6 +17,16 @@ pub enum Direction {
 }
 
 impl Direction {
+    /// Length along it in which a cell passes, the shorter one \[m\].
+    pub fn cell(self, grid: &Grid) -> f64 {
+        let ([cx, cy], [dx, dy]) = (self.unit(), grid.spacing());
+        match self {
+            Direction::X => dx,
+            Direction::Y => dy,
+            Direction::Angle(_) => (dx / cx.abs().max(1e-300)).min(dy / cy.abs().max(1e-300)),
+        }
+    }
+
     /// Its unit vector.
     pub fn unit(self) -> [f64; 2] {
         match self {
@@ -63,16 +73,22 @@ impl Forces {
     /// Of a pressure under a gap with these slopes.
     pub(crate) fn of(
         grid: &Grid,
+        boundary: Boundary,
         pressure: ArrayView2<f64>,
         slopes: &Slopes,
         direction: Direction,
     ) -> Forces {
         let [cx, cy] = direction.unit();
         let cell = grid.cell_area();
+        // On a periodic domain from the nearest image of the centre.
+        let from = |x: f64, axis: usize| {
+            let (x, length) = (x - slopes.centre[axis], grid.size()[axis]);
+            if boundary == Boundary::Periodic { x - length * (x / length).round() } else { x }
+        };
         let mut sums = [0.0; 4];
         for (((i, j), p), (sx, sy)) in pressure.indexed_iter().zip(slopes.x.iter().zip(&slopes.y)) {
             if *p > 0.0 {
-                let arm = cx * (grid.x(i) - slopes.centre[0]) + cy * (grid.y(j) - slopes.centre[1]);
+                let arm = cx * from(grid.x(i), 0) + cy * from(grid.y(j), 1);
                 let terms = [*p, p * (cx * sx + cy * sy), p * (cx * sy - cy * sx), p * arm];
                 sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
             }

@@ -461,7 +461,7 @@ impl Steady {
         let Ok(pressure) = ndarray::ArrayView2::from_shape(grid.shape(), &self.state.pressure) else {
             return Friction::default();
         };
-        let mut forces = Forces::of(&grid, pressure, &self.motion.slopes, direction);
+        let mut forces = Forces::of(&grid, boundary, pressure, &self.motion.slopes, direction);
         if self.streaming.branches().next().is_none() {
             // Bodies that remember nothing lose nothing: what the sums are is the error of the grid.
             (forces.force, forces.side) = (0.0, 0.0);

@@ -76,11 +76,17 @@ pub fn case(
         _ => time::times(&mut checks, &document.time, all_own, |end| first_step(end, course)),
     };
     let output = output::output(&mut checks, &document.output, times.as_ref(), programme, output);
+    let stops = motion.iter().flatten().next().zip(grid.as_ref()).and_then(|(motion, grid)| {
+        let Travel::Path(path) = &motion.travel else { return None };
+        let step = motion.cells_per_step * motion.direction.cell(grid);
+        checks.core(&motion.span, path.crossings(step, times.as_ref()?.end()))
+    });
     let swept = match motion.iter().flatten().next().map(|motion| &motion.travel) {
         Some(Travel::Steady(velocities)) => Some(velocities.len()),
         _ => None,
     };
-    let output = output.map(|output| match (swept, &document.output.every, &document.output.times) {
+    let known = swept.or(stops.as_ref().map(Vec::len));
+    let output = output.map(|output| match (known, &document.output.every, &document.output.times) {
         (Some(count), None, None) => Output { rows: Rows::Every((count / 10).max(1)), ..output },
         _ => output,
     });
@@ -99,7 +105,8 @@ pub fn case(
     files.extend(hardness.iter().flat_map(|hardness| hardness.files.iter().cloned()));
     files.extend(prescription.iter().flat_map(|p| p.files.clone()));
     let plan = |breaks: &[f64]| match (&times, programme) {
-        (Some(times), Some(programme)) => programme.plan(times, &[include.as_slice(), breaks].concat()),
+        (Some(times), Some(programme)) => programme
+            .plan(times, &[include.as_slice(), stops.as_deref().unwrap_or_default(), breaks].concat()),
         _ => Plan { instants: Vec::new(), exact: true },
     };
     let course = body::Course { end: times.as_ref().map(TimeGrid::end), plan: &plan, temperatures: points };
@@ -205,10 +212,9 @@ pub fn case(
             stress,
             leakage,
             motion: motion.flatten(),
-            usual_rows: swept.unwrap_or_default()
-                + pair.plan.instants.len()
-                + if adaptive { time::USUAL_STEPS } else { 0 },
-            rows: pair.plan.exact.then_some(pair.plan.instants.len()),
+            usual_rows: swept
+                .unwrap_or(pair.plan.instants.len() + if adaptive { time::USUAL_STEPS } else { 0 }),
+            rows: swept.or(pair.plan.exact.then_some(pair.plan.instants.len())),
             history: prescription.span,
         }),
         _ => Err(checks.errors),

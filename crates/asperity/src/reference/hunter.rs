@@ -141,8 +141,13 @@ impl HunterCylinder {
         if self.is_elastic() {
             return ((a - z) * (a + z)).sqrt() / (2.0 * self.radius * self.relaxed);
         }
-        // Beyond 45 l' the memory has faded to rounding.
         let short = self.memory * (self.instantaneous / self.relaxed);
+        if short <= 1e-13 * a {
+            // P changes over lengths of a: the integral is P l' to rounding.
+            let root = ((a - z).max(short) * (a + z)).sqrt();
+            return (self.numerator(z) / (root * self.relaxed)).max(0.0);
+        }
+        // Beyond 45 l' the memory has faded to rounding.
         let end = a.min(z + 45.0 * short);
         let faded = |s: Point| {
             let root = ((a - end + s.below) * (a + z + s.above)).sqrt();
@@ -151,18 +156,33 @@ impl HunterCylinder {
         integrate_to(1e-14, z, end, faded) / (self.memory * self.instantaneous)
     }
 
-    /// Where the pressure is largest \[m\], and how large it is \[Pa\].
+    /// Where the pressure is largest \[m\], and how large it is \[Pa\]. Besides its maximum near the middle the pressure may have a
+    /// second and higher one within a length l' of the front, where the material is glassy.
     pub fn peak(&self) -> (f64, f64) {
         let a = self.half_width;
         if a == 0.0 || self.is_elastic() {
             return (self.centre, self.pressure(self.centre));
         }
-        // -p' = (P - (C0 + C1) p)/(l C0) rises through 0.
+        // -p' = (P - (C0 + C1) p)/(l C0) rises through 0 at a maximum.
         let falling = |z: f64| {
             self.numerator(z) / ((a - z) * (a + z)).sqrt() - self.relaxed * self.pressure(self.centre + z)
         };
-        let x = self.centre + root(-a * (1.0 - 1e-9), a * (1.0 - 1e-9), falling);
-        (x, self.pressure(x))
+        // From the rear to the front, ever closer to it, down to a part of l'.
+        let closest = 0.02 * a.min(self.memory * (self.instantaneous / self.relaxed)).max(1e-12 * a);
+        let steps = ((2.0 * a / closest).ln() / 0.07).ceil() as i32;
+        let places: Vec<f64> =
+            (0..=steps).map(|n| a - 2.0 * a * (1.0 - 1e-9) * (-0.07 * f64::from(n)).exp()).collect();
+        let slopes: Vec<f64> = places.iter().map(|z| falling(*z)).collect();
+        let rises =
+            places.windows(2).zip(slopes.windows(2)).filter(|(_, slope)| slope[0] < 0.0 && slope[1] >= 0.0);
+        let maxima = rises.map(|(place, _)| {
+            let x = self.centre + root(place[0], place[1], falling);
+            (x, self.pressure(x))
+        });
+        maxima.fold(
+            (self.centre, self.pressure(self.centre)),
+            |best, new| if new.1 > best.1 { new } else { best },
+        )
     }
 
     /// P(z) sqrt(a^2 - z^2).
@@ -226,10 +246,11 @@ mod tests {
             (2.0, 0.01, 0.997500054559, 0.00249062478228, 0.00496250087487, 0.500009485765, 0.00501919848455),
             (2.0, 1.0, 0.803402693617, 0.144939628177, 0.19684337986, 0.62377364755, 0.366927891961),
             (2.0, 100.0, 0.70715599749, 0.0126692038815, 0.0132941986604, 0.707059040724, 0.01516918536),
-            (10.0, 0.3, 0.866554778683, 0.123725095834, 0.226092950561, 0.516358557934, 0.325232298892),
+            (10.0, 0.3, 0.866554778683, 0.123725095834, 0.226092950561, 0.704013046363, 0.958958715538),
             (10.0, 1.0, 0.600918754559, 0.317425992079, 0.463905752676, 1.18510993283, 0.822946728418),
             (10.0, 10.0, 0.320611400171, 0.159911463967, 0.17139059674, 1.56956974085, 0.205333771508),
-            (100.0, 0.1, 0.950560452691, 0.0482480510742, 0.0940093098215, 0.50138863023, 0.102110393834),
+            (100.0, 0.1, 0.950560452691, 0.0482480510742, 0.0940093098215, 1.2170783000006, 0.997937655043),
+            (100.0, 0.3, 0.853052475154, 0.137114434647, 0.252646020358, 2.0936444700572, 0.987558521453),
             (100.0, 3.0, 0.205706383598, 0.450462190247, 0.528346179058, 4.83821397437, 0.631260879495),
             (100.0, 10.0, 0.107890530305, 0.229631058214, 0.243361733825, 5.02339518098, 0.277513435083),
         ];
@@ -245,7 +266,8 @@ mod tests {
                 contact.friction_coefficient()
             );
             let (x, p) = contact.peak();
-            // The places of these rows were found by comparing values, which are equal over 1e-8.
+            // Some places of these rows were found by comparing values, which are equal over 1e-8. The fourth, the seventh and
+            // the eighth row have a second, lower maximum near the middle.
             assert!(near(p, peak) && (x - place).abs() < 3e-8, "{ratio} {v}: {x} {p}");
         }
     }
@@ -311,6 +333,9 @@ mod tests {
         assert!(fall > 1.9 && fall < 2.0, "{fall}");
         let halved = HunterCylinder::under_load(1.0, &zener(0.25, 0.75, 1.0), 2.0, 1.0).unwrap();
         assert!(near(at(1.0).friction_per_length, halved.friction_per_length, 1e-14)); // v lambda alone
+        // So little glassy compliance that l' is below the rounding of a place; first order in l.
+        let soft_front = HunterCylinder::under_load(1.0, &zener(1e-9, 1.0 - 1e-9, 1e-7), 1.0, 1.0).unwrap();
+        assert!(near(soft_front.pressure(0.3), soft.pressure(0.3), 1e-6), "{}", soft_front.pressure(0.3));
         let elastic = HunterCylinder::under_load(1.0, &Creep::elastic(1.0), 3.0, 1.0).unwrap();
         assert_eq!((elastic.friction_coefficient(), elastic.peak().1), (0.0, elastic.pressure(0.0)));
         assert!(near(elastic.peak().1, soft.peak_pressure, 1e-14));

@@ -61,6 +61,9 @@ pub(super) struct Waves {
 /// Wave numbers closer than this (relative) are one: they differ by rounding.
 const SAME: f64 = 1e-12;
 
+/// Waves of a smaller share of the mean square height are rounding errors of the transform.
+const NOISE: f64 = 1e-26;
+
 impl Waves {
     /// Of a surface that slides in a direction.
     pub(super) fn of(surface: &Surface, direction: Direction) -> Result<Self> {
@@ -70,12 +73,13 @@ impl Waves {
         }
         let along = |wave: &Wave| (wave.wave_vector[0] * cos + wave.wave_vector[1] * sin).abs();
         let spectrum = PowerSpectrum::of(surface)?;
-        let mut waves: Vec<Wave> = spectrum.waves().filter(|wave| wave.power > 0.0).collect();
+        let power: f64 = spectrum.waves().map(|wave| wave.power).sum();
         let highest = surface.heights().iter().fold(0.0f64, |most, z| most.max(z.abs()));
         // The transform of a constant height leaves its rounding error.
-        if waves.iter().map(|wave| wave.power).sum::<f64>().sqrt() <= 1e-14 * highest {
+        if power.sqrt() <= 1e-14 * highest {
             return Err(no_roughness());
         }
+        let mut waves: Vec<Wave> = spectrum.waves().filter(|wave| wave.power > NOISE * power).collect();
         waves.sort_by(|a, b| a.wave_number.total_cmp(&b.wave_number));
         let mut different: Vec<f64> = waves.iter().map(along).collect();
         different.sort_by(f64::total_cmp);

@@ -46,11 +46,7 @@ struct FieldShape {
 
 /// Replaces the checkpoint of the result at `root`; with `is_synced` it is on the medium when this returns.
 pub(super) fn write(root: &Path, checkpoint: &Checkpoint, is_synced: bool) -> Result<()> {
-    let directory = root.join(DIRECTORY);
-    if !directory.is_dir() {
-        fs::create_dir(&directory).map_err(io("make", &directory))?;
-        write_bare_group(&directory, "state from which the run goes on")?;
-    }
+    let directory = directory(root)?;
     let (path, partial) = (directory.join(FILE), directory.join(PARTIAL));
     let written = write_file(&partial, checkpoint, is_synced).and_then(|()| fs::rename(&partial, &path));
     written.map_err(|source| {
@@ -62,6 +58,16 @@ pub(super) fn write(root: &Path, checkpoint: &Checkpoint, is_synced: bool) -> Re
         sync::directory(root);
     }
     Ok(())
+}
+
+/// The directory of the checkpoint, made where it is missing.
+pub(super) fn directory(root: &Path) -> Result<PathBuf> {
+    let directory = root.join(DIRECTORY);
+    if !directory.is_dir() {
+        fs::create_dir(&directory).map_err(io("make", &directory))?;
+        write_bare_group(&directory, "state from which the run goes on")?;
+    }
+    Ok(directory)
 }
 
 fn write_file(path: &Path, checkpoint: &Checkpoint, is_synced: bool) -> std::io::Result<()> {

@@ -95,8 +95,10 @@ impl Column {
             let file = OpenOptions::new().write(true).create(true).truncate(false).open(&path);
             let file = file.map_err(io("open", &path))?;
             file.set_len(layout.bytes()).map_err(io("write", &path))?;
-            // Later synchronisations reach the file that is open then.
-            if let Some((_, path, file)) = &self.open {
+            // Where files are synchronised one by one, it is those that are open then.
+            if cfg!(not(target_os = "linux"))
+                && let Some((_, path, file)) = &self.open
+            {
                 file.sync_data().map_err(io("write", path))?;
             }
             self.open = Some((chunk, path, file));

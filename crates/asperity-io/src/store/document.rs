@@ -100,7 +100,7 @@ impl Pages {
     /// Keeps a copy of the group's document, as it was committed last, with the checkpoint; it is on the medium when this
     /// returns.
     pub(super) fn write_copy(&self, root: &Path) -> Result<()> {
-        let directory = root.join(checkpoint::DIRECTORY);
+        let directory = checkpoint::directory(root)?;
         let (path, partial) = (directory.join(checkpoint::GROUP), directory.join(checkpoint::GROUP_PARTIAL));
         replace(&path, &partial, self.group.to_string().as_bytes(), Way::Safe)?;
         sync::files(root, &[path])

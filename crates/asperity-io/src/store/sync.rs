@@ -9,6 +9,20 @@ use std::path::{Path, PathBuf};
 use super::document::NAME;
 use super::error::{Result, io};
 
+/// Brings all that was written to the file system of `root` to the medium; `false` where the system cannot do that. A
+/// thousand chunks take one commit of its journal, where one after the other they take one each.
+#[cfg(target_os = "linux")]
+pub(super) fn file_system(root: &Path) -> Result<bool> {
+    let directory = File::open(root).map_err(io("write", root))?;
+    rustix::fs::syncfs(directory).map_err(|error| io("write", root)(error.into()))?;
+    Ok(true)
+}
+
+#[cfg(not(target_os = "linux"))]
+pub(super) fn file_system(_: &Path) -> Result<bool> {
+    Ok(false)
+}
+
 /// Brings files below `root`, and the entries of the directories down to them, to the medium.
 pub(super) fn files(root: &Path, paths: &[PathBuf]) -> Result<()> {
     let mut directories = BTreeSet::new();

@@ -25,7 +25,8 @@ use super::sync;
 const QUICK: Duration = Duration::from_millis(20);
 /// The arrays' own documents are brought up to date when they have lagged this long.
 const LAG: Duration = Duration::from_secs(1);
-/// Least time between two synchronisations with the medium. One takes some 50 ms at 1024 x 1024 cells: 1 % of it.
+/// Least time between two synchronisations with the medium. One takes a tenth of a second for the
+/// fields that a run of 1024 x 1024 cells stores in that time.
 const SYNC_PAUSE: Duration = Duration::from_secs(5);
 /// A checkpoint is due when the time since the last is this many times what its writing took.
 const CHECKPOINT_SHARE: u32 = 100;
@@ -198,7 +199,8 @@ impl Writer {
             committed: Instant::now(),
             documents_written: Instant::now(),
             documents_behind: false,
-            checkpoint: None,
+            // The first one is not brought to the medium: it may not replace one that is.
+            checkpoint: (*rows > 0).then(|| (Instant::now(), Duration::ZERO)),
             unsynced: Unsynced::new(*maps),
             pages: Pages::new(&document),
             form: document.form,
@@ -401,17 +403,25 @@ impl Writer {
         let is_synced = self.unsynced.since.elapsed() >= SYNC_PAUSE;
         if is_synced {
             self.synchronise()?;
-        }
-        checkpoint::write(&self.root, checkpoint, is_synced)?;
-        if is_synced {
+            // First, so that no checkpoint is of more rows than the copy.
             self.pages.write_copy(&self.root)?;
         }
+        checkpoint::write(&self.root, checkpoint, is_synced)?;
         self.checkpoint = Some((Instant::now(), start.elapsed()));
         Ok(())
     }
 
     /// Brings rows, fields and documents to the medium.
     fn synchronise(&mut self) -> Result<()> {
+        if !sync::file_system(&self.root)? {
+            self.synchronise_files()?;
+        }
+        self.unsynced = Unsynced { constants: true, ..Unsynced::new(self.progress.maps) };
+        Ok(())
+    }
+
+    /// The same file by file.
+    fn synchronise_files(&self) -> Result<()> {
         let columns = self.columns.iter().map(|(_, column)| column);
         let columns = columns.chain(self.quantities.iter().map(|(_, column)| column));
         for (path, file) in columns.chain([&self.field_time, &self.field_step]).filter_map(Column::file) {
@@ -426,9 +436,7 @@ impl Writer {
             sync::documents(&self.root, &self.pages.names())?;
             sync::files(&self.root, &create::constants(&self.root, &self.header, self.form)?)?;
         }
-        sync::document(&self.root)?;
-        self.unsynced = Unsynced { constants: true, ..Unsynced::new(self.progress.maps) };
-        Ok(())
+        sync::document(&self.root)
     }
 
     /// Ends the result. Where the run is complete its checkpoint is removed, otherwise it is kept for
@@ -574,5 +582,8 @@ mod tests {
         }
         assert_eq!(fs::read(copy).unwrap(), fs::read(path.join("zarr.json")).unwrap());
         assert_eq!((writer.unsynced.maps, writer.unsynced.constants), (2, true));
+        // Systems that synchronise file by file find all of them.
+        writer.unsynced = Unsynced::new(0);
+        writer.synchronise_files().unwrap();
     }
 }

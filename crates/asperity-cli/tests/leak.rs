@@ -80,6 +80,19 @@ fn a_map_of_the_gap_leaks_as_its_closed_form() {
     fault(&["--gas", "air", "--pressure-drop", "1 bar"], &["inlet and outlet"]);
     refused(&["leak", "nothing.zarr"], directory, &["no such"]);
     refused(&["leak"], directory, &["RESULT"]);
+    fault(&["--field"], &["--field"]);
+    fault(&["--times", "1 s"], &["--times"]);
+
+    // A map of one column of open cells: the grid does not resolve it.
+    let row = |open: &str| ["0", "0", open, "0", "0", "0"].join(" ");
+    std::fs::write(directory.join("thin.txt"), vec![row("1"); 6].join("\n") + "\n").unwrap();
+    let thin =
+        ["leak", "--gap", "thin.txt", "--size", "6 um,6 um", "--height-unit", "um", "--direction", "y"];
+    let told = data(&[&thin[..], &["--json"]].concat(), directory);
+    assert!(told["leak_resolved"] == false && told["percolates"] == true, "{told}");
+    assert_eq!(told["findings"][0]["code"], "constriction-unresolved");
+    let words = told["findings"][0]["text"].as_str().unwrap();
+    assert!(words.contains("1 cell wide, less than 4") && !words.contains("row"), "{words}");
 }
 
 const CASE: &str = r#"
@@ -146,6 +159,38 @@ fn a_run_stores_its_leaks_and_other_fluids_can_follow() {
         assert!(done.status.success(), "{}", text(&done.stderr));
         assert!(std::fs::read_to_string(directory.join(what)).unwrap().contains("Leak rate"));
     }
+    // An option changes what it names and nothing else: the inlet of the air, whose pressure is stored as the case asks.
+    let changed = asperity(&["leak", "seal.zarr", "--inlet", "1.002 bar", "--json"], directory);
+    let told: Value = serde_json::from_slice(&changed.stdout).unwrap();
+    let fluid = &told["leakage"]["fluid"]["gas"];
+    assert!(fluid["inlet"] == 100_200.0 && fluid["outlet"] == 100_000.0, "{told}");
+    assert!(fluid["kind"]["known"] == "air" && told["leakage"]["field"] == true, "{told}");
+    let ratio = column(&told, "leak_rate")[0] / column(&gas, "leak_rate")[0];
+    // Twice the drop, and nearly the same mean pressure.
+    assert!((ratio / 2.0 - 1.0).abs() < 1e-3, "{ratio}");
+    assert!(text(&changed.stderr).contains("replaces the stored leakage: air"), "{}", text(&changed.stderr));
+    // Without storing; at some of the stored times; both conductances.
+    let some = ["leak", "seal.zarr", "--times", "0 s,10 s", "--direction", "both", "--no-store", "--json"];
+    let some = data(&some, directory);
+    assert_eq!(some["leak_time"], serde_json::json!([0.0, 10.0]));
+    let tensor = |n: usize, i: usize, j: usize| some["conductance"][n][i][j].as_f64().unwrap();
+    // The wave is the same along both axes.
+    assert!((tensor(0, 0, 0) / tensor(0, 1, 1) - 1.0).abs() < 1e-6, "{some}");
+    assert_eq!(data(&["leak", "seal.zarr", "--json"], directory)["leak_step"].as_array().unwrap().len(), 6);
+    let shown = text(&asperity(&["show", "seal.zarr"], directory).stdout);
+    assert!(shown.contains("mbar l/s at t = 10 s (air at 20 °C"), "{shown}");
+    refused(&["leak", "seal.zarr", "--times", "3 s"], directory, &["t = 3 s", "those at"]);
+    refused(&["leak", "seal.zarr", "--plot", "a.png"], directory, &["asperity plot RESULT leak"]);
+    refused(&["leak", "seal.zarr", "--size", "1 m,1 m"], directory, &["--size"]);
+    // The numbers and the field go out.
+    for (format, file) in [("csv", "out_leak_time.csv"), ("netcdf", "out.nc"), ("npz", "out.npz")] {
+        let name = if format == "csv" { "out.csv" } else { file };
+        let done = asperity(&["export", "seal.zarr", "--to", format, "-o", name], directory);
+        assert!(done.status.success(), "{}", text(&done.stderr));
+        assert_eq!(text(&done.stderr).contains("fluid_pressure"), format == "csv", "{}", text(&done.stderr));
+        let bytes = std::fs::read(directory.join(file)).unwrap();
+        assert!(String::from_utf8_lossy(&bytes).contains("hydraulic_gap"), "{file}");
+    }
     // A drop above a tenth of the contact pressure is found, in the result too.
     let large = data(
         &["leak", "seal.zarr", "--pressure-drop", "1 bar", "--viscosity", "1 mPa s", "--json"],
@@ -177,4 +222,36 @@ fn keys_that_contradict_each_other_are_named() {
     fault("leakage.viscosity=1 bar", &["leakage.viscosity", "a viscosity"]);
     fault("leakage.direction=z", &["leakage.direction"]);
     fault("leakage.smallest_gap=-1 nm", &["leakage.smallest_gap", "not less than 0"]);
+    fault("leakage.times=all", &["leakage.times", "output.every = 1"]);
+    fault("leakage.times=[\"1 s\"]", &["leakage.times", "output.times"]);
+}
+
+#[test]
+fn a_tight_seal_is_said_to_be_tight_everywhere() {
+    let place = tempfile::tempdir().unwrap();
+    let directory = place.path();
+    // The wave is flat from a few kPa on. No fluid; the first and the last row.
+    let case = CASE
+        .replace("1.8 kPa", "1 MPa")
+        .replace("pressure_drop = \"100 Pa\"\nviscosity = \"1 mPa s\"", "times = [\"0 s\", \"10 s\"]");
+    std::fs::write(directory.join("seal.toml"), case).unwrap();
+    let run = asperity(&["run", "seal.toml", "--quiet"], directory);
+    assert!(
+        text(&run.stdout).contains("tight at all times (no fluid, the gap alone)"),
+        "{}",
+        text(&run.stdout)
+    );
+    let told = text(&asperity(&["leak", "seal.zarr"], directory).stdout);
+    assert!(told.starts_with("Leakage of no fluid, the gap alone, along x, periodic sides"), "{told}");
+    assert!(told.contains("tight at all times"), "{told}");
+    let drawn = asperity(&["plot", "seal.zarr", "leak", "-o", "tight.svg"], directory);
+    assert!(drawn.status.success(), "{}", text(&drawn.stderr));
+    let picture = std::fs::read_to_string(directory.join("tight.svg")).unwrap();
+    assert!(picture.contains("from the inlet") && !picture.contains("Leak rate"), "{picture}");
+    let pictures = asperity(&["export", "seal.zarr", "--to", "png", "-o", "pictures"], directory);
+    assert!(
+        pictures.status.success() && directory.join("pictures/leak.png").exists(),
+        "{}",
+        text(&pictures.stderr)
+    );
 }

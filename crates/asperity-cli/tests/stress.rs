@@ -78,6 +78,20 @@ fn options_compute_the_stress_again_and_keep_what_is_not_said() {
     let other = ["stress", "s.zarr", "--poisson", "0.5", "--no-store", "--json"];
     let other: Value = serde_json::from_str(&out(&asperity(at, &other))).unwrap();
     assert_eq!(other["poisson"], 0.5);
+    let again = asperity(at, &["stress", "s.zarr", "--yield-stress", "none", "--json"]);
+    assert!(
+        err(&again).contains("replaces the stored stress") && err(&again).contains("t = 1 s"),
+        "{}",
+        err(&again)
+    );
+    let object_again: Value = serde_json::from_str(&out(&again)).unwrap();
+    assert_eq!((&object_again["yield_stress"], &object_again["times"]), (&Value::Null, &object["times"]));
+    let all: Value = serde_json::from_str(&out(&asperity(
+        at,
+        &["stress", "s.zarr", "--times", "fields", "--no-store", "--json"],
+    )))
+    .unwrap();
+    assert!(all["times"].as_array().unwrap().len() > 2, "{all}");
     let stored: Value = serde_json::from_str(&out(&asperity(at, &["stress", "s.zarr", "--json"]))).unwrap();
     assert_eq!((&stored["poisson"], &stored["depths"]), (&Value::from(0.3), &object["depths"]));
     for (arguments, told) in [
@@ -116,6 +130,14 @@ fn pictures_volumes_and_the_page_show_the_stress() {
     assert!(asperity(at, &["report", "s.zarr", "-o", "s.html"]).status.success());
     let page = std::fs::read_to_string(at.join("s.html")).unwrap();
     assert!(page.contains("\"svg\":\"") && page.contains("Largest von Mises stress"));
+    let table = asperity(at, &["export", "s.zarr", "--to", "csv", "-o", "t.csv"]);
+    assert!(table.status.success(), "{}", err(&table));
+    let text = std::fs::read_to_string(at.join("t_field_time.csv")).unwrap();
+    assert!(text.starts_with("field_time [s],field_step,max_mises [Pa],max_mises_depth [m]"), "{text}");
+    let text = std::fs::read_to_string(at.join("t_mises_by_depth.csv")).unwrap();
+    assert!(text.starts_with("field_time [s] / depth [m],0,"), "{text}");
+    let volume = asperity(at, &["export", "s.zarr", "--to", "vtk", "-o", "t.pvd"]);
+    assert!(err(&volume).contains("asperity stress RESULT -o"), "{}", err(&volume));
     let again = asperity(at, &["stress", "s.zarr", "-o", "s.vti"]);
     assert_eq!(again.status.code(), Some(2));
     assert!(err(&again).contains("--force"));

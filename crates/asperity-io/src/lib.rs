@@ -7,6 +7,7 @@ pub mod cycles;
 mod digest;
 pub mod export;
 pub mod finding;
+mod instants;
 pub mod leakage;
 pub mod preparation;
 pub mod readable;

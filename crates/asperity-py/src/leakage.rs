@@ -35,7 +35,11 @@ pub fn leakage<'py>(
         leak.of_gap(&grid, gap, contact, time)
     })?;
     let state = solved.map_err(|error| raised(py, error))?;
+    let mut judge = LeakJudge::default();
+    let resolved = judge.see(&state.alone());
     let out = PyDict::new(py);
+    out.set_item("leak_resolved", resolved)?;
+    out.set_item("findings", asperity_io::finding::list(&judge.findings()).to_string())?;
     out.set_item("percolates", state.percolates)?;
     out.set_item("hydraulic_gap", state.hydraulic_gap)?;
     out.set_item("critical_gap", state.critical_gap)?;
@@ -57,8 +61,8 @@ pub fn leakage<'py>(
     Ok(out)
 }
 
-/// A state for the judge: row, critical gap (none where tight), cells across it, error of the gap, pressure drop, contact pressure.
-type State = (usize, Option<f64>, Option<usize>, f64, Option<f64>, f64);
+/// A state for the judge: row (none for a gap of no run), critical gap (none where tight), cells across it, error of the gap, pressure drop, contact pressure.
+type State = (Option<usize>, Option<f64>, Option<usize>, f64, Option<f64>, f64);
 
 /// Which leaks the numbers carry, and what was found against the others (a JSON list).
 #[pyfunction]

@@ -43,7 +43,7 @@ mod _core {
     #[pymodule_export]
     use super::sliding::Persson;
     #[pymodule_export]
-    use super::store::{Store, save};
+    use super::store::{Store, derive_again, save};
     #[pymodule_export]
     use super::stress::{stress_check, stress_depths, stress_field, stress_survey};
     #[pymodule_export]
@@ -56,6 +56,7 @@ mod _core {
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("LAYERED_STRESS", asperity_io::stress::LAYERED)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -132,7 +132,7 @@ fn layered(bodies: &[LayeredBody], clocks: &[Option<ReducedTime>]) -> asperity::
             "temperature shift of the layers",
             "not the same in all of them",
             "the same law for all layers and bodies while the temperature changes: otherwise waves of different lengths creep \
-             differently, which is not solved yet",
+             differently, which is not solved yet. Give all of them the same shift, or hold the temperature constant",
         ));
     }
     let Separated { kernel, creep } = separate(bodies)?;

@@ -2,9 +2,12 @@
 
 use std::collections::HashMap;
 use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
 
 use asperity::quantities::Column;
+use asperity_io::leakage;
 use asperity_io::store::{At, Field, FieldKind, Header, Outcome, Reader, Row, Status, Writer};
+use asperity_io::stress::{self, StressPlan};
 use ndarray::{ArrayView3, Axis};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
 use pyo3::prelude::*;
@@ -78,6 +81,34 @@ impl Store {
             out.set_item(series.name, profile.into_pyarray(py))?;
         }
         Ok(Some(out))
+    }
+
+    /// Names of the stress fields.
+    #[getter]
+    fn stress_fields(&self) -> Vec<&'static str> {
+        let fields = self.reader.stress().map(|set| set.fields()).unwrap_or_default();
+        fields.into_iter().map(|(_, series)| series.name).collect()
+    }
+
+    /// A stress field of the instant of number `index` at the depth of number `depth`.
+    fn stress_field<'py>(
+        &self,
+        py: Python<'py>,
+        name: &str,
+        index: usize,
+        depth: usize,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let fields = self.reader.stress().map(|set| set.fields()).unwrap_or_default();
+        let found = fields.into_iter().find(|(_, series)| series.name == name);
+        let (quantity, _) = found.ok_or_else(|| file(format!("there is no stress field '{name}'")))?;
+        let read = || self.reader.stress_field(quantity, At::Index(index), depth);
+        Ok(detached(py, read)?.map_err(file)?.into_pyarray(py))
+    }
+
+    /// Whether the pressure of the fluid is stored with the leaks.
+    #[getter]
+    fn has_fluid_pressure(&self) -> bool {
+        self.reader.leaks().is_some_and(|leaks| leaks.has_pressure())
     }
 
     #[getter]
@@ -265,6 +296,26 @@ pub fn save(
     })?
     .map(drop)
     .map_err(file)
+}
+
+/// Computes the stress and the leaks of the result at `source` again in its copy.
+#[pyfunction]
+pub fn derive_again(py: Python<'_>, source: PathBuf, copy: PathBuf) -> PyResult<()> {
+    let never = AtomicBool::new(false);
+    let derived = || -> Result<(), String> {
+        let told = |error: &dyn std::fmt::Display| error.to_string();
+        let reader = Reader::open(&source).map_err(|error| told(&error))?;
+        if let Some(set) = reader.stress() {
+            let mut writer = Writer::amend(&copy).map_err(|error| told(&error))?;
+            let plan = StressPlan::of(set, &reader);
+            stress::evaluate(&mut writer, &plan, &never, |_, _| {}).map_err(|error| told(&error))?;
+        }
+        if let Some(leak) = reader.leaks().and_then(|_| leakage::settings(&reader)) {
+            leakage::store(&copy, &leak, &never, |_, _| {}).map_err(|error| told(&error))?;
+        }
+        Ok(())
+    };
+    detached(py, derived)?.map_err(file)
 }
 
 /// The rows of columns of equal length: the inverse of [`crate::march::fill`].

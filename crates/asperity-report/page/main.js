@@ -111,14 +111,27 @@ function leakPanels() {
     { title: "Open cells", x: time, y: { label: "share of the domain", unit: "" }, series: [{ name: "", x, y: leak.open_fraction.values }] },
   ];
   if (leak.leak_rate) {
-    specs.unshift({ title: "Leak rate", x: time, y: { label: "leak rate", unit: leak.leak_rate.units, log: true },
-      series: [line("computed", "leak_rate"), line("one junction", "leak_estimate_junction", true), line("effective medium", "leak_estimate_medium", true)] });
+    const gas = leak.leak_rate_standard;
+    // kg/s of a gas to mbar l/s: a factor that the gas alone decides.
+    const ratios = gas ? gas.values.map((standard, n) => 10 * standard / leak.leak_rate.values[n]).filter(isFinite) : [];
+    const factor = ratios.length ? ratios[0] : 1;
+    const rate = (name, key, dashed) => ({ name, x, y: values(key).map((value) => factor * value), dashed });
+    specs.unshift({ title: "Leak rate", x: time, y: { label: "leak rate", unit: gas ? "mbar l/s" : "m3/s", log: true },
+      series: [rate("computed", "leak_rate"), rate("one junction", "leak_estimate_junction", true), rate("effective medium", "leak_estimate_medium", true)] });
   }
-  specs.forEach((spec, k) => (leaks[k] ? leaks[k].set(spec) : leaks.push(new Chart($("leaks"), spec))));
   const open = leak.percolates.values;
-  const last = open.lastIndexOf(1);
-  $("leak-words").textContent = last < 0 ? "Tight at all stored times." : last + 1 < open.length ? `Tight from t = ${words(x[last + 1], "s")} on.` : "Leaks at the end.";
+  const sealed = open.findIndex((now, n) => n > 0 && !now && open[n - 1] > 0);
+  for (const spec of specs) {
+    const shown = spec.series.flatMap((series) => series.y).filter((value) => value > 0);
+    if (sealed > 0 && spec.y.log) spec.series.push({ name: "tight from here", x: [x[sealed], x[sealed]], y: [Math.min(...shown), Math.max(...shown)], dashed: true });
+  }
+  // Logarithmic axes have no place for a seal that never leaks.
+  const drawn = open.some((now) => now > 0) ? specs : specs.filter((spec) => !spec.y.log);
+  drawn.forEach((spec, k) => (leaks[k] ? leaks[k].set(spec) : leaks.push(new Chart($("leaks"), spec))));
+  $("leak-asked").textContent = leak.asked;
+  $("leak-words").textContent = leak.found;
   if (state.leak_map) $("leak-map").innerHTML = state.leak_map;
+  else if (state.live && !$("leak-map").children.length) $("leak-map").append(make("img", { src: "leak.svg", alt: "Passages and flow" }));
 }
 
 async function surfacePart() {

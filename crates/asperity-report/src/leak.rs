@@ -1,7 +1,8 @@
 //! Figures of leakage: where the fluid flows, what is trapped, and how the leak changes over time.
 
 use asperity::leakage::{CellKind, flux};
-use asperity_io::leakage::{Leakage, settings};
+use asperity_io::leakage::words::{MBAR_LITRE, rate};
+use asperity_io::leakage::{Leak, Leakage, settings};
 use asperity_io::readable::quantity;
 use asperity_io::store::{At, FieldKind, Reader};
 use ndarray::{Array2, ArrayView2, Zip};
@@ -9,78 +10,112 @@ use ndarray::{Array2, ArrayView2, Zip};
 use crate::figure::{Axis, Colours, Curves, Figure, Map, Series, Style};
 use crate::result::{Options, PlotError};
 
-/// Names and colours of the cells.
-const KINDS: [(&str, [u8; 3]); 4] = [
-    ("closed", [110, 110, 108]),
-    ("through", [86, 180, 233]),
+/// Names and colours of the cells where the seal leaks.
+const LEAKING: [(&str, [u8; 3]); 4] = [
+    ("closed", CLOSED),
+    ("inlet to outlet", [86, 180, 233]),
     ("dead end", [230, 159, 0]),
-    ("pocket", [213, 94, 0]),
+    ("pocket", POCKET),
 ];
+/// And where it is tight.
+const TIGHT: [(&str, [u8; 3]); 4] = [
+    ("closed", CLOSED),
+    ("from the inlet", [86, 180, 233]),
+    ("to the outlet", [0, 158, 115]),
+    ("pocket", POCKET),
+];
+const CLOSED: [u8; 3] = [110, 110, 108];
+const POCKET: [u8; 3] = [213, 94, 0];
 /// Decades of the flux that a map shows.
 const DECADES: f64 = 4.0;
 
-/// The leak of one state: passages and pockets, and the flow with its critical constriction.
-pub fn state(leak: &Leakage, gap: ArrayView2<'_, f64>, size: [f64; 2]) -> Figure {
-    let [passages, flow] = maps(leak, gap, size);
-    let mut figure = Figure::new("").with(passages).with(flow).caption(words(leak));
+/// The leak of one state: passages and pockets, and the flow with its critical constriction; where it is tight the open gap.
+pub fn state(leak: &Leak, found: &Leakage, gap: ArrayView2<'_, f64>, size: [f64; 2]) -> Figure {
+    let caption = format!("{}: {}. {}", heading(found), leak.words(), words(found));
+    let maps = maps(found, gap, size);
+    let mut figure =
+        maps.into_iter().fold(Figure::new(heading(found)), |figure, map| figure.with(map)).caption(caption);
     figure.panel = [300.0, 260.0];
     figure
 }
 
-fn maps(leak: &Leakage, gap: ArrayView2<'_, f64>, size: [f64; 2]) -> [Map; 2] {
-    let number = |kind: &CellKind| match kind {
-        CellKind::Closed => 0.0,
-        CellKind::Through => 1.0,
-        CellKind::AtInlet | CellKind::AtOutlet => 2.0,
-        CellKind::Pocket => 3.0,
+/// Passages, and the flow; where it is tight, the gap of the cells that are open.
+fn maps(found: &Leakage, gap: ArrayView2<'_, f64>, size: [f64; 2]) -> Vec<Map> {
+    let number = |kind: &CellKind| match (kind, found.percolates) {
+        (CellKind::Closed, _) => 0.0,
+        (CellKind::Through, _) | (CellKind::AtInlet, false) => 1.0,
+        (CellKind::AtInlet | CellKind::AtOutlet, _) => 2.0,
+        (CellKind::Pocket, _) => 3.0,
     };
-    let kinds = leak.cells.map(number);
-    let names = KINDS.map(|(name, colour)| (name.to_owned(), colour)).to_vec();
+    let kinds = found.cells.map(number);
+    let names = if found.percolates { LEAKING } else { TIGHT };
+    let names = names.map(|(name, colour)| (name.to_owned(), colour)).to_vec();
     let passages = Map::states("", names, kinds.view(), size);
-    let flow = flow(leak, gap, size);
-    let marked = |map: Map| if leak.percolates { map.marked(leak.critical) } else { map };
-    [marked(passages), marked(flow)]
+    if found.percolates {
+        return vec![passages.marked(found.critical), flow(found, gap, size).marked(found.critical)];
+    }
+    let open = (found.open_fraction > 0.0).then(|| open_gap(found, gap, size));
+    std::iter::once(passages).chain(open).collect()
+}
+
+/// The gap of the open cells.
+fn open_gap(found: &Leakage, gap: ArrayView2<'_, f64>, size: [f64; 2]) -> Map {
+    let mut open = gap.to_owned();
+    Zip::from(&mut open).and(&found.cells).for_each(|gap, kind| {
+        if *kind == CellKind::Closed {
+            *gap = f64::NAN;
+        }
+    });
+    Map::new("Tight: gap of the open cells", ["gap", "m"], Colours::Sequential, open.view(), size)
 }
 
 /// The flux in decades below its largest; blank in contact, the lowest colour where the fluid rests.
-fn flow(leak: &Leakage, gap: ArrayView2<'_, f64>, size: [f64; 2]) -> Map {
-    let flux = flux(size, gap, leak.pressure.view());
+fn flow(found: &Leakage, gap: ArrayView2<'_, f64>, size: [f64; 2]) -> Map {
+    let flux = flux(size, gap, found.pressure.view());
     let largest = flux.iter().copied().filter(|q| q.is_finite()).fold(0.0, f64::max);
     let mut decades = Array2::from_elem(flux.dim(), f64::NAN);
-    Zip::from(&mut decades).and(&flux).and(&leak.cells).for_each(|decades, q, kind| {
+    Zip::from(&mut decades).and(&flux).and(&found.cells).for_each(|decades, q, kind| {
         if *kind != CellKind::Closed {
             *decades = if largest > 0.0 { (q / largest).log10().max(-DECADES) } else { -DECADES };
         }
     });
-    let map =
-        Map::new("Flow", ["flux over the largest, decades", ""], Colours::Sequential, decades.view(), size);
+    let label = ["log10 of flux over largest flux", ""];
+    let map = Map::new("Flow per width", label, Colours::Sequential, decades.view(), size);
     map.between([-DECADES, 0.0])
 }
 
-fn words(leak: &Leakage) -> String {
-    let open = format!("{:.1} % of the cells are open", 100.0 * leak.open_fraction);
-    let trapped = match leak.trapped_area {
+/// The leak in a few words.
+fn heading(found: &Leakage) -> String {
+    match found.leak_rate {
+        _ if !found.percolates => "Tight".to_owned(),
+        Some(leak_rate) => format!("Leak rate {}", rate(leak_rate, found.leak_rate_standard)),
+        None => format!("Hydraulic gap {}", quantity(found.hydraulic_gap, "m")),
+    }
+}
+
+fn words(found: &Leakage) -> String {
+    let open = format!("{:.1} % of the cells are open", 100.0 * found.open_fraction);
+    let trapped = match found.trapped_area {
         0.0 => String::new(),
         area => format!(", {} of them in pockets", quantity(area, "m2")),
     };
-    if !leak.percolates {
-        return format!("Tight: inlet and outlet are not connected. {open}{trapped}.");
+    if !found.percolates {
+        return format!("Inlet and outlet are not connected. {open}{trapped}.");
     }
-    let rate = match (leak.leak_rate, leak.leak_rate_standard) {
-        (_, Some(standard)) => format!("Leak {:.3e} mbar l/s. ", 10.0 * standard),
-        (Some(rate), None) => format!("Leak {rate:.3e} m3/s. "),
-        (None, None) => String::new(),
-    };
     format!(
-        "{rate}Hydraulic gap {}, critical gap {} (circle). {open}{trapped}.",
-        quantity(leak.hydraulic_gap, "m"),
-        quantity(leak.critical_gap, "m")
+        "Hydraulic gap {}, critical gap {} (circle). {open}{trapped}.",
+        quantity(found.hydraulic_gap, "m"),
+        quantity(found.critical_gap, "m")
     )
 }
 
 /// The leaks of a result as they are stored, over time.
 pub(crate) fn curves(reader: &Reader, log_time: bool) -> Result<Vec<Curves>, PlotError> {
     let time = reader.leak("leak_time")?;
+    let percolates = reader.leak("percolates")?;
+    // A logarithmic axis has no place for t = 0: it is of use where the seal leaks later too.
+    let leaks_later = time.iter().zip(&percolates).any(|(time, open)| *time > 0.0 && *open > 0.0);
+    let log_time = log_time && leaks_later;
     let axis = || if log_time { Axis::log("time", "s") } else { Axis::linear("time", "s") };
     let line = |name: &str, style: Style, column: &str| -> Result<Series, PlotError> {
         // A tight seal has no place on a logarithmic axis.
@@ -94,21 +129,53 @@ pub(crate) fn curves(reader: &Reader, log_time: bool) -> Result<Vec<Curves>, Plo
     };
     let mut all = vec![];
     let gas = reader.leak("leak_rate_standard").is_ok();
-    if reader.leak("leak_rate").is_ok() {
-        let label = if gas { Axis::log("leak rate", "kg/s") } else { Axis::log("leak rate", "m3/s") };
-        all.push(
-            Curves::new("Leak rate", axis(), label)
-                .with(line("computed", Style::Line, "leak_rate")?)
-                .with(line("one junction", Style::Dashed, "leak_estimate_junction")?)
-                .with(line("effective medium", Style::Dashed, "leak_estimate_medium")?),
-        );
+    if !percolates.contains(&1.0) {
+        // Logarithmic axes have no place for any of it.
+        return Ok(all);
     }
-    all.push(
-        Curves::new("Gaps", axis(), Axis::log("gap", "m"))
-            .with(line("hydraulic", Style::Line, "hydraulic_gap")?)
-            .with(line("critical", Style::Line, "critical_gap")?),
-    );
+    if reader.leak("leak_rate").is_ok() {
+        let label = if gas { Axis::log("leak rate", "mbar l/s") } else { Axis::log("leak rate", "m3/s") };
+        let standard = if gas { reader.leak("leak_rate_standard")? } else { vec![] };
+        let rate = reader.leak("leak_rate")?;
+        // Of a gas every rate in kg/s has the same factor to mbar l/s.
+        let ratios = standard.iter().zip(&rate).map(|(standard, rate)| MBAR_LITRE * standard / rate);
+        let factor = ratios.filter(|ratio| ratio.is_finite()).next_back().unwrap_or(1.0);
+        let scaled = |name: &str, style: Style, column: &str| -> Result<Series, PlotError> {
+            let mut series = line(name, style, column)?;
+            series.y.iter_mut().for_each(|rate| *rate *= factor);
+            Ok(series)
+        };
+        let panel = Curves::new("Leak rate", axis(), label)
+            .with(scaled("computed", Style::Line, "leak_rate")?)
+            .with(scaled("one junction", Style::Dashed, "leak_estimate_junction")?)
+            .with(scaled("effective medium", Style::Dashed, "leak_estimate_medium")?);
+        all.push(sealing(panel, &time, &percolates));
+    }
+    let gaps = Curves::new("Gaps", axis(), Axis::log("gap", "m"))
+        .with(line("hydraulic", Style::Line, "hydraulic_gap")?)
+        .with(line("critical", Style::Line, "critical_gap")?);
+    all.push(sealing(gaps, &time, &percolates));
     Ok(all)
+}
+
+/// Leaks of up to this many times are marked: a line through one of them cannot be seen.
+const FEW: usize = 4;
+
+/// The panel over whole decades, with a vertical line at each time from which on the seal is tight after it has leaked.
+fn sealing(mut panel: Curves, time: &[f64], percolates: &[f64]) -> Curves {
+    let values = panel.series.iter().flat_map(|series| series.y.iter().copied()).filter(|y| *y > 0.0);
+    let [low, high] = values.fold([f64::INFINITY, 0.0], |[a, b], y| [f64::min(a, y), f64::max(b, y)]);
+    let ends = [10f64.powf(low.log10().floor()), 10f64.powf(high.log10().ceil())];
+    panel.y = panel.y.between(ends[0], ends[1]);
+    if percolates.iter().filter(|open| **open > 0.0).count() <= FEW {
+        let dots = panel.series.iter().map(|series| Series { style: Style::Points, ..series.clone() });
+        panel.series = dots.collect();
+    }
+    let moments = (1..time.len()).filter(|n| percolates[n - 1] > 0.0 && percolates[*n] == 0.0);
+    moments.enumerate().fold(panel, |panel, (k, n)| {
+        let name = if k == 0 { "tight from here" } else { "" };
+        panel.with(Series::new(name, Style::Reference, vec![time[n]; 2], ends.to_vec()))
+    })
 }
 
 /// Leak rate and gaps over time, and the flow at an instant.
@@ -117,7 +184,9 @@ pub(crate) fn over_time(reader: &Reader, options: &Options) -> Result<Figure, Pl
     for panel in curves(reader, options.log_time)? {
         figure = figure.with(panel);
     }
-    let (maps, caption) = at(reader, options.at)?;
+    // The last state of a seal that has become tight shows no flow.
+    let instant = if options.at == At::Last { last_leak(reader) } else { options.at };
+    let (maps, caption) = at(reader, instant)?;
     for map in maps {
         figure = figure.with(map);
     }
@@ -128,14 +197,13 @@ pub(crate) fn over_time(reader: &Reader, options: &Options) -> Result<Figure, Pl
 /// The flow at an instant alone, for pages.
 pub(crate) fn map_of(reader: &Reader, at_instant: At) -> Result<Figure, PlotError> {
     let (maps, caption) = at(reader, at_instant)?;
-    let [passages, flow] = maps;
-    let mut figure = Figure::new("").with(passages).with(flow).caption(caption);
+    let mut figure = maps.into_iter().fold(Figure::new(""), |figure, map| figure.with(map)).caption(caption);
     figure.panel = [300.0, 260.0];
     Ok(figure)
 }
 
 /// The maps at an instant, computed as the stored leaks were.
-fn at(reader: &Reader, at: At) -> Result<([Map; 2], String), PlotError> {
+fn at(reader: &Reader, at: At) -> Result<(Vec<Map>, String), PlotError> {
     let Some(leak) = settings(reader) else {
         return Err(reader.no_leaks().into());
     };
@@ -145,12 +213,20 @@ fn at(reader: &Reader, at: At) -> Result<([Map; 2], String), PlotError> {
     let contact = reader.contact_states(at)?;
     let grid = &reader.header().grid;
     let found = leak.of_gap(grid, gap.view(), Some(contact.view()), time)?;
-    let caption = format!("t = {}: {}", quantity(time, "s"), words(&found));
+    let moment = quantity(time, "s");
+    let caption = format!("t = {moment}: {}, {}. {}", heading(&found), leak.words(), words(&found));
     Ok((maps(&found, gap.view(), grid.size()), caption))
 }
 
-/// The last stored instant at which the seal leaks, else the last.
+/// The last instant at which the seal leaks, else the last one with a leakage.
 pub(crate) fn last_leak(reader: &Reader) -> At {
-    let open = reader.leak("percolates").unwrap_or_default();
-    open.iter().rposition(|open| *open > 0.0).map_or(At::Last, At::Index)
+    let column = |name: &str| reader.leak(name).unwrap_or_default();
+    let (open, times, steps) = (column("percolates"), column("leak_time"), column("leak_step"));
+    let Some(n) = open.iter().rposition(|open| *open > 0.0).or(open.len().checked_sub(1)) else {
+        return At::Last;
+    };
+    let same = |index: &usize| {
+        reader.field_times()[*index] == times[n] && reader.field_steps()[*index] as f64 == steps[n]
+    };
+    (0..reader.field_times().len()).rfind(same).map_or(At::Last, At::Index)
 }

@@ -2,6 +2,7 @@
 
 use asperity::indentation::{Given, IndentationFit};
 use asperity::material::{Creep, MasterCurve, Material, Modulus, Relaxation};
+use asperity_io::case::WaveReport;
 use asperity_io::curve::{Curves as Measured, Fitted, Indentation, Kind};
 use asperity_io::readable::counted;
 
@@ -58,6 +59,30 @@ pub fn functions(title: &str, materials: &[(&str, &Material)], window: [f64; 2])
         factor = factor.with(line((*name).into(), &frequencies, &|w| loss(w) / storage(w)));
     }
     Ok(Figure::new(title).with(relaxing).with(creeping).with(dynamic).with(factor))
+}
+
+/// q C(q) of bodies of layers and the contact modulus 2/(q C) of the half-space that yields as much, over the length of the
+/// wave.
+pub fn layers(title: &str, waves: &[WaveReport]) -> Figure {
+    let lengths: Vec<f64> = waves.iter().map(|wave| wave.length).collect();
+    let relaxed: Vec<f64> = waves.iter().map(|wave| wave.relaxed_modulus).collect();
+    let at_once: Vec<f64> =
+        waves.iter().map(|wave| wave.instantaneous_modulus.unwrap_or(f64::INFINITY)).collect();
+    let creeps = at_once.iter().zip(&relaxed).any(|(at_once, relaxed)| at_once != relaxed);
+    let panel = |title: &str, axis: Axis, of: fn(f64) -> f64| {
+        let line = |name: &str, moduli: &[f64]| {
+            let values: Vec<f64> = moduli.iter().map(|modulus| of(*modulus)).collect();
+            Series::new(name, Style::Line, lengths.clone(), values)
+        };
+        let panel = Curves::new(title, Axis::log("length of the wave", "m"), axis);
+        match creeps {
+            true => panel.with(line("at once", &at_once)).with(line("at last", &relaxed)),
+            false => panel.with(line("", &relaxed)),
+        }
+    };
+    Figure::new(title)
+        .with(panel("Response of the layers", Axis::log("q C(q)", "1/Pa"), |modulus| 2.0 / modulus))
+        .with(panel("Half-space that yields as much", Axis::log("contact modulus", "Pa"), |modulus| modulus))
 }
 
 /// The measured points and the function fitted to them, and their relative distance.

@@ -4,6 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use asperity_io::store::{At, FieldKind, Reader, StoreError};
+use asperity_io::stress::StressError;
 
 use crate::figure::{Curves, Figure, FigureError, Panel, Values};
 use crate::result::line::{curve, over_time};
@@ -44,7 +45,8 @@ impl From<StoreError> for PicturesError {
     }
 }
 
-/// Writes pictures of a result into a new directory: `evolution.png`, `pressure_0000.png` and so on. The directory
+/// Writes pictures of a result into a new directory: `evolution.png`, `pressure_0000.png` and so on; `stress.png` and
+/// `leak.png` where these were computed. The directory
 /// appears whole or not at all; with `force` one that holds pictures only is replaced.
 ///
 /// # Errors
@@ -64,6 +66,17 @@ pub fn pictures(
     let partial = tempfile::Builder::new().prefix(".pictures").tempdir_in(parent).map_err(failed)?;
     let place = |name: String| partial.path().join(name);
     figure(reader, Plot::Evolution, &Options::default())?.write(&place("evolution.png".into()), false)?;
+    if reader.stress().is_some_and(|set| !set.instants.is_empty()) {
+        match figure(reader, Plot::Stress, &Options::default()) {
+            Ok(picture) => picture.write(&place("stress.png".into()), false)?,
+            // Nothing touches.
+            Err(PlotError::Stress(StressError::Store(StoreError::Missing { .. }))) => {}
+            Err(error) => return Err(error.into()),
+        }
+    }
+    if reader.leaks().is_some() {
+        figure(reader, Plot::Leak, &Options::default())?.write(&place("leak.png".into()), false)?;
+    }
     for kind in fields.unwrap_or(&reader.header().fields) {
         let plot = match kind {
             FieldKind::Pressure => Plot::Pressure,

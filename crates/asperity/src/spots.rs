@@ -89,6 +89,44 @@ impl Spots {
     }
 }
 
+/// Whether connected cells reach from one border of the domain to the opposite one, along x and along y. Cells that share an
+/// edge are connected; on a periodic domain also across the borders at the sides of the path.
+///
+/// ```
+/// use asperity::{Boundary, spots::spans};
+/// let p = ndarray::array![[0, 1, 0], [0, 1, 1], [0, 0, 1]];
+/// assert_eq!(spans(Boundary::Free, p.view(), |p| *p > 0), [true, false]);
+/// assert_eq!(spans(Boundary::Free, p.view(), |p| *p == 0), [true, false]);
+/// ```
+pub fn spans<T>(boundary: Boundary, cells: ArrayView2<T>, on: impl Fn(&T) -> bool) -> [bool; 2] {
+    [spans_x(boundary, cells.view(), &on), spans_x(boundary, cells.reversed_axes(), &on)]
+}
+
+fn spans_x<T>(boundary: Boundary, cells: ArrayView2<T>, on: impl Fn(&T) -> bool) -> bool {
+    let (nx, ny) = cells.dim();
+    let at = |i: usize, j: usize| i * ny + j;
+    let on = |i: usize, j: usize| on(&cells[[i, j]]);
+    let mut forest = Forest::new(nx * ny);
+    for i in 0..nx {
+        for j in (0..ny).filter(|j| on(i, *j)) {
+            if i > 0 && on(i - 1, j) {
+                forest.join(at(i - 1, j), at(i, j));
+            }
+            if j > 0 && on(i, j - 1) {
+                forest.join(at(i, j - 1), at(i, j));
+            }
+        }
+        if boundary == Boundary::Periodic && ny > 0 && on(i, 0) && on(i, ny - 1) {
+            forest.join(at(i, 0), at(i, ny - 1));
+        }
+    }
+    let mut reached = vec![false; nx * ny];
+    for j in (0..ny).filter(|j| nx > 0 && on(0, *j)) {
+        reached[forest.root(at(0, j))] = true;
+    }
+    (0..ny).any(|j| nx > 0 && on(nx - 1, j) && reached[forest.root(at(nx - 1, j))])
+}
+
 /// Cells that point to another of their spot; the least cell of a spot points to itself.
 pub(crate) struct Forest(Vec<usize>);
 
@@ -141,6 +179,26 @@ mod tests {
         // A comb whose teeth meet only across the border.
         assert_eq!(count(&["#.#.", "#.#.", "####"], Boundary::Periodic), [8.0]);
         assert_eq!(count(&["#.#.", "....", "#.#."], Boundary::Periodic), [2.0, 2.0]);
+    }
+
+    #[test]
+    fn a_path_spans_the_domain_from_border_to_border() {
+        let spans = |rows: &[&str], boundary| {
+            let cells =
+                ndarray::Array2::from_shape_fn((rows.len(), rows[0].len()), |(i, j)| rows[i].as_bytes()[j]);
+            super::spans(boundary, cells.view(), |c| *c == b'#')
+        };
+        // Rows run along y.
+        let across = ["....", "####", "...."];
+        assert_eq!(spans(&across, Boundary::Free), [false, true]);
+        // A path along x that goes on across the side: only a periodic domain has it.
+        let around = ["#...", "#..#", "...#"];
+        assert_eq!(spans(&around, Boundary::Free), [false, false]);
+        assert_eq!(spans(&around, Boundary::Periodic), [true, false]);
+        // The border that the path must reach does not wrap: a gap in the middle stays one.
+        assert_eq!(spans(&["##", "..", "##"], Boundary::Periodic), [false, true]);
+        assert_eq!(spans(&["#.", ".#"], Boundary::Free), [false, false]);
+        assert_eq!(spans(&["..", ".."], Boundary::Periodic), [false, false]);
     }
 
     #[test]

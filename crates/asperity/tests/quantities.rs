@@ -262,6 +262,8 @@ fn spots_perimeter_and_histograms_agree_with_the_fields() {
         assert!(spots.len() > 5);
         assert_eq!(one(Quantity::ContactSpots), spots.len() as f64);
         assert_eq!(one(Quantity::LargestSpot), spots.areas[0]);
+        // A contact of a few per cent is made of islands in an open sea.
+        assert_eq!([one(Quantity::ContactPercolation), one(Quantity::GapPercolation)], [0.0, 3.0]);
         assert!((one(Quantity::MeanSpot) * spots.len() as f64 / row.contact_area - 1.0).abs() < 1e-12);
         let classes = step.quantity(Quantity::SpotHistogram).unwrap();
         assert_eq!(classes.iter().sum::<f64>(), spots.len() as f64);

@@ -7,26 +7,35 @@ use asperity_io::leakage::LeakDirection;
 
 #[derive(Debug, clap::Args)]
 pub struct Leak {
-    /// The result (a Zarr directory); its leaks are stored in it
+    /// The result (a Zarr directory); its leakage is stored in it. Options change only what they name
     #[arg(required_unless_present = "gap", conflicts_with = "gap")]
     pub result: Option<PathBuf>,
     /// A map of the gap instead: a file of any format that surfaces are read from, its heights are the gap
     #[arg(long, value_name = "FILE")]
     pub gap: Option<PathBuf>,
     /// A map of the contact for --gap (nonzero where the bodies touch) [default: where the gap is not above 0]
-    #[arg(long, value_name = "FILE", requires = "gap")]
+    #[arg(long, value_name = "FILE", requires = "gap", conflicts_with = "result")]
     pub contact: Option<PathBuf>,
     /// Physical size of the map along x and y, if the file does not state it: --size '1 mm,1 mm'
-    #[arg(long, value_name = "A,B", requires = "gap")]
+    #[arg(long, value_name = "A,B", requires = "gap", conflicts_with = "result")]
     pub size: Option<String>,
     /// Unit of the gap, if the file does not state it: --height-unit um
-    #[arg(long, value_name = "U", requires = "gap")]
+    #[arg(long, value_name = "U", requires = "gap", conflicts_with = "result")]
     pub height_unit: Option<String>,
     #[command(flatten)]
     pub fluid: FluidOptions,
+    /// Times of stored fields, e.g. '1 s,10 s', or fields for all of them [default: those stored, or all]
+    #[arg(long, value_name = "LIST", conflicts_with = "gap")]
+    pub times: Option<String>,
+    /// Do not store the leakage in the result
+    #[arg(long, conflicts_with = "gap")]
+    pub no_store: bool,
     /// The figure to write for --gap: flow, critical constriction and pockets (png, svg or pdf)
-    #[arg(long, value_name = "PATH", requires = "gap")]
+    #[arg(long, value_name = "PATH")]
     pub plot: Option<PathBuf>,
+    /// Replace an existing file of --plot
+    #[arg(long, requires = "plot")]
+    pub force: bool,
     /// Threads to use [default: one per core]; the results do not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Option<u16>,
@@ -35,7 +44,7 @@ pub struct Leak {
     pub json: bool,
 }
 
-/// The keys of `[leakage]`. Without any of them a result takes those of its case.
+/// The keys of `[leakage]`. Of a result, each changes one key of what is stored, or of what its case asks for.
 #[derive(Debug, clap::Args)]
 pub struct FluidOptions {
     /// Direction of the flow; both: also the effective conductance of a periodic gap
@@ -72,6 +81,9 @@ pub struct FluidOptions {
     #[arg(long, value_name = "H")]
     pub smallest_gap: Option<String>,
     /// Store the pressure of the fluid as a field of the result
-    #[arg(long)]
+    #[arg(long, conflicts_with = "gap")]
     pub field: bool,
+    /// Do not store it, where it is stored now
+    #[arg(long, conflicts_with_all = ["gap", "field"])]
+    pub no_field: bool,
 }

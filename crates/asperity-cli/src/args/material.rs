@@ -27,6 +27,9 @@ pub struct Show {
     /// Last time [default: a decade after the material's times]
     #[arg(long, value_name = "TIME")]
     pub to: Option<String>,
+    /// Show how bodies of layers answer waves of pressure instead: q C(q) over the length of the wave
+    #[arg(long, conflicts_with_all = ["from", "to"])]
+    pub layers: bool,
     /// Lines of the table per decade
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u16).range(1..=100))]
     pub per_decade: u16,

@@ -16,19 +16,19 @@ pub struct Stress {
     /// Poisson's ratio, if the result does not say it or another one is wanted
     #[arg(long, value_name = "NU", allow_hyphen_values = true)]
     pub poisson: Option<String>,
-    /// Fields to store at each depth: mises, tresca, tension, pressure, xx, yy, zz, xy, xz, yz
+    /// Fields to store at each depth: mises, tresca, tension, pressure, xx, yy, zz, xy, xz, yz; or none
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     pub components: Option<String>,
-    /// Measure the volume with a von Mises stress above this, e.g. '100 MPa'
+    /// Measure the volume with a von Mises stress above this, e.g. '100 MPa', or none
     #[arg(long, value_name = "P", allow_hyphen_values = true)]
     pub threshold: Option<String>,
-    /// Yield stress of the body, e.g. '110 MPa': report first yield
+    /// Yield stress of the body, e.g. '110 MPa': report first yield; or none
     #[arg(long, value_name = "P", allow_hyphen_values = true)]
     pub yield_stress: Option<String>,
-    /// Direction in which the contact rolls, x or y: find the range of the orthogonal shear stress
+    /// Direction in which the contact rolls, x or y: find the range of the orthogonal shear stress; or none
     #[arg(long, value_name = "AXIS")]
     pub rolling: Option<String>,
-    /// Times, e.g. '1 s,10 s'; the nearest stored ones are used [default: those stored, or all]
+    /// Times of stored fields, e.g. '1 s,10 s', or fields for all of them [default: those stored, or all]
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     pub times: Option<String>,
     /// Time of the profile, the figure and the volume [default: the one with the largest von Mises stress]

@@ -187,10 +187,6 @@ fn tell(case: &Case, examined: &Examination, estimate: Option<f64>) -> String {
         },
     );
     line("gap", d.surfaces.join(" + "));
-    if let Some(leak) = &case.leakage {
-        let (words, memory) = leak.describe(case.grid.len());
-        line("leakage", format!("{words}, up to {} of memory", bytes(memory)));
-    }
     for surface in inputs.surfaces.iter().filter_map(shape) {
         line("", surface);
     }
@@ -230,15 +226,15 @@ fn tell(case: &Case, examined: &Examination, estimate: Option<f64>) -> String {
         for body in &layers.bodies {
             line("layers", body.clone());
         }
+        line("", "equivalent half-space (contact modulus that yields as much):".into());
         for (name, wave) in ["longest", "shortest"].iter().zip(&layers.waves) {
             let relaxed = quantity(wave.relaxed_modulus, "Pa");
             let modulus = match wave.instantaneous_modulus.map(|modulus| quantity(modulus, "Pa")) {
                 Some(at_once) if at_once == relaxed => at_once,
-                Some(at_once) => format!("{at_once} instantaneous, {relaxed} relaxed"),
-                None => format!("{relaxed} relaxed, instantaneously rigid"),
+                Some(at_once) => format!("{at_once} at once, {relaxed} at last"),
+                None => format!("rigid at once, {relaxed} at last"),
             };
-            let length = quantity(wave.length, "m");
-            line("", format!("the {name} wave, {length}, sees a half-space of contact modulus {modulus}"));
+            line("", format!("- {name} wave, {}: {modulus}", quantity(wave.length, "m")));
         }
     }
     if !d.retardation_times.is_empty() {
@@ -294,6 +290,14 @@ fn tell(case: &Case, examined: &Examination, estimate: Option<f64>) -> String {
         stress_lines(stress, stress_seconds(case, stress))
             .into_iter()
             .for_each(|[name, value]| line(&name, value));
+    }
+    if let Some(leak) = &case.leakage {
+        let memory = bytes(leak.bytes(case.grid.len()));
+        let times = match &leak.times {
+            Some(times) => crate::words::counted(times.len(), "time"),
+            None => "the stored times".to_owned(),
+        };
+        line("leakage", format!("{}, at {times}, up to {memory} of memory", leak.words()));
     }
     line("memory", format!("about {}", bytes(d.memory_bytes as f64)));
     if let Some(estimate) = estimate {

@@ -25,6 +25,9 @@ pub fn run(args: &Export) -> Result<(), Failure> {
     let output = args.output.clone().unwrap_or_else(|| args.result.with_extension(format.extension()));
     let written = export(&reader, format, &output, &options);
     let written = written.map_err(|error| Failure::input(error.to_string()))?;
+    if let Some(sentence) = format.left_out(&reader) {
+        crate::talk::say!("{sentence}");
+    }
     crate::print(&written.iter().map(|path| format!("{}\n", path.display())).collect::<String>())
 }
 

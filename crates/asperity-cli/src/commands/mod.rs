@@ -23,7 +23,11 @@ pub mod view;
 
 use std::path::Path;
 
+use asperity_io::case::quantity::Time;
+use asperity_io::case::quantity::range::NonNegative;
+
 use crate::failure::Failure;
+use crate::words::read;
 
 /// Refuses a path where there is something already that `force` does not allow to replace.
 fn free(path: &Path, force: bool) -> Result<(), Failure> {
@@ -32,4 +36,13 @@ fn free(path: &Path, force: bool) -> Result<(), Failure> {
         return Err(Failure::input(format!("{path} already exists; choose another file or use --force")));
     }
     Ok(())
+}
+
+/// The times \[s\] of an option --times; `None` for all that are stored.
+pub fn times(list: &str) -> Result<Option<Vec<f64>>, Failure> {
+    if ["fields", "all"].contains(&list.trim()) {
+        return Ok(None);
+    }
+    let time = |text: &str| Ok(read::<Time<NonNegative>>("--times", text, "1 s,10 s")?.get());
+    list.split(',').map(time).collect::<Result<_, Failure>>().map(Some)
 }

@@ -131,6 +131,9 @@ fn tell(args: &Run, grid: &Grid, summary: &Summary, error: Option<&RunError>) ->
     if let Some(below) = &summary.stress {
         stress_lines(below).into_iter().for_each(|[name, value]| line(&name, value));
     }
+    if let Some(leak) = &summary.leak {
+        line("leak", leak.clone());
+    }
     let memory = summary.peak_memory_bytes.map(|b| format!(", {}", bytes(b as f64))).unwrap_or_default();
     line(
         "work",

@@ -4,6 +4,7 @@ use asperity::Grid;
 use asperity::quantities::Quantity;
 use asperity_io::case::quantity::Time;
 use asperity_io::cycles;
+use asperity_io::leakage::LeakHistory;
 use asperity_io::store::{At, Reader, Status, StoreError};
 use asperity_io::stress::{Below, first_yield};
 use asperity_report::result::contact;
@@ -163,6 +164,9 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
         if let Some(first) = first_yield(&below) {
             line("yield", first.sentence());
         }
+    }
+    if let Some(leaks) = LeakHistory::of(reader)? {
+        line("leak", leaks.sentence());
     }
     let worst = rows.iter().map(|row| row.certificate).fold(0.0, f64::max);
     line("certificate", format!("{worst:.1e} at worst (relative error of the pressure)"));

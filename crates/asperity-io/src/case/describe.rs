@@ -224,21 +224,17 @@ impl Case {
     fn layer_report(&self, layers: &Layered, creep: &Creep) -> LayerReport {
         let longest = self.grid.longest_side();
         let shortest = 2.0 * self.grid.cell_sides().fold(0.0, f64::max);
-        let wave = |length: f64| {
-            let q = std::f64::consts::TAU / length;
-            let unit = 0.5 * q * layers.symbol(q, 0.0);
-            WaveReport {
-                length,
-                instantaneous_modulus: (creep.instantaneous > 0.0)
-                    .then(|| 1.0 / (unit * creep.instantaneous)),
-                relaxed_modulus: 1.0 / (unit * creep.long_time()),
-            }
-        };
+        let wave = |length| wave_report(layers, creep, length);
         LayerReport {
             bodies: layers.stacks().iter().map(words_of).collect(),
             separable: true,
             waves: [longest, shortest].map(wave),
         }
+    }
+
+    /// The half-space that yields as much as the layers under a wave of this length \[m\]; `None` without layers.
+    pub fn wave(&self, length: f64) -> Option<WaveReport> {
+        Some(wave_report(self.layers.as_ref()?, &self.reference_creep(), length))
     }
 
     /// C of the pair, of bodies whose temperature changes at their reference temperature.
@@ -269,6 +265,16 @@ impl Case {
                 Some(rows.map_or(inner + 2, |rows| rows.min(inner + 2)))
             }
         }
+    }
+}
+
+fn wave_report(layers: &Layered, creep: &Creep, length: f64) -> WaveReport {
+    let q = std::f64::consts::TAU / length;
+    let unit = 0.5 * q * layers.symbol(q, 0.0);
+    WaveReport {
+        length,
+        instantaneous_modulus: (creep.instantaneous > 0.0).then(|| 1.0 / (unit * creep.instantaneous)),
+        relaxed_modulus: 1.0 / (unit * creep.long_time()),
     }
 }
 

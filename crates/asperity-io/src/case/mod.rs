@@ -71,7 +71,7 @@ use asperity::surface::{Part, undeformed_gap};
 use asperity::{Boundary, Error, Grid, Plasticity, Programme, Scheme, Simulation, SolverOptions, TimeGrid};
 use ndarray::Array2;
 
-pub use describe::{Description, MaterialReport, Preparation};
+pub use describe::{Description, MaterialReport, Preparation, WaveReport};
 pub use error::{CaseError, CaseErrors};
 pub use examine::{Examination, Inputs, ModulusInput, SurfaceInput};
 pub use measured::Measured;

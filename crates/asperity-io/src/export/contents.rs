@@ -5,7 +5,7 @@ use ndarray::Array2;
 use serde_json::Value;
 
 use super::error::Result;
-use crate::store::{At, FieldKind, Reader, Series, coordinates};
+use crate::store::{At, FieldKind, LeakTable, Leaks, Reader, Series, coordinates};
 
 /// A result as variables over dimensions.
 pub(super) struct Contents<'a> {
@@ -37,6 +37,8 @@ pub(super) enum Data {
     Field(FieldKind),
     /// One map x by y per instant and depth, read when it is written.
     Stress(StressQuantity),
+    /// One map x by y per leak, read when it is written.
+    FluidPressure,
 }
 
 /// A map as it is stored.
@@ -132,6 +134,34 @@ impl<'a> Contents<'a> {
                 add(series.name, series.units, series.long_name, &over, Data::Stress(quantity));
             }
         }
+        if let Some(table) = LeakTable::of(reader)? {
+            let leak = dimensions.len();
+            dimensions.push(("leak_time", table.len()));
+            for series in table.series() {
+                let numbers = table.get(series.name).unwrap_or_default();
+                let data = match series.name {
+                    "percolates" | "leak_resolved" | "leak_step" => {
+                        Data::Counts(numbers.iter().map(|number| *number as i64).collect())
+                    }
+                    _ => Data::Reals(numbers.to_vec()),
+                };
+                add(series.name, series.units, series.long_name, &[leak], data);
+            }
+            if let Some(tensors) = table.get("conductance") {
+                dimensions.extend([("flow_direction", 2), ("gradient_direction", 2)]);
+                for (n, name, what) in [
+                    (1, "flow_direction", "direction of the flow, 0 for x and 1 for y"),
+                    (2, "gradient_direction", "direction of the pressure gradient, 0 for x and 1 for y"),
+                ] {
+                    add(name, "1", what, &[leak + n], Data::Counts(vec![0, 1]));
+                }
+                let over = [leak, leak + 1, leak + 2];
+                add("conductance", "m3", "effective conductance", &over, Data::Reals(tensors.to_vec()));
+            }
+            if reader.leaks().is_some_and(Leaks::has_pressure) {
+                add("fluid_pressure", "Pa", "pressure of the fluid", &[leak, X, Y], Data::FluidPressure);
+            }
+        }
         let attributes =
             reader.attributes().into_iter().filter_map(|(key, value)| Some((key, attribute(&value)?)));
         Ok(Contents { attributes: attributes.collect(), reader, instants, dimensions, variables })
@@ -142,9 +172,18 @@ impl<'a> Contents<'a> {
         self.reader.stress().map_or(1, |set| set.depths.len())
     }
 
-    /// Number of maps that an instant has of a variable over the instants.
+    /// Leaks.
+    fn leaks(&self) -> usize {
+        self.reader.leaks().map_or(0, |leaks| leaks.rows)
+    }
+
+    /// Number of maps that an instant has of a variable over the instants; of another variable, all of them.
     pub(super) fn maps_of_instant(&self, data: &Data) -> usize {
-        if matches!(data, Data::Stress(_)) { self.depths() } else { 1 }
+        match data {
+            Data::Stress(_) => self.depths(),
+            Data::FluidPressure => self.leaks(),
+            _ => 1,
+        }
     }
 
     /// The variable's map; for a field, that of the `n`th exported instant, for a stress field, of the `n`th instant and depth.
@@ -152,6 +191,7 @@ impl<'a> Contents<'a> {
         Ok(match data {
             Data::Reals(_) | Data::Counts(_) => None,
             Data::InitialGap => Some(Map::Real(self.reader.initial_gap()?)),
+            Data::FluidPressure => Some(Map::Real(self.reader.fluid_pressure(n)?)),
             Data::Stress(quantity) => {
                 let (instant, depth) = (n / self.depths(), n % self.depths());
                 let at = At::Index(self.instants.get(instant).copied().unwrap_or(usize::MAX));
@@ -174,6 +214,7 @@ impl<'a> Contents<'a> {
             Data::InitialGap => 1,
             Data::Field(_) => self.instants.len(),
             Data::Stress(_) => self.instants.len() * self.depths(),
+            Data::FluidPressure => self.leaks(),
         }
     }
 

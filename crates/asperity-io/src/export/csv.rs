@@ -1,7 +1,9 @@
 //! Comma-separated values (RFC 4180), for spreadsheets.
 //!
-//! One row per step under a line of names with units. Chosen fields go to files beside it, as matrices: the
-//! first line holds y, the first column x, in metres; of a line contact, as two columns, x and the value.
+//! One row per step under a line of names with units. Other numbers go to files beside it: `NAME_field_time.csv` (stress) and
+//! `NAME_leak_time.csv` have one row per stored time; what depends on two numbers (stress by depth, histograms) and chosen
+//! fields are matrices, whose first line and first column hold the coordinates in SI units (of a line contact, two columns: x and
+//! the value).
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -23,8 +25,28 @@ pub(super) fn export(contents: &Contents<'_>, path: &Path, force: bool) -> Resul
             (variable, n, path.with_file_name(name))
         })
         .collect();
-    maps.iter().try_for_each(|(.., path)| output::check(path, force))?;
-    let mut made = output::file(path, force, |file| series(contents, file))?;
+    let beside = |name: &str| {
+        let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        path.with_file_name(format!("{stem}_{name}.csv"))
+    };
+    // More than the coordinates of the dimension.
+    let lists = |(n, (name, _)): (usize, &(&'static str, usize))| {
+        let numbers =
+            contents.variables.iter().filter(|v| v.dimensions == [n] && !v.name.starts_with("field_"));
+        (n > TIME && numbers.filter(|v| !v.name.ends_with("_edge")).count() > 1).then(|| (n, beside(name)))
+    };
+    let lists: Vec<_> = contents.dimensions.iter().enumerate().filter_map(lists).collect();
+    let table = |v: &&Variable| v.dimensions.len() == 2 && matches!(v.data, Data::Reals(_));
+    let tables: Vec<_> = contents.variables.iter().filter(table).map(|v| (v, beside(v.name))).collect();
+    let all = maps.iter().map(|(.., path)| path).chain(lists.iter().map(|list| &list.1));
+    all.chain(tables.iter().map(|table| &table.1)).try_for_each(|path| output::check(path, force))?;
+    let mut made = output::file(path, force, |file| series(contents, TIME, file))?;
+    for (dimension, path) in &lists {
+        made.extend(output::file(path, force, |file| series(contents, *dimension, file))?);
+    }
+    for (variable, path) in &tables {
+        made.extend(output::file(path, force, |file| by_two(contents, variable, file))?);
+    }
     for (variable, n, path) in &maps {
         let heading = named(variable);
         made.extend(output::file(path, force, |file| match contents.map(&variable.data, *n)? {
@@ -36,18 +58,49 @@ pub(super) fn export(contents: &Contents<'_>, path: &Path, force: bool) -> Resul
     Ok(made)
 }
 
-fn series(contents: &Contents<'_>, file: &mut Output) -> Result<(), WriteError> {
-    let columns: Vec<_> = contents.variables.iter().filter(|v| v.dimensions == [TIME]).collect();
-    line(file, columns.iter().map(|variable| named(variable)))?;
-    for row in 0..contents.dimensions[TIME].1 {
-        line(
-            file,
-            columns.iter().map(|column| match &column.data {
-                Data::Reals(reals) => number(reals[row]),
-                Data::Counts(counts) => counts[row].to_string(),
-                _ => String::new(),
-            }),
-        )?;
+/// The numbers over one dimension; tensors over it with a column for each entry.
+fn series(contents: &Contents<'_>, dimension: usize, file: &mut Output) -> Result<(), WriteError> {
+    let is_of = |v: &&Variable| {
+        v.dimensions == [dimension] || v.dimensions.first() == Some(&dimension) && v.dimensions.len() == 3
+    };
+    let numbers = |v: &&Variable| matches!(v.data, Data::Reals(_) | Data::Counts(_));
+    let columns: Vec<&Variable> = contents.variables.iter().filter(is_of).filter(numbers).collect();
+    let names = columns.iter().flat_map(|v| match v.dimensions.len() {
+        1 => vec![named(v)],
+        _ => ["xx", "xy", "yx", "yy"].map(|entry| named(v).replacen(v.name, &format!("{}_{entry}", v.name), 1)).to_vec(),
+    });
+    line(file, names)?;
+    let rows = contents.dimensions[dimension].1;
+    for row in 0..rows {
+        let cells = columns.iter().flat_map(|column| match &column.data {
+            Data::Reals(reals) => {
+                let width = reals.len() / rows;
+                reals[row * width..(row + 1) * width].iter().map(|x| number(*x)).collect()
+            }
+            Data::Counts(counts) => vec![counts[row].to_string()],
+            _ => vec![],
+        });
+        line(file, cells)?;
+    }
+    Ok(())
+}
+
+/// The numbers of a variable over two dimensions.
+fn by_two(contents: &Contents<'_>, variable: &Variable, file: &mut Output) -> Result<(), WriteError> {
+    let Data::Reals(numbers) = &variable.data else { return Ok(()) };
+    let [rows, columns] = [0, 1].map(|axis| contents.dimensions[variable.dimensions[axis]]);
+    let coordinate = |(name, length): (&str, usize)| {
+        let found = contents.variables.iter().find(|v| v.name == name);
+        match found.map(|v| (&v.data, v.units)) {
+            Some((Data::Reals(places), units)) => (places.clone(), units),
+            _ => ((0..length).map(|n| n as f64).collect(), "1"),
+        }
+    };
+    let ((first, first_units), (second, second_units)) = (coordinate(rows), coordinate(columns));
+    let corner = format!("{} [{first_units}] / {} [{second_units}]", rows.0, columns.0);
+    line(file, std::iter::once(corner).chain(second.iter().map(|x| number(*x))))?;
+    for (place, row) in first.iter().zip(numbers.chunks(columns.1.max(1))) {
+        line(file, std::iter::once(number(*place)).chain(row.iter().map(|x| number(*x))))?;
     }
     Ok(())
 }

@@ -6,7 +6,7 @@
 //! | [`Format::Hdf5`] | h5py, MATLAB, xarray | everything, with dimension scales |
 //! | [`Format::Npz`] | numpy | everything; attributes as JSON text |
 //! | [`Format::Vtk`] | ParaView | fields over time: a `.pvd` file and a directory of `.vti` files |
-//! | [`Format::Csv`] | spreadsheets | the per-step numbers; chosen fields as matrices |
+//! | [`Format::Csv`] | spreadsheets | the numbers of steps, stress and leaks; chosen fields as matrices |
 //!
 //! Numbers keep their bits (CSV: the shortest text that reads back to them). Fields go through memory one map
 //! at a time. A file appears whole or not at all.
@@ -26,7 +26,7 @@ use std::path::{Path, PathBuf};
 pub use error::{ExportError, Result};
 pub use volume::volume;
 
-use crate::store::{At, FieldKind, Reader, StoreError};
+use crate::store::{At, FieldKind, Leaks, Reader, StoreError};
 use contents::Contents;
 
 /// A format of an export.
@@ -73,6 +73,30 @@ impl Format {
     /// The format of that name.
     pub fn from_name(name: &str) -> Option<Format> {
         Format::ALL.into_iter().find(|format| format.name() == name)
+    }
+
+    /// What of the stress and the leakage of a result it does not hold, as a sentence; `None` where it holds all.
+    pub fn left_out(self, reader: &Reader) -> Option<String> {
+        let fields: Vec<_> =
+            reader.stress().iter().flat_map(|set| set.fields()).map(|field| field.1.name).collect();
+        let pressure = reader.leaks().is_some_and(Leaks::has_pressure);
+        let mut absent = vec![];
+        if self == Format::Vtk && reader.stress().is_some() {
+            absent.push(
+                "the stress below the surface (asperity stress RESULT -o VOLUME.vtr writes it)".to_owned(),
+            );
+        } else if self == Format::Csv && !fields.is_empty() {
+            absent.push(format!("the stress fields {}", fields.join(", ")));
+        }
+        match self {
+            Format::Vtk if reader.leaks().is_some() => absent.push("the leakage".into()),
+            Format::Csv if pressure => absent.push("the field fluid_pressure".into()),
+            _ => {}
+        }
+        let sentence = |absent: Vec<String>| {
+            format!("{} does not hold {}; netcdf, hdf5 and npz do", self.name(), absent.join(" and "))
+        };
+        (!absent.is_empty()).then(|| sentence(absent))
     }
 
     /// The usual ending of its files.

@@ -81,7 +81,7 @@ fn slab<'a>(contents: &Contents<'_>, variable: &'a Variable) -> Slab<'a> {
     let kind = match &variable.data {
         Data::Reals(_) | Data::InitialGap => Type::Double,
         Data::Field(crate::store::FieldKind::Contact) => Type::Byte,
-        Data::Field(_) | Data::Stress(_) => Type::Double,
+        Data::Field(_) | Data::Stress(_) | Data::FluidPressure => Type::Double,
         // Counts beyond 2^31 are exact as doubles up to 2^53.
         Data::Counts(counts) if counts.iter().all(|n| i32::try_from(*n).is_ok()) => Type::Int,
         Data::Counts(_) => Type::Double,

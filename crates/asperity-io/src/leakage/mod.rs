@@ -1,10 +1,13 @@
 //! Leakage of a gap map, and of a stored result over time.
 //!
 //! What is asked for ([`Leak`]) comes from `[leakage]` of a case or from the command line; one state is answered by
-//! [`Leak::of_gap`], a result by [`of_result`], which stores its answer in the result ([`crate::store`]).
+//! [`Leak::of_gap`], a result by [`store`], which stores its answer in the result ([`crate::store`]), or [`compute`].
 
+mod keys;
 mod result;
+pub mod words;
 
+use asperity::finding::LeakState;
 use asperity::leakage::{
     CellKind, FlowOptions, Gas, Opening, Passages, Rarefaction, Sides, Species, conductance,
     effective_medium, factor_bytes, gas_flow, leak_rate, liquid, plate, standard,
@@ -14,8 +17,7 @@ use ndarray::{Array2, ArrayView2};
 use serde::{Deserialize, Serialize};
 
 pub use crate::case::LeakDirection;
-use crate::readable::quantity;
-pub use result::{LeakError, of_result, settings};
+pub use result::{LeakError, LeakHistory, compute, settings, store};
 
 /// Fields of the gap, the network and the iteration that a flow holds besides the factor, about.
 const FIELDS: f64 = 20.0;
@@ -38,6 +40,9 @@ pub struct Leak {
     /// Temperature of the run over time (\[s\], \[K\]), straight in between; may be empty.
     #[serde(default)]
     pub temperatures: Vec<(f64, f64)>,
+    /// Times \[s\] of stored fields; `None` for all that are stored.
+    #[serde(default)]
+    pub times: Option<Vec<f64>>,
 }
 
 /// A fluid and what drives it.
@@ -135,27 +140,23 @@ pub struct Leakage {
     pub cells: Array2<CellKind>,
 }
 
+impl Leakage {
+    /// What the judge looks at of a map of the gap of which nothing else is known: the cells across the constriction.
+    pub fn alone(&self) -> LeakState {
+        LeakState {
+            row: None,
+            constriction: self.percolates.then_some((self.critical_gap, self.critical_width)),
+            gap_error: 0.0,
+            pressure_drop: None,
+            contact_pressure: 0.0,
+        }
+    }
+}
+
 impl Leak {
-    /// What is asked for in a few words, and the memory that it takes at most \[bytes\], of so many cells.
-    pub fn describe(&self, cells: usize) -> (String, f64) {
-        let fluid = match self.fluid {
-            None => "gap alone".to_owned(),
-            Some(Fluid::Liquid { pressure_drop, viscosity }) => {
-                format!("liquid of {}, drop {}", quantity(viscosity, "Pa s"), quantity(pressure_drop, "Pa"))
-            }
-            Some(Fluid::Gas { kind, inlet, outlet, .. }) => {
-                let name = match kind {
-                    GasKind::Known(species) => species.name(),
-                    GasKind::Other { .. } => "gas",
-                };
-                format!("{name} from {} to {}", quantity(inlet, "Pa"), quantity(outlet, "Pa"))
-            }
-        };
-        let limit = FlowOptions::default().memory;
-        (
-            format!("{fluid}, at the stored times"),
-            factor_bytes(cells).min(limit) + FIELDS * 8.0 * cells as f64,
-        )
+    /// Memory that it takes at most, of so many cells \[bytes\].
+    pub fn bytes(&self, cells: usize) -> f64 {
+        factor_bytes(cells).min(FlowOptions::default().memory) + FIELDS * 8.0 * cells as f64
     }
 
     /// The leak through a gap \[m\] with a contact (nonzero where the bodies touch; without it, where the gap is not positive),

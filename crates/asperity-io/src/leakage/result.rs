@@ -7,7 +7,9 @@ use asperity::finding::{Finding, LeakJudge, LeakState};
 use serde_json::Value;
 use thiserror::Error;
 
-use super::Leak;
+use super::{Fluid, Leak, LeakDirection, words};
+use crate::instants;
+use crate::readable::quantity;
 use crate::store::{At, FieldKind, LeakTable, LeakWriter, Reader, StoreError};
 
 /// Why the leakage of a result was not computed.
@@ -29,50 +31,113 @@ pub enum LeakError {
     Interrupted,
 }
 
-/// The leakage that the case of a result asks for, or that was asked for last; `None` where neither.
+/// The leaks of a result over time.
+#[derive(Clone, Debug)]
+pub struct LeakHistory {
+    /// What was asked for.
+    pub leak: Leak,
+    /// The numbers.
+    pub table: LeakTable,
+    /// What was found against them.
+    pub findings: Vec<Finding>,
+}
+
+impl LeakHistory {
+    /// The leaks that a result holds; `None` where it holds none.
+    ///
+    /// # Errors
+    /// [`StoreError`] where the result is damaged.
+    pub fn of(reader: &Reader) -> Result<Option<LeakHistory>, StoreError> {
+        let (Some(table), Some(leak)) = (LeakTable::of(reader)?, settings(reader)) else { return Ok(None) };
+        let findings = reader.findings().iter().filter(|finding| LeakTable::is_judged_by(&finding.code));
+        Ok(Some(LeakHistory { leak, table, findings: findings.cloned().collect() }))
+    }
+
+    /// The last leak and when the seal is tight, in a sentence without its full stop.
+    pub fn sentence(&self) -> String {
+        let column = |name: &str| self.table.get(name).unwrap_or_default();
+        let last = |name: &str| column(name).last().copied().unwrap_or(f64::NAN);
+        let tight = words::tight(column("leak_time"), column("percolates"));
+        let fluid = self.leak.fluid_words();
+        if last("percolates") == 0.0 {
+            return format!("{tight} ({fluid})");
+        }
+        let standard = self.table.get("leak_rate_standard").map(|_| last("leak_rate_standard"));
+        let rate = match self.leak.fluid {
+            Some(_) => words::rate(last("leak_rate"), standard),
+            None => format!("hydraulic gap {}", quantity(last("hydraulic_gap"), "m")),
+        };
+        let doubt = if last("leak_resolved") == 0.0 { ", not resolved: see the findings" } else { "" };
+        let tight = if tight.is_empty() { tight } else { format!("; {tight}") };
+        format!("{rate} at t = {} ({fluid}){doubt}{tight}", quantity(last("leak_time"), "s"))
+    }
+}
+
+/// The leakage that was asked for last, or else that which the case of a result asks for; `None` where neither.
 pub fn settings(reader: &Reader) -> Option<Leak> {
     let last = reader.leaks().map(|leaks| leaks.settings.clone());
     let of_case = || reader.header().setup.get("leakage").cloned();
     serde_json::from_value(last.or_else(of_case)?).ok()
 }
 
-/// Computes the leakage at the times of the stored fields and stores it in the result at `path`, in place of an earlier one.
-/// Returns what was found against the leaks, and the table. `observe` hears of each time.
+/// Computes the leakage at the times asked for and stores it in the result at `path`, in place of an earlier one. `observe` is
+/// told the number of times done and of all.
 ///
 /// # Errors
 /// [`LeakError`]; the result is then as it was.
-pub fn of_result(
+pub fn store(
     path: &Path,
     leak: &Leak,
     interrupt: &AtomicBool,
     mut observe: impl FnMut(usize, usize),
-) -> Result<(LeakTable, Vec<Finding>), LeakError> {
+) -> Result<LeakHistory, LeakError> {
     let reader = Reader::open(path)?;
+    let writer = LeakWriter::new(path, &reader.header().grid, leak.field)?;
+    let history = evaluate(&reader, leak, interrupt, &mut observe, Some(&writer))?;
+    let settings = serde_json::to_value(leak).unwrap_or_default();
+    writer.finish(&history.table, settings, &history.findings)?;
+    Ok(history)
+}
+
+/// The same for a result that is only read: nothing is stored.
+///
+/// # Errors
+/// [`LeakError`].
+pub fn compute(
+    reader: &Reader,
+    leak: &Leak,
+    interrupt: &AtomicBool,
+    mut observe: impl FnMut(usize, usize),
+) -> Result<LeakHistory, LeakError> {
+    evaluate(reader, leak, interrupt, &mut observe, None)
+}
+
+fn evaluate(
+    reader: &Reader,
+    leak: &Leak,
+    interrupt: &AtomicBool,
+    observe: &mut dyn FnMut(usize, usize),
+    writer: Option<&LeakWriter>,
+) -> Result<LeakHistory, LeakError> {
     if !reader.header().fields.contains(&FieldKind::Gap) {
         return Err(reader.no_field(FieldKind::Gap).into());
     }
     if reader.header().grid.is_line() {
         return Err(reader.on_line("gap over a plane, which leakage needs").into());
     }
-    let times = reader.field_times().to_vec();
-    if times.is_empty() {
-        return Err(reader.no_rows().into());
-    }
+    let instants = instants::stored(reader, leak.times.as_deref())?;
     let grid = reader.header().grid;
     let rows = reader.rows()?;
     let tolerance = reader.header().setup.get("solver_tolerance").and_then(Value::as_f64).unwrap_or(1e-6);
     let initial = reader.initial_gap()?;
-    let writer = LeakWriter::new(path, &grid, leak.field)?;
     let mut judge = LeakJudge::default();
-    let mut table = LeakTable::new(
-        leak.fluid.as_ref().map(super::Fluid::is_gas),
-        leak.direction == super::LeakDirection::Both,
-    );
-    for (index, time) in times.iter().copied().enumerate() {
+    let mut table =
+        LeakTable::new(leak.fluid.as_ref().map(Fluid::is_gas), leak.direction == LeakDirection::Both);
+    for (done, index) in instants.iter().copied().enumerate() {
         if interrupt.load(Ordering::Relaxed) {
             return Err(LeakError::Interrupted);
         }
-        let at = At::Index(index);
+        let (at, time) = (At::Index(index), reader.field_times()[index]);
         let gap = reader.field(FieldKind::Gap, at)?;
         let contact = reader.contact_states(at)?;
         let solved = leak.of_gap(&grid, gap.view(), Some(contact.view()), time);
@@ -85,20 +150,17 @@ pub fn of_result(
             touching.fold((0.0, 0.0), |(sum, count), ((h, h0), _)| (sum + (h - h0), count + 1.0));
         let displacement = if count > 0.0 { sum / count + row.approach } else { 0.0 };
         let resolved = judge.see(&LeakState {
-            row: step,
-            constriction: state.percolates.then_some((state.critical_gap, state.critical_width)),
+            row: Some(step),
             gap_error: tolerance * displacement.abs(),
-            pressure_drop: leak.fluid.as_ref().map(super::Fluid::pressure_drop),
+            pressure_drop: leak.fluid.as_ref().map(Fluid::pressure_drop),
             contact_pressure: if row.contact_area > 0.0 { row.load / row.contact_area } else { 0.0 },
+            ..state.alone()
         });
-        if leak.field {
-            writer.put_pressure(index, state.pressure.view())?;
+        if let Some(writer) = writer.filter(|_| leak.field) {
+            writer.put_pressure(done, state.pressure.view())?;
         }
         table.push(time, step, &state, resolved);
-        observe(index + 1, times.len());
+        observe(done + 1, instants.len());
     }
-    let findings = judge.findings();
-    let settings = serde_json::to_value(leak).unwrap_or_default();
-    writer.finish(&table, settings, &findings)?;
-    Ok((table, findings))
+    Ok(LeakHistory { leak: leak.clone(), table, findings: judge.findings() })
 }

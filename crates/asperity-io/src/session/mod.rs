@@ -81,6 +81,8 @@ pub struct Summary {
     pub findings: Vec<Finding>,
     /// The stress below the surface, where the case asks for it.
     pub stress: Option<Below>,
+    /// What leaks, in a few words, where the case asks for it.
+    pub leak: Option<String>,
 }
 
 /// Why a run did not complete.
@@ -222,13 +224,21 @@ fn run_inside(
             Err(StressError::Store(source)) => {
                 return Err(record.stop_storing(Some(march.simulation()), source));
             }
+            // The case would have been refused.
+            Err(StressError::Refused { why, .. }) => {
+                let source = Error::invalid("[stress]", why, "left out");
+                return Err(record.fail(Some(march.simulation()), best(&march), source));
+            }
         }
     }
     let mut summary = record.end(Some(march.simulation()), Outcome::new(Status::Complete))?;
     drop(march);
     if let Some(leak) = &case.leakage {
-        match leakage::of_result(&path, leak, &options.interrupt, |_, _| {}) {
-            Ok((_, found)) => summary.findings.extend(found),
+        match leakage::store(&path, leak, &options.interrupt, |_, _| {}) {
+            Ok(leaks) => {
+                summary.findings.extend(leaks.findings.iter().cloned());
+                summary.leak = Some(leaks.sentence());
+            }
             Err(source) => return Err(RunError::Leakage { source, summary: Box::new(summary) }),
         }
     }
@@ -360,6 +370,7 @@ impl Record<'_> {
             last,
             findings,
             stress,
+            leak: None,
         };
         match self.writer.finish(&outcome) {
             Ok(work) => Ok(summary(status, work)),
@@ -506,6 +517,9 @@ fn setup(case: &Case) -> Map<String, Value> {
         );
     }
     setup.insert("solver_tolerance".into(), json!(case.solver.tolerance));
+    if let Some(plan) = &case.stress {
+        setup.insert(stress::SETUP.into(), serde_json::to_value(plan).unwrap_or_default());
+    }
     if let Some(leak) = &case.leakage {
         setup.insert("leakage".into(), serde_json::to_value(leak).unwrap_or_default());
     }

@@ -26,6 +26,7 @@ use super::chunks::Chunks;
 use super::document;
 use super::error::{Result, io};
 use super::layout::{ArraySpec, DataType, Series, side};
+use super::reader::Reader;
 use super::writer::{lock, remove};
 use crate::finding;
 use crate::leakage::Leakage;
@@ -193,6 +194,22 @@ impl LeakTable {
         };
         let names = NUMBERS.iter().map(|number| number.name).filter(|name| wanted(name));
         LeakTable { columns: names.map(|name| (name, vec![])).collect(), gas: gas == Some(true) }
+    }
+
+    /// The leaks that a result holds.
+    ///
+    /// # Errors
+    /// [`StoreError::Corrupt`](super::StoreError::Corrupt) where a file is damaged.
+    pub fn of(reader: &Reader) -> Result<Option<LeakTable>> {
+        let Some(leaks) = reader.leaks() else { return Ok(None) };
+        let names = leaks.names.iter().filter(|name| **name != PRESSURE);
+        let columns = names.map(|name| Ok((*name, reader.leak(name)?))).collect::<Result<_>>()?;
+        Ok(Some(LeakTable { columns, gas: leaks.gas }))
+    }
+
+    /// Whether a finding of this code is about leaks.
+    pub fn is_judged_by(code: &str) -> bool {
+        CODES.contains(&code)
     }
 
     /// Adds the leak at a time.

@@ -1,5 +1,6 @@
 //! The stress at the stored times, one after the other.
 
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use asperity::stress::{StressQuantity, SubsurfaceStress, automatic_depths, contact_box, survey_with};
@@ -10,7 +11,7 @@ use thiserror::Error as Failure;
 use super::below::{Loads, missed, profiles, scalars};
 use super::{Below, Depths, StressPlan};
 use crate::choice;
-use crate::readable::quantity;
+use crate::instants;
 use crate::store::{At, FieldKind, Reader, StoreError, StressSet, StressWriter, Writer};
 
 /// Why the stress was not computed.
@@ -22,7 +23,18 @@ pub enum StressError {
     /// The stress cannot be computed like this, or the user interrupted it.
     #[error(transparent)]
     Solve(#[from] Error),
+    /// The result is not one whose stress can be computed.
+    #[error("{}: {why}", .path.display())]
+    Refused {
+        /// The result.
+        path: PathBuf,
+        /// Why, as a sentence.
+        why: &'static str,
+    },
 }
+
+/// Why there is no stress below layers.
+pub const LAYERED: &str = "the stress below the surface is not computed for bodies of layers yet";
 
 /// Computes the stress of a result that `writer` holds, and stores it there in place of one that is stored. `observe` is told
 /// the number of times done and of all. Nothing of the stress is stored where it ends early.
@@ -57,6 +69,17 @@ pub fn of_result(reader: &Reader, plan: &StressPlan, interrupt: &AtomicBool) -> 
     Ok(Below { set, instants, missed })
 }
 
+/// Refuses a result of bodies of layers.
+///
+/// # Errors
+/// [`StressError::Refused`].
+pub fn refuse_layers(reader: &Reader) -> Result<(), StressError> {
+    match reader.header().setup.contains_key("layer_separable") {
+        true => Err(StressError::Refused { path: reader.path().to_owned(), why: LAYERED }),
+        false => Ok(()),
+    }
+}
+
 /// The boundary of the domain that a result was computed on.
 pub(crate) fn boundary(reader: &Reader) -> Boundary {
     let word = reader.header().setup.get("boundary").and_then(serde_json::Value::as_str);
@@ -64,23 +87,15 @@ pub(crate) fn boundary(reader: &Reader) -> Boundary {
 }
 
 /// What will be stored: the depths and the instants of the plan for this result.
-fn set(reader: &Reader, plan: &StressPlan) -> Result<StressSet, StoreError> {
+fn set(reader: &Reader, plan: &StressPlan) -> Result<StressSet, StressError> {
+    refuse_layers(reader)?;
     if reader.header().grid.is_line() {
-        return Err(reader.on_line("pressure over a plane, which the stress below the surface needs"));
+        return Err(reader.on_line("pressure over a plane, which the stress below the surface needs").into());
     }
     if !reader.header().fields.contains(&FieldKind::Pressure) {
-        return Err(reader.no_field(FieldKind::Pressure));
+        return Err(reader.no_field(FieldKind::Pressure).into());
     }
-    let all = reader.field_times().len();
-    let mut instants: Vec<usize> = match &plan.times {
-        None => (0..all).collect(),
-        Some(times) => times.iter().map(|time| stored_at(reader, *time)).collect::<Result<_, _>>()?,
-    };
-    instants.sort_unstable();
-    instants.dedup();
-    if instants.is_empty() {
-        return Err(reader.missing("pressures".into(), "none yet".into()));
-    }
+    let instants = instants::stored(reader, plan.times.as_deref())?;
     let depths = match &plan.depths {
         Depths::List(list) => list.clone(),
         Depths::Auto => {
@@ -103,21 +118,6 @@ fn set(reader: &Reader, plan: &StressPlan) -> Result<StressSet, StoreError> {
         rolling: plan.rolling,
         instants,
     })
-}
-
-/// The stored instant of that time \[s\].
-fn stored_at(reader: &Reader, time: f64) -> Result<usize, StoreError> {
-    let index = reader.index(At::Time(time))?;
-    let times = reader.field_times();
-    if (times[index] - time).abs() <= 1e-9 * times.iter().fold(time.abs(), |most, t| most.max(t.abs())) {
-        return Ok(index);
-    }
-    let available: Vec<String> = times.iter().take(12).map(|time| quantity(*time, "s")).collect();
-    let more = if times.len() > available.len() { ", ..." } else { "" };
-    Err(reader.missing(
-        format!("pressure at t = {}", quantity(time, "s")),
-        format!("those at {}{more}", available.join(", ")),
-    ))
 }
 
 fn compute(

@@ -13,7 +13,8 @@ mod yielding;
 
 pub use below::{Below, Instant};
 pub(crate) use evaluate::boundary;
-pub use evaluate::{StressError, evaluate, of_result};
+pub use evaluate::{LAYERED, StressError, evaluate, of_result, refuse_layers};
+pub(crate) use plan::SETUP;
 pub use plan::{Depths, StressBody, StressDescription, StressPlan, bodies_of};
 pub use section::{Section, below_at, section};
 pub use yielding::{FirstYield, first_yield};

@@ -3,15 +3,22 @@
 use asperity::material::Body;
 use asperity::stress::{Rolling, StressQuantity, SubsurfaceStress, SurveyOptions};
 use asperity::{Boundary, Grid};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use super::evaluate::{StressError, refuse_layers};
+use crate::readable::{counted, quantity};
 use crate::store::{Reader, StressSet};
 
 /// Depths of "auto": the surface and 24 below it.
 const AUTOMATIC: usize = 25;
 /// Depths at which a maximum is looked for, besides.
 const REFINED: usize = 6;
+
+/// The plan of `[stress]` in the setup of a result.
+pub(crate) const SETUP: &str = "stress_plan";
+const NO_POISSON: &str =
+    "it does not say a constant Poisson's ratio of its first body; use asperity stress --poisson NU";
 
 /// A body as the stress sees it.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,7 +49,8 @@ pub fn bodies_of(reader: &Reader) -> Vec<StressBody> {
 }
 
 /// Depths below the surface.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Depths {
     /// Those of [`asperity::stress::automatic_depths`], for the largest contact of the times.
     Auto,
@@ -51,7 +59,7 @@ pub enum Depths {
 }
 
 /// Which stress is computed.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StressPlan {
     /// Name of the body.
     pub body: String,
@@ -124,16 +132,45 @@ impl StressPlan {
         }
     }
 
-    /// The plan for a result of which nothing else is said: what is stored, or the largest values of the first body.
-    /// `None` where the result does not say its Poisson's ratio.
-    pub fn for_result(reader: &Reader) -> Option<StressPlan> {
-        if let Some(set) = reader.stress() {
-            return Some(StressPlan::of(set, reader));
+    /// The plan that is known of a result: what its stress was computed by, or else `[stress]` of its case.
+    pub fn known(reader: &Reader) -> Option<StressPlan> {
+        let of_case = || serde_json::from_value(reader.header().setup.get(SETUP)?.clone()).ok();
+        reader.stress().map(|set| StressPlan::of(set, reader)).or_else(of_case)
+    }
+
+    /// The plan for a result of which nothing else is said: [`known`](Self::known), or the largest values of the first body.
+    ///
+    /// # Errors
+    /// [`StressError::Refused`] where the bodies have layers, or the result does not say their Poisson's ratio.
+    pub fn for_result(reader: &Reader) -> Result<StressPlan, StressError> {
+        refuse_layers(reader)?;
+        if let Some(plan) = StressPlan::known(reader) {
+            return Ok(plan);
         }
-        let body = bodies_of(reader).into_iter().next()?;
-        body.poisson
-            .filter(|ratio| (0.0..=0.5).contains(ratio))
-            .map(|ratio| StressPlan::new(&body.name, ratio))
+        let body = bodies_of(reader).into_iter().next();
+        let plan = body.and_then(|body| Some(StressPlan::new(&body.name, body.poisson?)));
+        let refused = || StressError::Refused { path: reader.path().to_owned(), why: NO_POISSON };
+        plan.filter(|plan| (0.0..=0.5).contains(&plan.poisson)).ok_or_else(refused)
+    }
+
+    /// The body, the depths and the times in a few words.
+    pub fn words(&self) -> String {
+        let depths = match &self.depths {
+            Depths::Auto => "automatic depths".to_owned(),
+            Depths::List(list) => {
+                let last = list.last().copied().unwrap_or_default();
+                format!("{} down to {}", counted(list.len(), "depth"), quantity(last, "m"))
+            }
+        };
+        let times = match &self.times {
+            None => "all stored times".to_owned(),
+            Some(times) => {
+                let shown: Vec<String> = times.iter().take(8).map(|time| quantity(*time, "s")).collect();
+                let more = if times.len() > shown.len() { ", ..." } else { "" };
+                format!("t = {}{more}", shown.join(", "))
+            }
+        };
+        format!("of {} (Poisson's ratio {}), {depths}, at {times}", self.body, self.poisson)
     }
 
     /// What a survey looks for.

@@ -53,7 +53,8 @@ class Leakage:
     across it or None); the hydraulic gap of Bruggeman's effective medium (`medium_gap`); `open_fraction`; pockets (`trapped_area`,
     `trapped_volume`); `conductance` (2, 2) [m^3] where both directions were asked for. Fields of shape (nx, ny): `pressure` (1 at the
     inlet to 0 at the outlet, NaN where there is no fluid or no connection) and `cells` (0 closed, 1 connected to inlet and outlet,
-    2 to the inlet alone, 3 to the outlet alone, 4 pocket).
+    2 to the inlet alone, 3 to the outlet alone, 4 pocket). `leak_resolved` is False where the constriction is less than four cells
+    wide (`findings` says so; the error of the gap and the pressure of the contact are known of a :class:`Result` only).
     """
 
     percolates: bool
@@ -67,11 +68,14 @@ class Leakage:
     trapped_area: float
     trapped_volume: float
     pressure: Floats
+    leak_resolved: bool
 
     def __init__(self, gap: Floats, contact: Any, size: tuple[float, float], keys: dict[str, Any]) -> None:
         self._gap, self._contact, self._size, self._keys = gap, contact, size, keys
         found = self._solved({})
         self.cells: Any = found.pop("cells")
+        #: What was found against the numbers.
+        self.findings = findings_of(json.loads(found.pop("findings")))
         conductance = found.pop("conductance")
         #: Effective conductance [m^3], where direction is "both".
         self.conductance: Floats | None = None if conductance is None else np.array(conductance)
@@ -231,6 +235,16 @@ def contact_of(result: Result, index: int) -> Any:
     gap = result.field("gap", index=index)
     deepest = np.abs(gap[np.isfinite(gap)]).max(initial=0.0)
     return np.ascontiguousarray(gap <= 1e-9 * deepest, dtype=np.uint8)
+
+
+def stored(result: Result) -> xarray.Dataset:
+    """The leaks that a result on disk holds."""
+    columns = dict(result._leaks)
+    times = columns.pop("leak_time")
+    tensor = columns.pop("conductance", None)
+    conductance = None if tensor is None else tensor.reshape(-1, 2, 2)
+    gas = "leak_rate_standard" in columns
+    return dataset(result, times, columns, gas, conductance, result._fluid_pressures)
 
 
 def dataset(

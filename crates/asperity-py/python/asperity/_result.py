@@ -299,7 +299,7 @@ class Result:
 
         setup = json.loads(self._attributes.get("setup") or "{}")
         if "layer_separable" in setup:
-            raise CaseError("the stress below the surface is not computed for bodies of layers yet")
+            raise CaseError(_core.LAYERED_STRESS)
         if self.is_line:
             raise CaseError("the stress below the surface is not computed for line contacts yet")
         if poisson is None:
@@ -314,7 +314,8 @@ class Result:
         return stress(pressure, size=self._size, poisson=poisson, depths=depths, boundary=boundary)
 
     def to_xarray(self) -> Any:
-        """The result as xarray.Dataset, as ``xarray.open_zarr`` gives it for one on disk."""
+        """The result as xarray.Dataset, as ``xarray.open_zarr`` gives it for one on disk, with the stress below the surface and the
+        leaks that are stored in it."""
         import xarray
 
         rows = {
@@ -332,6 +333,9 @@ class Result:
                 unit = "m3" if name == "stressed_volume" else "m" if name.endswith(("_depth", "_x", "_y")) and "_by_" not in name else "Pa"
                 dimensions = ("field_time", "depth")[: values.ndim]
                 maps[name] = (dimensions, values, {"units": unit, "long_name": name.replace("_", " ")})  # type: ignore[assignment]
+        for name in self._stress_fields:
+            words = {"units": "Pa", "long_name": name.replace("_", " ")}
+            maps[name] = (("field_time", "depth", "x", "y"), self._stress_volume(name), words)  # type: ignore[assignment]
         gap = ("initial_gap", (over, self.initial_gap, {"units": "m", "long_name": "undeformed gap"}))
         coordinates = {
             "time": ("time", np.asarray(self._table["time"]), {"units": "s", "long_name": "time"}),
@@ -351,7 +355,12 @@ class Result:
             coordinates[ends] = (ends, edges, {"units": unit, "long_name": f"ends of {words}"})
         # Text, as all other attributes, so that the dataset can be written.
         attributes = {**self._attributes, "findings": json.dumps(self._attributes.get("findings", []))}
-        return xarray.Dataset({**rows, **maps, **dict([gap])}, coords=coordinates, attrs=attributes)
+        whole = xarray.Dataset({**rows, **maps, **dict([gap])}, coords=coordinates, attrs=attributes)
+        if not self._leaks:
+            return whole
+        from ._leakage import stored
+
+        return whole.merge(stored(self), combine_attrs="override")
 
     def leakage(
         self,
@@ -375,7 +384,7 @@ class Result:
         gas (`inlet`, `outlet` [Pa, absolute], `gas`, or `viscosity` and `molar_mass` [kg/mol]; `temperature` [K]; `rarefaction`), or
         without a fluid the gap alone. `field` adds `fluid_pressure`.
         """
-        from ._leakage import dataset, over_time
+        from ._leakage import over_time, stored
 
         given: dict[str, Any] = {
             "direction": direction,
@@ -392,11 +401,7 @@ class Result:
             "field": field,
         }
         if self._leaks and all(value is None for value in given.values()):
-            columns = dict(self._leaks)
-            times = columns.pop("leak_time")
-            tensor = columns.pop("conductance", None)
-            conductance = None if tensor is None else tensor.reshape(-1, 2, 2)
-            return dataset(self, times, columns, "leak_rate_standard" in columns, conductance, None)
+            return stored(self)
         return over_time(self, given)
 
     @property
@@ -407,8 +412,8 @@ class Result:
         return Plots(self)
 
     def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
-        """Writes the result as a Zarr group, as a run of a case file does: :func:`open` and xarray read it. The stress below the
-        surface is not written: ``asperity stress`` computes it again.
+        """Writes the result as a Zarr group, as a run of a case file does: :func:`open` and xarray read it. Stress below the surface
+        and leaks that are stored with the result are written too.
 
         Raises
         ------
@@ -438,6 +443,8 @@ class Result:
             ],
             json.dumps(attributes.get("findings", [])),
         )
+        if self._path is not None and (self._stress or self._leaks):
+            _core.derive_again(self._path, os.fspath(path))
 
     def report(self, path: str | os.PathLike[str], *, force: bool = False, megabytes: int = 12) -> None:
         """Writes the result as one HTML page with maps and curves, of that size at most.
@@ -507,6 +514,25 @@ class Result:
         """The fields of all kept times, of a line contact as (times, n, 1)."""
         stack = self._stack(name)
         return stack[:, :, np.newaxis] if self.is_line else stack
+
+    def _stress_volume(self, name: str) -> Floats:
+        """A stored stress field of shape (field_time, depth, x, y)."""
+        assert self._path is not None
+        store = _core.Store(self._path)
+        depths = range(len(self._stress["depth"]))
+        return np.array([[store.stress_field(name, n, depth) for depth in depths] for n in range(len(self._field_steps))])
+
+    @property
+    def _fluid_pressures(self) -> Floats | None:
+        """Pressures of the fluid of shape (leak_time, x, y), where they are stored."""
+        if self._path is None or not (store := _core.Store(self._path)).has_fluid_pressure:
+            return None
+        return np.array([store.fluid_pressure(n) for n in range(len(self._leaks["leak_time"]))])
+
+    @property
+    def _stress_fields(self) -> list[str]:
+        """Names of the stress fields that are stored."""
+        return [] if self._path is None or not self._stress else _core.Store(self._path).stress_fields
 
     def _stack(self, name: str) -> Floats:
         held = self._fields[name]

@@ -30,7 +30,7 @@ impl Live {
         Live { path: path.to_owned() }
     }
 
-    /// What is at a path of the page: `/`, `/state`, `/stress.svg`, `/map/NAME`; `None` where nothing is.
+    /// What is at a path of the page: `/`, `/state`, `/stress.svg`, `/leak.svg`, `/map/NAME`; `None` where nothing is.
     ///
     /// # Errors
     /// [`StoreError`] where the result is damaged, has no row yet or not this map.
@@ -44,6 +44,10 @@ impl Live {
             }
             "/state" => answer("application/json", state_of(&reader, false)?.to_string().into_bytes()),
             "/stress.svg" => match stress::picture(&reader)? {
+                Some(picture) => answer("image/svg+xml", picture.into_bytes()),
+                None => Ok(None),
+            },
+            "/leak.svg" => match super::leak_map(&reader) {
                 Some(picture) => answer("image/svg+xml", picture.into_bytes()),
                 None => Ok(None),
             },
@@ -61,9 +65,6 @@ impl Live {
 /// What the page knows besides its maps; the surface only the first time, as it does not change.
 fn state_of(reader: &Reader, first: bool) -> Result<serde_json::Value, StoreError> {
     let mut state = state::state(reader, &Maps::live(reader, first)?)?;
-    if first {
-        super::add_leak_map(reader, &mut state);
-    }
     state["live"] = json!(true);
     state["running"] = json!(reader.is_being_written());
     Ok(state)

@@ -94,18 +94,17 @@ pub fn page(reader: &Reader, options: &Options) -> Result<String, StoreError> {
     if let Some(picture) = stress::picture(reader)? {
         state["stress"]["svg"] = STANDARD.encode(picture).into();
     }
-    add_leak_map(reader, &mut state);
+    if let Some(picture) = leak_map(reader) {
+        state["leak_map"] = picture.into();
+    }
     let blobs: String = maps.blobs.iter().map(|(name, data)| element(name, data)).collect();
     Ok(filled_page(reader, &state, &blobs))
 }
 
 /// The flow at the last instant at which the seal leaks. A page without this picture is still a page.
-fn add_leak_map(reader: &Reader, state: &mut serde_json::Value) {
-    if reader.leaks().is_some()
-        && let Ok(figure) = crate::leak::map_of(reader, crate::leak::last_leak(reader))
-    {
-        state["leak_map"] = figure.to_svg().into();
-    }
+fn leak_map(reader: &Reader) -> Option<String> {
+    reader.leaks()?;
+    crate::leak::map_of(reader, crate::leak::last_leak(reader)).ok().map(|figure| figure.to_svg())
 }
 
 /// The page with its state and its maps.

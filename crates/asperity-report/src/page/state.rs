@@ -1,5 +1,6 @@
 //! What a page knows besides its maps.
 
+use asperity_io::leakage::LeakHistory;
 use asperity_io::readable::quantity;
 use asperity_io::store::{FieldKind, Reader, Status, StoreError};
 use base64::Engine;
@@ -70,14 +71,16 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
     }))
 }
 
-/// The leaks over time; null where there are none.
+/// The leaks over time, what was asked for and what was found in words; null where there are none.
 fn leak(reader: &Reader) -> Result<Value, StoreError> {
-    let Some(leaks) = reader.leaks() else { return Ok(Value::Null) };
+    let Some(history) = LeakHistory::of(reader)? else { return Ok(Value::Null) };
     let mut columns = Map::new();
-    for series in leaks.series() {
-        columns
-            .insert(series.name.into(), json!({"units": series.units, "values": reader.leak(series.name)?}));
+    for series in history.table.series() {
+        let values = history.table.get(series.name);
+        columns.insert(series.name.into(), json!({"units": series.units, "values": values}));
     }
+    columns.insert("asked".into(), json!(history.leak.words()));
+    columns.insert("found".into(), json!(history.sentence()));
     Ok(Value::Object(columns))
 }
 

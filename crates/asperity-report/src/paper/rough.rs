@@ -153,8 +153,7 @@ fn plot_error(error: crate::result::PlotError) -> super::PaperError {
         }
         crate::result::PlotError::Stress(StressError::Store(error)) => error.into(),
         crate::result::PlotError::Stress(StressError::Solve(error)) => error.into(),
-        error @ (crate::result::PlotError::NoPoisson(_)
-        | crate::result::PlotError::Layers(_)
+        error @ (crate::result::PlotError::Stress(StressError::Refused { .. })
         | crate::result::PlotError::OnLine { .. }) => {
             asperity::Error::invalid("figure", error, "one of the paper's").into()
         }

@@ -66,6 +66,8 @@ pub(crate) fn quantity_panels(reader: &Reader) -> Vec<QuantityPanel> {
             Quantity::ContactStiffness => ("Contact stiffness", "stiffness", ""),
             Quantity::ContactPerimeter if line => ("Ends of the contact", "number", ""),
             Quantity::ContactPerimeter => ("Perimeter of the contact", "length", ""),
+            Quantity::ContactPercolation => ("Percolation", "1: x, 2: y, 3: both", "contact"),
+            Quantity::GapPercolation => ("Percolation", "1: x, 2: y, 3: both", "gap"),
             _ => ("Gap", "gap", "rms"),
         };
         let line = (line, quantity.name());

@@ -101,12 +101,6 @@ pub enum PlotError {
     /// The stress below the surface cannot be computed.
     #[error(transparent)]
     Stress(#[from] StressError),
-    /// The stress needs a Poisson's ratio that the result does not have.
-    #[error("{} does not say a constant Poisson's ratio of its first body; use asperity stress --poisson NU --plot PATH", .0.display())]
-    NoPoisson(std::path::PathBuf),
-    /// The stress is that of half-spaces.
-    #[error("{} is of bodies of layers: the stress below their surface is not computed yet", .0.display())]
-    Layers(std::path::PathBuf),
     /// A line contact has no such figure.
     #[error("{} is a line contact, in which nothing changes along y: {what}", path.display())]
     OnLine {

@@ -1,8 +1,8 @@
 //! The stress below the surface: sections through its largest value, the map there, and the profile over depth.
 
 use asperity_io::readable::quantity;
-use asperity_io::store::{At, Reader};
-use asperity_io::stress::{Below, Instant, Section, StressPlan, below_at, section};
+use asperity_io::store::{At, FieldKind, Reader};
+use asperity_io::stress::{Below, Instant, Section, StressError, StressPlan, below_at, section};
 use ndarray::{Array2, s};
 
 use super::{PlotError, caption};
@@ -11,19 +11,33 @@ use crate::figure::{Axis, Colours, Curves, Figure, Map, Series, Style, Values};
 /// A section is this many times as wide as deep, unless the domain ends before.
 const WIDE: f64 = 3.0;
 
-/// The stress at a stored instant: what the result holds, or the largest values of its first body.
+/// The stress at a stored instant: what the result holds, or the largest values of its first body. In place of a last instant
+/// without contact stands the last one with contact, and the caption says so.
 pub(super) fn stress(reader: &Reader, at: At) -> Result<Figure, PlotError> {
-    if reader.header().setup.contains_key("layer_separable") {
-        return Err(PlotError::Layers(reader.path().to_owned()));
-    }
-    let plan =
-        StressPlan::for_result(reader).ok_or_else(|| PlotError::NoPoisson(reader.path().to_owned()))?;
+    let plan = StressPlan::for_result(reader)?;
     let stored = Below::of(reader)?;
-    let index = reader.index(at)?;
-    match stored.filter(|below| below.instants.iter().any(|instant| instant.index == index)) {
-        Some(below) => stress_figure(reader, &below, index),
-        None => stress_figure(reader, &below_at(reader, &plan, at)?, index),
+    let last = reader.index(at)?;
+    let index = if at == At::Last { last_with_contact(reader)?.unwrap_or(last) } else { last };
+    let mut figure = match stored.filter(|below| below.instants.iter().any(|instant| instant.index == index))
+    {
+        Some(below) => stress_figure(reader, &below, index)?,
+        None => stress_figure(reader, &below_at(reader, &plan, At::Index(index))?, index)?,
+    };
+    if index != last {
+        figure.caption += " This is the last stored time with contact.";
     }
+    Ok(figure)
+}
+
+/// The last stored instant with a pressure.
+fn last_with_contact(reader: &Reader) -> Result<Option<usize>, PlotError> {
+    for index in (0..reader.field_times().len()).rev() {
+        let pressure = reader.field(FieldKind::Pressure, At::Index(index))?;
+        if pressure.iter().any(|pressure| *pressure > 0.0) {
+            return Ok(Some(index));
+        }
+    }
+    Ok(None)
 }
 
 /// The figure of a stored instant, by its number, of what was found; without a title.
@@ -32,7 +46,8 @@ pub(super) fn stress(reader: &Reader, at: At) -> Result<Figure, PlotError> {
 /// [`PlotError`] where nothing was found at this instant, or nothing touches.
 pub fn stress_figure(reader: &Reader, below: &Below, index: usize) -> Result<Figure, PlotError> {
     let Some(instant) = below.instants.iter().find(|instant| instant.index == index) else {
-        return Err(PlotError::NoPoisson(reader.path().to_owned()));
+        let why = "the stress was not computed at this time";
+        return Err(StressError::Refused { path: reader.path().to_owned(), why }.into());
     };
     let found = section(reader, below, instant)?;
     let [depth, x, y] = found.place;

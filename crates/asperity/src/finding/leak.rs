@@ -14,8 +14,8 @@ const PRESSURE_SHARE: f64 = 0.1;
 /// What a leak is judged by.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LeakState {
-    /// Row that the gap belongs to.
-    pub row: usize,
+    /// Row that the gap belongs to; `None` for a gap of no run.
+    pub row: Option<usize>,
     /// Gap at the critical constriction \[m\], and open cells across it where it is bounded; `None` where the seal is tight.
     pub constriction: Option<(f64, Option<usize>)>,
     /// Error of the gap that the tolerance of the solver leaves \[m\]: the tolerance times the mean displacement.
@@ -31,7 +31,23 @@ pub struct LeakState {
 struct Worst {
     value: f64,
     limit: f64,
-    rows: [usize; 2],
+    rows: Option<[usize; 2]>,
+}
+
+impl Worst {
+    /// The rows in brackets, where there are any.
+    fn place(&self) -> String {
+        self.rows.map_or(String::new(), |at| format!(" ({})", rows(at)))
+    }
+
+    /// A warning about it.
+    fn warning(&self, code: &'static str, text: String) -> Finding {
+        let finding = Finding::warning(code, self.value, self.limit, text);
+        match self.rows {
+            Some(at) => finding.at(at),
+            None => finding,
+        }
+    }
 }
 
 /// The judge of the leaks of one run.
@@ -49,12 +65,12 @@ impl LeakJudge {
         // Takes in a number over its limit, where it is too small or too large by the most.
         let mut note = |worst: &mut Option<Worst>, value: f64, limit: f64, worse: bool| {
             resolved = false;
-            let first = worst.map_or(state.row, |worst| worst.rows[0]);
+            let first = worst.and_then(|worst| worst.rows).map(|rows| rows[0]).or(state.row);
             let (value, limit) = match *worst {
                 Some(old) if !worse => (old.value, old.limit),
                 _ => (value, limit),
             };
-            *worst = Some(Worst { value, limit, rows: [first, state.row] });
+            *worst = Some(Worst { value, limit, rows: first.zip(state.row).map(|(a, b)| [a, b]) });
         };
         if let Some((gap, width)) = state.constriction {
             let limit = ABOVE_ERROR * state.gap_error;
@@ -79,34 +95,36 @@ impl LeakJudge {
 
     /// What was found.
     pub fn findings(&self) -> Vec<Finding> {
-        let below = self.below_error.map(|Worst { value, limit, rows: at }| {
+        let below = self.below_error.map(|worst| {
             let text = format!(
-                "The gap at the critical constriction is {} ({}), less than 30 times the error of the gap, {}: the leak there is an \
+                "The gap at the critical constriction is {}{}, less than 30 times the error of the gap, {}: the leak there is an \
                  estimate of its order at best. Lower solver.tolerance, which costs iterations only, and refine the grid.",
-                si(value, "m"),
-                rows(at),
-                si(limit / ABOVE_ERROR, "m")
+                si(worst.value, "m"),
+                worst.place(),
+                si(worst.limit / ABOVE_ERROR, "m")
             );
-            Finding::warning(LEAK_BELOW_GAP_ERROR, value, limit, text).at(at)
+            worst.warning(LEAK_BELOW_GAP_ERROR, text)
         });
-        let narrow = self.narrow.map(|Worst { value, limit, rows: at }| {
+        let narrow = self.narrow.map(|worst| {
             let text = format!(
-                "The critical constriction is {} cells wide ({}), less than {limit}: the leak depends on the grid. Refine it \
+                "The critical constriction is {} {} wide{}, less than {}: the leak depends on the grid. Refine it \
                  (domain.cells), or leave short waves out.",
-                digits(value),
-                rows(at)
+                digits(worst.value),
+                if worst.value == 1.0 { "cell" } else { "cells" },
+                worst.place(),
+                worst.limit
             );
-            Finding::warning(CONSTRICTION_UNRESOLVED, value, limit, text).at(at)
+            worst.warning(CONSTRICTION_UNRESOLVED, text)
         });
-        let pressure = self.pressure.map(|Worst { value, limit, rows: at }| {
+        let pressure = self.pressure.map(|worst| {
             let text = format!(
-                "The fluid's pressure drops by {} ({}), more than a tenth of the mean pressure in the contact, {}: it would push the \
+                "The fluid's pressure drops by {}{}, more than a tenth of the mean pressure in the contact, {}: it would push the \
                  bodies apart, which is not computed, so the leak is too small. Take a smaller drop, or more load.",
-                si(value, "Pa"),
-                rows(at),
-                si(limit / PRESSURE_SHARE, "Pa")
+                si(worst.value, "Pa"),
+                worst.place(),
+                si(worst.limit / PRESSURE_SHARE, "Pa")
             );
-            Finding::warning(FLUID_PRESSURE_LARGE, value, limit, text).at(at)
+            worst.warning(FLUID_PRESSURE_LARGE, text)
         });
         [below, narrow, pressure].into_iter().flatten().collect()
     }
@@ -119,7 +137,7 @@ mod tests {
     #[test]
     fn leaks_are_judged_by_gap_width_and_pressure() {
         let good = LeakState {
-            row: 0,
+            row: Some(0),
             constriction: Some((31.0, Some(4))),
             gap_error: 1.0,
             pressure_drop: Some(1e5),
@@ -130,10 +148,10 @@ mod tests {
         assert!(judge.see(&LeakState { constriction: None, gap_error: 100.0, ..good }));
         assert!(judge.see(&LeakState { constriction: Some((1e3, None)), pressure_drop: None, ..good }));
         assert!(judge.findings().is_empty());
-        assert!(!judge.see(&LeakState { row: 2, constriction: Some((20.0, Some(9))), ..good }));
-        assert!(!judge.see(&LeakState { row: 3, constriction: Some((10.0, Some(3))), ..good }));
-        assert!(!judge.see(&LeakState { row: 4, constriction: Some((25.0, Some(9))), ..good }));
-        assert!(!judge.see(&LeakState { row: 5, pressure_drop: Some(2e5), ..good }));
+        assert!(!judge.see(&LeakState { row: Some(2), constriction: Some((20.0, Some(9))), ..good }));
+        assert!(!judge.see(&LeakState { row: Some(3), constriction: Some((10.0, Some(3))), ..good }));
+        assert!(!judge.see(&LeakState { row: Some(4), constriction: Some((25.0, Some(9))), ..good }));
+        assert!(!judge.see(&LeakState { row: Some(5), pressure_drop: Some(2e5), ..good }));
         let found = judge.findings();
         let numbers: Vec<_> = found.iter().map(|f| (f.code.as_ref(), f.value, f.limit, f.rows)).collect();
         assert_eq!(

@@ -17,12 +17,15 @@ const ADVICE: &str = "Describe it by [[body.layer]] (base = \"rigid\", or the ma
 /// A contact of that radius on a body of that thickness \[m\], called "The expected contact" or as `words` say.
 pub fn thin_body(words: &str, radius: f64, thickness: f64) -> Option<Finding> {
     (radius > WIDEST * thickness).then(|| {
+        let stiffer = match radius / thickness {
+            share if share <= 1.0 => format!("about {} % stiffer", digits((100.0 * share).round())),
+            _ => "several times stiffer".to_owned(),
+        };
         let text = format!(
-            "{words} has a radius of {}, and the body is {} thick: on a rigid base it would be stiffer than the half-space by \
-             about {} %. {ADVICE}",
+            "{words} has a radius of {}, and the body is {} thick: on a rigid base the contact would be {stiffer} than computed \
+             for the half-space. {ADVICE}",
             si(radius, "m"),
             si(thickness, "m"),
-            digits((100.0 * radius / thickness).round()),
         );
         Finding::warning(THIN_BODY, radius, WIDEST * thickness, text)
     })

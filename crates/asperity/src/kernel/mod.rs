@@ -61,7 +61,7 @@ pub trait Kernel: std::fmt::Debug + Send + Sync {
         false
     }
 
-    /// Whether cells of sides `cell` = \[dx, dy\] \[m\] resolve the body.
+    /// Whether cells of sides `cell` = \[dx, dy\] \[m\] of a free domain resolve the body.
     ///
     /// # Errors
     /// [`Error::Invalid`](crate::Error::Invalid) where they do not.

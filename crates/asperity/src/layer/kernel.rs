@@ -58,6 +58,12 @@ impl Layered {
         Ok(Layered { stacks, scale })
     }
 
+    /// Longest side that a cell of a free domain may have \[m\]: 4 times the thinnest top layer.
+    pub fn longest_cell(&self) -> f64 {
+        let tops = self.stacks.iter().filter_map(|stack| stack.layers().first());
+        COARSEST * tops.map(|layer| layer.thickness).fold(f64::INFINITY, f64::min)
+    }
+
     /// The bodies; their moduli have a common factor.
     pub fn stacks(&self) -> &[Stack] {
         &self.stacks
@@ -98,18 +104,16 @@ impl Kernel for Layered {
     }
 
     fn check(&self, cell: [f64; 2]) -> Result<()> {
-        let longest = cell[0].max(cell[1]);
-        let tops = self.stacks.iter().filter_map(|stack| stack.layers().first());
-        let thinnest = tops.map(|layer| layer.thickness).fold(f64::INFINITY, f64::min);
-        if longest <= COARSEST * thinnest {
+        let (longest, most) = (cell[0].max(cell[1]), self.longest_cell());
+        if longest <= most {
             return Ok(());
         }
         Err(Error::invalid(
             "longest side of a cell",
             format!("{longest:e} m"),
             format!(
-                "at most {:e} m, {COARSEST} times the thickness of the top layer: take more cells or a smaller domain",
-                COARSEST * thinnest
+                "at most {most:e} m on a free domain, {COARSEST} times the thickness of the top layer: take more cells, a \
+                 smaller domain or a periodic one"
             ),
         ))
     }

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::operator::Operator;
 use crate::quantities::{Column, ContactStiffness, Quantity, contact_edges, densities, spot_classes};
 use crate::sliding::Friction;
-use crate::spots::Spots;
+use crate::spots::{Spots, spans};
 use asperity_sweep::{strands, sweep};
 
 /// What takes the quantities of a march, and those of the last row.
@@ -161,6 +161,11 @@ impl Step<'_> {
             .any(|column| column.quantity.is_of_spots())
             .then(|| Spots::of(grid, boundary, pressure, |p| *p > 0.0));
         let of_spots = |of: fn(&Spots) -> f64| spots.as_ref().map_or(f64::NAN, of);
+        // 1 along x, 2 along y, 3 both; on a line of cells nothing reaches along y.
+        let across = |on: fn(&f64) -> bool| {
+            let [x, y] = spans(boundary, pressure, on);
+            f64::from(u8::from(x) + 2 * u8::from(y && !grid.is_line()))
+        };
         let energy = |of: fn(&Energy) -> f64| energy.as_ref().map_or(f64::NAN, of);
         let moving = |of: fn(&Friction) -> f64| self.friction.as_ref().map_or(f64::NAN, of);
         let (c, w) = (self.compliance, self.state.approach);
@@ -178,6 +183,8 @@ impl Step<'_> {
                 Quantity::LargestSpot => of_spots(|s| s.areas.first().copied().unwrap_or(0.0)),
                 Quantity::MeanSpot => of_spots(Spots::mean_area),
                 Quantity::ContactPerimeter => contact_edges(pressure, boundary).length(grid),
+                Quantity::ContactPercolation => across(|p| *p > 0.0),
+                Quantity::GapPercolation => across(|p| *p <= 0.0),
                 Quantity::RmsGap => self.rms_gap(),
                 Quantity::ElasticEnergy => energy(|e| e.elastic),
                 Quantity::DissipatedEnergy => energy(|e| e.dissipated),

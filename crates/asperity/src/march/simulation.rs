@@ -172,7 +172,7 @@ impl Simulation {
             // the gap with its dents
             + has(self.plasticity == Plasticity::Accumulate, 8 * n)
             + has(self.quantities.has(Quantity::ContactStiffness), ContactStiffness::bytes(grid, self.boundary))
-            + has(self.quantities.list.iter().any(|q| q.is_of_spots()), Spots::bytes(grid))
+            + has(self.quantities.list.iter().any(|q| q.connects()), Spots::bytes(grid))
     }
 
     /// The quantities of each row, with the ends of their bins.
@@ -224,7 +224,9 @@ impl Simulation {
         if touchable == 0 {
             return Err(Error::invalid("gap", "infinite everywhere", "finite in one cell at least"));
         }
-        self.kernel.check(self.grid.spacing())?;
+        if self.boundary == Boundary::Free {
+            self.kernel.check(self.grid.spacing())?;
+        }
         let widest = self.grid.longest_side();
         if let Some(depth) = self.kernel.depth()
             && self.boundary == Boundary::Periodic

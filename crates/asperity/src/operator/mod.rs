@@ -66,14 +66,11 @@ pub trait Operator: Send {
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`](crate::Error::Invalid) where the grid does not resolve the body.
+/// [`Error::Invalid`](crate::Error::Invalid) where the grid of a free domain does not resolve the body.
 pub fn plan(grid: Grid, boundary: Boundary, kernel: Arc<dyn Kernel>) -> Result<Box<dyn Operator>> {
     Ok(match boundary {
         Boundary::Free => Box::new(Free::new(grid, kernel)?),
-        Boundary::Periodic => {
-            kernel.check(grid.spacing())?;
-            Box::new(Periodic::new(grid, kernel))
-        }
+        Boundary::Periodic => Box::new(Periodic::new(grid, kernel)),
     })
 }
 

@@ -6,6 +6,8 @@
 //! | `contact_spots` | | number of contact spots: patches of cells that touch and share edges |
 //! | `largest_spot`, `mean_spot` | m² | area of the largest spot, mean area of a spot; 0 without contact |
 //! | `contact_perimeter` | m | length of the edges between cells in and out of contact |
+//! | `contact_percolation` | | 1 where contact reaches across the domain along x, 2 along y, 3 both, 0 neither |
+//! | `gap_percolation` | | the same of the open cells |
 //! | `rms_gap` | m | root of the mean square of the gap over the cells that can touch |
 //! | `elastic_energy` | J | energy in the springs of the bodies |
 //! | `dissipated_energy` | J | energy that their dashpots have turned into heat since t = 0 |
@@ -62,6 +64,12 @@ pub enum Quantity {
     /// The border of a free domain does not count. A smooth contour without preferred direction is shorter by π/4
     /// (Yastrebov, Anciaux & Molinari 2017).
     ContactPerimeter,
+    /// Whether cells in contact that share edges reach from border to border: 1 along x, 2 along y, 3 both, 0 neither.
+    ///
+    /// On a periodic domain they may pass across the borders at their sides.
+    ContactPercolation,
+    /// The same of the cells out of contact: where it is 0 no fluid passes.
+    GapPercolation,
     /// Root mean square of the gap over the cells that can touch, in m.
     RmsGap,
     /// Energy stored in the springs of both bodies, in J.
@@ -104,12 +112,14 @@ pub enum Quantity {
 
 impl Quantity {
     /// Every quantity.
-    pub const ALL: [Quantity; 22] = [
+    pub const ALL: [Quantity; 24] = [
         Quantity::ContactStiffness,
         Quantity::ContactSpots,
         Quantity::LargestSpot,
         Quantity::MeanSpot,
         Quantity::ContactPerimeter,
+        Quantity::ContactPercolation,
+        Quantity::GapPercolation,
         Quantity::RmsGap,
         Quantity::ElasticEnergy,
         Quantity::DissipatedEnergy,
@@ -149,6 +159,8 @@ impl Quantity {
             Quantity::LargestSpot => "largest_spot",
             Quantity::MeanSpot => "mean_spot",
             Quantity::ContactPerimeter => "contact_perimeter",
+            Quantity::ContactPercolation => "contact_percolation",
+            Quantity::GapPercolation => "gap_percolation",
             Quantity::RmsGap => "rms_gap",
             Quantity::ElasticEnergy => "elastic_energy",
             Quantity::DissipatedEnergy => "dissipated_energy",
@@ -178,7 +190,10 @@ impl Quantity {
     pub fn units(self) -> &'static str {
         match self {
             Quantity::ContactStiffness => "N/m",
-            Quantity::ContactSpots | Quantity::SpotHistogram => "1",
+            Quantity::ContactSpots
+            | Quantity::SpotHistogram
+            | Quantity::ContactPercolation
+            | Quantity::GapPercolation => "1",
             Quantity::LargestSpot | Quantity::MeanSpot => "m2",
             Quantity::ContactPerimeter | Quantity::RmsGap => "m",
             Quantity::ElasticEnergy
@@ -207,6 +222,8 @@ impl Quantity {
             Quantity::LargestSpot => "area of the largest contact spot",
             Quantity::MeanSpot => "mean area of a contact spot",
             Quantity::ContactPerimeter => "counted perimeter of the contact",
+            Quantity::ContactPercolation => "percolation of the contact (1: x, 2: y, 3: both)",
+            Quantity::GapPercolation => "percolation of the gap (1: x, 2: y, 3: both)",
             Quantity::RmsGap => "rms gap",
             Quantity::ElasticEnergy => "elastic energy",
             Quantity::DissipatedEnergy => "dissipated energy",
@@ -246,6 +263,11 @@ impl Quantity {
     /// Whether it belongs to a contact in motion.
     pub fn is_of_motion(self) -> bool {
         Quantity::OF_MOTION.contains(&self) || self == Quantity::FrictionCoefficientTotal
+    }
+
+    /// Whether it takes the memory of [`Spots`](crate::spots::Spots): connected cells are found.
+    pub(crate) fn connects(self) -> bool {
+        self.is_of_spots() || matches!(self, Quantity::ContactPercolation | Quantity::GapPercolation)
     }
 
     /// Whether it is about contact spots.

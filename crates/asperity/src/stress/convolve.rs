@@ -161,8 +161,9 @@ impl SubsurfaceStress {
     fn transformed_rows(&self, component: Component, depth: f64) -> Array2<f64> {
         let ([nx, ny], [dx, dy]) = (self.grid.cells(), self.grid.spacing());
         let (fft, odd) = (&self.rows_forward, component.is_odd()[1]);
+        let is_far = depth > (nx as f64 * dx).max(ny as f64 * dy);
         let at = |i: usize, j: usize| {
-            corner(component, (i as f64 - 0.5) * dx, (j as f64 - 0.5) * dy, depth, self.poisson)
+            corner(component, (i as f64 - 0.5) * dx, (j as f64 - 0.5) * dy, depth, self.poisson, is_far)
         };
         let mut rows = Array2::zeros((nx, self.lengths[1] / 2 + 1));
         let strips = rows.axis_chunks_iter_mut(Axis(0), STRIP).into_par_iter();

@@ -5,7 +5,7 @@ use crate::grid::{Boundary, Grid};
 
 /// Depths between 0 and this share of a cell are refused: they show the steps of the pressure from cell to cell.
 const SHALLOWEST: f64 = 0.25;
-/// Depths beyond this many times the domain are refused: the stress there is nothing but rounding.
+/// Depths beyond this many times the domain are a slip.
 const DEEPEST: f64 = 1e9;
 /// Depths of [`automatic_depths`] below the surface.
 const AUTOMATIC: usize = 24;

@@ -409,3 +409,28 @@ fn any_number_of_threads_gives_the_same_bits() {
     };
     assert_eq!(on(1), on(3));
 }
+
+#[test]
+fn far_below_the_domain_a_cell_is_a_point_load() {
+    // One loaded cell, seen from a depth of 1e7 domains. J. Boussinesq's point load (Johnson, Contact Mechanics, 3.19).
+    let (grid, poisson, z) = (Grid::new([8, 8], [1.0, 1.0]).unwrap(), 0.3, 1e7);
+    let mut p = vec![0.0; 64];
+    p[2 * 8 + 3] = 1.0;
+    let mut stress = SubsurfaceStress::new(grid, Boundary::Free, poisson).unwrap();
+    stress.set_pressure(&p).unwrap();
+    let found = all(&mut stress, &p, z);
+    let (x, y, load) = (4.0 / 8.0, -2.0 / 8.0, grid.cell_area());
+    let unit = load / (TAU * z * z);
+    let expected = [-unit * (poisson - 0.5), -unit * (poisson - 0.5), -3.0 * unit];
+    let at = 6 * 8 + 1;
+    for (field, expected) in found.iter().zip(expected) {
+        // The point's own terms of x/z are 1e-14; the rounding grows with the square of the cells along a side.
+        assert!((field[at] - expected).abs() < 1e-11 * unit, "{} {expected}", field[at]);
+    }
+    for (field, across) in [(&found[4], x), (&found[5], y)] {
+        let expected = -3.0 * unit * across / z;
+        assert!((field[at] / expected - 1.0).abs() < 1e-9, "{} {expected}", field[at]);
+    }
+    // Of the order (x/z)^2: nothing is left of it but no more either.
+    assert!(found[3][at].abs() < 1e-12 * unit, "{}", found[3][at]);
+}

@@ -2,15 +2,15 @@
 
 use std::ops::Range;
 
-use asperity::Error;
-use asperity::layer::{BodyLayer, LayeredBody, Separated, separate};
+use asperity::layer::{BodyLayer, Layered, LayeredBody, Separated, separate};
+use asperity::{Boundary, Error, Grid};
 
 use super::Checks;
 use super::body::Made;
 use crate::case::quantity::range::{Poisson, Positive};
 use crate::case::quantity::{Number, Pressure};
 use crate::case::raw::{self, At, BodyBase};
-use crate::case::words::missing_key;
+use crate::case::words::{missing_key, number};
 
 /// Most layers of a body.
 const MOST: usize = 100;
@@ -125,17 +125,53 @@ pub fn separated(
     });
     let all: Vec<LayeredBody> = all.collect();
     let layered = raw.iter().find(|at| !at.value.layer.is_empty())?;
-    let one_clock = made.iter().all(|one| one.clock == made[0].clock);
-    let separated = match one_clock {
-        true => separate(&all),
-        false => Err(Error::invalid(
-            "temperature shift of the layers",
-            "not the same in all of them",
+    let other_clock = made.iter().position(|one| one.clock != made[0].clock);
+    let separated = match other_clock {
+        None => separate(&all),
+        Some(n) => Err(Error::invalid(
+            format!("temperature shift of {}", parts[n].name),
+            format!("not that of {}", parts[0].name),
             "the same law for all layers and bodies while the temperature changes: otherwise waves of different lengths creep \
-             differently, which is not solved yet",
+             differently, which is not solved yet. Give all of them the same `shift`, or hold the temperature constant",
         )),
     };
-    checks.core(&layered.span, separated)
+    // The part that the error names, by the end of its subject.
+    let named = |error: &Error| match error {
+        Error::Invalid { what, .. } => {
+            parts.iter().filter(|part| what.ends_with(&part.name)).max_by_key(|part| part.name.len())
+        }
+        _ => None,
+    };
+    let span = separated.as_ref().err().and_then(named).map_or(&layered.span, |part| part.span);
+    checks.core(span, separated)
+}
+
+/// Whether the cells of a free domain resolve the top layers; a periodic domain takes layers of any thickness.
+pub fn resolved(
+    checks: &mut Checks<'_, '_>,
+    bodies: &[At<raw::Body>],
+    domain: &At<raw::Domain>,
+    grid: &Grid,
+    layers: &Layered,
+) {
+    if domain.value.boundary.unwrap_or_default() == Boundary::Periodic {
+        return;
+    }
+    let (longest, cell) = (layers.longest_cell(), grid.spacing()[0].max(grid.spacing()[1]));
+    let tops = bodies.iter().filter_map(|at| at.value.layer.first());
+    let thinnest = tops.min_by(|a, b| a.value.thickness.get().total_cmp(&b.value.thickness.get()));
+    if let Some(layer) = thinnest.filter(|_| cell > longest) {
+        let least = grid.size().map(|size| (size / longest).ceil());
+        let message = format!(
+            "the cells are {} m long, more than 4 times the thickness of this layer: they do not resolve it",
+            number(cell)
+        );
+        let help = format!(
+            "set domain.cells to [{}, {}] or more, take a smaller domain, or boundary = \"periodic\", which needs no such cells",
+            least[0], least[1]
+        );
+        checks.fault(&layer.span, message, &format!("cells of at most {} m", number(longest)), Some(&help));
+    }
 }
 
 /// Thickness of the thinnest body that is taken as a half-space [m], where the case gives it.

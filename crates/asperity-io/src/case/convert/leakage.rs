@@ -4,22 +4,25 @@ use asperity::Boundary;
 use asperity::leakage::Sides;
 
 use super::Checks;
+use super::stored_times::stored_times;
+use crate::case::plan::Output;
 use crate::case::raw::{self, At, LeakDirection};
 use crate::leakage::{Fluid, GasKind, Leak};
+use crate::store::FieldKind;
 
 /// What is wrong with the keys of a leakage: message, what was expected, what to do.
 pub struct Fault(pub String, pub &'static str, pub &'static str);
 
-/// The section, checked; the outer `None` is a fault.
+/// The section, checked; `None` where it has a fault.
 pub fn section(
     checks: &mut Checks<'_, '_>,
-    at: Option<&At<raw::Leakage>>,
+    at: &At<raw::Leakage>,
     boundary: Boundary,
     temperatures: Option<&[(f64, f64)]>,
-    keeps_gap: bool,
-) -> Option<Option<Leak>> {
-    let Some(at) = at else { return Some(None) };
-    if !keeps_gap {
+    output: &Output,
+    end: f64,
+) -> Option<Leak> {
+    if !output.fields.contains(&FieldKind::Gap) {
         let message =
             "leakage is computed from the stored gap, but output.fields does not name it".to_owned();
         checks.fault(
@@ -30,8 +33,11 @@ pub fn section(
         );
         return None;
     }
+    let times = stored_times(checks, at.value.times.as_ref(), output, end);
     match leak(&at.value, boundary) {
-        Ok(leak) => Some(Some(Leak { temperatures: temperatures.unwrap_or_default().to_vec(), ..leak })),
+        Ok(leak) => {
+            Some(Leak { temperatures: temperatures.unwrap_or_default().to_vec(), times: times?, ..leak })
+        }
         Err(Fault(message, expected, help)) => {
             checks.fault(&at.span, message, expected, Some(help));
             None
@@ -39,7 +45,7 @@ pub fn section(
     }
 }
 
-/// The leakage that the keys describe.
+/// The leakage that the keys describe, at all stored times.
 pub fn leak(raw: &raw::Leakage, boundary: Boundary) -> Result<Leak, Fault> {
     let usual = if boundary == Boundary::Periodic { Sides::Periodic } else { Sides::Closed };
     let sides = raw.sides.unwrap_or(usual);
@@ -59,6 +65,7 @@ pub fn leak(raw: &raw::Leakage, boundary: Boundary) -> Result<Leak, Fault> {
         fluid: fluid(raw)?,
         field: raw.field.unwrap_or(false),
         temperatures: vec![],
+        times: None,
     })
 }
 

@@ -14,6 +14,7 @@ mod material;
 mod motion;
 mod output;
 pub(super) mod prepare;
+mod stored_times;
 pub(super) mod stress;
 pub(super) mod surface;
 mod temperature;
@@ -33,7 +34,6 @@ use super::quantity::QuantityError;
 use super::raw::{self, At, Document};
 use super::text::{MOST_ERRORS, Text};
 use super::{Case, MaterialReport};
-use crate::store::FieldKind;
 
 /// The case that a document describes, or the faults found.
 ///
@@ -143,9 +143,13 @@ pub fn case(
     let extra = output::extra_fields(&document.solver, &document.output);
     domain::memory(&mut checks, &document.domain, grid.as_ref(), fields, extra, scheme);
 
+    if let (Some(grid), Some(layers)) = (&grid, pair.as_ref().and_then(|pair| pair.layers.as_ref())) {
+        layer::resolved(&mut checks, &document.body, &document.domain, grid, layers);
+    }
+
     let stress = match (&document.stress, &grid, &pair, &output, &times) {
         (Some(at), _, Some(pair), ..) if pair.layers.is_some() => {
-            let message = "the stress below the surface is not computed for bodies of layers yet".to_owned();
+            let message = crate::stress::LAYERED.to_owned();
             checks.fault(&at.span, message, "bodies without layers", Some("delete the section"));
             None
         }
@@ -159,19 +163,19 @@ pub fn case(
         }
         _ => None,
     };
-    let keeps_gap = document
-        .output
-        .fields
-        .as_ref()
-        .is_none_or(|fields| fields.iter().any(|at| at.value == FieldKind::Gap));
     let boundary = document.domain.value.boundary.unwrap_or_default();
-    if let (Some(at), true) = (&document.leakage, line) {
-        let message = "leakage needs a gap over a plane: on a line of cells nothing flows along y".to_owned();
-        let help = "delete the section, or give domain.cells and domain.size two values";
-        checks.fault(&at.span, message, "a domain with two values in cells", Some(help));
-    }
-    let leakage =
-        leakage::section(&mut checks, document.leakage.as_ref(), boundary, points, keeps_gap).flatten();
+    let leakage = match (&document.leakage, &output, &times) {
+        (Some(at), ..) if line => {
+            let message = "leakage needs a gap over a plane: on a line of cells nothing flows along y".to_owned();
+            let help = "delete the section, or give domain.cells and domain.size two values";
+            checks.fault(&at.span, message, "a domain with two values in cells", Some(help));
+            None
+        }
+        (Some(at), Some(output), Some(times)) => {
+            leakage::section(&mut checks, at, boundary, points, output, times.end())
+        }
+        _ => None,
+    };
 
     checks.errors.sort_by_key(|error| error.span.as_ref().map_or(usize::MAX, |span| span.start));
     let surfaces = surfaces.zip(hardness);

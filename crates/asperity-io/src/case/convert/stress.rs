@@ -5,8 +5,8 @@ use asperity::material::Body;
 use asperity::stress::{check_depth, check_depths, spaced_depths};
 
 use super::Checks;
-use super::time;
-use crate::case::plan::{Output, Rows};
+use super::stored_times::stored_times;
+use crate::case::plan::Output;
 use crate::case::raw::{self, At};
 use crate::case::words::number;
 use crate::store::FieldKind;
@@ -32,39 +32,7 @@ pub fn stress(
         checks.fault(&at.span, message, "stored pressures", Some("add \"pressure\" to output.fields"));
         return None;
     }
-    match at.value.times.as_ref().map(|times| (times, &times.value)) {
-        None | Some((_, raw::StressTimes::Fields)) => {}
-        Some((times, raw::StressTimes::All)) => {
-            if output.rows != Rows::Every(1) {
-                let message = "not all rows have stored pressures".to_owned();
-                checks.fault(
-                    &times.span,
-                    message,
-                    "\"fields\" or a list of times",
-                    Some("set output.every = 1"),
-                );
-                return None;
-            }
-        }
-        Some((times, raw::StressTimes::List(list))) => {
-            let instants = time::increasing(checks, list, |time| time.get())?;
-            if instants.is_empty() {
-                checks.wrong(&times.span, "\"fields\", \"all\" or a list of at least one time", None);
-                return None;
-            }
-            let stored = |time: f64| {
-                let listed = matches!(output.rows, Rows::At(_)) && output.rows.holds(1, false, time);
-                time == 0.0 || time == end || listed
-            };
-            if let Some(missing) = list.iter().find(|at| !stored(at.value.get())) {
-                let expected = "a time at which fields are stored: 0, the end, or one of output.times";
-                let help = "add it to output.times; with output.every use times = \"fields\" or \"all\"";
-                checks.wrong(&missing.span, expected, Some(help));
-                return None;
-            }
-            plan.times = Some(instants);
-        }
-    }
+    plan.times = stored_times(checks, at.value.times.as_ref(), output, end)?;
     Some(plan)
 }
 

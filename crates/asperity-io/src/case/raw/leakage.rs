@@ -4,6 +4,7 @@ use asperity::leakage::{Rarefaction, Sides, Species};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::{At, StoredTimes};
 use crate::case::quantity::range::{NonNegative, Positive};
 use crate::case::quantity::{Length, MolarMass, Pressure, Temperature, Viscosity};
 
@@ -20,7 +21,7 @@ pub enum LeakDirection {
     Both,
 }
 
-/// The flow of a fluid through the gap, at the times of the stored fields: a liquid with `pressure_drop` and `viscosity`, or
+/// The flow of a fluid through the gap, from the stored fields: a liquid with `pressure_drop` and `viscosity`, or
 /// a gas with `inlet`, `outlet` and `gas` (or its `viscosity` and `molar_mass`). Without a fluid only the gap is assessed.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -54,6 +55,10 @@ pub struct Leakage {
     /// Cells with a smaller gap are closed: the size of a molecule, say; 0 if not given.
     #[schemars(example = "0.3 nm")]
     pub smallest_gap: Option<Length<NonNegative>>,
+    /// Times at which the leakage is computed: "fields", as the fields are stored; "all", which needs output.every = 1; or a
+    /// list of times that are stored. "fields" if not given.
+    #[schemars(example = &"fields", example = ["1 s", "10 s"])]
+    pub times: Option<At<StoredTimes>>,
     /// Whether the pressure of the fluid is stored as a field; false if not given.
     #[schemars(example = true)]
     pub field: Option<bool>,

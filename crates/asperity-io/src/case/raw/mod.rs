@@ -14,6 +14,7 @@ mod run;
 mod stress;
 mod surface;
 mod thermal;
+mod times;
 
 use std::borrow::Cow;
 use std::fmt;
@@ -34,9 +35,10 @@ pub use material::{
 };
 pub use motion::{Heading, Motion, MotionKind, RangeSpacing, Speed, Velocities};
 pub use run::{Output, Quantities, Solver};
-pub use stress::{Depths, Progression, Stress, Times as StressTimes, Which};
+pub use stress::{Depths, Progression, Stress, Which};
 pub use surface::{Distribution, File, Preset, SelfAffine, Surface};
 pub use thermal::{Shift, Temperature, TemperatureHistory, TemperaturePoint};
+pub use times::StoredTimes;
 
 use super::quantity::range::Positive;
 use super::quantity::{Length, Whole};

@@ -9,9 +9,9 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Error, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
-use super::At;
+use super::{At, StoredTimes};
 use crate::case::quantity::range::{NonNegative, Positive};
-use crate::case::quantity::{Length, Pressure, Time, Whole};
+use crate::case::quantity::{Length, Pressure, Whole};
 
 /// The stress below the surface, from the stored pressures.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -40,7 +40,7 @@ pub struct Stress {
     /// Times at which the stress is computed: "fields", as the fields are stored; "all", which needs output.every = 1; or a
     /// list of times that are stored. "fields" if not given.
     #[schemars(example = &"fields", example = ["1 s", "10 s"])]
-    pub times: Option<At<Times>>,
+    pub times: Option<At<StoredTimes>>,
 }
 
 /// Depths below the surface.
@@ -89,16 +89,7 @@ pub enum Which {
     Number(u64),
 }
 
-/// Times at which the stress is computed.
-#[derive(Debug)]
-pub enum Times {
-    Fields,
-    All,
-    List(Vec<At<Time<NonNegative>>>),
-}
-
 const DEPTHS: &str = "\"auto\", a list of lengths, or a table { from, to, count, spacing }";
-const TIMES: &str = "\"fields\", \"all\" or a list of times";
 const WHICH: &str = "the name of a body, or its number counted from 0";
 
 impl<'de> Deserialize<'de> for Depths {
@@ -143,50 +134,6 @@ impl JsonSchema for Depths {
                 },
                 { "type": "array", "minItems": 1, "items": generator.subschema_for::<Length<NonNegative>>() },
                 generator.subschema_for::<Row>(),
-            ],
-        })
-    }
-}
-
-impl<'de> Deserialize<'de> for Times {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Words;
-
-        impl<'de> Visitor<'de> for Words {
-            type Value = Times;
-
-            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str(TIMES)
-            }
-
-            fn visit_str<E: Error>(self, word: &str) -> Result<Times, E> {
-                match word {
-                    "fields" => Ok(Times::Fields),
-                    "all" => Ok(Times::All),
-                    _ => Err(E::custom(TIMES)),
-                }
-            }
-
-            fn visit_seq<S: SeqAccess<'de>>(self, list: S) -> Result<Times, S::Error> {
-                Vec::deserialize(SeqAccessDeserializer::new(list)).map(Times::List)
-            }
-        }
-
-        deserializer.deserialize_any(Words)
-    }
-}
-
-impl JsonSchema for Times {
-    fn schema_name() -> Cow<'static, str> {
-        "TimesOfStress".into()
-    }
-
-    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
-        json_schema!({
-            "anyOf": [
-                { "type": "string", "const": "fields", "description": "The times of the stored fields." },
-                { "type": "string", "const": "all", "description": "All rows; needs output.every = 1." },
-                { "type": "array", "minItems": 1, "items": generator.subschema_for::<Time<NonNegative>>() },
             ],
         })
     }

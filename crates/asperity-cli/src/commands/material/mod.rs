@@ -1,5 +1,7 @@
 //! `asperity material`: functions of materials, and fits of measured curves.
 
+mod layers;
+
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::io::Write as _;
@@ -21,6 +23,7 @@ use crate::words::{counted, quantity};
 /// Shows a material or fits one.
 pub fn run(command: &Material) -> Result<(), Failure> {
     match command {
+        Material::Show(show) if show.layers => layers::show(show),
         Material::Show(show) => self::show(show),
         Material::Fit(fit) => self::fit(fit),
     }

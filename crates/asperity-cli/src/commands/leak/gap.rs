@@ -1,0 +1,127 @@
+//! Leakage of a map of the gap.
+
+use std::path::Path;
+
+use asperity::finding::LeakJudge;
+use asperity::{Boundary, Grid};
+use asperity_io::case::leak as checked;
+use asperity_io::finding;
+use asperity_io::leakage::{Leakage, words};
+use asperity_report::figure::Form;
+use serde_json::{Value, json};
+
+use super::options;
+use crate::args::{self, SurfaceFile};
+use crate::failure::Failure;
+use crate::words::quantity;
+
+/// Computes the leakage of one state and prints it.
+pub fn run(args: &args::Leak, path: &Path) -> Result<(), Failure> {
+    if let Some(plot) = &args.plot {
+        Form::of(plot).map_err(|error| Failure::input(error.to_string()))?;
+        super::super::free(plot, args.force)?;
+    }
+    let file = |path: &Path, height_unit: Option<String>| SurfaceFile {
+        file: path.to_owned(),
+        size: args.size.clone(),
+        height_unit,
+        channel: None,
+    };
+    let gap = super::super::surface::open(&file(path, args.height_unit.clone()))?;
+    let contact = match &args.contact {
+        Some(path) => {
+            let map = super::super::surface::open(&file(path, Some("m".into())))?;
+            Some(map.heights.mapv(|contact| u8::from(contact > 0.0)))
+        }
+        None => None,
+    };
+    let leak = checked(&options::keys(&args.fluid)?, Boundary::Periodic).map_err(Failure::input)?;
+    let told = |error: asperity::Error| Failure::input(format!("{}: {error}", path.display()));
+    let (nx, ny) = gap.heights.dim();
+    let grid = Grid::new([nx, ny], gap.size).map_err(told)?;
+    let contact = contact.as_ref().map(|contact| contact.view());
+    let state = leak.of_gap(&grid, gap.heights.view(), contact, 0.0).map_err(|error| match error {
+        asperity::Error::Invalid { .. } => told(error),
+        error => Failure::Solve(error.to_string()),
+    })?;
+    let mut judge = LeakJudge::default();
+    let resolved = judge.see(&state.alone());
+    let findings = judge.findings();
+    if let Some(plot) = &args.plot {
+        let figure = asperity_report::leak::state(&leak, &state, gap.heights.view(), grid.size());
+        figure.write(plot, args.force).map_err(|error| Failure::input(error.to_string()))?;
+    }
+    super::super::findings::tell(&findings);
+    let text = if args.json {
+        let mut object = object(&state);
+        object["leakage"] = serde_json::to_value(&leak).unwrap_or_default();
+        object["leak_resolved"] = json!(resolved);
+        object["findings"] = finding::list(&findings);
+        format!("{object}\n")
+    } else {
+        format!("Leakage of {}\n\n{}", leak.words(), text(&state))
+    };
+    crate::print(&text)
+}
+
+fn object(state: &Leakage) -> Value {
+    let place = |value: f64| if value.is_finite() { json!(value) } else { Value::Null };
+    json!({
+        "percolates": state.percolates,
+        "hydraulic_gap": state.hydraulic_gap,
+        "critical_gap": place(state.critical_gap),
+        "critical_x": place(state.critical[0]),
+        "critical_y": place(state.critical[1]),
+        "critical_width": state.critical_width,
+        "medium_gap": state.medium_gap,
+        "open_fraction": state.open_fraction,
+        "trapped_area": state.trapped_area,
+        "trapped_volume": state.trapped_volume,
+        "conductance": state.conductance,
+        "leak_rate": state.leak_rate,
+        "leak_rate_standard": state.leak_rate_standard,
+        "leak_estimate_junction": state.leak_estimate_junction,
+        "leak_estimate_medium": state.leak_estimate_medium,
+        "knudsen_number": state.knudsen.map(place),
+    })
+}
+
+fn text(state: &Leakage) -> String {
+    let mut text = String::new();
+    let mut line = |name: &str, value: String| text += &format!("{name:<22}{value}\n");
+    if state.percolates {
+        line("hydraulic gap", quantity(state.hydraulic_gap, "m"));
+        let width = state.critical_width.map_or(String::new(), |cells| format!(", {cells} cells wide"));
+        let place =
+            format!("at ({}, {})", quantity(state.critical[0], "m"), quantity(state.critical[1], "m"));
+        line("critical gap", format!("{} {place}{width}", quantity(state.critical_gap, "m")));
+    } else {
+        line("seal", "tight: inlet and outlet are not connected".into());
+    }
+    line("effective medium", quantity(state.medium_gap, "m"));
+    line("open", format!("{:.3} % of the cells", 100.0 * state.open_fraction));
+    line(
+        "pockets",
+        format!("{}, {}", quantity(state.trapped_area, "m2"), quantity(state.trapped_volume, "m3")),
+    );
+    if let Some([[xx, xy], [yx, yy]]) = state.conductance {
+        line("conductance [m3]", format!("xx {xx:.6e}, xy {xy:.6e}, yx {yx:.6e}, yy {yy:.6e}"));
+    }
+    if let Some(rate) = state.leak_rate {
+        let one = |rate: f64| match state.leak_rate_standard {
+            Some(_) => format!("{rate:.4e} kg/s"),
+            None => format!("{rate:.4e} m3/s"),
+        };
+        line("leak rate", one(rate));
+        if let Some(standard) = state.leak_rate_standard {
+            let mbar = words::MBAR_LITRE * standard;
+            line("", format!("{standard:.4e} Pa m3/s at 0 degC, {mbar:.4e} mbar l/s"));
+        }
+        line("  by one junction", one(state.leak_estimate_junction.unwrap_or(f64::NAN)));
+        line("  by the medium", one(state.leak_estimate_medium.unwrap_or(f64::NAN)));
+    }
+    if let Some(knudsen) = state.knudsen.filter(|knudsen| knudsen.is_finite()) {
+        line("Knudsen number", format!("{knudsen:.3} at the constriction"));
+    }
+    text
+}

@@ -1,0 +1,171 @@
+//! `asperity leak`: leakage of a result, or of a map of the gap.
+
+mod gap;
+mod options;
+
+use std::path::Path;
+
+use asperity::Boundary;
+use asperity_io::case::leak as checked;
+use asperity_io::choice;
+use asperity_io::finding;
+use asperity_io::leakage::{Leak, LeakError, LeakHistory, compute, settings, store, words};
+use asperity_io::store::{LeakTable, Reader};
+use serde_json::{Map, Value, json};
+
+use crate::args;
+use crate::failure::Failure;
+use crate::talk::say;
+use crate::words::quantity;
+
+/// Computes the leakage, or shows the one that is stored.
+pub fn run(args: &args::Leak) -> Result<(), Failure> {
+    match (&args.result, &args.gap) {
+        (Some(_), _) if args.plot.is_some() => Err(Failure::input(
+            "--plot draws a map of the gap (--gap FILE); the figure of a result is drawn by: asperity plot RESULT leak",
+        )),
+        (Some(result), _) => result_leak(args, result),
+        (None, Some(path)) => gap::run(args, path),
+        (None, None) => Err(Failure::input("name a result, or a map of the gap with --gap FILE")),
+    }
+}
+
+fn result_leak(args: &args::Leak, path: &Path) -> Result<(), Failure> {
+    let told = |error: &dyn std::fmt::Display| Failure::input(error.to_string());
+    let reader = Reader::open(path).map_err(|error| told(&error))?;
+    let leak = asked(args, &reader)?;
+    let stored = LeakHistory::of(&reader).map_err(|error| told(&error))?;
+    let history = match stored {
+        Some(stored) if stored.leak == leak => stored,
+        stored => {
+            if let Some(stored) = stored.filter(|_| !args.no_store) {
+                say!(
+                    "replaces the stored leakage: {} (--no-store computes without storing)",
+                    stored.leak.words()
+                );
+            }
+            let interrupt = crate::interrupt::flag();
+            let found = if args.no_store {
+                compute(&reader, &leak, &interrupt, observe)
+            } else {
+                drop(reader);
+                store(path, &leak, &interrupt, observe)
+            };
+            found.map_err(failure)?
+        }
+    };
+    super::findings::tell(&history.findings);
+    let text = if args.json { object(path, &history) } else { text(&history) };
+    crate::print(&text)
+}
+
+/// What is asked for: the options given change what is stored, or what the case asks for.
+fn asked(args: &args::Leak, reader: &Reader) -> Result<Leak, Failure> {
+    let boundary = reader.header().setup.get("boundary").and_then(Value::as_str).and_then(choice::parse);
+    let boundary = boundary.unwrap_or(Boundary::Periodic);
+    let given = options::keys(&args.fluid)?;
+    let leak = match settings(reader) {
+        Some(earlier) => earlier.changed(given, boundary),
+        None => checked(&given, boundary),
+    };
+    let leak = leak.map_err(Failure::input)?;
+    Ok(match &args.times {
+        Some(list) => Leak { times: super::times(list)?, ..leak },
+        None => leak,
+    })
+}
+
+fn observe(done: usize, of: usize) {
+    if std::io::IsTerminal::is_terminal(&std::io::stderr()) {
+        eprint!("\rleakage {done}/{of}{}", if done == of { "\n" } else { "" });
+    }
+}
+
+fn failure(error: LeakError) -> Failure {
+    match error {
+        LeakError::Interrupted => Failure::Interrupted("the result is as it was".into()),
+        LeakError::Solve { source: asperity::Error::Invalid { .. }, .. } | LeakError::Store(_) => {
+            Failure::input(error.to_string())
+        }
+        LeakError::Solve { .. } => Failure::Solve(error.to_string()),
+    }
+}
+
+fn object(path: &Path, history: &LeakHistory) -> String {
+    let table = &history.table;
+    let names = table.series().into_iter().map(|series| series.name);
+    let mut object: Map<String, Value> =
+        names.filter_map(|name| Some((name.to_owned(), numbers(name, table.get(name)?)))).collect();
+    if let Some(all) = table.get("conductance") {
+        let tensors = all.chunks(4).map(|tensor| tensor.chunks(2).map(|row| json!(row)).collect::<Value>());
+        object.insert("conductance".into(), tensors.collect());
+    }
+    object.insert("leakage".into(), serde_json::to_value(&history.leak).unwrap_or_default());
+    object.insert("findings".into(), finding::list(&history.findings));
+    object.insert("result".into(), json!(path));
+    format!("{}\n", Value::Object(object))
+}
+
+/// A column as JSON: flags as true and false, NaN as null.
+fn numbers(name: &str, values: &[f64]) -> Value {
+    match name {
+        "percolates" | "leak_resolved" => values.iter().map(|v| json!(*v > 0.0)).collect(),
+        "leak_step" => values.iter().map(|v| json!(*v as u64)).collect(),
+        _ => json!(values),
+    }
+}
+
+/// What was asked for, a table of the times, and when the seal is tight.
+fn text(history: &LeakHistory) -> String {
+    let table = &history.table;
+    let column = |name: &str| table.get(name).unwrap_or_default();
+    let times = column("leak_time");
+    let standard = table.get("leak_rate_standard");
+    let fluid = history.leak.fluid.is_some();
+    let mut text = format!("Leakage of {}\n\n{:>12}", history.leak.words(), "time");
+    if fluid {
+        text += &format!("{:>24}", "leak rate");
+    }
+    text += &format!("{:>15}{:>15}{:>14}\n", "hydraulic gap", "critical gap", "trapped area");
+    for n in 0..table.len() {
+        text += &format!("{:>12}", quantity(times[n], "s"));
+        let tight = column("percolates")[n] == 0.0;
+        let mark = if column("leak_resolved")[n] == 0.0 { " ?" } else { "  " };
+        if fluid {
+            let words = match tight {
+                true => "tight".to_owned(),
+                false => words::rate(column("leak_rate")[n], standard.map(|standard| standard[n])),
+            };
+            text += &format!("{:>24}", words + mark);
+        }
+        let gap = |name: &str| match (tight, fluid, name) {
+            (false, ..) => quantity(column(name)[n], "m"),
+            (true, false, "hydraulic_gap") => "tight".to_owned(),
+            (true, ..) => "-".to_owned(),
+        };
+        text += &format!("{:>15}{:>15}", gap("hydraulic_gap"), gap("critical_gap"));
+        text += &format!("{:>14}\n", quantity(column("trapped_area")[n], "m2"));
+    }
+    if column("leak_resolved").contains(&0.0) {
+        text += "? see the findings\n";
+    }
+    let tight = words::tight(times, column("percolates"));
+    if !tight.is_empty() {
+        text += &format!("{tight}\n");
+    }
+    text + &tensors(table)
+}
+
+/// The conductance at each time.
+fn tensors(table: &LeakTable) -> String {
+    let Some(all) = table.get("conductance") else { return String::new() };
+    let times = table.get("leak_time").unwrap_or_default();
+    let mut text =
+        format!("\nconductance [m3]\n{:>12}{:>14}{:>14}{:>14}{:>14}\n", "time", "xx", "xy", "yx", "yy");
+    for (time, tensor) in times.iter().zip(all.chunks(4)) {
+        text += &format!("{:>12}", quantity(*time, "s"));
+        tensor.iter().for_each(|entry| text += &format!("{entry:>14.4e}"));
+        text.push('\n');
+    }
+    text
+}

@@ -1,0 +1,200 @@
+//! `asperity stress`: the stress below the surface of a result.
+
+mod tell;
+
+use asperity::stress::StressQuantity;
+use asperity_io::case::fragment::{self, Fault};
+use asperity_io::case::quantity::range::NonNegative;
+use asperity_io::case::quantity::{Number, Time};
+use asperity_io::export::volume;
+use asperity_io::store::{At, Reader, Writer};
+use asperity_io::stress::{
+    Below, StressBody, StressError, StressPlan, below_at, bodies_of, evaluate, of_result, refuse_layers,
+};
+use asperity_report::figure::Form;
+use asperity_report::result::stress_figure;
+
+use crate::args::Stress;
+use crate::failure::Failure;
+use crate::talk::say;
+use crate::words::read;
+
+/// Fields of a volume where none are named.
+const USUAL: [StressQuantity; 3] = [StressQuantity::Mises, StressQuantity::Tresca, StressQuantity::Tension];
+
+/// Computes and stores the stress, or shows the one that is stored; then draws and writes what is asked for.
+pub fn run(args: &Stress) -> Result<(), Failure> {
+    if let Some(path) = &args.plot {
+        Form::of(path).map_err(told)?;
+    }
+    for path in args.plot.iter().chain(&args.output) {
+        super::free(path, args.force)?;
+    }
+    let reader = Reader::open(&args.result).map_err(told)?;
+    let plan = plan(args, &reader)?;
+    let stored = Below::of(&reader).map_err(told)?;
+    let below = match stored {
+        Some(below) if StressPlan::of(&below.set, &reader) == plan => below,
+        _ if args.no_store => of_result(&reader, &plan, &crate::interrupt::flag()).map_err(ended)?,
+        stored => {
+            if let Some(stored) = stored {
+                let words = StressPlan::of(&stored.set, &reader).words();
+                say!("replaces the stored stress {words} (--no-store computes without storing)");
+            }
+            store(args, &plan)?
+        }
+    };
+    let at = match &args.time {
+        Some(text) => At::Time(read::<Time>("--time", text, "500 s")?.get()),
+        None => below.worst().map_or(At::Last, |worst| At::Index(worst.index)),
+    };
+    let index = reader.index(at).map_err(told)?;
+    let mut written = vec![];
+    if let Some(path) = &args.plot {
+        let one = Reader::open(&args.result).map_err(told)?;
+        let shown = match below.instants.iter().any(|instant| instant.index == index) {
+            true => below.clone(),
+            false => below_at(&one, &plan, at).map_err(ended)?,
+        };
+        let figure = stress_figure(&one, &shown, index).map_err(told)?;
+        figure.write(path, args.force).map_err(told)?;
+        written.push(path.display().to_string());
+    }
+    if let Some(path) = &args.output {
+        let quantities = if plan.quantities.is_empty() { USUAL.to_vec() } else { plan.quantities.clone() };
+        let files = volume(&reader, &plan, at, &quantities, path, args.force).map_err(told)?;
+        written.extend(files.iter().map(|path| path.display().to_string()));
+    }
+    let shown = below.instants.iter().find(|instant| instant.index == index).or(below.worst());
+    if args.json {
+        return crate::print(&format!("{}\n", tell::object(&reader, &below, &written)));
+    }
+    super::findings::tell(&below.findings(&reader.header().grid));
+    let drawn = args.plot.is_some() || args.output.is_some();
+    let mut text = tell::text(&below, shown, drawn);
+    written.iter().for_each(|path| text += &format!("{path}\n"));
+    crate::print(&text)
+}
+
+fn told(error: impl std::fmt::Display) -> Failure {
+    Failure::input(error.to_string())
+}
+
+fn ended(error: StressError) -> Failure {
+    match error {
+        StressError::Solve(asperity::Error::Interrupted) => {
+            Failure::Interrupted("the stress is not stored".into())
+        }
+        error => told(error),
+    }
+}
+
+/// Computes the stress and adds it to the result.
+fn store(args: &Stress, plan: &StressPlan) -> Result<Below, Failure> {
+    let mut writer = Writer::amend(&args.result).map_err(told)?;
+    let tell = |done: usize, of: usize| {
+        if of > 1 && !args.json && done < of {
+            say!("stress below the surface: time {} of {of}", done + 1);
+        }
+    };
+    let below = evaluate(&mut writer, plan, &crate::interrupt::flag(), tell).map_err(ended)?;
+    let reader = Reader::open(&args.result).map_err(told)?;
+    let new = below.findings(&reader.header().grid);
+    let codes = [
+        asperity::finding::STRESS_UNRESOLVED,
+        asperity::finding::STRESS_AT_DEEPEST,
+        asperity::finding::STRESS_TIMES_MISS_PEAK,
+        asperity::finding::YIELD_EXCEEDED,
+    ];
+    let others = writer.findings().iter().filter(|finding| !codes.contains(&finding.code.as_ref())).cloned();
+    let findings = others.chain(new).collect();
+    writer.note(findings).map_err(told)?;
+    Ok(below)
+}
+
+/// What takes a key out.
+const NONE: &str = "none";
+
+/// The keys of `[stress]` that are given.
+fn keys(args: &Stress) -> impl Iterator<Item = (&'static str, &str)> {
+    let all = [
+        ("depths", &args.depths),
+        ("body", &args.body),
+        ("components", &args.components),
+        ("threshold", &args.threshold),
+        ("yield_stress", &args.yield_stress),
+        ("rolling", &args.rolling),
+    ];
+    all.into_iter().filter_map(|(key, text)| Some((key, text.as_deref()?)))
+}
+
+/// What is asked for; what is not said is as it is stored, or as the case says.
+fn plan(args: &Stress, reader: &Reader) -> Result<StressPlan, Failure> {
+    refuse_layers(reader).map_err(ended)?;
+    let mut bodies = bodies_of(reader);
+    if let Some(text) = &args.poisson {
+        let ratio = read::<Number<NonNegative>>("--poisson", text, "0.3")?.get();
+        if ratio > 0.5 {
+            return Err(Failure::input(format!(
+                "--poisson is {ratio}, but must be a Poisson's ratio from 0 to 0.5"
+            )));
+        }
+        if bodies.is_empty() {
+            bodies.push(StressBody { name: "body 1".into(), poisson: None });
+        }
+        bodies.iter_mut().for_each(|body| body.poisson = Some(ratio));
+    }
+    let stored = StressPlan::known(reader);
+    let known = bodies.iter().any(|body| body.poisson.is_some());
+    if !known && !reader.header().setup.contains_key("poisson") {
+        let path = args.result.display();
+        return Err(Failure::input(format!(
+            "{path} does not say the Poisson's ratio of its bodies; give --poisson NU"
+        )));
+    }
+    let optional = ["components", "threshold", "yield_stress", "rolling"];
+    let is_taken_out = |(key, text): &(&str, &str)| text.trim() == NONE && optional.contains(key);
+    let mut given: Vec<(&str, &str)> = keys(args).filter(|given| !is_taken_out(given)).collect();
+    if let (Some(stored), None) = (&stored, &args.body)
+        && bodies.iter().any(|body| body.name == stored.body)
+    {
+        given.push(("body", &stored.body));
+    }
+    let mut plan = fragment::stress(&given, &reader.header().grid, &bodies).map_err(faults)?;
+    if let Some(stored) = stored {
+        let is_new = |key: &str| keys(args).any(|given| given.0 == key);
+        if !is_new("depths") {
+            plan.depths = stored.depths;
+        }
+        if !is_new("components") {
+            plan.quantities = stored.quantities;
+        }
+        if args.poisson.is_none() && !is_new("body") {
+            plan.poisson = stored.poisson;
+        }
+        if !is_new("threshold") {
+            plan.threshold = stored.threshold;
+        }
+        if !is_new("yield_stress") {
+            plan.yield_stress = stored.yield_stress;
+        }
+        if !is_new("rolling") {
+            plan.rolling = stored.rolling;
+        }
+        plan.times = stored.times;
+    }
+    if let Some(list) = &args.times {
+        plan.times = super::times(list)?;
+    }
+    Ok(plan)
+}
+
+fn faults(faults: Vec<Fault>) -> Failure {
+    let sentence = |fault: &Fault| {
+        let help = fault.help.as_ref().map(|help| format!("; {help}")).unwrap_or_default();
+        let option =
+            if fault.key.is_empty() { String::new() } else { format!("--{} ", fault.key.replace('_', "-")) };
+        format!("{option}{}{help}", fault.message)
+    };
+    Failure::input(faults.iter().map(sentence).collect::<Vec<_>>().join("\n"))
+}

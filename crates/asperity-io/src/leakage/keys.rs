@@ -1,0 +1,153 @@
+//! A leakage as the keys of `[leakage]`, and with some of them changed.
+
+use asperity::Boundary;
+use serde_json::{Map, Value, json};
+
+use super::{Fluid, GasKind, Leak};
+use crate::case::{LeakageKeys, leak as checked};
+
+impl Leak {
+    /// The keys that describe it, but for `times`.
+    fn keys(&self) -> LeakageKeys {
+        let mut keys = Map::new();
+        let mut set = |key: &str, value: Value| drop(keys.insert(key.to_owned(), value));
+        set("direction", json!(self.direction));
+        set("sides", json!(self.sides));
+        set("smallest_gap", json!(self.smallest_gap));
+        set("field", json!(self.field));
+        match self.fluid {
+            None => {}
+            Some(Fluid::Liquid { pressure_drop, viscosity }) => {
+                set("pressure_drop", json!(pressure_drop));
+                set("viscosity", json!(viscosity));
+            }
+            Some(Fluid::Gas { kind, temperature, inlet, outlet, rarefaction }) => {
+                match kind {
+                    GasKind::Known(species) => set("gas", json!(species)),
+                    GasKind::Other { viscosity, molar_mass } => {
+                        set("viscosity", json!(viscosity));
+                        set("molar_mass", json!(molar_mass));
+                    }
+                }
+                if let Some(kelvin) = temperature {
+                    set("temperature", json!(kelvin));
+                }
+                set("inlet", json!(inlet));
+                set("outlet", json!(outlet));
+                set("rarefaction", json!(rarefaction));
+            }
+        }
+        // A bare number of a key is one in SI, so that all of this is read.
+        serde_json::from_value(Value::Object(keys)).unwrap_or_default()
+    }
+
+    /// The same with the keys that are `given` changed; `times` of them is not looked at. A liquid in place of a gas, or a gas
+    /// in place of a liquid, replaces all that was said of the fluid; the name of a gas replaces its viscosity and molar mass.
+    ///
+    /// # Errors
+    /// What is wrong, and what to do.
+    pub fn changed(&self, given: LeakageKeys, boundary: Boundary) -> Result<Leak, String> {
+        let mut keys = self.keys();
+        let of_gas = given.gas.is_some()
+            || given.molar_mass.is_some()
+            || given.inlet.is_some()
+            || given.outlet.is_some()
+            || given.temperature.is_some()
+            || given.rarefaction.is_some();
+        let other_kind = match self.fluid {
+            Some(Fluid::Liquid { .. }) => of_gas,
+            Some(Fluid::Gas { .. }) => given.pressure_drop.is_some(),
+            None => false,
+        };
+        if other_kind {
+            keys = Leak { fluid: None, ..self.clone() }.keys();
+        }
+        if given.gas.is_some() {
+            (keys.viscosity, keys.molar_mass) = (None, None);
+        }
+        if given.viscosity.is_some() || given.molar_mass.is_some() {
+            keys.gas = None;
+        }
+        let merged = LeakageKeys {
+            direction: given.direction.or(keys.direction),
+            pressure_drop: given.pressure_drop.or(keys.pressure_drop),
+            viscosity: given.viscosity.or(keys.viscosity),
+            gas: given.gas.or(keys.gas),
+            molar_mass: given.molar_mass.or(keys.molar_mass),
+            temperature: given.temperature.or(keys.temperature),
+            inlet: given.inlet.or(keys.inlet),
+            outlet: given.outlet.or(keys.outlet),
+            rarefaction: given.rarefaction.or(keys.rarefaction),
+            sides: given.sides.or(keys.sides),
+            smallest_gap: given.smallest_gap.or(keys.smallest_gap),
+            times: None,
+            field: given.field.or(keys.field),
+        };
+        let leak = checked(&merged, boundary)?;
+        Ok(Leak { times: self.times.clone(), temperatures: self.temperatures.clone(), ..leak })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use asperity::leakage::{Rarefaction, Sides, Species};
+
+    use super::*;
+    use crate::leakage::LeakDirection;
+
+    fn leak(fluid: Option<Fluid>) -> Leak {
+        Leak {
+            direction: LeakDirection::Y,
+            sides: Sides::Closed,
+            smallest_gap: 3e-10,
+            fluid,
+            field: true,
+            temperatures: vec![(0.0, 300.0)],
+            times: Some(vec![1.0]),
+        }
+    }
+
+    fn keys(text: &str) -> LeakageKeys {
+        serde_json::from_str(text).unwrap()
+    }
+
+    #[test]
+    fn no_key_changes_nothing_and_one_key_changes_itself() {
+        let gas = Fluid::Gas {
+            kind: GasKind::Known(Species::Helium),
+            temperature: Some(310.0),
+            inlet: 3e5,
+            outlet: 0.0,
+            rarefaction: Rarefaction::Slip,
+        };
+        let other = Fluid::Gas {
+            kind: GasKind::Other { viscosity: 1e-5, molar_mass: 0.044 },
+            temperature: None,
+            inlet: 3e5,
+            outlet: 1e5,
+            rarefaction: Rarefaction::Boltzmann,
+        };
+        let liquid = Fluid::Liquid { pressure_drop: 2e5, viscosity: 1e-3 };
+        for fluid in [None, Some(gas), Some(other), Some(liquid)] {
+            let earlier = leak(fluid);
+            assert_eq!(earlier.changed(LeakageKeys::default(), Boundary::Periodic).unwrap(), earlier);
+            let open = earlier.changed(keys(r#"{"smallest_gap": 0}"#), Boundary::Periodic).unwrap();
+            assert_eq!(open, Leak { smallest_gap: 0.0, ..earlier });
+        }
+        let changed = leak(Some(gas)).changed(keys(r#"{"gas": "air"}"#), Boundary::Periodic).unwrap();
+        let Some(Fluid::Gas { kind, inlet, rarefaction, .. }) = changed.fluid else { panic!("{changed:?}") };
+        assert_eq!((kind, inlet, rarefaction), (GasKind::Known(Species::Air), 3e5, Rarefaction::Slip));
+    }
+
+    #[test]
+    fn a_fluid_of_the_other_kind_replaces_the_earlier_one() {
+        let liquid = leak(Some(Fluid::Liquid { pressure_drop: 2e5, viscosity: 1e-3 }));
+        let missing = liquid.changed(keys(r#"{"gas": "air"}"#), Boundary::Periodic).unwrap_err();
+        assert!(missing.contains("inlet"), "{missing}");
+        let gas = keys(r#"{"gas": "air", "inlet": "2 bar", "outlet": "1 bar"}"#);
+        let gas = liquid.changed(gas, Boundary::Periodic).unwrap();
+        assert!(gas.fluid.unwrap().is_gas() && gas.direction == LeakDirection::Y);
+        let back = gas.changed(keys(r#"{"pressure_drop": 1, "viscosity": 2}"#), Boundary::Periodic).unwrap();
+        assert_eq!(back.fluid, Some(Fluid::Liquid { pressure_drop: 1.0, viscosity: 2.0 }));
+    }
+}

@@ -1,0 +1,103 @@
+//! Leakage in words: what is asked for, how much leaks, when it is tight.
+
+use super::{Fluid, GasKind, Leak, LeakDirection, ROOM};
+use crate::choice;
+use crate::readable::quantity;
+
+/// Pa m³/s in mbar l/s.
+pub const MBAR_LITRE: f64 = 10.0;
+/// 0 degC \[K\].
+const ICE: f64 = 273.15;
+
+impl Leak {
+    /// The fluid and its pressures: "air at 20 °C from 300 kPa to 100 kPa".
+    pub fn fluid_words(&self) -> String {
+        match self.fluid {
+            None => "no fluid, the gap alone".to_owned(),
+            Some(Fluid::Liquid { pressure_drop, viscosity }) => format!(
+                "liquid of {}, pressure drop {}",
+                quantity(viscosity, "Pa s"),
+                quantity(pressure_drop, "Pa")
+            ),
+            Some(Fluid::Gas { kind, temperature, inlet, outlet, .. }) => {
+                let name = match kind {
+                    GasKind::Known(species) => species.name(),
+                    GasKind::Other { .. } => "gas",
+                };
+                let at = match temperature {
+                    None if !self.temperatures.is_empty() => "the temperature of the run".to_owned(),
+                    kelvin => format!("{} °C", (1e3 * (kelvin.unwrap_or(ROOM) - ICE)).round() / 1e3),
+                };
+                format!("{name} at {at} from {} to {}", quantity(inlet, "Pa"), quantity(outlet, "Pa"))
+            }
+        }
+    }
+
+    /// All that decides a leak: the fluid, its pressures, the direction, the sides and what is closed.
+    pub fn words(&self) -> String {
+        let mut words = self.fluid_words();
+        words += match self.direction {
+            LeakDirection::X => ", along x",
+            LeakDirection::Y => ", along y",
+            LeakDirection::Both => ", along x (conductance in both directions)",
+        };
+        words += &format!(", {} sides", choice::word(&self.sides));
+        if let Some(Fluid::Gas { rarefaction, .. }) = &self.fluid {
+            words += &format!(", rarefaction: {}", choice::word(rarefaction));
+        }
+        if self.smallest_gap > 0.0 {
+            words += &format!(", gaps below {} closed", quantity(self.smallest_gap, "m"));
+        }
+        words
+    }
+}
+
+/// A leak rate with its unit: of a gas in mbar l/s, of a liquid in m³/s.
+pub fn rate(leak_rate: f64, standard: Option<f64>) -> String {
+    match standard {
+        Some(standard) => format!("{:.3e} mbar l/s", MBAR_LITRE * standard),
+        None => format!("{leak_rate:.3e} m3/s"),
+    }
+}
+
+/// When the seal is tight, in a sentence without its full stop; empty where it leaks at all times.
+pub fn tight(times: &[f64], percolates: &[f64]) -> String {
+    let is_tight: Vec<bool> = percolates.iter().map(|open| *open == 0.0).collect();
+    if is_tight.iter().all(|tight| !tight) {
+        return String::new();
+    }
+    if is_tight.iter().all(|tight| *tight) {
+        return if times.len() > 1 { "tight at all times".into() } else { "tight".into() };
+    }
+    let mut spans = vec![];
+    let mut n = 0;
+    while n < is_tight.len() {
+        let end = n + is_tight[n..].iter().take_while(|tight| **tight == is_tight[n]).count();
+        if is_tight[n] {
+            let [first, last] = [n, end - 1].map(|n| quantity(times[n], "s"));
+            spans.push(match (n, end == is_tight.len()) {
+                (_, true) => format!("from t = {first} on"),
+                (0, false) => format!("up to t = {last}"),
+                _ if first == last => format!("at t = {first}"),
+                _ => format!("from t = {first} to {last}"),
+            });
+        }
+        n = end;
+    }
+    format!("tight {}", spans.join(" and "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::tight;
+
+    #[test]
+    fn spans_without_a_leak_are_named() {
+        let times = [0.0, 1.0, 2.0, 3.0, 4.0];
+        assert_eq!(tight(&times, &[1.0; 5]), "");
+        assert_eq!(tight(&times, &[0.0; 5]), "tight at all times");
+        assert_eq!(tight(&times, &[1.0, 1.0, 0.0, 0.0, 0.0]), "tight from t = 2 s on");
+        assert_eq!(tight(&times, &[0.0, 1.0, 0.0, 1.0, 1.0]), "tight up to t = 0 s and at t = 2 s");
+        assert_eq!(tight(&times, &[1.0, 0.0, 0.0, 1.0, 1.0]), "tight from t = 1 s to 2 s");
+    }
+}

@@ -67,7 +67,9 @@ fn series(contents: &Contents<'_>, dimension: usize, file: &mut Output) -> Resul
     let columns: Vec<&Variable> = contents.variables.iter().filter(is_of).filter(numbers).collect();
     let names = columns.iter().flat_map(|v| match v.dimensions.len() {
         1 => vec![named(v)],
-        _ => ["xx", "xy", "yx", "yy"].map(|entry| named(v).replacen(v.name, &format!("{}_{entry}", v.name), 1)).to_vec(),
+        _ => ["xx", "xy", "yx", "yy"]
+            .map(|entry| named(v).replacen(v.name, &format!("{}_{entry}", v.name), 1))
+            .to_vec(),
     });
     line(file, names)?;
     let rows = contents.dimensions[dimension].1;

@@ -3,6 +3,7 @@
 use super::contact::{Counted, Resolution};
 use super::energy::Balance;
 use super::expected::{ROOM, radius};
+use super::motion::Slides;
 use super::strain::Strain;
 use super::thin::Widest;
 use super::{
@@ -64,6 +65,7 @@ pub struct Judge {
     deepest: f64,
     resolution: Resolution,
     strain: Strain,
+    slides: Slides,
     balance: Balance,
     /// What is to be said of a held approach once cells are at the hardness there, and whether they were.
     held: Option<Finding>,
@@ -91,6 +93,7 @@ impl Judge {
             deepest: 0.0,
             resolution: Resolution::default(),
             strain: Strain::new(simulation, radius(grid, known.parts)),
+            slides: Slides::default(),
             balance: Balance::default(),
             held: time::held_at_hardness(simulation)
                 .filter(|_| simulation.hardness.is_finite() || simulation.hardness_map.is_some()),
@@ -137,6 +140,9 @@ impl Judge {
             self.needed = self.needed.max(needed);
         }
         self.capped |= row.capped_area > 0.0 && step.instant().control == Control::Approach;
+        if let Some(friction) = step.friction() {
+            self.slides.see(index, &friction);
+        }
         if let Some(balance) = step.energy_balance() {
             self.balance.see(index, balance);
         }
@@ -186,6 +192,7 @@ impl Judge {
             found.extend(self.held.clone().filter(|_| self.capped));
         }
         found.extend(self.thickness.and_then(|thickness| self.widest.finding(thickness)));
+        found.extend(self.slides.finding());
         let balances = self.balance.finding().into_iter().chain(self.earlier_balance.clone());
         found.extend(balances.reduce(|a, b| if b.value > a.value { b } else { a }));
         found

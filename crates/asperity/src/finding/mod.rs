@@ -16,6 +16,7 @@
 //! | `time` | steps that are too long for the history and the material |
 //! | `energy` | the energy balance |
 //! | `leak` | leaks that gap, grid or fluid pressure do not carry |
+//! | `motion` | friction that the grid does not resolve, bodies on their own track |
 //! | `thin` | half-spaces of finite thickness |
 //! | `expected` | an estimate of the contact before the run |
 //!
@@ -28,6 +29,7 @@ mod expected;
 mod judge;
 mod leak;
 mod material;
+mod motion;
 mod strain;
 mod stress;
 mod surface;
@@ -41,6 +43,7 @@ pub use expected::{Contact, Expected};
 pub use judge::{Judge, Known};
 pub use leak::{LeakJudge, LeakState};
 pub use material::{beyond_data, misfit, unlikely_modulus};
+pub use motion::{friction_zero, own_track};
 pub use stress::{stress_at_deepest, stress_times_miss_peak, stress_unresolved, yield_exceeded};
 pub use surface::{hurst, of_heights};
 pub use thin::thin_body;
@@ -126,7 +129,7 @@ impl std::fmt::Display for Finding {
 }
 
 /// Every code. A code keeps its meaning.
-pub const CODES: [&str; 25] = [
+pub const CODES: [&str; 28] = [
     CONTACT_AT_BORDER,
     GAP_NOT_PERIODIC,
     ROUGH_ON_FREE_DOMAIN,
@@ -152,6 +155,9 @@ pub const CODES: [&str; 25] = [
     CONSTRICTION_UNRESOLVED,
     FLUID_PRESSURE_LARGE,
     THIN_BODY,
+    FRICTION_UNCERTAIN,
+    FRICTION_ZERO,
+    OWN_TRACK,
 ];
 
 /// Contact, or the expected contact, reaches the border of a free domain.
@@ -198,6 +204,13 @@ pub const STRESS_TIMES_MISS_PEAK: &str = "stress-times-miss-peak";
 pub const YIELD_EXCEEDED: &str = "yield-exceeded";
 /// A half-space that is thinner than the contact or the waves need.
 pub const THIN_BODY: &str = "thin-body";
+
+/// Two estimates of the friction force differ.
+pub const FRICTION_UNCERTAIN: &str = "friction-uncertain";
+/// Nothing that remembers moves.
+pub const FRICTION_ZERO: &str = "friction-zero";
+/// A single body on a periodic domain meets its own track.
+pub const OWN_TRACK: &str = "own-track";
 
 /// The gap at the critical constriction of a leak is less than 30 times the error of the gap.
 pub const LEAK_BELOW_GAP_ERROR: &str = "leak-below-gap-error";

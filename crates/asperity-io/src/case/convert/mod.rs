@@ -118,6 +118,11 @@ pub fn case(
         (&document.motion, motion.iter().flatten().next(), &mut pair)
     {
         motion::of_pair(&mut checks, raw, motion, &document.body, pair);
+        if let Some(grid) = &grid {
+            let boundary = document.domain.value.boundary.unwrap_or_default();
+            let found = motion::findings(motion, &document.surface, grid, boundary, pair);
+            pair.findings.extend(found);
+        }
     }
     if let (Some(times), Some(prescription), Some(pair)) = (&times, &prescription, &pair) {
         load::possible(&mut checks, prescription, times, grid.as_ref(), pair);
@@ -166,7 +171,8 @@ pub fn case(
     let boundary = document.domain.value.boundary.unwrap_or_default();
     let leakage = match (&document.leakage, &output, &times) {
         (Some(at), ..) if line => {
-            let message = "leakage needs a gap over a plane: on a line of cells nothing flows along y".to_owned();
+            let message =
+                "leakage needs a gap over a plane: on a line of cells nothing flows along y".to_owned();
             let help = "delete the section, or give domain.cells and domain.size two values";
             checks.fault(&at.span, message, "a domain with two values in cells", Some(help));
             None

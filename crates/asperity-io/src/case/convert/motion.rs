@@ -1,8 +1,9 @@
 //! `[motion]`.
 
+use asperity::finding::{self, Finding};
 use asperity::material::Creep;
 use asperity::sliding::{Direction, Path};
-use asperity::{Grid, TimeGrid};
+use asperity::{Boundary, Grid, TimeGrid};
 
 use super::Checks;
 use super::body::Pair;
@@ -216,6 +217,36 @@ pub fn of_pair(
             None
         }
     }
+}
+
+/// What is found about a motion before the run.
+pub fn findings(
+    motion: &Motion,
+    surfaces: &[At<raw::Surface>],
+    grid: &Grid,
+    boundary: Boundary,
+    pair: &Pair,
+) -> Vec<Finding> {
+    let parts = std::iter::once(&pair.creep).chain(pair.thermal.iter().map(|body| &body.creep));
+    let branches: Vec<(f64, f64)> = parts
+        .flat_map(|creep| creep.terms.iter().map(|term| (term.compliance, term.retardation_time)))
+        .collect();
+    let flows = pair.creep.fluidity > 0.0 || pair.thermal.iter().any(|body| body.creep.fluidity > 0.0);
+    if branches.is_empty() && !flows {
+        return vec![finding::friction_zero()];
+    }
+    let single = surfaces.iter().any(|surface| {
+        use raw::Surface::{Cone, Cylinder, Ellipsoid, Sphere, Wedge};
+        matches!(surface.value, Sphere(_) | Ellipsoid(_) | Cylinder(_) | Cone(_) | Wedge(_))
+    });
+    let velocities = match &motion.travel {
+        Travel::Steady(velocities) => velocities.clone(),
+        // Only what travels round meets its own track.
+        Travel::Path(_) => vec![],
+    };
+    let found = (single && boundary == Boundary::Periodic)
+        .then(|| finding::own_track(grid, &velocities, &branches, pair.instantaneous()));
+    found.flatten().into_iter().collect()
 }
 
 /// The number of the body `over`, where it is named.

@@ -1,0 +1,85 @@
+//! Contacts in motion.
+//!
+//! Friction is the small difference of large forces before and behind each bump. Two estimates of it agree as far as the grid
+//! resolves the edges of the contact, so their difference tells what the number is worth. On a periodic domain the material comes
+//! round with what it remembers of the contact before it: right for a rough surface, not for a single body.
+
+use super::words::{digits, rows, si};
+use super::{FRICTION_UNCERTAIN, FRICTION_ZERO, Finding, OWN_TRACK};
+use crate::grid::Grid;
+use crate::sliding::Friction;
+
+/// The two estimates of friction differ by this share at most.
+const UNCERTAIN: f64 = 0.1;
+/// Rows with less than this share of the largest force do not count: there friction changes its sign.
+const SMALL: f64 = 0.1;
+/// A memory that reaches so many domains still knows the contact before.
+const REACH: std::ops::Range<f64> = 0.1..10.0;
+/// Share of the compliance that a branch must have to count.
+const SHARE: f64 = 0.05;
+
+/// The friction of the rows.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Slides {
+    /// Number of a row, the size of its force \[N\], and its uncertainty.
+    rows: Vec<(usize, f64, f64)>,
+}
+
+impl Slides {
+    pub(super) fn see(&mut self, index: usize, friction: &Friction) {
+        if friction.force != 0.0 {
+            self.rows.push((index, friction.force.abs(), friction.uncertainty));
+        }
+    }
+
+    pub(super) fn finding(&self) -> Option<Finding> {
+        let largest = self.rows.iter().map(|row| row.1).fold(0.0, f64::max);
+        let uncertain =
+            self.rows.iter().filter(|(_, force, off)| *force > SMALL * largest && *off > UNCERTAIN);
+        let found: Vec<_> = uncertain.collect();
+        let at = [found.first()?.0, found.last()?.0];
+        let worst = found.iter().map(|row| row.2).fold(0.0, f64::max);
+        let text = format!(
+            "Two estimates of the friction force differ by up to {} of it ({}), more than {UNCERTAIN}: the cells do not resolve the \
+             edges of the contact. Refine the grid (domain.cells), or leave short waves out; a motion in time also takes shorter \
+             steps (cells_per_step).",
+            digits(worst),
+            rows(at)
+        );
+        Some(Finding::warning(FRICTION_UNCERTAIN, worst, UNCERTAIN, text).at(at))
+    }
+}
+
+/// A single body on a periodic domain along which it moves at these velocities \[m/s\], over material with branches of compliance
+/// \[1/Pa\] and retardation time \[s\].
+pub fn own_track(
+    grid: &Grid,
+    velocities: &[f64],
+    branches: &[(f64, f64)],
+    instantaneous: f64,
+) -> Option<Finding> {
+    let total: f64 = instantaneous + branches.iter().map(|branch| branch.0).sum::<f64>();
+    let length = grid.size()[0];
+    let reaches = |v: f64| {
+        let counting = branches.iter().filter(|(compliance, _)| *compliance > SHARE * total);
+        counting.map(|(_, time)| v * time / length).filter(|share| REACH.contains(share)).fold(0.0, f64::max)
+    };
+    let worst = velocities.iter().map(|v| reaches(*v)).fold(0.0, f64::max);
+    (worst > 0.0).then(|| {
+        let text = format!(
+            "The material comes round on the periodic domain of {} before it has forgotten the contact: its memory reaches {} of the \
+             domain, and the body moves on its own track. For a single body take boundary = \"free\" (a steady state needs no track), \
+             or a longer domain; for one of many bodies in a row this is right.",
+            si(length, "m"),
+            digits(worst)
+        );
+        Finding::warning(OWN_TRACK, worst, REACH.start, text)
+    })
+}
+
+/// A motion of bodies that remember nothing.
+pub fn friction_zero() -> Finding {
+    let text = "Nothing that remembers moves through the contact, so the friction of the bulk is zero at any velocity: the bodies \
+                are elastic, or the viscoelastic one stands still in the frame of the contact (motion.over, motion.kind).";
+    Finding::warning(FRICTION_ZERO, 0.0, f64::NAN, text).as_note()
+}

@@ -48,8 +48,8 @@ mod _core {
     use super::stress::{stress_check, stress_depths, stress_field, stress_survey};
     #[pymodule_export]
     use super::surface::{
-        autocorrelation, bearing_curve, describe, gap, height_distribution, power_spectrum, process, profile_parameters,
-        read_surface, roughness, self_affine, shape, write_surface,
+        autocorrelation, bearing_curve, describe, gap, height_distribution, power_spectrum, process,
+        profile_parameters, read_surface, roughness, self_affine, shape, write_surface,
     };
     #[pymodule_export]
     use super::wait::{set_threads, threads};

@@ -56,7 +56,11 @@ pub fn grid_of(py: Python<'_>, (nx, ny): (usize, usize), size: &[f64]) -> PyResu
     let grid = match *size {
         [length] if ny == 1 => Grid::line(nx, length),
         [lx, ly] => Grid::new([nx, ny], [lx, ly]),
-        _ => return Err(CaseError::new_err("size needs two lengths, along x and y, or one for a line of cells")),
+        _ => {
+            return Err(CaseError::new_err(
+                "size needs two lengths, along x and y, or one for a line of cells",
+            ));
+        }
     };
     grid.map_err(|error| raised(py, error))
 }

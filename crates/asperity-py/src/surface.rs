@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use asperity::surface::profile::{self, ProfileParameters};
 use asperity::surface::statistics::{
     Autocorrelation, BearingCurve, Extent, RadialSpectrum, Rings, SelfAffineFit, Summary,
 };
-use asperity::surface::profile::{self, ProfileParameters};
 use asperity::surface::{self, Part, Roughness, SelfAffine, Shape, Surface, undeformed_gap};
 use asperity_io::case::fragment;
 use asperity_io::preparation::{Step, prepare};
@@ -21,7 +21,6 @@ use crate::march::grid_of;
 use crate::wait::detached;
 
 type Heights<'py> = Bound<'py, PyArray2<f64>>;
-
 
 /// Heights of a self-affine surface.
 #[pyfunction]
@@ -126,7 +125,9 @@ pub fn read_surface<'py>(
     let of_map = size.as_ref().is_some_and(|size| size.len() == 2);
     let lengths = size.as_ref().and_then(|size| Some([*size.first()?, size.get(1).copied().unwrap_or(1.0)]));
     let options = ReadOptions { size: lengths, height_unit, channel, ..ReadOptions::default() };
-    if !of_map && let Some(profile) = detached(py, || read_profile(&path, &options))?.map_err(topography_error)? {
+    if !of_map
+        && let Some(profile) = detached(py, || read_profile(&path, &options))?.map_err(topography_error)?
+    {
         let out = PyDict::new(py);
         out.set_item("format", "profile")?;
         out.set_item("history", profile.history)?;
@@ -136,7 +137,9 @@ pub fn read_surface<'py>(
         return Ok(out);
     }
     if size.is_some() && !of_map {
-        return Err(CaseError::new_err("size has one length, but the file holds no profile: it needs two, along x and y"));
+        return Err(CaseError::new_err(
+            "size has one length, but the file holds no profile: it needs two, along x and y",
+        ));
     }
     let topography = detached(py, || read(&path, &options))?.map_err(topography_error)?;
     let out = PyDict::new(py);
@@ -294,7 +297,14 @@ pub fn profile_parameters<'py>(
     })?;
     let found = found.map_err(|error| raised(py, error))?;
     let out = PyDict::new(py);
-    let numbers = [("ra", found.ra), ("rq", found.rq), ("rz", found.rz), ("rt", found.rt), ("rsk", found.rsk), ("rku", found.rku)];
+    let numbers = [
+        ("ra", found.ra),
+        ("rq", found.rq),
+        ("rz", found.rz),
+        ("rt", found.rt),
+        ("rsk", found.rsk),
+        ("rku", found.rku),
+    ];
     for (name, value) in numbers {
         out.set_item(name, value)?;
     }

@@ -76,7 +76,8 @@ pub fn pictures(
         let line = reader.header().grid.is_line();
         if line && let Some(map) = over_time(reader, *kind)? {
             let picture = Figure { panel: [430.0, 260.0], ..Figure::new("").with(map) };
-            fs::write(place(format!("{}_over_time.png", kind.name())), picture.to_png(150.0)?).map_err(failed)?;
+            fs::write(place(format!("{}_over_time.png", kind.name())), picture.to_png(150.0)?)
+                .map_err(failed)?;
         }
         for n in 0..reader.field_times().len() {
             let mut picture = figure(reader, plot, &Options { at: At::Index(n), ..Options::default() })?;

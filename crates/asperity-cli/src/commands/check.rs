@@ -178,7 +178,9 @@ fn tell(case: &Case, examined: &Examination, estimate: Option<f64>) -> String {
     line(
         "domain",
         match (d.cells.as_slice(), lengths(&d.spacing), lengths(&d.size)) {
-            ([n], cell, size) => format!("a line of {n} cells of {cell}, {size}, {}, plane strain", d.boundary),
+            ([n], cell, size) => {
+                format!("a line of {n} cells of {cell}, {size}, {}, plane strain", d.boundary)
+            }
             (cells, cell, size) => {
                 let cells: Vec<String> = cells.iter().map(usize::to_string).collect();
                 format!("{} cells of {cell}, {size}, {}", cells.join(" x "), d.boundary)

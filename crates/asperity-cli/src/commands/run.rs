@@ -47,7 +47,9 @@ pub fn run(args: &Run) -> Result<(), Failure> {
         Err(error @ RunError::Output(_)) => Err(Failure::input(error.to_string())),
         Err(error) => {
             let message = match &error {
-                RunError::Solve { best: Some(best), .. } => format!("{error}\n{}", best_state(best, &case.grid)),
+                RunError::Solve { best: Some(best), .. } => {
+                    format!("{error}\n{}", best_state(best, &case.grid))
+                }
                 _ => error.to_string(),
             };
             if let RunError::Leakage { source: LeakError::Interrupted, .. } = error {
@@ -126,7 +128,8 @@ fn tell(args: &Run, grid: &Grid, summary: &Summary, error: Option<&RunError>) ->
             line("contact", format!("{area} ({share:.3} % of the domain)"));
         } else {
             let corrected = quantity(last.contact_area_corrected, "m2");
-            let value = format!("{area} ({share:.3} % of the domain; corrected for its perimeter {corrected})");
+            let value =
+                format!("{area} ({share:.3} % of the domain; corrected for its perimeter {corrected})");
             line("contact area", value);
         }
         line("mean gap", quantity(last.mean_gap, "m"));

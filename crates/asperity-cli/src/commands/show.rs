@@ -115,7 +115,10 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
     let (force, area) = (grid.units("N"), grid.units("m2"));
     let percent = |share: f64| format!("{:.3} %", 100.0 * share);
     line("time", quantity(last.time, "s"));
-    line("load", format!("{:<14}{}", quantity(last.load, force), curve(|row| row.load, &|v| quantity(v, force))));
+    line(
+        "load",
+        format!("{:<14}{}", quantity(last.load, force), curve(|row| row.load, &|v| quantity(v, force))),
+    );
     line(
         "approach",
         format!("{:<14}{}", quantity(last.approach, "m"), curve(|row| row.approach, &|v| quantity(v, "m"))),

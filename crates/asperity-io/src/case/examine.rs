@@ -171,7 +171,9 @@ fn surface(grid: &asperity::Grid, part: &Part) -> SurfaceInput {
     let (name, radius, slope) = match part {
         Part::Shape { shape, .. } => {
             let radius = match shape {
-                Shape::FlatPunch(Punch::Circle { radius }) if grid.is_line() => Some([*radius, f64::INFINITY]),
+                Shape::FlatPunch(Punch::Circle { radius }) if grid.is_line() => {
+                    Some([*radius, f64::INFINITY])
+                }
                 Shape::Sphere { radius } | Shape::FlatPunch(Punch::Circle { radius }) => Some([*radius; 2]),
                 Shape::Cylinder { radius } => Some([*radius, f64::INFINITY]),
                 Shape::Ellipsoid { radius_x, radius_y } => Some([*radius_x, *radius_y]),

@@ -65,7 +65,8 @@ impl Measured {
             Some(_) => None,
         };
         if let Some(line) = self.size_of_line.filter(|line| *line != profile.is_some()) {
-            let (holds, wanted) = if line { ("a surface over a plane", "two values") } else { ("a profile", "one value") };
+            let (holds, wanted) =
+                if line { ("a surface over a plane", "two values") } else { ("a profile", "one value") };
             return Err(format!("{} holds {holds}, so its size needs {wanted}", self.path.display()));
         }
         if let Some(profile) = profile {

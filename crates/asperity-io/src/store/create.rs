@@ -141,7 +141,8 @@ pub(super) fn write_constants(
 ) -> Result<()> {
     let grid = &document.header.grid;
     let [nx, ny] = grid.cells();
-    let lines: Vec<_> = document.header.quantities.iter().flat_map(|column| coordinates(column, grid)).collect();
+    let lines: Vec<_> =
+        document.header.quantities.iter().flat_map(|column| coordinates(column, grid)).collect();
     for spec in document.arrays() {
         let centres: Vec<f64> = match spec.name {
             "x" => (0..nx).map(|i| grid.x(i)).collect(),

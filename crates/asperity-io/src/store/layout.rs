@@ -118,7 +118,9 @@ impl Series {
                 "rigid-body approach, measured from the end of the domain (known up to a constant on a free line)"
             }
             "contact_area" if header.grid.is_line() => "contact length",
-            "contact_area_corrected" if header.grid.is_line() => "contact length (without correction on a line)",
+            "contact_area_corrected" if header.grid.is_line() => {
+                "contact length (without correction on a line)"
+            }
             "contact_fraction" if header.grid.is_line() => "contact length over length of the domain",
             "capped_area" if header.grid.is_line() => "length at the hardness",
             "load" if header.grid.is_line() => "normal load per length along y",
@@ -384,7 +386,9 @@ pub(super) fn arrays(header: &Header, rows: usize, maps: usize) -> Vec<ArraySpec
                     attributes: json!({"units": units, "long_name": long_name}),
                 });
                 arrays.extend(
-                    coordinates(column, grid).into_iter().map(|(series, numbers)| line(&series, numbers.len())),
+                    coordinates(column, grid)
+                        .into_iter()
+                        .map(|(series, numbers)| line(&series, numbers.len())),
                 );
             }
         }

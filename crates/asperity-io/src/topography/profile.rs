@@ -151,7 +151,8 @@ mod tests {
     use super::*;
 
     fn read(text: &str) -> Profile {
-        profile_of(text.as_bytes(), &ReadOptions::default()).unwrap_or_else(|error| panic!("{error}:\n{text}"))
+        profile_of(text.as_bytes(), &ReadOptions::default())
+            .unwrap_or_else(|error| panic!("{error}:\n{text}"))
     }
 
     fn message(text: &str, options: &ReadOptions) -> String {
@@ -195,7 +196,11 @@ mod tests {
     fn uneven_points_are_resampled_and_the_history_says_so() {
         // On a straight line resampling changes nothing.
         let profile = read("x [mm]; z [mm]\n0; 0\n1; 2\n1.5; 3\n4; 8\n");
-        assert!(profile.history[0].contains("resampled from 4 unevenly spaced points"), "{:?}", profile.history);
+        assert!(
+            profile.history[0].contains("resampled from 4 unevenly spaced points"),
+            "{:?}",
+            profile.history
+        );
         for n in 0..4 {
             let wanted = 8e-3 * n as f64 / 3.0;
             assert!((profile.surface.heights()[[n, 0]] - wanted).abs() < 1e-15);

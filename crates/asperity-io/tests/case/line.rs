@@ -33,7 +33,8 @@ fn edited(from: &str, to: &str) -> String {
 }
 
 fn fault(text: &str) -> CaseError {
-    let errors = Case::parse(text, Path::new("."), &[]).err().unwrap_or_else(|| panic!("accepted:\n{text}")).errors;
+    let errors =
+        Case::parse(text, Path::new("."), &[]).err().unwrap_or_else(|| panic!("accepted:\n{text}")).errors;
     assert_eq!(errors.len(), 1, "{errors:?}");
     errors.into_iter().next().unwrap()
 }
@@ -65,7 +66,10 @@ fn loads_are_per_length_in_every_place() {
     }
     let directory = tempfile::tempdir().unwrap();
     std::fs::write(directory.path().join("load.csv"), "time [s], load [N/mm]\n0, 0\n1, 4\n").unwrap();
-    let text = edited("{ kind = \"ramp\", value = \"2 N/mm\", duration = \"1 s\" }", "{ kind = \"file\", path = \"load.csv\" }");
+    let text = edited(
+        "{ kind = \"ramp\", value = \"2 N/mm\", duration = \"1 s\" }",
+        "{ kind = \"file\", path = \"load.csv\" }",
+    );
     let case = Case::parse(&text, directory.path(), &[]).unwrap();
     assert_eq!(case.loading.stages[0].course.resolve(0.0).range(1.0)[1], 4000.0);
     let stages = edited(
@@ -104,7 +108,12 @@ fn lists_have_one_value_on_a_line_and_two_on_a_plane() {
         ("cells = [64]", "cells = [64, 64]", "domain.size", "two values"),
         ("cells = [64]", "cells = [64, 64, 64]", "domain.cells", "two values"),
         ("cells = [64]", "cells = []", "domain.cells", "two values"),
-        ("radius = \"10 mm\"", "radius = \"10 mm\"\ncenter = [\"0 mm\", \"0 mm\"]", "surface[0].center", "one value"),
+        (
+            "radius = \"10 mm\"",
+            "radius = \"10 mm\"\ncenter = [\"0 mm\", \"0 mm\"]",
+            "surface[0].center",
+            "one value",
+        ),
         (
             "kind = \"cylinder\"\nradius = \"10 mm\"",
             "kind = \"wave\"\namplitude = \"1 um\"\nwavelength = [\"1 mm\", \"1 mm\"]",
@@ -146,7 +155,12 @@ fn lists_have_one_value_on_a_line_and_two_on_a_plane() {
 fn what_a_line_contact_cannot_do_is_refused_where_it_stands() {
     let table = [
         ("kind = \"cylinder\"", "kind = \"sphere\"", "surface[0]", "straight along y"),
-        ("[time]", "[leakage]\npressure_drop = \"1 bar\"\nviscosity = \"1 mPa s\"\n[time]", "leakage", "plane"),
+        (
+            "[time]",
+            "[leakage]\npressure_drop = \"1 bar\"\nviscosity = \"1 mPa s\"\n[time]",
+            "leakage",
+            "plane",
+        ),
         ("[time]", "[stress]\ndepths = \"auto\"\n[time]", "stress", "line contacts"),
     ];
     for (from, to, key, words) in table {
@@ -175,8 +189,10 @@ fn a_profile_from_a_file_gives_cells_and_size() {
         .collect();
     let file = format!("META\nLateral um, Total Profile um\n{rows}");
     std::fs::write(directory.path().join("roller.csv"), file).unwrap();
-    let text = edited("cells = [64]\nsize = [\"2 mm\"]\n", "boundary = \"periodic\"\n")
-        .replace("kind = \"cylinder\"\nradius = \"10 mm\"", "kind = \"file\"\npath = \"roller.csv\"\ncircle = {}");
+    let text = edited("cells = [64]\nsize = [\"2 mm\"]\n", "boundary = \"periodic\"\n").replace(
+        "kind = \"cylinder\"\nradius = \"10 mm\"",
+        "kind = \"file\"\npath = \"roller.csv\"\ncircle = {}",
+    );
     let case = Case::parse(&text, directory.path(), &[]).unwrap_or_else(|errors| panic!("{errors}"));
     assert_eq!(case.grid.cells(), [200, 1]);
     assert!(case.grid.is_line() && (case.grid.size()[0] / 2e-3 - 1.0).abs() < 1e-9);

@@ -140,7 +140,10 @@ fn headline(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
         ["load".into(), quantity(last.load, force)],
         ["approach".into(), quantity(last.approach, "m")],
         [contact, quantity(last.contact_area, area)],
-        [if grid.is_line() { "of the domain" } else { "of the nominal area" }.into(), format!("{:.2} %", 100.0 * last.contact_fraction)],
+        [
+            if grid.is_line() { "of the domain" } else { "of the nominal area" }.into(),
+            format!("{:.2} %", 100.0 * last.contact_fraction),
+        ],
         ["mean gap".into(), quantity(last.mean_gap, "m")],
         [
             format!("largest pressure, mean {}", quantity(last.mean_pressure, "Pa")),

@@ -54,8 +54,12 @@ pub(super) fn spots(reader: &Reader, at: At) -> Result<Figure, StoreError> {
     let number: Vec<f64> = (1..=spots.len()).map(|n| n as f64).collect();
     let grid = &reader.header().grid;
     let (size, units) = if grid.is_line() { ("length", "m") } else { ("area", "m2") };
-    let panel = Curves::new("", Axis::log(format!("{size} of a spot"), units), Axis::log("spots at least as large", ""))
-        .with(Series::new("", Style::Points, spots.areas.clone(), number));
+    let panel = Curves::new(
+        "",
+        Axis::log(format!("{size} of a spot"), units),
+        Axis::log("spots at least as large", ""),
+    )
+    .with(Series::new("", Style::Points, spots.areas.clone(), number));
     let largest = spots.areas.first().copied().unwrap_or(0.0);
     let sizes = format!(
         "{} spots, mean {size} {}, largest {}. {}",

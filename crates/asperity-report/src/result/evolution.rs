@@ -74,7 +74,8 @@ pub(crate) fn quantity_panels(reader: &Reader) -> Vec<QuantityPanel> {
         match panels.iter_mut().find(|panel| panel.title == title) {
             Some(panel) => panel.lines.push(line),
             None => {
-                let units = scalars.iter().find(|series| series.name == quantity.name()).map_or("", |s| s.units);
+                let units =
+                    scalars.iter().find(|series| series.name == quantity.name()).map_or("", |s| s.units);
                 let units = if units == "1" { "" } else { units };
                 panels.push(QuantityPanel {
                     title,
@@ -108,7 +109,8 @@ pub(super) fn quantities(reader: &Reader, options: &Options) -> Result<Figure, S
 
 pub(super) fn load_displacement(reader: &Reader) -> Result<Figure, StoreError> {
     times(reader)?;
-    let panel = Curves::new("", Axis::linear("approach", "m"), Axis::linear("load", reader.header().grid.units("N")));
+    let panel =
+        Curves::new("", Axis::linear("approach", "m"), Axis::linear("load", reader.header().grid.units("N")));
     Ok(Figure::new("").with(nameless(panel, &reader.series("approach")?, reader.series("load")?)))
 }
 

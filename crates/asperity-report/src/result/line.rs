@@ -80,7 +80,11 @@ pub(crate) fn over_time(reader: &Reader, kind: FieldKind) -> Result<Option<Map>,
             Some((of, values)) if of == index => values,
             _ => {
                 let values = one(reader, kind, At::Index(index))?;
-                if kind == FieldKind::Contact { states(values.view(), block) } else { means(values.view(), block) }
+                if kind == FieldKind::Contact {
+                    states(values.view(), block)
+                } else {
+                    means(values.view(), block)
+                }
             }
         };
         picture.column_mut(k).assign(&values.column(0));

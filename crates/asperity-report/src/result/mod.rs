@@ -188,7 +188,9 @@ pub fn figure(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, 
         match plot {
             Plot::Stress => return refused("the stress below its surface is not computed yet"),
             Plot::Leak => return refused("it has no leakage"),
-            Plot::Profile if matches!(options.line, Line::AlongY(_)) => return refused("take the profile along x"),
+            Plot::Profile if matches!(options.line, Line::AlongY(_)) => {
+                return refused("take the profile along x");
+            }
             _ => {}
         }
     }

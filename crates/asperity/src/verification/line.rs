@@ -81,7 +81,12 @@ pub(super) fn strip_punch() -> Result<Vec<Check>> {
         checks.relative(name, pressure[cell], exact, 8.0 * first_order);
     }
     // From the mean: -(2 pm l / (pi E*)) ln sin(pi a / l).
-    checks.relative("displacement", displacement[n / 2], -FRAC_2_PI * load * sine(half).ln(), 6.0 * first_order);
+    checks.relative(
+        "displacement",
+        displacement[n / 2],
+        -FRAC_2_PI * load * sine(half).ln(),
+        6.0 * first_order,
+    );
     checks.absolute("contact length", (row.contact_area - 2.0 * half).abs(), 1e-12);
     Ok(checks.list)
 }

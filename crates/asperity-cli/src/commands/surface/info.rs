@@ -19,7 +19,9 @@ pub fn run(args: &SurfaceInfo) -> Result<(), Failure> {
     }
     if args.cutoff.is_some() || args.circle.is_some() {
         let name = args.file.file.display();
-        return Err(Failure::input(format!("{name} is no profile: --cutoff and --circle are for two columns of text")));
+        return Err(Failure::input(format!(
+            "{name} is no profile: --cutoff and --circle are for two columns of text"
+        )));
     }
     let topography = super::open(&args.file)?;
     let name = args.file.file.display().to_string();

@@ -34,7 +34,11 @@ pub(super) fn open(file: &SurfaceFile) -> Result<Option<Profile>, Failure> {
 }
 
 /// Heights without their straight line and, with a cut-off, without their Gaussian mean line; and what was done.
-fn prepared(name: &str, profile: Profile, args: &SurfaceInfo) -> Result<(Vec<f64>, f64, Vec<String>), Failure> {
+fn prepared(
+    name: &str,
+    profile: Profile,
+    args: &SurfaceInfo,
+) -> Result<(Vec<f64>, f64, Vec<String>), Failure> {
     let told = |error: asperity::Error| Failure::input(format!("{name}: {error}"));
     let spacing = profile.surface.grid().spacing()[0];
     let mut steps = vec![];
@@ -53,7 +57,10 @@ fn prepared(name: &str, profile: Profile, args: &SurfaceInfo) -> Result<(Vec<f64
     if let Some(cutoff) = &args.cutoff {
         let cutoff = super::length(cutoff)?;
         heights = roughness(&heights, spacing, cutoff).map_err(told)?;
-        history.push(format!("subtract the Gaussian mean line of cut-off {} (ISO 16610-21)", quantity(cutoff, "m")));
+        history.push(format!(
+            "subtract the Gaussian mean line of cut-off {} (ISO 16610-21)",
+            quantity(cutoff, "m")
+        ));
     }
     Ok((heights, spacing, history))
 }
@@ -68,8 +75,10 @@ pub(super) fn info(args: &SurfaceInfo, profile: Profile) -> Result<(), Failure> 
     let found = ProfileParameters::of(&heights, spacing).map_err(told)?;
     let spectrum = ProfileSpectrum::of(&heights, spacing, args.periodic, PER_DECADE).map_err(told)?;
     let finite = stored.heights().iter().copied().filter(|z| z.is_finite()).collect::<Vec<f64>>();
-    let (low, high) =
-        (finite.iter().copied().fold(f64::INFINITY, f64::min), finite.iter().copied().fold(f64::NEG_INFINITY, f64::max));
+    let (low, high) = (
+        finite.iter().copied().fold(f64::INFINITY, f64::min),
+        finite.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+    );
     if let Some(path) = &args.plot {
         figure(&name, &heights, spacing, &spectrum)
             .write(path, args.force)
@@ -86,8 +95,13 @@ pub(super) fn info(args: &SurfaceInfo, profile: Profile) -> Result<(), Failure> 
         return crate::print(&format!("{object}\n"));
     }
     let mut text = format!("{name}\n");
-    let mut line = |name: &str, value: String, words: &str| text += &format!("  {name:<12}{value:<14}{words}\n");
-    line("profile", format!("{} points", heights.len()), &format!("over {}, spacing {}", quantity(size, "m"), quantity(spacing, "m")));
+    let mut line =
+        |name: &str, value: String, words: &str| text += &format!("  {name:<12}{value:<14}{words}\n");
+    line(
+        "profile",
+        format!("{} points", heights.len()),
+        &format!("over {}, spacing {}", quantity(size, "m"), quantity(spacing, "m")),
+    );
     line("heights", format!("{} to {}", quantity(low, "m"), quantity(high, "m")), "as stored");
     for step in &history {
         line("", format!("- {step}"), "");
@@ -98,7 +112,8 @@ pub(super) fn info(args: &SurfaceInfo, profile: Profile) -> Result<(), Failure> 
     line("Rt", quantity(found.rt, "m"), "highest less lowest height");
     line("Rsk", format!("{:.4}", found.rsk), "skewness");
     line("Rku", format!("{:.4}", found.rku), "kurtosis");
-    let or_none = |value: Option<f64>, unit: &str| value.map_or("none".to_owned(), |value| quantity(value, unit));
+    let or_none =
+        |value: Option<f64>, unit: &str| value.map_or("none".to_owned(), |value| quantity(value, unit));
     line("Rsm", or_none(found.rsm, "m"), "mean length of a profile element");
     line("Rdq", or_none(found.rdq, ""), "rms slope");
     if args.cutoff.is_none() {
@@ -111,8 +126,12 @@ fn figure(name: &str, heights: &[f64], spacing: f64, spectrum: &ProfileSpectrum)
     let x: Vec<f64> = (0..heights.len()).map(|i| (i as f64 + 0.5) * spacing).collect();
     let profile = Curves::new("Profile", Axis::linear("x", "m"), Axis::linear("height", "m"))
         .with(Series::new("", Style::Line, x, heights.to_vec()));
-    let power = Curves::new("Power spectrum of the profile", Axis::log("wave number", "1/m"), Axis::log("power", "m3"))
-        .with(Series::new("", Style::Points, spectrum.wave_numbers(), spectrum.power.clone()));
+    let power = Curves::new(
+        "Power spectrum of the profile",
+        Axis::log("wave number", "1/m"),
+        Axis::log("power", "m3"),
+    )
+    .with(Series::new("", Style::Points, spectrum.wave_numbers(), spectrum.power.clone()));
     let mut figure = Figure::new(name).columns(1).with(profile).with(power);
     figure.panel = [430.0, 200.0];
     figure
@@ -124,7 +143,9 @@ pub(super) fn synthesize(args: &SurfaceFromProfile) -> Result<(), Failure> {
     let name = args.file.file.display().to_string();
     let told = |error: asperity::Error| Failure::input(format!("{name}: {error}"));
     let Some(profile) = open(&args.file)? else {
-        return Err(Failure::input(format!("{name} is no profile: it needs two columns of text, position and height")));
+        return Err(Failure::input(format!(
+            "{name} is no profile: it needs two columns of text, position and height"
+        )));
     };
     let spacing = profile.surface.grid().spacing()[0];
     let mut history = profile.history;
@@ -155,7 +176,11 @@ pub(super) fn synthesize(args: &SurfaceFromProfile) -> Result<(), Failure> {
     topography.record(history);
     super::save(&args.to, &topography, format)?;
     let written = args.to.output.display().to_string();
-    Portrait::of(&written, &topography, Extent::Periodic)?.tell(args.to.json, args.to.plot.as_deref(), args.to.force)?;
+    Portrait::of(&written, &topography, Extent::Periodic)?.tell(
+        args.to.json,
+        args.to.plot.as_deref(),
+        args.to.force,
+    )?;
     if !args.to.json {
         crate::talk::say!(
             "assumed: the surface is the same in all directions and its heights are Gaussian; a profile cannot tell a lay"
@@ -166,11 +191,15 @@ pub(super) fn synthesize(args: &SurfaceFromProfile) -> Result<(), Failure> {
 
 /// Cells of the surface: those asked for, or of the spacing of the profile.
 fn cells(given: Option<&str>, size: [f64; 2], spacing: f64) -> Result<[usize; 2], Failure> {
-    let Some(text) = given else { return Ok(size.map(|length| (length / spacing).round().max(1.0) as usize)) };
+    let Some(text) = given else {
+        return Ok(size.map(|length| (length / spacing).round().max(1.0) as usize));
+    };
     let numbers: Result<Vec<usize>, _> = text.split(',').map(|n| n.trim().parse::<usize>()).collect();
     match numbers.as_deref() {
         Ok([n]) => Ok([*n; 2]),
         Ok([nx, ny]) => Ok([*nx, *ny]),
-        _ => Err(Failure::input(format!("--cells is \"{text}\", but must be one or two numbers, e.g. --cells 512,512"))),
+        _ => Err(Failure::input(format!(
+            "--cells is \"{text}\", but must be one or two numbers, e.g. --cells 512,512"
+        ))),
     }
 }

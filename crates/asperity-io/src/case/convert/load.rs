@@ -240,7 +240,9 @@ impl Kind {
                     format!("{help}; the domain is a line of cells, so the load is per length along y")
                 }
                 (Control::Load, Some(help)) if !self.line && help.contains("unit of a force per length") => {
-                    format!("{help}; loads per length are for a line contact, with cells = [N] and size = [\"L\"]")
+                    format!(
+                        "{help}; loads per length are for a line contact, with cells = [N] and size = [\"L\"]"
+                    )
                 }
                 (Control::Load | Control::Pressure, None) => {
                     "there is no adhesion; to pull the bodies apart prescribe the approach".to_owned()

@@ -108,7 +108,12 @@ fn on_a_line(checks: &mut Checks<'_, '_>, surface: &At<raw::Surface>) -> Option<
     };
     let message = format!("{name} is not straight along y, but the domain is a line of cells");
     let help = format!("use kind = \"{instead}\", or give domain.cells and domain.size two values");
-    checks.fault(&surface.span, message, "a cylinder, wedge, flat punch, wave, roughness or profile", Some(&help));
+    checks.fault(
+        &surface.span,
+        message,
+        "a cylinder, wedge, flat punch, wave, roughness or profile",
+        Some(&help),
+    );
     None
 }
 

@@ -102,8 +102,7 @@ impl Prescribed {
     }
 }
 
-const PRESCRIBED: &str =
-    "a load (\"0.5 N\", on a line \"2 N/mm\"), a pressure (\"2 MPa\") or an approach (\"1 um\"), as load.control says";
+const PRESCRIBED: &str = "a load (\"0.5 N\", on a line \"2 N/mm\"), a pressure (\"2 MPa\") or an approach (\"1 um\"), as load.control says";
 
 impl<'de> Deserialize<'de> for Prescribed {
     fn deserialize<S: Deserializer<'de>>(deserializer: S) -> Result<Self, S::Error> {

@@ -6,9 +6,7 @@ use serde::Deserialize;
 
 use super::{At, Two};
 use crate::case::quantity::range::{NonNegative, Positive};
-use crate::case::quantity::{
-    Frequency, Length, Number, Prescribed, Pressure, Time as Duration, Whole,
-};
+use crate::case::quantity::{Frequency, Length, Number, Prescribed, Pressure, Time as Duration, Whole};
 
 /// What presses the bodies together.
 #[derive(Debug, Deserialize, JsonSchema)]

@@ -37,7 +37,10 @@ pub(crate) fn read_columns(bytes: &[u8]) -> Result<Columns, Problem> {
     };
     let table = table(text.dialect, block)?;
     if table.columns != 2 {
-        let detail = format!("its lines have {} numbers; a profile has two columns, position and height", table.columns);
+        let detail = format!(
+            "its lines have {} numbers; a profile has two columns, position and height",
+            table.columns
+        );
         return Err(Problem::NoHeights { format: Format::Text, detail });
     }
     let (positions, heights) = table.lines().map(|line| (line[0], line[1])).unzip();
@@ -58,7 +61,8 @@ pub(crate) fn read_columns(bytes: &[u8]) -> Result<Columns, Problem> {
         }
         Unit::Metres(_) => {}
     }
-    let lateral = lateral[0].as_deref().and_then(|label| metres(label, LoneA::Angstrom)).or_else(|| of_name(0));
+    let lateral =
+        lateral[0].as_deref().and_then(|label| metres(label, LoneA::Angstrom)).or_else(|| of_name(0));
     Ok(Columns { positions, heights, lateral, unit, metadata: text.metadata(block) })
 }
 

@@ -101,7 +101,11 @@ impl Operation {
 fn without_circle(surface: &Surface, radius: Option<f64>) -> Result<Surface> {
     let grid = *surface.grid();
     if !grid.is_line() {
-        return Err(Error::invalid("surface to subtract a circle from", "a plane", "a profile, heights on a line of cells"));
+        return Err(Error::invalid(
+            "surface to subtract a circle from",
+            "a plane",
+            "a profile, heights on a line of cells",
+        ));
     }
     let heights: Vec<f64> = surface.heights().iter().copied().collect();
     let (flat, _) = remove_circle(&heights, grid.spacing()[0], radius)?;

@@ -40,7 +40,11 @@ pub fn remove_circle(heights: &[f64], spacing: f64, radius: Option<f64>) -> Resu
     let mut r = match radius {
         Some(radius) => radius / half,
         None if bend.abs() <= 1e-12 * z.iter().fold(0.0, |most: f64, z| most.max(z.abs())) || bend == 0.0 => {
-            return Err(Error::invalid("radius of the circle", "not found", "given: the profile is straight"));
+            return Err(Error::invalid(
+                "radius of the circle",
+                "not found",
+                "given: the profile is straight",
+            ));
         }
         None => 0.5 / bend.abs(),
     };
@@ -59,7 +63,8 @@ pub fn remove_circle(heights: &[f64], spacing: f64, radius: Option<f64>) -> Resu
         let model = |x: f64| z0 + sign * (root(x0, r, x).sqrt() - r);
         let rest: Vec<f64> = x.iter().zip(&z).map(|(x, z)| z - model(*x)).collect();
         let along = |x: f64| sign * (x - x0) / root(x0, r, x).sqrt();
-        let by_radius = |x: f64| if radius.is_some() { 0.0 } else { sign * (r / root(x0, r, x).sqrt() - 1.0) };
+        let by_radius =
+            |x: f64| if radius.is_some() { 0.0 } else { sign * (r / root(x0, r, x).sqrt() - 1.0) };
         let [dz, dx, dr] = fit(&x, &rest, |x| [1.0, along(x), by_radius(x)]);
         (z0, x0, r) = (z0 + dz, x0 + dx, r + dr);
         if dz.abs() + dx.abs() + (dr / r).abs() < 1e-13 * (1.0 + x0.abs()) {
@@ -132,7 +137,9 @@ mod tests {
     fn what_has_no_circle_is_refused() {
         let straight: Vec<f64> = (0..100).map(|i| 1e-6 * f64::from(i)).collect();
         assert!(remove_circle(&[0.0; 100], 1e-5, None).unwrap_err().to_string().contains("straight"));
-        assert!(remove_circle(&straight, 1e-5, Some(1e-4)).unwrap_err().to_string().contains("half the length"));
+        assert!(
+            remove_circle(&straight, 1e-5, Some(1e-4)).unwrap_err().to_string().contains("half the length")
+        );
         assert!(remove_circle(&[0.0, f64::NAN, 0.0, 0.0], 1e-5, None).is_err());
     }
 }

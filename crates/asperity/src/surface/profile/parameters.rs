@@ -64,7 +64,8 @@ impl ProfileParameters {
         let moment = |power: i32| z.iter().map(|z| z.powi(power)).sum::<f64>() / n;
         let rq = moment(2).sqrt();
         let range = |part: &[f64]| {
-            part.iter().copied().fold(f64::NEG_INFINITY, f64::max) - part.iter().copied().fold(f64::INFINITY, f64::min)
+            part.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+                - part.iter().copied().fold(f64::INFINITY, f64::min)
         };
         let sections = (0..SECTIONS).map(|k| &z[k * z.len() / SECTIONS..(k + 1) * z.len() / SECTIONS]);
         let rz = sections.map(range).sum::<f64>() / SECTIONS as f64;
@@ -133,11 +134,19 @@ pub fn roughness(heights: &[f64], spacing: f64, cutoff: f64) -> Result<Vec<f64>>
 /// Refuses undefined heights, and fewer than `least`.
 pub(super) fn check(heights: &[f64], least: usize) -> Result<()> {
     if heights.len() < least {
-        return Err(Error::invalid("number of heights of the profile", heights.len(), format!("{least} at least")));
+        return Err(Error::invalid(
+            "number of heights of the profile",
+            heights.len(),
+            format!("{least} at least"),
+        ));
     }
     let undefined = heights.iter().filter(|z| !z.is_finite()).count();
     if undefined > 0 {
-        return Err(Error::invalid("number of undefined heights", undefined, "0 here; fill the undefined points first"));
+        return Err(Error::invalid(
+            "number of undefined heights",
+            undefined,
+            "0 here; fill the undefined points first",
+        ));
     }
     Ok(())
 }

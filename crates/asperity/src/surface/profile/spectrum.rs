@@ -53,7 +53,8 @@ impl ProfileSpectrum {
         let last = (n - 1) / 2; // below Nyquist
         let step = 10f64.powf(1.0 / f64::from(per_decade.max(1)));
         let fundamental = TAU / length;
-        let mut found = ProfileSpectrum { edges: vec![0.5 * fundamental], power: vec![], waves: vec![], fundamental };
+        let mut found =
+            ProfileSpectrum { edges: vec![0.5 * fundamental], power: vec![], waves: vec![], fundamental };
         let mut first = 1;
         while first <= last {
             let end = ((first as f64 * step).ceil() as usize).clamp(first + 1, last + 1);
@@ -156,7 +157,13 @@ fn interpolation<'a>(x: &'a [f64], y: &'a [f64]) -> impl Fn(f64) -> f64 + Sync +
         let share = libm::log(at / x0) / libm::log(x1 / x0);
         match y0 > 0.0 && y1 > 0.0 {
             true => y0 * libm::exp(share * libm::log(y1 / y0)),
-            false => if share < 0.5 { y0 } else { y1 },
+            false => {
+                if share < 0.5 {
+                    y0
+                } else {
+                    y1
+                }
+            }
         }
     }
 }

@@ -6,6 +6,7 @@
 //! order, and writes down each one as it was done.
 
 use asperity::surface::process::{self, Resampling};
+use asperity::surface::profile::remove_circle;
 use asperity::surface::{Operation, Surface};
 use asperity::{Error, Result};
 
@@ -16,6 +17,11 @@ use crate::resources;
 pub enum Step {
     /// As it stands.
     Operation(Operation),
+    /// Subtract a circle from a profile; `None`: of the radius that fits best.
+    Circle {
+        /// Radius \[m\].
+        radius: Option<f64>,
+    },
     /// Keep a rectangle.
     Crop(Crop),
     /// Other cells over the same rectangle; `None`: those of the domain.
@@ -131,6 +137,13 @@ impl Step {
         match *self {
             Step::Operation(operation) => Ok(operation),
             Step::Crop(crop) => crop.settle(surface),
+            // The radius is found here, so that the history says it.
+            Step::Circle { radius: None } if surface.grid().is_line() => {
+                let heights: Vec<f64> = surface.heights().iter().copied().collect();
+                let (_, radius) = remove_circle(&heights, surface.grid().spacing()[0], None)?;
+                Ok(Operation::RemoveCircle { radius: Some(radius.abs()) })
+            }
+            Step::Circle { radius } => Ok(Operation::RemoveCircle { radius }),
             Step::Resample { cells, method } => match cells.or(domain) {
                 Some(cells) => Ok(Operation::Resample { cells, method }),
                 None => Err(Error::invalid(

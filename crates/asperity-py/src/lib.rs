@@ -49,7 +49,7 @@ mod _core {
     #[pymodule_export]
     use super::surface::{
         autocorrelation, bearing_curve, describe, gap, height_distribution, power_spectrum, process,
-        read_surface, roughness, self_affine, shape, write_surface,
+        profile_parameters, read_surface, roughness, self_affine, shape, write_surface,
     };
     #[pymodule_export]
     use super::wait::{set_threads, threads};

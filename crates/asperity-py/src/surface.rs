@@ -3,15 +3,16 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use asperity::surface::profile::{self, ProfileParameters};
 use asperity::surface::statistics::{
     Autocorrelation, BearingCurve, Extent, RadialSpectrum, Rings, SelfAffineFit, Summary,
 };
 use asperity::surface::{self, Part, Roughness, SelfAffine, Shape, Surface, undeformed_gap};
 use asperity_io::case::fragment;
 use asperity_io::preparation::{Step, prepare};
-use asperity_io::topography::{Format, ReadOptions, Topography, read, write};
+use asperity_io::topography::{Format, ReadOptions, Topography, read, read_profile, write};
 use ndarray::Array2;
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2};
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -117,11 +118,29 @@ pub fn gap<'py>(
 pub fn read_surface<'py>(
     py: Python<'py>,
     path: PathBuf,
-    size: Option<[f64; 2]>,
+    size: Option<Vec<f64>>,
     height_unit: Option<f64>,
     channel: Option<String>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let options = ReadOptions { size, height_unit, channel, ..ReadOptions::default() };
+    let of_map = size.as_ref().is_some_and(|size| size.len() == 2);
+    let lengths = size.as_ref().and_then(|size| Some([*size.first()?, size.get(1).copied().unwrap_or(1.0)]));
+    let options = ReadOptions { size: lengths, height_unit, channel, ..ReadOptions::default() };
+    if !of_map
+        && let Some(profile) = detached(py, || read_profile(&path, &options))?.map_err(topography_error)?
+    {
+        let out = PyDict::new(py);
+        out.set_item("format", "profile")?;
+        out.set_item("history", profile.history)?;
+        out.set_item("size", profile.surface.grid().extents().to_vec())?;
+        out.set_item("metadata", profile.metadata)?;
+        out.set_item("heights", profile.surface.into_heights().into_pyarray(py))?;
+        return Ok(out);
+    }
+    if size.is_some() && !of_map {
+        return Err(CaseError::new_err(
+            "size has one length, but the file holds no profile: it needs two, along x and y",
+        ));
+    }
     let topography = detached(py, || read(&path, &options))?.map_err(topography_error)?;
     let out = PyDict::new(py);
     out.set_item("format", topography.format.name())?;
@@ -256,6 +275,41 @@ pub fn describe<'py>(
             out.set_item("findings", asperity_io::finding::list(&found).to_string())?;
         }
     }
+    Ok(out)
+}
+
+/// Parameters of a profile, less its Gaussian mean line where a cut-off is given.
+#[pyfunction]
+#[pyo3(signature = (heights, spacing, cutoff))]
+pub fn profile_parameters<'py>(
+    py: Python<'py>,
+    heights: PyReadonlyArray1<'_, f64>,
+    spacing: f64,
+    cutoff: Option<f64>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let heights = heights.as_array().to_vec();
+    let found = detached(py, || {
+        let heights = match cutoff {
+            Some(cutoff) => profile::roughness(&heights, spacing, cutoff)?,
+            None => heights,
+        };
+        ProfileParameters::of(&heights, spacing)
+    })?;
+    let found = found.map_err(|error| raised(py, error))?;
+    let out = PyDict::new(py);
+    let numbers = [
+        ("ra", found.ra),
+        ("rq", found.rq),
+        ("rz", found.rz),
+        ("rt", found.rt),
+        ("rsk", found.rsk),
+        ("rku", found.rku),
+    ];
+    for (name, value) in numbers {
+        out.set_item(name, value)?;
+    }
+    out.set_item("rsm", found.rsm)?;
+    out.set_item("rdq", found.rdq)?;
     Ok(out)
 }
 

@@ -106,3 +106,19 @@ def test_every_figure_of_a_line_contact_is_drawn() -> None:
     assert "N/m" in result.plot.load_displacement().get_ylabel()
     cylinder(64).plot.heights()
     cylinder(64).plot.bearing_curve()
+
+
+def test_a_profile_is_read_levelled_and_described(tmp_path) -> None:
+    x = np.arange(2000) * 1e-6
+    heights = 2e-6 * np.sin(2 * np.pi * x / 100e-6) + 0.01 * x
+    path = tmp_path / "stylus.csv"
+    path.write_text("Lateral um, Total Profile nm\n" + "".join(f"{1e6 * a:.3f}, {1e9 * z:.6f}\n" for a, z in zip(x, heights)))
+    profile = asp.Surface.read(path, level="plane")
+    assert profile.is_line and profile.size == pytest.approx((2e-3,), rel=1e-9)
+    found = profile.statistics()
+    assert found["rq"] == pytest.approx(2e-6 / np.sqrt(2), rel=2e-3)  # what the straight line takes of the sine
+    assert found["rsm"] == pytest.approx(100e-6, rel=2e-3)
+    # Half of a wave of the cut-off is left; the ends, a twentieth of the length, keep less.
+    assert profile.statistics(longest=100e-6)["rq"] == pytest.approx(0.5 * found["rq"], rel=0.1)
+    flat = profile.process("circle radius=10mm")
+    assert "circle of radius" in flat.history[-1] and flat.is_line

@@ -18,7 +18,8 @@ pub use result::{Export, Plot, Report, Reproduce, ShowResult, VerifyResult, View
 pub use run::{Check, New, Run, Verify};
 pub use stress::Stress;
 pub use surface::{
-    Surface, SurfaceConvert, SurfaceFile, SurfaceGenerate, SurfaceInfo, SurfaceOutput, SurfaceProcess,
+    Surface, SurfaceConvert, SurfaceFile, SurfaceFromProfile, SurfaceGenerate, SurfaceInfo, SurfaceOutput,
+    SurfaceProcess,
 };
 
 /// A parser of the words of a choice; help and completions list them.

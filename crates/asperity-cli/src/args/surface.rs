@@ -6,10 +6,12 @@ use clap::Subcommand;
 
 #[derive(Debug, Subcommand)]
 pub enum Surface {
-    /// Print format, size and statistics of the heights as stored
+    /// Print format, size and statistics of the heights as stored; of a profile its parameters Ra, Rq, Rz, ...
     Info(SurfaceInfo),
     /// Generate a self-affine rough surface, optionally with a lay or a height distribution
     Generate(Box<SurfaceGenerate>),
+    /// Generate an isotropic surface with the power spectrum of a measured profile
+    FromProfile(Box<SurfaceFromProfile>),
     /// Process a surface step by step: level, fill, crop, resample, filter, ...
     Process(Box<SurfaceProcess>),
     /// Write the surface as NPZ, GWY, X3P, SDF, NetCDF or text
@@ -29,6 +31,12 @@ pub struct SurfaceInfo {
     /// Shortest wavelength used to fit the Hurst exponent
     #[arg(long, value_name = "LENGTH")]
     pub shortest: Option<String>,
+    /// Of a profile: subtract the Gaussian mean line of this cut-off (ISO 16610-21), e.g. '0.8 mm'
+    #[arg(long, value_name = "LENGTH")]
+    pub cutoff: Option<String>,
+    /// Of a profile: subtract a circle of this radius instead of a straight line, or "fit" for the one that fits best
+    #[arg(long, value_name = "RADIUS")]
+    pub circle: Option<String>,
     /// Draw height map, power spectrum and height distribution (.png or .svg)
     #[arg(long, value_name = "PICTURE")]
     pub plot: Option<PathBuf>,
@@ -93,6 +101,26 @@ pub struct SurfaceGenerate {
 }
 
 #[derive(Debug, clap::Args)]
+pub struct SurfaceFromProfile {
+    #[command(flatten)]
+    pub file: SurfaceFile,
+    /// Number of cells along x and y, one number for a square [default: of the spacing of the profile]
+    #[arg(long, value_name = "NX,NY")]
+    pub cells: Option<String>,
+    /// Length of the surface along x and y, one for a square [default: the length of the profile]
+    #[arg(long, value_name = "A,B")]
+    pub to_size: Option<String>,
+    /// Treat the profile as periodic: compute its spectrum without levelling and window
+    #[arg(long)]
+    pub periodic: bool,
+    /// Seed of the random phases
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub seed: u64,
+    #[command(flatten)]
+    pub to: SurfaceOutput,
+}
+
+#[derive(Debug, clap::Args)]
 pub struct SurfaceProcess {
     #[command(flatten)]
     pub file: SurfaceFile,
@@ -142,7 +170,7 @@ pub struct SurfaceOutput {
 pub struct SurfaceFile {
     /// The measured surface; its format is detected from the content
     pub file: PathBuf,
-    /// Physical size along x and y, if the file does not state it: --size '1 mm,1 mm'
+    /// Physical size along x and y, if the file does not state it: --size '1 mm,1 mm'; of a profile its length: --size '4 mm'
     #[arg(long, value_name = "A,B")]
     pub size: Option<String>,
     /// Unit of the heights, if the file does not state it: --height-unit um

@@ -8,7 +8,7 @@ use asperity::Grid;
 use asperity::surface::{Part, Surface};
 
 use crate::preparation::{Prepared, Step, prepare};
-use crate::topography::{ReadOptions, read};
+use crate::topography::{ReadOptions, TopographyError, read, read_profile};
 
 /// A topography file of a case and what is done with it.
 ///
@@ -21,6 +21,8 @@ pub struct Measured {
     pub(super) span: Range<usize>,
     /// Channel, physical size and unit, where the case gives them.
     pub options: ReadOptions,
+    /// Whether the case gives a size, and of a profile; `None` where it gives none.
+    size_of_line: Option<bool>,
     /// What is done with the heights, in order.
     pub steps: Vec<Step>,
     prepared: Arc<Mutex<Option<Kept>>>,
@@ -43,8 +45,37 @@ impl PartialEq for Measured {
 const SAME: f64 = 1e-6;
 
 impl Measured {
-    pub(super) fn new(path: PathBuf, span: Range<usize>, options: ReadOptions, steps: Vec<Step>) -> Self {
-        Measured { path, span, options, steps, prepared: Arc::default() }
+    /// `size_of_line` says whether the size among the options is that of a profile.
+    pub(super) fn new(
+        path: PathBuf,
+        span: Range<usize>,
+        options: ReadOptions,
+        size_of_line: Option<bool>,
+        steps: Vec<Step>,
+    ) -> Self {
+        Measured { path, span, options, size_of_line, steps, prepared: Arc::default() }
+    }
+
+    /// The heights as they are in the file, and what was done to read them.
+    fn read(&self) -> Result<(Surface, Vec<String>), String> {
+        let told = |error: TopographyError| error.to_string();
+        let of_file = |error| format!("{}: {error}", self.path.display());
+        let profile = match self.options.format {
+            None => read_profile(&self.path, &self.options).map_err(told)?,
+            Some(_) => None,
+        };
+        if let Some(line) = self.size_of_line.filter(|line| *line != profile.is_some()) {
+            let (holds, wanted) =
+                if line { ("a surface over a plane", "two values") } else { ("a profile", "one value") };
+            return Err(format!("{} holds {holds}, so its size needs {wanted}", self.path.display()));
+        }
+        if let Some(profile) = profile {
+            return Ok((profile.surface, profile.history));
+        }
+        let topography = read(&self.path, &self.options).map_err(told)?;
+        let (nx, ny) = topography.heights.dim();
+        let grid = Grid::new([nx, ny], topography.size).map_err(of_file)?;
+        Ok((Surface::new(grid, topography.heights).map_err(of_file)?, vec![]))
     }
 
     /// The surface after its preparation; `domain` are the cells of the domain, `None` where it takes the surface's
@@ -59,18 +90,17 @@ impl Measured {
         {
             return Ok(prepared.clone());
         }
-        let topography = read(&self.path, &self.options).map_err(|error| error.to_string())?;
         let of_file = |error| format!("{}: {error}", self.path.display());
-        let (nx, ny) = topography.heights.dim();
-        let grid = Grid::new([nx, ny], topography.size).map_err(of_file)?;
-        let surface = Surface::new(grid, topography.heights).map_err(of_file)?;
+        let (surface, first) = self.read()?;
         // Where the domain takes the cells of this surface, they need not be changed.
         let open = |step: &&Step| matches!(step, Step::Resample { cells: None, .. });
         let steps: Vec<Step> = match domain {
             Some(_) => self.steps.clone(),
             None => self.steps.iter().filter(|step| !open(step)).cloned().collect(),
         };
-        let prepared = Arc::new(prepare(surface, &steps, domain).map_err(of_file)?);
+        let mut prepared = prepare(surface, &steps, domain).map_err(of_file)?;
+        prepared.history.splice(0..0, first);
+        let prepared = Arc::new(prepared);
         *kept = Some(Kept { domain, prepared: prepared.clone() });
         Ok(prepared)
     }
@@ -114,10 +144,22 @@ impl Measured {
                 // Nobody knows what lies around a measured surface.
                 false => String::new(),
             };
+            if line {
+                return Err(format!(
+                    "{name} is {:e} m long, but the domain {:e} m; leave domain.size out to take the length of the profile",
+                    size[0], domain[0]
+                ));
+            }
             return Err(format!(
                 "{name} measures {:e} m x {:e} m, but the domain {:e} m x {:e} m; leave domain.size out to take \
                  the surface's{crop}",
                 size[0], size[1], domain[0], domain[1]
+            ));
+        }
+        if [mx, my] != [nx, ny] && line {
+            return Err(format!(
+                "{name} holds {mx} points, but the domain has {nx} cells; leave domain.cells out to take those of the profile, \
+                 set domain.cells = [{mx}], or add resample = \"bilinear\" (or \"band-limited\") to this surface"
             ));
         }
         if [mx, my] != [nx, ny] {

@@ -25,7 +25,7 @@
 //! | NID, EZD | Nanosurf |
 //! | FRT | FRT MicroProf |
 //!
-//! All text and binary formats may be packed by gzip.
+//! All text and binary formats may be packed by gzip. Profiles along a line, two columns of text, are read by [`read_profile`].
 
 mod al3d;
 mod bcr;
@@ -48,6 +48,7 @@ mod nid;
 mod npy;
 mod opd;
 mod plu;
+mod profile;
 mod sample;
 mod sdf;
 mod sur;
@@ -64,6 +65,7 @@ use ndarray::Array2;
 
 pub use error::{Problem, TopographyError};
 pub use format::{Format, detect};
+pub use profile::{Profile, profile_of, read_profile};
 pub use write::{to_bytes, write};
 
 use crate::resources;

@@ -175,3 +175,40 @@ fn what_a_line_contact_cannot_do_is_refused_where_it_stands() {
     let periodic = approach.replace("size = [\"2 mm\"]", "size = [\"2 mm\"]\nboundary = \"periodic\"");
     assert!(case(&periodic).simulation().is_ok());
 }
+
+#[test]
+fn a_profile_from_a_file_gives_cells_and_size() {
+    let directory = tempfile::tempdir().unwrap();
+    // A round of radius 10 mm with a ripple, as a stylus file.
+    let rows: String = (0..200)
+        .map(|i| {
+            let x = (f64::from(i) - 99.5) * 10e-6;
+            let ripple = 1e-6 * (std::f64::consts::TAU * f64::from(i) / 20.0).cos();
+            format!("{:.3}, {:.9}\n", 10.0 * f64::from(i), 1e6 * (-0.5 * x * x / 10e-3 + ripple))
+        })
+        .collect();
+    let file = format!("META\nLateral um, Total Profile um\n{rows}");
+    std::fs::write(directory.path().join("roller.csv"), file).unwrap();
+    let text = edited("cells = [64]\nsize = [\"2 mm\"]\n", "boundary = \"periodic\"\n").replace(
+        "kind = \"cylinder\"\nradius = \"10 mm\"",
+        "kind = \"file\"\npath = \"roller.csv\"\ncircle = {}",
+    );
+    let case = Case::parse(&text, directory.path(), &[]).unwrap_or_else(|errors| panic!("{errors}"));
+    assert_eq!(case.grid.cells(), [200, 1]);
+    assert!(case.grid.is_line() && (case.grid.size()[0] / 2e-3 - 1.0).abs() < 1e-9);
+    let gap = case.gap().unwrap();
+    // The round is gone, the ripple left: from 0 to 2 um, up to what the circle takes of the ripple (a hundredth).
+    let highest = gap.iter().copied().fold(0.0, f64::max);
+    assert!((highest / 2e-6 - 1.0).abs() < 0.03, "{highest:e}");
+    let history = case.describe().preparation[0].steps.join("; ");
+    assert!(history.contains("subtract a circle of radius"), "{history}");
+
+    // On a plane a profile is refused, with words; a size of two values too.
+    let plane = text.replace("boundary = \"periodic\"", "cells = [200, 200]\nsize = [\"2 mm\", \"2 mm\"]");
+    let plane = plane.replace("2 N/mm", "2 N").replace("\ncircle = {}", "");
+    let message = Case::parse(&plane, directory.path(), &[]).unwrap().gap().unwrap_err().to_string();
+    assert!(message.contains("holds a profile"), "{message}");
+    let sized = text.replace("circle = {}", "size = [\"2 mm\", \"2 mm\"]");
+    let errors = Case::parse(&sized, directory.path(), &[]).unwrap_err();
+    assert!(errors.errors[0].message.contains("one value"), "{errors}");
+}

@@ -113,7 +113,8 @@ class Surface:
         >>> flat.cells, bool(np.all(abs(flat.heights) < 1e-13)), flat.history[1]
         ((4, 4), True, 'crop to 4 x 4 cells from (3, 2)')
         """
-        heights, size, done = _core.process(self._plane("process"), list(self.size), [str(step) for step in steps])
+        heights, size, done = _core.process(as_plane(self.heights), list(self.size), [str(step) for step in steps])
+        heights = heights[:, 0] if self.is_line else heights
         metadata = {**self.metadata, "history": [*self.history, *done]}
         return Surface(heights, size=size, metadata=metadata)
 
@@ -207,10 +208,18 @@ class Surface:
             error), roll_off [m], plateau [m^4], spectrum_misfit of a self-affine spectrum, where one can be fitted (with a
             clear lay: across it)
 
+        Of a profile (of its heights as they are; `longest` is the cut-off of the Gaussian mean line that is subtracted, ISO 16610-21):
+        ra, rq, rz, rt [m], rsk, rku, rsm [m] (None where there is no whole element), rdq (ISO 21920-2).
+
         Warns
         -----
         ResultWarning : the Hurst exponent lies outside of 0 to 1
         """
+        if self.is_line:
+            if periodic is not None or shortest is not None:
+                raise CaseError("a profile has no `periodic` and no `shortest`: give `longest`, the cut-off, or nothing")
+            cutoff = None if longest is None else number("longest", longest)
+            return _core.profile_parameters(self.heights, self.size[0] / self.cells[0], cutoff)
         band = None
         if longest is not None or shortest is not None:
             # Without one of them: from the size of the surface, or down to its cells.
@@ -219,7 +228,7 @@ class Surface:
                 from_ if longest is None else number("longest", longest),
                 to if shortest is None else number("shortest", shortest),
             ]
-        found = _core.describe(self._plane("statistics"), list(self.size), self._repeats(periodic), band)
+        found = _core.describe(self.heights, list(self.size), self._repeats(periodic), band)
         warn(findings_of(json.loads(found.pop("findings", "[]"))), 2)
         return found
 
@@ -286,7 +295,7 @@ class Surface:
     def read(
         path: str | os.PathLike[str],
         *,
-        size: Sequence[float] | None = None,
+        size: float | Sequence[float] | None = None,
         height_unit: float | None = None,
         channel: str | int | None = None,
         level: str | None = None,
@@ -296,17 +305,17 @@ class Surface:
 
         Parameters
         ----------
-        path : text matrix, CSV, XYZ, NPY, NPZ, NetCDF, HDF5, SDF, X3P, SUR, MNT, GWY, AL3D, OPD, BCR, Nanoscope, MetroPro,
+        path : text of two columns (a profile: position and height, which makes a surface of one dimension), text matrix, CSV, XYZ, NPY, NPZ, NetCDF, HDF5, SDF, X3P, SUR, MNT, GWY, AL3D, OPD, BCR, Nanoscope, MetroPro,
             PLU, IBW, NID, FRT; also packed by gzip. Other formats are read by the package SurfaceTopography where it is
             installed; the metadata say so under "reader".
-        size : lengths along x and y [m], needed where the file holds none
+        size : lengths along x and y [m], or the length of a profile, needed where the file holds none
         height_unit : unit of the numbers in the file [m], needed if the file does not state it
         channel : which one, by name or number (from 0), where the file holds several; by default the first of heights.
             ``surface.metadata["channels"]`` lists them.
         level, fill : as the methods of that name; by default the heights are as measured, undefined points NaN
         """
         path = os.fspath(path)
-        given = None if size is None else list(pair("size", size))
+        given = None if size is None else list(lengths("size", size))
         unit = None if height_unit is None else number("height_unit", height_unit)
         name = None if channel is None else str(channel)
         try:
@@ -314,7 +323,7 @@ class Surface:
         except _core.FormatError as error:
             found = _foreign.read(path, given, unit, name, error)
         heights, extent = found.pop("heights"), found.pop("size")
-        surface = Surface(heights, size=extent, metadata=found)
+        surface = Surface(heights[:, 0] if len(extent) == 1 else heights, size=extent, metadata=found)
         if level is not None:
             surface = surface.level(level)
         return surface if fill is None else surface.fill(fill)

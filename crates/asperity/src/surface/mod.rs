@@ -15,7 +15,7 @@
 //!   distribution.
 //! - [`Surface`]: heights on a grid; [`Operation`] prepares measured ones (levelling, filling,
 //!   filtering, resampling, ...).
-//! - [`statistics`]: what describes a surface.
+//! - [`statistics`]: what describes a surface; [`profile`]: what describes a profile.
 
 pub mod fill;
 mod fourier;
@@ -24,6 +24,7 @@ pub mod level;
 mod map;
 mod membrane;
 pub mod process;
+pub mod profile;
 mod self_affine;
 mod shape;
 mod spectrum;
@@ -36,6 +37,7 @@ pub use gap::{Part, undeformed_gap};
 pub use level::{Level, level};
 pub use map::Surface;
 pub use process::Operation;
+pub use profile::ProfileParameters;
 pub use self_affine::{Roughness, SelfAffine};
 pub use shape::{Punch, Shape};
 pub use synthesis::{HeightDistribution, Lay, Synthesis};

@@ -8,6 +8,7 @@
 mod elastic;
 mod energy;
 mod invariants;
+mod line;
 mod loads;
 mod springs;
 mod temperature;
@@ -46,13 +47,16 @@ impl Check {
 pub type Case = (&'static str, fn() -> Result<Vec<Check>>);
 
 /// All cases, in the order of the documentation.
-pub const CASES: [Case; 29] = [
+pub const CASES: [Case; 32] = [
     ("hertz-sphere", elastic::hertz_sphere),
     ("hertz-ellipse", elastic::hertz_ellipse),
     ("cone", elastic::cone),
     ("flat-punch", elastic::flat_punch),
     ("westergaard-wave", elastic::westergaard_wave),
     ("capped-hertz", elastic::capped_hertz),
+    ("hertz-line", line::hertz),
+    ("strip-punch", line::strip_punch),
+    ("westergaard-line", line::westergaard),
     ("ting-step", viscoelastic::ting_step),
     ("ting-triangle", viscoelastic::ting_triangle),
     ("westergaard-creep", viscoelastic::westergaard_creep),

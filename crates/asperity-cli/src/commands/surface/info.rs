@@ -14,6 +14,15 @@ pub fn run(args: &SurfaceInfo) -> Result<(), Failure> {
         None => Ok(default),
     };
     let band = [limit(&args.longest, f64::INFINITY)?, limit(&args.shortest, 0.0)?];
+    if let Some(profile) = super::profile::open(&args.file)? {
+        return super::profile::info(args, profile);
+    }
+    if args.cutoff.is_some() || args.circle.is_some() {
+        let name = args.file.file.display();
+        return Err(Failure::input(format!(
+            "{name} is no profile: --cutoff and --circle are for two columns of text"
+        )));
+    }
     let topography = super::open(&args.file)?;
     let name = args.file.file.display().to_string();
     let extent = if args.periodic { Extent::Periodic } else { Extent::Finite };

@@ -4,6 +4,7 @@ mod convert;
 mod generate;
 mod info;
 mod process;
+mod profile;
 mod table;
 
 use std::path::Path;
@@ -22,6 +23,7 @@ pub fn run(command: &Surface) -> Result<(), Failure> {
     match command {
         Surface::Info(args) => info::run(args),
         Surface::Generate(args) => generate::run(args),
+        Surface::FromProfile(args) => profile::synthesize(args),
         Surface::Process(args) => process::run(args),
         Surface::Convert(args) => convert::run(args),
     }

@@ -17,11 +17,11 @@ const TUKEY_SHARE: f64 = 0.1;
 
 /// The steps in the order in which they are done.
 ///
-/// Without `process`: crop, flip, rotate, invert, level, outliers (and level again without them), fill, filter,
+/// Without `process`: crop, flip, rotate, invert, level, outliers (and level again without them), fill, circle, filter,
 /// window, resample.
 pub fn steps(checks: &mut Checks<'_, '_>, file: &File) -> Option<Vec<Step>> {
     let Some(process) = &file.process else { return plain(checks, file) };
-    let beside: [(&str, Option<&Range<usize>>); 11] = [
+    let beside: [(&str, Option<&Range<usize>>); 12] = [
         ("crop", file.crop.as_ref().map(|at| &at.span)),
         ("flip", file.flip.as_ref().map(|at| &at.span)),
         ("rotate", file.rotate.as_ref().map(|at| &at.span)),
@@ -30,6 +30,7 @@ pub fn steps(checks: &mut Checks<'_, '_>, file: &File) -> Option<Vec<Step>> {
         ("outliers", file.outliers.as_ref().map(|at| &at.span)),
         ("fill", file.fill.as_ref().map(|at| &at.span)),
         ("fill_share", file.fill_share.as_ref().map(|at| &at.span)),
+        ("circle", file.circle.as_ref().map(|at| &at.span)),
         ("filter", file.filter.as_ref().map(|at| &at.span)),
         ("window", file.window.as_ref().map(|at| &at.span)),
         ("resample", file.resample.as_ref().map(|at| &at.span)),
@@ -82,6 +83,9 @@ fn plain(checks: &mut Checks<'_, '_>, file: &File) -> Option<Vec<Step>> {
     let method = file.fill.as_ref().map(|at| at.value).unwrap_or_default();
     let largest_share = file.fill_share.as_ref().map_or(FILL_SHARE, |at| at.value.get());
     push(Some(Step::Operation(Operation::Fill { method, largest_share })));
+    if let Some(at) = &file.circle {
+        push(Some(Step::Circle { radius: at.value.radius.map(|radius| radius.get()) }));
+    }
     if let Some(at) = &file.filter {
         push(filter(checks, at));
     }
@@ -115,6 +119,7 @@ pub fn operation(checks: &mut Checks<'_, '_>, at: &At<raw::Operation>) -> Option
         raw::Operation::Invert(_) => Step::Operation(Operation::Invert),
         raw::Operation::Window(at) => return window(checks, at),
         raw::Operation::Outliers(step) => outliers(step),
+        raw::Operation::Circle(step) => Step::Circle { radius: step.radius.map(|radius| radius.get()) },
     })
 }
 

@@ -247,12 +247,13 @@ fn measured(checks: &mut Checks<'_, '_>, file: &raw::File) -> Option<Measured> {
     };
     let steps = prepare::steps(checks, file);
     let options = ReadOptions {
-        size: file.size.map(|size| size.map(|length| length.get())),
+        size: file.size.as_ref().map(|at| at.value.map(1.0, |length| length.get())),
         height_unit: unit?,
         channel: file.channel.as_ref().map(|channel| channel.get().to_owned()),
         format: None,
     };
-    Some(Measured::new(path?, file.path.span.clone(), options, steps?))
+    let line = file.size.as_ref().map(|at| at.value.is_line());
+    Some(Measured::new(path?, file.path.span.clone(), options, line, steps?))
 }
 
 /// Metres per unit.

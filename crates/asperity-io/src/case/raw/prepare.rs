@@ -34,6 +34,17 @@ pub enum Operation {
     Window(At<Window>),
     /// Make spikes undefined.
     Outliers(Outliers),
+    /// Subtract a circle from a profile, fitted by least squares.
+    Circle(Circle),
+}
+
+/// A circle to subtract from a profile.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Circle {
+    /// Its radius; the one that fits best if not given.
+    #[schemars(example = "10 mm")]
+    pub radius: Option<Length<Positive>>,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]

@@ -5,8 +5,8 @@ use asperity::surface::{Fill, Level};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
-use super::prepare::{Crop, Filter, Operation, Outliers, Window};
-use super::{At, Axes, Two};
+use super::prepare::{Circle, Crop, Filter, Operation, Outliers, Window};
+use super::{At, Axes};
 use crate::case::quantity::range::{Hurst, Positive, PositiveOrInfinite, Share};
 use crate::case::quantity::{Angle, Label, Length, Number, Signed, Whole};
 
@@ -231,15 +231,16 @@ pub struct File {
     /// Whether the part moves with the contact (`[motion]`); true if not given.
     pub moves: Option<bool>,
     /// The file, relative to the case file: SUR, MNT, SDF, X3P, GWY, AL3D, OPD, BCR, Nanoscope, MetroPro, PLU, IBW, NID,
-    /// FRT, NetCDF, HDF5, NPY, NPZ, XYZ, CSV or a text matrix, detected from the content.
+    /// FRT, NetCDF, HDF5, NPY, NPZ, XYZ, CSV or a text matrix, detected from the content. On a line of cells a profile: text of two
+    /// columns, position and height.
     #[schemars(example = "roughness.sur")]
     pub path: At<String>,
     /// Channel by name or by number (from 0), if the file has several; the first one with heights if not given.
     #[schemars(example = &"Topography")]
     pub channel: Option<Label>,
-    /// Physical size along x and y, if the file does not state it.
+    /// Physical size along x and y, if the file does not state it; of a profile its length.
     #[schemars(example = ["0.1 mm", "0.1 mm"])]
-    pub size: Option<Two<Length<Positive>>>,
+    pub size: Option<At<Axes<Length<Positive>>>>,
     /// Unit of the heights, if the file does not state it.
     #[schemars(example = &"um")]
     pub height_unit: Option<At<String>>,
@@ -264,6 +265,9 @@ pub struct File {
     /// Largest share of undefined points that is filled; 0.25 if not given.
     #[schemars(example = 0.25)]
     pub fill_share: Option<At<Number<Share>>>,
+    /// A circle to subtract from a profile; none if not given, the one that fits best for `circle = {}`.
+    #[schemars(example = serde_json::json!({ "radius": "10 mm" }))]
+    pub circle: Option<At<Circle>>,
     /// The wavelengths kept; all if not given.
     #[schemars(example = serde_json::json!({ "longest": "80 um", "shortest": "2.5 um" }))]
     pub filter: Option<At<Filter>>,

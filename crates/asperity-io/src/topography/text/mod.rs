@@ -10,6 +10,7 @@ mod header;
 mod labels;
 mod matrix;
 mod parse;
+mod profile;
 mod xyz;
 
 use std::borrow::Cow;
@@ -23,6 +24,7 @@ use super::{Format, Problem};
 
 pub(super) use matrix::read_matrix;
 pub(super) use parse::numbers;
+pub(super) use profile::{is_profile, read_columns};
 pub(super) use xyz::read_xyz;
 
 /// One block of numbers and what the lines before it say.

@@ -23,7 +23,9 @@ pub fn crop(surface: &Surface, from: [usize; 2], cells: [usize; 2]) -> Result<Su
         }
     }
     let kept = s![from[0]..from[0] + cells[0], from[1]..from[1] + cells[1]];
-    let grid = Grid::new(cells, [dx * cells[0] as f64, dy * cells[1] as f64])?;
+    let size = [dx * cells[0] as f64, dy * cells[1] as f64];
+    let grid =
+        if surface.grid().is_line() { Grid::line(cells[0], size[0])? } else { Grid::new(cells, size)? };
     Surface::new(grid, surface.heights().slice(kept).to_owned())
 }
 

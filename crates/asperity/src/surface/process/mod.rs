@@ -20,8 +20,9 @@ pub use window::{Window, window};
 
 use std::fmt;
 
+use super::profile::remove_circle;
 use super::{Fill, Level, Surface, fill, level};
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// One step of the preparation of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,6 +63,11 @@ pub enum Operation {
     Invert,
     /// [`window()`]: fade to zero at the edges.
     Window(Window),
+    /// [`remove_circle`]: subtract a circle from a profile.
+    RemoveCircle {
+        /// Its radius \[m\]; `None`: the one that fits best.
+        radius: Option<f64>,
+    },
     /// [`remove_outliers`]: make spikes undefined.
     RemoveOutliers(Outliers),
 }
@@ -86,8 +92,26 @@ impl Operation {
             Operation::Invert => Ok(invert(surface)),
             Operation::Window(shape) => window(surface, shape),
             Operation::RemoveOutliers(outliers) => remove_outliers(surface, outliers),
+            Operation::RemoveCircle { radius } => without_circle(surface, radius),
         }
     }
+}
+
+/// A profile without its circle.
+fn without_circle(surface: &Surface, radius: Option<f64>) -> Result<Surface> {
+    let grid = *surface.grid();
+    if !grid.is_line() {
+        return Err(Error::invalid(
+            "surface to subtract a circle from",
+            "a plane",
+            "a profile, heights on a line of cells",
+        ));
+    }
+    let heights: Vec<f64> = surface.heights().iter().copied().collect();
+    let (flat, _) = remove_circle(&heights, grid.spacing()[0], radius)?;
+    let mut left = surface.clone();
+    left.heights.iter_mut().zip(flat).for_each(|(z, flat)| *z = flat);
+    Ok(left)
 }
 
 /// The surface after all steps in order.
@@ -141,6 +165,10 @@ impl fmt::Display for Operation {
                     Resampling::Bilinear => "bilinear",
                 };
                 write!(f, "resample to {} x {} cells ({method})", cells[0], cells[1])
+            }
+            Operation::RemoveCircle { radius: None } => write!(f, "subtract the circle that fits best"),
+            Operation::RemoveCircle { radius: Some(radius) } => {
+                write!(f, "subtract a circle of radius {radius:.6e} m (least squares)")
             }
             Operation::Filter(band) => write!(f, "{band}"),
             Operation::Flip(axis) => write!(f, "flip along {axis}"),

@@ -17,7 +17,6 @@ use std::sync::Arc;
 use super::super::spectrum::check_defined;
 use super::Surface;
 use crate::error::Result;
-use crate::grid::Grid;
 
 /// How heights at new points come from old ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -46,7 +45,8 @@ pub enum Resampling {
 /// # Errors
 /// [`Error::Invalid`](crate::Error::Invalid) where a count is 0 or absurd, or (band-limited) a height is undefined.
 pub fn resample(surface: &Surface, cells: [usize; 2], method: Resampling) -> Result<Surface> {
-    let grid = Grid::new(cells, surface.grid().size())?;
+    let cells = if surface.grid().is_line() { [cells[0], 1] } else { cells };
+    let grid = surface.grid().with_cells(cells)?;
     let heights = surface.heights();
     let along = |heights: ArrayView2<f64>, n: usize| match method {
         Resampling::BandLimited => rows_by_waves(heights, n),
@@ -154,6 +154,7 @@ impl Row {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::grid::Grid;
     use crate::surface::{Roughness, SelfAffine};
 
     fn rough(cells: [usize; 2]) -> Surface {

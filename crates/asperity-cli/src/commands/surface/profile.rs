@@ -1,0 +1,205 @@
+//! Profiles: `asperity surface info` of a file with two columns, and `asperity surface from-profile`.
+
+use std::f64::consts::TAU;
+
+use asperity::Grid;
+use asperity::surface::profile::{ProfileParameters, ProfileSpectrum, roughness};
+use asperity::surface::statistics::Extent;
+use asperity::surface::{Fill, Level, Operation};
+use asperity_io::preparation::{Step, prepare};
+use asperity_io::topography::{Profile, ReadOptions, Topography, read_profile};
+use asperity_report::figure::{Axis, Curves, Figure, Series, Style};
+use serde_json::json;
+
+use super::table::Portrait;
+use crate::args::{SurfaceFile, SurfaceFromProfile, SurfaceInfo};
+use crate::failure::Failure;
+use crate::words::quantity;
+
+/// Rings of the spectrum per decade.
+const PER_DECADE: u32 = 16;
+/// Largest share of undefined points that are filled.
+const MOST_FILLED: f64 = 0.25;
+
+/// The profile of the file, where it holds one.
+pub(super) fn open(file: &SurfaceFile) -> Result<Option<Profile>, Failure> {
+    // One length of a profile; two of a map are read again as such.
+    let size = match file.size.as_deref() {
+        Some(text) if !text.contains(',') => Some([super::length(text)?, 1.0]),
+        _ => None,
+    };
+    let height_unit = file.height_unit.as_deref().map(super::unit).transpose()?;
+    let options = ReadOptions { size, height_unit, ..ReadOptions::default() };
+    read_profile(&file.file, &options).map_err(|error| Failure::input(error.to_string()))
+}
+
+/// Heights without their straight line and, with a cut-off, without their Gaussian mean line; and what was done.
+fn prepared(
+    name: &str,
+    profile: Profile,
+    args: &SurfaceInfo,
+) -> Result<(Vec<f64>, f64, Vec<String>), Failure> {
+    let told = |error: asperity::Error| Failure::input(format!("{name}: {error}"));
+    let spacing = profile.surface.grid().spacing()[0];
+    let mut steps = vec![];
+    if profile.surface.undefined() > 0 {
+        steps.push(Step::Operation(Operation::Fill { method: Fill::Harmonic, largest_share: MOST_FILLED }));
+    }
+    steps.push(match args.circle.as_deref() {
+        None => Step::Operation(Operation::Level(Level::Plane)),
+        Some("fit") => Step::Circle { radius: None },
+        Some(radius) => Step::Circle { radius: Some(super::length(radius)?) },
+    });
+    let done = prepare(profile.surface, &steps, None).map_err(told)?;
+    let mut heights: Vec<f64> = done.surface.heights().iter().copied().collect();
+    let mut history = profile.history;
+    history.extend(done.history.into_iter().map(|step| step.replace("the plane", "the straight line")));
+    if let Some(cutoff) = &args.cutoff {
+        let cutoff = super::length(cutoff)?;
+        heights = roughness(&heights, spacing, cutoff).map_err(told)?;
+        history.push(format!(
+            "subtract the Gaussian mean line of cut-off {} (ISO 16610-21)",
+            quantity(cutoff, "m")
+        ));
+    }
+    Ok((heights, spacing, history))
+}
+
+/// Prints the parameters of the profile, and draws the picture asked for.
+pub(super) fn info(args: &SurfaceInfo, profile: Profile) -> Result<(), Failure> {
+    let name = args.file.file.display().to_string();
+    let told = |error: asperity::Error| Failure::input(format!("{name}: {error}"));
+    let (stored, undefined) = (profile.surface.clone(), profile.surface.undefined());
+    let size = stored.grid().size()[0];
+    let (heights, spacing, history) = prepared(&name, profile, args)?;
+    let found = ProfileParameters::of(&heights, spacing).map_err(told)?;
+    let spectrum = ProfileSpectrum::of(&heights, spacing, args.periodic, PER_DECADE).map_err(told)?;
+    let finite = stored.heights().iter().copied().filter(|z| z.is_finite()).collect::<Vec<f64>>();
+    let (low, high) = (
+        finite.iter().copied().fold(f64::INFINITY, f64::min),
+        finite.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+    );
+    if let Some(path) = &args.plot {
+        figure(&name, &heights, spacing, &spectrum)
+            .write(path, args.force)
+            .map_err(|error| Failure::input(error.to_string()))?;
+    }
+    if args.json {
+        let object = json!({
+            "format": "profile", "shape": [heights.len()], "size": [size], "undefined": undefined,
+            "min": low, "max": high, "history": history,
+            "ra": found.ra, "rq": found.rq, "rz": found.rz, "rt": found.rt, "rsk": found.rsk, "rku": found.rku,
+            "rsm": found.rsm, "rdq": found.rdq,
+            "wave_number": spectrum.wave_numbers(), "power": spectrum.power,
+        });
+        return crate::print(&format!("{object}\n"));
+    }
+    let mut text = format!("{name}\n");
+    let mut line =
+        |name: &str, value: String, words: &str| text += &format!("  {name:<12}{value:<14}{words}\n");
+    line(
+        "profile",
+        format!("{} points", heights.len()),
+        &format!("over {}, spacing {}", quantity(size, "m"), quantity(spacing, "m")),
+    );
+    line("heights", format!("{} to {}", quantity(low, "m"), quantity(high, "m")), "as stored");
+    for step in &history {
+        line("", format!("- {step}"), "");
+    }
+    line("Ra", quantity(found.ra, "m"), "mean of the absolute height");
+    line("Rq", quantity(found.rq, "m"), "rms height");
+    line("Rz", quantity(found.rz, "m"), "highest less lowest height, mean of five sections");
+    line("Rt", quantity(found.rt, "m"), "highest less lowest height");
+    line("Rsk", format!("{:.4}", found.rsk), "skewness");
+    line("Rku", format!("{:.4}", found.rku), "kurtosis");
+    let or_none =
+        |value: Option<f64>, unit: &str| value.map_or("none".to_owned(), |value| quantity(value, unit));
+    line("Rsm", or_none(found.rsm, "m"), "mean length of a profile element");
+    line("Rdq", or_none(found.rdq, ""), "rms slope");
+    if args.cutoff.is_none() {
+        text += "  without --cutoff: the parameters of the primary profile (Pa, Pq, ...)\n";
+    }
+    crate::print(&text)
+}
+
+fn figure(name: &str, heights: &[f64], spacing: f64, spectrum: &ProfileSpectrum) -> Figure {
+    let x: Vec<f64> = (0..heights.len()).map(|i| (i as f64 + 0.5) * spacing).collect();
+    let profile = Curves::new("Profile", Axis::linear("x", "m"), Axis::linear("height", "m"))
+        .with(Series::new("", Style::Line, x, heights.to_vec()));
+    let power = Curves::new(
+        "Power spectrum of the profile",
+        Axis::log("wave number", "1/m"),
+        Axis::log("power", "m3"),
+    )
+    .with(Series::new("", Style::Points, spectrum.wave_numbers(), spectrum.power.clone()));
+    let mut figure = Figure::new(name).columns(1).with(profile).with(power);
+    figure.panel = [430.0, 200.0];
+    figure
+}
+
+/// Makes an isotropic surface with the spectrum of a profile, writes it, and prints its statistics.
+pub(super) fn synthesize(args: &SurfaceFromProfile) -> Result<(), Failure> {
+    let format = super::targets(&args.to)?;
+    let name = args.file.file.display().to_string();
+    let told = |error: asperity::Error| Failure::input(format!("{name}: {error}"));
+    let Some(profile) = open(&args.file)? else {
+        return Err(Failure::input(format!(
+            "{name} is no profile: it needs two columns of text, position and height"
+        )));
+    };
+    let spacing = profile.surface.grid().spacing()[0];
+    let mut history = profile.history;
+    let heights: Vec<f64> = profile.surface.heights().iter().copied().collect();
+    let spectrum = ProfileSpectrum::of(&heights, spacing, args.periodic, PER_DECADE).map_err(told)?;
+    let size = match args.to_size.as_deref() {
+        Some(text) if text.contains(',') => super::size(text)?,
+        Some(text) => [super::length(text)?; 2],
+        None => [profile.surface.grid().size()[0]; 2],
+    };
+    let cells = cells(args.cells.as_deref(), size, spacing)?;
+    let grid = Grid::new(cells, size).map_err(told)?;
+    let made = spectrum.surface(&grid, args.seed).map_err(told)?;
+    let mut topography = Topography {
+        format,
+        heights: made,
+        size,
+        channel: Some("roughness".to_owned()),
+        channels: Vec::new(),
+        metadata: Vec::new(),
+    };
+    history.push(format!(
+        "isotropic surface with the power spectrum of the profile {name}, random phases, seed {}, waves from {} to {}",
+        args.seed,
+        quantity(TAU / spectrum.edges[spectrum.edges.len() - 1], "m"),
+        quantity(TAU / spectrum.edges[0], "m"),
+    ));
+    topography.record(history);
+    super::save(&args.to, &topography, format)?;
+    let written = args.to.output.display().to_string();
+    Portrait::of(&written, &topography, Extent::Periodic)?.tell(
+        args.to.json,
+        args.to.plot.as_deref(),
+        args.to.force,
+    )?;
+    if !args.to.json {
+        crate::talk::say!(
+            "assumed: the surface is the same in all directions and its heights are Gaussian; a profile cannot tell a lay"
+        );
+    }
+    Ok(())
+}
+
+/// Cells of the surface: those asked for, or of the spacing of the profile.
+fn cells(given: Option<&str>, size: [f64; 2], spacing: f64) -> Result<[usize; 2], Failure> {
+    let Some(text) = given else {
+        return Ok(size.map(|length| (length / spacing).round().max(1.0) as usize));
+    };
+    let numbers: Result<Vec<usize>, _> = text.split(',').map(|n| n.trim().parse::<usize>()).collect();
+    match numbers.as_deref() {
+        Ok([n]) => Ok([*n; 2]),
+        Ok([nx, ny]) => Ok([*nx, *ny]),
+        _ => Err(Failure::input(format!(
+            "--cells is \"{text}\", but must be one or two numbers, e.g. --cells 512,512"
+        ))),
+    }
+}

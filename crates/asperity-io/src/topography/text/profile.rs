@@ -1,0 +1,72 @@
+//! Two columns of text: position and height along a line.
+
+use super::parse::{columns, table};
+use super::{Block, Text, decode, encoding};
+use crate::topography::finish::Unit;
+use crate::topography::unit::{LoneA, metres};
+use crate::topography::{Format, Problem};
+
+/// What a file of two columns holds.
+pub(crate) struct Columns {
+    /// Positions, in the file's unit.
+    pub positions: Vec<f64>,
+    /// Heights, in the file's unit; NaN where undefined.
+    pub heights: Vec<f64>,
+    /// Metres per unit of the positions, where the file states it.
+    pub lateral: Option<f64>,
+    /// Unit of the heights.
+    pub unit: Unit,
+    /// What else the file says.
+    pub metadata: Vec<(String, String)>,
+}
+
+/// Whether the bytes are text whose first block of numbers has two columns, and no header of a matrix.
+pub(crate) fn is_profile(bytes: &[u8]) -> bool {
+    let Some(text) = encoding::utf8(bytes) else { return false };
+    let Ok(text) = Text::split(&text) else { return false };
+    let longest = longest(&text);
+    longest.is_some_and(|block| columns(text.dialect, block.data) == 2 && !block.header.says_matrix())
+}
+
+/// Reads the two columns.
+pub(crate) fn read_columns(bytes: &[u8]) -> Result<Columns, Problem> {
+    let bytes = decode(bytes)?;
+    let text = Text::split(&bytes)?;
+    let Some(block) = longest(&text) else {
+        return Err(Problem::NoHeights { format: Format::Text, detail: "no line of numbers".into() });
+    };
+    let table = table(text.dialect, block)?;
+    if table.columns != 2 {
+        let detail = format!(
+            "its lines have {} numbers; a profile has two columns, position and height",
+            table.columns
+        );
+        return Err(Problem::NoHeights { format: Format::Text, detail });
+    }
+    let (positions, heights) = table.lines().map(|line| (line[0], line[1])).unzip();
+    let (lateral, mut unit) = block.header.point_units([0, 0, 1]);
+    let named = block.header.columns();
+    // "Lateral um": the unit as the last word of the name.
+    let of_name = |column: usize| {
+        let name = named.get(column).filter(|_| named.len() == 2)?;
+        metres(name.name.split_whitespace().next_back()?, LoneA::Angstrom)
+    };
+    match &unit {
+        Unit::Unstated => unit = of_name(1).map_or(Unit::Unstated, Unit::Metres),
+        // Heights in "A" are angstroms.
+        Unit::Other(label) => {
+            if let Some(angstrom) = metres(label, LoneA::Angstrom) {
+                unit = Unit::Metres(angstrom);
+            }
+        }
+        Unit::Metres(_) => {}
+    }
+    let lateral =
+        lateral[0].as_deref().and_then(|label| metres(label, LoneA::Angstrom)).or_else(|| of_name(0));
+    Ok(Columns { positions, heights, lateral, unit, metadata: text.metadata(block) })
+}
+
+/// The block with the most numbers: settings of the instrument may be numbers too.
+fn longest<'t, 'a>(text: &'t Text<'a>) -> Option<&'t Block<'a>> {
+    text.blocks.iter().max_by_key(|block| block.data.len())
+}

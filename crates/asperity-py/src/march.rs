@@ -5,8 +5,10 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use asperity::finding::{Judge, Known};
 use asperity::quantities::{Quantities, Quantity};
+use asperity::sliding::{Direction, MovingGap, Path, Steady, SteadyMotion};
+use asperity::surface::Part;
 use asperity::{
-    Course, Event, Grid, History, Programme, Simulation, SolverOptions, Stage, TimeGrid, march, material,
+    Boundary, Course, Event, Grid, History, Programme, Simulation, SolverOptions, Stage, TimeGrid, march, material,
 };
 use asperity_io::choice::{self, Choice};
 use asperity_io::store::FieldKind;
@@ -18,11 +20,69 @@ use crate::error::{CaseError, raised};
 use crate::material::{Body, Pair};
 use crate::wait::{detached, without_python};
 
-/// The march of one simulation.
+/// What gives one row after the other.
+enum Rows {
+    Times(Box<march::March>),
+    Velocities(Box<Steady>),
+}
+
+impl Rows {
+    fn advance(&mut self) -> asperity::Result<Option<march::Step<'_>>> {
+        match self {
+            Rows::Times(march) => march.advance(),
+            Rows::Velocities(steady) => steady.advance(),
+        }
+    }
+
+    fn last(&self) -> Option<march::Step<'_>> {
+        match self {
+            Rows::Times(march) => march.last(),
+            Rows::Velocities(steady) => steady.last(),
+        }
+    }
+
+    fn simulation(&self) -> &Simulation {
+        match self {
+            Rows::Times(march) => march.simulation(),
+            Rows::Velocities(steady) => steady.simulation(),
+        }
+    }
+
+    fn done(&self) -> usize {
+        match self {
+            Rows::Times(march) => march.done(),
+            Rows::Velocities(steady) => steady.done(),
+        }
+    }
+
+    fn expected(&self) -> Option<usize> {
+        match self {
+            Rows::Times(march) => march.rows_expected(),
+            Rows::Velocities(steady) => Some(steady.motion().velocities.len()),
+        }
+    }
+
+    /// Times, or velocities.
+    fn planned(&self) -> Vec<f64> {
+        match self {
+            Rows::Times(march) => march.simulation().plan().instants.iter().map(|instant| instant.time).collect(),
+            Rows::Velocities(steady) => steady.motion().velocities.clone(),
+        }
+    }
+
+    fn interrupt_with(&mut self, flag: Arc<AtomicBool>) {
+        match self {
+            Rows::Times(march) => march.interrupt_with(flag),
+            Rows::Velocities(steady) => steady.interrupt_with(flag),
+        }
+    }
+}
+
+/// The march of one simulation, or its sweep over velocities.
 #[pyclass]
 pub struct March {
     /// Locked where threads of Python share it.
-    march: Mutex<march::March>,
+    march: Mutex<Rows>,
     judge: Judge,
     /// The numbers of the last row.
     last: Option<march::Row>,
@@ -120,6 +180,45 @@ type Numbers = (String, Vec<f64>);
 type StageParts =
     (String, Numbers, Vec<(f64, f64)>, Option<f64>, Option<(String, f64)>, bool, Option<Numbers>);
 
+/// A motion: "velocity" or "path" with a history (kind, numbers) and the points of a table, or "steady" with velocities; its start;
+/// the direction ("x", "y" or "angle" with an angle in rad); cells to a step; a shear stress; whether it rolls.
+type MotionParts =
+    (String, Numbers, Vec<(f64, f64)>, f64, (String, f64), f64, Option<f64>, bool);
+
+/// A motion in time, or steady states.
+enum Moves {
+    Path(march::Motion),
+    Steady(SteadyMotion),
+}
+
+fn motion(
+    (what, (kind, numbers), points, start, (direction, angle), cells_per_step, shear_stress, _): MotionParts,
+    grid: &Grid,
+    boundary: Boundary,
+    gap: &ndarray::Array2<f64>,
+) -> PyResult<asperity::Result<Moves>> {
+    let directions = [("x", Direction::X), ("y", Direction::Y), ("angle", Direction::Angle(angle))];
+    let direction = choose_among("direction", &direction, &directions)?;
+    let heights = Part::Heights { name: "the surface".into(), heights: gap.mapv(|h| -h) };
+    let moving = match MovingGap::new(grid, boundary, &[(heights, true)]) {
+        Ok(moving) => moving,
+        Err(error) => return Ok(Err(error)),
+    };
+    if what == "steady" {
+        let slopes = moving.at(0.0, direction).map(|(_, slopes)| slopes);
+        let steady = |slopes| SteadyMotion { direction, velocities: numbers, slopes, shear_stress };
+        return Ok(slopes.map(|slopes| Moves::Steady(steady(slopes))));
+    }
+    let history = history(&kind, &numbers, points)?;
+    let path = match what.as_str() {
+        "path" => Path::of_position(history, start),
+        _ => Path::of_velocity(history, start),
+    };
+    Ok(path.map(|path| {
+        Moves::Path(march::Motion { path, direction, gap: moving, cells_per_step, shear_stress })
+    }))
+}
+
 fn stage(
     (control, (kind, numbers), points, duration, until, after_jump, grid): StageParts,
 ) -> PyResult<Stage> {
@@ -154,7 +253,7 @@ fn stage(
 impl March {
     #[new]
     #[pyo3(signature = (*, gap, size, boundary, bodies, stacks, stages, times, times_numbers, include, temperatures, scheme, method, tolerance,
-                        max_iterations, hardness_map, plasticity, quantities, bins, largest_pressure, largest_gap))]
+                        max_iterations, hardness_map, plasticity, quantities, bins, largest_pressure, largest_gap, motion))]
     #[allow(clippy::too_many_arguments)]
     fn new(
         py: Python<'_>,
@@ -178,12 +277,22 @@ impl March {
         bins: usize,
         largest_pressure: Option<f64>,
         largest_gap: Option<f64>,
+        motion: Option<MotionParts>,
     ) -> PyResult<March> {
         let gap = gap.as_array().as_standard_layout().into_owned();
         if !temperatures.is_empty() && !bodies.iter().any(|body| body.is_thermal()) {
             return Err(CaseError::new_err(
                 "temperature is given, but no body depends on it: none has a shift (without a temperature of its \
                  own); give a material shift=asperity.wlf(...), or leave the temperature out",
+            ));
+        }
+        if let Some((.., false)) = &motion
+            && bodies.len() == 2
+            && bodies.iter().filter(|body| body.inner.material.creep().remembers()).count() == 2
+        {
+            return Err(CaseError::new_err(
+                "both bodies are viscoelastic and slide over each other, so one memory moves over the other: give kind=\"roll\", or \
+                 make the body that slides elastic with its relaxed modulus (its memory stands still in the frame of the contact)",
             ));
         }
         let Pair { kernel, creep, thermal } =
@@ -209,10 +318,20 @@ impl March {
             quantities: Quantities { list, bins, largest_pressure, largest_gap },
             ..Simulation::new(grid, gap)
         };
+        let moves = motion.map(|parts| self::motion(parts, &simulation.grid, simulation.boundary, &simulation.gap));
+        let moves = moves.transpose()?.transpose().map_err(|error| raised(py, error))?;
         let interrupt = Arc::new(AtomicBool::new(false));
         let made = without_python(py, &interrupt, || {
             let judge = Judge::new(&simulation, Known { bodies: &bodies, ..Known::default() });
-            march::March::new(simulation).map(|march| (march, judge))
+            let rows = match moves {
+                None => Rows::Times(Box::new(march::March::new(simulation)?)),
+                Some(Moves::Path(motion)) => {
+                    let simulation = Simulation { motion: Some(motion), ..simulation };
+                    Rows::Times(Box::new(march::March::new(simulation)?))
+                }
+                Some(Moves::Steady(motion)) => Rows::Velocities(Box::new(Steady::new(simulation, motion)?)),
+            };
+            Ok((rows, judge))
         })?;
         let (mut march, judge) = made.map_err(|error| raised(py, error))?;
         march.interrupt_with(interrupt.clone());
@@ -277,13 +396,13 @@ impl March {
     /// Rows in all.
     fn __len__(&self) -> usize {
         let march = self.locked();
-        march.rows_expected().unwrap_or(march.done())
+        march.expected().unwrap_or(march.done())
     }
 
     /// Rows in all, where they are known beforehand.
     #[getter]
     fn rows_expected(&self) -> Option<usize> {
-        self.locked().rows_expected()
+        self.locked().expected()
     }
 
     /// Rows done.
@@ -292,9 +411,9 @@ impl March {
         self.locked().done()
     }
 
-    /// Times of all rows, as far as they are known beforehand.
+    /// Times of all rows, as far as they are known beforehand; of a sweep its velocities.
     fn times(&self) -> Vec<f64> {
-        self.locked().simulation().plan().instants.iter().map(|instant| instant.time).collect()
+        self.locked().planned()
     }
 
     /// The numbers of the last row.
@@ -332,16 +451,20 @@ impl March {
             if kind == FieldKind::Contact {
                 let mut states = ndarray::Array2::<u8>::zeros(shape);
                 step.contact_into(&mut states);
-                return Some(Map::Contact(states));
+                let boundary = march.simulation().boundary;
+                return Some(Map::Contact(march::in_contact_frame(states.view(), boundary, step.frame_shift(), 0)));
             }
             let mut field = ndarray::Array2::zeros(shape);
+            let (shift, boundary) = (step.frame_shift(), march.simulation().boundary);
             match kind {
                 FieldKind::Gap => step.gap_into(&mut field),
                 FieldKind::Displacement => step.displacement_into(&mut field),
                 FieldKind::Flattening => step.flattening_into(&mut field),
                 FieldKind::Pressure | FieldKind::Contact => field.assign(&step.pressure()),
             }
-            Some(Map::Real(field))
+            // Of a contact that moves, in its frame.
+            let beyond = if kind == FieldKind::Pressure { 0.0 } else { f64::NAN };
+            Some(Map::Real(march::in_contact_frame(field.view(), boundary, shift, beyond)))
         })?;
         match found {
             Some(Map::Real(field)) => Ok(field.into_pyarray(py).into_any()),
@@ -358,7 +481,7 @@ enum Map {
 }
 
 impl March {
-    fn locked(&self) -> MutexGuard<'_, march::March> {
+    fn locked(&self) -> MutexGuard<'_, Rows> {
         self.march.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

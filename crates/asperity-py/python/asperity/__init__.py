@@ -50,6 +50,7 @@ from ._materials import (
     Springpot,
     Zener,
 )
+from ._motion import rubber_friction, slide, steady
 from ._persson import Magnification, PerssonFriction, persson_friction
 from ._result import Cycle, Result, open
 from ._shifts import Shift, arrhenius, shift_table, wlf
@@ -113,6 +114,9 @@ __all__ = [
     "march",
     "open",
     "persson_friction",
+    "rubber_friction",
+    "slide",
+    "steady",
     "ramp",
     "ramp_to",
     "run",

@@ -9,6 +9,8 @@ import numpy.typing as npt
 _Floats = npt.NDArray[np.float64]
 _Shift = tuple[str, list[float], list[tuple[float, float]]]
 _Grid = tuple[str, list[float]]
+# What, history, points, start, direction with its angle, cells to a step, shear stress, whether it rolls.
+_Motion = tuple[str, _Grid, list[tuple[float, float]], float, tuple[str, float], float, float | None, bool]
 _Stage = tuple[str, _Grid, list[tuple[float, float]], float | None, tuple[str, float] | None, bool, _Grid | None]
 
 __all__ = [
@@ -122,6 +124,7 @@ class March:
         bins: int,
         largest_pressure: float | None,
         largest_gap: float | None,
+        motion: _Motion | None,
     ) -> March: ...
     def columns(self) -> list[tuple[str, list[float]]]: ...
     def advance(self) -> bool: ...

@@ -60,7 +60,7 @@ HISTOGRAMS: dict[str, tuple[str, str, str, str]] = {
 
 
 #: Units on a line contact, where forces, areas and energies are per length along y.
-ON_LINE = {"N": "N/m", "m2": "m", "J": "J/m", "N/m": "N/m2"}
+ON_LINE = {"N": "N/m", "m2": "m", "J": "J/m", "N/m": "N/m2", "N m": "N", "W": "W/m"}
 
 
 def units_of(name: str, unit: str, line: bool) -> str:
@@ -120,6 +120,9 @@ class Result:
         self._initial_gap = initial_gap
         self._size = tuple(float(length) for length in size)
         self._attributes = attributes
+        motion = json.loads(attributes.get("setup") or "{}").get("motion") or {}
+        # A sweep over velocities: they stand in place of the times.
+        self._sweep = bool(motion.get("steady"))
         self._path = path
         self._histograms = dict(histograms or {})
         self._stress = dict(stress or {})
@@ -127,6 +130,12 @@ class Result:
 
     def __getattr__(self, name: str) -> Floats:
         table = self.__dict__.get("_table")
+        if self.__dict__.get("_sweep") and table is not None:
+            if name == "velocity":
+                velocities: Floats = table["time"]
+                return velocities
+            if name == "time":
+                raise AttributeError("a sweep over velocities has no 'time'; use velocity")
         if table is not None and name in table:
             values: Floats = table[name]
             return values
@@ -193,8 +202,20 @@ class Result:
         return self._histograms[name]
 
     @property
+    def is_sweep(self) -> bool:
+        """Whether its rows are steady states of motion, one for each `velocity`."""
+        return self._sweep
+
+    @property
     def field_times(self) -> Floats:
-        """Times at which fields were kept [s]."""
+        """Times at which fields were kept [s]; of a sweep the velocities [m/s]."""
+        return self._field_times.copy()
+
+    @property
+    def field_velocities(self) -> Floats:
+        """Velocities at which the fields of a sweep were kept [m/s]."""
+        if not self._sweep:
+            raise CaseError("the result is a run in time: its fields have field_times")
         return self._field_times.copy()
 
     def cycles(self, frequency: float, *, start: float = 0.0) -> list[Cycle]:
@@ -237,6 +258,8 @@ class Result:
     def units(self, name: str) -> str:
         """The unit of a number of the rows by its name, "1" where it has none: "N" or, of a line contact, "N/m" of the load."""
         known = {**ROW, **QUANTITIES}
+        if self._sweep and name == "time":
+            return "m/s"
         if name not in known:
             raise CaseError(f"{name!r} is no number of a row; there are {', '.join(known)}")
         return units_of(name, known[name][0], self.is_line)
@@ -262,14 +285,19 @@ class Result:
         gap: Floats = self._initial_gap
         return gap
 
-    def field(self, name: str, *, time: float | None = None, index: int | None = None) -> Floats:
-        """A field of shape (nx, ny), of a line contact (n,), at the stored time nearest to `time` [s], or with that index; default the last.
+    def field(
+        self, name: str, *, time: float | None = None, velocity: float | None = None, index: int | None = None
+    ) -> Floats:
+        """A field of shape (nx, ny), of a line contact (n,), at the stored time nearest to `time` [s], or with that index; default the
+        last. Of a sweep at the stored velocity nearest to `velocity` [m/s]. Fields of a contact that moves are in its frame.
 
         "pressure" [Pa], "gap", "displacement", "flattening" [m], "contact" (0 out of contact, 1 in contact, 2 at the hardness).
         """
         if name not in self._fields:
             raise CaseError(f"the field {name!r} was not kept; kept: {', '.join(self._fields) or 'none'}")
-        return self._one(name, self._index(time, index))
+        if (velocity is not None and not self._sweep) or (time is not None and self._sweep):
+            raise CaseError("velocity= is for a sweep over velocities, time= for a run in time")
+        return self._one(name, self._index(time if velocity is None else velocity, index))
 
     def stress(
         self,
@@ -318,28 +346,29 @@ class Result:
         leaks that are stored in it."""
         import xarray
 
+        along, at = ("velocity", "field_velocity") if self._sweep else ("time", "field_time")
         rows = {
-            name: ("time", np.asarray(self._table[name]), {"units": self.units(name), "long_name": words})
+            name: (along, np.asarray(self._table[name]), {"units": self.units(name), "long_name": words})
             for name, (_, words) in {**ROW, **QUANTITIES}.items()
             if name != "time" and name in self._table
         }
         over = ("x",) if self.is_line else ("x", "y")
         maps = {
-            name: (("field_time", *over), self._stack(name), {"units": FIELDS[name][0], "long_name": FIELDS[name][1]})
+            name: ((at, *over), self._stack(name), {"units": FIELDS[name][0], "long_name": FIELDS[name][1]})
             for name in self._fields
         }
         for name, values in self._stress.items():
             if name != "depth":
                 unit = "m3" if name == "stressed_volume" else "m" if name.endswith(("_depth", "_x", "_y")) and "_by_" not in name else "Pa"
-                dimensions = ("field_time", "depth")[: values.ndim]
+                dimensions = (at, "depth")[: values.ndim]
                 maps[name] = (dimensions, values, {"units": unit, "long_name": name.replace("_", " ")})  # type: ignore[assignment]
         for name in self._stress_fields:
             words = {"units": "Pa", "long_name": name.replace("_", " ")}
-            maps[name] = (("field_time", "depth", "x", "y"), self._stress_volume(name), words)  # type: ignore[assignment]
+            maps[name] = ((at, "depth", "x", "y"), self._stress_volume(name), words)  # type: ignore[assignment]
         gap = ("initial_gap", (over, self.initial_gap, {"units": "m", "long_name": "undeformed gap"}))
         coordinates = {
-            "time": ("time", np.asarray(self._table["time"]), {"units": "s", "long_name": "time"}),
-            "field_time": ("field_time", self.field_times, {"units": "s", "long_name": "time of the fields"}),
+            along: (along, np.asarray(self._table["time"]), {"units": self.units("time"), "long_name": along}),
+            at: (at, self.field_times, {"units": self.units("time"), "long_name": f"{along} of the fields"}),
             "x": ("x", self.x, {"units": "m", "long_name": "x"}),
         }
         if not self.is_line:
@@ -347,11 +376,11 @@ class Result:
         if "depth" in self._stress:
             coordinates["depth"] = ("depth", self._stress["depth"], {"units": "m", "long_name": "depth below the surface"})
         for name, (edges, numbers) in self._histograms.items():
-            along, ends, unit, words = HISTOGRAMS[name]
+            bins, ends, unit, words = HISTOGRAMS[name]
             middle = np.sqrt(edges[1:] * edges[:-1]) if name == "spot_histogram" else 0.5 * (edges[1:] + edges[:-1])
-            unit = units_of(along, unit, self.is_line)
-            rows[name] = (("time", along), numbers, dict(zip(("units", "long_name"), QUANTITIES[name])))  # type: ignore[assignment]
-            coordinates[along] = (along, middle, {"units": unit, "long_name": f"middle of {words}"})
+            unit = units_of(bins, unit, self.is_line)
+            rows[name] = ((along, bins), numbers, dict(zip(("units", "long_name"), QUANTITIES[name])))  # type: ignore[assignment]
+            coordinates[bins] = (bins, middle, {"units": unit, "long_name": f"middle of {words}"})
             coordinates[ends] = (ends, edges, {"units": unit, "long_name": f"ends of {words}"})
         # Text, as all other attributes, so that the dataset can be written.
         attributes = {**self._attributes, "findings": json.dumps(self._attributes.get("findings", []))}
@@ -467,7 +496,7 @@ class Result:
         if len(self) == 0:
             return f"<{title}: no rows yet, {cells}>"
         return (
-            f"<{title}: {len(self)} rows to t = {self.time[-1]:g} s, {cells}; "
+            f"<{title}: {len(self)} rows to {'v' if self._sweep else 't'} = {self._table['time'][-1]:g} {self.units('time')}, {cells}; "
             f"approach {self.approach[-1]:.4g} m, contact {100 * self.contact_fraction[-1]:.4g} %; "
             f"fields {', '.join(self._fields) or 'none'} at {len(self._field_steps)} times>"
         )

@@ -17,6 +17,7 @@ from ._findings import Finding, findings_of, warn
 from ._histories import History, Stage, Times, as_history, as_stage, as_times, one_of
 from ._layers import Body, hardness_of, parts_of, with_hardness
 from ._materials import Material
+from ._motion import Motion
 from ._progress import Progress
 from ._result import FIELDS, HISTOGRAMS, ROW, Result, open
 from ._shifts import temperatures
@@ -134,6 +135,7 @@ def march(
     largest_pressure: float | None = None,
     largest_gap: float | None = None,
     include: Sequence[float] = (),
+    _motion: Motion | None = None,
 ) -> March:
     """A simulation, step by step; the parameters are those of :func:`solve`.
 
@@ -189,10 +191,11 @@ def march(
         max_iterations=count("max_iterations", max_iterations),
         hardness_map=None if cells is None else as_plane(cells),
         plasticity=plasticity,
-        quantities=[str(name) for name in quantities],
+        quantities=[*dict.fromkeys([*(str(name) for name in quantities), *([] if _motion is None else _motion.quantities(shape, boundary))])],
         bins=count("bins", bins),
         largest_pressure=None if largest_pressure is None else number("largest_pressure", largest_pressure),
         largest_gap=None if largest_gap is None else number("largest_gap", largest_gap),
+        motion=None if _motion is None else _motion.parts(),
     )
     creeps = [{"instantaneous": first, "terms": terms, "fluidity": flow} for first, terms, flow in core.creep()]
     setup: dict[str, Any] = {
@@ -212,6 +215,8 @@ def march(
     }
     if len(creeps) > 1:
         setup["contact_creep_compliance_over_reduced_time"] = creeps[1:]
+    if _motion is not None:
+        setup["motion"] = _motion.setup()
     if temperature is not None:
         setup["temperature"] = temperatures(temperature)
     if any(isinstance(body, Body) for body in bodies):
@@ -250,6 +255,7 @@ def solve(
     title: str = "",
     progress: bool | None = None,
     on_step: Callable[[Step], object] | None = None,
+    _motion: Motion | None = None,
 ) -> Result:
     """Solves a contact over time.
 
@@ -319,7 +325,8 @@ def solve(
         bins=bins,
         largest_pressure=largest_pressure,
         largest_gap=largest_gap,
-        include=[] if wanted is None else [t for t in wanted.tolist() if t > 0],
+        include=[] if wanted is None or (_motion is not None and _motion.steady) else [t for t in wanted.tolist() if t > 0],
+        _motion=_motion,
     )
     # Adaptive steps find their rows as they go.
     rows = run._core.rows_expected
@@ -358,7 +365,7 @@ def solve(
     finally:
         teller.end()
     found = run.findings
-    warn(found, 2)
+    warn(found, 2 if _motion is None else 3)
     return Result(
         table={name: np.array(values) for name, values in table.items() if name not in HISTOGRAMS},
         histograms={name: (ends, np.array(table[name])) for name, ends in edges.items() if name in HISTOGRAMS},

@@ -1,0 +1,105 @@
+"""Contacts that slide and roll."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import asperity as asp
+
+
+def parabola(cells: int, length: float, radius: float) -> asp.Surface:
+    x = (np.arange(cells) + 0.5) * length / cells - 0.5 * length
+    return asp.Surface(-(x**2) / (2 * radius), size=length)
+
+
+def zener(k: float) -> asp.Zener:
+    # Contact compliance 1/k at once and 1 relaxed, retardation time 1: E* = 4 G for an incompressible body.
+    return asp.Zener(shear=0.25 * k, shear_kelvin=0.25 / (1 - 1 / k), retardation_time=1.0, poisson=0.5)
+
+
+# Hunter 1961: (k, v lambda / relaxed half-width, friction coefficient, half-width).
+@pytest.mark.parametrize(("k", "v", "mu", "half"), [(2, 1.0, 0.19684337986, 0.803402693617), (10, 1.0, 0.463905752676, 0.600918754559)])
+def test_a_rolling_cylinder_loses_what_hunter_says(k: float, v: float, mu: float, half: float) -> None:
+    result = asp.steady(parabola(400, 3.0, 1.0), zener(k), load=0.25 * np.pi, velocities=[v], kind="roll", tolerance=1e-8)
+    # 50 to 100 cells to the half-width.
+    assert result.friction_coefficient[0] == pytest.approx(mu, rel=5e-4)
+    assert result.contact_area[0] == pytest.approx(2 * half, abs=2 * 3.0 / 400)
+    assert result.dissipated_power[0] == pytest.approx(result.friction_force[0] * v, rel=1e-2)
+    assert result.units("friction_force") == "N/m" and result.is_sweep
+
+
+def test_a_sweep_has_velocities_in_place_of_times() -> None:
+    result = asp.steady(parabola(64, 3.0, 1.0), zener(4), load=0.2, velocities=[1.0, 0.1, 10.0], fields=["pressure", "gap"])
+    assert result.velocity.tolist() == [0.1, 1.0, 10.0]
+    assert result.field_velocities.tolist() == [0.1, 1.0, 10.0]
+    with pytest.raises(AttributeError, match="velocity"):
+        result.time
+    assert result.field("pressure", velocity=0.9).shape == (64,)
+    with pytest.raises(asp.CaseError, match="velocity="):
+        result.field("pressure", time=1.0)
+    data = result.to_xarray()
+    assert data.friction_coefficient.dims == ("velocity",) and data.pressure.dims == ("field_velocity", "x")
+    assert "v = 10 m/s" in repr(result)
+
+
+def test_a_case_file_gives_the_same_numbers(tmp_path: object) -> None:
+    case = {
+        "domain": {"cells": [32, 24], "size": ["1 mm", "0.75 mm"], "boundary": "periodic"},
+        "surface": [{"kind": "wave", "amplitude": "1 um", "wavelength": ["1 mm", "0.75 mm"]}],
+        "body": [{"poisson": 0.5, "material": {"model": "zener", "shear": "1 MPa", "shear_kelvin": "0.2 MPa", "retardation_time": "10 ms"}}],
+        "load": {"control": "pressure", "history": {"kind": "step", "value": "2 kPa"}},
+        "motion": {"shear_stress": "1 kPa", "steady": {"velocities": ["1 mm/s", "100 mm/s"]}},
+    }
+    stored = asp.run(case, output=f"{tmp_path}/sweep.zarr")
+    wave = asp.Surface.wave(cells=(32, 24), size=(1e-3, 0.75e-3), amplitude=1e-6, wavelength=(1e-3, 0.75e-3))
+    rubber = asp.Zener(shear=1e6, shear_kelvin=0.2e6, retardation_time=0.01, poisson=0.5)
+    here = asp.steady(wave, rubber, pressure=2e3, velocities=[1e-3, 0.1], boundary="periodic", shear_stress=1e3)
+    assert stored.is_sweep and stored.velocity.tolist() == [1e-3, 0.1]
+    # The wave is evaluated as a shape there, and is a field of heights here.
+    np.testing.assert_allclose(stored.friction_coefficient, here.friction_coefficient, rtol=1e-5)
+    np.testing.assert_allclose(asp.rubber_friction(here, shear_stress=1e3), here.friction_coefficient_total, rtol=1e-12)
+    assert stored.to_xarray().friction_force.dims == ("velocity",)
+
+
+def test_a_shift_of_the_temperature_is_a_shift_of_the_velocity() -> None:
+    rough = asp.Surface.self_affine(cells=(48, 48), size=(1e-3, 1e-3), hurst=0.8, rms_gradient=0.1, longest=5e-4, shortest=1e-4, seed=1)
+    terms = [(2e6, 10.0**k) for k in range(-6, 1)]
+    rubber = asp.Prony(equilibrium=1e6, terms=terms, poisson=0.49, shift=asp.wlf(c1=8.86, c2=101.6, reference=293.15))
+    factor = 10 ** (-8.86 * 20 / (101.6 + 20))
+
+    def sweep(temperature: float, velocities: list[float]) -> asp.Result:
+        return asp.steady(rough, rubber, pressure=1e5, velocities=velocities, boundary="periodic", temperature=temperature, tolerance=1e-9)
+
+    cold, warm = sweep(293.15, [1e-3, 1e-2]), sweep(313.15, [1e-3 / factor, 1e-2 / factor])
+    np.testing.assert_allclose(cold.friction_coefficient, warm.friction_coefficient, rtol=1e-6)
+
+
+def test_sliding_starts_and_turns_back() -> None:
+    wave = asp.Surface.wave(cells=(32, 4), size=(1e-3, 125e-6), amplitude=1e-6, wavelength=(1e-3, float("inf")))
+    rubber = asp.Zener(shear=1e6, shear_kelvin=0.2e6, retardation_time=0.01, poisson=0.5)
+    there = asp.table([(0.0, 0.05), (0.1, 0.05), (0.1001, -0.05), (0.2, -0.05)])
+    result = asp.slide(wave, rubber, pressure=20e3, velocity=there, times=[0.2], start=0.05, boundary="periodic", fields=["pressure"])
+    at = lambda t: int(np.argmin(np.abs(result.time - t)))  # noqa: E731
+    assert result.friction_force[at(0.14)] > 0 > result.friction_force[at(0.19)]
+    assert result.friction_force[at(0.04)] == pytest.approx(0.0, abs=1e-9 * result.load[0])
+    assert (np.abs(np.diff(result.sliding_distance)) <= 1e-3 / 32 * (1 + 1e-9)).all()
+    # In the frame of the contact the pressure stays by the crest.
+    crest = result.field("pressure", time=0.1).argmax(axis=0)
+    assert (np.abs(crest - 16) < 8).all()
+
+
+def test_what_cannot_be_is_refused() -> None:
+    rough = parabola(32, 3.0, 1.0)
+    for message, options in {
+        "velocity or path": {},
+        "Kelvin": {"velocities": [1.0]},
+        "direction": {"velocity": 1.0, "direction": "z"},
+    }.items():
+        with pytest.raises(asp.CaseError, match=message):
+            if "velocities" in options:
+                asp.steady(rough, asp.KelvinVoigt(shear=1.0, retardation_time=1.0, poisson=0.5), load=0.1, **options)
+            else:
+                asp.slide(rough, zener(4), load=0.1, times=[1.0], **options)
+    with pytest.raises(asp.CaseError, match="track"):
+        asp.slide(rough, zener(4), load=0.1, times=[10.0], velocity=1.0)

@@ -102,7 +102,7 @@ fn object(path: &Path, history: &LeakHistory) -> String {
     }
     object.insert("leakage".into(), serde_json::to_value(&history.leak).unwrap_or_default());
     object.insert("findings".into(), finding::list(&history.findings));
-    object.insert("result".into(), json!(path));
+    object.insert("result".into(), json!(path.to_string_lossy()));
     format!("{}\n", Value::Object(object))
 }
 

@@ -157,18 +157,19 @@ pub fn resolved(
     if domain.value.boundary.unwrap_or_default() == Boundary::Periodic {
         return;
     }
-    let (longest, cell) = (layers.longest_cell(), grid.spacing()[0].max(grid.spacing()[1]));
+    let (longest, cell) = (layers.longest_cell(), grid.cell_sides().fold(0.0, f64::max));
     let tops = bodies.iter().filter_map(|at| at.value.layer.first());
     let thinnest = tops.min_by(|a, b| a.value.thickness.get().total_cmp(&b.value.thickness.get()));
     if let Some(layer) = thinnest.filter(|_| cell > longest) {
-        let least = grid.size().map(|size| (size / longest).ceil());
+        let least: Vec<String> =
+            grid.extents().iter().map(|side| (side / longest).ceil().to_string()).collect();
         let message = format!(
             "the cells are {} m long, more than 4 times the thickness of this layer: they do not resolve it",
             number(cell)
         );
         let help = format!(
-            "set domain.cells to [{}, {}] or more, take a smaller domain, or boundary = \"periodic\", which needs no such cells",
-            least[0], least[1]
+            "set domain.cells to [{}] or more, take a smaller domain, or boundary = \"periodic\", which needs no such cells",
+            least.join(", ")
         );
         checks.fault(&layer.span, message, &format!("cells of at most {} m", number(longest)), Some(&help));
     }

@@ -46,6 +46,13 @@ impl Case {
         Case { header, gap }
     }
 
+    /// The same on a line of cells.
+    pub(crate) fn line(cells: usize, fields: &[FieldKind]) -> Case {
+        let Case { header, gap } = Case::new([cells, 1], fields);
+        let grid = Grid::line(cells, header.grid.size()[0]).unwrap();
+        Case { header: Header { grid, ..header }, gap }
+    }
+
     pub(crate) fn row(&self, step: usize) -> Row {
         Row {
             // Steps 4 and 5 are the two sides of a jump.

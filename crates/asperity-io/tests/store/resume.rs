@@ -8,7 +8,16 @@ const FIELDS: [FieldKind; 2] = [FieldKind::Pressure, FieldKind::Gap];
 
 #[test]
 fn a_resumed_run_ends_as_one_that_never_stopped() {
-    let case = Case::new([40, 30], &FIELDS);
+    resumed(&Case::new([40, 30], &FIELDS));
+}
+
+#[test]
+fn a_line_contact_is_stored_and_resumed_likewise() {
+    // Two chunks of a field.
+    resumed(&Case::line(70_000, &FIELDS));
+}
+
+fn resumed(case: &Case) {
     let (_directory, path) = place();
     let mut writer = Writer::create(&path, &case.header, case.gap.view(), false).unwrap();
     case.run(&mut writer, 0, 5);

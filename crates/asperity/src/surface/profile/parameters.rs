@@ -168,9 +168,9 @@ mod tests {
         assert!((found.rz - 2.0).abs() < 1e-9 && (found.rt - 2.0).abs() < 1e-9);
         assert!(found.rsk.abs() < 1e-12);
         assert_eq!(found.rsm, Some(1000.0 * 1e-6));
-        // The formula is of sixth order in 2 pi/1000.
+        // The formula is of sixth order in 2 pi/1000; six of 20000 slopes, the steepest, are missing at the ends.
         let slope = std::f64::consts::TAU / 1e-3 * 0.5f64.sqrt();
-        assert!((found.rdq.unwrap() / slope - 1.0).abs() < 1e-6, "{found:?}");
+        assert!((found.rdq.unwrap() / slope - 1.0).abs() < 3e-4, "{found:?}");
     }
 
     #[test]

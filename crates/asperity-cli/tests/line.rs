@@ -1,0 +1,158 @@
+//! Line contacts as a user of the command meets them.
+
+use std::path::Path;
+use std::process::{Command, Output};
+
+use asperity_io::store::{At, FieldKind, Reader};
+use serde_json::Value;
+
+const CASE: &str = r#"
+title = "roller"
+[domain]
+cells = [96]
+size = ["8 mm"]
+[[surface]]
+kind = "cylinder"
+radius = "20 mm"
+[[body]]
+poisson = 0.5
+material = { model = "zener", shear = "2 MPa", shear_kelvin = "2 MPa", retardation_time = "10 s" }
+[load]
+control = "load"
+history = { kind = "step", value = "0.5 N/mm" }
+[time]
+end = "20 s"
+steps = 8
+[output]
+fields = ["pressure", "gap", "displacement", "contact"]
+quantities = ["contact_spots", "largest_spot", "contact_perimeter"]
+every = 2
+"#;
+
+fn asperity(directory: &Path, arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_asperity")).args(arguments).current_dir(directory).output().unwrap()
+}
+
+/// Standard output of a command that succeeds.
+fn done(directory: &Path, arguments: &[&str]) -> String {
+    let output = asperity(directory, arguments);
+    assert!(output.status.success(), "{arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+fn solved() -> tempfile::TempDir {
+    let directory = tempfile::tempdir().unwrap();
+    std::fs::write(directory.path().join("roller.toml"), CASE).unwrap();
+    done(directory.path(), &["run", "roller.toml", "--quiet"]);
+    directory
+}
+
+#[test]
+fn a_line_contact_is_checked_run_and_shown_per_length() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    std::fs::write(path.join("roller.toml"), CASE).unwrap();
+    let told = done(path, &["check", "roller.toml"]);
+    assert!(told.contains("a line of 96 cells") && told.contains("500 N/m at most"), "{told}");
+    let told = done(path, &["run", "roller.toml"]);
+    assert!(told.contains("load         500 N/m"), "{told}");
+    let told = done(path, &["show", "roller.zarr"]);
+    assert!(told.contains("a line of 96 cells, 8 mm") && told.contains("500 N/m"), "{told}");
+    let object: Value = serde_json::from_str(&done(path, &["check", "roller.toml", "--json"])).unwrap();
+    assert_eq!((&object["cells"], &object["size"]), (&serde_json::json!([96]), &serde_json::json!([8e-3])));
+}
+
+#[test]
+fn a_stored_line_contact_has_no_y() {
+    let directory = solved();
+    let root = directory.path().join("roller.zarr");
+    let document: Value = serde_json::from_slice(&std::fs::read(root.join("zarr.json")).unwrap()).unwrap();
+    let arrays = &document["consolidated_metadata"]["metadata"];
+    assert!(arrays.get("y").is_none());
+    assert_eq!(arrays["pressure"]["dimension_names"], serde_json::json!(["field_time", "x"]));
+    assert_eq!(arrays["initial_gap"]["dimension_names"], serde_json::json!(["x"]));
+    let units = |name: &str| arrays[name]["attributes"]["units"].as_str().unwrap().to_owned();
+    let all = ["load", "contact_area", "largest_spot", "contact_perimeter", "approach"].map(units);
+    assert_eq!(all, ["N/m", "m", "m", "1", "m"]);
+    let words = arrays["approach"]["attributes"]["long_name"].as_str().unwrap();
+    assert!(words.contains("end of the domain"), "{words}");
+    let reader = Reader::open(&root).unwrap();
+    assert!(reader.header().grid.is_line());
+    let pressure = reader.field(FieldKind::Pressure, At::Last).unwrap();
+    assert_eq!(pressure.dim(), (96, 1));
+    // The load per length is the sum of the pressures over the cells.
+    let load = pressure.sum() * reader.header().grid.spacing()[0];
+    assert!((load / 500.0 - 1.0).abs() < 1e-12, "{load}");
+}
+
+#[test]
+fn every_export_and_picture_of_a_line_contact_is_made() {
+    let directory = solved();
+    let path = directory.path();
+    for format in ["netcdf", "hdf5", "npz", "vtk", "csv", "png"] {
+        done(path, &["export", "roller.zarr", "--to", format]);
+    }
+    done(path, &["export", "roller.zarr", "--to", "csv", "--fields", "pressure", "-o", "fields.csv"]);
+    let text = std::fs::read_to_string(path.join("fields_pressure_0000.csv")).unwrap();
+    assert!(text.starts_with("x [m],pressure [Pa]\r\n") && text.lines().count() == 97, "{text}");
+    let text = std::fs::read_to_string(path.join("fields.csv")).unwrap();
+    assert!(text.starts_with("time [s],load [N/m],"), "{text}");
+    for what in [
+        "evolution",
+        "load-displacement",
+        "pressure",
+        "gap",
+        "displacement",
+        "contact",
+        "initial-gap",
+        "profile",
+        "histogram",
+        "spots",
+        "work",
+        "quantities",
+    ] {
+        let picture = format!("{what}.svg");
+        done(path, &["plot", "roller.zarr", what, "-o", &picture]);
+        let svg = std::fs::read_to_string(path.join(&picture)).unwrap();
+        assert!(svg.contains("</svg>") && !svg.contains("NaN"), "{what}");
+    }
+    done(path, &["report", "roller.zarr", "-o", "report.html"]);
+    assert!(std::fs::read_to_string(path.join("report.html")).unwrap().contains("\"line\":true"));
+    for refused in [
+        &["plot", "roller.zarr", "stress"][..],
+        &["plot", "roller.zarr", "profile", "--along", "y"],
+        &["stress", "roller.zarr"],
+        &["leak", "roller.zarr", "--pressure-drop", "1 bar", "--viscosity", "1 mPa s"],
+    ] {
+        let output = asperity(path, refused);
+        assert_eq!(output.status.code(), Some(2), "{refused:?}");
+        assert!(String::from_utf8_lossy(&output.stderr).contains("line contact"), "{refused:?}");
+    }
+}
+
+#[test]
+fn a_profile_is_described_and_makes_a_surface() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let points: String = (0..2000)
+        .map(|i| {
+            let x = f64::from(i);
+            // Waves of 100 and 23 points, on a slope.
+            let z = (std::f64::consts::TAU * x / 100.0).sin() + 0.1 * (std::f64::consts::TAU * x / 23.0).sin();
+            format!("{x};{}\n", (1e3 * z + 0.5 * x).to_string().replace('.', ","))
+        })
+        .collect();
+    std::fs::write(path.join("stylus.csv"), format!("x [um]; z [nm]\n{points}")).unwrap();
+    let object: Value = serde_json::from_str(&done(path, &["surface", "info", "stylus.csv", "--json"])).unwrap();
+    let number = |name: &str| object[name].as_f64().unwrap();
+    assert_eq!(object["shape"], serde_json::json!([2000]));
+    assert!((number("rq") / (0.505f64.sqrt() * 1e-6) - 1.0).abs() < 5e-3, "{object}"); // what the straight line takes
+    assert!((number("rsm") / 100e-6 - 1.0).abs() < 0.01, "{object}"); // an end known to a point in 19 elements
+    let told = done(path, &["surface", "info", "stylus.csv", "--cutoff", "50 um", "--plot", "stylus.svg"]);
+    assert!(told.contains("Ra") && told.contains("Rsm") && path.join("stylus.svg").exists(), "{told}");
+    let told = done(path, &["surface", "from-profile", "stylus.csv", "--cells", "128", "--to-size", "256 um", "-o", "map.npz"]);
+    assert!(told.contains("Sq"), "{told}");
+    let output = asperity(path, &["surface", "from-profile", "map.npz", "-o", "other.npz"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("two columns"));
+}

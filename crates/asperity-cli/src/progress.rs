@@ -75,9 +75,14 @@ impl Teller {
             return self.tell_stress(done, all);
         }
         let row = progress.row;
+        let moment = match progress.sweep {
+            true => format!("v = {}", words::quantity(row.time, "m/s")),
+            false => format!("t = {}", words::quantity(row.time, "s")),
+        };
+        let friction =
+            progress.friction.map_or(String::new(), |f| format!(", friction {:.4}", f.coefficient));
         let state = format!(
-            "t = {}, contact {:.2} %, {} iterations",
-            words::quantity(row.time, "s"),
+            "{moment}, contact {:.2} %{friction}, {} iterations",
             100.0 * row.contact_fraction,
             row.iterations
         );

@@ -138,19 +138,24 @@ fn a_profile_is_described_and_makes_a_surface() {
         .map(|i| {
             let x = f64::from(i);
             // Waves of 100 and 23 points, on a slope.
-            let z = (std::f64::consts::TAU * x / 100.0).sin() + 0.1 * (std::f64::consts::TAU * x / 23.0).sin();
+            let z =
+                (std::f64::consts::TAU * x / 100.0).sin() + 0.1 * (std::f64::consts::TAU * x / 23.0).sin();
             format!("{x};{}\n", (1e3 * z + 0.5 * x).to_string().replace('.', ","))
         })
         .collect();
     std::fs::write(path.join("stylus.csv"), format!("x [um]; z [nm]\n{points}")).unwrap();
-    let object: Value = serde_json::from_str(&done(path, &["surface", "info", "stylus.csv", "--json"])).unwrap();
+    let object: Value =
+        serde_json::from_str(&done(path, &["surface", "info", "stylus.csv", "--json"])).unwrap();
     let number = |name: &str| object[name].as_f64().unwrap();
     assert_eq!(object["shape"], serde_json::json!([2000]));
     assert!((number("rq") / (0.505f64.sqrt() * 1e-6) - 1.0).abs() < 5e-3, "{object}"); // what the straight line takes
     assert!((number("rsm") / 100e-6 - 1.0).abs() < 0.01, "{object}"); // an end known to a point in 19 elements
     let told = done(path, &["surface", "info", "stylus.csv", "--cutoff", "50 um", "--plot", "stylus.svg"]);
     assert!(told.contains("Ra") && told.contains("Rsm") && path.join("stylus.svg").exists(), "{told}");
-    let told = done(path, &["surface", "from-profile", "stylus.csv", "--cells", "128", "--to-size", "256 um", "-o", "map.npz"]);
+    let told = done(
+        path,
+        &["surface", "from-profile", "stylus.csv", "--cells", "128", "--to-size", "256 um", "-o", "map.npz"],
+    );
     assert!(told.contains("Sq"), "{told}");
     let output = asperity(path, &["surface", "from-profile", "map.npz", "-o", "other.npz"]);
     assert_eq!(output.status.code(), Some(2));

@@ -8,7 +8,8 @@ use asperity::quantities::{Quantities, Quantity};
 use asperity::sliding::{Direction, MovingGap, Path, Steady, SteadyMotion};
 use asperity::surface::Part;
 use asperity::{
-    Boundary, Course, Event, Grid, History, Programme, Simulation, SolverOptions, Stage, TimeGrid, march, material,
+    Boundary, Course, Event, Grid, History, Programme, Simulation, SolverOptions, Stage, TimeGrid, march,
+    material,
 };
 use asperity_io::choice::{self, Choice};
 use asperity_io::store::FieldKind;
@@ -65,7 +66,9 @@ impl Rows {
     /// Times, or velocities.
     fn planned(&self) -> Vec<f64> {
         match self {
-            Rows::Times(march) => march.simulation().plan().instants.iter().map(|instant| instant.time).collect(),
+            Rows::Times(march) => {
+                march.simulation().plan().instants.iter().map(|instant| instant.time).collect()
+            }
             Rows::Velocities(steady) => steady.motion().velocities.clone(),
         }
     }
@@ -182,8 +185,7 @@ type StageParts =
 
 /// A motion: "velocity" or "path" with a history (kind, numbers) and the points of a table, or "steady" with velocities; its start;
 /// the direction ("x", "y" or "angle" with an angle in rad); cells to a step; a shear stress; whether it rolls.
-type MotionParts =
-    (String, Numbers, Vec<(f64, f64)>, f64, (String, f64), f64, Option<f64>, bool);
+type MotionParts = (String, Numbers, Vec<(f64, f64)>, f64, (String, f64), f64, Option<f64>, bool);
 
 /// A motion in time, or steady states.
 enum Moves {
@@ -318,7 +320,8 @@ impl March {
             quantities: Quantities { list, bins, largest_pressure, largest_gap },
             ..Simulation::new(grid, gap)
         };
-        let moves = motion.map(|parts| self::motion(parts, &simulation.grid, simulation.boundary, &simulation.gap));
+        let moves =
+            motion.map(|parts| self::motion(parts, &simulation.grid, simulation.boundary, &simulation.gap));
         let moves = moves.transpose()?.transpose().map_err(|error| raised(py, error))?;
         let interrupt = Arc::new(AtomicBool::new(false));
         let made = without_python(py, &interrupt, || {
@@ -452,7 +455,12 @@ impl March {
                 let mut states = ndarray::Array2::<u8>::zeros(shape);
                 step.contact_into(&mut states);
                 let boundary = march.simulation().boundary;
-                return Some(Map::Contact(march::in_contact_frame(states.view(), boundary, step.frame_shift(), 0)));
+                return Some(Map::Contact(march::in_contact_frame(
+                    states.view(),
+                    boundary,
+                    step.frame_shift(),
+                    0,
+                )));
             }
             let mut field = ndarray::Array2::zeros(shape);
             let (shift, boundary) = (step.frame_shift(), march.simulation().boundary);

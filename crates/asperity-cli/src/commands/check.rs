@@ -5,13 +5,13 @@ use std::time::Instant;
 use asperity::operator::half_space;
 use asperity::stress::SubsurfaceStress;
 use asperity::{Grid, Method, Scheme};
-use asperity_io::case::{Case, Description, Examination, Inputs, SurfaceInput};
+use asperity_io::case::{Case, Description, Examination, Inputs, SurfaceInput, Travel};
 use asperity_io::stress::StressDescription;
 use serde_json::json;
 
 use crate::args::Check;
 use crate::failure::Failure;
-use crate::words::{bytes, duration, quantity};
+use crate::words::{bytes, counted, duration, quantity};
 
 /// Convolutions per row, 3 to 7 in the examples whose pressure changes, and time of an iteration over that of its
 /// convolution (docs/performance.md).
@@ -118,6 +118,67 @@ fn prospects(grid: &Grid, inputs: &Inputs) -> Vec<[String; 2]> {
     } else if let Some(shares) = inputs.expected_contact_share {
         let share = range(shares, |share| format!("{:.2} %", 100.0 * share));
         line("expected", format!("contact of {share} of the domain{strain}"));
+    }
+    lines
+}
+
+/// Whether its rows are steady states of motion.
+fn is_sweep(case: &Case) -> bool {
+    case.motion.as_ref().is_some_and(|motion| matches!(motion.travel, Travel::Steady(_)))
+}
+
+/// How the contact moves, and how far the memory of the material reaches then.
+fn motion_lines(case: &Case) -> Vec<[String; 2]> {
+    let Some(motion) = &case.motion else { return vec![] };
+    let [x, y] = motion.direction.unit();
+    let direction = match (x, y) {
+        (1.0, 0.0) => "x".to_owned(),
+        (0.0, 1.0) => "y".to_owned(),
+        (x, y) => format!("{:.4}° from x", y.atan2(x).to_degrees()),
+    };
+    let way = if motion.rolls { "rolls along" } else { "slides along" };
+    let speed = |v: f64| quantity(v, "m/s");
+    let (words, fastest) = match &motion.travel {
+        Travel::Steady(list) => {
+            let ends = [list.first(), list.last()].map(|v| speed(v.copied().unwrap_or_default()));
+            let fastest = list.last().copied().unwrap_or_default();
+            (
+                format!("{way} {direction} at {} velocities from {} to {}", list.len(), ends[0], ends[1]),
+                fastest,
+            )
+        }
+        Travel::Path(path) => {
+            let end = case.times.end();
+            let times = (0..=1000).map(|k| end * f64::from(k) / 1000.0);
+            let fastest = times.clone().map(|t| path.velocity(t).abs()).fold(0.0, f64::max);
+            let far = times.map(|t| path.position(t).abs()).fold(0.0, f64::max);
+            let cells = far / motion.direction.cell(&case.grid);
+            let far = quantity(far, "m");
+            (
+                format!("{way} {direction}, up to {far} ({cells:.0} cells) at {} at most", speed(fastest)),
+                fastest,
+            )
+        }
+    };
+    let mut lines = vec![["motion".to_owned(), words]];
+    let parts = std::iter::once(&case.creep).chain(case.thermal.iter().map(|body| &body.creep));
+    let all: Vec<_> = parts.flat_map(|creep| creep.terms.iter()).collect();
+    let total: f64 = all.iter().map(|term| term.compliance).sum();
+    // The branch that carries most.
+    let largest = all.into_iter().max_by(|a, b| a.compliance.total_cmp(&b.compliance));
+    if let Some(term) = largest.filter(|_| fastest > 0.0) {
+        let reach = fastest * term.retardation_time;
+        lines.push([
+            String::new(),
+            format!(
+                "memory of the largest branch ({}, {:.0} % of the retarded compliance) reaches {} at {}: {} cells",
+                quantity(term.retardation_time, "s"),
+                100.0 * term.compliance / total,
+                quantity(reach, "m"),
+                speed(fastest),
+                quantity(reach / motion.direction.cell(&case.grid), "")
+            ),
+        ]);
     }
     lines
 }
@@ -262,9 +323,15 @@ fn tell(case: &Case, examined: &Examination, estimate: Option<f64>) -> String {
         line(&name, value);
     }
     let end = quantity(d.end, "s");
+    for [name, value] in motion_lines(case) {
+        line(&name, value);
+    }
     line(
         "time",
         match d.rows {
+            Some(rows) if is_sweep(case) => {
+                format!("{} of motion, one for each velocity", counted(rows, "steady state"))
+            }
             Some(rows) => format!("{rows} rows to {end}, {} scheme", d.scheme),
             None => {
                 format!("number of rows found by the run, end at {end} at the latest, {} scheme", d.scheme)

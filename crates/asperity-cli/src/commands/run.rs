@@ -1,9 +1,8 @@
 //! `asperity run`.
 
-use asperity::Grid;
 use asperity::finding::Finding;
 use asperity::march::Row;
-use asperity_io::case::Case;
+use asperity_io::case::{Case, Travel};
 use asperity_io::leakage::LeakError;
 use asperity_io::session::{RunError, RunOptions, Summary, run as run_case};
 use asperity_io::store::Status;
@@ -32,7 +31,7 @@ pub fn run(args: &Run) -> Result<(), Failure> {
     match done {
         Ok(summary) => {
             tell_findings(args, &summary.findings, &known);
-            tell(args, &case.grid, &summary, None)?;
+            tell(args, &case, &summary, None)?;
             if summary.status != Status::Interrupted {
                 return super::findings::strict(args.strict, &summary.findings);
             }
@@ -44,7 +43,7 @@ pub fn run(args: &Run) -> Result<(), Failure> {
         Err(error) => {
             let message = match &error {
                 RunError::Solve { best: Some(best), .. } => {
-                    format!("{error}\n{}", best_state(best, &case.grid))
+                    format!("{error}\n{}", best_state(best, &case))
                 }
                 _ => error.to_string(),
             };
@@ -56,7 +55,7 @@ pub fn run(args: &Run) -> Result<(), Failure> {
             | RunError::Leakage { summary, .. } = &error
             {
                 tell_findings(args, &summary.findings, &known);
-                tell(args, &case.grid, summary, Some(&error))?;
+                tell(args, &case, summary, Some(&error))?;
             }
             Err(Failure::Solve(message))
         }
@@ -81,10 +80,19 @@ fn tell_materials(args: &Run, case: &Case) {
     }
 }
 
-fn best_state(best: &Row, grid: &Grid) -> String {
+/// Whether its rows are steady states of motion.
+fn is_sweep(case: &Case) -> bool {
+    case.motion.as_ref().is_some_and(|motion| matches!(motion.travel, Travel::Steady(_)))
+}
+
+fn best_state(best: &Row, case: &Case) -> String {
+    let grid = &case.grid;
+    let moment = match is_sweep(case) {
+        true => format!("v = {}", quantity(best.time, "m/s")),
+        false => format!("t = {}", quantity(best.time, "s")),
+    };
     format!(
-        "  best state at t = {}: load {}, approach {}, contact {:.4} %, largest pressure {}",
-        quantity(best.time, "s"),
+        "  best state at {moment}: load {}, approach {}, contact {:.4} %, largest pressure {}",
         quantity(best.load, grid.units("N")),
         quantity(best.approach, "m"),
         100.0 * best.contact_fraction,
@@ -92,7 +100,9 @@ fn best_state(best: &Row, grid: &Grid) -> String {
     )
 }
 
-fn tell(args: &Run, grid: &Grid, summary: &Summary, error: Option<&RunError>) -> Result<(), Failure> {
+fn tell(args: &Run, case: &Case, summary: &Summary, error: Option<&RunError>) -> Result<(), Failure> {
+    let grid = &case.grid;
+    let sweep = is_sweep(case);
     if args.json {
         return crate::print(&format!("{}\n", json_object(summary, error)));
     }
@@ -102,7 +112,11 @@ fn tell(args: &Run, grid: &Grid, summary: &Summary, error: Option<&RunError>) ->
     let mut text = String::new();
     let mut line = |name: &str, value: String| text += &format!("{name:<13}{value}\n");
     if let Some(last) = &summary.last {
-        line("time", quantity(last.time, "s"));
+        if sweep {
+            line("velocity", format!("{} (the last of {})", quantity(last.time, "m/s"), summary.rows));
+        } else {
+            line("time", quantity(last.time, "s"));
+        }
         line("load", quantity(last.load, grid.units("N")));
         line("approach", quantity(last.approach, "m"));
         let area = quantity(last.contact_area, grid.units("m2"));
@@ -114,6 +128,10 @@ fn tell(args: &Run, grid: &Grid, summary: &Summary, error: Option<&RunError>) ->
             let value =
                 format!("{area} ({share:.3} % of the domain; corrected for its perimeter {corrected})");
             line("contact area", value);
+        }
+        if let Some(friction) = &summary.friction {
+            let (mu, force) = (friction.coefficient, quantity(friction.force, grid.units("N")));
+            line("friction", format!("coefficient {}, force {force}", quantity(mu, "")));
         }
         line("mean gap", quantity(last.mean_gap, "m"));
         if last.capped_area > 0.0 {

@@ -7,7 +7,7 @@ use asperity_io::cycles;
 use asperity_io::leakage::LeakHistory;
 use asperity_io::store::{At, Reader, Status, StoreError};
 use asperity_io::stress::{Below, first_yield};
-use asperity_report::result::contact;
+use asperity_report::result::{contact, moment};
 use serde_json::json;
 
 use crate::args::ShowResult;
@@ -115,7 +115,21 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
     };
     let (force, area) = (grid.units("N"), grid.units("m2"));
     let percent = |share: f64| format!("{:.3} %", 100.0 * share);
-    line("time", quantity(last.time, "s"));
+    match header.is_sweep() {
+        true => {
+            let velocities = rows.iter().map(|row| quantity(row.time, "m/s"));
+            let ends = velocities.clone().next().into_iter().chain(velocities.last());
+            line("velocity", ends.collect::<Vec<_>>().join(" to "));
+        }
+        false => line("time", quantity(last.time, "s")),
+    }
+    if reader.scalars().iter().any(|series| series.name == Quantity::FrictionCoefficient.name()) {
+        let mu = reader.series(Quantity::FrictionCoefficient.name())?;
+        let [low, high] =
+            mu.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(*v), b.max(*v)]);
+        let last = mu.last().copied().unwrap_or(f64::NAN);
+        line("friction", format!("{last:<14.4}{}  {low:.4} to {high:.4}", sparkline(&mu, SPARKS)));
+    }
     line(
         "load",
         format!("{:<14}{}", quantity(last.load, force), curve(|row| row.load, &|v| quantity(v, force))),
@@ -143,11 +157,14 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
     }
     let pressure = [last.mean_pressure, last.max_pressure].map(|p| quantity(p, "Pa"));
     line("pressure", format!("mean {}, largest {}", pressure[0], pressure[1]));
-    let asked = reader.scalars().into_iter().filter(|s| Quantity::from_name(s.name).is_some());
+    let asked = reader.scalars().into_iter().filter(|s| {
+        let coordinate = header.is_sweep() && s.name == Quantity::Velocity.name();
+        Quantity::from_name(s.name).is_some() && !coordinate
+    });
     for (n, series) in asked.enumerate() {
         let values = reader.series(series.name)?;
         let value = values.last().copied().unwrap_or(f64::NAN);
-        let words = if series.units == "1" { format!("{value}") } else { quantity(value, series.units) };
+        let words = if series.units == "1" { quantity(value, "") } else { quantity(value, series.units) };
         line(if n == 0 { "quantities" } else { "" }, format!("{:<27}{words}", series.name));
     }
     if let Some(below) = Below::of(reader)?
@@ -184,7 +201,8 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
     );
     let cyclic = cycles::of_result(reader)?;
     let kept: Vec<_> = header.fields.iter().map(|kind| kind.name()).collect();
-    line("fields", format!("{} at {} times", kept.join(", "), reader.field_times().len()));
+    let instants = if header.is_sweep() { "velocities" } else { "times" };
+    line("fields", format!("{} at {} {instants}", kept.join(", "), reader.field_times().len()));
     for part in cyclic.iter().filter(|part| !part.cycles.is_empty()) {
         let stage = if cyclic.len() > 1 { format!(" of stage {}", part.stage + 1) } else { String::new() };
         text += &format!("\ncycles{stage} at {:.4} Hz\n", part.frequency);
@@ -202,7 +220,7 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
     }
     if let Some(states) = contact(reader, at)? {
         let time = reader.field_times()[reader.index(at)?];
-        text += &format!("\ncontact at t = {}\n", quantity(time, "s"));
+        text += &format!("\ncontact at {}\n", moment(reader, time));
         text += &shares(states.mapv(|state| state > 0).view(), COLUMNS, grid.size()[1] / grid.size()[0]);
     }
     Ok(text)

@@ -13,6 +13,7 @@ use std::sync::atomic::AtomicBool;
 use asperity::finding::{Finding, Judge, Known};
 use asperity::march::{March, Row, Step, in_contact_frame};
 use asperity::material::Creep;
+use asperity::sliding::Friction;
 use asperity::{Error, Simulation};
 use ndarray::Array2;
 use serde_json::{Map, Value, json};
@@ -42,8 +43,12 @@ pub struct RunOptions {
 /// How far a run has come, after each step.
 #[derive(Clone, Copy, Debug)]
 pub struct Progress<'a> {
-    /// The row just stored.
+    /// The row just stored. Of steady states of motion its time is the velocity.
     pub row: &'a Row,
+    /// Its forces, of a contact in motion.
+    pub friction: Option<Friction>,
+    /// Whether rows are steady states of motion.
+    pub sweep: bool,
     /// Rows stored.
     pub done: usize,
     /// Rows that a resumed run found stored.
@@ -77,6 +82,8 @@ pub struct Summary {
     pub result: PathBuf,
     /// The last row stored.
     pub last: Option<Row>,
+    /// Its forces, of a contact in motion.
+    pub friction: Option<Friction>,
     /// Where its numbers may be off.
     pub findings: Vec<Finding>,
     /// The stress below the surface, where the case asks for it.
@@ -162,7 +169,7 @@ fn run_inside(
         let writer = Writer::create(&path, &header, simulation.gap.view(), options.force);
         (writer.map_err(RunError::Output)?, None, Earlier::default())
     };
-    let mut record = Record { case, writer, judge, path: &path, last: None, stress: None };
+    let mut record = Record { case, writer, judge, path: &path, last: None, friction: None, stress: None };
     let march = match &checkpoint {
         Some(checkpoint) => {
             let rows = earlier.rows.get(..checkpoint.step).unwrap_or_default();
@@ -199,6 +206,8 @@ fn run_inside(
         let finished = march.finished();
         observe(Progress {
             row: &row,
+            friction: march.last().and_then(|step| step.friction()),
+            sweep: false,
             done: march.done(),
             resumed,
             total,
@@ -211,7 +220,17 @@ fn run_inside(
         let done = march.done();
         let tell = |times, of| {
             let stress = Some([times, of]);
-            observe(Progress { row: &row, done, resumed, total, end: end_time, finished: true, stress });
+            observe(Progress {
+                row: &row,
+                friction: None,
+                sweep: false,
+                done,
+                resumed,
+                total,
+                end: end_time,
+                finished: true,
+                stress,
+            });
         };
         match stress::evaluate(&mut record.writer, plan, &options.interrupt, tell) {
             Ok(below) => record.stress = Some(below),
@@ -284,8 +303,9 @@ struct Record<'a> {
     writer: Writer,
     judge: Judge,
     path: &'a Path,
-    /// The last row stored.
+    /// The last row stored, and its forces.
     last: Option<Row>,
+    friction: Option<Friction>,
     /// The stress below the surface, once it is computed.
     stress: Option<Below>,
 }
@@ -308,6 +328,7 @@ impl Record<'_> {
         self.writer.append_with(&row, step.quantities(), &fields)?;
         self.judge.see(&step, &row);
         self.last = Some(row);
+        self.friction = step.friction();
         Ok(Some(row))
     }
 
@@ -358,6 +379,7 @@ impl Record<'_> {
             ..outcome
         };
         let (status, result, last) = (outcome.status, self.path.to_owned(), self.last);
+        let friction = self.friction;
         let stress = self.stress.take();
         let summary = |status, work: Work| Summary {
             status,
@@ -368,6 +390,7 @@ impl Record<'_> {
             peak_memory_bytes: work.peak_memory_bytes,
             result,
             last,
+            friction,
             findings,
             stress,
             leak: None,

@@ -35,7 +35,7 @@ pub(super) fn run(
         let writer = Writer::create(&path, &header, simulation.gap.view(), options.force);
         (writer.map_err(RunError::Output)?, None, Earlier::default())
     };
-    let mut record = Record { case, writer, judge, path: &path, last: None, stress: None };
+    let mut record = Record { case, writer, judge, path: &path, last: None, friction: None, stress: None };
     let last_velocity = motion.velocities.last().copied().unwrap_or_default();
     let steady = Steady::new(simulation, motion).and_then(|mut steady| {
         if let Some(checkpoint) = &checkpoint {
@@ -65,6 +65,7 @@ pub(super) fn run(
                 let fields = if keeps { maps.of(&step) } else { vec![] };
                 record.judge.see(&step, &row);
                 record.last = Some(row);
+                record.friction = step.friction();
                 record.writer.append_with(&row, step.quantities(), &fields).map(|()| row)
             }
             Err(Error::Interrupted) => {
@@ -89,6 +90,8 @@ pub(super) fn run(
         };
         observe(Progress {
             row: &row,
+            friction: record.friction,
+            sweep: true,
             done: steady.done(),
             resumed,
             total: Some(total),

@@ -8,7 +8,7 @@ use crate::figure::{Axis, Curves, Figure, Series, Style};
 
 pub(super) fn evolution(reader: &Reader, options: &Options) -> Result<Figure, StoreError> {
     let time = times(reader)?;
-    let axis = || if options.log_time { Axis::log("time", "s") } else { Axis::linear("time", "s") };
+    let axis = || axis(reader, options);
     let line = |name: &str, series: &str| -> Result<Series, StoreError> {
         Ok(Series::new(name, Style::Line, time.clone(), reader.series(series)?))
     };
@@ -33,6 +33,60 @@ pub(super) fn evolution(reader: &Reader, options: &Options) -> Result<Figure, St
         .with(nameless(approach, &time, reader.series("approach")?))
         .with(nameless(load, &time, reader.series("load")?))
         .with(pressure))
+}
+
+/// The axis of the rows: time, or the velocities of a sweep.
+fn axis(reader: &Reader, options: &Options) -> Axis {
+    match (reader.header().is_sweep(), options.log_time) {
+        (true, _) => velocities(reader),
+        (false, true) => Axis::log("time", "s"),
+        (false, false) => Axis::linear("time", "s"),
+    }
+}
+
+/// Velocities over more than a decade have a logarithmic axis.
+fn velocities(reader: &Reader) -> Axis {
+    let found = reader.series("time").unwrap_or_default();
+    match (found.first(), found.last()) {
+        (Some(first), Some(last)) if *first > 0.0 && last / first > 5.0 => Axis::log("velocity", "m/s"),
+        _ => Axis::linear("velocity", "m/s"),
+    }
+}
+
+/// Friction of a contact in motion: over the velocity in a sweep, else over time.
+pub(super) fn friction(reader: &Reader, options: &Options) -> Result<Figure, StoreError> {
+    let rows = times(reader)?;
+    let grid = &reader.header().grid;
+    let line = |name: &str, series: &str| -> Result<Series, StoreError> {
+        Ok(Series::new(name, Style::Line, rows.clone(), reader.series(series)?))
+    };
+    let has = |name: &str| reader.scalars().iter().any(|series| series.name == name);
+    let total = has("friction_coefficient_total");
+    let mut coefficient =
+        Curves::new("Friction", axis(reader, options), Axis::linear("friction coefficient", ""));
+    coefficient =
+        coefficient.with(line(if total { "loss in the bulk" } else { "" }, "friction_coefficient")?);
+    if total {
+        coefficient = coefficient.with(line("with the shear stress", "friction_coefficient_total")?);
+    }
+    let side: f64 = reader.series("side_force")?.iter().fold(0.0, |most, force| force.abs().max(most));
+    let along: f64 = reader.series("friction_force")?.iter().fold(0.0, |most, force| force.abs().max(most));
+    let mut force = Curves::new("Forces", axis(reader, options), Axis::linear("force", grid.units("N")))
+        .with(line("against motion", "friction_force")?);
+    if side > 1e-3 * along {
+        force = force.with(line("across it", "side_force")?);
+    }
+    let area = Curves::new("Contact", axis(reader, options), Axis::linear("contact over nominal area", ""));
+    let mut figure = Figure::new("").with(coefficient).with(force).with(nameless(
+        area,
+        &rows,
+        reader.series("contact_fraction")?,
+    ));
+    if has("dissipated_power") {
+        let power = Curves::new("Power", axis(reader, options), Axis::linear("power lost", grid.units("W")));
+        figure = figure.with(nameless(power, &rows, reader.series("dissipated_power")?));
+    }
+    Ok(figure)
 }
 
 /// A panel of quantities over time.
@@ -68,6 +122,17 @@ pub(crate) fn quantity_panels(reader: &Reader) -> Vec<QuantityPanel> {
             Quantity::ContactPerimeter => ("Perimeter of the contact", "length", ""),
             Quantity::ContactPercolation => ("Percolation", "1: x, 2: y, 3: both", "contact"),
             Quantity::GapPercolation => ("Percolation", "1: x, 2: y, 3: both", "gap"),
+            Quantity::Velocity => ("Velocity", "velocity", ""),
+            Quantity::SlidingDistance => ("Distance moved", "distance", ""),
+            Quantity::FrictionForce => ("Friction", "force", "against motion"),
+            Quantity::SideForce => ("Friction", "force", "across it"),
+            Quantity::FrictionCoefficient => ("Friction coefficient", "friction coefficient", "of the bulk"),
+            Quantity::FrictionCoefficientTotal => {
+                ("Friction coefficient", "friction coefficient", "with the shear stress")
+            }
+            Quantity::FrictionUncertainty => ("Uncertainty of friction", "share of the force", ""),
+            Quantity::RollingMoment => ("Rolling moment", "moment", ""),
+            Quantity::DissipatedPower => ("Power lost", "power", ""),
             _ => ("Gap", "gap", "rms"),
         };
         let line = (line, quantity.name());
@@ -99,8 +164,8 @@ pub(super) fn quantities(reader: &Reader, options: &Options) -> Result<Figure, S
     }
     let mut figure = Figure::new("");
     for panel in panels {
-        let axis = if options.log_time { Axis::log("time", "s") } else { Axis::linear("time", "s") };
-        let mut curves = Curves::new(panel.title, axis, Axis::linear(panel.label, panel.units));
+        let mut curves =
+            Curves::new(panel.title, axis(reader, options), Axis::linear(panel.label, panel.units));
         for (name, series) in panel.lines {
             curves = curves.with(Series::new(name, Style::Line, time.clone(), reader.series(series)?));
         }

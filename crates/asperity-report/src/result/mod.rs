@@ -62,6 +62,8 @@ pub enum Plot {
     Stress,
     /// Leak rate and gaps over time, and the flow at an instant.
     Leak,
+    /// Friction of a contact in motion, over the velocity of steady states or over time.
+    Friction,
 }
 
 /// What a figure shows of a result.
@@ -126,7 +128,7 @@ pub enum PlotError {
 
 impl Plot {
     /// Every plot.
-    pub const ALL: [Plot; 15] = [
+    pub const ALL: [Plot; 16] = [
         Plot::Evolution,
         Plot::LoadDisplacement,
         Plot::Pressure,
@@ -142,6 +144,7 @@ impl Plot {
         Plot::Quantities,
         Plot::Stress,
         Plot::Leak,
+        Plot::Friction,
     ];
 
     /// Its name on the command line.
@@ -162,6 +165,7 @@ impl Plot {
             Plot::Quantities => "quantities",
             Plot::Stress => "stress",
             Plot::Leak => "leak",
+            Plot::Friction => "friction",
         }
     }
 
@@ -194,6 +198,7 @@ pub fn figure(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, 
         Plot::Work => evolution::work(reader)?,
         Plot::Quantities => evolution::quantities(reader, options)?,
         Plot::Leak => crate::leak::over_time(reader, options)?,
+        Plot::Friction => evolution::friction(reader, options)?,
         Plot::Flattening => fields::map(reader, FieldKind::Flattening, options.at)?,
         Plot::Pressure => fields::map(reader, FieldKind::Pressure, options.at)?,
         Plot::Gap => fields::map(reader, FieldKind::Gap, options.at)?,
@@ -248,13 +253,21 @@ fn caption(reader: &Reader, index: usize) -> Result<String, StoreError> {
     let grid = &reader.header().grid;
     let [area, domain] = if grid.is_line() { ["length", "domain"] } else { ["area", "nominal area"] };
     Ok(format!(
-        "t = {}: load {}, approach {}, contact {area} {} ({:.2} % of the {domain}).",
-        quantity(reader.field_times()[index], "s"),
+        "{}: load {}, approach {}, contact {area} {} ({:.2} % of the {domain}).",
+        moment(reader, reader.field_times()[index]),
         quantity(at("load")?, grid.units("N")),
         quantity(at("approach")?, "m"),
         quantity(at("contact_area")?, grid.units("m2")),
         100.0 * at("contact_fraction")?,
     ))
+}
+
+/// "t = 500 s", or "v = 10 mm/s" of a sweep over velocities.
+pub fn moment(reader: &Reader, time: f64) -> String {
+    match reader.header().is_sweep() {
+        true => format!("v = {}", quantity(time, "m/s")),
+        false => format!("t = {}", quantity(time, "s")),
+    }
 }
 
 /// The boundary of the domain that the result was computed on.

@@ -24,6 +24,7 @@ const COLUMNS: [(&str, &str, usize); 5] = [
 pub fn listen(verbose: u8) {
     let warnings = tracing_subscriber::fmt::layer()
         .with_writer(std::io::stderr)
+        .with_ansi(std::io::IsTerminal::is_terminal(&std::io::stderr()))
         .with_target(false)
         .without_time()
         .log_internal_errors(false)

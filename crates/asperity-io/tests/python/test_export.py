@@ -82,7 +82,7 @@ for file, engine in (
         check(lambda name: ds[name].values)
         assert ds.attrs["title"] == title
         assert ds.attrs["case"] == case
-        assert list(ds.attrs["cells"]) == [nx, ny] and ds.attrs["schema"] == 1
+        assert list(ds.attrs["cells"]) == [nx, ny] and ds.attrs["schema"] == 2
     with xr.open_dataset(here / file.replace("out", "empty"), engine=engine) as ds:
         assert ds.pressure.shape == (0, nx, ny) and ds["load"].shape == (1,)
 

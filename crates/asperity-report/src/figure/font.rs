@@ -47,10 +47,10 @@ mod tests {
 
     #[test]
     fn the_typeface_has_every_sign_that_figures_use() {
-        let face = Face::parse(DATA, 0).unwrap();
+        let letters = FontRef::new(DATA).unwrap().charmap();
         for c in "AZaz09 αβδεηλμνρστφωΔΓΩµ°²³⁴⁻⁰¹⁹×·−±≤≥≈∞√∂∫→–—'”/%[]()éüñčß".chars()
         {
-            assert!(face.glyph_index(c).is_some(), "{c}");
+            assert!(letters.map(c).is_some_and(|glyph| glyph.to_u32() > 0), "{c}");
         }
         assert_eq!(database().faces().next().unwrap().families[0].0, "DejaVu Sans");
     }

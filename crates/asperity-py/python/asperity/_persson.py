@@ -30,7 +30,8 @@ class Magnification:
     @property
     def magnification(self) -> Floats:
         """Wave number over that of the longest waves."""
-        return self.wave_number / self.wave_number[0]
+        seen: Floats = self.wave_number / self.wave_number[0]
+        return seen
 
 
 class PerssonFriction:

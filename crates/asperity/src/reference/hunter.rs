@@ -39,7 +39,7 @@ use crate::material::Creep;
 /// // Ten times softer after creep than before, driven so fast that v lambda is about the width of the contact.
 /// let terms = vec![CreepTerm { compliance: 0.9, retardation_time: 1.0 }];
 /// let creep = Creep { instantaneous: 0.1, terms, fluidity: 0.0 };
-/// let contact = HunterCylinder::under_load(1.0, &creep, 1.0, 0.785398163397)?;
+/// let contact = HunterCylinder::under_load(1.0, &creep, 1.0, std::f64::consts::FRAC_PI_4)?;
 /// assert!((contact.friction_coefficient() / 0.463905752676 - 1.0).abs() < 1e-11);
 /// assert!((contact.half_width / 0.600918754559 - 1.0).abs() < 1e-11);
 /// # Ok::<(), asperity::Error>(())
@@ -275,7 +275,7 @@ mod tests {
     #[test]
     fn the_pressure_has_its_values_its_load_and_its_friction() {
         // Pressures of the row (10, 1.0) above.
-        let contact = HunterCylinder::under_load(1.0, &zener(0.1, 0.9, 1.0), 1.0, 0.785398163397).unwrap();
+        let contact = HunterCylinder::under_load(1.0, &zener(0.1, 0.9, 1.0), 1.0, 0.25 * PI).unwrap();
         let rows = [
             (-0.223400887024, 0.201464162016),
             (0.137150365712, 0.519719515483),

@@ -401,7 +401,9 @@ fn a_result_is_verified_and_its_damage_listed() {
 
 /// An override that gives a case so many cells along each axis that its size has.
 fn coarse(case: &str, cells: usize) -> String {
-    let line = case.lines().any(|line| line.starts_with("size = [") && !line.split('#').next().unwrap().contains(','));
+    let line = case
+        .lines()
+        .any(|line| line.starts_with("size = [") && !line.split('#').next().unwrap().contains(','));
     if line { format!("domain.cells=[{cells}]") } else { format!("domain.cells=[{cells}, {cells}]") }
 }
 

@@ -14,9 +14,11 @@ const PREFIXES: [(i32, &str); 8] =
     [(-4, "p"), (-3, "n"), (-2, "µ"), (-1, "m"), (0, ""), (1, "k"), (2, "M"), (3, "G")];
 
 /// Units that take prefixes, with the smallest and the largest that is in use.
-const PREFIXED: [(&str, i32, i32); 11] = [
+const PREFIXED: [(&str, i32, i32); 13] = [
     ("m", -4, 0),
     ("s", -3, 0),
+    ("m/s", -3, 1),
+    ("N m", -3, 2),
     ("Pa", -1, 3),
     ("N", -3, 2),
     ("N/m", -3, 3),
@@ -30,7 +32,7 @@ const PREFIXED: [(&str, i32, i32); 11] = [
 
 /// The unit to show numbers in whose largest magnitude is `largest` in the SI unit `unit`.
 ///
-/// `unit` is one of m, s, Pa, N, N/m, N/m2, J, J/m, W, W/m, Hz; the first ones with an exponent (`m2`) or below one (`1/Pa`, `1/m2`), or any other
+/// `unit` is one of m, s, m/s, N m, Pa, N, N/m, N/m2, J, J/m, W, W/m, Hz; the first ones with an exponent (`m2`) or below one (`1/Pa`, `1/m2`), or any other
 /// text, which is shown as it is.
 ///
 /// ```

@@ -334,6 +334,10 @@ impl March {
                 }
                 Some(Moves::Steady(motion)) => Rows::Velocities(Box::new(Steady::new(simulation, motion)?)),
             };
+            let judge = match &rows {
+                Rows::Times(_) => judge,
+                Rows::Velocities(steady) => judge.of_sweep(steady.streaming().clone()),
+            };
             Ok((rows, judge))
         })?;
         let (mut march, judge) = made.map_err(|error| raised(py, error))?;

@@ -49,6 +49,7 @@ pub(super) fn run(
         Ok(steady) => steady,
         Err(source) => return Err(record.fail(None, None, source)),
     };
+    record.judge = record.judge.of_sweep(steady.streaming().clone());
     if let Some(checkpoint) = &checkpoint {
         record.judge.resume(earlier.rows.get(..checkpoint.step).unwrap_or_default(), &earlier.findings);
     }

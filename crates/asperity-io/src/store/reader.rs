@@ -165,12 +165,17 @@ impl Reader {
     /// # Errors
     /// [`StoreError::Missing`] where there is no such scalar, and those of [`rows`](Self::rows).
     pub fn series(&self, name: &str) -> Result<Vec<f64>> {
+        // The velocities of a sweep stand in place of the times.
+        let name = if name == "time" { self.header().stored("time") } else { name };
         let known = self.scalars();
         if !known.iter().any(|series| series.name == name) {
             let names: Vec<_> = known.iter().map(|series| series.name).collect();
             return Err(self.missing(format!("series `{name}`"), names.join(", ")));
         }
-        let entry = SCALARS.iter().find(|scalar| scalar.name == name).map(|scalar| scalar.entry);
+        let entry = SCALARS
+            .iter()
+            .find(|scalar| self.header().stored(scalar.name) == name)
+            .map(|scalar| scalar.entry);
         let numbers = self.column(name, self.len())?;
         Ok(numbers
             .into_iter()

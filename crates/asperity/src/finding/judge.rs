@@ -14,7 +14,8 @@ use crate::grid::{Boundary, Grid};
 use crate::load::Control;
 use crate::march::{Row, Simulation, Step};
 use crate::material::Body;
-use crate::surface::Part;
+use crate::sliding::Streaming;
+use crate::surface::{Part, Shape};
 
 /// What is known of a simulation besides its numbers.
 #[derive(Clone, Copy, Debug, Default)]
@@ -103,6 +104,14 @@ impl Judge {
             earlier_balance: None,
             grid: *grid,
         }
+    }
+
+    /// The same for steady states of motion, whose rows have velocities in place of times.
+    #[must_use]
+    pub fn of_sweep(mut self, streaming: Streaming) -> Self {
+        let cell = self.grid.cell_sides().fold(0.0, f64::max);
+        self.strain.sweep(streaming, cell);
+        self
     }
 
     /// Takes in the rows that an earlier session of the run stored, with what it found.
@@ -199,9 +208,23 @@ impl Judge {
     }
 }
 
+/// Whether a part alone keeps the contact from the border.
+fn is_round(part: &Part) -> bool {
+    match part {
+        Part::Shape { shape: Shape::Sphere { radius }, .. } => radius.is_finite(),
+        Part::Shape { shape: Shape::Ellipsoid { radius_x, radius_y }, .. } => {
+            radius_x.is_finite() && radius_y.is_finite()
+        }
+        Part::Shape { shape: Shape::Cone { .. }, .. } => true,
+        _ => false,
+    }
+}
+
 fn before(simulation: &Simulation, known: Known<'_>) -> Vec<Finding> {
     let Simulation { grid, gap, boundary, .. } = simulation;
     let mut found = match boundary {
+        // A round body is confined by its shape, also on a long track.
+        Boundary::Free if known.parts.iter().any(is_round) => None,
         Boundary::Free => domain::unconfined(grid, gap),
         Boundary::Periodic => domain::not_periodic(grid, gap),
     }

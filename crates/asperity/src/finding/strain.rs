@@ -16,6 +16,7 @@ use super::{Finding, LARGE_STRAIN, UNLIKELY_UNIT};
 use crate::kernel::Kernel;
 use crate::march::{Row, Simulation};
 use crate::material::{Creep, ReducedTime};
+use crate::sliding::Streaming;
 
 /// Contact radius over radius.
 const WIDEST: f64 = 0.3;
@@ -52,6 +53,8 @@ impl Peak {
 /// What the rows tell of the strains.
 pub(super) struct Strain {
     bodies: Vec<Branches>,
+    /// In steady states of motion: the compliance at the frequency at which spots pass; and the side of a cell \[m\].
+    sweep: Option<(Streaming, f64)>,
     kernel: Arc<dyn Kernel>,
     time: f64,
     /// Radius of the shapes \[m\], where they are known.
@@ -65,6 +68,7 @@ impl Strain {
         let thermal = simulation.thermal.iter().map(|body| Branches::new(&body.creep, Some(&body.clock)));
         Strain {
             bodies: std::iter::once(Branches::new(&simulation.creep, None)).chain(thermal).collect(),
+            sweep: None,
             kernel: simulation.kernel.clone(),
             time: 0.0,
             radius,
@@ -73,13 +77,25 @@ impl Strain {
         }
     }
 
+    /// From now on rows are steady states of motion, their times velocities.
+    pub(super) fn sweep(&mut self, streaming: Streaming, cell: f64) {
+        self.sweep = Some((streaming, cell));
+    }
+
     pub(super) fn see(&mut self, index: usize, row: &Row, contact: Counted) {
         let start = std::mem::replace(&mut self.time, row.time);
         // Largest over mean pressure of Hertz's contact.
         let hertz = if contact.line { 4.0 / std::f64::consts::PI } else { 1.5 };
         let of_hertz = if row.contact_area > 0.0 { hertz * row.load / row.contact_area } else { 0.0 };
         let pressure = row.max_pressure.min(of_hertz) * self.share(row, contact);
-        let strain: f64 = self.bodies.iter_mut().map(|body| body.strain([start, row.time], pressure)).sum();
+        let strain: f64 = match &self.sweep {
+            Some((streaming, cell)) if row.contact_area > 0.0 => {
+                let width = contact.width().min(contact.cells) * cell;
+                pressure * streaming.at(row.time * std::f64::consts::PI / width).norm()
+            }
+            Some(_) => 0.0,
+            None => self.bodies.iter_mut().map(|body| body.strain([start, row.time], pressure)).sum(),
+        };
         self.pressure.see(index, strain);
         if contact.line {
             let half = 0.5 * row.contact_area;

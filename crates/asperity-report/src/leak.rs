@@ -116,7 +116,13 @@ pub(crate) fn curves(reader: &Reader, log_time: bool) -> Result<Vec<Curves>, Plo
     // A logarithmic axis has no place for t = 0: it is of use where the seal leaks later too.
     let leaks_later = time.iter().zip(&percolates).any(|(time, open)| *time > 0.0 && *open > 0.0);
     let log_time = log_time && leaks_later;
-    let axis = || if log_time { Axis::log("time", "s") } else { Axis::linear("time", "s") };
+    // All of the run, also where the seal is tight.
+    let first = time.iter().copied().find(|time| *time > 0.0 || !log_time).unwrap_or(0.0);
+    let last = time.last().copied().unwrap_or(0.0);
+    let axis = || {
+        let axis = if log_time { Axis::log("time", "s") } else { Axis::linear("time", "s") };
+        if last > first { axis.between(first, last) } else { axis }
+    };
     let line = |name: &str, style: Style, column: &str| -> Result<Series, PlotError> {
         // A tight seal has no place on a logarithmic axis.
         let positive = |v: f64| if v > 0.0 { v } else { f64::NAN };

@@ -189,7 +189,7 @@ type MotionParts = (String, Numbers, Vec<(f64, f64)>, f64, (String, f64), f64, O
 
 /// A motion in time, or steady states.
 enum Moves {
-    Path(march::Motion),
+    Path(Box<march::Motion>),
     Steady(SteadyMotion),
 }
 
@@ -217,7 +217,7 @@ fn motion(
         _ => Path::of_velocity(history, start),
     };
     Ok(path.map(|path| {
-        Moves::Path(march::Motion { path, direction, gap: moving, cells_per_step, shear_stress })
+        Moves::Path(Box::new(march::Motion { path, direction, gap: moving, cells_per_step, shear_stress }))
     }))
 }
 
@@ -329,7 +329,7 @@ impl March {
             let rows = match moves {
                 None => Rows::Times(Box::new(march::March::new(simulation)?)),
                 Some(Moves::Path(motion)) => {
-                    let simulation = Simulation { motion: Some(motion), ..simulation };
+                    let simulation = Simulation { motion: Some(*motion), ..simulation };
                     Rows::Times(Box::new(march::March::new(simulation)?))
                 }
                 Some(Moves::Steady(motion)) => Rows::Velocities(Box::new(Steady::new(simulation, motion)?)),

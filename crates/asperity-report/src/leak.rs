@@ -144,8 +144,8 @@ pub(crate) fn curves(reader: &Reader, log_time: bool) -> Result<Vec<Curves>, Plo
         let standard = if gas { reader.leak("leak_rate_standard")? } else { vec![] };
         let rate = reader.leak("leak_rate")?;
         // Of a gas every rate in kg/s has the same factor to mbar l/s.
-        let ratios = standard.iter().zip(&rate).map(|(standard, rate)| MBAR_LITRE * standard / rate);
-        let factor = ratios.filter(|ratio| ratio.is_finite()).next_back().unwrap_or(1.0);
+        let mut ratios = standard.iter().zip(&rate).map(|(standard, rate)| MBAR_LITRE * standard / rate);
+        let factor = ratios.rfind(|ratio| ratio.is_finite()).unwrap_or(1.0);
         let scaled = |name: &str, style: Style, column: &str| -> Result<Series, PlotError> {
             let mut series = line(name, style, column)?;
             series.y.iter_mut().for_each(|rate| *rate *= factor);

@@ -117,9 +117,8 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
     let percent = |share: f64| format!("{:.3} %", 100.0 * share);
     match header.is_sweep() {
         true => {
-            let velocities = rows.iter().map(|row| quantity(row.time, "m/s"));
-            let ends = velocities.clone().next().into_iter().chain(velocities.last());
-            line("velocity", ends.collect::<Vec<_>>().join(" to "));
+            let first = rows.first().map_or(last.time, |row| row.time);
+            line("velocity", format!("{} to {}", quantity(first, "m/s"), quantity(last.time, "m/s")));
         }
         false => line("time", quantity(last.time, "s")),
     }

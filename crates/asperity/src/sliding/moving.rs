@@ -172,10 +172,10 @@ impl MovingGap {
     /// A field moved by cells: rolled on a periodic domain, interpolated by cubics on a free one (NaN beyond its ends).
     fn shifted(&self, field: &Array2<f64>, cells: [f64; 2]) -> Array2<f64> {
         let mut field = field.clone();
-        for axis in 0..self.grid.dimensions() {
+        for (axis, moved) in cells.into_iter().enumerate().take(self.grid.dimensions()) {
             let count = self.grid.cells()[axis] as i64;
-            let whole = (cells[axis] + WHOLE).floor();
-            let part = (cells[axis] - whole).max(0.0);
+            let whole = (moved + WHOLE).floor();
+            let part = (moved - whole).max(0.0);
             let part = if part < 2.0 * WHOLE { 0.0 } else { part };
             if whole == 0.0 && part == 0.0 {
                 continue;

@@ -242,7 +242,7 @@ fn spots_perimeter_and_histograms_agree_with_the_fields() {
         seed: 3,
     };
     let gap = undeformed_gap(&grid, &[Part::SelfAffine(roughness)]).unwrap();
-    let list: Vec<Quantity> = Quantity::ALL.into_iter().collect();
+    let list: Vec<Quantity> = Quantity::at_rest().collect();
     let simulation = Simulation {
         boundary: Boundary::Periodic,
         creep: burgers(),
@@ -306,7 +306,7 @@ fn a_resumed_march_takes_the_same_bits() {
         plasticity: Plasticity::Accumulate,
         loading: load(History::Triangle { peak: 0.02, rise: 1.0, fall: 1.0 }),
         times: TimeGrid::Uniform { end: 3.0, steps: 12 },
-        quantities: Quantities::of(Quantity::ALL),
+        quantities: Quantities::of(Quantity::at_rest()),
         ..sphere(24, 0.5)
     };
     let mut march = March::new(simulation.clone()).unwrap();

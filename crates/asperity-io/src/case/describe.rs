@@ -166,7 +166,7 @@ impl Case {
     fn memory_of_run(&self) -> u64 {
         let mut quantities = self.output.quantities.clone();
         if self.output.all_quantities {
-            quantities.list = Quantity::ALL.to_vec();
+            quantities.list = Quantity::at_rest().collect();
         }
         let simulation = Simulation { quantities, ..self.with_gap(ndarray::Array2::default((0, 0))) };
         let copies = if self.output.fields.is_empty() { KEPT } else { STORED };

@@ -31,7 +31,7 @@ fn simulation() -> Simulation {
         creep: Creep { instantaneous: 1e-8, terms, fluidity: 1e-9 },
         hardness: 2e6,
         plasticity: Plasticity::Accumulate,
-        quantities: Quantities::of(Quantity::ALL),
+        quantities: Quantities::of(Quantity::at_rest()),
         loading: Loading { control: Control::Load, history: History::Table { points } }.into(),
         times: TimeGrid::Uniform { end: 3.0, steps: 12 },
         ..Simulation::new(grid, undeformed_gap(&grid, &[sphere, roughness]).unwrap())

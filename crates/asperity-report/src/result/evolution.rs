@@ -83,7 +83,12 @@ pub(super) fn friction(reader: &Reader, options: &Options) -> Result<Figure, Sto
         reader.series("contact_fraction")?,
     ));
     if has("dissipated_power") {
-        let power = Curves::new("Power", axis(reader, options), Axis::linear("power lost", grid.units("W")));
+        // Over decades of velocity the power spans decades too.
+        let own = match reader.header().is_sweep() {
+            true => Axis::log("power lost", grid.units("W")),
+            false => Axis::linear("power lost", grid.units("W")),
+        };
+        let power = Curves::new("Power", axis(reader, options), own);
         figure = figure.with(nameless(power, &rows, reader.series("dissipated_power")?));
     }
     Ok(figure)

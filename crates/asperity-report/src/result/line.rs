@@ -10,11 +10,17 @@ use crate::figure::{Axis, Colours, Curves, Figure, Map, Series, Style, means, st
 /// Rows of a picture over time, and most columns.
 const ROWS: usize = 256;
 const COLUMNS: usize = 1024;
+/// Curves of a sweep in one panel, at most.
+const MOST_CURVES: usize = 6;
 
 /// A field over x at an instant, and over x and time where several instants are stored.
 pub(super) fn field(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, StoreError> {
     let index = reader.index(at)?;
-    let mut figure = Figure::new("").columns(1).with(curve(reader, kind, At::Index(index))?);
+    let panel = match reader.header().is_sweep() {
+        true => of_sweep(reader, kind, index)?,
+        false => curve(reader, kind, At::Index(index))?,
+    };
+    let mut figure = Figure::new("").columns(1).with(panel);
     figure.panel = [430.0, 180.0];
     let mut words = caption(reader, index)?;
     if let Some(map) = over_time(reader, kind)? {
@@ -22,6 +28,21 @@ pub(super) fn field(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, 
         words += " Below: over x and time, at each time the nearest stored instant.";
     }
     Ok(figure.caption(words))
+}
+
+/// A field over x at some of the stored velocities of a sweep, that of number `index` among them.
+fn of_sweep(reader: &Reader, kind: FieldKind, index: usize) -> Result<Curves, StoreError> {
+    let count = reader.field_times().len();
+    let every = count.div_ceil(MOST_CURVES).max(1);
+    let chosen = (0..count).filter(|n| *n == index || n % every == index % every && *n != index);
+    let (label, units) = label(kind);
+    let mut panel = Curves::new("", Axis::linear("x", "m"), Axis::linear(label, units));
+    for n in chosen {
+        let name = super::moment(reader, reader.field_times()[n]);
+        let values = one(reader, kind, At::Index(n))?.into_raw_vec_and_offset().0;
+        panel = panel.with(Series::new(name, Style::Line, places(reader), values));
+    }
+    Ok(panel)
 }
 
 /// The undeformed gap over x.
@@ -54,19 +75,24 @@ pub(super) fn surfaces(reader: &Reader, index: usize, gap: &Array2<f64>) -> Resu
 /// A field over x at a stored instant.
 pub(crate) fn curve(reader: &Reader, kind: FieldKind, at: At) -> Result<Curves, StoreError> {
     let values = one(reader, kind, at)?.into_raw_vec_and_offset().0;
-    let (label, units) = match kind {
-        FieldKind::Contact => ("state: 1 contact, 2 at hardness", ""),
-        kind => (title(kind), kind.units()),
-    };
+    let (label, units) = label(kind);
     let panel = Curves::new("", Axis::linear("x", "m"), Axis::linear(label, units));
     Ok(nameless(panel, &places(reader), values))
 }
 
-/// A field over x and time; `None` where fewer than two instants are stored.
+/// What stands at the axis of a field, and its unit.
+fn label(kind: FieldKind) -> (&'static str, &'static str) {
+    match kind {
+        FieldKind::Contact => ("state: 1 contact, 2 at hardness", ""),
+        kind => (title(kind), kind.units()),
+    }
+}
+
+/// A field over x and time; `None` where fewer than two instants are stored, or velocities.
 pub(crate) fn over_time(reader: &Reader, kind: FieldKind) -> Result<Option<Map>, StoreError> {
     let times = reader.field_times();
     let (Some(first), Some(last)) = (times.first().copied(), times.last().copied()) else { return Ok(None) };
-    if last <= first {
+    if last <= first || reader.header().is_sweep() {
         return Ok(None);
     }
     let block = reader.header().grid.cells()[0].div_ceil(COLUMNS);

@@ -139,6 +139,11 @@ impl Quantity {
         Quantity::DissipatedPower,
     ];
 
+    /// Those of a contact whether it moves or not.
+    pub fn at_rest() -> impl Iterator<Item = Quantity> {
+        Quantity::ALL.into_iter().filter(|quantity| !quantity.is_of_motion())
+    }
+
     /// Those of a contact in motion, which each of its rows has.
     pub const OF_MOTION: [Quantity; 8] = [
         Quantity::Velocity,

@@ -127,6 +127,17 @@ pub fn case(
     if let (Some(times), Some(prescription), Some(pair)) = (&times, &prescription, &pair) {
         load::possible(&mut checks, prescription, times, grid.as_ref(), pair);
     }
+    let of_motion = |at: &&At<raw::Quantities>| matches!(at.value, raw::Quantities::One(quantity) if quantity.is_of_motion());
+    if let (None, Some(at)) = (&document.motion, document.output.quantities.iter().flatten().find(of_motion))
+    {
+        let message = "this quantity belongs to a contact in motion, but the case has no [motion]".to_owned();
+        checks.fault(
+            &at.span,
+            message,
+            "another quantity",
+            Some("leave it out, or add [motion]: its rows have it"),
+        );
+    }
     let scheme = document.time.value.scheme.unwrap_or_default();
     if let Some(pair) = &pair {
         let capped =

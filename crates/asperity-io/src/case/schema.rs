@@ -221,7 +221,7 @@ mod tests {
     fn choices_are_the_words_of_a_key() {
         assert_eq!(choices("domain.boundary"), ["free", "periodic"]);
         assert_eq!(choices("solver.method"), ["projected-cg", "polonsky-keer"]);
-        assert_eq!(choices("surface[3].kind").len(), 7);
+        assert_eq!(choices("surface[3].kind").len(), 9);
         assert_eq!(choices("time.spacing"), ["uniform", "log", "adaptive"]);
         assert!(choices("domain.cells").is_empty());
     }

@@ -8,7 +8,7 @@ mod steady;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use asperity::finding::{Finding, Judge, Known};
 use asperity::march::{March, Row, Step, in_contact_frame};
@@ -215,6 +215,15 @@ fn run_inside(
             finished,
             stress: None,
         });
+        // Between two rows nothing is lost.
+        if options.interrupt.load(Ordering::Relaxed) && !finished {
+            if case.output.checkpoint
+                && let Err(source) = record.checkpoint(&march)
+            {
+                return Err(record.stop_storing(Some(march.simulation()), source));
+            }
+            return record.end(Some(march.simulation()), Outcome::new(Status::Interrupted));
+        }
     }
     if let (Some(plan), Some(row)) = (&case.stress, record.last) {
         let done = march.done();

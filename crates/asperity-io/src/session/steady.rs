@@ -1,5 +1,7 @@
 //! A run of steady states of motion: one row for each velocity.
 
+use std::sync::atomic::Ordering;
+
 use asperity::Error;
 use asperity::sliding::{Steady, SteadyMotion};
 
@@ -78,7 +80,9 @@ pub(super) fn run(
             }
         };
         let stored = stored.and_then(|row| {
-            if case.output.checkpoint && !finished && record.writer.checkpoint_due() {
+            // Between two velocities an interruption loses nothing.
+            let stops = options.interrupt.load(Ordering::Relaxed);
+            if case.output.checkpoint && !finished && (stops || record.writer.checkpoint_due()) {
                 let found = record.findings(Some(steady.simulation()));
                 record.writer.note(found)?;
                 record.writer.checkpoint(&checkpoint_of(&steady))?;

@@ -37,7 +37,7 @@ pub struct Profile {
 /// [`TopographyError`] with the path: positions that do not increase, too few points, or no unit.
 pub fn read_profile(path: &Path, options: &ReadOptions) -> Result<Option<Profile>, TopographyError> {
     let in_file = |problem| TopographyError { path: Some(path.to_owned()), problem };
-    let bytes = std::fs::read(path).map_err(|error| in_file(Problem::Io(error)))?;
+    let bytes = super::bytes_of(path, options).map_err(in_file)?;
     let unpacked = unpack::gunzip(&bytes).map_err(in_file)?;
     let bytes = unpacked.as_deref().unwrap_or(&bytes);
     if !is_profile(bytes) {

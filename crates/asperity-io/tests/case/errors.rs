@@ -193,7 +193,7 @@ fn a_missing_section_is_named_with_its_header() {
 
 #[test]
 fn shapes_of_values() {
-    says("[32, 16]", "[32]", "domain.cells", 3, &["is [32]", "a list of two values"]);
+    says("[32, 16]", "[32]", "domain.size", 4, &["a list of one value", "a line of cells"]);
     says("[32, 16]", "[32, 16, 8]", "domain.cells", 3, &["a list of two values"]);
     says("[32, 16]", "32", "domain.cells", 3, &["a list of two values"]);
     says("[32, 16]", "[32, 0]", "domain.cells[1]", 3, &["is 0", "a whole number, 1 or more"]);

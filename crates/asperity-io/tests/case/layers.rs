@@ -103,7 +103,7 @@ fn what_is_wrong_with_layers_is_named() {
     says(
         "\"10 s\" }\n[[body.layer]]",
         "\"11 s\" }\n[[body.layer]]",
-        "body[0]",
+        "body[0].layer[1]",
         &["tread, layer 2", "not a multiple"],
     );
     says(

@@ -59,6 +59,7 @@ pub struct Sphere {
     #[schemars(example = "0.5 mm")]
     pub radius: Length<PositiveOrInfinite>,
     /// Whether the part moves with the contact (`[motion]`); true if not given.
+    #[schemars(example = false)]
     pub moves: Option<bool>,
     /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
     #[schemars(example = ["0 mm", "0.02 mm"])]
@@ -75,6 +76,7 @@ pub struct Ellipsoid {
     #[schemars(example = "2 mm")]
     pub radius_y: Length<PositiveOrInfinite>,
     /// Whether the part moves with the contact (`[motion]`); true if not given.
+    #[schemars(example = false)]
     pub moves: Option<bool>,
     /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
     #[schemars(example = ["0 mm", "0.02 mm"])]
@@ -88,6 +90,7 @@ pub struct Cylinder {
     #[schemars(example = "10 mm")]
     pub radius: Length<PositiveOrInfinite>,
     /// Whether the part moves with the contact (`[motion]`); true if not given.
+    #[schemars(example = false)]
     pub moves: Option<bool>,
     /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
     #[schemars(example = ["0.02 mm"])]
@@ -101,6 +104,7 @@ pub struct Wedge {
     #[schemars(example = 0.1)]
     pub slope: Number<Positive>,
     /// Whether the part moves with the contact (`[motion]`); true if not given.
+    #[schemars(example = false)]
     pub moves: Option<bool>,
     /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
     #[schemars(example = ["0.02 mm"])]
@@ -114,6 +118,7 @@ pub struct Cone {
     #[schemars(example = 0.1)]
     pub slope: Number<Positive>,
     /// Whether the part moves with the contact (`[motion]`); true if not given.
+    #[schemars(example = false)]
     pub moves: Option<bool>,
     /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
     #[schemars(example = ["0 mm", "0.02 mm"])]
@@ -130,6 +135,7 @@ pub struct FlatPunch {
     #[schemars(example = ["20 um", "40 um"])]
     pub size: Option<At<Axes<Length<Positive>>>>,
     /// Whether the part moves with the contact (`[motion]`); true if not given.
+    #[schemars(example = false)]
     pub moves: Option<bool>,
     /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
     #[schemars(example = ["0 mm", "0.02 mm"])]
@@ -146,6 +152,7 @@ pub struct Wave {
     #[schemars(example = ["50 um", "inf"])]
     pub wavelength: At<Axes<Length<PositiveOrInfinite>>>,
     /// Whether the part moves with the contact (`[motion]`); true if not given.
+    #[schemars(example = false)]
     pub moves: Option<bool>,
     /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
     #[schemars(example = ["0 mm", "0.02 mm"])]
@@ -156,6 +163,7 @@ pub struct Wave {
 #[serde(deny_unknown_fields)]
 pub struct SelfAffine {
     /// Whether the part moves with the contact (`[motion]`); true if not given.
+    #[schemars(example = false)]
     pub moves: Option<bool>,
     /// A published roughness by its name; its numbers are the defaults of the other keys.
     pub preset: Option<Preset>,
@@ -229,6 +237,7 @@ pub struct Distribution {
 #[serde(deny_unknown_fields)]
 pub struct File {
     /// Whether the part moves with the contact (`[motion]`); true if not given.
+    #[schemars(example = false)]
     pub moves: Option<bool>,
     /// The file, relative to the case file: SUR, MNT, SDF, X3P, GWY, AL3D, OPD, BCR, Nanoscope, MetroPro, PLU, IBW, NID,
     /// FRT, NetCDF, HDF5, NPY, NPZ, XYZ, CSV or a text matrix, detected from the content. On a line of cells a profile: text of two

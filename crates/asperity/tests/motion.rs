@@ -251,3 +251,28 @@ fn a_run_goes_on_from_a_checkpoint_with_the_same_bits() {
         assert_eq!((row, quantities), (other.row(), other.quantities().to_vec()));
     }
 }
+
+#[test]
+fn friction_is_right_while_the_body_still_creeps_under_the_load() {
+    // Full contact with a wave that moves by a cell in ten retardation times: F = (q² h²/4) E''(q v), from the first second on.
+    let grid = Grid::line(21, 0.021).unwrap();
+    let parts = shape(Shape::Wave { amplitude: 1e-6, wavelength: [0.021, f64::INFINITY] });
+    let creep = zener(0.25e-6, 0.75e-6, 0.1);
+    let (v, q) = (2.1e-3, TAU / 0.021);
+    let (storage, loss) = creep.to_relaxation().unwrap().complex(q * v);
+    assert!(storage > loss);
+    let exact = 0.25 * (q * 1e-6) * (q * 1e-6) * loss * 0.021;
+    let rows = run(simulation(
+        grid,
+        Boundary::Periodic,
+        &parts,
+        creep,
+        10e3 * 0.021,
+        at_speed(v, 0.0),
+        TimeGrid::Uniform { end: 6.0, steps: 1 },
+    ));
+    for (row, friction) in rows.iter().filter(|(row, _)| row.time > 0.9) {
+        // A step of a cell is five retardation times.
+        assert!((friction.force / exact - 1.0).abs() < 0.03, "{}: {} {exact}", row.time, friction.force);
+    }
+}

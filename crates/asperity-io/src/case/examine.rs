@@ -91,6 +91,7 @@ impl Case {
     pub fn examine(&self) -> Result<Examination, CaseErrors> {
         let parts = self.parts()?;
         let simulation = self.simulation_of(&parts)?;
+        self.steady_of(&parts, &simulation)?;
         let judge =
             Judge::new(&simulation, Known { parts: &parts, bodies: &self.bodies, thickness: self.thickness });
         let expected = Expected::of(&simulation, &parts);

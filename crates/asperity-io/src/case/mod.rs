@@ -288,7 +288,11 @@ impl Case {
     ///
     /// # Errors
     /// [`CaseErrors`] where the gap cannot move.
-    pub fn steady_of(&self, parts: &[Part]) -> Result<Option<SteadyMotion>, CaseErrors> {
+    pub fn steady_of(
+        &self,
+        parts: &[Part],
+        simulation: &Simulation,
+    ) -> Result<Option<SteadyMotion>, CaseErrors> {
         let Some((motion, Travel::Steady(velocities))) =
             self.motion.as_ref().map(|motion| (motion, &motion.travel))
         else {
@@ -298,12 +302,16 @@ impl Case {
             .moving(parts, motion)?
             .at(0.0, motion.direction)
             .map_err(|error| self.fault(&motion.span, error.to_string()))?;
-        Ok(Some(SteadyMotion {
+        let steady = SteadyMotion {
             direction: motion.direction,
             velocities: velocities.clone(),
             slopes,
             shear_stress: motion.shear_stress,
-        }))
+        };
+        match steady.validate(simulation) {
+            Ok(()) => Ok(Some(steady)),
+            Err(error) => Err(self.fault(&motion.span, error.to_string())),
+        }
     }
 
     /// How the bodies yield in space.

@@ -49,6 +49,8 @@ pub fn document(text: &Text<'_>) -> Result<Document, Vec<CaseError>> {
     // Steady states of motion have no times.
     let time = match motion.as_ref().filter(|motion| motion.value.steady.is_some()) {
         Some(motion) if !text.root.contains_key("time") => timeless(motion.span.clone()),
+        // What is wrong with [motion] is told already.
+        None if !text.root.contains_key("time") && reader.is_steady() => None,
         _ => reader.required("time", &[]),
     };
     let temperature = reader.optional("temperature", HISTORY);
@@ -157,6 +159,12 @@ fn timeless(span: std::ops::Range<usize>) -> Option<At<Time>> {
 }
 
 impl<'t> Reader<'_, 't> {
+    /// Whether the case asks for steady states of motion.
+    fn is_steady(&self) -> bool {
+        let motion = self.text.root.get("motion").map(Spanned::get_ref);
+        matches!(motion, Some(DeValue::Table(motion)) if motion.contains_key("steady"))
+    }
+
     /// `[motion]`: its velocity is a text, or a history with a tag.
     fn motion(&mut self) -> Option<At<Motion>> {
         const PATH: Tag = Tag { inside: &["path"], key: "kind" };

@@ -153,7 +153,7 @@ fn run_inside(
     }
     let parts = case.parts()?;
     let simulation = case.simulation_of(&parts)?;
-    if let Some(motion) = case.steady_of(&parts)? {
+    if let Some(motion) = case.steady_of(&parts, &simulation)? {
         return steady::run(case, &parts, simulation, motion, options, observe);
     }
     let known = Known { parts: &parts, bodies: &case.bodies, thickness: case.thickness };

@@ -11,6 +11,8 @@ use crate::sliding::Friction;
 
 /// The two estimates of friction differ by this share at most.
 const UNCERTAIN: f64 = 0.1;
+/// A friction coefficient that is none: the error of the solve.
+const NONE: f64 = 1e-7;
 /// Rows with less than this share of the largest force do not count: there friction changes its sign.
 const SMALL: f64 = 0.1;
 /// A memory that reaches so many domains still knows the contact before.
@@ -27,7 +29,7 @@ pub(super) struct Slides {
 
 impl Slides {
     pub(super) fn see(&mut self, index: usize, friction: &Friction) {
-        if friction.force != 0.0 {
+        if friction.coefficient.abs() > NONE {
             self.rows.push((index, friction.force.abs(), friction.uncertainty));
         }
     }

@@ -355,6 +355,8 @@ impl March {
         let apart = matches!(&self.past, Past::Memory(m) if m.load() == 0.0);
         match self.prescribed(instant) {
             Prescribed::Load(load) if apart && load == 0.0 => Drive::Apart,
+            // Where the gap moves, displacements run with it, in time, whatever the load does.
+            Prescribed::Load(_) if self.moves(instant) => Drive::Approach,
             Prescribed::Load(load) => Drive::Load(load),
             Prescribed::Approach(_) if apart => Drive::Apart,
             Prescribed::Approach(_) => Drive::Approach,

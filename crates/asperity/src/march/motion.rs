@@ -54,10 +54,10 @@ impl Motion {
             ));
         }
         let stops = self.stops(simulation)?;
-        if simulation.scheme == Scheme::Constant {
+        if simulation.scheme != Scheme::Linear {
             return Err(Error::invalid(
                 "scheme of a contact in motion",
-                "constant",
+                format!("{:?}", simulation.scheme).to_lowercase(),
                 "linear: with a pressure that is constant in each step friction is wrong by tens of per cent",
             ));
         }
@@ -68,9 +68,6 @@ impl Motion {
                 "cap: which of the two bodies keeps the dents is not known",
             ));
         }
-        if simulation.is_adaptive() && simulation.scheme != Scheme::Linear {
-            return Err(Error::invalid("scheme of adaptive steps", "not linear", "linear"));
-        }
         if simulation.grid.is_line() && self.direction != Direction::X {
             return Err(Error::invalid("direction of motion of a line contact", "not x", "x"));
         }
@@ -78,27 +75,34 @@ impl Motion {
             if let Direction::Angle(angle) = self.direction {
                 return Err(Error::invalid(
                     "direction of motion on a free domain",
-                    format!("{} degrees", angle.to_degrees()),
+                    format!("{} degrees", rounded(angle.to_degrees())),
                     "x or y; other directions need a periodic domain",
                 ));
             }
             let axis = usize::from(self.direction == Direction::Y);
-            let (grid, places) = (&simulation.grid, stops.iter().map(|t| self.path.position(*t)));
-            let [least, most] = places.fold([0.0_f64; 2], |[least, most], x| [least.min(x), most.max(x)]);
-            let (half, needed) = (0.5 * grid.size()[axis], 2.0 * most.max(-least));
-            if most.max(-least) > half {
+            let (length, start) = (simulation.grid.size()[axis], self.gap.centre()[axis]);
+            let places = stops.iter().map(|t| start + self.path.position(*t));
+            let [least, most] = places.fold([start; 2], |[least, most], x| [least.min(x), most.max(x)]);
+            if least < 0.0 || most > length {
                 return Err(Error::invalid(
-                    "travel on a free domain, from its middle",
-                    format!("{:e} m", most.max(-least)),
+                    "place of the moving body on a free domain",
+                    format!("{} m to {} m", rounded(least), rounded(most)),
                     format!(
-                        "at most {half:e} m, where the domain ends: the grid is the track. Take a domain of {needed:e} m and the \
-                         contact besides, a periodic one, or a steady state ([motion.steady])"
+                        "within 0 m and {length} m, its track: the grid does not go with the body. Take a domain that holds the travel of \
+                         {} m and the contact, let the body start elsewhere (center), or take a periodic domain or steady states \
+                         ([motion.steady])",
+                        rounded(most - least)
                     ),
                 ));
             }
         }
         Ok(())
     }
+}
+
+/// To four digits.
+fn rounded(x: f64) -> String {
+    format!("{x:.3e}").parse::<f64>().map_or_else(|_| x.to_string(), |x| x.to_string())
 }
 
 /// The gap at the end of the step under way.
@@ -136,6 +140,14 @@ impl Step<'_> {
 }
 
 impl March {
+    /// Whether the gap moves in the step that ends at `instant`.
+    pub(super) fn moves(&self, instant: Instant) -> bool {
+        match (&self.simulation.motion, &self.moving) {
+            (Some(motion), Some(moving)) => motion.path.position(instant.time) != moving.before,
+            _ => false,
+        }
+    }
+
     /// Moves the gap to where it is at that instant.
     pub(super) fn move_gap(&mut self, time: f64) -> Result<()> {
         let (Some(motion), Some(moving)) = (&self.simulation.motion, &mut self.moving) else { return Ok(()) };

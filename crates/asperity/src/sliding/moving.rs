@@ -92,6 +92,11 @@ impl MovingGap {
         Ok(moving)
     }
 
+    /// The middle of the shapes, or the cell of the smallest gap, before anything has moved \[m\].
+    pub fn centre(&self) -> [f64; 2] {
+        self.centre
+    }
+
     /// The gap \[m\] and its slopes when the moving parts have gone `distance` \[m\]. The slopes are those of the moving parts alone:
     /// they take the force.
     ///
@@ -108,7 +113,7 @@ impl MovingGap {
                 let from = |x: f64, axis: usize| self.nearest(x - place[axis] - offset[axis], axis, shape);
                 let (x, y) = (from(grid.x(i), 0), from(grid.y(j), 1));
                 *h += shape.gap(x, y);
-                let [sx, sy] = shape.slope(x, y);
+                let [sx, sy] = shape.slope_over(x, y, grid.spacing());
                 slopes.x[(i, j)] += sx;
                 slopes.y[(i, j)] += sy;
             }

@@ -41,7 +41,9 @@ impl Slopes {
                 }
                 Part::Shape { shape, center } => {
                     let at = [x0 + center[0], y0 + center[1]];
-                    let slope = |(i, j): (usize, usize)| shape.slope(grid.x(i) - at[0], grid.y(j) - at[1]);
+                    let slope = |(i, j): (usize, usize)| {
+                        shape.slope_over(grid.x(i) - at[0], grid.y(j) - at[1], grid.spacing())
+                    };
                     slopes.x.indexed_iter_mut().for_each(|(cell, s)| *s += slope(cell)[0]);
                     slopes.y.indexed_iter_mut().for_each(|(cell, s)| *s += slope(cell)[1]);
                     if !matches!(shape, Shape::Wave { .. }) {

@@ -45,6 +45,18 @@ pub struct SteadyMotion {
     pub shear_stress: Option<f64>,
 }
 
+impl SteadyMotion {
+    /// Checks all that can be known before the first velocity, besides [`Simulation::validate`].
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] naming the quantity.
+    pub fn validate(&self, simulation: &Simulation) -> Result<()> {
+        Streaming::new(simulation)?;
+        held_load(simulation)?;
+        validate(simulation, self)
+    }
+}
+
 /// Newton steps after a metric step, at most, and those without progress.
 const NEWTON: usize = 20;
 const PATIENCE: usize = 2;
@@ -115,9 +127,9 @@ impl Steady {
     /// [`Error::Invalid`] naming the quantity; [`Error::Infeasible`] where the load exceeds what the hardness carries.
     pub fn new(simulation: Simulation, motion: SteadyMotion) -> Result<Self> {
         simulation.validate()?;
+        motion.validate(&simulation)?;
         let streaming = Streaming::new(&simulation)?;
         let load = held_load(&simulation)?;
-        validate(&simulation, &motion)?;
         let grid = simulation.grid;
         let lengths = match simulation.boundary {
             Boundary::Periodic => grid.cells(),
@@ -616,7 +628,7 @@ fn validate(simulation: &Simulation, motion: &SteadyMotion) -> Result<()> {
     if let (Direction::Angle(angle), Boundary::Free) = (motion.direction, simulation.boundary) {
         return Err(Error::invalid(
             "direction of motion on a free domain",
-            format!("{} degrees", angle.to_degrees()),
+            format!("{:.4} degrees", angle.to_degrees()),
             "x or y; other directions need a periodic domain",
         ));
     }

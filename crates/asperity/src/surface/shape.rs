@@ -121,6 +121,18 @@ impl Shape {
         }
     }
 
+    /// [`slope`](Self::slope), of the tip of a cone and the edge of a wedge the mean over a cell of sides `cell` \[m\].
+    pub(crate) fn slope_over(&self, x: f64, y: f64, cell: [f64; 2]) -> [f64; 2] {
+        match self {
+            Shape::Wedge { slope } => [slope * (2.0 * x / cell[0]).clamp(-1.0, 1.0), 0.0],
+            Shape::Cone { .. } => {
+                let share = ((x * x + y * y).sqrt() / (0.5 * cell[0].min(cell[1]))).min(1.0);
+                self.slope(x, y).map(|s| s * share)
+            }
+            _ => self.slope(x, y),
+        }
+    }
+
     /// Slopes \[dh/dx, dh/dy\] at the offset (x, y) \[m\] from the shape's centre; 0 on the tip of a cone or the edge of a wedge,
     /// and under a punch.
     ///

@@ -69,6 +69,8 @@ pub struct Course<'a> {
     pub plan: &'a dyn Fn(&[f64]) -> Plan,
     /// (time [s], temperature [K]) of the section [temperature].
     pub temperatures: Option<&'a [(f64, f64)]>,
+    /// Steady motion asks for the loss at the ends of the window, which models of many times must reach beyond by this factor.
+    pub beyond: f64,
 }
 
 pub fn pair(
@@ -93,7 +95,7 @@ pub fn pair(
     let made: Vec<_> = samples
         .into_iter()
         .zip(warmths)
-        .map(|((part, sample), warmth)| made(checks, part, sample.as_ref(), warmth, &plan))
+        .map(|((part, sample), warmth)| made(checks, part, sample.as_ref(), warmth, &plan, course.beyond))
         .collect();
     let made = made.into_iter().collect::<Option<Vec<Made>>>()?;
     let mut pair = Pair {
@@ -146,6 +148,7 @@ fn made(
     sample: Option<&Sample>,
     warmth: Option<Warmth>,
     plan: &Plan,
+    beyond: f64,
 ) -> Option<Made> {
     let keys = [("poisson", part.poisson.is_some()), ("bulk_modulus", part.bulk_modulus.is_some())];
     checks.exactly_one(part.span, &keys)?;
@@ -157,8 +160,8 @@ fn made(
     };
     let (sample, warmth) = (sample?, warmth?);
     let window = warmth.window(plan);
-    let (reference, report, beyond) = reference(checks, part.material, sample, window)?;
-    let findings = findings(&name, &report, window, beyond);
+    let (reference, report, outside) = reference(checks, part.material, sample, window, beyond)?;
+    let findings = findings(&name, &report, window, outside);
     let factor = warmth.constant_factor();
     let material = match factor {
         Some(factor) if factor != 1.0 => checks.core(&part.material.span, reference.stretched(factor))?,
@@ -205,14 +208,14 @@ pub fn alone(
     window: Option<[f64; 2]>,
 ) -> Option<(Material, MaterialReport)> {
     let plan = |_: &[f64]| Plan { instants: Vec::new(), exact: true };
-    let course = Course { end: None, plan: &plan, temperatures: None };
+    let course = Course { end: None, plan: &plan, temperatures: None, beyond: 1.0 };
     let factor = checks.core(&at.span, warmth(sample, &course))?.constant_factor().unwrap_or(1.0);
     let around = match &sample.model {
         Model::Fractional { time, .. } => Some([1e-4 * time, 1e4 * time]),
         _ => None,
     };
     let window = window.map(|window| window.map(|t| t / factor)).or(around);
-    let (reference, report, _) = reference(checks, at, sample, window)?;
+    let (reference, report, _) = reference(checks, at, sample, window, 1.0)?;
     let material = checks.core(&at.span, reference.stretched(factor))?;
     let terms = material.creep().terms.len();
     let shift_factor = sample.shift.is_some().then_some(factor);
@@ -283,13 +286,15 @@ fn reference(
     at: &At<raw::Material>,
     sample: &Sample,
     window: Option<[f64; 2]>,
+    beyond: f64,
 ) -> Option<(Material, MaterialReport, Option<String>)> {
     let report = MaterialReport { model: sample.name, ..MaterialReport::default() };
     match &sample.model {
         Model::Known(material) => Some((material.clone(), report, None)),
         Model::Fractional { measure, model, time, tolerance } => {
             // Without the times of the run, which are wrong, only the model's own numbers can be checked.
-            let window = window.unwrap_or([1e-2 * time, 1e2 * time]);
+            let [first, last] = window.unwrap_or([1e-2 * time, 1e2 * time]);
+            let window = [first / beyond, last * beyond];
             let sum = checks.core(&at.span, model.to_prony(window, *tolerance))?;
             let material = checks.core(&at.span, Material::generalised_kelvin(*measure, sum.creep))?;
             Some((material, MaterialReport { error: Some(sum.error), window: Some(window), ..report }, None))

@@ -76,6 +76,22 @@ pub fn case(
         _ => time::times(&mut checks, &document.time, all_own, |end| first_step(end, course)),
     };
     let output = output::output(&mut checks, &document.output, times.as_ref(), programme, output);
+    if steady {
+        let sections = [
+            ("stress", document.stress.as_ref().map(|at| &at.span)),
+            ("leakage", document.leakage.as_ref().map(|at| &at.span)),
+        ];
+        for (name, span) in sections {
+            if let Some(span) = span {
+                let message = format!("[{name}] is not computed of steady states of motion");
+                checks.fault(span, message, "a motion in time", Some("leave the section out"));
+            }
+        }
+        if let Some(at) = &document.output.times {
+            let message = "steady states of motion have no times".to_owned();
+            checks.fault(&at.span, message, "`every`", Some("store the fields of every n-th velocity"));
+        }
+    }
     let stops = motion.iter().flatten().next().zip(grid.as_ref()).and_then(|(motion, grid)| {
         let Travel::Path(path) = &motion.travel else { return None };
         let step = motion.cells_per_step * motion.direction.cell(grid);
@@ -109,7 +125,12 @@ pub fn case(
             .plan(times, &[include.as_slice(), stops.as_deref().unwrap_or_default(), breaks].concat()),
         _ => Plan { instants: Vec::new(), exact: true },
     };
-    let course = body::Course { end: times.as_ref().map(TimeGrid::end), plan: &plan, temperatures: points };
+    let course = body::Course {
+        end: times.as_ref().map(TimeGrid::end),
+        plan: &plan,
+        temperatures: points,
+        beyond: if steady { 1e3 } else { 1.0 },
+    };
     let mut pair = match temperatures {
         Some(_) => body::pair(&mut checks, &document.body, &parts, &samples, &course),
         None => None, // a fault
@@ -117,6 +138,12 @@ pub fn case(
     if let (Some(raw), Some(motion), Some(pair)) =
         (&document.motion, motion.iter().flatten().next(), &mut pair)
     {
+        if let (Some(start), Some(times)) = (&raw.value.start, &times)
+            && start.value.get() >= times.end()
+        {
+            let message = "the motion starts when the run is over".to_owned();
+            checks.fault(&start.span, message, "a time before the end", None);
+        }
         motion::of_pair(&mut checks, raw, motion, &document.body, pair);
         if let Some(grid) = &grid {
             let boundary = document.domain.value.boundary.unwrap_or_default();

@@ -204,6 +204,14 @@ pub fn of_pair(
             pair.sum();
             Some(())
         }
+        Travel::Path(_) if !remembers[over] => {
+            let message = "the contact slides over an elastic body, and the memory of the other stands still in its frame: \
+                           nothing that remembers moves, and friction is zero"
+                .to_owned();
+            let help = "name the viscoelastic body in `over`, or leave [motion] out";
+            checks.fault(&raw.span, message, "a viscoelastic body that is slid over", Some(help));
+            None
+        }
         Travel::Path(_) => {
             let message = format!(
                 "both bodies are viscoelastic, and the contact slides over `{}`: the memory of `{}` moves over the grid, which is not \

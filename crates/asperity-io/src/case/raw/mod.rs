@@ -61,6 +61,7 @@ pub struct Document {
     /// What presses the bodies together.
     pub load: At<Load>,
     /// The times of the solution; not for steady states of motion.
+    #[schemars(with = "Option<At<Time>>")]
     pub time: At<Time>,
     /// The temperature of bodies whose material has a `shift`; they are at its reference if not given.
     #[schemars(example = serde_json::json!({ "history": { "kind": "constant", "value": "60 °C" } }))]

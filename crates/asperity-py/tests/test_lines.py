@@ -69,7 +69,7 @@ def test_a_result_has_fields_over_x(tmp_path) -> None:
     rubber = asp.Zener(shear=1e8, shear_kelvin=1e8, retardation_time=1.0, poisson=0.5)
     names = ["pressure", "gap", "displacement", "contact"]
     wanted = ["contact_spots", "largest_spot", "contact_perimeter", "spot_histogram"]
-    result = asp.solve(cylinder(), rubber, load=LOAD, times=asp.uniform(2.0, 4), fields=names, quantities=wanted)
+    result = asp.solve(cylinder(), rubber, load=0.2 * LOAD, times=asp.uniform(2.0, 4), fields=names, quantities=wanted)
     assert result.is_line and result.cells == (256,) and result.size == (4 * HALF_WIDTH,)
     assert result.x.shape == result.initial_gap.shape == result.field("pressure").shape == (256,)
     assert (result.units("load"), result.units("contact_area"), result.units("contact_perimeter")) == ("N/m", "m", "1")

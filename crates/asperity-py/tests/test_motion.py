@@ -93,7 +93,7 @@ def test_what_cannot_be_is_refused() -> None:
     rough = parabola(32, 3.0, 1.0)
     for message, options in {
         "velocity or path": {},
-        "Kelvin": {"velocities": [1.0]},
+        "instantaneous compliance": {"velocities": [1.0]},
         "direction": {"velocity": 1.0, "direction": "z"},
     }.items():
         with pytest.raises(asp.CaseError, match=message):

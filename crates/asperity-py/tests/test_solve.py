@@ -188,7 +188,7 @@ def test_any_array_with_the_same_numbers_gives_the_same_result():
         (dict(every=2, field_times=[1.0]), "one of them"),
         (dict(material="rubber"), "material"),
         (dict(surface=np.zeros((4, 4))), "size"),
-        (dict(surface=np.zeros(4), size=(1, 1)), "two-dimensional"),
+        (dict(surface=np.zeros(4), size=(1, 1)), "one length"),
         (dict(surface=np.zeros((4, 4), dtype=complex), size=(1, 1)), "real"),
         (dict(surface=np.full((4, 4), np.nan), size=(1, 1)), "NaN|nan"),
         (dict(surface=np.zeros((4, 4)), size=(1, 0)), "size"),

@@ -35,6 +35,7 @@ __all__ = [
     "report",
     "run",
     "Persson",
+    "profile_parameters",
     "Store",
     "save",
     "stress_check",

@@ -189,7 +189,8 @@ def over_time(result: Result, keys: dict[str, Any]) -> xarray.Dataset:
         raise _core.CaseError("direction is 'both', the conductance of a gap that repeats, but the domain is free: use 'x' or 'y'")
     temperatures = [(float(t), float(kelvin)) for t, kelvin in (setup.get("leakage") or {}).get("temperatures", [])]
     tolerance = float(setup.get("solver_tolerance", 1e-6))
-    rows, states = [], []
+    rows: list[dict[str, Any]] = []
+    states: list[tuple[int | None, float | None, int | None, float, float | None, float]] = []
     drop = keys["inlet"] - keys["outlet"] if "inlet" in keys and "outlet" in keys else keys.get("pressure_drop")
     for index, time in enumerate(result.field_times):
         gap = result.field("gap", index=index)

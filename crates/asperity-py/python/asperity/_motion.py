@@ -129,8 +129,11 @@ def slide(
     >>> wave = asp.Surface.wave(cells=(32, 4), size=(1e-3, 125e-6), amplitude=1e-6, wavelength=(1e-3, float("inf")))
     >>> rubber = asp.Zener(shear=1e6, shear_kelvin=0.2e6, retardation_time=0.01, poisson=0.5)
     >>> result = asp.slide(wave, rubber, pressure=20e3, velocity=0.05, times=[0.06], boundary="periodic")
-    >>> bool(result.friction_coefficient[-1] > 0.01), bool(abs(result.sliding_distance[-1] - 3e-3) < 1e-12)
-    (True, True)
+    >>> held = asp.steady(wave, rubber, pressure=20e3, velocities=[0.05], boundary="periodic")
+    >>> bool(abs(result.friction_coefficient[-1] / held.friction_coefficient[0] - 1) < 0.01)
+    True
+    >>> bool(abs(result.sliding_distance[-1] - 3e-3) < 1e-12)
+    True
     """
     from ._solve import solve
 

@@ -361,10 +361,10 @@ class Result:
             if name != "depth":
                 unit = "m3" if name == "stressed_volume" else "m" if name.endswith(("_depth", "_x", "_y")) and "_by_" not in name else "Pa"
                 dimensions = (at, "depth")[: values.ndim]
-                maps[name] = (dimensions, values, {"units": unit, "long_name": name.replace("_", " ")})  # type: ignore[assignment]
+                maps[name] = (dimensions, values, {"units": unit, "long_name": name.replace("_", " ")})
         for name in self._stress_fields:
-            words = {"units": "Pa", "long_name": name.replace("_", " ")}
-            maps[name] = ((at, "depth", "x", "y"), self._stress_volume(name), words)  # type: ignore[assignment]
+            told = {"units": "Pa", "long_name": name.replace("_", " ")}
+            maps[name] = ((at, "depth", "x", "y"), self._stress_volume(name), told)
         gap = ("initial_gap", (over, self.initial_gap, {"units": "m", "long_name": "undeformed gap"}))
         coordinates = {
             along: (along, np.asarray(self._table["time"]), {"units": self.units("time"), "long_name": along}),

@@ -174,6 +174,8 @@ def march(
         history = repr(prescribed)
     grid = as_times(times)
     parts = [parts_of(body) for body in bodies]
+    names = [str(name) for name in quantities]
+    of_motion = [] if _motion is None else _motion.quantities(shape, boundary)
     core = _core.March(
         gap=as_plane(gap),
         size=list(shape.size),
@@ -191,7 +193,7 @@ def march(
         max_iterations=count("max_iterations", max_iterations),
         hardness_map=None if cells is None else as_plane(cells),
         plasticity=plasticity,
-        quantities=[*dict.fromkeys([*(str(name) for name in quantities), *([] if _motion is None else _motion.quantities(shape, boundary))])],
+        quantities=[*names, *(name for name in of_motion if name not in names)],
         bins=count("bins", bins),
         largest_pressure=None if largest_pressure is None else number("largest_pressure", largest_pressure),
         largest_gap=None if largest_gap is None else number("largest_gap", largest_gap),

@@ -370,7 +370,7 @@ class Surface:
             plain = dict(hurst=hurst, rms_gradient=rms_gradient, rms_height=rms_height, longest=longest, shortest=shortest)
             if len(grid) == 1:
                 raise CaseError("a profile has no lay, and heights of a normal distribution: leave lay, skewness and kurtosis out")
-            return _roughness(cells, pair("size", size), seed, {**plain, "roll_off": roll_off, **special})
+            return _roughness(grid, pair("size", size), seed, {**plain, "roll_off": roll_off, **special})
         check_dimensions(grid, extent)
         heights = _core.self_affine(
             (grid[0], grid[1] if len(grid) == 2 else 1),

@@ -126,8 +126,8 @@ impl Steady {
     /// # Errors
     /// [`Error::Invalid`] naming the quantity; [`Error::Infeasible`] where the load exceeds what the hardness carries.
     pub fn new(simulation: Simulation, motion: SteadyMotion) -> Result<Self> {
-        simulation.validate()?;
         motion.validate(&simulation)?;
+        simulation.validate()?;
         let streaming = Streaming::new(&simulation)?;
         let load = held_load(&simulation)?;
         let grid = simulation.grid;

@@ -34,7 +34,7 @@ pub(super) fn field(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, 
 fn of_sweep(reader: &Reader, kind: FieldKind, index: usize) -> Result<Curves, StoreError> {
     let count = reader.field_times().len();
     let every = count.div_ceil(MOST_CURVES).max(1);
-    let chosen = (0..count).filter(|n| *n == index || n % every == index % every && *n != index);
+    let chosen = (0..count).filter(|n| n % every == index % every);
     let (label, units) = label(kind);
     let mut panel = Curves::new("", Axis::linear("x", "m"), Axis::linear(label, units));
     for n in chosen {

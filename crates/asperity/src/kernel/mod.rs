@@ -25,7 +25,7 @@ pub trait Kernel: std::fmt::Debug + Send + Sync {
     /// cell of sides `cell` = \[dx, dy\] \[m\] under unit pressure.
     ///
     /// # Errors
-    /// [`Error::Invalid`](crate::Error::Invalid) where they cannot be computed.
+    /// [`Error::Invalid`] where they cannot be computed.
     fn influence(&self, cell: [f64; 2], count: [usize; 2]) -> Result<Array2<f64>>;
 
     /// Displacements \[m\] at the centres of the cells 0, 1, ... `count` - 1 away from a strip of width `dx` \[m\] under unit
@@ -64,7 +64,7 @@ pub trait Kernel: std::fmt::Debug + Send + Sync {
     /// Whether cells of sides `cell` = \[dx, dy\] \[m\] of a free domain resolve the body.
     ///
     /// # Errors
-    /// [`Error::Invalid`](crate::Error::Invalid) where they do not.
+    /// [`Error::Invalid`] where they do not.
     fn check(&self, _cell: [f64; 2]) -> Result<()> {
         Ok(())
     }

@@ -366,6 +366,7 @@ impl March {
     /// Pressure, U and the change of the approach at both ends of the step under way.
     fn ends(&self) -> Ends<'_> {
         Ends {
+            approach: self.state.approach,
             advance: self.state.approach - self.previous.approach,
             before: (&self.previous.pressure, &self.previous.unit_displacement),
             now: (&self.state.pressure, &self.state.unit_displacement),

@@ -10,9 +10,12 @@
 //!
 //! with b(y) taken (1 - exp(-(T + x)/τ_i))/(1 - exp(-y)) times: the errors of the steps before add up as long as the branch
 //! remembers them, and T is how long the smooth piece of the course has lasted, 15 steps at most. Here u\[z0, z1, z2\] is the second divided
-//! difference of three states, and the sums go over the cells in contact at either end: an error of the stress over
-//! the stress, not of the displacement over the approach. The second and third bound keep it finite
+//! difference of three states, and the sums of the stress go over the cells in contact at either end: an error of the stress
+//! over the stress, not of the displacement over the approach. The second and third bound keep it finite
 //! where contact ends or begins.
+//!
+//! The sum of ε goes over those cells and over the cells apart whose undeformed surfaces would overlap, h0 < w: a surface that
+//! has recovered there touches again, and its error then is one of the pressure.
 //!
 //! A cell that comes into contact during the step moves with the approach w only from then on, and so faster than u' - u over
 //! the whole step says. Where u runs linearly in time, 1/4 of |Δw| - |Δu| stands in its place of |u\[z0, z1, z2\]| Δz² where it is
@@ -82,7 +85,8 @@ impl Memory {
                 (&[f64], &[f64]),
             )| {
                 strands(u.len(), |i| {
-                    if !(p[i] > 0.0 || p_now[i] > 0.0) {
+                    let presses = p[i] > 0.0 || p_now[i] > 0.0;
+                    if !presses && !(rigid[i] < ends.approach) {
                         return [0.0; 4];
                     }
                     let u_now = compliance * unit_now[i] + (gap[i] - rigid[i]);
@@ -91,6 +95,9 @@ impl Memory {
                     // What rounding errors of u make of it.
                     let rounding = ROUNDING * u[i].abs().max(u_now.abs()) * spread;
                     let curved = if second.abs() > rounding { second.abs() * step * step } else { 0.0 };
+                    if !presses {
+                        return [curved, 0.0, 0.0, 0.0];
+                    }
                     let touched = if p[i] > 0.0 { 0.0 } else { LATE * (advance - now.abs()) };
                     [curved.max(touched), unit_now[i], unit[i], u_now.abs()]
                 })

@@ -108,9 +108,10 @@ pub(in crate::march) enum Drive {
     Load(f64),
 }
 
-/// Pressure and U = Kp at both ends of a step, and how far the bodies approach in it \[m\].
+/// Pressure and U = Kp at both ends of a step, the approach at its end \[m\] and how far the bodies approach in it \[m\].
 #[derive(Clone, Copy)]
 pub(in crate::march) struct Ends<'a> {
+    pub(in crate::march) approach: f64,
     pub(in crate::march) advance: f64,
     pub(in crate::march) before: (&'a [f64], &'a [f64]),
     pub(in crate::march) now: (&'a [f64], &'a [f64]),

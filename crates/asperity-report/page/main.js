@@ -15,7 +15,7 @@ function theme(name) {
 const view = new MapView($("map"), $("bar"));
 const heights = new MapView($("height"), $("height-bar"));
 const relief = new Relief($("relief"));
-const chosen = { field: null, instant: 0, along: "x", share: 0.5, log: false };
+const chosen = { field: null, instant: 0, along: "x", share: 0.5, log: state.rows.log };
 const evolution = [];
 let profile = null;
 
@@ -40,7 +40,8 @@ function summary() {
 const PANELS = [
   state.grid.line
     ? ["Contact length", "contact length", [["", "contact_area"], ["at hardness", "capped_area"]]]
-    : ["Contact area", "contact area", [["counted", "contact_area"], ["corrected", "contact_area_corrected"], ["at hardness", "capped_area"]]],
+    : ["Contact area", "contact area", [["counted", "contact_area"], ["corrected", "contact_area_corrected"], ["at hardness", "capped_area"],
+        ...(state.series.persson_contact_area ? [["Persson's theory", "persson_contact_area"]] : [])]],
   ["Approach", "approach", [["", "approach"]]],
   ["Load", "load", [["", "load"]]],
   ["Pressure", "pressure", [["mean", "mean_pressure"], ["largest", "max_pressure"]]],
@@ -51,12 +52,12 @@ const numbers = (key) => state.series[key].map((value) => value ?? NaN);
 
 function timePanels() {
   const time = state.series.time;
-  const axis = { label: "time", unit: "s", log: chosen.log };
+  const axis = { label: state.rows.label, unit: state.rows.unit, log: chosen.log };
   const specs = [...PANELS, ...state.quantities].map(([title, label, names]) => ({
     title,
     x: axis,
     y: { label, unit: state.units[names[0][1]] === "1" ? "" : state.units[names[0][1]] },
-    series: names.filter(([, key]) => key !== "capped_area" || state.series[key].some((v) => v > 0)).map(([name, key]) => ({ name, x: time, y: numbers(key) })),
+    series: names.filter(([, key]) => key !== "capped_area" || state.series[key].some((v) => v > 0)).map(([name, key]) => ({ name, x: time, y: numbers(key), dashed: key.startsWith("persson") })),
   }));
   if (!evolution.length) {
     specs.forEach((spec) => evolution.push(new Chart($("evolution"), spec)));
@@ -104,7 +105,7 @@ function leakPanels() {
   // A tight seal has no place on a logarithmic axis.
   const values = (key) => leak[key].values.map((value) => (value > 0 ? value : NaN));
   const x = leak.leak_time.values;
-  const time = { label: "time", unit: "s", log: chosen.log };
+  const time = { label: state.rows.label, unit: state.rows.unit, log: chosen.log };
   const line = (name, key, dashed = false) => ({ name, x, y: values(key), dashed });
   const specs = [
     { title: "Gaps", x: time, y: { label: "gap", unit: "m", log: true }, series: [line("hydraulic", "hydraulic_gap"), line("critical", "critical_gap")] },
@@ -157,8 +158,9 @@ async function showMap() {
   if (state.grid.line) await showOverTime(kind, instant);
   else view.show({ map, colours: kind.colours, low: range[0], high: range[1], unit: kind.unit, label: kind.label }, { along: chosen.along, share: chosen.share });
   const row = instant.row;
-  $("instant-words").textContent = `t = ${words(instant.time, "s")}, load ${words(state.series.load[row], state.units.load)}, contact ${digits(100 * state.series.contact_fraction[row])} %`;
-  $("instant").setAttribute("aria-valuetext", `t = ${words(instant.time, "s")}`);
+  const moment = `${state.rows.symbol} = ${words(instant.time, state.rows.unit)}`;
+  $("instant-words").textContent = `${moment}, load ${words(state.series.load[row], state.units.load)}, contact ${digits(100 * state.series.contact_fraction[row])} %`;
+  $("instant").setAttribute("aria-valuetext", moment);
   evolution.forEach((chart) => chart.mark(instant.time));
   await showProfile(kind, map);
   await (state.grid.line ? showSurfaces(instant) : showRelief(instant));
@@ -167,8 +169,10 @@ async function showMap() {
 /** A line contact over x and time, at each time the nearest stored instant; the line is the instant shown. */
 async function showOverTime(kind, instant) {
   const times = state.instants.map((one) => one.time), first = times[0], last = times[times.length - 1];
-  $("map").closest("figure").hidden = !(last > first);
-  if (!(last > first)) return;
+  // Velocities of a sweep are no times: states between them are not like their neighbours.
+  const shown = last > first && state.rows.label === "time";
+  $("map").closest("figure").hidden = !shown;
+  if (!shown) return;
   const rows = 128;
   let nearest = 0, picture = null, low = Infinity, high = -Infinity;
   for (let k = 0; k < rows; k++) {
@@ -354,6 +358,9 @@ function mapsPart() {
 }
 
 const axes = [...document.querySelectorAll("[data-time]")];
+axes.forEach((button) => (button.textContent = `${button.dataset.time === "log" ? "logarithmic" : "linear"} ${state.rows.label}`));
+$("h-evolution").textContent = `Over ${state.rows.label}`;
+press(axes, axes.find((button) => (button.dataset.time === "log") === chosen.log));
 axes.forEach((button) => button.addEventListener("click", () => {
   chosen.log = button.dataset.time === "log";
   press(axes, button);

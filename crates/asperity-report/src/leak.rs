@@ -8,7 +8,7 @@ use asperity_io::store::{At, FieldKind, Reader};
 use ndarray::{Array2, ArrayView2, Zip};
 
 use crate::figure::{Axis, Colours, Curves, Figure, Map, Series, Style};
-use crate::result::{Options, PlotError};
+use crate::result::{Options, PlotError, Rows};
 
 /// Names and colours of the cells where the seal leaks.
 const LEAKING: [(&str, [u8; 3]); 4] = [
@@ -110,12 +110,12 @@ fn words(found: &Leakage) -> String {
 }
 
 /// The leaks of a result as they are stored, over time.
-pub(crate) fn curves(reader: &Reader, log_time: bool) -> Result<Vec<Curves>, PlotError> {
+pub(crate) fn curves(reader: &Reader, log: Option<bool>) -> Result<Vec<Curves>, PlotError> {
     let time = reader.leak("leak_time")?;
     let percolates = reader.leak("percolates")?;
     // A logarithmic axis has no place for t = 0: it is of use where the seal leaks later too.
     let leaks_later = time.iter().zip(&percolates).any(|(time, open)| *time > 0.0 && *open > 0.0);
-    let log_time = log_time && leaks_later;
+    let log_time = log.unwrap_or(Rows::of(reader)?.log) && leaks_later;
     // All of the run, also where the seal is tight.
     let first = time.iter().copied().find(|time| *time > 0.0 || !log_time).unwrap_or(0.0);
     let last = time.last().copied().unwrap_or(0.0);
@@ -187,7 +187,7 @@ fn sealing(mut panel: Curves, time: &[f64], percolates: &[f64]) -> Curves {
 /// Leak rate and gaps over time, and the flow at an instant.
 pub(crate) fn over_time(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
     let mut figure = Figure::new("");
-    for panel in curves(reader, options.log_time)? {
+    for panel in curves(reader, options.log)? {
         figure = figure.with(panel);
     }
     // The last state of a seal that has become tight shows no flow.

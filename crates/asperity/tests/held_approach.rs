@@ -429,9 +429,9 @@ fn a_ring_of_cells_that_touches_shortens_the_steps() {
         for tolerance in [1e-2, 1e-3] {
             let ([load, _], rows) = errors_of_adaptive_steps(&base, 9.0, tolerance);
             println!("{ratio} {tolerance}: {rows} rows, {load}");
-            // Rings differ in how many cells they have: a step that just passes may be wrong by two tolerances.
-            assert!(load <= 2.0 * tolerance, "{ratio} {tolerance}: {load}");
-            assert!(rows < 200, "{rows} rows");
+            assert!(load <= tolerance, "{ratio} {tolerance}: {load}");
+            // The retreat alone lasts 1000 relaxation times.
+            assert!(rows < 300, "{rows} rows");
         }
     }
 }

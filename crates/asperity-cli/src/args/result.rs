@@ -58,7 +58,7 @@ pub struct Plot {
     /// The result (a Zarr directory)
     pub result: PathBuf,
     /// evolution, load-displacement, pressure, gap, displacement, contact, flattening, initial-gap, profile,
-    /// histogram, spots, work, quantities, stress or leak
+    /// histogram, spots, work, quantities, stress, leak or friction
     pub what: String,
     /// The file to write; its extension selects the format: png, svg or pdf [default: RESULT-WHAT.png]
     #[arg(short, long, value_name = "PATH")]
@@ -72,9 +72,12 @@ pub struct Plot {
     /// Position of a profile on the other axis, e.g. '20 um' [default: the middle]
     #[arg(long, value_name = "PLACE")]
     pub at: Option<String>,
-    /// Time on a logarithmic axis
-    #[arg(long)]
+    /// Time on a logarithmic axis [default: where most rows lie in the first tenth of the run]
+    #[arg(long, conflicts_with = "linear_time")]
     pub log_time: bool,
+    /// Time on a linear axis
+    #[arg(long)]
+    pub linear_time: bool,
     /// The title [default: that of the case]
     #[arg(long)]
     pub title: Option<String>,

@@ -32,7 +32,8 @@ pub fn run(args: &args::Plot) -> Result<(), Failure> {
     let place = args.at.as_deref().map(|text| read::<Length>("--at", text, "20 um")).transpose()?;
     let place = place.map(|place| place.get());
     let line = if args.along == "x" { Line::AlongX(place) } else { Line::AlongY(place) };
-    let options = Options { at, line, log_time: args.log_time, title: args.title.clone() };
+    let log = (args.log_time || args.linear_time).then_some(args.log_time);
+    let options = Options { at, line, log, title: args.title.clone() };
     let reader = Reader::open(&args.result).map_err(|error| told(&error))?;
     let figure = figure(&reader, plot, &options).map_err(|error| told(&error))?;
     figure.write(&output, args.force).map_err(|error| told(&error))?;

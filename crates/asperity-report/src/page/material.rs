@@ -2,28 +2,13 @@
 
 use std::f64::consts::TAU;
 
-use asperity::material::{Creep, CreepTerm};
 use asperity_io::store::Reader;
 use serde_json::{Value, json};
 
+use crate::result::creep;
+
 /// Points to a decade of time.
 const FINE: i32 = 12;
-
-/// The contact creep function C(t) of the pair; `None` where the result does not say.
-fn creep(reader: &Reader) -> Option<Creep> {
-    let stored = reader.header().setup.get("contact_creep_compliance")?;
-    let number = |name: &str| stored.get(name).and_then(Value::as_f64);
-    let terms = stored.get("terms")?.as_array()?.iter().map(|term| {
-        let pair = term.as_array()?;
-        Some(CreepTerm { compliance: pair.first()?.as_f64()?, retardation_time: pair.get(1)?.as_f64()? })
-    });
-    let creep = Creep {
-        instantaneous: number("instantaneous")?,
-        terms: terms.collect::<Option<_>>()?,
-        fluidity: number("fluidity")?,
-    };
-    creep.validate().ok().map(|()| creep)
-}
 
 /// C(t), E*(t), E', E'' and tan delta, from a decade below the shortest time to one above the longest; `Null` for
 /// an elastic pair or where the result does not say.

@@ -10,6 +10,7 @@ use serde_json::{Map, Value, json};
 use super::maps::Maps;
 use super::{material, stress};
 use crate::figure::Colours;
+use crate::result::{Rows, persson};
 
 /// The result's title, or its file name.
 pub(super) fn title(reader: &Reader) -> String {
@@ -30,7 +31,16 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
         series.insert(scalar.name.into(), json!(reader.series(scalar.name)?));
         units.insert(scalar.name.into(), json!(scalar.units));
     }
+    let rows = Rows::of(reader)?;
+    let theory = persson(reader)?;
     let grid = &reader.header().grid;
+    if let Some(theory) = &theory {
+        let whole = grid.size()[0] * grid.size()[1];
+        let friction: Vec<f64> = theory.iter().map(|at| at.friction_coefficient).collect();
+        let area: Vec<f64> = theory.iter().map(|at| at.contact_fraction * whole).collect();
+        series.insert(PERSSON_FRICTION.into(), json!(friction));
+        series.insert("persson_contact_area".into(), json!(area));
+    }
     let note = match maps.block {
         1 => String::new(),
         block if grid.is_line() => format!("Curves show means over {block} of {} cells.", grid.cells()[0]),
@@ -55,7 +65,8 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
         "grid": {"cells": grid.cells(), "size": grid.size(), "line": grid.is_line()},
         "series": series,
         "units": units,
-        "quantities": quantities(reader),
+        "rows": {"label": rows.label, "unit": rows.unit, "symbol": rows.symbol, "log": rows.log},
+        "quantities": quantities(reader, theory.is_some()),
         "fields": maps.fields.iter().map(field).collect::<Vec<_>>(),
         "instants": instants.collect::<Vec<_>>(),
         "note": note,
@@ -84,11 +95,18 @@ fn leak(reader: &Reader) -> Result<Value, StoreError> {
     Ok(Value::Object(columns))
 }
 
-/// The quantities that were asked for, as panels over time: title, label, and the series by name. Energies share one.
-fn quantities(reader: &Reader) -> Vec<Value> {
+/// The series of Persson's theory beside the computed friction coefficient.
+const PERSSON_FRICTION: &str = "persson_friction_coefficient";
+
+/// The quantities that were asked for, as panels over the rows: title, label, and the series by name. Energies share one;
+/// where the page has the friction of `theory`, it stands beside the computed one.
+fn quantities(reader: &Reader, theory: bool) -> Vec<Value> {
     crate::result::quantity_panels(reader)
         .into_iter()
-        .map(|panel| {
+        .map(|mut panel| {
+            if theory && panel.lines.iter().any(|(_, series)| *series == "friction_coefficient") {
+                panel.lines.push(("Persson's theory", PERSSON_FRICTION));
+            }
             let lines: Vec<_> = panel.lines.iter().map(|(name, series)| json!([name, series])).collect();
             json!([panel.title, panel.label, lines])
         })
@@ -132,6 +150,7 @@ fn status(reader: &Reader) -> String {
 fn headline(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
     let rows = reader.rows()?;
     let Some(last) = rows.last() else { return Ok(vec![]) };
+    let axis = Rows::of(reader)?;
     let grid = &reader.header().grid;
     let (force, area) = (grid.units("N"), grid.units("m2"));
     let contact = match grid.is_line() {
@@ -139,7 +158,7 @@ fn headline(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
         false => format!("contact area, {} corrected", quantity(last.contact_area_corrected, area)),
     };
     let mut lines = vec![
-        [format!("at time (last of {} rows)", rows.len()), quantity(last.time, "s")],
+        [format!("{} (last of {} rows)", axis.label, rows.len()), quantity(last.time, axis.unit)],
         ["load".into(), quantity(last.load, force)],
         ["approach".into(), quantity(last.approach, "m")],
         [contact, quantity(last.contact_area, area)],
@@ -205,7 +224,15 @@ fn facts(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
     });
     line("Retardation times", times);
     line("Hardness", number("hardness", "Pa"));
-    line("Time", number("end", "s").map(|end| format!("0 to {end}")));
+    if header.is_sweep() {
+        let rows = reader.series("time")?;
+        let ends = rows.first().zip(rows.last());
+        let words =
+            |(from, to): (&f64, &f64)| format!("{} to {}", quantity(*from, "m/s"), quantity(*to, "m/s"));
+        line("Velocities", ends.map(words));
+    } else {
+        line("Time", number("end", "s").map(|end| format!("0 to {end}")));
+    }
     line("Scheme", text("scheme").map(str::to_owned));
     line(
         "Tolerance of the solver",

@@ -1,14 +1,16 @@
-//! What changes over time.
+//! What changes over the rows.
 
 use asperity::quantities::Quantity;
 use asperity_io::store::{Reader, StoreError};
 
+use super::rows::Rows;
 use super::{Options, nameless};
 use crate::figure::{Axis, Curves, Figure, Series, Style};
 
 pub(super) fn evolution(reader: &Reader, options: &Options) -> Result<Figure, StoreError> {
     let time = times(reader)?;
-    let axis = || axis(reader, options);
+    let rows = Rows::of(reader)?;
+    let axis = || rows.axis(options.log);
     let line = |name: &str, series: &str| -> Result<Series, StoreError> {
         Ok(Series::new(name, Style::Line, time.clone(), reader.series(series)?))
     };
@@ -33,65 +35,6 @@ pub(super) fn evolution(reader: &Reader, options: &Options) -> Result<Figure, St
         .with(nameless(approach, &time, reader.series("approach")?))
         .with(nameless(load, &time, reader.series("load")?))
         .with(pressure))
-}
-
-/// The axis of the rows: time, or the velocities of a sweep.
-fn axis(reader: &Reader, options: &Options) -> Axis {
-    match (reader.header().is_sweep(), options.log_time) {
-        (true, _) => velocities(reader),
-        (false, true) => Axis::log("time", "s"),
-        (false, false) => Axis::linear("time", "s"),
-    }
-}
-
-/// Velocities over more than a decade have a logarithmic axis.
-fn velocities(reader: &Reader) -> Axis {
-    let found = reader.series("time").unwrap_or_default();
-    match (found.first(), found.last()) {
-        (Some(first), Some(last)) if *first > 0.0 && last / first > 5.0 => Axis::log("velocity", "m/s"),
-        _ => Axis::linear("velocity", "m/s"),
-    }
-}
-
-/// Friction of a contact in motion: over the velocity in a sweep, else over time.
-pub(super) fn friction(reader: &Reader, options: &Options) -> Result<Figure, StoreError> {
-    let rows = times(reader)?;
-    let grid = &reader.header().grid;
-    let line = |name: &str, series: &str| -> Result<Series, StoreError> {
-        Ok(Series::new(name, Style::Line, rows.clone(), reader.series(series)?))
-    };
-    let has = |name: &str| reader.scalars().iter().any(|series| series.name == name);
-    let total = has("friction_coefficient_total");
-    let mut coefficient =
-        Curves::new("Friction", axis(reader, options), Axis::linear("friction coefficient", ""));
-    coefficient =
-        coefficient.with(line(if total { "loss in the bulk" } else { "" }, "friction_coefficient")?);
-    if total {
-        coefficient = coefficient.with(line("with the shear stress", "friction_coefficient_total")?);
-    }
-    let side: f64 = reader.series("side_force")?.iter().fold(0.0, |most, force| force.abs().max(most));
-    let along: f64 = reader.series("friction_force")?.iter().fold(0.0, |most, force| force.abs().max(most));
-    let mut force = Curves::new("Forces", axis(reader, options), Axis::linear("force", grid.units("N")))
-        .with(line("against motion", "friction_force")?);
-    if side > 1e-3 * along {
-        force = force.with(line("across it", "side_force")?);
-    }
-    let area = Curves::new("Contact", axis(reader, options), Axis::linear("contact over nominal area", ""));
-    let mut figure = Figure::new("").with(coefficient).with(force).with(nameless(
-        area,
-        &rows,
-        reader.series("contact_fraction")?,
-    ));
-    if has("dissipated_power") {
-        // Over decades of velocity the power spans decades too.
-        let own = match reader.header().is_sweep() {
-            true => Axis::log("power lost", grid.units("W")),
-            false => Axis::linear("power lost", grid.units("W")),
-        };
-        let power = Curves::new("Power", axis(reader, options), own);
-        figure = figure.with(nameless(power, &rows, reader.series("dissipated_power")?));
-    }
-    Ok(figure)
 }
 
 /// A panel of quantities over time.
@@ -163,6 +106,7 @@ pub(crate) fn quantity_panels(reader: &Reader) -> Vec<QuantityPanel> {
 
 pub(super) fn quantities(reader: &Reader, options: &Options) -> Result<Figure, StoreError> {
     let time = times(reader)?;
+    let rows = Rows::of(reader)?;
     let panels = quantity_panels(reader);
     if panels.is_empty() {
         return Err(reader.no_quantities());
@@ -170,7 +114,7 @@ pub(super) fn quantities(reader: &Reader, options: &Options) -> Result<Figure, S
     let mut figure = Figure::new("");
     for panel in panels {
         let mut curves =
-            Curves::new(panel.title, axis(reader, options), Axis::linear(panel.label, panel.units));
+            Curves::new(panel.title, rows.axis(options.log), Axis::linear(panel.label, panel.units));
         for (name, series) in panel.lines {
             curves = curves.with(Series::new(name, Style::Line, time.clone(), reader.series(series)?));
         }
@@ -202,7 +146,7 @@ pub(super) fn work(reader: &Reader) -> Result<Figure, StoreError> {
 }
 
 /// Times of all rows; an error where there is none yet.
-fn times(reader: &Reader) -> Result<Vec<f64>, StoreError> {
+pub(super) fn times(reader: &Reader) -> Result<Vec<f64>, StoreError> {
     let times = reader.series("time")?;
     if times.is_empty() { Err(reader.no_rows()) } else { Ok(times) }
 }

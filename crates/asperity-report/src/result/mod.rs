@@ -13,11 +13,14 @@
 mod distribution;
 mod evolution;
 mod fields;
+mod friction;
 pub(crate) mod line;
 mod profile;
+mod rows;
 mod stress;
 
 use asperity::Boundary;
+use asperity::material::{Creep, CreepTerm};
 use asperity_io::choice;
 use asperity_io::readable::quantity;
 use asperity_io::store::{At, FieldKind, Reader, StoreError};
@@ -25,6 +28,8 @@ use asperity_io::stress::StressError;
 use serde_json::Value;
 
 pub(crate) use evolution::quantity_panels;
+pub(crate) use friction::persson;
+pub(crate) use rows::Rows;
 pub use stress::stress_figure;
 
 use crate::figure::{Curves, Figure, Series};
@@ -73,8 +78,8 @@ pub struct Options {
     pub at: At,
     /// The line of a profile.
     pub line: Line,
-    /// Times on a logarithmic axis.
-    pub log_time: bool,
+    /// Times on a logarithmic axis, or on a linear one; `None`: logarithmic where most of them lie in the first tenth of the run.
+    pub log: Option<bool>,
     /// The title instead of the result's.
     pub title: Option<String>,
 }
@@ -90,7 +95,7 @@ pub enum Line {
 
 impl Default for Options {
     fn default() -> Self {
-        Options { at: At::Last, line: Line::AlongX(None), log_time: false, title: None }
+        Options { at: At::Last, line: Line::AlongX(None), log: None, title: None }
     }
 }
 
@@ -198,7 +203,7 @@ pub fn figure(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, 
         Plot::Work => evolution::work(reader)?,
         Plot::Quantities => evolution::quantities(reader, options)?,
         Plot::Leak => crate::leak::over_time(reader, options)?,
-        Plot::Friction => evolution::friction(reader, options)?,
+        Plot::Friction => friction::friction(reader, options)?,
         Plot::Flattening => fields::map(reader, FieldKind::Flattening, options.at)?,
         Plot::Pressure => fields::map(reader, FieldKind::Pressure, options.at)?,
         Plot::Gap => fields::map(reader, FieldKind::Gap, options.at)?,
@@ -268,6 +273,22 @@ pub fn moment(reader: &Reader, time: f64) -> String {
         true => format!("v = {}", quantity(time, "m/s")),
         false => format!("t = {}", quantity(time, "s")),
     }
+}
+
+/// The contact creep function C(t) of the pair; `None` where the result does not say.
+pub(crate) fn creep(reader: &Reader) -> Option<Creep> {
+    let stored = reader.header().setup.get("contact_creep_compliance")?;
+    let number = |name: &str| stored.get(name).and_then(Value::as_f64);
+    let terms = stored.get("terms")?.as_array()?.iter().map(|term| {
+        let pair = term.as_array()?;
+        Some(CreepTerm { compliance: pair.first()?.as_f64()?, retardation_time: pair.get(1)?.as_f64()? })
+    });
+    let creep = Creep {
+        instantaneous: number("instantaneous")?,
+        terms: terms.collect::<Option<_>>()?,
+        fluidity: number("fluidity")?,
+    };
+    creep.validate().ok().map(|()| creep)
 }
 
 /// The boundary of the domain that the result was computed on.

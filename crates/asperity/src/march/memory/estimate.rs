@@ -86,7 +86,8 @@ impl Memory {
             )| {
                 strands(u.len(), |i| {
                     let presses = p[i] > 0.0 || p_now[i] > 0.0;
-                    if !presses && !(rigid[i] < ends.approach) {
+                    let overlaps = rigid[i] < ends.approach;
+                    if !(presses || overlaps) {
                         return [0.0; 4];
                     }
                     let u_now = compliance * unit_now[i] + (gap[i] - rigid[i]);

@@ -1,0 +1,61 @@
+//! What the rows of a result follow: time, or the velocities of a sweep.
+
+use asperity_io::store::{Reader, StoreError};
+
+use crate::figure::Axis;
+
+/// The axis of the rows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Rows {
+    pub(crate) label: &'static str,
+    pub(crate) unit: &'static str,
+    pub(crate) symbol: &'static str,
+    /// Whether a logarithmic axis shows them better.
+    pub(crate) log: bool,
+}
+
+impl Rows {
+    pub(crate) fn of(reader: &Reader) -> Result<Rows, StoreError> {
+        let values = reader.series("time")?;
+        Ok(match reader.header().is_sweep() {
+            true => Rows { label: "velocity", unit: "m/s", symbol: "v", log: spans_a_decade(&values) },
+            false => Rows { label: "time", unit: "s", symbol: "t", log: crowds_the_start(&values) },
+        })
+    }
+
+    /// The axis of a panel; `log` where that was asked for.
+    pub(crate) fn axis(self, log: Option<bool>) -> Axis {
+        match log.unwrap_or(self.log) {
+            true => Axis::log(self.label, self.unit),
+            false => Axis::linear(self.label, self.unit),
+        }
+    }
+}
+
+fn spans_a_decade(values: &[f64]) -> bool {
+    matches!((values.first(), values.last()), (Some(first), Some(last)) if *first > 0.0 && *last >= 10.0 * first)
+}
+
+/// Whether half of the times lie in the first tenth of the run: a linear axis would draw them on top of one another.
+fn crowds_the_start(times: &[f64]) -> bool {
+    let positive: Vec<f64> = times.iter().copied().filter(|time| *time > 0.0).collect();
+    match (positive.get(positive.len() / 2), positive.last()) {
+        (Some(middle), Some(last)) => positive.len() > 4 && *middle < 0.1 * last,
+        _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decades_of_time_ask_for_a_logarithmic_axis_and_even_steps_do_not() {
+        let decades: Vec<f64> = (0..40).map(|n| 10f64.powf(0.2 * f64::from(n) - 4.0)).collect();
+        assert!(crowds_the_start(&decades));
+        let even: Vec<f64> = (0..40).map(f64::from).collect();
+        assert!(!crowds_the_start(&even));
+        assert!(!crowds_the_start(&[0.0, 1e-6, 1.0]), "three rows are too few to tell");
+        assert!(spans_a_decade(&[0.01, 0.1]) && !spans_a_decade(&[0.0, 0.1]) && !spans_a_decade(&[1.0, 2.0]));
+    }
+}

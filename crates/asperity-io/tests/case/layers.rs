@@ -109,7 +109,7 @@ fn what_is_wrong_with_layers_is_named() {
     says(
         "poisson = 0.49",
         "bulk_modulus = \"2 GPa\"",
-        "body[0]",
+        "body[0].layer[0]",
         &["bulk modulus of tread, layer 1", "Poisson"],
     );
     says("[load]", "[stress]\n[load]", "stress", &["not computed for bodies of layers"]);

@@ -2,6 +2,8 @@
 
 use asperity_io::readable::{Shown, shown, superscript};
 
+use super::{SMALL, font};
+
 /// How values become places.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
@@ -92,6 +94,11 @@ impl Ruler {
             text => format!("{} [{text}]", axis.label),
         };
         Ruler { scale: axis.scale, ends, places: [0.0, 1.0], ticks, minor, title }
+    }
+
+    /// Width of the widest number \[points\].
+    pub(super) fn widest(&self) -> f64 {
+        self.ticks.iter().map(|(_, text)| font::width(text, SMALL)).fold(0.0, f64::max)
     }
 
     /// The same ruler between two points on paper.

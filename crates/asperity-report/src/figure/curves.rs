@@ -1,9 +1,9 @@
 //! A panel of curves over two axes.
 
 use super::axis::{Axis, Ruler, Scale};
-use super::font;
+use super::legend::Legend;
 use super::svg::{Anchor, Drawing, GRID, INK};
-use super::{Place, SMALL, TEXT};
+use super::{Margins, Place, SMALL, TEXT};
 
 /// Colours that people with any kind of colour vision tell apart (Okabe & Ito 2008), dark ones first.
 const COLOURS: [&str; 7] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#222222"];
@@ -49,6 +49,20 @@ pub struct Curves {
     pub series: Vec<Series>,
 }
 
+/// A panel laid out: its rulers, and left, top, right and bottom of its frame \[points\].
+pub(super) struct Layout {
+    x: Ruler,
+    y: Ruler,
+    pub(super) area: [f64; 4],
+}
+
+impl Layout {
+    /// Where a point lies on the paper; `None` for one that the scales cannot show.
+    pub(super) fn at(&self, [x, y]: [f64; 2]) -> Option<[f64; 2]> {
+        Some([self.x.place(x)?, self.y.place(y)?])
+    }
+}
+
 impl Series {
     /// A series of places and values.
     pub fn new(
@@ -60,7 +74,7 @@ impl Series {
         Series { name: name.into(), x: x.into(), y: y.into(), style }
     }
 
-    fn points(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
+    pub(super) fn points(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
         self.x.iter().zip(&self.y).map(|(x, y)| [*x, *y])
     }
 }
@@ -77,7 +91,44 @@ impl Curves {
         self
     }
 
+    /// What the panel needs of its margins: width of the numbers at the vertical axis, and height of a legend above the frame,
+    /// where no corner inside is free of curves.
+    pub(super) fn needs(&self, size: [f64; 2]) -> Margins {
+        let labels = self.rulers(size, Margins::default()).1.widest();
+        let own = Margins { labels, legend: 0.0 };
+        let layout = self.layout(&Place { corner: [0.0, 0.0], size, margins: own });
+        let legend = Legend::of(self);
+        if legend.is_empty() || legend.corner(self, &layout).is_some() {
+            return own;
+        }
+        let [left, _, right, _] = layout.area;
+        Margins { legend: legend.rows(right - left).len() as f64 * Legend::ROW + 3.0, ..own }
+    }
+
     pub(super) fn draw(&self, drawing: &mut Drawing, place: &Place) {
+        let layout = self.layout(place);
+        let [left, top, right, bottom] = layout.area;
+        let [x0, y0] = place.corner;
+        frame(drawing, &layout.x, &layout.y, layout.area, [x0 + TEXT, y0 + place.size[1] - 5.0]);
+        if !self.title.is_empty() {
+            drawing.text([left, y0 + TEXT + 1.0], TEXT, Anchor::Start, "", &self.title);
+        }
+        let at = |point| layout.at(point);
+        drawing.clipped([left, top], [right - left, bottom - top], |drawing| {
+            for (series, colour) in self.coloured() {
+                draw_series(drawing, series, colour, &at, bottom, layout.y.place(0.0));
+            }
+        });
+        let legend = Legend::of(self);
+        match legend.corner(self, &layout) {
+            _ if legend.is_empty() => {}
+            Some(corner) => legend.draw_inside(drawing, corner),
+            None => legend.draw_above(drawing, [left, top], right - left),
+        }
+    }
+
+    /// Rulers without places, and the height of what is above and below the frame.
+    fn rulers(&self, [width, height]: [f64; 2], margins: Margins) -> (Ruler, Ruler, [f64; 2]) {
         let bars = self.series.iter().any(|series| series.style == Style::Bars);
         let [mut across, mut up] = self.extent();
         if bars {
@@ -87,32 +138,29 @@ impl Curves {
                 up = [up[0].min(0.0), up[1].max(0.0)];
             }
         }
-        let [x0, y0] = place.corner;
-        let [width, height] = place.size;
         let foot = TEXT + SMALL + 12.0;
-        let head = if self.title.is_empty() { 8.0 } else { TEXT + 9.0 };
+        let head = if self.title.is_empty() { 8.0 } else { TEXT + 9.0 } + margins.legend;
         let y = Ruler::new(&self.y, up, 0.06, (height - foot - head) / 32.0);
-        let labels = y.ticks.iter().map(|(_, text)| font::width(text, SMALL)).fold(0.0, f64::max);
-        let left = x0 + TEXT + labels + 13.0;
-        let (right, top, bottom) = (x0 + width - 12.0, y0 + head, y0 + height - foot);
         let margin = if bars || self.x.scale == Scale::Linear { 0.0 } else { 0.01 };
-        let x = Ruler::new(&self.x, across, margin, (right - left) / 48.0).placed(left, right);
-        let y = y.placed(bottom, top);
+        let x = Ruler::new(&self.x, across, margin, (width - margins.labels - TEXT - 25.0) / 48.0);
+        (x, y, [head, foot])
+    }
 
-        frame(drawing, &x, &y, [left, top, right, bottom], [x0 + TEXT, y0 + height - 5.0]);
-        if !self.title.is_empty() {
-            drawing.text([left, y0 + TEXT + 1.0], TEXT, Anchor::Start, "", &self.title);
-        }
-        let at = |[a, b]: [f64; 2]| Some([x.place(a)?, y.place(b)?]);
-        drawing.clipped([left, top], [right - left, bottom - top], |drawing| {
-            let mut colours = COLOURS.iter().cycle();
-            for series in &self.series {
-                let colour =
-                    if series.style == Style::Reference { INK } else { colours.next().unwrap_or(&INK) };
-                draw_series(drawing, series, colour, &at, bottom, y.place(0.0));
-            }
-        });
-        self.legend(drawing, &at, [left, top, right, bottom]);
+    fn layout(&self, place: &Place) -> Layout {
+        let ([x0, y0], [width, height]) = (place.corner, place.size);
+        let (x, y, [head, foot]) = self.rulers(place.size, place.margins);
+        let left = x0 + TEXT + place.margins.labels + 13.0;
+        let (right, top, bottom) = (x0 + width - 12.0, y0 + head, y0 + height - foot);
+        Layout { x: x.placed(left, right), y: y.placed(bottom, top), area: [left, top, right, bottom] }
+    }
+
+    /// The series with their colours.
+    pub(super) fn coloured(&self) -> impl Iterator<Item = (&Series, &'static str)> {
+        let mut colours = COLOURS.iter().copied().cycle();
+        self.series.iter().map(move |series| match series.style {
+            Style::Reference => (series, INK),
+            _ => (series, colours.next().unwrap_or(INK)),
+        })
     }
 
     /// Least and greatest of the finite places and values that the scales can show.
@@ -127,67 +175,6 @@ impl Curves {
             }
         }
         extent
-    }
-
-    /// The names, in the corner where they hide least.
-    fn legend(&self, drawing: &mut Drawing, at: &impl Fn([f64; 2]) -> Option<[f64; 2]>, area: [f64; 4]) {
-        let mut colours = COLOURS.iter().cycle();
-        let named: Vec<_> = self
-            .series
-            .iter()
-            .map(|s| (s, if s.style == Style::Reference { INK } else { colours.next().unwrap_or(&INK) }))
-            .filter(|(s, _)| !s.name.is_empty())
-            .collect();
-        if named.is_empty() {
-            return;
-        }
-        let [left, top, right, bottom] = area;
-        let row = SMALL + 3.5;
-        let text = named.iter().map(|(s, _)| font::width(&s.name, SMALL)).fold(0.0, f64::max);
-        let (width, height) = (text + 30.0, row * named.len() as f64 + 5.0);
-        let corners = [
-            [right - width - 4.0, top + 4.0],
-            [left + 4.0, top + 4.0],
-            [right - width - 4.0, bottom - height - 4.0],
-            [left + 4.0, bottom - height - 4.0],
-        ];
-        let hidden = |[x, y]: [f64; 2]| {
-            let under = |p: &[f64; 2]| p[0] > x && p[0] < x + width && p[1] > y && p[1] < y + height;
-            // Lines hide between their points as well.
-            let on_lines = |s: &Series| {
-                let places: Vec<_> = s.points().filter_map(at).collect();
-                let between = places.windows(2).flat_map(|pair| {
-                    (0..8)
-                        .map(|k| [0, 1].map(|i| pair[0][i] + (pair[1][i] - pair[0][i]) * f64::from(k) / 8.0))
-                });
-                between.filter(under).count() as f64 / (8.0 * places.len().max(1) as f64)
-            };
-            self.series.iter().map(on_lines).sum::<f64>()
-        };
-        let mut best = (f64::INFINITY, corners[0]);
-        for corner in corners {
-            let cost = hidden(corner);
-            if cost < best.0 {
-                best = (cost, corner);
-            }
-        }
-        let [x, y] = best.1;
-        drawing.rect([x, y], [width, height], "fill=\"#fff\" fill-opacity=\"0.85\" rx=\"2\"");
-        for (n, (series, colour)) in named.into_iter().enumerate() {
-            let middle = y + row * (n as f64 + 0.5) + 2.5;
-            let (from, to) = ([x + 5.0, middle], [x + 21.0, middle]);
-            match series.style {
-                Style::Bars => {
-                    let style = format!("fill=\"{colour}\" fill-opacity=\"0.55\"");
-                    drawing.rect([x + 7.0, middle - 3.5], [12.0, 7.0], &style);
-                }
-                Style::Points => {
-                    drawing.circle([x + 13.0, middle], 2.4, &format!("fill=\"none\" stroke=\"{colour}\""));
-                }
-                style => drawing.line(from, to, colour, weight(style, 0.0), dashes(style)),
-            }
-            drawing.text([x + 26.0, middle + 0.36 * SMALL], SMALL, Anchor::Start, "", &series.name);
-        }
     }
 }
 
@@ -256,7 +243,7 @@ fn draw_series(
 }
 
 /// Thinner where a line runs to and fro so often that it would cover itself.
-fn weight(style: Style, length: f64) -> f64 {
+pub(super) fn weight(style: Style, length: f64) -> f64 {
     /// Some five times across a panel.
     const LONG: f64 = 2000.0;
     match style {
@@ -277,7 +264,7 @@ fn length(points: impl Iterator<Item = Option<[f64; 2]>>) -> f64 {
         .sum()
 }
 
-fn dashes(style: Style) -> &'static str {
+pub(super) fn dashes(style: Style) -> &'static str {
     match style {
         Style::Dashed => "stroke-dasharray=\"5 2.5\"",
         Style::Reference => "stroke-dasharray=\"1.5 1.8\"",

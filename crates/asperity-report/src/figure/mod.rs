@@ -15,6 +15,7 @@ mod axis;
 mod colours;
 mod curves;
 mod font;
+mod legend;
 mod map;
 mod raster;
 mod svg;
@@ -76,6 +77,17 @@ pub struct Figure {
 struct Place {
     corner: [f64; 2],
     size: [f64; 2],
+    margins: Margins,
+}
+
+/// What panels of curves need around their frames; those in a column share the width of the numbers, those in a row the height of
+/// legends above the frames, so that the frames are aligned.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Margins {
+    /// Width of the numbers at the vertical axis \[points\].
+    labels: f64,
+    /// Height of a legend above the frame \[points\].
+    legend: f64,
 }
 
 impl Figure {
@@ -117,7 +129,7 @@ impl Figure {
         for (n, panel) in self.panels.iter().enumerate() {
             let (row, column) = (n / self.columns, n % self.columns);
             let corner = [EDGE + column as f64 * self.panel[0], top + row as f64 * self.panel[1]];
-            let place = Place { corner, size: self.panel };
+            let place = Place { corner, size: self.panel, margins: self.margins(row, column) };
             match panel {
                 Panel::Curves(curves) => curves.draw(&mut drawing, &place),
                 Panel::Map(map) => map.draw(&mut drawing, &place),
@@ -131,6 +143,22 @@ impl Figure {
         }
         let title = if self.title.is_empty() { "Figure" } else { &self.title };
         drawing.finish(width, height, title, font::FAMILY)
+    }
+
+    /// The margins of the panels in this row and column.
+    fn margins(&self, row: usize, column: usize) -> Margins {
+        let mut margins = Margins::default();
+        for (n, panel) in self.panels.iter().enumerate() {
+            let Panel::Curves(curves) = panel else { continue };
+            let own = curves.needs(self.panel);
+            if n % self.columns == column {
+                margins.labels = margins.labels.max(own.labels);
+            }
+            if n / self.columns == row {
+                margins.legend = margins.legend.max(own.legend);
+            }
+        }
+        margins
     }
 
     /// Width and height of the paper \[points\].

@@ -1,0 +1,120 @@
+//! The names of curves: in a corner of the frame that no curve crosses, else above the frame.
+
+use super::SMALL;
+use super::curves::{Curves, Layout, Series, Style, dashes, weight};
+use super::font;
+use super::svg::{Anchor, Drawing};
+
+/// Room of the sign before a name \[points\].
+const SIGN: f64 = 26.0;
+/// Distance of the legend to the frame.
+const GAP: f64 = 4.0;
+
+/// The series that have a name, with their colours.
+pub(super) struct Legend<'a> {
+    named: Vec<(&'a Series, &'static str)>,
+}
+
+impl<'a> Legend<'a> {
+    /// Height of a row \[points\].
+    pub(super) const ROW: f64 = SMALL + 3.5;
+
+    pub(super) fn of(panel: &'a Curves) -> Self {
+        Legend { named: panel.coloured().filter(|(series, _)| !series.name.is_empty()).collect() }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.named.is_empty()
+    }
+
+    /// Width and height as a column of names.
+    fn size(&self) -> [f64; 2] {
+        let text = self.named.iter().map(|(s, _)| font::width(&s.name, SMALL)).fold(0.0, f64::max);
+        [text + SIGN + 4.0, Self::ROW * self.named.len() as f64 + 5.0]
+    }
+
+    /// The upper left point of the first corner in which the names hide no curve.
+    pub(super) fn corner(&self, panel: &Curves, layout: &Layout) -> Option<[f64; 2]> {
+        let [left, top, right, bottom] = layout.area;
+        let [width, height] = self.size();
+        let corners = [
+            [right - width - GAP, top + GAP],
+            [left + GAP, top + GAP],
+            [right - width - GAP, bottom - height - GAP],
+            [left + GAP, bottom - height - GAP],
+        ];
+        let free = |[x, y]: &[f64; 2]| {
+            let under = |p: [f64; 2]| p[0] > *x && p[0] < x + width && p[1] > *y && p[1] < y + height;
+            *x > left && *y > top && !panel.series.iter().any(|series| covers(series, layout, &under))
+        };
+        corners.into_iter().find(free)
+    }
+
+    /// The names in rows of this width.
+    pub(super) fn rows(&self, width: f64) -> Vec<Vec<(&'a Series, &'static str)>> {
+        let mut rows: Vec<Vec<_>> = vec![];
+        let mut used = f64::INFINITY;
+        for entry in &self.named {
+            let own = SIGN + font::width(&entry.0.name, SMALL) + 6.0;
+            if used + own > width {
+                rows.push(vec![]);
+                used = 0.0;
+            }
+            used += own;
+            if let Some(row) = rows.last_mut() {
+                row.push(*entry);
+            }
+        }
+        rows
+    }
+
+    pub(super) fn draw_inside(&self, drawing: &mut Drawing, [x, y]: [f64; 2]) {
+        drawing.rect([x, y], self.size(), "fill=\"#fff\" fill-opacity=\"0.85\" rx=\"2\"");
+        for (n, entry) in self.named.iter().enumerate() {
+            draw(drawing, *entry, [x, y + Self::ROW * (n as f64 + 0.5) + 2.5]);
+        }
+    }
+
+    /// Above a frame with this upper left corner and width.
+    pub(super) fn draw_above(&self, drawing: &mut Drawing, [left, top]: [f64; 2], width: f64) {
+        let rows = self.rows(width);
+        let first = top - 3.0 - Self::ROW * rows.len() as f64;
+        for (n, row) in rows.iter().enumerate() {
+            let mut x = left - 5.0;
+            for entry in row {
+                draw(drawing, *entry, [x, first + Self::ROW * (n as f64 + 0.5)]);
+                x += SIGN + font::width(&entry.0.name, SMALL) + 6.0;
+            }
+        }
+    }
+}
+
+/// Whether any of a series lies `under` something; of a line also between its points, of a bar all of it.
+fn covers(series: &Series, layout: &Layout, under: &impl Fn([f64; 2]) -> bool) -> bool {
+    let places: Vec<[f64; 2]> = series.points().filter_map(|point| layout.at(point)).collect();
+    let between = |from: [f64; 2], to: [f64; 2]| {
+        (0..=16).any(|k| under([0, 1].map(|i| from[i] + (to[i] - from[i]) * f64::from(k) / 16.0)))
+    };
+    match series.style {
+        Style::Bars => places.iter().any(|place| between(*place, [place[0], layout.area[3]])),
+        Style::Points => places.iter().any(|place| under(*place)),
+        _ => places.windows(2).any(|pair| between(pair[0], pair[1])),
+    }
+}
+
+/// The sign of a series and its name, from `x` on, in the `middle` of the row.
+fn draw(drawing: &mut Drawing, (series, colour): (&Series, &str), [x, middle]: [f64; 2]) {
+    match series.style {
+        Style::Bars => {
+            let style = format!("fill=\"{colour}\" fill-opacity=\"0.55\"");
+            drawing.rect([x + 7.0, middle - 3.5], [12.0, 7.0], &style);
+        }
+        Style::Points => {
+            drawing.circle([x + 13.0, middle], 2.4, &format!("fill=\"none\" stroke=\"{colour}\""));
+        }
+        style => {
+            drawing.line([x + 5.0, middle], [x + 21.0, middle], colour, weight(style, 0.0), dashes(style))
+        }
+    }
+    drawing.text([x + SIGN, middle + 0.36 * SMALL], SMALL, Anchor::Start, "", &series.name);
+}

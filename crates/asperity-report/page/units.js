@@ -1,14 +1,18 @@
 // Numbers with SI prefixes, ticks at round numbers.
 
 const PREFIXES = { "-4": "p", "-3": "n", "-2": "µ", "-1": "m", 0: "", 1: "k", 2: "M", 3: "G" };
-const PREFIXED = { m: [-4, 0], s: [-3, 0], Pa: [-1, 3], N: [-3, 2], J: [-4, 1], W: [-4, 1], Hz: [-2, 3] };
+const PREFIXED = {
+  m: [-4, 0], s: [-3, 0], "m/s": [-3, 1], Pa: [-1, 3], Hz: [-2, 3],
+  N: [-3, 2], "N m": [-3, 2], "N/m": [-3, 3], "N/m2": [-1, 3], J: [-4, 1], "J/m": [-4, 1], W: [-4, 1], "W/m": [-4, 1],
+};
 const superscript = (n) => String(n).replace(/[-0-9]/g, (c) => (c === "-" ? "⁻" : "⁰¹²³⁴⁵⁶⁷⁸⁹"[c]));
 
 /** The unit to show numbers in whose largest magnitude is `largest` in the SI unit `unit`. */
 function shown(unit, largest) {
   const inverse = unit.startsWith("1/");
   const base = inverse ? unit.slice(2) : unit;
-  const [, letters, digits] = /^(.*?)([0-9]*)$/.exec(base);
+  // The prefix of a quotient is that of its first unit, to the first power.
+  const [, letters, digits] = base.includes("/") ? [base, base, ""] : /^(.*?)([0-9]*)$/.exec(base);
   const range = PREFIXED[letters];
   if (!range) return { factor: 1, text: unit === "1" ? "" : unit };
   const power = digits ? Number(digits) : 1;
@@ -19,7 +23,7 @@ function shown(unit, largest) {
     prefix = inverse ? -steps : steps;
   }
   prefix = Math.min(Math.max(prefix, range[0]), range[1]);
-  const text = (inverse ? "1/" : "") + PREFIXES[prefix] + letters + (power === 1 ? "" : superscript(power));
+  const text = (inverse ? "1/" : "") + PREFIXES[prefix] + letters.replace("m2", "m²") + (power === 1 ? "" : superscript(power));
   return { factor: Math.pow(10, -3 * prefix * exponent), text };
 }
 

@@ -51,8 +51,37 @@ fn browser() -> Option<PathBuf> {
     std::env::split_paths(&path).flat_map(|dir| names.map(|name| dir.join(name))).find(|file| file.is_file())
 }
 
+/// Steady states at four velocities: they stand where the page has times else.
+const SWEEP: &str = r#"
+[domain]
+cells = [32, 32]
+size = ["0.1 mm", "0.1 mm"]
+boundary = "periodic"
+[[surface]]
+kind = "self-affine"
+hurst = 0.8
+rms_gradient = 0.1
+longest = "50 um"
+shortest = "25 um"
+seed = 1
+[[body]]
+poisson = 0.5
+material = { model = "zener", shear = "10 MPa", shear_kelvin = "1 MPa", retardation_time = "10 ms" }
+[load]
+control = "pressure"
+history = { kind = "step", value = "0.1 MPa" }
+[motion.steady]
+velocities = ["0.1 mm/s", "1 mm/s", "10 mm/s", "100 mm/s"]
+[output]
+fields = ["pressure", "gap"]
+"#;
+
 fn result(directory: &Path) -> Reader {
-    let case = Case::parse(CASE, directory, &[]).unwrap();
+    solved(CASE, directory)
+}
+
+fn solved(case: &str, directory: &Path) -> Reader {
+    let case = Case::parse(case, directory, &[]).unwrap();
     let path = directory.join("result.zarr");
     run(&case, &RunOptions { output: Some(path.clone()), ..RunOptions::default() }, |_| {}).unwrap();
     Reader::open(&path).unwrap()
@@ -141,6 +170,23 @@ fn the_report_works_in_a_browser() {
         assert!(seen["charts"].as_u64() >= Some(9), "{seen}");
         assert_eq!(seen["wide"], true, "nothing is wider than a window of {size}");
     }
+}
+
+#[test]
+fn the_report_of_a_sweep_over_velocities_works_in_a_browser() {
+    let Some(browser) = browser() else {
+        eprintln!("skipped: no Chromium or Chrome on the path");
+        return;
+    };
+    let directory = tempfile::tempdir().unwrap();
+    let reader = solved(SWEEP, directory.path());
+    let html = page(&reader, &Options::default()).unwrap();
+    let seen = seen(&browser, directory.path(), &html, "1200,900");
+    assert_eq!(seen["faults"], serde_json::json!([]), "{seen}");
+    assert!(seen["last"].as_str().unwrap().starts_with("v = 100 mm/s, load"), "{seen}");
+    assert!(seen["read"].as_str().unwrap().starts_with("velocity 100 mm/s"), "{seen}");
+    // The theory stands beside the computed area.
+    assert!(seen["read"].as_str().unwrap().contains("Persson's theory"), "{seen}");
 }
 
 #[test]

@@ -55,7 +55,7 @@ impl<'a> Legend<'a> {
         let mut rows: Vec<Vec<_>> = vec![];
         let mut used = f64::INFINITY;
         for entry in &self.named {
-            let own = SIGN + font::width(&entry.0.name, SMALL) + 6.0;
+            let own = SIGN + font::width(&entry.0.name, SMALL) + 3.0;
             if used + own > width {
                 rows.push(vec![]);
                 used = 0.0;
@@ -83,7 +83,7 @@ impl<'a> Legend<'a> {
             let mut x = left - 5.0;
             for entry in row {
                 draw(drawing, *entry, [x, first + Self::ROW * (n as f64 + 0.5)]);
-                x += SIGN + font::width(&entry.0.name, SMALL) + 6.0;
+                x += SIGN + font::width(&entry.0.name, SMALL) + 3.0;
             }
         }
     }

@@ -31,6 +31,8 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
         series.insert(scalar.name.into(), json!(reader.series(scalar.name)?));
         units.insert(scalar.name.into(), json!(scalar.units));
     }
+    // What the rows follow, of a sweep the velocities.
+    series.insert("time".into(), json!(reader.series("time")?));
     let rows = Rows::of(reader)?;
     let theory = persson(reader)?;
     let grid = &reader.header().grid;

@@ -162,7 +162,9 @@ class Chart {
     const { x, y, series } = this.spec;
     if (n !== null && series[0] && n < series[0].x.length) this.legend.append(make("span", {}, `${x.label} ${words(series[0].x[n], x.unit || "")}`));
     series.forEach((one, k) => {
-      const swatch = make("i", { style: `background: var(--c${k % 4})` });
+      const colour = `var(--c${k % 4})`;
+      const fill = one.dashed ? `repeating-linear-gradient(90deg, ${colour} 0 4px, transparent 4px 7px)` : colour;
+      const swatch = make("i", { style: `background: ${fill}` });
       let text = one.name || "";
       if (n !== null && n < one.x.length) {
         text += (text ? " " : "") + words(one.y[n], y.unit || "");

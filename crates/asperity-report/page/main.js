@@ -44,7 +44,7 @@ const PANELS = [
         ...(state.series.persson_contact_area ? [["Persson's theory", "persson_contact_area"]] : [])]],
   ["Approach", "approach", [["", "approach"]]],
   ["Load", "load", [["", "load"]]],
-  ["Pressure", "pressure", [["mean", "mean_pressure"], ["largest", "max_pressure"]]],
+  ["Pressure", "pressure", [["nominal mean", "mean_pressure"], ["largest", "max_pressure"], ["mean over the contact", "contact_pressure"]]],
 ];
 
 /** A series whose infinite numbers, null in JSON, are gaps. */
@@ -92,9 +92,9 @@ function materialPanels() {
   const time = { label: "time", unit: "s", log: true };
   new Chart($("curves"), { title: "Contact creep compliance C(t)", x: time, y: { label: "compliance", unit: "1/Pa" }, series: [{ name: "", x: m.time, y: m.creep }] });
   if (m.relaxation) new Chart($("curves"), { title: "Contact relaxation modulus E*(t)", x: time, y: { label: "modulus", unit: "Pa", log: m.decades > 1 }, series: [{ name: "", x: m.time, y: m.relaxation }] });
-  const omega = { label: "angular frequency", unit: "rad/s", log: true };
-  new Chart($("curves"), { title: "Storage and loss modulus", x: omega, y: { label: "modulus", unit: "Pa", log: true }, series: [{ name: "storage", x: m.omega, y: m.storage }, { name: "loss", x: m.omega, y: m.loss, dashed: true }] });
-  new Chart($("curves"), { title: "Loss tangent", x: omega, y: { label: "tan δ", unit: "" }, series: [{ name: "", x: m.omega, y: m.tangent }] });
+  const frequency = { label: "frequency", unit: "Hz", log: true };
+  new Chart($("curves"), { title: "Storage and loss modulus", x: frequency, y: { label: "modulus", unit: "Pa", log: true }, series: [{ name: "storage", x: m.frequency, y: m.storage }, { name: "loss", x: m.frequency, y: m.loss, dashed: true }] });
+  new Chart($("curves"), { title: "Loss tangent", x: frequency, y: { label: "tan δ", unit: "" }, series: [{ name: "", x: m.frequency, y: m.tangent }] });
 }
 
 const leaks = [];
@@ -154,7 +154,8 @@ async function showMap() {
   const instant = state.instants[chosen.instant];
   const map = await load(`${kind.name}-${chosen.instant}`);
   if (!map || kind !== field() || instant !== state.instants[chosen.instant]) return;
-  const range = $("fixed").checked && kind.range ? kind.range : [map.min, map.max];
+  const range = $("fixed").checked && kind.range ? [...kind.range] : [map.min, map.max];
+  if (kind.colours === "pressure") range[0] = 0;
   if (state.grid.line) await showOverTime(kind, instant);
   else view.show({ map, colours: kind.colours, low: range[0], high: range[1], unit: kind.unit, label: kind.label }, { along: chosen.along, share: chosen.share });
   const row = instant.row;
@@ -255,7 +256,7 @@ async function showRelief(instant) {
   let low = Infinity, high = -Infinity;
   for (const v of z) if (!isNaN(v)) [low, high] = [Math.min(low, v), Math.max(high, v)];
   const shade = pressure && pressure.max > 0 ? Float32Array.from(pressure.values, (p) => p / pressure.max) : Float32Array.from(z, (v) => (high > low ? (v - low) / (high - low) : 0));
-  relief.show({ nx: map.nx, ny: map.ny, z, shade, colours: pressure && pressure.max > 0 ? "heat" : "sequential" });
+  relief.show({ nx: map.nx, ny: map.ny, z, shade, colours: pressure && pressure.max > 0 ? "pressure" : "sequential" });
   $("relief-note").textContent = `Surface of the deformable half-space, heights from ${words(low, "m")} to ${words(high, "m")}, stretched upwards; coloured by ${pressure && pressure.max > 0 ? "pressure" : "height"}. Drag, or use the arrow keys, to turn it.`;
 }
 

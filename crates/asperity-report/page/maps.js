@@ -49,7 +49,9 @@ function picture(map, colours, low, high) {
       if (!isNaN(value)) {
         if (colours === "states") colour = STATES[Math.min(Math.max(Math.round(value), 0), 2)][1];
         else {
-          const k = 3 * Math.min(Math.max(Math.round((value - low) * scale), 0), 255);
+          // The first colour of the pressure is that of no contact.
+          const least = colours === "pressure" && value > 0 ? 1 : 0;
+          const k = 3 * Math.min(Math.max(Math.round((value - low) * scale), least), 255);
           colour = [lut[k], lut[k + 1], lut[k + 2]];
         }
       }

@@ -7,9 +7,14 @@ pub enum Colours {
     Sequential,
     /// Blue over white to red, white at zero.
     Diverging,
-    /// Black over red to light yellow (inferno): pressures.
+    /// Black over red to light yellow (inferno).
     Heat,
+    /// The same from 0 on, but 0 itself light: where there is no pressure there is no contact.
+    Pressure,
 }
+
+/// Where bodies do not touch.
+pub(crate) const OPEN: [u8; 3] = [240, 240, 238];
 
 impl Colours {
     /// The colour at a share of the range, 0 to 1: red, green, blue.
@@ -19,7 +24,8 @@ impl Colours {
             Colours::Sequential => colorous::VIRIDIS.eval_continuous(share),
             // The scale from red to blue starts with its warm end; here warm is high.
             Colours::Diverging => colorous::RED_BLUE.eval_continuous(1.0 - share),
-            Colours::Heat => colorous::INFERNO.eval_continuous(share),
+            Colours::Pressure if share <= 0.0 => return OPEN,
+            Colours::Heat | Colours::Pressure => colorous::INFERNO.eval_continuous(share),
         };
         [colour.r, colour.g, colour.b]
     }
@@ -32,6 +38,7 @@ impl Colours {
                 let most = low.abs().max(high.abs());
                 [-most, most]
             }
+            Colours::Pressure => [0.0, high],
             _ if low == high => [low, low + low.abs()],
             _ => [low, high],
         }
@@ -45,6 +52,8 @@ mod tests {
     #[test]
     fn high_values_are_light_or_warm() {
         let light = |[r, g, b]: [u8; 3]| u32::from(r) + u32::from(g) + u32::from(b);
+        assert_eq!(Colours::Pressure.at(0.0), OPEN);
+        assert_eq!(Colours::Pressure.at(1e-9), Colours::Heat.at(0.0));
         for colours in [Colours::Sequential, Colours::Heat] {
             let steps: Vec<u32> = (0..=10).map(|k| light(colours.at(f64::from(k) / 10.0))).collect();
             assert!(steps[10] > 2 * steps[0] && steps.windows(2).all(|pair| pair[1] >= pair[0]), "{steps:?}");

@@ -222,7 +222,9 @@ fn draw_series(
             let foot = zero.unwrap_or(bottom).min(bottom);
             let style = format!("fill=\"{colour}\" fill-opacity=\"0.55\"");
             for [x, y] in series.points() {
-                if let (Some([a, top]), Some([b, _])) = (at([x - half, y]), at([x + half, y])) {
+                if let (Some([a, top]), Some([b, _])) = (at([x - half, y]), at([x + half, y]))
+                    && top != foot
+                {
                     drawing.rect([a, top.min(foot)], [b - a, (foot - top).abs()], &style);
                 }
             }

@@ -1,6 +1,6 @@
 //! A panel of a map: values over the area in colours, with colour bar and scale bar.
 
-use asperity_io::readable::shown;
+use asperity_io::readable::{quantity, shown};
 use ndarray::{Array2, ArrayView2};
 
 use super::axis::{Axis, Ruler};
@@ -131,9 +131,14 @@ impl Map {
         let [width, height] = place.size;
         let bar = match &self.meaning {
             Values::Quantity { label, unit, colours, range } => {
-                let ends = range.unwrap_or_else(|| colours.ends(extent(&self.values)));
+                let whole = extent(&self.values);
+                let ends = range.unwrap_or_else(|| colours.ends(robust(&self.values, *colours, whole)));
                 let axis = Axis::linear(label.clone(), unit.clone()).between(ends[0], ends[1]);
-                Some((Ruler::new(&axis, ends, 0.0, (height - 2.0 * TEXT) / 32.0), ends, *colours))
+                let beyond = [0, 1].map(|end| {
+                    let out = if end == 0 { whole[0] < ends[0] } else { whole[1] > ends[1] };
+                    out.then(|| quantity(whole[end], unit))
+                });
+                Some((Ruler::new(&axis, ends, 0.0, (height - 2.0 * TEXT) / 32.0), ends, *colours, beyond))
             }
             Values::States(_) => None,
         };
@@ -186,10 +191,10 @@ impl Map {
         frame(drawing, &x, &y, [left, top, right, bottom], [left - labels - 10.0, bottom + foot - 5.0]);
         let picture = match (&self.meaning, &bar) {
             (Values::States(states), _) => raster::state_picture(&self.values, states),
-            (_, Some((_, ends, colours))) if down => {
+            (_, Some((_, ends, colours, _))) if down => {
                 raster::quantity(&self.values.slice(ndarray::s![.., ..;-1]).to_owned(), *ends, *colours)
             }
-            (_, Some((_, ends, colours))) => raster::quantity(&self.values, *ends, *colours),
+            (_, Some((_, ends, colours, _))) => raster::quantity(&self.values, *ends, *colours),
             (_, None) => Vec::new(),
         };
         // The slabs of a section are thicker than its cells.
@@ -205,7 +210,7 @@ impl Map {
         if h > 50.0 && !of_times {
             scale_bar(drawing, [left, bottom], w, self.size[0]);
         }
-        if let Some((ruler, ends, colours)) = bar {
+        if let Some((ruler, ends, colours, beyond)) = bar {
             // Beside a strip the bar is longer than the map.
             let more = 0.5 * (room_y.min(110.0) - h).max(0.0);
             let (top, bottom) = (top - more, bottom + more);
@@ -217,6 +222,13 @@ impl Map {
                 [right + 8.0, top, bottom],
                 bar_labels,
             );
+            // Values beyond the ends of the colours, above and below the bar.
+            let places = [bottom + SMALL + 2.0, top - 4.0];
+            for ((value, y), arrow) in beyond.into_iter().zip(places).zip(["↓", "↑"]) {
+                if let Some(value) = value {
+                    drawing.text([right + 6.0, y], SMALL, Anchor::Start, "", &format!("{arrow} {value}"));
+                }
+            }
         }
         if let Values::States(states) = &self.meaning {
             self.names(drawing, states, [left, top], w);
@@ -277,6 +289,26 @@ fn colour_bar(
         }
     }
     drawing.upward_text([right + 5.0 + labels + TEXT + 1.0, 0.5 * (top + bottom)], TEXT, &ruler.title);
+}
+
+/// Share of the values that may lie beyond either end of the colours.
+const OUTLIERS: f64 = 1e-3;
+
+/// The range of the colours: least and greatest value, or the quantiles at a thousandth and at all but a thousandth where a few
+/// pits or spikes would take more than a third of the colours.
+fn robust(values: &Array2<f64>, colours: Colours, whole: [f64; 2]) -> [f64; 2] {
+    if !matches!(colours, Colours::Sequential | Colours::Diverging) {
+        return whole;
+    }
+    let mut finite: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    let last = finite.len().saturating_sub(1);
+    let few = (OUTLIERS * last as f64).ceil() as usize;
+    if last < 1000 {
+        return whole;
+    }
+    let low = *finite.select_nth_unstable_by(few, f64::total_cmp).1;
+    let high = *finite.select_nth_unstable_by(last - few, f64::total_cmp).1;
+    if high > low && whole[1] - whole[0] > 1.5 * (high - low) { [low, high] } else { whole }
 }
 
 /// Least and greatest of the finite values.

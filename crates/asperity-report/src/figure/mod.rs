@@ -23,6 +23,7 @@ mod write;
 
 pub use axis::{Axis, Scale};
 pub use colours::Colours;
+pub(crate) use colours::OPEN;
 pub use curves::{Curves, Series, Style};
 pub use map::{Axes, Map, UNDEFINED, Values};
 pub(crate) use raster::{means, states};

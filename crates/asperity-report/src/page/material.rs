@@ -43,7 +43,7 @@ pub(super) fn curves(reader: &Reader) -> Value {
         "creep": time.iter().map(|t| creep.value(*t)).collect::<Vec<f64>>(),
         "relaxation": modulus,
         "decades": decades,
-        "omega": omega,
+        "frequency": omega.iter().map(|w| w / TAU).collect::<Vec<f64>>(),
         "storage": column(0),
         "loss": column(1),
         "tangent": column(2),

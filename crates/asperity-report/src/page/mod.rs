@@ -4,6 +4,7 @@
 //! the file would grow beyond [`Options::bytes`]; the page says so.
 
 mod blob;
+mod facts;
 mod live;
 mod maps;
 mod material;

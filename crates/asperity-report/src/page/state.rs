@@ -7,6 +7,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Map, Value, json};
 
+use super::facts::facts;
 use super::maps::Maps;
 use super::{material, stress};
 use crate::figure::Colours;
@@ -33,6 +34,12 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
     }
     // What the rows follow, of a sweep the velocities.
     series.insert("time".into(), json!(reader.series("time")?));
+    let contact = reader.series("load")?.into_iter().zip(reader.series("contact_area")?);
+    series.insert(
+        "contact_pressure".into(),
+        json!(contact.map(|(load, area)| load / area).collect::<Vec<_>>()),
+    );
+    units.insert("contact_pressure".into(), json!("Pa"));
     let rows = Rows::of(reader)?;
     let theory = persson(reader)?;
     let grid = &reader.header().grid;
@@ -75,7 +82,7 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
         "colours": {
             "sequential": lut(Colours::Sequential),
             "diverging": lut(Colours::Diverging),
-            "heat": lut(Colours::Heat),
+            "pressure": lut(Colours::Pressure),
         },
         "surface": maps.surface,
         "material": material::curves(reader),
@@ -117,7 +124,7 @@ fn quantities(reader: &Reader, theory: bool) -> Vec<Value> {
 
 fn field((kind, range): &(FieldKind, Option<[f64; 2]>)) -> Value {
     let (title, label, colours) = match kind {
-        FieldKind::Pressure => ("Pressure", "pressure", "heat"),
+        FieldKind::Pressure => ("Pressure", "pressure", "pressure"),
         FieldKind::Gap => ("Gap", "gap", "sequential"),
         FieldKind::Displacement => ("Displacement", "displacement", "sequential"),
         FieldKind::Flattening => ("Permanent flattening", "flattening", "sequential"),
@@ -170,90 +177,16 @@ fn headline(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
         ],
         ["mean gap".into(), quantity(last.mean_gap, "m")],
         [
-            format!("largest pressure, mean {}", quantity(last.mean_pressure, "Pa")),
+            format!(
+                "largest pressure; mean over the contact {}, nominal {}",
+                quantity(last.load / last.contact_area, "Pa"),
+                quantity(last.mean_pressure, "Pa")
+            ),
             quantity(last.max_pressure, "Pa"),
         ],
     ];
     if last.capped_area > 0.0 {
         lines.push(["at the hardness".into(), quantity(last.capped_area, area)]);
     }
-    Ok(lines)
-}
-
-/// The case and the work, in words.
-fn facts(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
-    let header = reader.header();
-    let setup = &header.setup;
-    let [nx, ny] = header.grid.cells();
-    let [lx, ly] = header.grid.size();
-    let mut lines = vec![[
-        "Domain".to_owned(),
-        match header.grid.is_line() {
-            true => format!("a line of {nx} cells, {}, plane strain", quantity(lx, "m")),
-            false => format!("{nx} × {ny} cells, {} × {}", quantity(lx, "m"), quantity(ly, "m")),
-        },
-    ]];
-    let mut line =
-        |name: &str, value: Option<String>| lines.extend(value.map(|value| [name.to_owned(), value]));
-    let text = |key: &str| setup.get(key).and_then(Value::as_str);
-    let list = |key: &str| setup.get(key).and_then(Value::as_array).map(|list| list.iter());
-    let names = |key: &str| {
-        list(key)
-            .map(|list| list.filter_map(Value::as_str).collect::<Vec<_>>().join(", "))
-            .filter(|s| !s.is_empty())
-    };
-    let number = |key: &str, unit: &str| setup.get(key).and_then(Value::as_f64).map(|v| quantity(v, unit));
-    line(
-        "Boundary",
-        text("boundary").map(|word| match word {
-            "periodic" => "periodic half-space".to_owned(),
-            _ => "free half-space".to_owned(),
-        }),
-    );
-    line("Surfaces", names("surfaces"));
-    line("Deformable bodies", names("bodies"));
-    line("Instantaneous contact modulus, 1/C(0)", number("instantaneous_modulus", "Pa"));
-    line("Relaxed contact modulus, 1/C(∞)", number("relaxed_modulus", "Pa"));
-    let times = list("retardation_times").map(|list| {
-        let times: Vec<f64> = list.filter_map(Value::as_f64).collect();
-        match times[..] {
-            [] => "none (elastic)".to_owned(),
-            [first, .., last] if times.len() > 4 => {
-                format!("{} from {} to {}", times.len(), quantity(first, "s"), quantity(last, "s"))
-            }
-            _ => times.iter().map(|t| quantity(*t, "s")).collect::<Vec<_>>().join(", "),
-        }
-    });
-    line("Retardation times", times);
-    line("Hardness", number("hardness", "Pa"));
-    if header.is_sweep() {
-        let rows = reader.series("time")?;
-        let ends = rows.first().zip(rows.last());
-        let words =
-            |(from, to): (&f64, &f64)| format!("{} to {}", quantity(*from, "m/s"), quantity(*to, "m/s"));
-        line("Velocities", ends.map(words));
-    } else {
-        line("Time", number("end", "s").map(|end| format!("0 to {end}")));
-    }
-    line("Scheme", text("scheme").map(str::to_owned));
-    line(
-        "Tolerance of the solver",
-        setup.get("solver_tolerance").and_then(Value::as_f64).map(|v| format!("{v:e}")),
-    );
-    let work = reader.work();
-    let per_row = work.convolutions as f64 / reader.len().max(1) as f64;
-    let threads = work.threads.map_or(String::new(), |n| format!(" on {n} threads"));
-    line(
-        "Work",
-        Some(format!(
-            "{} convolutions, {per_row:.1} per row; {} iterations; {}{threads}",
-            work.convolutions,
-            work.iterations,
-            quantity(work.wall_s, "s"),
-        )),
-    );
-    line("Peak memory", work.peak_memory_bytes.map(|bytes| format!("{:.1} MiB", bytes as f64 / 1048576.0)));
-    let worst = reader.series("certificate")?.into_iter().fold(0.0, f64::max);
-    line("Largest certified error of the pressure", Some(format!("{worst:.1e} (relative, energy norm)")));
     Ok(lines)
 }

@@ -27,9 +27,13 @@ pub(super) fn evolution(reader: &Reader, options: &Options) -> Result<Figure, St
     }
     let approach = Curves::new("Approach", axis(), Axis::linear("approach", "m"));
     let load = Curves::new("Load", axis(), Axis::linear("load", grid.units("N")));
+    let loads = reader.series("load")?;
+    let over_contact: Vec<f64> =
+        loads.iter().zip(reader.series("contact_area")?).map(|(load, area)| load / area).collect();
     let pressure = Curves::new("Pressure", axis(), Axis::linear("pressure", "Pa"))
-        .with(line("mean", "mean_pressure")?)
-        .with(line("largest", "max_pressure")?);
+        .with(line("nominal mean", "mean_pressure")?)
+        .with(line("largest", "max_pressure")?)
+        .with(Series::new("mean over the contact", Style::Line, time.clone(), over_contact));
     Ok(Figure::new("")
         .with(area)
         .with(nameless(approach, &time, reader.series("approach")?))
@@ -127,7 +131,38 @@ pub(super) fn load_displacement(reader: &Reader) -> Result<Figure, StoreError> {
     times(reader)?;
     let panel =
         Curves::new("", Axis::linear("approach", "m"), Axis::linear("load", reader.header().grid.units("N")));
-    Ok(Figure::new("").with(nameless(panel, &reader.series("approach")?, reader.series("load")?)))
+    let [x, y] = [reader.series("approach")?, reader.series("load")?];
+    let figure = Figure::new("").with(nameless(panel.clone(), &x, y.clone()));
+    let Some(cycle) = last_cycle(&y).or_else(|| last_cycle(&x)) else { return Ok(figure) };
+    let last = Curves { title: "Last cycle".into(), ..panel };
+    Ok(figure.with(nameless(last, &x[cycle.clone()], y[cycle].to_vec())))
+}
+
+/// Rows from the last but one to the last peak of a course that has three of them or more. A peak is higher than the lowest value
+/// on both sides, back to the next higher one, by a tenth of the range.
+fn last_cycle(course: &[f64]) -> Option<std::ops::RangeInclusive<usize>> {
+    let ends = course.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(*v), b.max(*v)]);
+    let least = 0.1 * (ends[1] - ends[0]);
+    let (mut peaks, mut top, mut bottom) = (vec![], 0, 0);
+    let mut rising = true;
+    for (n, value) in course.iter().enumerate() {
+        if rising {
+            if *value > course[top] {
+                top = n;
+            } else if course[top] - value > least {
+                peaks.push(top);
+                (rising, bottom) = (false, n);
+            }
+        } else if *value < course[bottom] {
+            bottom = n;
+        } else if value - course[bottom] > least {
+            (rising, top) = (true, n);
+        }
+    }
+    match peaks[..] {
+        [.., _, from, to] if least > 0.0 => Some(from..=to),
+        _ => None,
+    }
 }
 
 pub(super) fn work(reader: &Reader) -> Result<Figure, StoreError> {

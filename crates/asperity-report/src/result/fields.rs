@@ -3,11 +3,11 @@
 use asperity_io::store::{At, FieldKind, Reader, StoreError};
 
 use super::{caption, line};
-use crate::figure::{Colours, Figure, Map, Panel};
+use crate::figure::{Colours, Figure, Map, OPEN, Panel};
 
 /// Names and colours of the contact states.
 pub(super) const CONTACT_STATES: [(&str, [u8; 3]); 3] =
-    [("open", [240, 240, 238]), ("contact", [0, 114, 178]), ("at hardness", [213, 94, 0])];
+    [("open", OPEN), ("contact", [0, 114, 178]), ("at hardness", [213, 94, 0])];
 
 pub(super) fn map(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, StoreError> {
     if reader.header().grid.is_line() {
@@ -16,7 +16,7 @@ pub(super) fn map(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, St
     let values = reader.field(kind, at)?;
     let index = reader.index(at)?;
     let (title, colours) = match kind {
-        FieldKind::Pressure => ("Pressure", Colours::Heat),
+        FieldKind::Pressure => ("Pressure", Colours::Pressure),
         FieldKind::Gap => ("Gap", Colours::Sequential),
         FieldKind::Displacement => ("Displacement", Colours::Sequential),
         FieldKind::Flattening => ("Permanent flattening", Colours::Sequential),
@@ -24,7 +24,8 @@ pub(super) fn map(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, St
     };
     let size = reader.header().grid.size();
     let map = Map::new("", [&title.to_lowercase(), kind.units()], colours, values.view(), size);
-    single(map, caption(reader, index)?)
+    let open = if kind == FieldKind::Pressure { " Light: no contact." } else { "" };
+    single(map, caption(reader, index)? + open)
 }
 
 pub(super) fn contact(reader: &Reader, at: At) -> Result<Figure, StoreError> {

@@ -123,7 +123,7 @@ pub(crate) fn over_time(reader: &Reader, kind: FieldKind) -> Result<Option<Map>,
             Map::states("", names, picture.view(), size)
         }
         kind => {
-            let colours = if kind == FieldKind::Pressure { Colours::Heat } else { Colours::Sequential };
+            let colours = if kind == FieldKind::Pressure { Colours::Pressure } else { Colours::Sequential };
             Map::new("", [title(kind), kind.units()], colours, picture.view(), size)
         }
     };

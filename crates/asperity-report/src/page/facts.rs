@@ -1,0 +1,137 @@
+//! The case and the work of a result, in words.
+
+use asperity_io::cycles;
+use asperity_io::readable::quantity;
+use asperity_io::store::{Reader, StoreError};
+use serde_json::{Map, Value};
+
+/// The case and the work, in words.
+pub(super) fn facts(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
+    let header = reader.header();
+    let setup = &header.setup;
+    let [nx, ny] = header.grid.cells();
+    let [lx, ly] = header.grid.size();
+    let mut lines = vec![[
+        "Domain".to_owned(),
+        match header.grid.is_line() {
+            true => format!("a line of {nx} cells, {}, plane strain", quantity(lx, "m")),
+            false => format!("{nx} × {ny} cells, {} × {}", quantity(lx, "m"), quantity(ly, "m")),
+        },
+    ]];
+    let mut line =
+        |name: &str, value: Option<String>| lines.extend(value.map(|value| [name.to_owned(), value]));
+    let text = |key: &str| setup.get(key).and_then(Value::as_str);
+    let list = |key: &str| setup.get(key).and_then(Value::as_array).map(|list| list.iter());
+    let names = |key: &str| {
+        list(key)
+            .map(|list| list.filter_map(Value::as_str).collect::<Vec<_>>().join(", "))
+            .filter(|s| !s.is_empty())
+    };
+    let number = |key: &str, unit: &str| setup.get(key).and_then(Value::as_f64).map(|v| quantity(v, unit));
+    line(
+        "Boundary",
+        text("boundary").map(|word| match word {
+            "periodic" => "periodic half-space".to_owned(),
+            _ => "free half-space".to_owned(),
+        }),
+    );
+    line("Surfaces", names("surfaces"));
+    line("Deformable bodies", names("bodies"));
+    line("Instantaneous contact modulus, 1/C(0)", number("instantaneous_modulus", "Pa"));
+    line("Relaxed contact modulus, 1/C(∞)", number("relaxed_modulus", "Pa"));
+    let times = list("retardation_times").map(|list| {
+        let times: Vec<f64> = list.filter_map(Value::as_f64).collect();
+        match times[..] {
+            [] => "none (elastic)".to_owned(),
+            [first, .., last] if times.len() > 4 => {
+                format!("{} from {} to {}", times.len(), quantity(first, "s"), quantity(last, "s"))
+            }
+            _ => times.iter().map(|t| quantity(*t, "s")).collect::<Vec<_>>().join(", "),
+        }
+    });
+    line("Retardation times", times);
+    for [name, words] in materials(setup) {
+        line(&name, Some(words));
+    }
+    line("Temperature", temperature(setup));
+    line("Hardness", number("hardness", "Pa"));
+    if header.is_sweep() {
+        let rows = reader.series("time")?;
+        let ends = rows.first().zip(rows.last());
+        let words =
+            |(from, to): (&f64, &f64)| format!("{} to {}", quantity(*from, "m/s"), quantity(*to, "m/s"));
+        line("Velocities", ends.map(words));
+    } else {
+        line("Time", number("end", "s").map(|end| format!("0 to {end}")));
+    }
+    for [name, words] in last_cycles(reader)? {
+        line(&name, Some(words));
+    }
+    line("Scheme", text("scheme").map(str::to_owned));
+    line(
+        "Tolerance of the solver",
+        setup.get("solver_tolerance").and_then(Value::as_f64).map(|v| format!("{v:e}")),
+    );
+    let work = reader.work();
+    let per_row = work.convolutions as f64 / reader.len().max(1) as f64;
+    let threads = work.threads.map_or(String::new(), |n| format!(" on {n} threads"));
+    line(
+        "Work",
+        Some(format!(
+            "{} convolutions, {per_row:.1} per row; {} iterations; {}{threads}",
+            work.convolutions,
+            work.iterations,
+            quantity(work.wall_s, "s"),
+        )),
+    );
+    line("Peak memory", work.peak_memory_bytes.map(|bytes| format!("{:.1} MiB", bytes as f64 / 1048576.0)));
+    let worst = reader.series("certificate")?.into_iter().fold(0.0, f64::max);
+    line("Largest certified error of the pressure", Some(format!("{worst:.1e} (relative, energy norm)")));
+    Ok(lines)
+}
+
+/// What each body is made of: model, number of terms, file and misfit.
+fn materials(setup: &Map<String, Value>) -> Vec<[String; 2]> {
+    let list = setup.get("materials").and_then(Value::as_array).map(Vec::as_slice).unwrap_or_default();
+    let words = |material: &Value| {
+        let text = |key: &str| material.get(key).and_then(Value::as_str);
+        let number = |key: &str| material.get(key).and_then(Value::as_f64);
+        let terms = number("terms").filter(|terms| *terms > 0.0);
+        let parts = [
+            text("model").map(str::to_owned),
+            terms.map(|terms| format!("{terms} {}", if terms == 1.0 { "term" } else { "terms" })),
+            text("file").map(|file| format!("from {file}")),
+            number("rms_misfit").map(|misfit| format!("fitted to {:.2} % rms", 100.0 * misfit)),
+        ];
+        let name = format!("Material of {}", text("body").unwrap_or("a body"));
+        [name, parts.into_iter().flatten().collect::<Vec<_>>().join(", ")]
+    };
+    list.iter().map(words).collect()
+}
+
+/// The least and the greatest temperature.
+fn temperature(setup: &Map<String, Value>) -> Option<String> {
+    let ends: Vec<f64> = setup.get("temperature")?.as_array()?.iter().filter_map(Value::as_f64).collect();
+    let celsius = |kelvin: &f64| format!("{:.1} °C", kelvin - 273.15);
+    match ends[..] {
+        [low, high] if low < high => Some(format!("{} to {}", celsius(&low), celsius(&high))),
+        [first, ..] => Some(celsius(&first)),
+        [] => None,
+    }
+}
+
+/// The last full cycle of each stage with a sine.
+fn last_cycles(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
+    let grid = &reader.header().grid;
+    let of_stage = |part: &cycles::Cyclic| {
+        let cycle = part.cycles.last()?;
+        let words = format!(
+            "loss angle {:.2}°, {} lost, dynamic stiffness {}",
+            cycle.loss_angle.to_degrees(),
+            quantity(cycle.dissipated_energy, grid.units("J")),
+            quantity(cycle.stiffness, grid.units("N/m"))
+        );
+        Some([format!("Last of {} cycles at {}", part.cycles.len(), quantity(part.frequency, "Hz")), words])
+    };
+    Ok(cycles::of_result(reader)?.iter().filter_map(of_stage).collect())
+}

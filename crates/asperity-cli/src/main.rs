@@ -45,6 +45,7 @@ fn run(command: Command) -> Result<(), Failure> {
         Command::Report(report) => commands::report::run(&report),
         Command::View(view) => commands::view::run(&view),
         Command::Stress(stress) => commands::stress::run(&stress),
+        Command::Compare(compare) => commands::compare::run(&compare),
         Command::Plot(plot) => commands::plot::run(&plot),
         Command::Leak(leak) => commands::leak::run(&leak),
         Command::Material(material) => commands::material::run(&material),

@@ -697,3 +697,39 @@ fn a_result_is_served_to_those_who_know_its_address() {
     server.kill().unwrap();
     server.wait().unwrap();
 }
+
+#[test]
+fn two_results_are_compared_and_drawn_together() {
+    let (_keep, dir) = small();
+    for (load, name) in [("0.5 N", "a.zarr"), ("0.25 N", "b.zarr")] {
+        let set = format!("load.history.peak=\"{load}\"");
+        let output = asperity(&dir, &["run", "small.toml", "-q", "-o", name, "--set", &set]);
+        assert!(output.status.success(), "{}", stderr(&output));
+    }
+    let output = asperity(&dir, &["compare", "a.zarr", "b.zarr", "--json"]);
+    let object: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(object["case"].as_object().unwrap().len(), 1, "{object}");
+    assert_eq!(object["case"]["load.history.peak"], serde_json::json!(["\"0.5 N\"", "\"0.25 N\""]));
+    assert_eq!(object["common_rows"], 17);
+    let number = |name: &str| {
+        let list = object["numbers"].as_array().unwrap();
+        list.iter().find(|number| number["name"] == name).unwrap().clone()
+    };
+    // Half of the load in every row; nothing touches at the end.
+    assert!((number("load")["largest_difference"].as_f64().unwrap() - 0.5).abs() < 1e-12);
+    assert_eq!(number("load")["last"], serde_json::json!([0.0, 0.0]));
+    let same = asperity(&dir, &["compare", "a.zarr", "a.zarr"]);
+    assert!(stdout(&same).starts_with("The cases are the same."), "{}", stdout(&same));
+    assert!(stdout(&same).lines().filter(|line| line.ends_with("0.00e0")).count() > 5, "{}", stdout(&same));
+
+    let output = asperity(&dir, &["plot", "a.zarr", "b.zarr", "evolution", "-o", "both.svg"]);
+    assert!(output.status.success(), "{}", stderr(&output));
+    let figure = std::fs::read_to_string(dir.join("both.svg")).unwrap();
+    assert!(figure.contains(">a: largest<") && figure.contains(">b: largest<"));
+    // Four panels, as of one result.
+    assert_eq!(figure.matches(">time [s]<").count(), 4);
+    let maps = asperity(&dir, &["plot", "a.zarr", "b.zarr", "pressure"]);
+    assert!(maps.status.success() && dir.join("a-b-pressure.png").is_file(), "{}", stderr(&maps));
+    let none = asperity(&dir, &["plot", "evolution"]);
+    assert_eq!(none.status.code(), Some(2));
+}

@@ -2,6 +2,7 @@
 
 pub mod case;
 pub mod choice;
+pub mod compare;
 pub mod curve;
 pub mod cycles;
 mod digest;

@@ -14,7 +14,7 @@ use clap_complete::Shell;
 
 pub use leak::{FluidOptions, Leak};
 pub use material::{Fit, FitIndentation, Material, Show};
-pub use result::{Export, Plot, Report, Reproduce, ShowResult, VerifyResult, View};
+pub use result::{Compare, Export, Plot, Report, Reproduce, ShowResult, VerifyResult, View};
 pub use run::{Check, New, Run, Verify};
 pub use stress::Stress;
 pub use surface::{
@@ -58,8 +58,10 @@ pub enum Command {
     Report(Report),
     /// View a result in the browser with maps at full resolution, also while it is being written
     View(View),
-    /// Draw a figure of a result as PNG, SVG or PDF
+    /// Draw a figure of a result, or of several results together, as PNG, SVG or PDF
     Plot(Plot),
+    /// List what differs between two results: in their cases, at their ends, and at the times that both have
+    Compare(Compare),
     /// Compute the stress below the surface of a result: largest values with places, profile over depth, first yield
     Stress(Stress),
     /// Compute how much a fluid leaks through the gap of a result over time, or of a map of the gap

@@ -54,9 +54,21 @@ pub struct View {
 }
 
 #[derive(Debug, clap::Args)]
-pub struct Plot {
+pub struct Compare {
     /// The result (a Zarr directory)
-    pub result: PathBuf,
+    pub first: PathBuf,
+    /// The result to compare with it
+    pub second: PathBuf,
+    /// Print one JSON object, in SI units
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct Plot {
+    /// The result (a Zarr directory); several: their curves in the same panels, their maps side by side
+    #[arg(required = true, value_name = "RESULT")]
+    pub results: Vec<PathBuf>,
     /// evolution, load-displacement, pressure, gap, displacement, contact, flattening, initial-gap, profile,
     /// histogram, spots, work, quantities, stress, leak or friction
     pub what: String,

@@ -1,6 +1,7 @@
 //! One file per command.
 
 pub mod check;
+pub mod compare;
 pub mod completions;
 pub mod export;
 pub mod findings;
@@ -23,8 +24,9 @@ pub mod view;
 
 use std::path::Path;
 
-use asperity_io::case::quantity::Time;
 use asperity_io::case::quantity::range::NonNegative;
+use asperity_io::case::quantity::{Time, Velocity};
+use asperity_io::store::{At, Reader};
 
 use crate::failure::Failure;
 use crate::words::read;
@@ -36,6 +38,15 @@ fn free(path: &Path, force: bool) -> Result<(), Failure> {
         return Err(Failure::input(format!("{path} already exists; choose another file or use --force")));
     }
     Ok(())
+}
+
+/// The instant of an option --time: a time, of a sweep a velocity; the last one where the option is not given.
+pub fn instant(reader: &Reader, text: Option<&str>) -> Result<At, Failure> {
+    let Some(text) = text else { return Ok(At::Last) };
+    Ok(At::Time(match reader.header().is_sweep() {
+        true => read::<Velocity>("--time", text, "10 mm/s")?.get(),
+        false => read::<Time>("--time", text, "500 s")?.get(),
+    }))
 }
 
 /// The times \[s\] of an option --times; `None` for all that are stored.

@@ -2,7 +2,6 @@
 
 use asperity::Grid;
 use asperity::quantities::Quantity;
-use asperity_io::case::quantity::Time;
 use asperity_io::cycles;
 use asperity_io::leakage::LeakHistory;
 use asperity_io::store::{At, Reader, Status, StoreError};
@@ -10,10 +9,11 @@ use asperity_io::stress::{Below, first_yield};
 use asperity_report::result::{contact, moment};
 use serde_json::json;
 
+use super::instant;
 use crate::args::ShowResult;
 use crate::failure::Failure;
 use crate::terminal::{shares, sparkline};
-use crate::words::{bytes, duration, quantity, read};
+use crate::words::{bytes, duration, quantity};
 
 /// Letters of the map and of the curves.
 const COLUMNS: usize = 56;
@@ -21,11 +21,8 @@ const SPARKS: usize = 40;
 
 /// Prints the summary.
 pub fn run(args: &ShowResult) -> Result<(), Failure> {
-    let at = match &args.time {
-        Some(text) => At::Time(read::<Time>("--time", text, "500 s")?.get()),
-        None => At::Last,
-    };
     let reader = Reader::open(&args.result).map_err(|error| Failure::input(error.to_string()))?;
+    let at = instant(&reader, args.time.as_deref())?;
     let text = if args.json { object(&reader) } else { text(&reader, at) };
     crate::print(&text.map_err(|error| Failure::input(error.to_string()))?)
 }

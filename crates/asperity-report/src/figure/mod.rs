@@ -122,6 +122,7 @@ impl Figure {
     /// The figure as SVG.
     pub fn to_svg(&self) -> String {
         let mut drawing = Drawing::default();
+        let heights = self.heights();
         let [width, height] = self.paper();
         let top = self.top();
         if !self.title.is_empty() {
@@ -129,8 +130,10 @@ impl Figure {
         }
         for (n, panel) in self.panels.iter().enumerate() {
             let (row, column) = (n / self.columns, n % self.columns);
-            let corner = [EDGE + column as f64 * self.panel[0], top + row as f64 * self.panel[1]];
-            let place = Place { corner, size: self.panel, margins: self.margins(row, column) };
+            let margins = self.margins(row, column);
+            let above: f64 = heights.iter().take(row).sum();
+            let corner = [EDGE + column as f64 * self.panel[0], top + above];
+            let place = Place { corner, size: [self.panel[0], heights[row]], margins };
             match panel {
                 Panel::Curves(curves) => curves.draw(&mut drawing, &place),
                 Panel::Map(map) => map.draw(&mut drawing, &place),
@@ -144,6 +147,12 @@ impl Figure {
         }
         let title = if self.title.is_empty() { "Figure" } else { &self.title };
         drawing.finish(width, height, title, font::FAMILY)
+    }
+
+    /// The height of each row \[points\]: a legend above the frames adds to it.
+    fn heights(&self) -> Vec<f64> {
+        let rows = self.panels.len().div_ceil(self.columns).max(1);
+        (0..rows).map(|row| self.panel[1] + self.margins(row, 0).legend).collect()
     }
 
     /// The margins of the panels in this row and column.
@@ -165,11 +174,10 @@ impl Figure {
     /// Width and height of the paper \[points\].
     fn paper(&self) -> [f64; 2] {
         let columns = self.columns.min(self.panels.len().max(1));
-        let rows = self.panels.len().div_ceil(self.columns).max(1);
         let caption = self.wrapped().len() as f64 * (SMALL + 3.0);
         let title = if self.title.is_empty() { 0.0 } else { font::width(&self.title, LARGE * 1.12) + 8.0 };
         let width = (columns as f64 * self.panel[0]).max(title.min(columns as f64 * self.panel[0] * 1.5));
-        [width + 2.0 * EDGE, self.top() + rows as f64 * self.panel[1] + caption + EDGE]
+        [width + 2.0 * EDGE, self.top() + self.heights().iter().sum::<f64>() + caption + EDGE]
     }
 
     fn top(&self) -> f64 {

@@ -18,6 +18,7 @@ pub(crate) mod line;
 mod profile;
 mod rows;
 mod stress;
+mod together;
 
 use asperity::Boundary;
 use asperity::material::{Creep, CreepTerm};
@@ -31,6 +32,7 @@ pub(crate) use evolution::quantity_panels;
 pub(crate) use friction::persson;
 pub(crate) use rows::Rows;
 pub use stress::stress_figure;
+pub use together::together;
 
 use crate::figure::{Curves, Figure, Series};
 

@@ -1,0 +1,69 @@
+//! `asperity compare`: what differs between two results.
+
+use asperity_io::compare::{Comparison, compare};
+use asperity_io::store::Reader;
+
+use crate::args;
+use crate::failure::Failure;
+use crate::words::quantity;
+
+/// Prints the table.
+pub fn run(args: &args::Compare) -> Result<(), Failure> {
+    let told = |error: &dyn std::fmt::Display| Failure::input(error.to_string());
+    let first = Reader::open(&args.first).map_err(|error| told(&error))?;
+    let second = Reader::open(&args.second).map_err(|error| told(&error))?;
+    let found = compare(&first, &second).map_err(|error| told(&error))?;
+    if args.json {
+        let object = serde_json::to_string(&found).map_err(|error| told(&error))?;
+        return crate::print(&format!("{object}\n"));
+    }
+    crate::print(&text(&found, &first))
+}
+
+fn text(found: &Comparison, first: &Reader) -> String {
+    let mut text = String::new();
+    if found.case.is_empty() {
+        text += "The cases are the same.\n";
+    } else {
+        let width = found.case.keys().map(|key| key.len()).max().unwrap_or(0) + 2;
+        text += &format!("{:<width$}{:<26}second\n", "case", "first");
+        for (key, [a, b]) in &found.case {
+            let word = |value: &Option<String>| value.clone().unwrap_or_else(|| "-".into());
+            text += &format!("{key:<width$}{:<26}{}\n", shortened(&word(a), 24), shortened(&word(b), 40));
+        }
+    }
+    text +=
+        &format!("\n{:<28}{:<16}{:<16}{:<14}largest difference\n", "at the end", "first", "second", "change");
+    let sweep = first.header().is_sweep();
+    for number in &found.numbers {
+        let units = if number.units == "1" { "" } else { number.units.as_str() };
+        let [a, b] = number.last;
+        let change = match b / a - 1.0 {
+            _ if a == b => "none".to_owned(),
+            change if change.is_finite() => format!("{:+.3} %", 100.0 * change),
+            _ => String::new(),
+        };
+        let word = |value: f64| if units.is_empty() { format!("{value:.6}") } else { quantity(value, units) };
+        let largest = number.largest_difference.map_or(String::new(), |share| format!("{share:.2e}"));
+        let name = if sweep && number.name == "time" { "velocity" } else { &number.name };
+        text += &format!("{name:<28}{:<16}{:<16}{change:<14}{largest}\n", word(a), word(b));
+    }
+    text += &match found.common_rows {
+        0 => "\nThe results have no row at the same time: only their ends are compared.\n".to_owned(),
+        rows => format!(
+            "\nLargest difference: over {rows} rows that both have at the same time, relative to the largest value of the first.\n"
+        ),
+    };
+    if let Some(share) = found.pressure {
+        text += &format!("Pressures stored last: {share:.2e} of the largest one apart at most.\n");
+    }
+    text
+}
+
+/// The text, or its beginning and an ellipsis.
+fn shortened(text: &str, length: usize) -> String {
+    match text.char_indices().nth(length) {
+        Some(_) => text.chars().take(length - 1).chain(['…']).collect(),
+        None => text.to_owned(),
+    }
+}

@@ -161,6 +161,7 @@ fn bench(quick: bool) -> Done {
         ["bench", "-p", "asperity-convolution", "--bench", "convolution", "--", "20", "256", "1024"];
     run(&mut cargo(&convolution))?;
     run(cargo(&["bench", "-p", "asperity", "--bench", "solver", "--"]).args(sizes))?;
+    run(&mut cargo(&["bench", "-p", "asperity", "--bench", "sliding", "--", "256", "512"]))?;
     run(&mut cargo(&["build", "--release", "-p", "asperity-cli"]))?;
     let directory = root().join("target/bench");
     std::fs::create_dir_all(&directory).map_err(|e| format!("{}: {e}", directory.display()))?;
@@ -246,12 +247,12 @@ fn figures() -> Done {
 const VERIFICATION: &str = "\
 # Verification
 
-Written by `cargo xtask verification` from `asperity verify`: every quantity is compared with a fact that
-does not come from the solver. An error is |found/expected - 1| unless the quantity says otherwise. A
-tolerance follows from the discretisation (approach and peak pressure converge as (dx/a)², an area is known to a
-part of its last ring of cells) or, for an invariant, from the solver's tolerance; never from the error
-found. The test `verification::tests::every_case_holds` asserts all of them; further tests compare with
-the slow truths (dense matrix, Gauss-Seidel, full hereditary sum, springs of the dimensionality reduction).
+Written by `cargo xtask verification` from `asperity verify`. Every quantity is compared with an expected value that
+does not come from the solver. An error is |found/expected - 1| unless the quantity says otherwise. The tolerances
+follow from the discretisation (approach and peak pressure converge as (dx/a)², an area is known to a part of its
+outermost ring of cells) or, for an invariant, from the solver's tolerance; they do not depend on the error found.
+The test `verification::tests::every_case_holds` asserts all of them. Further tests compare with slow reference
+implementations (dense matrix, Gauss-Seidel, full hereditary sum, one-dimensional springs).
 
 ";
 

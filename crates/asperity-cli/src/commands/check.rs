@@ -278,8 +278,8 @@ fn tell(case: &Case, examined: &Examination, estimate: Option<f64>) -> String {
         let relaxed = quantity(modulus.relaxed, "Pa");
         let value = match modulus.instantaneous.map(|at_once| quantity(at_once, "Pa")) {
             Some(at_once) if at_once == relaxed => at_once,
-            Some(at_once) => format!("{at_once} at once, {relaxed} at last"),
-            None => format!("rigid at once, {relaxed} at last"),
+            Some(instantaneous) => format!("{instantaneous} instantaneous, {relaxed} relaxed"),
+            None => format!("{relaxed} relaxed, instantaneously rigid"),
         };
         line("", format!("{}: {name} {value}", modulus.body));
     }
@@ -292,8 +292,8 @@ fn tell(case: &Case, examined: &Examination, estimate: Option<f64>) -> String {
             let relaxed = quantity(wave.relaxed_modulus, "Pa");
             let modulus = match wave.instantaneous_modulus.map(|modulus| quantity(modulus, "Pa")) {
                 Some(at_once) if at_once == relaxed => at_once,
-                Some(at_once) => format!("{at_once} at once, {relaxed} at last"),
-                None => format!("rigid at once, {relaxed} at last"),
+                Some(instantaneous) => format!("{instantaneous} instantaneous, {relaxed} relaxed"),
+                None => format!("{relaxed} relaxed, instantaneously rigid"),
             };
             line("", format!("- {name} wave, {}: {modulus}", quantity(wave.length, "m")));
         }

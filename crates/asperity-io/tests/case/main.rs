@@ -7,4 +7,5 @@ mod layers;
 mod line;
 mod materials;
 mod measured;
+mod motion;
 mod values;

@@ -200,6 +200,16 @@ pub fn of_pair(
         // Its material stands still in the frame of the contact, and has relaxed.
         Travel::Steady(_) => {
             let relaxed = pair.creeps[other].0.long_time();
+            if !relaxed.is_finite() {
+                let name = bodies[other].value.name.as_deref().unwrap_or("one body");
+                let message = format!(
+                    "`{name}` flows, and its material stands still in the frame of the contact: the other body sinks into it for \
+                     ever, so there is no steady state"
+                );
+                let help = "give it a relaxed modulus";
+                checks.fault(&bodies[other].span, message, "a solid", Some(help));
+                return None;
+            }
             pair.creeps[other] = (Creep::elastic(relaxed), None);
             pair.sum();
             Some(())
@@ -264,7 +274,13 @@ fn named(
     bodies: &[At<raw::Body>],
 ) -> Option<Option<usize>> {
     let Some(over) = &raw.value.over else { return Some(None) };
-    let of_name = bodies.iter().position(|body| body.value.name.as_deref() == Some(over.value.as_str()));
+    let is_named = |body: &At<raw::Body>| body.value.name.as_deref() == Some(over.value.as_str());
+    if bodies.iter().filter(|body| is_named(body)).count() > 1 {
+        let message = format!("two bodies have the name \"{}\"", over.value);
+        checks.fault(&over.span, message, "different names, or the number of a body, 1 or 2", None);
+        return None;
+    }
+    let of_name = bodies.iter().position(is_named);
     let of_number =
         over.value.parse::<usize>().ok().filter(|n| (1..=bodies.len()).contains(n)).map(|n| n - 1);
     match of_name.or(of_number) {

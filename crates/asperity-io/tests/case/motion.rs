@@ -1,0 +1,61 @@
+//! Contacts in motion in case files: what is refused.
+
+use std::path::Path;
+
+use asperity_io::case::Case;
+
+const ROLLER: &str = r#"[domain]
+cells = [64]
+size = ["2 mm"]
+[[surface]]
+kind = "cylinder"
+radius = "5 mm"
+[[body]]
+name = "rubber"
+poisson = 0.5
+material = { model = "zener", shear = "10 MPa", shear_kelvin = "1 MPa", retardation_time = "10 ms" }
+[[body]]
+name = "belt"
+poisson = 0.5
+material = { model = "zener", shear = "20 MPa", shear_kelvin = "2 MPa", retardation_time = "1 s" }
+[load]
+control = "load"
+history = { kind = "step", value = "100 N/m" }
+[motion]
+over = "rubber"
+[motion.steady]
+velocities = ["1 mm/s", "1 m/s"]
+"#;
+
+/// Replaces `old` by `new`; the only error has the key and the words.
+#[track_caller]
+fn says(old: &str, new: &str, key: &str, words: &[&str]) {
+    assert!(ROLLER.contains(old), "{old:?} is not in the case");
+    let errors = Case::parse(&ROLLER.replacen(old, new, 1), Path::new("."), &[]).expect_err("it is refused");
+    let shown: Vec<String> = errors.errors.iter().map(ToString::to_string).collect();
+    assert_eq!(errors.errors[0].key, key, "{shown:?}");
+    for word in words {
+        assert!(shown[0].contains(word), "{:?} lacks {word:?}", shown[0]);
+    }
+}
+
+#[test]
+fn the_body_that_stands_still_in_the_frame_has_relaxed() {
+    let case = Case::parse(ROLLER, Path::new("."), &[]).unwrap_or_else(|errors| panic!("{errors}"));
+    // C = 1/(4 G) where incompressible: that of the rubber at once, and that of the belt relaxed.
+    let expected = 1.0 / 40e6 + 1.0 / 80e6 + 1.0 / 8e6;
+    assert!((case.creep.instantaneous / expected - 1.0).abs() < 1e-14, "{:?}", case.creep);
+    assert_eq!(case.creep.terms.len(), 1);
+}
+
+#[test]
+fn what_is_wrong_with_a_motion_is_named() {
+    says("\"belt\"", "\"rubber\"", "motion.over", &["two bodies have the name \"rubber\""]);
+    says("over = \"rubber\"", "over = \"road\"", "motion.over", &["rubber, belt"]);
+    says(
+        "{ model = \"zener\", shear = \"20 MPa\", shear_kelvin = \"2 MPa\", retardation_time = \"1 s\" }",
+        "{ model = \"maxwell\", shear = \"20 MPa\", relaxation_time = \"1 s\" }",
+        "body[1]",
+        &["`belt` flows", "no steady state"],
+    );
+}

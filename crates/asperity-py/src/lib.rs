@@ -45,7 +45,7 @@ mod _core {
     #[pymodule_export]
     use super::store::{Store, derive_again, save};
     #[pymodule_export]
-    use super::stress::{stress_check, stress_depths, stress_field, stress_survey};
+    use super::stress::{stress_check, stress_depths, stress_field, stress_survey, stress_transverse};
     #[pymodule_export]
     use super::surface::{
         autocorrelation, bearing_curve, describe, gap, height_distribution, power_spectrum, process,

@@ -8,6 +8,7 @@ use asperity::material::{
     self, Creep, CreepTerm, Fractional, Lateral, Material, Modulus, ReducedTime, Relaxation, Shift,
     ThermalCreep,
 };
+use asperity_io::stress::Ratio;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
@@ -254,6 +255,15 @@ impl Body {
         let (storage, loss): (Vec<f64>, Vec<f64>) =
             omega.as_array().iter().map(|w| creep.modulus(*w)).unzip();
         Ok((storage.into_pyarray(py), loss.into_pyarray(py)))
+    }
+
+    /// Poisson's ratio where it is constant in time, and the functions of one that is not as JSON.
+    fn poisson(&self) -> (Option<f64>, Option<String>) {
+        match Ratio::of(&self.inner) {
+            Some(Ratio::Constant(ratio)) => (Some(ratio), None),
+            Some(changing) => (None, serde_json::to_string(&changing).ok()),
+            None => (None, None),
+        }
     }
 
     /// Contact creep compliance against a rigid body at times: 1/Pa.

@@ -227,10 +227,38 @@ def test_the_stress_of_a_run_is_that_of_its_pressure(tmp_path):
         asp.solve(result.initial_gap, asp.Elastic(young=1e9, poisson=0.3), size=result.size, load=1.0, times=[1.0]).max_mises
 
 
-def test_a_bulk_modulus_needs_a_poisson_ratio_for_the_stress():
+def test_a_bulk_modulus_takes_the_pressures_of_all_rows(tmp_path):
     ball = asp.Surface.sphere(cells=(16, 16), size=(1e-3, 1e-3), radius=5e-3)
     resin = asp.Zener(shear=1e9, shear_kelvin=1e9, retardation_time=1.0, bulk_modulus=4e9)
-    result = asp.solve(ball, resin, load=1.0, times=[1.0])
-    with pytest.raises(asp.CaseError, match="constant in time"):
-        result.stress()
-    assert result.stress(poisson=0.4).depths[0] == 0.0
+    result = asp.solve(ball, resin, load=1.0, times=asp.uniform(50.0, 25), every=1)
+    below = result.stress()
+    # At rest it is that of (3 B - 2 G)/(2 (3 B + G)) with G = 0.5 GPa; the solver's tolerance is 1e-6.
+    settled = result.stress(poisson=0.44)
+    assert np.allclose(below.mises, settled.mises, rtol=0, atol=1e-5 * settled.mises.max())
+    # Right after the load it is that of G = 1 GPa.
+    first = result.stress(index=0)
+    assert np.allclose(first.mises, result.stress(index=0, poisson=10 / 26).mises, rtol=0, atol=1e-12 * first.mises.max())
+    assert not np.allclose(first.mises, result.stress(index=0, poisson=0.44).mises, rtol=0, atol=1e-3 * first.mises.max())
+    result.save(tmp_path / "resin.zarr")
+    assert np.array_equal(asp.open(tmp_path / "resin.zarr").stress().mises, below.mises)
+    some = asp.solve(ball, resin, load=1.0, times=asp.uniform(50.0, 25), every=3)
+    with pytest.raises(asp.CaseError, match="all rows"):
+        some.stress()
+    assert some.stress(poisson=0.4).depths[0] == 0.0
+    elastic = asp.solve(ball, asp.Elastic(shear=1e9, bulk_modulus=4e9), load=1.0, times=[1.0], every=1)
+    assert "0.384615" in repr(elastic.stress())
+
+
+def test_the_stress_below_a_line(tmp_path):
+    # Half width 1, p0 = 1: the largest shear is 0.300 p0 at 0.786 half widths (Johnson 1985, section 4.2).
+    cells = 256
+    x = (np.arange(cells) + 0.5) * (4.0 / cells) - 2.0
+    pressure = np.sqrt(np.maximum(1.0 - x * x, 0.0))
+    below = asp.stress(pressure, size=4.0, poisson=0.3)
+    assert below.mises.shape == (25, cells) and "a line of 256 cells" in repr(below)
+    found = below.survey(threshold=0.4, rolling="x")
+    assert found["max_tresca"] == pytest.approx(0.3003, abs=1e-3) and found["max_tresca_depth"] == pytest.approx(0.786, abs=0.03)
+    assert "max_mises_y" not in found
+    assert np.allclose(below.yy, 0.3 * (below.xx + below.zz), atol=1e-12) and not below.xy.any()
+    with pytest.raises(asp.CaseError, match="one length"):
+        asp.stress(pressure, size=(1.0, 1.0), poisson=0.3)

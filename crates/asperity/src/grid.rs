@@ -116,6 +116,7 @@ impl Grid {
         match units {
             "N" if self.line => "N/m",
             "m2" if self.line => "m",
+            "m3" if self.line => "m2",
             "J" if self.line => "J/m",
             "W" if self.line => "W/m",
             "N m" if self.line => "N",

@@ -3,7 +3,6 @@
 use std::time::Instant;
 
 use asperity::operator::half_space;
-use asperity::stress::SubsurfaceStress;
 use asperity::{Grid, Method, Scheme};
 use asperity_io::case::{Case, Description, Examination, Inputs, SurfaceInput, Travel};
 use asperity_io::stress::StressDescription;
@@ -186,8 +185,8 @@ fn motion_lines(case: &Case) -> Vec<[String; 2]> {
 /// Times and depths times what the stress at a depth takes here, timed on a small grid and scaled as N log N.
 fn stress_seconds(case: &Case, description: &StressDescription) -> Option<f64> {
     let cells = case.grid.cells().map(|n| n.min(TIMED / 4));
-    let grid = Grid::new(cells, case.grid.size()).ok()?;
-    let mut stress = SubsurfaceStress::new(grid, case.boundary, description.poisson).ok()?;
+    let grid = case.grid.with_cells(cells).ok()?;
+    let mut stress = description.poisson.transforms(grid, case.boundary).ok()?;
     stress.set_pressure(&vec![1.0; grid.len()]).ok()?;
     let mut six = std::array::from_fn(|_| Vec::new());
     let depth = grid.size()[0];

@@ -189,7 +189,7 @@ fn stress_lines(below: &Below) -> Vec<[String; 2]> {
         ),
     ]];
     if let Some(first) = first_yield(below) {
-        lines.push(["yield".into(), first.sentence()]);
+        lines.push(["yield".into(), first.sentence(&below.set)]);
     }
     lines
 }

@@ -175,7 +175,7 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
             format!("largest von Mises {}{place} of {}, t = {time}", quantity(mises, "Pa"), below.set.body),
         );
         if let Some(first) = first_yield(&below) {
-            line("yield", first.sentence());
+            line("yield", first.sentence(&below.set));
         }
     }
     if let Some(leaks) = LeakHistory::of(reader)? {

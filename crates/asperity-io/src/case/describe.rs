@@ -2,7 +2,7 @@
 
 use asperity::kernel::Kernel;
 use asperity::layer::{Base, Interface, Layered, Stack};
-use asperity::material::Creep;
+use asperity::material::{Body, Creep};
 use asperity::quantities::Quantity;
 use asperity::surface::Part;
 use asperity::{Course, History, Simulation};
@@ -12,7 +12,7 @@ use super::plan::Surface;
 use super::{Case, Rows};
 use crate::choice;
 use crate::readable::quantity;
-use crate::stress::{StressBody, StressDescription};
+use crate::stress::StressDescription;
 
 /// Where the material of a body comes from, and how well it is known.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -192,7 +192,7 @@ impl Case {
             surfaces: self.surfaces.iter().map(name).collect(),
             preparation: self.surfaces.iter().filter_map(preparation).collect(),
             bodies: self.bodies.iter().map(|body| body.name.clone()).collect(),
-            poisson: self.bodies.iter().map(|body| StressBody::of(body).poisson).collect(),
+            poisson: self.bodies.iter().map(Body::poisson).collect(),
             instantaneous_modulus: (creep.instantaneous > 0.0).then(|| 1.0 / creep.instantaneous),
             relaxed_modulus: 1.0 / creep.long_time(),
             layers: self.layers.as_ref().map(|layers| self.layer_report(layers, &creep)),

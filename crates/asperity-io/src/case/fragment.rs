@@ -202,7 +202,7 @@ pub fn roughness(keys: &[(&str, &str)]) -> Result<(Grid, Part), Vec<Fault>> {
 /// use asperity_io::stress::{Depths, StressBody};
 ///
 /// let grid = Grid::new([64, 64], [1e-3, 1e-3]).unwrap();
-/// let bodies = [StressBody { name: "PMMA".into(), poisson: Some(0.38) }];
+/// let bodies = [StressBody { name: "PMMA".into(), poisson: Some(0.38.into()) }];
 /// let plan = stress(&[("depths", "0,50 um"), ("yield_stress", "110 MPa")], &grid, &bodies).unwrap();
 /// assert_eq!(plan.depths, Depths::List(vec![0.0, 50e-6]));
 /// assert_eq!(stress(&[("depths", "1 um")], &grid, &bodies).unwrap_err()[0].key, "depths[0]");

@@ -130,7 +130,7 @@ impl<'a> Contents<'a> {
                 add(series.name, series.units, series.long_name, &[FIELD_TIME, depth], Data::Reals(numbers));
             }
             for (quantity, series) in set.fields() {
-                let over = [FIELD_TIME, depth, X, Y];
+                let over = [&[FIELD_TIME, depth], over].concat();
                 add(series.name, series.units, series.long_name, &over, Data::Stress(quantity));
             }
         }

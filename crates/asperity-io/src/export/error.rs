@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use crate::store::StoreError;
+use crate::stress::StressError;
 
 /// The error of an export.
 #[derive(Debug, Error)]
@@ -47,10 +48,16 @@ pub enum ExportError {
     },
     /// The stress cannot be computed like this.
     #[error(transparent)]
-    Stress(#[from] asperity::Error),
+    Stress(#[from] StressError),
     /// The result cannot be read, or does not hold what was asked for.
     #[error(transparent)]
     Store(#[from] StoreError),
+}
+
+impl From<asperity::Error> for ExportError {
+    fn from(error: asperity::Error) -> Self {
+        ExportError::Stress(error.into())
+    }
 }
 
 /// Result of an export.

@@ -8,12 +8,12 @@ use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use asperity::Grid;
-use asperity::stress::{StressQuantity, SubsurfaceStress, automatic_depths, contact_box};
+use asperity::stress::{StressQuantity, automatic_depths, contact_box};
 
 use super::error::{ExportError, Result, WriteError};
 use super::output::{self, Output};
 use crate::store::{At, FieldKind, Reader};
-use crate::stress::{Depths, StressPlan};
+use crate::stress::{Depths, Pressures, StressPlan};
 
 /// Most slices of an image whose depths are not equally far apart.
 const SLICES: usize = 32;
@@ -48,14 +48,15 @@ pub fn volume(
         }
     };
     let grid = reader.header().grid;
-    let pressure = reader.field(FieldKind::Pressure, at)?;
-    let pressure = pressure.as_slice().unwrap_or_default();
     let boundary = crate::stress::boundary(reader);
-    let mut stress = SubsurfaceStress::new(grid, boundary, plan.poisson)?;
-    stress.set_pressure(pressure)?;
+    let mut stress = plan.poisson.transforms(grid, boundary)?;
+    Pressures::new(reader, &plan.poisson)?.give(reader.index(at)?, &mut stress)?;
     let depths = match &plan.depths {
         Depths::List(list) => list.clone(),
-        Depths::Auto => automatic_depths(&grid, boundary, contact_box(&grid, pressure)),
+        Depths::Auto => {
+            let pressure = reader.field(FieldKind::Pressure, at)?;
+            automatic_depths(&grid, boundary, contact_box(&grid, pressure.as_slice().unwrap_or_default()))
+        }
     };
     let depths = if form == Form::Image { even(&depths, &grid) } else { depths };
     let header = header(&grid, &depths, quantities, form);
@@ -102,7 +103,7 @@ fn even(depths: &[f64], grid: &Grid) -> Vec<f64> {
     if depths.iter().enumerate().all(is_even) {
         return depths.to_vec();
     }
-    let cell = grid.spacing()[0].max(grid.spacing()[1]);
+    let cell = grid.cell_sides().fold(0.0, f64::max);
     let slabs = ((2.0 * last / cell) as usize).clamp(1, SLICES);
     (0..=slabs).map(|n| last * n as f64 / slabs as f64).collect()
 }
@@ -118,6 +119,8 @@ struct Header {
 
 fn header(grid: &Grid, depths: &[f64], quantities: &[StressQuantity], form: Form) -> Header {
     let ([nx, ny], [dx, dy], nz) = (grid.cells(), grid.spacing(), depths.len());
+    // A line contact is a plane of x and z at y = 0.
+    let y0 = if grid.is_line() { 0.0 } else { grid.y(0) };
     let extent = format!("0 {} 0 {} 0 {}", nx - 1, ny - 1, nz - 1);
     let deepest = depths.last().copied().unwrap_or(0.0);
     let mut text = "<?xml version=\"1.0\"?>\n".to_owned();
@@ -130,7 +133,7 @@ fn header(grid: &Grid, depths: &[f64], quantities: &[StressQuantity], form: Form
     match form {
         Form::Image => {
             let step = if nz > 1 { (deepest - depths[0]) / (nz - 1) as f64 } else { dx };
-            let origin = format!("{:e} {:e} {:e}", 0.5 * dx, 0.5 * dy, -deepest);
+            let origin = format!("{:e} {y0:e} {:e}", 0.5 * dx, -deepest);
             text += &format!(
                 "  <ImageData WholeExtent=\"{extent}\" Origin=\"{origin}\" Spacing=\"{dx:e} {dy:e} {step:e}\">\n"
             );
@@ -141,7 +144,7 @@ fn header(grid: &Grid, depths: &[f64], quantities: &[StressQuantity], form: Form
     if form == Form::Rectilinear {
         text += "      <Coordinates>\n";
         let x = (0..nx).map(|i| grid.x(i)).collect::<Vec<f64>>();
-        let y = (0..ny).map(|j| grid.y(j)).collect();
+        let y = (0..ny).map(|j| if grid.is_line() { y0 } else { grid.y(j) }).collect();
         let z = depths.iter().rev().map(|depth| -depth).collect();
         for (name, line) in [("x", x), ("y", y), ("z", z)] {
             text += &format!(

@@ -23,7 +23,7 @@ use crate::case::{Case, CaseErrors, Travel};
 use crate::leakage::{self, LeakError};
 use crate::resources::free_disk;
 use crate::store::{Field, FieldKind, Header, Outcome, Reader, Status, StoreError, Work, Writer};
-use crate::stress::{self, Below, StressError};
+use crate::stress::{self, Below, Ratio, StressBody, StressError};
 
 pub use memory::peak_memory_bytes;
 
@@ -547,6 +547,15 @@ fn setup(case: &Case) -> Map<String, Value> {
             "motion".into(),
             json!({ "steady": steady, "direction": [x, y], "rolls": motion.rolls, "shear_stress": shear }),
         );
+    }
+    let ratio = |body| StressBody::of(body, !case.thermal.is_empty()).poisson;
+    let ratios: Vec<Option<Ratio>> = case.bodies.iter().map(ratio).collect();
+    if ratios.iter().flatten().any(|ratio| ratio.constant().is_none()) {
+        let creep = |ratio: &Option<Ratio>| match ratio {
+            Some(Ratio::Changing(creep)) => json!(creep),
+            _ => Value::Null,
+        };
+        setup.insert(stress::POISSON_CREEP.into(), ratios.iter().map(creep).collect());
     }
     setup.insert("solver_tolerance".into(), json!(case.solver.tolerance));
     if let Some(plan) = &case.stress {

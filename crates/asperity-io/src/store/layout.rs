@@ -337,10 +337,14 @@ impl ArraySpec {
     pub(super) fn volume_of(
         series: &Series,
         dimensions: &'static [&'static str],
-        shape: [usize; 4],
+        shape: &[usize],
     ) -> ArraySpec {
+        let chunk = match shape {
+            [_, _, line] => vec![1, 1, of_line(*line)],
+            _ => shape.iter().enumerate().map(|(n, cells)| if n < 2 { 1 } else { side(*cells) }).collect(),
+        };
         ArraySpec {
-            chunk: vec![1, 1, side(shape[2]), side(shape[3])],
+            chunk,
             shape: shape.to_vec(),
             compressed: true,
             ..ArraySpec::coordinate_of(series, dimensions, 0)
@@ -467,7 +471,7 @@ fn over_time(header: &Header, rows: usize, maps: usize) -> Vec<ArraySpec> {
     arrays.push(coordinate("x", nx, "x, centres of the cells"));
     // Nothing changes along y of a line: it has no such dimension.
     let (shape, chunk) = match grid.is_line() {
-        true => (vec![nx], vec![nx.div_ceil(nx.div_ceil(LONGEST_LINE))]),
+        true => (vec![nx], vec![of_line(nx)]),
         false => (vec![nx, ny], vec![side(nx), side(ny)]),
     };
     if !grid.is_line() {
@@ -569,6 +573,11 @@ fn coordinate(name: &'static str, cells: usize, long_name: &str) -> ArraySpec {
         summed: true,
         attributes: json!({"units": "m", "long_name": long_name}),
     }
+}
+
+/// Cells of a chunk along a line.
+fn of_line(cells: usize) -> usize {
+    cells.div_ceil(cells.div_ceil(LONGEST_LINE).max(1))
 }
 
 /// Side of a chunk: equal pieces no longer than [`LONGEST_SIDE`], so that little is padded.

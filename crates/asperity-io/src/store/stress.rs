@@ -17,6 +17,7 @@ use super::reader::{At, Reader};
 use super::replace::Way;
 use super::writer::{Writer, lock, remove};
 use crate::choice;
+use crate::stress::Ratio;
 
 /// What was computed of the stress: which body, where, when.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,7 +25,9 @@ pub struct StressSet {
     /// Name of the body.
     pub body: String,
     /// Its Poisson's ratio.
-    pub poisson: f64,
+    pub poisson: Ratio,
+    /// Whether it is that of a line contact: nothing changes along y.
+    pub line: bool,
     /// Depths \[m\], rising.
     pub depths: Vec<f64>,
     /// Fields that are stored at each depth.
@@ -98,9 +101,23 @@ impl StressSet {
     /// The numbers of each instant.
     pub fn scalars(&self) -> Vec<Series> {
         let mut all = MAXIMA.to_vec();
-        all.extend(self.threshold.map(|_| VOLUME));
+        all.retain(|series| !(self.line && series.name.ends_with("_y")));
+        all.extend(self.threshold.map(|_| self.volume()));
         all.extend(self.rolling.iter().flat_map(|_| SHEAR));
         all
+    }
+
+    /// The numbers that not every result with stress has.
+    pub fn extra_scalars(&self) -> Vec<Series> {
+        let is_extra = |series: &Series| !series.name.starts_with("max_");
+        self.scalars().into_iter().filter(is_extra).collect()
+    }
+
+    fn volume(&self) -> Series {
+        match self.line {
+            true => series(VOLUME.name, "m2", "area of the section above the threshold"),
+            false => VOLUME,
+        }
     }
 
     /// What each instant has a number of for each depth.
@@ -129,7 +146,10 @@ impl StressSet {
             |series: &Series| ArraySpec::profile_of(series, &["field_time", "depth"], [maps, depths]);
         arrays.extend(self.profiles().iter().map(profile));
         let volume = |(_, series): &(_, Series)| {
-            ArraySpec::volume_of(series, &["field_time", "depth", "x", "y"], [maps, depths, nx, ny])
+            let plane =
+                || ArraySpec::volume_of(series, &["field_time", "depth", "x", "y"], &[maps, depths, nx, ny]);
+            let line = || ArraySpec::volume_of(series, &["field_time", "depth", "x"], &[maps, depths, nx]);
+            if self.line { line() } else { plane() }
         };
         arrays.extend(self.fields().iter().map(volume));
         arrays
@@ -140,6 +160,7 @@ impl StressSet {
         json!({
             "body": self.body,
             "poisson": self.poisson,
+            "line": self.line,
             "depths": self.depths,
             "components": self.quantities.iter().map(|quantity| quantity.name()).collect::<Vec<_>>(),
             "threshold": self.threshold,
@@ -166,7 +187,8 @@ impl StressSet {
         }
         Some(StressSet {
             body: object.get("body")?.as_str()?.to_owned(),
-            poisson: number("poisson")?,
+            poisson: serde_json::from_value(object.get("poisson")?.clone()).ok()?,
+            line: object.get("line").and_then(Value::as_bool).unwrap_or_default(),
             depths,
             quantities: list("components")?.iter().map(quantity).collect::<Option<_>>()?,
             threshold: number("threshold"),

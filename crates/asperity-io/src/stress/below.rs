@@ -125,8 +125,10 @@ impl Below {
     pub fn findings(&self, grid: &Grid) -> Vec<Finding> {
         let Some(worst) = self.worst() else { return vec![] };
         let mut found = vec![];
-        found.extend(self.missed.map(|[time, load]| finding::stress_times_miss_peak(time, load)));
-        let cell = grid.spacing()[0].max(grid.spacing()[1]);
+        found.extend(
+            self.missed.map(|[time, load]| finding::stress_times_miss_peak(time, load, grid.units("N"))),
+        );
+        let cell = grid.cell_sides().fold(0.0, f64::max);
         let depth = self.number(worst, "max_mises_depth");
         if let Some(deepest) = self.ends_at() {
             found.push(finding::stress_at_deepest(deepest).at([worst.row; 2]));
@@ -153,10 +155,12 @@ pub(super) fn scalars(grid: &Grid, survey: &Survey) -> Vec<f64> {
         true => [extreme.depth, grid.x(extreme.cell / ny), grid.y(extreme.cell % ny)],
         false => [f64::NAN; 3],
     };
+    // A line has no y.
+    let known = 1 + grid.dimensions();
     let mut numbers = vec![];
     for extreme in [&survey.mises, &survey.tresca, &survey.tension] {
         numbers.push(extreme.value);
-        numbers.extend(place(extreme));
+        numbers.extend(&place(extreme)[..known]);
     }
     // One depth says nothing of a volume.
     let volume = |volume: f64| if survey.mises_by_depth.len() > 1 { volume } else { f64::NAN };

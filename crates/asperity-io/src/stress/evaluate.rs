@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use asperity::stress::{StressQuantity, SubsurfaceStress, automatic_depths, contact_box, survey_with};
+use asperity::stress::{Rolling, StressQuantity, automatic_depths, contact_box, survey_with};
 use asperity::{Boundary, Error};
 use ndarray::ArrayView2;
 use thiserror::Error as Failure;
 
 use super::below::{Loads, missed, profiles, scalars};
-use super::{Below, Depths, StressPlan};
+use super::{Below, Depths, Pressures, StressPlan};
 use crate::choice;
 use crate::instants;
 use crate::store::{At, FieldKind, Reader, StoreError, StressSet, StressWriter, Writer};
@@ -36,6 +36,9 @@ pub enum StressError {
 /// Why there is no stress below layers.
 pub const LAYERED: &str = "the stress below the surface is not computed for bodies of layers yet";
 
+/// Why there is no range of a shear stress along y in plane strain.
+pub const ROLLS_ALONG_LINE: &str = "a line contact rolls along x: nothing changes along y";
+
 /// Computes the stress of a result that `writer` holds, and stores it there in place of one that is stored. `observe` is told
 /// the number of times done and of all. Nothing of the stress is stored where it ends early.
 ///
@@ -50,6 +53,7 @@ pub fn evaluate(
 ) -> Result<Below, StressError> {
     let reader = Reader::open(writer.path())?;
     let set = set(&reader, plan)?;
+    Pressures::new(&reader, &set.poisson)?;
     writer.remove_stress()?;
     let mut store = StressWriter::new(writer.path(), &set, reader.field_times().len())?;
     compute(&reader, plan, &set, interrupt, &mut observe, Some(&mut store))?;
@@ -89,8 +93,9 @@ pub(crate) fn boundary(reader: &Reader) -> Boundary {
 /// What will be stored: the depths and the instants of the plan for this result.
 fn set(reader: &Reader, plan: &StressPlan) -> Result<StressSet, StressError> {
     refuse_layers(reader)?;
-    if reader.header().grid.is_line() {
-        return Err(reader.on_line("pressure over a plane, which the stress below the surface needs").into());
+    let line = reader.header().grid.is_line();
+    if line && plan.rolling == Some(Rolling::Y) {
+        return Err(StressError::Refused { path: reader.path().to_owned(), why: ROLLS_ALONG_LINE });
     }
     if !reader.header().fields.contains(&FieldKind::Pressure) {
         return Err(reader.no_field(FieldKind::Pressure).into());
@@ -110,7 +115,8 @@ fn set(reader: &Reader, plan: &StressPlan) -> Result<StressSet, StressError> {
     };
     Ok(StressSet {
         body: plan.body.clone(),
-        poisson: plan.poisson,
+        poisson: plan.poisson.clone(),
+        line,
         depths,
         quantities: plan.quantities.clone(),
         threshold: plan.threshold,
@@ -129,15 +135,14 @@ fn compute(
     mut store: Option<&mut StressWriter>,
 ) -> Result<Vec<super::Instant>, StressError> {
     let grid = reader.header().grid;
-    let mut stress = SubsurfaceStress::new(grid, boundary(reader), set.poisson)?;
+    let mut stress = set.poisson.transforms(grid, boundary(reader))?;
+    let mut pressures = Pressures::new(reader, &set.poisson)?;
     let loads = Loads::of(reader)?;
     let mut field = vec![0.0; if set.quantities.is_empty() { 0 } else { grid.len() }];
     let mut found = Vec::with_capacity(set.instants.len());
     for (done, index) in set.instants.iter().enumerate() {
         observe(done, set.instants.len());
-        let pressure = reader.field(FieldKind::Pressure, At::Index(*index))?;
-        stress.set_pressure(pressure.as_slice().unwrap_or_default())?;
-        drop(pressure);
+        pressures.give(*index, &mut stress)?;
         let visit = |depth: usize, six: &[Vec<f64>; 6]| -> Result<(), StressError> {
             if interrupt.load(Ordering::Relaxed) {
                 return Err(Error::Interrupted.into());

@@ -8,13 +8,17 @@
 mod below;
 mod evaluate;
 mod plan;
+mod pressures;
+mod ratio;
 mod section;
 mod yielding;
 
 pub use below::{Below, Instant};
 pub(crate) use evaluate::boundary;
-pub use evaluate::{LAYERED, StressError, evaluate, of_result, refuse_layers};
-pub(crate) use plan::SETUP;
+pub use evaluate::{LAYERED, ROLLS_ALONG_LINE, StressError, evaluate, of_result, refuse_layers};
 pub use plan::{Depths, StressBody, StressDescription, StressPlan, bodies_of};
+pub(crate) use plan::{POISSON_CREEP, SETUP};
+pub(crate) use pressures::Pressures;
+pub use ratio::Ratio;
 pub use section::{Section, below_at, section};
 pub use yielding::{FirstYield, first_yield};

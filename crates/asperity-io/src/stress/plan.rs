@@ -1,11 +1,12 @@
 //! Which stress is computed: the body, the depths, the times.
 
 use asperity::material::Body;
-use asperity::stress::{Rolling, StressQuantity, SubsurfaceStress, SurveyOptions};
+use asperity::stress::{Rolling, StressQuantity, SurveyOptions};
 use asperity::{Boundary, Grid};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use super::Ratio;
 use super::evaluate::{StressError, refuse_layers};
 use crate::readable::{counted, quantity};
 use crate::store::{Reader, StressSet};
@@ -17,22 +18,25 @@ const REFINED: usize = 6;
 
 /// The plan of `[stress]` in the setup of a result.
 pub(crate) const SETUP: &str = "stress_plan";
-const NO_POISSON: &str =
-    "it does not say a constant Poisson's ratio of its first body; use asperity stress --poisson NU";
+/// Functions of Poisson's ratio in the setup of a result, one for each body; null where it is constant.
+pub(crate) const POISSON_CREEP: &str = "poisson_creep";
+const NO_POISSON: &str = "it does not say the Poisson's ratio of its first body, or this changes with the temperature; use \
+                          asperity stress --poisson NU";
 
 /// A body as the stress sees it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StressBody {
     /// Its name.
     pub name: String,
-    /// Its Poisson's ratio; `None` where it changes with time, or is not known.
-    pub poisson: Option<f64>,
+    /// Its Poisson's ratio; `None` where it changes with the temperature, or is not known.
+    pub poisson: Option<Ratio>,
 }
 
 impl StressBody {
-    /// That of a case.
-    pub fn of(body: &Body) -> StressBody {
-        StressBody { name: body.name.clone(), poisson: body.poisson() }
+    /// That of a case, whose temperature may change.
+    pub fn of(body: &Body, warms: bool) -> StressBody {
+        let ratio = Ratio::of(body).filter(|ratio| !warms || ratio.constant().is_some());
+        StressBody { name: body.name.clone(), poisson: ratio }
     }
 }
 
@@ -40,10 +44,11 @@ impl StressBody {
 pub fn bodies_of(reader: &Reader) -> Vec<StressBody> {
     let setup = &reader.header().setup;
     let list = |key: &str| setup.get(key).and_then(Value::as_array).map(Vec::as_slice).unwrap_or_default();
-    let ratios = list("poisson");
+    let (ratios, creeps) = (list("poisson"), list(POISSON_CREEP));
+    let changing = |n: usize| serde_json::from_value(creeps.get(n)?.clone()).ok().map(Ratio::Changing);
     let bodies = list("bodies").iter().enumerate().map(|(n, name)| StressBody {
         name: name.as_str().map_or_else(|| format!("body {}", n + 1), str::to_owned),
-        poisson: ratios.get(n).and_then(Value::as_f64),
+        poisson: ratios.get(n).and_then(Value::as_f64).map(Ratio::Constant).or_else(|| changing(n)),
     });
     bodies.collect()
 }
@@ -63,8 +68,8 @@ pub enum Depths {
 pub struct StressPlan {
     /// Name of the body.
     pub body: String,
-    /// Its Poisson's ratio, 0 to 0.5.
-    pub poisson: f64,
+    /// Its Poisson's ratio; 0 to 0.5 where it is constant.
+    pub poisson: Ratio,
     /// Depths.
     pub depths: Depths,
     /// Fields that are stored.
@@ -85,7 +90,7 @@ pub struct StressDescription {
     /// Name of the body.
     pub body: String,
     /// Its Poisson's ratio.
-    pub poisson: f64,
+    pub poisson: Ratio,
     /// Number of depths.
     pub depth_count: usize,
     /// First and last depth \[m\]; absent where they follow from the contact.
@@ -104,10 +109,10 @@ pub struct StressDescription {
 
 impl StressPlan {
     /// The plan for a body with nothing asked for but the largest values and the profile.
-    pub fn new(body: &str, poisson: f64) -> StressPlan {
+    pub fn new(body: &str, poisson: impl Into<Ratio>) -> StressPlan {
         StressPlan {
             body: body.to_owned(),
-            poisson,
+            poisson: poisson.into(),
             depths: Depths::Auto,
             quantities: vec![],
             threshold: None,
@@ -128,7 +133,7 @@ impl StressPlan {
             rolling: set.rolling,
             // A time does not tell the states before and after a jump apart.
             times: (set.instants.len() < reader.field_times().len()).then_some(times),
-            ..StressPlan::new(&set.body, set.poisson)
+            ..StressPlan::new(&set.body, set.poisson.clone())
         }
     }
 
@@ -150,7 +155,9 @@ impl StressPlan {
         let body = bodies_of(reader).into_iter().next();
         let plan = body.and_then(|body| Some(StressPlan::new(&body.name, body.poisson?)));
         let refused = || StressError::Refused { path: reader.path().to_owned(), why: NO_POISSON };
-        plan.filter(|plan| (0.0..=0.5).contains(&plan.poisson)).ok_or_else(refused)
+        let allowed =
+            |plan: &StressPlan| plan.poisson.constant().is_none_or(|ratio| (0.0..=0.5).contains(&ratio));
+        plan.filter(allowed).ok_or_else(refused)
     }
 
     /// The body, the depths and the times in a few words.
@@ -180,7 +187,7 @@ impl StressPlan {
 
     /// Memory that it takes \[bytes\]: transforms, six components, the pressure, and a field that is stored.
     pub fn bytes(&self, grid: &Grid, boundary: Boundary) -> usize {
-        SubsurfaceStress::bytes(grid, boundary) + 2 * 8 * grid.len()
+        self.poisson.bytes(grid, boundary) + 2 * 8 * grid.len()
     }
 
     /// What will be done at `times` times.
@@ -192,7 +199,7 @@ impl StressPlan {
         let maps = times.map(|times| times * depth_count * self.quantities.len());
         StressDescription {
             body: self.body.clone(),
-            poisson: self.poisson,
+            poisson: self.poisson.clone(),
             depth_count,
             depth_range,
             times,

@@ -2,15 +2,16 @@
 
 use std::sync::atomic::AtomicBool;
 
-use asperity::stress::{StressQuantity, SubsurfaceStress};
+use asperity::stress::StressQuantity;
 use ndarray::Array2;
 
 use super::evaluate::{StressError, boundary, of_result};
-use super::{Below, Depths, Instant, StressPlan};
-use crate::store::{At, FieldKind, Reader};
+use super::{Below, Depths, Instant, Pressures, StressPlan};
+use crate::store::{At, Reader};
 
-/// Slabs of a section.
+/// Slabs of a section, and of one below a line, where they cost little.
 const DEPTHS: usize = 32;
+const LINE_DEPTHS: usize = 96;
 /// A section reaches this many times as deep as its maximum, and a few cells at least.
 const REACH: f64 = 5.0;
 const CELLS: f64 = 8.0;
@@ -20,7 +21,7 @@ const CELLS: f64 = 8.0;
 pub struct Section {
     /// Number of the stored instant.
     pub index: usize,
-    /// Depth, x and y of the largest von Mises stress \[m\].
+    /// Depth, x and y of the largest von Mises stress \[m\]; y is NaN on a line.
     pub place: [f64; 3],
     /// The largest von Mises stress \[Pa\].
     pub largest: f64,
@@ -28,9 +29,9 @@ pub struct Section {
     pub reach: f64,
     /// von Mises stress in the plane y = const through the place, shape (x, depth) \[Pa\].
     pub along_x: Array2<f64>,
-    /// The same in the plane x = const, shape (y, depth) \[Pa\].
-    pub along_y: Array2<f64>,
-    /// von Mises stress above, at and below the depth of the place: depths \[m\], and maps of shape (x, y) \[Pa\].
+    /// The same in the plane x = const, shape (y, depth) \[Pa\]; of a line there is none.
+    pub along_y: Option<Array2<f64>>,
+    /// von Mises stress above, at and below the depth of the place: depths \[m\], and maps of shape (x, y) \[Pa\]; none of a line.
     pub maps: Vec<(f64, Array2<f64>)>,
 }
 
@@ -63,21 +64,21 @@ pub fn below_at(reader: &Reader, plan: &StressPlan, at: At) -> Result<Below, Str
 pub fn section(reader: &Reader, below: &Below, instant: &Instant) -> Result<Section, StressError> {
     let grid = reader.header().grid;
     let ([nx, ny], [dx, dy]) = (grid.cells(), grid.spacing());
+    let line = grid.is_line();
     let number = |name| below.number(instant, name);
     let place = ["max_mises_depth", "max_mises_x", "max_mises_y"].map(number);
-    if place.iter().any(|length| !length.is_finite()) {
+    if place[..1 + grid.dimensions()].iter().any(|length| !length.is_finite()) {
         return Err(reader.missing("stress at this time".into(), "no contact there".into()).into());
     }
-    let pressure = reader.field(FieldKind::Pressure, At::Index(instant.index))?;
-    let mut stress = SubsurfaceStress::new(grid, boundary(reader), below.set.poisson)?;
-    stress.set_pressure(pressure.as_slice().unwrap_or_default())?;
-    let cell = dx.max(dy);
+    let mut stress = below.set.poisson.transforms(grid, boundary(reader))?;
+    Pressures::new(reader, &below.set.poisson)?.give(instant.index, &mut stress)?;
+    let cell = grid.cell_sides().fold(0.0, f64::max);
     let least = CELLS * cell;
     let deepest = below.set.depths.last().copied().unwrap_or(least);
     let reach = f64::max(REACH * place[0], least).min(deepest.max(least));
     let [i, j] = [((place[1] / dx) as usize).min(nx - 1), ((place[2] / dy) as usize).min(ny - 1)];
     // No slab is thinner than half a cell, so that no middle is nearer to the surface than a quarter.
-    let count = ((2.0 * reach / cell) as usize).clamp(1, DEPTHS);
+    let count = ((2.0 * reach / cell) as usize).clamp(1, if line { LINE_DEPTHS } else { DEPTHS });
     let (mut along_x, mut along_y) = (Array2::zeros((nx, count)), Array2::zeros((ny, count)));
     let mut six = std::array::from_fn(|_| Vec::new());
     let mut field = vec![0.0; grid.len()];
@@ -88,7 +89,8 @@ pub fn section(reader: &Reader, below: &Below, instant: &Instant) -> Result<Sect
         (0..ny).for_each(|j| along_y[(j, n)] = field[i * ny + j]);
     }
     let mut maps = vec![];
-    for depth in map_depths(place[0], cell) {
+    let depths = map_depths(place[0], cell);
+    for depth in depths.into_iter().filter(|_| !line) {
         stress.at(depth, &mut six)?;
         let mut map = Array2::zeros(grid.shape());
         if let Some(field) = map.as_slice_mut() {
@@ -96,6 +98,7 @@ pub fn section(reader: &Reader, below: &Below, instant: &Instant) -> Result<Sect
         }
         maps.push((depth, map));
     }
+    let along_y = (!line).then_some(along_y);
     Ok(Section { index: instant.index, place, largest: number("max_mises"), reach, along_x, along_y, maps })
 }
 

@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use super::Below;
 use crate::readable::quantity;
+use crate::store::StressSet;
 
 /// Where the body begins to yield, as far as the times tell.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,10 +44,11 @@ pub fn first_yield(below: &Below) -> Option<FirstYield> {
 }
 
 impl FirstYield {
-    /// One sentence.
-    pub fn sentence(&self) -> String {
+    /// One sentence, about what was found of `set`.
+    pub fn sentence(&self, set: &StressSet) -> String {
+        let unit = if set.line { "N/m" } else { "N" };
         let state =
-            |[time, load]: [f64; 2]| format!("t = {} (load {})", quantity(time, "s"), quantity(load, "N"));
+            |[time, load]: [f64; 2]| format!("t = {} (load {})", quantity(time, "s"), quantity(load, unit));
         match self {
             FirstYield::Never { safety, times, missed, deepest } => {
                 let at = match times {

@@ -164,7 +164,7 @@ fn what_a_line_contact_cannot_do_is_refused_where_it_stands() {
             "leakage",
             "plane",
         ),
-        ("[time]", "[stress]\ndepths = \"auto\"\n[time]", "stress", "line contacts"),
+        ("[time]", "[stress]\nrolling = \"y\"\n[time]", "stress.rolling", "along x"),
     ];
     for (from, to, key, words) in table {
         let error = fault(&edited(from, to));

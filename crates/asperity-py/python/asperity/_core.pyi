@@ -42,6 +42,7 @@ __all__ = [
     "stress_depths",
     "stress_field",
     "stress_survey",
+    "stress_transverse",
     "autocorrelation",
     "bearing_curve",
     "describe",
@@ -94,6 +95,7 @@ class Body:
     def creep(self, times: _Floats) -> _Floats: ...
     def relaxation(self, times: _Floats) -> _Floats: ...
     def complex(self, omega: _Floats) -> tuple[_Floats, _Floats]: ...
+    def poisson(self) -> tuple[float | None, str | None]: ...
     def contact_creep(self, times: _Floats) -> _Floats: ...
     def creep_terms(self) -> tuple[float, list[tuple[float, float]], float]: ...
     @property
@@ -199,7 +201,9 @@ def elastic(
     tolerance: float,
     max_iterations: int,
 ) -> dict[str, Any]: ...
-def stress_check(pressure: _Floats, size: list[float], boundary: str, poisson: float, depths: list[float]) -> None: ...
+def stress_check(
+    pressure: _Floats, size: list[float], boundary: str, poisson: float, transverse: tuple[_Floats, float] | None, depths: list[float]
+) -> None: ...
 def leakage(
     gap: _Floats,
     contact: Any,
@@ -213,13 +217,21 @@ def judge_leaks(
 ) -> tuple[list[bool], str]: ...
 def stress_depths(pressure: _Floats, size: list[float], boundary: str) -> list[float]: ...
 def stress_field(
-    name: str, pressure: _Floats, size: list[float], boundary: str, poisson: float, depths: list[float]
+    name: str,
+    pressure: _Floats,
+    size: list[float],
+    boundary: str,
+    poisson: float,
+    transverse: tuple[_Floats, float] | None,
+    depths: list[float],
 ) -> _Floats: ...
+def stress_transverse(creep: str, times: list[float], pressures: _Floats) -> tuple[_Floats, float]: ...
 def stress_survey(
     pressure: _Floats,
     size: list[float],
     boundary: str,
     poisson: float,
+    transverse: tuple[_Floats, float] | None,
     depths: list[float],
     threshold: float | None,
     rolling: str | None,

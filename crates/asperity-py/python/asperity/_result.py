@@ -310,8 +310,8 @@ class Result:
     ) -> Stress:
         """The stress below the surface at the stored time nearest to `time` [s], or with that index; default the last.
 
-        It follows from the stored pressure, with the Poisson's ratio of the body of that number (constant in time), or `poisson`;
-        see :func:`asperity.stress`. What a run or ``asperity stress`` stored are attributes over `field_times`: `max_mises` [Pa],
+        It follows from the stored pressure, with the Poisson's ratio of the body of that number, or `poisson`; see
+        :func:`asperity.stress`. Where that ratio changes with time (constant bulk modulus), the pressures of all rows must be kept. What a run or ``asperity stress`` stored are attributes over `field_times`: `max_mises` [Pa],
         `max_mises_depth`, `max_mises_x`, `max_mises_y` [m], the same for `tresca` and `tension`, and over `field_times` and
         `depth`: `mises_by_depth`, ...; NaN where the stress was not computed.
 
@@ -323,22 +323,33 @@ class Result:
         >>> bool(abs(below.survey()["max_mises"] / result.max_pressure[-1] - 0.62) < 0.03)
         True
         """
-        from ._stress import stress
+        from ._stress import changing, stress
 
         setup = json.loads(self._attributes.get("setup") or "{}")
         if "layer_separable" in setup:
             raise CaseError(_core.LAYERED_STRESS)
-        if self.is_line:
-            raise CaseError("the stress below the surface is not computed for line contacts yet")
+        boundary = setup.get("boundary", "free")
         if poisson is None:
             known = setup.get("poisson") or []
             if not 0 <= body < max(len(known), 1):
                 raise CaseError(f"body is {body}, but the result has {len(known)} bodies, counted from 0")
             poisson = known[body] if known else None
+            creep = (setup.get("poisson_creep") or [None] * (body + 1))[body]
+            if poisson is None and creep is not None:
+                last = self._index(time, index) + 1
+                rows = np.asarray(self._table["time"])[:last]
+                if "motion" in setup:
+                    raise CaseError("the stress of a contact that moves over a body of constant bulk modulus is not computed; give poisson=...")
+                if not np.array_equal(self._field_steps, np.arange(len(self._field_steps))) or not np.array_equal(rows, self._field_times[:last]):
+                    raise CaseError(
+                        "the Poisson's ratio of the body changes with time (constant bulk modulus), so that the stress needs the pressures of "
+                        "all rows, but not all were kept: keep every row, or give poisson=... for an estimate with a constant one"
+                    )
+                pressures = np.array([self._one("pressure", n) for n in range(last)])
+                return changing(creep, rows.tolist(), pressures, self._size, depths, boundary)
             if poisson is None:
-                raise CaseError("the result does not say a Poisson's ratio that is constant in time; give poisson=...")
+                raise CaseError("the result does not say the Poisson's ratio of the body, or it changes with the temperature; give poisson=...")
         pressure = self.field("pressure", time=time, index=index)
-        boundary = setup.get("boundary", "free")
         return stress(pressure, size=self._size, poisson=poisson, depths=depths, boundary=boundary)
 
     def to_xarray(self) -> Any:
@@ -359,12 +370,13 @@ class Result:
         }
         for name, values in self._stress.items():
             if name != "depth":
-                unit = "m3" if name == "stressed_volume" else "m" if name.endswith(("_depth", "_x", "_y")) and "_by_" not in name else "Pa"
+                volume = "m2" if self.is_line else "m3"
+                unit = volume if name == "stressed_volume" else "m" if name.endswith(("_depth", "_x", "_y")) and "_by_" not in name else "Pa"
                 dimensions = (at, "depth")[: values.ndim]
                 maps[name] = (dimensions, values, {"units": unit, "long_name": name.replace("_", " ")})
         for name in self._stress_fields:
             told = {"units": "Pa", "long_name": name.replace("_", " ")}
-            maps[name] = ((at, "depth", "x", "y"), self._stress_volume(name), told)
+            maps[name] = ((at, "depth", *over), self._stress_volume(name), told)
         gap = ("initial_gap", (over, self.initial_gap, {"units": "m", "long_name": "undeformed gap"}))
         coordinates = {
             along: (along, np.asarray(self._table["time"]), {"units": self.units("time"), "long_name": along}),
@@ -545,11 +557,12 @@ class Result:
         return stack[:, :, np.newaxis] if self.is_line else stack
 
     def _stress_volume(self, name: str) -> Floats:
-        """A stored stress field of shape (field_time, depth, x, y)."""
+        """A stored stress field of shape (field_time, depth, x, y), of a line (field_time, depth, x)."""
         assert self._path is not None
         store = _core.Store(self._path)
         depths = range(len(self._stress["depth"]))
-        return np.array([[store.stress_field(name, n, depth) for depth in depths] for n in range(len(self._field_steps))])
+        found = np.array([[store.stress_field(name, n, depth) for depth in depths] for n in range(len(self._field_steps))])
+        return found[..., 0] if self.is_line else found
 
     @property
     def _fluid_pressures(self) -> Floats | None:

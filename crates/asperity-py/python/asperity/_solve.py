@@ -200,11 +200,12 @@ def march(
         motion=None if _motion is None else _motion.parts(),
     )
     creeps = [{"instantaneous": first, "terms": terms, "fluidity": flow} for first, terms, flow in core.creep()]
+    ratios = [body._body.poisson() if isinstance(body, Material) else (None, None) for body in bodies]
     setup: dict[str, Any] = {
         "boundary": boundary,
         "bodies": [repr(body) for body in bodies],
         # None where it changes with time.
-        "poisson": [body._given.get("poisson") if isinstance(body, Material) else None for body in bodies],
+        "poisson": [ratio for ratio, _ in ratios],
         "control": control,
         "history": history,
         "scheme": scheme,
@@ -215,6 +216,8 @@ def march(
         "contact_creep_compliance": creeps[0],
         "retardation_times": [time for _, terms, _ in core.creep() for _, time in terms],
     }
+    if temperature is None and any(creep is not None for _, creep in ratios):
+        setup["poisson_creep"] = [None if creep is None else json.loads(creep) for _, creep in ratios]
     if len(creeps) > 1:
         setup["contact_creep_compliance_over_reduced_time"] = creeps[1:]
     if _motion is not None:

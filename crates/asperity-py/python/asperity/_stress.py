@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import warnings
 from collections.abc import Sequence
 from functools import cached_property
@@ -10,31 +11,44 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._arrays import Floats, field, number, pair
+from ._arrays import Floats, as_plane, cells_of, field, number, plain, size_of
 
 
 class Stress:
-    """Stress below a pressure: fields of shape (depth, x, y) in Pa, tension positive, z into the body.
+    """Stress below a pressure: fields of shape (depth, x, y), of a line contact (depth, x), in Pa, tension positive, z into the body.
 
     A field is computed when it is first asked for, and kept.
     """
 
     def __init__(
-        self, pressure: Floats, size: tuple[float, float], depths: Floats, poisson: float, boundary: str
+        self,
+        pressure: Floats,
+        size: list[float],
+        depths: Floats,
+        poisson: float | None,
+        boundary: str,
+        transverse: tuple[Floats, float] | None = None,
     ) -> None:
         self._pressure = pressure
         self._size = size
         self._poisson = poisson
         self._boundary = boundary
+        # Where the Poisson's ratio changes with time: see `changing`.
+        self._transverse = transverse
         #: Depths [m].
         self.depths = depths
         # Errors come here and not with the first field.
-        _core.stress_check(pressure, list(size), boundary, poisson, [float(d) for d in depths])
+        _core.stress_check(*self._what, [float(d) for d in depths])
+
+    @property
+    def _what(self) -> tuple[Floats, list[float], str, float, tuple[Floats, float] | None]:
+        """Pressure, size, boundary and Poisson's ratio, as the core takes them."""
+        transverse = None if self._transverse is None else (as_plane(self._transverse[0]), self._transverse[1])
+        return as_plane(self._pressure), self._size, self._boundary, self._poisson or 0.0, transverse
 
     def _field(self, name: str) -> Floats:
-        return _core.stress_field(
-            name, self._pressure, list(self._size), self._boundary, self._poisson, [float(d) for d in self.depths]
-        )
+        found = _core.stress_field(name, *self._what, [float(d) for d in self.depths])
+        return found[:, :, 0] if self._pressure.ndim == 1 else found
 
     @cached_property
     def xx(self) -> Floats:
@@ -89,17 +103,14 @@ class Stress:
     def survey(self, threshold: float | None = None, *, rolling: str | None = None) -> dict[str, Any]:
         """Maxima, refined between the depths, with their places: `max_mises`, `max_mises_depth`, `max_mises_x`, `max_mises_y`,
         the same for `tresca` and `tension`; `mises_by_depth`, `tresca_by_depth`, `tension_by_depth`; with a threshold [Pa] the
-        `stressed_volume` [m^3] in which the von Mises stress exceeds it; and for a contact that rolls along "x" or "y" the
+        `stressed_volume` [m^3] (of a line contact the area of the section [m^2]) in which the von Mises stress exceeds it; and for a contact that rolls along "x" or "y" the
         largest range of the shear stress on planes parallel to the surface along that direction, `orthogonal_shear`,
         `orthogonal_shear_depth` and `orthogonal_shear_by_depth` (Lundberg and Palmgren 1947).
 
         Warns where the maximum lies at the deepest depth, or nearer to the surface than two cells.
         """
         found: dict[str, Any] = _core.stress_survey(
-            self._pressure,
-            list(self._size),
-            self._boundary,
-            self._poisson,
+            *self._what,
             [float(d) for d in self.depths],
             None if threshold is None else number("threshold", threshold),
             rolling,
@@ -114,15 +125,15 @@ class Stress:
         return {name: np.asarray(value) if isinstance(value, list) else value for name, value in found.items()}
 
     def __repr__(self) -> str:
-        nx, ny = self._pressure.shape
-        deepest = self.depths[-1]
-        return f"<Stress: {nx} x {ny} cells, {len(self.depths)} depths to {deepest:.4g} m, Poisson's ratio {self._poisson:g}>"
+        ratio = "changing with time" if self._poisson is None else f"{self._poisson:g}"
+        cells, deepest = cells_of(self._pressure), self.depths[-1]
+        return f"<Stress: {cells}, {len(self.depths)} depths to {deepest:.4g} m, Poisson's ratio {ratio}>"
 
 
 def stress(
     pressure: Any,
     *,
-    size: Sequence[float],
+    size: float | Sequence[float],
     poisson: float,
     depths: str | Sequence[float] = "auto",
     boundary: str = "free",
@@ -134,8 +145,8 @@ def stress(
 
     Parameters
     ----------
-    pressure : pressure [Pa], array (nx, ny)
-    size : lengths of the domain along x and y [m]
+    pressure : pressure [Pa], array (nx, ny), or (n,) of a line contact (plane strain)
+    size : lengths of the domain along x and y [m], of a line its length
     poisson : Poisson's ratio of the body, 0 to 0.5
     depths : depths below the surface [m], rising, each 0 or at least a quarter of a cell; "auto" takes 0 and 24 depths from
         half a cell to the width of the contact (periodic: to half of the shorter side)
@@ -160,15 +171,30 @@ def stress(
     >>> below.zz.shape
     (25, 64, 64)
     """
-    p = field("pressure", pressure)
-    lengths = pair("size", size)
+    p = field("pressure", pressure, line=True)
+    lengths = size_of("pressure", p, size)
     nu = number("poisson", poisson)
+    return Stress(p, lengths, depths_below(p, lengths, boundary, depths), nu, boundary)
+
+
+def changing(creep: Any, times: Sequence[float], pressures: Floats, size: Sequence[float], depths: Any, boundary: str) -> Stress:
+    """The stress at the last of the times below pressures [Pa] of shape (time, x, y) or (time, x), from the beginning of a run on,
+    of a body whose Poisson's ratio changes with time; `creep` are its functions, as the setup of a result has them."""
+    stack = plain(pressures if pressures.ndim == 3 else pressures[:, :, np.newaxis])
+    transverse, confined = _core.stress_transverse(json.dumps(creep), [float(t) for t in times], stack)
+    last = plain(pressures[-1])
+    lengths = list(size)
+    below = depths_below(last, lengths, boundary, depths)
+    return Stress(last, lengths, below, None, boundary, (transverse.reshape(last.shape), confined))
+
+
+def depths_below(pressure: Floats, size: list[float], boundary: str, depths: str | Sequence[float]) -> Floats:
+    """The depths [m] that are asked for."""
     if isinstance(depths, str):
         if depths != "auto":
             raise _core.CaseError(f'depths is {depths!r}, but must be "auto" or numbers in m')
-        below = np.asarray(_core.stress_depths(p, list(lengths), boundary))
-    else:
-        below = np.atleast_1d(np.asarray(depths, dtype=float))
-        if below.ndim != 1 or below.size == 0:
-            raise _core.CaseError("depths must be one row of numbers in m, at least one")
-    return Stress(p, lengths, below, nu, boundary)
+        return np.asarray(_core.stress_depths(as_plane(pressure), size, boundary))
+    below = np.atleast_1d(np.asarray(depths, dtype=float))
+    if below.ndim != 1 or below.size == 0:
+        raise _core.CaseError("depths must be one row of numbers in m, at least one")
+    return below

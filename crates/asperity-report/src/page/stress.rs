@@ -38,15 +38,16 @@ fn facts(below: &Below) -> Vec<[String; 2]> {
         }
     }
     if let Some(threshold) = set.threshold {
-        let volume = quantity(below.number(worst, "stressed_volume"), "m3");
-        lines.push([format!("Volume with a von Mises stress above {}", quantity(threshold, "Pa")), volume]);
+        let volume = quantity(below.number(worst, "stressed_volume"), if set.line { "m2" } else { "m3" });
+        let what = if set.line { "Area of the section" } else { "Volume" };
+        lines.push([format!("{what} with a von Mises stress above {}", quantity(threshold, "Pa")), volume]);
     }
     if set.rolling.is_some() {
         let range = quantity(below.number(worst, "orthogonal_shear"), "Pa");
         lines.push(["Range of the orthogonal shear stress".into(), range]);
     }
     if let (Some(limit), Some(first)) = (set.yield_stress, first_yield(below)) {
-        lines.push([format!("Yield stress {}", quantity(limit, "Pa")), first.sentence()]);
+        lines.push([format!("Yield stress {}", quantity(limit, "Pa")), first.sentence(set)]);
     }
     lines
 }

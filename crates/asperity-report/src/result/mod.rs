@@ -191,7 +191,6 @@ pub fn figure(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, 
     if reader.header().grid.is_line() {
         let refused = |what| Err(PlotError::OnLine { path: reader.path().to_owned(), what });
         match plot {
-            Plot::Stress => return refused("the stress below its surface is not computed yet"),
             Plot::Leak => return refused("it has no leakage"),
             Plot::Profile if matches!(options.line, Line::AlongY(_)) => {
                 return refused("take the profile along x");

@@ -71,25 +71,30 @@ pub fn stress_figure(reader: &Reader, below: &Below, index: usize) -> Result<Fig
         mises(title, &part, [wide, found.reach]).section(along, start)
     };
     let title = title(reader, instant);
+    let y_words = if found.along_y.is_some() { format!(", y = {}", length(y)) } else { String::new() };
     let sentence = format!(
-        "von Mises stress of {} (Poisson's ratio {}), largest {} at x = {}, y = {}, depth {}. {}",
+        "von Mises stress of {} (Poisson's ratio {}), largest {} at x = {}{y_words}, depth {}. {}",
         below.set.body,
         below.set.poisson,
         quantity(found.largest, "Pa"),
         length(x),
-        length(y),
         length(depth),
         caption(reader, index)?
     );
-    let mut figure = Figure::new(title)
-        .with(cut(&found.along_x, "x", x, size[0], format!("Section y = {}", length(y))))
-        .with(cut(&found.along_y, "y", y, size[1], format!("Section x = {}", length(x))))
-        .caption(sentence);
+    let section_x = match found.along_y {
+        Some(_) => format!("Section y = {}", length(y)),
+        None => "Section".to_owned(),
+    };
+    let mut figure =
+        Figure::new(title).with(cut(&found.along_x, "x", x, size[0], section_x)).caption(sentence);
+    if let Some(along_y) = &found.along_y {
+        figure = figure.with(cut(along_y, "y", y, size[1], format!("Section x = {}", length(x))));
+    }
     for (depth, map) in &found.maps {
         figure = figure.with(mises(format!("Depth {}", length(*depth)), map, size));
     }
     figure = figure.with(profile(below, instant, &found));
-    figure.panel = [300.0, 230.0];
+    figure.panel = if below.set.line { [430.0, 260.0] } else { [300.0, 230.0] };
     Ok(figure)
 }
 

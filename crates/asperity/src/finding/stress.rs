@@ -18,13 +18,13 @@ pub fn stress_unresolved(depth: f64, cell: f64) -> Finding {
     Finding::warning(STRESS_UNRESOLVED, depth / cell, CELLS, text)
 }
 
-/// The largest pressure of the run, at `time` \[s\] under `load` \[N\], is not among the times of the stress.
-pub fn stress_times_miss_peak(time: f64, load: f64) -> Finding {
+/// The largest pressure of the run, at `time` \[s\] under `load` (in `unit`, "N" or "N/m"), is not among the times of the stress.
+pub fn stress_times_miss_peak(time: f64, load: f64, unit: &str) -> Finding {
     let text = format!(
         "The largest pressure of the run, at t = {} under {}, is not among the times at which the stress below the surface is \
          computed: it was larger then. Store the fields at that time too (output.every or output.times).",
         si(time, "s"),
-        si(load, "N")
+        si(load, unit)
     );
     Finding::warning(STRESS_TIMES_MISS_PEAK, time, time, text)
 }

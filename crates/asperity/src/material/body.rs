@@ -21,6 +21,17 @@ pub enum Lateral {
     BulkModulus(f64),
 }
 
+/// Poisson's ratio nu(t) as a function of time, and the function k(t) that belongs to nu/(1 - nu): the lateral stress that a
+/// unit step of pressure on a body without lateral strain causes. Both without unit, as series of the form of [`Creep`].
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct PoissonCreep {
+    /// nu(t).
+    pub ratio: Creep,
+    /// k(t).
+    pub confined: Creep,
+}
+
 /// One deformable half-space.
 ///
 /// ```
@@ -70,6 +81,44 @@ impl Body {
                     (three - 2.0) / (2.0 * (three + 1.0))
                 }
             }),
+        }
+    }
+
+    /// Poisson's ratio as a function of time: what a step of uniaxial tension shows.
+    ///
+    /// A bulk modulus B constant in time has, by the correspondence principle, nu(t) = -1 + (9 B/2) J_(3B+G)(t), since
+    /// nu = (3 B - 2 G)/(2 (3 B + G)) = -1 + (9 B/2)/(3 B + G); and without lateral strain
+    /// nu/(1 - nu) = (3 B - 2 G)/(3 B + 4 G) = -1/2 + (9 B/2)/(3 B + 4 G).
+    ///
+    /// ```
+    /// use asperity::material::{Body, Lateral, Material, Modulus};
+    /// // G = 1 GPa at once, 0.5 GPa in the end; B = 5 GPa: nu = 13/32 and 14/31.
+    /// let material = Material::zener(Modulus::Shear, 1e9, 1e9, 2.0)?;
+    /// let body = Body { name: "resin".into(), material, lateral: Lateral::BulkModulus(5e9), hardness: None };
+    /// let ratio = body.poisson_creep()?.ratio;
+    /// assert!((ratio.value(0.0) - 13.0 / 32.0).abs() < 1e-12 && (ratio.long_time() - 14.0 / 31.0).abs() < 1e-12);
+    /// # Ok::<(), asperity::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`contact_creep`](Self::contact_creep).
+    pub fn poisson_creep(&self) -> Result<PoissonCreep> {
+        match self.lateral {
+            Lateral::Poisson(nu) => {
+                Ok(PoissonCreep { ratio: Creep::elastic(nu), confined: Creep::elastic(nu / (1.0 - nu)) })
+            }
+            Lateral::BulkModulus(bulk) => {
+                positive(&format!("bulk modulus of {}", self.name), bulk, "Pa")?;
+                let shear = self.shear_creep(bulk)?.to_relaxation()?;
+                // (9 B/2) J of the relaxation function 3 B + factor G, less `offset`.
+                let of = |factor: f64, offset: f64| -> Result<Creep> {
+                    let mut stiffer = shear.scaled(factor);
+                    stiffer.equilibrium += 3.0 * bulk;
+                    let creep = stiffer.to_creep()?.scaled(4.5 * bulk);
+                    Ok(Creep { instantaneous: creep.instantaneous - offset, ..creep })
+                };
+                Ok(PoissonCreep { ratio: of(1.0, 1.0)?, confined: of(4.0, 0.5)? })
+            }
         }
     }
 

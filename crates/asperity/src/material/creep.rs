@@ -25,6 +25,7 @@ use crate::material::series;
 /// assert!((creep.long_time() * 1973e6 - 1.0).abs() < 1e-9);
 /// ```
 #[derive(Clone, Debug, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Creep {
     /// C0 \[1/Pa\].
     pub instantaneous: f64,
@@ -36,6 +37,7 @@ pub struct Creep {
 
 /// One retarded term C_j (1 - exp(-t/lambda_j)).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct CreepTerm {
     /// C_j \[1/Pa\].
     pub compliance: f64,

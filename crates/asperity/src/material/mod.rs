@@ -40,7 +40,7 @@ mod spectrum;
 mod table;
 mod thermal;
 
-pub use body::{Body, Lateral, pair_creep, pair_hardness};
+pub use body::{Body, Lateral, PoissonCreep, pair_creep, pair_hardness};
 pub use creep::{Creep, CreepTerm};
 pub(crate) use dual::Dual;
 pub use fit::{Fit, FitOptions, LongTime, Misfit, fit_creep, fit_dma, fit_relaxation};

@@ -74,6 +74,48 @@ impl HertzLine {
         let shape = x * a * (a / (x + root));
         -(shape + a * a * ((x + root) / a).ln()) / (2.0 * self.radius)
     }
+
+    /// Stresses \[s_xx, s_zz, s_xz\] at the distance x from the middle and the depth z >= 0 \[Pa\]; tension is positive, z points into
+    /// the body. In plane strain s_yy = nu (s_xx + s_zz).
+    ///
+    /// ```text
+    /// s_xx = -(p0/a) [m (1 + (z^2 + n^2)/(m^2 + n^2)) - 2 z],   s_zz = -(p0/a) m (1 - (z^2 + n^2)/(m^2 + n^2))
+    /// s_xz = -(p0/a) n (m^2 - z^2)/(m^2 + n^2)
+    /// m^2 = (s + (a^2 - x^2 + z^2))/2,  n^2 = (s - (a^2 - x^2 + z^2))/2,  s^2 = (a^2 - x^2 + z^2)^2 + 4 x^2 z^2
+    /// ```
+    ///
+    /// with m of the sign of z and n of that of x (E. McEwen, Phil. Mag. 40 (1949) 454; Johnson 1985, eqs 4.49). The largest
+    /// shear stress is 0.30028 p0, at x = 0 and z = 0.78616 a.
+    ///
+    /// ```
+    /// let line = asperity::reference::HertzLine::under_load(1.0, 1.0, 1.0)?;
+    /// let [xx, zz, xz] = line.stress(0.0, 0.78616 * line.half_width);
+    /// assert!((0.5 * (xx - zz) / line.peak_pressure - 0.30028).abs() < 1e-5 && xz == 0.0);
+    /// # Ok::<(), asperity::Error>(())
+    /// ```
+    pub fn stress(&self, x: f64, z: f64) -> [f64; 3] {
+        let (a, p0) = (self.half_width, self.peak_pressure);
+        if a == 0.0 {
+            return [0.0; 3];
+        }
+        let (x, z) = (x / a, z / a);
+        let difference = 1.0 - x * x + z * z;
+        let sum = difference.hypot(2.0 * x * z);
+        // The smaller of the two squares from m n = x z, without cancellation.
+        let (m, n) = if difference >= 0.0 {
+            let m = (0.5 * (sum + difference)).sqrt();
+            (m, if m > 0.0 { x * z / m } else { 0.0 })
+        } else {
+            let n = (0.5 * (sum - difference)).sqrt();
+            (x.abs() * z / n, n.copysign(x))
+        };
+        if sum == 0.0 {
+            // The edge of the contact.
+            return [0.0; 3];
+        }
+        let share = (z * z + n * n) / sum;
+        [-p0 * (m * (1.0 + share) - 2.0 * z), -p0 * m * (1.0 - share), -p0 * n * (m * m - z * z) / sum]
+    }
 }
 
 #[cfg(test)]
@@ -106,6 +148,35 @@ mod tests {
         let far = line.displacement_difference(1e5 * a) - line.displacement_difference(1e4 * a);
         assert!((far + 2.0 / PI * 10f64.ln()).abs() < 1e-7);
         assert_eq!(HertzLine::under_load(1.0, 1.0, 0.0).unwrap().displacement_difference(1.0), 0.0);
+    }
+
+    #[test]
+    fn the_stress_is_that_of_the_line_loads() {
+        // A. Flamant 1892 (Johnson 1985, eqs 2.23): s_zz = -(2 P/pi) z^3/r^4, s_xx with x^2 z, s_xz with x z^2.
+        let line = HertzLine::under_load(1.0, 1.0, 1.0).unwrap();
+        let (a, p0) = (line.half_width, line.peak_pressure);
+        for (x, z) in [(0.0, 0.3), (0.2, 0.786), (-0.7, 0.4), (1.3, 0.5), (-2.0, 0.6), (1.0, 0.7), (0.5, 3.0)]
+        {
+            let (x, z) = (x * a, z * a);
+            // s = a sin(angle) takes the root at the ends away.
+            let sum = |f: &dyn Fn(f64) -> f64| {
+                integrate(-0.5 * PI, 0.5 * PI, |angle: f64| {
+                    let d = x - a * angle.sin();
+                    let r2 = d * d + z * z;
+                    -2.0 / PI * p0 * a * angle.cos().powi(2) * f(d) * z / (r2 * r2)
+                })
+            };
+            let expected = [sum(&|d| d * d), sum(&|_| z * z), sum(&|d| d * z)];
+            for (found, expected) in line.stress(x, z).iter().zip(expected) {
+                // The quadrature's error for points of the integrand at a distance of 0.3 of its length.
+                assert!((found - expected).abs() < 1e-9 * p0, "{x} {z}: {found} {expected}");
+            }
+        }
+        let [xx, zz, xz] = line.stress(0.5 * a, 0.0);
+        let p = line.pressure(0.5 * a);
+        assert!((xx + p).abs() < 1e-15 && (zz + p).abs() < 1e-15 && xz == 0.0);
+        assert_eq!(line.stress(a, 0.0), [0.0; 3]);
+        assert!(line.stress(1.5 * a, 0.0).iter().all(|stress| *stress == 0.0));
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! The stress under a uniformly loaded rectangle, and under a wave of pressure: closed forms.
+//! The stress under a uniformly loaded rectangle or strip, and under a wave of pressure: closed forms.
 
 use super::Component;
 
@@ -52,6 +52,42 @@ pub(super) fn corner(component: Component, x: f64, y: f64, z: f64, poisson: f64,
         Component::Xy => -(1.0 - 2.0 * poisson) * libm::log(r + z) - z / r,
         Component::Xz => shear(x2, y),
         Component::Yz => shear(y2, x),
+    }
+}
+
+/// Stress at the distance x from the middle of a strip |x'| <= a, endless along y, at `depth` z under unit pressure: plane strain,
+/// s_yy = nu (s_xx + s_zz), no stress xy or yz. (x, z) must not be an edge of the strip.
+///
+/// ```text
+/// pi s_zz = -theta - c,   pi s_xx = -theta + c,   pi s_xz = -4 a x z^2 / (r1^2 r2^2)
+/// c = 2 a z (z^2 - x^2 + a^2) / (r1^2 r2^2),   r^2 = (x +- a)^2 + z^2
+/// ```
+///
+/// theta is the angle under which the strip is seen (Johnson, Contact Mechanics, 1985, section 2.5, eqs 2.31). All terms
+/// are free of cancellation, so that also far from the strip the error is a rounding error of the largest component.
+///
+/// ```
+/// use asperity::stress::{Component, strip};
+/// // On the axis at a depth of half the width theta is a right angle: s_zz = -1/2 - 1/pi.
+/// let zz = strip(Component::Zz, 0.0, 1.0, 1.0, 0.3);
+/// assert!((zz + 0.5 + 1.0 / std::f64::consts::PI).abs() < 1e-15);
+/// ```
+pub fn strip(component: Component, x: f64, depth: f64, half: f64, poisson: f64) -> f64 {
+    let (right, left, z2) = (x + half, x - half, depth * depth);
+    let product = right * left;
+    let theta = libm::atan2(2.0 * half * depth, z2 + product);
+    // 1/(r1^2 r2^2), in steps that neither overflow nor underflow.
+    let over = |numerator: f64, factor: f64| {
+        numerator / (right * right + z2) * (factor / (left * left + z2)) * std::f64::consts::FRAC_1_PI
+    };
+    let theta = theta * std::f64::consts::FRAC_1_PI;
+    let difference = || over(2.0 * half * depth, z2 - product);
+    match component {
+        Component::Zz => -theta - difference(),
+        Component::Xx => -theta + difference(),
+        Component::Yy => -2.0 * poisson * theta,
+        Component::Xz => over(-4.0 * half * x, z2),
+        Component::Xy | Component::Yz => 0.0,
     }
 }
 

@@ -14,8 +14,9 @@ use rustfft::num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
 
 use super::Component;
-use super::coefficients::{corner, wave};
+use super::coefficients::{corner, strip, wave};
 use super::depths::check_depth;
+use super::history::{PressureHistory, mean};
 use crate::convolution::Convolution;
 use crate::error::{Error, Result};
 use crate::grid::{Boundary, Grid};
@@ -38,6 +39,7 @@ const STRIP: usize = 16;
 pub struct SubsurfaceStress {
     grid: Grid,
     boundary: Boundary,
+    /// Poisson's ratio of [`set_pressure`](Self::set_pressure).
     poisson: f64,
     /// Lengths of the transforms.
     lengths: [usize; 2],
@@ -47,9 +49,19 @@ pub struct SubsurfaceStress {
     columns_inverse: Arc<dyn Fft<f64>>,
     /// Columns of the real coefficients of a cell.
     coefficient_columns: Arc<dyn RealToComplex<f64>>,
-    /// Transforms of the rows of the pressure, and of a component: (ky, row).
-    pressure: Array2<Complex64>,
+    /// The stress is the sum of those under these pressures.
+    sources: Vec<Source>,
+    /// Uniform stress xx and yy besides \[Pa\].
+    lateral: f64,
+    /// Transforms of the rows of a component: (ky, row).
     work: Array2<Complex64>,
+}
+
+/// A pressure and the Poisson's ratio of the body that it acts on.
+struct Source {
+    poisson: f64,
+    /// Transforms of the rows of the pressure: (ky, row).
+    rows: Array2<Complex64>,
 }
 
 impl SubsurfaceStress {
@@ -73,7 +85,8 @@ impl SubsurfaceStress {
             columns_forward: complex.plan_fft_forward(lengths[0]),
             columns_inverse: complex.plan_fft_inverse(lengths[0]),
             coefficient_columns: real.plan_fft_forward(lengths[0]),
-            pressure: Array2::zeros(columns),
+            sources: vec![],
+            lateral: 0.0,
             work: Array2::zeros(columns),
             grid,
             boundary,
@@ -92,19 +105,60 @@ impl SubsurfaceStress {
     /// # Errors
     /// [`Error::Invalid`] where their number differs or one is not finite.
     pub fn set_pressure(&mut self, p: &[f64]) -> Result<()> {
+        self.check(p)?;
+        self.sources.clear();
+        self.lateral = 0.0;
+        self.add(p, self.poisson);
+        Ok(())
+    }
+
+    fn check(&self, field: &[f64]) -> Result<()> {
+        if field.len() != self.grid.len() {
+            let expected = format!("{}, one for each cell", self.grid.len());
+            return Err(Error::invalid("number of pressures", field.len(), expected));
+        }
+        match field.iter().find(|p| !p.is_finite()) {
+            Some(p) => Err(Error::invalid("pressure", format!("{p} Pa"), "finite in every cell")),
+            None => Ok(()),
+        }
+    }
+
+    /// Takes a history of the pressure in place of a pressure: the Poisson's ratio of the body changes with time.
+    ///
+    /// # Errors
+    /// As [`set_transverse`](Self::set_transverse).
+    pub fn set_history(&mut self, history: &PressureHistory) -> Result<()> {
+        self.set_transverse(history.pressure(), &history.transverse(), history.confined())
+    }
+
+    /// Takes the pressure p, P = int nu(t - s) dp(s) in each cell, and the lateral pressure \[Pa\] that the mean pressure of a
+    /// periodic domain causes ([`PressureHistory`]). The stress is linear in the ratio, so that it is the sum of that of p - 2 P
+    /// on a body of ratio 0 and that of 2 P on one of ratio 1/2.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where their number differs from that of the cells, or one is not finite.
+    pub fn set_transverse(&mut self, p: &[f64], transverse: &[f64], confined: f64) -> Result<()> {
+        for field in [p, transverse] {
+            self.check(field)?;
+        }
+        let rest: Vec<f64> = p.iter().zip(transverse).map(|(p, t)| p - 2.0 * t).collect();
+        let twice: Vec<f64> = transverse.iter().map(|t| 2.0 * t).collect();
+        self.sources.clear();
+        // The mean of a periodic pressure acts without lateral strain, and not through the ratio itself.
+        self.lateral = match self.boundary {
+            Boundary::Free => 0.0,
+            Boundary::Periodic => mean(&twice) - confined,
+        };
+        self.add(&rest, 0.0);
+        self.add(&twice, 0.5);
+        Ok(())
+    }
+
+    /// Adds a pressure on a body of this Poisson's ratio.
+    fn add(&mut self, p: &[f64], poisson: f64) {
         let [nx, ny] = self.grid.cells();
-        if p.len() != nx * ny {
-            return Err(Error::invalid(
-                "number of pressures",
-                p.len(),
-                format!("{}, one for each cell", nx * ny),
-            ));
-        }
-        if let Some(p) = p.iter().find(|p| !p.is_finite()) {
-            return Err(Error::invalid("pressure", format!("{p} Pa"), "finite in every cell"));
-        }
         let fft = &self.rows_forward;
-        let rows: Vec<Vec<Complex64>> = p
+        let transforms: Vec<Vec<Complex64>> = p
             .par_chunks(ny)
             .map(|row| {
                 let (mut input, mut output) = (fft.make_input_vec(), fft.make_output_vec());
@@ -114,10 +168,13 @@ impl SubsurfaceStress {
                 output
             })
             .collect();
-        self.pressure.outer_iter_mut().into_par_iter().enumerate().for_each(|(ky, mut column)| {
-            column.iter_mut().zip(&rows).for_each(|(x, row)| *x = row[ky]);
-        });
-        Ok(())
+        let mut rows = Array2::zeros((self.lengths[1] / 2 + 1, nx));
+        rows.outer_iter_mut().into_par_iter().enumerate().for_each(
+            |(ky, mut column): (usize, ArrayViewMut1<'_, Complex64>)| {
+                column.iter_mut().zip(&transforms).for_each(|(x, row)| *x = row[ky]);
+            },
+        );
+        self.sources.push(Source { poisson, rows });
     }
 
     /// Bytes that the transforms take, and with them six fields of [`at`](Self::at).
@@ -136,12 +193,19 @@ impl SubsurfaceStress {
     /// [`Error::Invalid`] for a depth that is negative, or between 0 and a quarter of a cell.
     pub fn component_into(&mut self, component: Component, depth: f64, out: &mut [f64]) -> Result<()> {
         check_depth(&self.grid, depth)?;
-        let spectrum = match self.boundary {
-            Boundary::Free => Spectrum::Cell(self.transformed_rows(component, depth)),
-            Boundary::Periodic => Spectrum::Wave(depth),
-        };
-        self.multiply(component, &spectrum);
+        self.work.fill(Complex64::ZERO);
+        for source in 0..self.sources.len() {
+            let poisson = self.sources[source].poisson;
+            let spectrum = match self.boundary {
+                Boundary::Free => Spectrum::Cell(self.transformed_rows(component, depth, poisson)),
+                Boundary::Periodic => Spectrum::Wave(depth, poisson),
+            };
+            self.add_product(component, &spectrum, source);
+        }
         self.rows_back(out);
+        if matches!(component, Component::Xx | Component::Yy) {
+            out.iter_mut().for_each(|stress| *stress += self.lateral);
+        }
         Ok(())
     }
 
@@ -158,14 +222,20 @@ impl SubsurfaceStress {
     }
 
     /// The stress at the offsets (i dx, j dy), i < nx and j < ny, from a cell under unit pressure, transformed along y: (i, ky).
-    fn transformed_rows(&self, component: Component, depth: f64) -> Array2<f64> {
+    fn transformed_rows(&self, component: Component, depth: f64, poisson: f64) -> Array2<f64> {
         let ([nx, ny], [dx, dy]) = (self.grid.cells(), self.grid.spacing());
         let (fft, odd) = (&self.rows_forward, component.is_odd()[1]);
         let is_far = depth > (nx as f64 * dx).max(ny as f64 * dy);
         let at = |i: usize, j: usize| {
-            corner(component, (i as f64 - 0.5) * dx, (j as f64 - 0.5) * dy, depth, self.poisson, is_far)
+            corner(component, (i as f64 - 0.5) * dx, (j as f64 - 0.5) * dy, depth, poisson, is_far)
         };
         let mut rows = Array2::zeros((nx, self.lengths[1] / 2 + 1));
+        if self.grid.is_line() {
+            // The transform of one cell along y is constant.
+            let of = |i: usize| strip(component, i as f64 * dx, depth, 0.5 * dx, poisson);
+            rows.outer_iter_mut().enumerate().for_each(|(i, mut row)| row.fill(of(i)));
+            return rows;
+        }
         let strips = rows.axis_chunks_iter_mut(Axis(0), STRIP).into_par_iter();
         strips.enumerate().for_each_init(
             || Half::new(fft),
@@ -183,8 +253,8 @@ impl SubsurfaceStress {
         rows
     }
 
-    /// work = the columns of the pressure times the spectrum, transformed back along x.
-    fn multiply(&mut self, component: Component, spectrum: &Spectrum) {
+    /// work += the columns of the pressure of a source times the spectrum, transformed back along x.
+    fn add_product(&mut self, component: Component, spectrum: &Spectrum, source: usize) {
         let (mx, nx) = (self.lengths[0], self.grid.cells()[0]);
         let scale = 1.0 / (mx as f64 * self.lengths[1] as f64);
         let odd = component.is_odd();
@@ -195,8 +265,9 @@ impl SubsurfaceStress {
         };
         let (forward, inverse, half) =
             (&self.columns_forward, &self.columns_inverse, &self.coefficient_columns);
-        let (lengths, size, poisson) = (self.lengths, self.grid.size(), self.poisson);
-        let columns = self.work.outer_iter_mut().into_par_iter().zip(self.pressure.outer_iter());
+        let (lengths, size) = (self.lengths, self.grid.size());
+        let pressure = self.sources[source].rows.outer_iter();
+        let columns = self.work.outer_iter_mut().into_par_iter().zip(pressure);
         columns.enumerate().for_each_init(
             || {
                 let scratch = forward.get_inplace_scratch_len().max(inverse.get_inplace_scratch_len());
@@ -209,12 +280,14 @@ impl SubsurfaceStress {
                         let column = rows.column(ky);
                         halves.transform(half, odd[0], column.iter().copied(), factors.view_mut());
                     }
-                    Spectrum::Wave(depth) => factors.iter_mut().enumerate().for_each(|(kx, factor)| {
-                        // The shortest wave of an even number of cells has no sine.
-                        let vanishes = odd[0] && 2 * kx == lengths[0] || odd[1] && 2 * ky == lengths[1];
-                        let q = [TAU * kx as f64 / size[0], TAU * ky as f64 / size[1]];
-                        *factor = if vanishes { 0.0 } else { wave(component, q, *depth, poisson) };
-                    }),
+                    Spectrum::Wave(depth, poisson) => {
+                        factors.iter_mut().enumerate().for_each(|(kx, factor)| {
+                            // The shortest wave of an even number of cells has no sine.
+                            let vanishes = odd[0] && 2 * kx == lengths[0] || odd[1] && 2 * ky == lengths[1];
+                            let q = [TAU * kx as f64 / size[0], TAU * ky as f64 / size[1]];
+                            *factor = if vanishes { 0.0 } else { wave(component, q, *depth, *poisson) };
+                        })
+                    }
                 }
                 buffer[nx..].fill(Complex64::ZERO);
                 buffer.iter_mut().zip(pressure).for_each(|(x, p)| *x = *p);
@@ -225,7 +298,7 @@ impl SubsurfaceStress {
                     *x *= unit * if mirrored && odd[0] { -factor } else { factor };
                 }
                 inverse.process_with_scratch(buffer, scratch);
-                work.iter_mut().zip(&buffer[..nx]).for_each(|(work, x)| *work = *x);
+                work.iter_mut().zip(&buffer[..nx]).for_each(|(work, x)| *work += *x);
             },
         );
     }
@@ -254,8 +327,8 @@ impl SubsurfaceStress {
 enum Spectrum {
     /// The coefficients of a cell, transformed along y: (i, ky).
     Cell(Array2<f64>),
-    /// The closed form of a wave at this depth \[m\].
-    Wave(f64),
+    /// The closed form of a wave at this depth \[m\], with this Poisson's ratio.
+    Wave(f64, f64),
 }
 
 /// Buffers of the transform of an even or odd sequence.

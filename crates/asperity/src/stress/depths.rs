@@ -15,8 +15,8 @@ const CELLS: f64 = 4.0;
 const MOST: usize = 10_000;
 
 /// 0, and 24 depths in geometric progression from half a cell: on a free domain to 2 sqrt(A/pi), A the area of the rectangle
-/// around the contact ([`contact_box`]; 0 where there is no contact: the domain's), on a periodic one to half its shorter side;
-/// to four cells at least.
+/// around the contact ([`contact_box`]; 0 where there is no contact: the domain's), of a line to the width of the contact; on a
+/// periodic domain to half its shorter side; to four cells at least.
 ///
 /// ```
 /// use asperity::{Boundary, Grid, stress::automatic_depths};
@@ -27,13 +27,14 @@ const MOST: usize = 10_000;
 /// # Ok::<(), asperity::Error>(())
 /// ```
 pub fn automatic_depths(grid: &Grid, boundary: Boundary, contact_box: f64) -> Vec<f64> {
-    let ([dx, dy], [lx, ly]) = (grid.spacing(), grid.size());
     let area = if contact_box > 0.0 { contact_box } else { grid.area() };
     let deepest = match boundary {
-        Boundary::Periodic => 0.5 * lx.min(ly),
+        Boundary::Periodic => 0.5 * grid.shortest_side(),
+        // A line is one metre long: its area is its width.
+        Boundary::Free if grid.is_line() => area,
         Boundary::Free => 2.0 * (area / std::f64::consts::PI).sqrt(),
     };
-    let cell = dx.max(dy);
+    let cell = longest_cell(grid);
     spaced_depths([0.5 * cell, deepest.max(CELLS * cell)], AUTOMATIC, true, true)
 }
 
@@ -55,7 +56,12 @@ pub fn spaced_depths([first, last]: [f64; 2], count: usize, geometric: bool, sur
     surface.then_some(0.0).into_iter().chain((0..count).map(depth)).collect()
 }
 
-/// Area of the rectangle around the cells under pressure \[m^2\]; 0 where there are none.
+/// Longer side of a cell \[m\]; of a line its length along x.
+pub(super) fn longest_cell(grid: &Grid) -> f64 {
+    grid.cell_sides().fold(0.0, f64::max)
+}
+
+/// Area of the rectangle around the cells under pressure \[m^2\], of a line the width of the contact \[m\]; 0 where there are none.
 pub fn contact_box(grid: &Grid, pressure: &[f64]) -> f64 {
     let ny = grid.cells()[1];
     let touching = || pressure.iter().enumerate().filter(|(_, p)| **p > 0.0).map(|(n, _)| [n / ny, n % ny]);
@@ -71,8 +77,8 @@ pub fn contact_box(grid: &Grid, pressure: &[f64]) -> f64 {
 /// # Errors
 /// [`Error::Invalid`] for any other.
 pub fn check_depth(grid: &Grid, depth: f64) -> Result<()> {
-    let shallowest = SHALLOWEST * grid.spacing()[0].max(grid.spacing()[1]);
-    let deepest = DEEPEST * grid.size()[0].max(grid.size()[1]);
+    let shallowest = SHALLOWEST * longest_cell(grid);
+    let deepest = DEEPEST * grid.longest_side();
     if depth == 0.0 || (shallowest..=deepest).contains(&depth) {
         return Ok(());
     }

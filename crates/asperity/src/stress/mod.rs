@@ -11,23 +11,27 @@
 //!
 //! The modulus does not enter, and Poisson's ratio nu only in xx, yy, xy. So with a Poisson's ratio that is constant in time the
 //! stress of a viscoelastic body at time t follows from the pressure at time t alone (correspondence principle), and any stored
-//! pressure will do. The second body has the same stress with its own nu, z into itself.
+//! pressure will do. With a constant bulk modulus nu changes in time, and the stress needs the pressures from the beginning on
+//! ([`PressureHistory`]). The second body has the same stress with its own nu, z into itself.
 //!
 //! Every component is a convolution of the pressure. A free domain takes the exact stress of a uniformly loaded cell
-//! ([`rectangle`]), a periodic one the closed form of a wave ([`wave`]); both are symmetric or antisymmetric in each direction,
+//! ([`rectangle`]; of a line contact, in plane strain, that of a [`strip`]), a periodic one the closed form of a wave ([`wave`]); they
+//! are symmetric or antisymmetric in each direction,
 //! so that a quarter of their spectrum is stored, as real numbers.
 
 mod coefficients;
 mod convolve;
 mod depths;
+mod history;
 mod invariants;
 mod quantity;
 mod slab;
 mod survey;
 
-pub use coefficients::{rectangle, wave};
+pub use coefficients::{rectangle, strip, wave};
 pub use convolve::SubsurfaceStress;
 pub use depths::{automatic_depths, check_depth, check_depths, contact_box, spaced_depths};
+pub use history::PressureHistory;
 pub use invariants::{Invariants, invariants};
 pub use quantity::StressQuantity;
 pub use survey::{Extreme, OrthogonalShear, Rolling, Survey, SurveyOptions, survey, survey_with};

@@ -1,5 +1,6 @@
 //! Where the stress is largest: maxima over depths, refined between them, and the profile over depth.
 
+use super::depths::longest_cell;
 use super::slab::{First, Slab};
 use super::{Component, SubsurfaceStress, check_depths};
 use crate::error::{Error, Result};
@@ -73,7 +74,7 @@ pub struct Survey {
     pub at_the_deepest: bool,
     /// True where its depth is below two cells but not 0: the grid is too coarse for it.
     pub unresolved: bool,
-    /// Volume with a von Mises stress above the threshold \[m^3\], by the trapezoidal rule over the depths.
+    /// Volume with a von Mises stress above the threshold \[m^3\], of a line per length \[m^2\], by the trapezoidal rule over the depths.
     pub stressed_volume: Option<f64>,
     /// The orthogonal shear stress of rolling.
     pub orthogonal_shear: Option<OrthogonalShear>,
@@ -154,8 +155,7 @@ pub fn survey_with<E: From<Error>>(
 
 /// Whether a maximum at this depth lies nearer to the surface than two cells, but not at the surface.
 fn is_unresolved(grid: &Grid, depth: f64) -> bool {
-    let [dx, dy] = grid.spacing();
-    depth > 0.0 && depth < 2.0 * dx.max(dy)
+    depth > 0.0 && depth < 2.0 * longest_cell(grid)
 }
 
 /// Trapezoidal rule over the depths.

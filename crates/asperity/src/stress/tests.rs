@@ -5,6 +5,8 @@ use std::f64::consts::TAU;
 use super::*;
 use crate::grid::{Boundary, Grid};
 
+mod line;
+
 /// A row of reference numbers; components in the order of [`Component::ALL`].
 type Rectangle = ([f64; 2], f64, [f64; 3], [f64; 6]);
 type Sinusoid = (f64, [f64; 2], f64, [f64; 6]);

@@ -142,7 +142,7 @@ fn plan(args: &Stress, reader: &Reader) -> Result<StressPlan, Failure> {
         if bodies.is_empty() {
             bodies.push(StressBody { name: "body 1".into(), poisson: None });
         }
-        bodies.iter_mut().for_each(|body| body.poisson = Some(ratio));
+        bodies.iter_mut().for_each(|body| body.poisson = Some(ratio.into()));
     }
     let stored = StressPlan::known(reader);
     let known = bodies.iter().any(|body| body.poisson.is_some());

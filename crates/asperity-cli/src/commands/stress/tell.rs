@@ -90,10 +90,11 @@ pub fn text(below: &Below, shown: Option<&Instant>, drawn: bool) -> String {
         "Pa" if value.abs() < noise => number(0.0, unit),
         _ => number(value, unit),
     };
-    let extra = set.scalars().into_iter().skip(12).collect::<Vec<_>>();
+    let extra = set.extra_scalars();
+    let force = if set.line { "N/m" } else { "N" };
     head.extend(extra.iter().map(|series| series.name.replace('_', " ")));
     let line = |instant: &&Instant| {
-        let mut words = vec![number(instant.time, "s"), number(instant.load, "N")];
+        let mut words = vec![number(instant.time, "s"), number(instant.load, force)];
         for (_, key) in maxima {
             words.push(number(below.number(instant, key), "Pa"));
             words.push(number(below.number(instant, &format!("{key}_depth")), "m"));
@@ -112,13 +113,17 @@ pub fn text(below: &Below, shown: Option<&Instant>, drawn: bool) -> String {
             |key: &str| ["x", "y"].map(|axis| number(below.number(instant, &format!("{key}_{axis}")), "m"));
         for (name, key) in maxima {
             let [x, y] = place(key);
-            text += &format!("  largest {name} at t = {}: x = {x}, y = {y}\n", number(instant.time, "s"));
+            let y = if set.line { String::new() } else { format!(", y = {y}") };
+            text += &format!("  largest {name} at t = {}: x = {x}{y}\n", number(instant.time, "s"));
         }
         text.push('\n');
     }
     if let Some(threshold) = set.threshold {
-        text +=
-            &format!("stressed volume: where the von Mises stress exceeds {}\n\n", quantity(threshold, "Pa"));
+        text += &format!(
+            "stressed {}: where the von Mises stress exceeds {}\n\n",
+            if set.line { "area" } else { "volume" },
+            quantity(threshold, "Pa")
+        );
     }
     if let Some(instant) = shown.filter(|_| !drawn) {
         text += &format!("largest stress by depth at t = {}\n", number(instant.time, "s"));
@@ -135,7 +140,7 @@ pub fn text(below: &Below, shown: Option<&Instant>, drawn: bool) -> String {
         text.push('\n');
     }
     if let (Some(limit), Some(first)) = (set.yield_stress, first_yield(below)) {
-        text += &format!("yield stress {}: {}\n", quantity(limit, "Pa"), first.sentence());
+        text += &format!("yield stress {}: {}\n", quantity(limit, "Pa"), first.sentence(set));
         text += "(the hardness, which limits the pressure, is another number: about 2.8 times the yield stress of a metal)\n";
     }
     text

@@ -196,13 +196,9 @@ pub fn case(
             checks.fault(&at.span, message, "bodies without layers", Some("delete the section"));
             None
         }
-        (Some(at), ..) if line => {
-            let message = "the stress below the surface is not computed for line contacts yet".to_owned();
-            checks.fault(&at.span, message, "a domain with two values in cells", Some("delete the section"));
-            None
-        }
         (Some(at), Some(grid), Some(pair), Some(output), Some(times)) => {
-            stress::stress(&mut checks, at, grid, &pair.bodies, output, times.end())
+            let moves = document.motion.is_some();
+            stress::stress(&mut checks, at, grid, &stress::bodies(pair), moves, output, times.end())
         }
         _ => None,
     };

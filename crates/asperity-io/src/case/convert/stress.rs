@@ -1,31 +1,61 @@
 //! `[stress]`: which body, at which depths and times.
 
 use asperity::Grid;
-use asperity::material::Body;
-use asperity::stress::{check_depth, check_depths, spaced_depths};
+use asperity::stress::{Rolling, check_depth, check_depths, spaced_depths};
 
 use super::Checks;
+use super::body::Pair;
 use super::stored_times::stored_times;
-use crate::case::plan::Output;
+use crate::case::plan::{Output, Rows};
 use crate::case::raw::{self, At};
 use crate::case::words::number;
 use crate::store::FieldKind;
-use crate::stress::{Depths, StressBody, StressPlan};
+use crate::stress::{Depths, ROLLS_ALONG_LINE, Ratio, StressBody, StressPlan};
 
 /// More depths than this are a slip.
 const MOST_DEPTHS: usize = 10_000;
 
-/// The stress that a case asks for.
+/// The bodies of a case, as the stress sees them.
+pub fn bodies(pair: &Pair) -> Vec<StressBody> {
+    pair.bodies
+        .iter()
+        .zip(&pair.creeps)
+        .map(|(body, (_, clock))| StressBody::of(body, clock.is_some()))
+        .collect()
+}
+
+/// The stress that a case asks for; whether the contact `moves`.
 pub fn stress(
     checks: &mut Checks<'_, '_>,
     at: &At<raw::Stress>,
     grid: &Grid,
-    bodies: &[Body],
+    bodies: &[StressBody],
+    moves: bool,
     output: &Output,
     end: f64,
 ) -> Option<StressPlan> {
-    let bodies: Vec<StressBody> = bodies.iter().map(StressBody::of).collect();
-    let mut plan = plan(checks, at, grid, &bodies)?;
+    let mut plan = plan(checks, at, grid, bodies)?;
+    if let Ratio::Changing(_) = plan.poisson {
+        let place = at.value.body.as_ref().map_or(&at.span, |body| &body.span);
+        let name = &plan.body;
+        if moves {
+            let message = format!(
+                "{name} has a constant bulk modulus, so that its Poisson's ratio changes with time; the stress of a contact that \
+                 moves over such a body is not computed"
+            );
+            let help = "give the body a constant `poisson`, or choose the other body";
+            checks.fault(place, message, "a body of constant Poisson's ratio", Some(help));
+            return None;
+        }
+        if output.rows != Rows::Every(1) {
+            let message = format!(
+                "{name} has a constant bulk modulus, so that its Poisson's ratio changes with time and the stress needs the \
+                 pressures of all rows, but not all are stored"
+            );
+            checks.fault(place, message, "stored pressures of all rows", Some("set output.every = 1"));
+            return None;
+        }
+    }
     if !output.fields.contains(&FieldKind::Pressure) {
         let message =
             "the stress below the surface is computed from stored pressures, but none are stored".to_owned();
@@ -60,24 +90,34 @@ pub fn plan(
             (body, &which.span)
         }
     };
-    let poisson = match body.poisson {
-        Some(poisson) if (0.0..=0.5).contains(&poisson) => poisson,
-        Some(poisson) => {
-            let message = format!("Poisson's ratio of {} is {}", body.name, number(poisson));
+    let poisson = match &body.poisson {
+        Some(Ratio::Constant(poisson)) if !(0.0..=0.5).contains(poisson) => {
+            let message = format!("Poisson's ratio of {} is {}", body.name, number(*poisson));
             checks.fault(place, message, "a Poisson's ratio from 0 to 0.5", Some("choose the other body"));
             return None;
         }
         None => {
             let message = format!(
-                "{} has a constant bulk modulus, so that its Poisson's ratio changes with time, and the stress does not \
-                 follow from the pressure of the moment alone",
+                "the Poisson's ratio of {} is not known, or changes with time and temperature (constant bulk modulus)",
                 body.name
             );
-            let help = "give the body a constant `poisson`, or choose the other body";
-            checks.fault(place, message, "a body of constant Poisson's ratio", Some(help));
+            let help = "give the body a constant `poisson` (a stored result: --poisson NU), or choose the other body";
+            checks.fault(
+                place,
+                message,
+                "a body of constant Poisson's ratio or constant temperature",
+                Some(help),
+            );
             return None;
         }
+        Some(poisson) => poisson.clone(),
     };
+    if let (Some(at), true) = (&raw.rolling, grid.is_line())
+        && at.value == Rolling::Y
+    {
+        checks.fault(&at.span, ROLLS_ALONG_LINE.to_owned(), "\"x\"", None);
+        return None;
+    }
     let mut quantities: Vec<_> = raw.components.iter().flatten().map(|at| at.value).collect();
     quantities.sort();
     quantities.dedup();
@@ -88,7 +128,7 @@ pub fn plan(
         quantities,
         threshold: raw.threshold.map(|threshold| threshold.get()),
         yield_stress: raw.yield_stress.map(|stress| stress.get()),
-        rolling: raw.rolling,
+        rolling: raw.rolling.as_ref().map(|at| at.value),
         times: None,
     })
 }

@@ -36,7 +36,7 @@ pub struct Stress {
     #[schemars(example = "110 MPa")]
     pub yield_stress: Option<Pressure<Positive>>,
     /// Direction in which the contact rolls: the range of the orthogonal shear stress along it is found.
-    pub rolling: Option<Rolling>,
+    pub rolling: Option<At<Rolling>>,
     /// Times at which the stress is computed: "fields", as the fields are stored; "all", which needs output.every = 1; or a
     /// list of times that are stored. "fields" if not given.
     #[schemars(example = &"fields", example = ["1 s", "10 s"])]

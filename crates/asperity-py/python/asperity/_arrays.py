@@ -188,3 +188,8 @@ def points(what: str, value: Any, units: tuple[str, str] = ("", "")) -> list[tup
     if array.dtype.kind not in "fiu" or array.ndim != 2 or array.shape[1] != 2:
         raise CaseError(f"{what} is {value!r}, but must be a list of pairs of numbers")
     return [(float(a), float(b)) for a, b in array]
+
+
+def centres(cells: int, length: float) -> Floats:
+    """Centres of equal cells along a length."""
+    return np.asarray((np.arange(cells) + 0.5) * (length / cells), dtype=np.float64)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._arrays import Floats, field, number, pair
+from ._arrays import Floats, field, in_order, number, pair
 from ._findings import ResultWarning, findings_of
 
 if TYPE_CHECKING:
@@ -119,7 +119,7 @@ class Leakage:
         given = {"gas": gas, "viscosity": viscosity, "molar_mass": molar_mass, "rarefaction": rarefaction}
         numbers = {"inlet": inlet, "outlet": outlet, "temperature": temperature}
         fluid: dict[str, Any] = {name: number(name, value) for name, value in numbers.items()}
-        fluid |= {name: value for name, value in given.items() if value is not None}
+        fluid |= {name: value if isinstance(value, str) else number(name, value) for name, value in given.items() if value is not None}
         found = self._solved(fluid)
         rate: float = found["leak_rate_standard" if standard else "leak_rate"]
         return rate
@@ -171,7 +171,8 @@ def leakage(
     '4.20e-05 mbar l/s'
     """
     h = field("gap", gap)
-    touches = None if contact is None else np.ascontiguousarray(np.asarray(contact) != 0, dtype=np.uint8)
+    held = None if contact is None else in_order("contact", contact)
+    touches = None if held is None else np.ascontiguousarray(np.asarray(getattr(held, "magnitude", held)) != 0, dtype=np.uint8)
     if touches is not None and touches.shape != h.shape:
         raise _core.CaseError(f"contact has shape {touches.shape}, but gap has {h.shape}")
     keys = {"direction": direction, "sides": sides, "smallest_gap": number("smallest_gap", smallest_gap)}

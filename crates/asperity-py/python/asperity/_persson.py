@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, angle, array, number
+from ._arrays import Floats, angle, array, line, number
 from ._core import CaseError
 from ._materials import Material
 from ._surface import as_surface
@@ -107,7 +107,7 @@ def persson_friction(
     if not isinstance(material, Material):
         raise CaseError(f"material is {material!r}, but must be a material, such as asperity.Prony(...)")
     shape = as_surface(surface, size)
-    speeds = np.atleast_1d(array("velocities", velocities))
+    speeds = line("velocities", np.atleast_1d(array("velocities", velocities)))
     if speeds.size == 0:
         raise CaseError("velocities is empty, but must hold one velocity at least, in m/s")
     if isinstance(direction, str) and direction not in ("x", "y"):

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, as_plane, cells_of, frozen, number, plain
+from ._arrays import Floats, as_plane, cells_of, centres, frozen, number, plain
 from ._columns import HISTOGRAMS, QUANTITIES, ROW, Column, units_of
 from ._core import CaseError
 from ._findings import Finding, findings_of
@@ -310,14 +310,14 @@ class Result:
     @property
     def x(self) -> Floats:
         """Cell centres along x [m]."""
-        return _centres(self.cells[0], self._size[0])
+        return centres(self.cells[0], self._size[0])
 
     @property
     def y(self) -> Floats:
         """Cell centres along y [m]."""
         if self.is_line:
             raise CaseError("a line contact has no y: nothing changes along it")
-        return _centres(self.cells[1], self._size[1])
+        return centres(self.cells[1], self._size[1])
 
     @property
     def initial_gap(self) -> Floats:
@@ -473,6 +473,7 @@ class Result:
             "smallest_gap": smallest_gap,
             "field": field,
         }
+        given = {name: value if value is None or isinstance(value, (str, bool)) else number(name, value) for name, value in given.items()}
         if self._leaks and all(value is None for value in given.values()):
             return stored(self)
         return over_time(self, given)
@@ -507,7 +508,7 @@ class Result:
     def to_dataframe(self) -> Any:
         """The rows as pandas.DataFrame, with the time (of a sweep the velocity) as index and a column for each number; units are in
         ``frame.attrs["units"]``."""
-        import pandas
+        import pandas  # type: ignore[import-not-found,import-untyped,unused-ignore]
 
         along = "velocity" if self._sweep else "time"
         columns = {name: np.array(self._table[name]) for name in {**ROW, **QUANTITIES} if name != "time" and name in self._table}
@@ -647,10 +648,6 @@ class Result:
         shape = (0, *self.cells)
         maps = [self._one(name, n) for n in range(len(self._field_steps))]
         return np.array(maps) if maps else np.empty(shape)
-
-
-def _centres(cells: int, length: float) -> Floats:
-    return np.asarray((np.arange(cells) + 0.5) * (length / cells), dtype=np.float64)
 
 
 def open(path: str | os.PathLike[str]) -> Result:

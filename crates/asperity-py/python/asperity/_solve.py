@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import as_plane, bare, count, field, frozen, in_order, line, number
+from ._arrays import as_plane, count, field, frozen, in_order, number
 from ._columns import HISTOGRAMS, ROW, Number
 from ._core import CaseError, ConvergenceError
 from ._findings import Finding, findings_of, warn
@@ -24,6 +24,7 @@ from ._record import Keep, Record, path_of
 from ._result import Result, open
 from ._shifts import temperatures
 from ._surface import surface_of
+from ._units import bare
 from ._words import Boundary, Field, Method, Plasticity, Quantity, Scheme
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._arrays import Floats, field, number, pair
+from ._arrays import Floats, array, field, number, pair
 
 
 class Stress:
@@ -168,7 +168,7 @@ def stress(
             raise _core.CaseError(f'depths is {depths!r}, but must be "auto" or numbers in m')
         below = np.asarray(_core.stress_depths(p, list(lengths), boundary))
     else:
-        below = np.atleast_1d(np.asarray(depths, dtype=float))
+        below = np.atleast_1d(array("depths", depths))
         if below.ndim != 1 or below.size == 0:
             raise _core.CaseError("depths must be one row of numbers in m, at least one")
     return Stress(p, lengths, below, nu, boundary)

@@ -274,8 +274,10 @@ def test_wrong_studies_are_refused(sphere, over, change, words):
 def test_a_case_that_is_not_there_and_keys_that_are_not(tmp_path, case):
     with pytest.raises(asp.CaseError, match="none.toml"):
         asp.study(tmp_path / "none.toml", {"load.history.value": ["1 N"]})
-    data = asp.study(case, {"load.histori.value": ["1 N"]})
-    assert data.status.item() == "failed" and "histori" in data.error.item()
+    with pytest.raises(asp.CaseError, match="histori"):
+        asp.study(case, {"load.histori.value": ["1 N"]})
+    data = asp.study(case, {"load.history.value": ["-1 N"]})
+    assert data.status.item() == "failed" and "load" in data.error.item()
 
 
 def test_a_dask_cluster_solves_the_points(case, sphere, tmp_path):

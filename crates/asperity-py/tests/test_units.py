@@ -37,18 +37,18 @@ def test_quantities_are_converted_wherever_a_number_is_taken():
     q = Quantity
     surface = sphere(size=(q(1000, "um"), q(1, "mm")), radius=q(5, "mm"))
     assert np.allclose(surface.size, (1e-3, 1e-3), rtol=1e-15) and np.allclose(surface.heights, sphere().heights, rtol=1e-12)
-    plain = asp.solve(sphere(), STEEL, load=100.0, times=[0.5], hardness=80e6)
+    plain = asp.solve(sphere(), STEEL, load=1.0, times=[0.5], hardness=4e6)
     for same in (
-        asp.solve(sphere(), asp.Elastic(young=q(100, "MPa"), poisson=0.3), load=q(0.1, "kN"), times=[q(500, "ms")], hardness=q(80, "MPa")),
-        asp.solve(sphere(), STEEL, load=asp.step(q(0.1, "kN")), times=q(np.array([500.0]), "ms"), hardness=q(np.full((24, 20), 80.0), "MPa")),
-        asp.solve(q(sphere().heights * 1e6, "um"), STEEL, size=(1e-3, 1e-3), load=asp.table([(0, q(0.1, "kN"))]), times=[0.5], hardness=80e6),
+        asp.solve(sphere(), asp.Elastic(young=q(100, "MPa"), poisson=0.3), load=q(0.001, "kN"), times=[q(500, "ms")], hardness=q(4, "MPa")),
+        asp.solve(sphere(), STEEL, load=asp.step(q(0.001, "kN")), times=q(np.array([500.0]), "ms"), hardness=q(np.full((24, 20), 4.0), "MPa")),
+        asp.solve(q(sphere().heights * 1e6, "um"), STEEL, size=(1e-3, 1e-3), load=asp.table([(0, q(0.001, "kN"))]), times=[0.5], hardness=4e6),
     ):
         assert np.allclose(same.approach, plain.approach, rtol=1e-9) and np.allclose(same.load, plain.load, rtol=1e-12)
         assert same.max_pressure[-1] == pytest.approx(plain.max_pressure[-1], rel=1e-9)
-    contact = asp.elastic(sphere(), q(100, "MPa"), load=q(0.1, "kN"))
-    assert contact.load == pytest.approx(100.0, rel=1e-9)
-    curve = asp.elastic(sphere(), 1e8, load=q(np.array([0.05, 0.1]), "kN"))
-    assert curve.load == pytest.approx([50.0, 100.0], rel=1e-9)
+    contact = asp.elastic(sphere(), q(100, "MPa"), load=q(0.001, "kN"))
+    assert contact.load == pytest.approx(1.0, rel=1e-9)
+    curve = asp.elastic(sphere(), 1e8, load=q(np.array([0.0005, 0.001]), "kN"))
+    assert curve.load == pytest.approx([0.5, 1.0], rel=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -79,10 +79,10 @@ def test_pint_is_understood():
     with pytest.raises(asp.CaseError, match="newton|must be in m"):
         sphere(radius=5 * u.N)
     result = asp.solve(
-        sphere(size=(1000 * u.um, 1 * u.mm), radius=5 * u.mm), asp.Elastic(young=100 * u.MPa, poisson=0.3), load=0.1 * u.kN,
+        sphere(size=(1000 * u.um, 1 * u.mm), radius=5 * u.mm), asp.Elastic(young=100 * u.MPa, poisson=0.3), load=0.001 * u.kN,
         times=np.array([0.25, 0.5]) * u.s, field_times=[500 * u.ms],
     )
-    assert result.load[-1] == pytest.approx(100.0, rel=1e-9) and result.time[-1] == 0.5
+    assert result.load[-1] == pytest.approx(1.0, rel=1e-9) and result.time[-1] == 0.5
     layer = asp.wlf(c1=8.86, c2=101.6 * u.kelvin, reference=u.Quantity(20, "degC"))
     assert layer.numbers[2] == pytest.approx(293.15)
     assert asp.slide(sphere(), STEEL, load=1.0, velocity=1 * u.mm / u.s, times=[0.05]).velocity[-1] == pytest.approx(1e-3)

@@ -248,8 +248,8 @@ class ElasticContact:
 
     def __repr__(self) -> str:
         return (
-            f"<ElasticContact: {cells_of(self.pressure)}, load {self.load:.4g} {'N/m' if self.is_line else 'N'}, approach "
-            f"{self.approach:.4g} m, contact {100 * self.contact_fraction:.4g} %, certified error {self.certificate:.1e}>"
+            f"<ElasticContact: {cells_of(self.pressure)}, load {self.load:.4g} {'N/m' if self.is_line else 'N'}, approach {self.approach:.4g} m, "
+            f"contact {'length' if self.is_line else 'area'} {100 * self.contact_fraction:.4g} %, certified error {self.certificate:.1e}>"
         )
 
 

@@ -75,6 +75,8 @@ class ConvergenceError(RuntimeError):
     iterations: int
     time: float | None
     best: Any
+    #: Rows before it, where :func:`asperity.solve` raises it.
+    result: Any
 
 def cycles_of(
     time: list[float], load: list[float], approach: list[float], frequency: float, start: float

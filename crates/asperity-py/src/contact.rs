@@ -151,7 +151,8 @@ impl Elastic {
         };
         let Solved { state, row, findings, iterations } = match solved {
             Ok(solved) => solved,
-            Err((error, best)) => {
+            Err(failed) => {
+                let (error, best) = *failed;
                 let raised = raised(py, error);
                 if raised.is_instance_of::<ConvergenceError>(py) {
                     map(best).and_then(|best| raised.value(py).setattr("best", best))?;
@@ -193,7 +194,7 @@ impl Planned {
         start: Option<Vec<f64>>,
         history: bool,
         interrupt: &AtomicBool,
-    ) -> Result<Solved, (asperity::Error, Vec<f64>)> {
+    ) -> Result<Solved, Box<(asperity::Error, Vec<f64>)>> {
         let Planned { simulation, half_space, options, operator, solver, .. } = self;
         let grid = simulation.grid;
         let free_line = grid.is_line() && simulation.boundary == Boundary::Free;
@@ -215,7 +216,7 @@ impl Planned {
         let (solved, mut iterations) = if history { traced(solve) } else { (solve(), vec![]) };
         let outcome = match solved {
             Ok(outcome) => outcome,
-            Err(error) => return Err((error, state.pressure)),
+            Err(error) => return Err(Box::new((error, state.pressure))),
         };
         if history {
             iterations.push(last(&outcome, &iterations));

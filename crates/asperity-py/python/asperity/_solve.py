@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -503,6 +504,8 @@ def run(
     ConvergenceError : a step was not solved to the tolerance; the rows before it are stored
     OSError : a file cannot be read or written
 
+    With `output` an error that comes after the first row has the rows so far as `error.result`.
+
     Examples
     --------
     >>> import asperity as asp, tempfile
@@ -530,6 +533,11 @@ def run(
 
     try:
         summary = _core.run(*_source(case), _keys(set), None if output is None else os.fspath(output), force, resume, told)
+    except BaseException as error:
+        if output is not None and teller is not None:
+            with contextlib.suppress(OSError, CaseError):
+                error.result = open(output)  # type: ignore[attr-defined]
+        raise
     finally:
         if teller is not None:
             teller.end()

@@ -1,115 +1,280 @@
-//! One elastic contact.
+//! Elastic contacts of one surface, one after the other.
 
 use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use asperity::contact::Hardness;
-use asperity::operator::half_space;
-use asperity::{Boundary, ContactState, Prescribed, Problem, Solver};
+use asperity::finding::{Judge, Known};
+use asperity::march::Row;
+use asperity::material::Creep;
+use asperity::operator::{Operator, half_space, plan};
+use asperity::quantities::ContactStiffness;
+use asperity::{
+    Boundary, ContactState, Control, History, Loading, Outcome, Prescribed, Problem, Simulation, Solver,
+    SolverOptions,
+};
+use ndarray::{Array2, ArrayView2};
 use numpy::{IntoPyArray, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::error::{CaseError, raised};
-use crate::march::{choose, grid_of, solver as solver_of};
+use crate::error::{CaseError, ConvergenceError, raised};
+use crate::kernel::Table;
+use crate::march::{choose, fill, grid_of, solver as solver_of};
+use crate::trace::{Iteration, traced};
 use crate::wait::without_python;
 
-/// Pressure, displacement and approach of an elastic contact, and how good they are.
-#[pyfunction]
-#[pyo3(signature = (gap, size, contact_modulus, load, approach, hardness, hardness_map, boundary, method, tolerance, max_iterations))]
-#[allow(clippy::too_many_arguments)]
-pub fn elastic<'py>(
-    py: Python<'py>,
-    gap: PyReadonlyArray2<'_, f64>,
-    size: Vec<f64>,
-    contact_modulus: f64,
-    load: Option<f64>,
-    approach: Option<f64>,
-    hardness: f64,
-    hardness_map: Option<PyReadonlyArray2<'_, f64>>,
-    boundary: &str,
-    method: &str,
-    tolerance: f64,
-    max_iterations: usize,
-) -> PyResult<Bound<'py, PyDict>> {
-    let (nx, ny) = gap.as_array().dim();
-    let grid = grid_of(py, (nx, ny), &size)?;
-    let boundary: Boundary = choose("boundary", boundary)?;
-    let free_line = grid.is_line() && boundary == Boundary::Free;
-    if free_line && (approach.is_some() || nx < 2) {
-        return Err(CaseError::new_err(
-            "a free line contact needs two cells at least, and a load: under a load on a line a half-space moves endlessly, so the \
-             approach is known up to a constant; boundary=\"periodic\" has no such limit",
-        ));
-    }
-    let prescribed = match (load, approach) {
-        (Some(load), None) => Prescribed::Load(load),
-        (None, Some(approach)) => Prescribed::Approach(approach),
-        _ => return Err(CaseError::new_err("give load or approach, exactly one of them")),
-    };
-    for (what, value) in [("contact modulus", contact_modulus), ("hardness", hardness)] {
-        if value.is_nan() || value <= 0.0 || (what == "contact modulus" && value.is_infinite()) {
-            return Err(CaseError::new_err(format!("{what} is {value}, but must be greater than 0 Pa")));
+/// The contact of one surface: what is planned and set once, for any number of loads.
+#[pyclass(frozen)]
+pub struct Elastic {
+    /// Locked where threads of Python share it.
+    planned: Mutex<Planned>,
+    shape: (usize, usize),
+    is_free_line: bool,
+}
+
+struct Planned {
+    /// Gap, boundary, modulus and hardness, as the judge takes them.
+    simulation: Simulation,
+    /// Whether the body is the half-space: what findings are about.
+    half_space: bool,
+    options: SolverOptions,
+    operator: Box<dyn Operator>,
+    solver: Solver,
+    stiffness: Option<ContactStiffness>,
+}
+
+/// A solution: its state, the numbers of its row, findings as a JSON list, and the iterations if they were asked for.
+struct Solved {
+    state: ContactState,
+    row: Row,
+    findings: String,
+    iterations: Vec<Iteration>,
+}
+
+#[pymethods]
+impl Elastic {
+    #[new]
+    #[pyo3(signature = (*, gap, size, contact_modulus, hardness, hardness_map, boundary, method, tolerance, max_iterations, kernel))]
+    #[allow(clippy::too_many_arguments)]
+    fn new(
+        py: Python<'_>,
+        gap: PyReadonlyArray2<'_, f64>,
+        size: Vec<f64>,
+        contact_modulus: f64,
+        hardness: f64,
+        hardness_map: Option<PyReadonlyArray2<'_, f64>>,
+        boundary: &str,
+        method: &str,
+        tolerance: f64,
+        max_iterations: usize,
+        kernel: Option<PyReadonlyArray2<'_, f64>>,
+    ) -> PyResult<Elastic> {
+        let gap = gap.as_array().as_standard_layout().into_owned();
+        let grid = grid_of(py, gap.dim(), &size)?;
+        let boundary: Boundary = choose("boundary", boundary)?;
+        if grid.is_line() && boundary == Boundary::Free && grid.len() < 2 {
+            return Err(CaseError::new_err(FREE_LINE));
         }
-    }
-    let cells: Vec<f64> = gap.as_array().iter().copied().collect();
-    if let Some(value) = cells.iter().find(|h| h.is_nan() || **h == f64::NEG_INFINITY) {
-        let words = "finite, or infinite where a cell cannot touch";
-        return Err(CaseError::new_err(format!("gap holds {value}, but must be {words}")));
-    }
-    let hardnesses: Option<Vec<f64>> = match &hardness_map {
-        Some(map) if map.as_array().dim() != (nx, ny) => {
-            let found = map.as_array().dim();
+        for (what, value) in [("contact modulus", contact_modulus), ("hardness", hardness)] {
+            if value.is_nan() || value <= 0.0 || (what == "contact modulus" && value.is_infinite()) {
+                return Err(CaseError::new_err(format!("{what} is {value}, but must be greater than 0 Pa")));
+            }
+        }
+        if let Some(value) = gap.iter().find(|h| h.is_nan() || **h == f64::NEG_INFINITY) {
+            let words = "finite, or infinite where a cell cannot touch";
+            return Err(CaseError::new_err(format!("gap holds {value}, but must be {words}")));
+        }
+        let hardness_map = hardness_map.map(|map| map.as_array().as_standard_layout().into_owned());
+        if let Some(map) = hardness_map.as_ref().filter(|map| map.dim() != gap.dim()) {
+            let (found, expected) = (map.dim(), gap.dim());
             let words =
-                format!("hardness has shape {found:?}, but must have {:?}, one for each cell", (nx, ny));
+                format!("hardness has shape {found:?}, but must have {expected:?}, one for each cell");
             return Err(CaseError::new_err(words));
         }
-        Some(map) => Some(map.as_array().iter().copied().collect()),
-        None => None,
-    };
-    if let Some(value) = hardnesses.iter().flatten().find(|h| !(h.is_finite() && **h > 0.0)) {
-        let words = format!("hardness holds {value}, but must be finite and greater than 0 Pa in every cell");
-        return Err(CaseError::new_err(words));
-    }
-    let options = solver_of(method, tolerance, max_iterations)?;
-    options.validate().map_err(|error| raised(py, error))?;
-    let interrupt = AtomicBool::new(false);
-    let mut state = ContactState::new(grid.len());
-    let solved = without_python(py, &interrupt, || {
-        let mut operator = half_space(grid, boundary);
-        let mut solver = Solver::new(options.method, &*operator);
-        let hardness = hardnesses.as_deref().map_or(hardness.into(), Hardness::Cells);
-        let problem = Problem { gap: &cells, compliance: 1.0 / contact_modulus, hardness, prescribed };
-        solver.solve(&mut *operator, &problem, &options, &mut state, Some(&interrupt))
-    })?;
-    let map = |values: Vec<f64>| {
-        let array = ndarray::Array2::from_shape_vec(grid.shape(), values);
-        array.map(|array| array.into_pyarray(py)).map_err(|error| CaseError::new_err(error.to_string()))
-    };
-    let outcome = match solved {
-        Ok(outcome) => outcome,
-        Err(error) => {
-            let raised = raised(py, error);
-            let _ = map(state.pressure).and_then(|best| raised.value(py).setattr("best", best));
-            return Err(raised);
+        if let Some(value) = hardness_map.iter().flatten().find(|h| !(h.is_finite() && **h > 0.0)) {
+            let words =
+                format!("hardness holds {value}, but must be finite and greater than 0 Pa in every cell");
+            return Err(CaseError::new_err(words));
         }
-    };
-    // Of a free line contact displacements are measured from the domain's end, x = L, as those of a march are.
-    let datum = match state.unit_displacement.as_slice() {
-        [.., before, last] if free_line => (last + 0.5 * (last - before)) / contact_modulus,
-        _ => 0.0,
-    };
-    let out = PyDict::new(py);
-    let sum: f64 = state.pressure.iter().sum();
-    let touching = state.pressure.iter().filter(|p| **p > 0.0).count();
-    out.set_item("load", sum * grid.cell_area())?;
-    out.set_item("approach", state.approach - datum)?;
-    out.set_item("contact_area", touching as f64 * grid.cell_area())?;
-    let displacement = state.unit_displacement.iter().map(|u| u / contact_modulus - datum).collect();
-    out.set_item("displacement", map(displacement)?)?;
-    out.set_item("pressure", map(state.pressure)?)?;
-    out.set_item("residual", outcome.residual)?;
-    out.set_item("certificate", outcome.certificate)?;
-    out.set_item("iterations", outcome.iterations)?;
-    out.set_item("convolutions", outcome.convolutions)?;
-    Ok(out)
+        let options = solver_of(method, tolerance, max_iterations)?;
+        options.validate().map_err(|error| raised(py, error))?;
+        let kernel = kernel.map(|values| Table::new(grid, boundary, values.as_array().to_owned()));
+        let kernel = kernel.transpose().map_err(|error| raised(py, error))?;
+        let half = kernel.is_none();
+        let planned = without_python(py, &AtomicBool::new(false), || {
+            let operator = match kernel {
+                None => half_space(grid, boundary),
+                Some(table) => plan(grid, boundary, Arc::new(table))?,
+            };
+            let solver = Solver::new(options.method, &*operator);
+            let creep = Creep::elastic(1.0 / contact_modulus);
+            let simulation =
+                Simulation { boundary, creep, hardness, hardness_map, ..Simulation::new(grid, gap) };
+            Ok(Planned { simulation, half_space: half, options, operator, solver, stiffness: None })
+        })?;
+        let planned = Mutex::new(planned.map_err(|error| raised(py, error))?);
+        let is_free_line = grid.is_line() && boundary == Boundary::Free;
+        Ok(Elastic { planned, shape: grid.shape(), is_free_line })
+    }
+
+    /// The contact under a load \[N\] or an approach \[m\], starting from a pressure; the numbers of its row by their names, and the
+    /// fields; with `history` its iterations.
+    #[pyo3(signature = (load, approach, start, history))]
+    fn solve<'py>(
+        &self,
+        py: Python<'py>,
+        load: Option<f64>,
+        approach: Option<f64>,
+        start: Option<PyReadonlyArray2<'_, f64>>,
+        history: bool,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let start: Option<Vec<f64>> = start.map(|pressure| pressure.as_array().iter().copied().collect());
+        let prescribed = match (load, approach) {
+            (Some(load), None) => (Control::Load, load),
+            (None, Some(_)) if self.is_free_line => return Err(CaseError::new_err(FREE_LINE)),
+            (None, Some(approach)) => (Control::Approach, approach),
+            _ => return Err(CaseError::new_err("give load or approach, exactly one of them")),
+        };
+        let shape = self.shape;
+        if start.as_ref().is_some_and(|start| start.len() != shape.0 * shape.1) {
+            return Err(CaseError::new_err(format!("the start needs a pressure of shape {shape:?}")));
+        }
+        let interrupt = AtomicBool::new(false);
+        let solved = without_python(py, &interrupt, || {
+            let mut planned = self.planned.lock().unwrap_or_else(PoisonError::into_inner);
+            planned.solve(prescribed, start, history, &interrupt)
+        })?;
+        let map = |values: Vec<f64>| {
+            let array = Array2::from_shape_vec(shape, values);
+            array.map(|array| array.into_pyarray(py)).map_err(|error| CaseError::new_err(error.to_string()))
+        };
+        let Solved { state, row, findings, iterations } = match solved {
+            Ok(solved) => solved,
+            Err(failed) => {
+                let (error, best) = *failed;
+                let raised = raised(py, error);
+                if raised.is_instance_of::<ConvergenceError>(py) {
+                    map(best).and_then(|best| raised.value(py).setattr("best", best))?;
+                }
+                return Err(raised);
+            }
+        };
+        let out = PyDict::new(py);
+        fill(&out, &row)?;
+        out.set_item("pressure", map(state.pressure)?)?;
+        out.set_item("displacement", map(state.unit_displacement)?)?;
+        out.set_item("findings", findings)?;
+        let steps: Vec<_> = iterations
+            .into_iter()
+            .map(|one| (one.number, one.residual, one.working, one.step, one.convolutions))
+            .collect();
+        out.set_item("history", steps)?;
+        Ok(out)
+    }
+
+    /// dW/dw \[N/m\] of the contact that has this pressure.
+    fn stiffness(&self, py: Python<'_>, pressure: PyReadonlyArray2<'_, f64>) -> PyResult<f64> {
+        let pressure: Vec<f64> = pressure.as_array().iter().copied().collect();
+        let interrupt = AtomicBool::new(false);
+        let found = without_python(py, &interrupt, || {
+            self.planned.lock().unwrap_or_else(PoisonError::into_inner).stiffness(&pressure, &interrupt)
+        })?;
+        found.map_err(|error| raised(py, error))
+    }
+}
+
+const FREE_LINE: &str = "a free line contact needs two cells at least, and a load: under a load on a line a half-space moves endlessly, \
+                         so the approach is known up to a constant; boundary=\"periodic\" has no such limit";
+
+impl Planned {
+    fn solve(
+        &mut self,
+        prescribed: (Control, f64),
+        start: Option<Vec<f64>>,
+        history: bool,
+        interrupt: &AtomicBool,
+    ) -> Result<Solved, Box<(asperity::Error, Vec<f64>)>> {
+        let Planned { simulation, half_space, options, operator, solver, .. } = self;
+        let grid = simulation.grid;
+        let free_line = grid.is_line() && simulation.boundary == Boundary::Free;
+        let (control, value) = prescribed;
+        let prescribed = match control {
+            Control::Approach => Prescribed::Approach(value),
+            Control::Load | Control::Pressure => Prescribed::Load(value),
+        };
+        let mut state = ContactState::new(grid.len());
+        if let Some(pressure) = start {
+            state.pressure = pressure;
+        }
+        let gap = simulation.gap.as_slice().unwrap_or_default();
+        let hardnesses = simulation.hardness_map.as_ref().and_then(|map| map.as_slice());
+        let hardness = hardnesses.map_or(simulation.hardness.into(), Hardness::Cells);
+        let compliance = simulation.creep.instantaneous;
+        let problem = Problem { gap, compliance, hardness, prescribed };
+        let mut solve = || solver.solve(&mut **operator, &problem, options, &mut state, Some(interrupt));
+        let (solved, mut iterations) = if history { traced(solve) } else { (solve(), vec![]) };
+        let outcome = match solved {
+            Ok(outcome) => outcome,
+            Err(error) => return Err(Box::new((error, state.pressure))),
+        };
+        if history {
+            iterations.push(last(&outcome, &iterations));
+        }
+        let row = Row::of_contact(&grid, simulation.boundary, (gap, hardness, compliance), &state, &outcome);
+        // Of a free line contact displacements are measured from the domain's end, x = L, as those of a march are.
+        let datum = match state.unit_displacement.as_slice() {
+            [.., before, last] if free_line => (last + 0.5 * (last - before)) * compliance,
+            _ => 0.0,
+        };
+        let row = Row { approach: row.approach - datum, ..row };
+        simulation.loading = Loading { control, history: History::Step { value } }.into();
+        let findings = if *half_space { judged(simulation, control, &row, &state) } else { "[]".into() };
+        state.unit_displacement.iter_mut().for_each(|u| *u = *u * compliance - datum);
+        Ok(Solved { state, row, findings, iterations })
+    }
+
+    fn stiffness(&mut self, pressure: &[f64], interrupt: &AtomicBool) -> asperity::Result<f64> {
+        let Planned { simulation, operator, stiffness, .. } = self;
+        let solver = stiffness.get_or_insert_with(|| ContactStiffness::new(&**operator));
+        let hardnesses = simulation.hardness_map.as_ref().and_then(|map| map.as_slice());
+        let below = |n: usize| pressure[n] < hardnesses.map_or(simulation.hardness, |map| map[n]);
+        let bears = |n: usize| pressure[n] > 0.0 && below(n);
+        let found = solver.of(&mut **operator, simulation.creep.instantaneous, bears, Some(interrupt))?;
+        Ok(found.0)
+    }
+}
+
+/// The state at the end as one more entry of the history.
+fn last(outcome: &Outcome, iterations: &[Iteration]) -> Iteration {
+    Iteration {
+        number: outcome.iterations as u64,
+        residual: outcome.residual,
+        working: iterations.last().map_or(0.0, |before| before.working),
+        step: "converged".into(),
+        convolutions: outcome.convolutions as u64,
+    }
+}
+
+/// What is to be said of a contact, as a JSON list.
+fn judged(simulation: &Simulation, control: Control, row: &Row, state: &ContactState) -> String {
+    let mut judge = Judge::new(simulation, Known::default());
+    let pressure = ArrayView2::from_shape(simulation.grid.shape(), &state.pressure);
+    if let Ok(pressure) = pressure {
+        judge.see_contact(0, row, pressure, control, simulation.creep.instantaneous);
+    }
+    asperity_io::finding::list(&judge.findings(simulation)).to_string()
+}
+
+/// The number of the spot of each cell with pressure, 1 for the largest, 0 elsewhere.
+#[pyfunction]
+pub fn spot_labels<'py>(
+    py: Python<'py>,
+    pressure: PyReadonlyArray2<'_, f64>,
+    boundary: &str,
+) -> PyResult<Bound<'py, numpy::PyArray2<u32>>> {
+    let boundary = choose("boundary", boundary)?;
+    let pressure = pressure.as_array();
+    let labels = crate::wait::detached(py, || asperity::spots::labels(boundary, pressure, |p| *p > 0.0))?;
+    Ok(labels.into_pyarray(py))
 }

@@ -59,19 +59,33 @@ pub fn run(py: Python<'_>, error: RunError) -> PyErr {
     match error {
         RunError::Case(errors) => case(errors),
         RunError::Solve { source, .. } => raised(py, source),
-        error => PyOSError::new_err(error.to_string()),
+        error => PyOSError::new_err(spoken(&error.to_string())),
     }
+}
+
+/// The words of a message with the parameters of Python in place of the options of the command.
+fn spoken(message: &str) -> String {
+    const WORDS: [(&str, &str); 7] = [
+        ("(`size`, --size A,B)", "(size=(Lx, Ly))"),
+        ("(`height_unit`, --height-unit U)", "(height_unit= in m)"),
+        ("asperity run --resume", "asperity.run(..., resume=True)"),
+        ("--resume", "resume=True"),
+        ("--force", "force=True"),
+        ("--channel", "channel="),
+        ("--set", "set="),
+    ];
+    WORDS.iter().fold(message.to_owned(), |text, (option, parameter)| text.replace(option, parameter))
 }
 
 /// A measured surface that cannot be read.
 pub fn topography(error: TopographyError) -> PyErr {
     match &error.problem {
-        Problem::Unrecognised | Problem::Foreign { .. } => FormatError::new_err(error.to_string()),
+        Problem::Unrecognised | Problem::Foreign { .. } => FormatError::new_err(spoken(&error.to_string())),
         _ => file(error),
     }
 }
 
 /// Anything that files do.
 pub fn file(error: impl std::fmt::Display) -> PyErr {
-    PyOSError::new_err(error.to_string())
+    PyOSError::new_err(spoken(&error.to_string()))
 }

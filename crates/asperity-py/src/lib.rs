@@ -6,6 +6,7 @@ mod cycles;
 mod error;
 mod fit;
 mod indentation;
+mod kernel;
 mod leakage;
 mod march;
 mod material;
@@ -14,7 +15,10 @@ mod sliding;
 mod store;
 mod stress;
 mod surface;
+mod trace;
+mod units;
 mod wait;
+mod writer;
 
 use pyo3::prelude::*;
 
@@ -23,7 +27,7 @@ mod _core {
     use super::*;
 
     #[pymodule_export]
-    use super::contact::elastic;
+    use super::contact::{Elastic, spot_labels};
     #[pymodule_export]
     use super::cycles::cycles_of;
     #[pymodule_export]
@@ -52,7 +56,11 @@ mod _core {
         profile_parameters, read_surface, roughness, self_affine, shape, write_surface,
     };
     #[pymodule_export]
+    use super::units::unit_factor;
+    #[pymodule_export]
     use super::wait::{set_threads, threads};
+    #[pymodule_export]
+    use super::writer::Writer;
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

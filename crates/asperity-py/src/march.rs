@@ -56,6 +56,14 @@ impl Rows {
         }
     }
 
+    /// Whether the last row is done.
+    fn finished(&self) -> bool {
+        match self {
+            Rows::Times(march) => march.finished(),
+            Rows::Velocities(steady) => steady.done() == steady.motion().velocities.len(),
+        }
+    }
+
     fn expected(&self) -> Option<usize> {
         match self {
             Rows::Times(march) => march.rows_expected(),
@@ -410,6 +418,12 @@ impl March {
     #[getter]
     fn rows_expected(&self) -> Option<usize> {
         self.locked().expected()
+    }
+
+    /// Whether the last row is done.
+    #[getter]
+    fn finished(&self) -> bool {
+        self.locked().finished()
     }
 
     /// Rows done.

@@ -203,7 +203,7 @@ impl<'a> Stack<'a> {
 type Asked<'py> = (String, PyReadonlyArray1<'py, f64>, PyReadonlyArray2<'py, f64>);
 
 /// Writes a result that was in memory. `columns` are the numbers of all rows by their names, `fields` the stacks of
-/// the rows `field_steps`; `setup` is JSON that says what was solved, `findings` a JSON list.
+/// the rows `field_steps`; `setup` is JSON that says what was solved, `findings` a JSON list, `status` how the run ended.
 #[pyfunction]
 #[allow(clippy::too_many_arguments)]
 pub fn save(
@@ -220,7 +220,9 @@ pub fn save(
     field_times: Vec<f64>,
     quantities: Vec<Asked<'_>>,
     findings: &str,
+    status: &str,
 ) -> PyResult<()> {
+    let status = status_of(status);
     let (nx, ny) = initial_gap.as_array().dim();
     let grid = grid_of(py, (nx, ny), &size)?;
     let setup = serde_json::from_str(setup).map_err(|error| CaseError::new_err(error.to_string()))?;
@@ -292,7 +294,7 @@ pub fn save(
             writer.append_with(row, &numbers, &fields)?;
         }
         writer.set_findings(findings);
-        writer.finish(&Outcome::new(Status::Complete))
+        writer.finish(&Outcome::new(status))
     })?
     .map(drop)
     .map_err(file)
@@ -316,6 +318,42 @@ pub fn derive_again(py: Python<'_>, source: PathBuf, copy: PathBuf) -> PyResult<
         Ok(())
     };
     detached(py, derived)?.map_err(file)
+}
+
+/// How a run ended.
+pub fn status_of(word: &str) -> Status {
+    match word {
+        "complete" => Status::Complete,
+        "interrupted" => Status::Interrupted,
+        _ => Status::Failed,
+    }
+}
+
+/// A row of numbers by their names: the inverse of [`crate::march::fill`].
+pub fn row_of(numbers: &Bound<'_, PyDict>) -> PyResult<Row> {
+    let number = |name: &str| -> PyResult<f64> {
+        let found = numbers.get_item(name)?;
+        found.ok_or_else(|| CaseError::new_err(format!("the row has no '{name}'")))?.extract()
+    };
+    let time_error = number("time_error")?;
+    Ok(Row {
+        time: number("time")?,
+        load: number("load")?,
+        approach: number("approach")?,
+        contact_area: number("contact_area")?,
+        contact_area_corrected: number("contact_area_corrected")?,
+        contact_fraction: number("contact_fraction")?,
+        capped_area: number("capped_area")?,
+        mean_pressure: number("mean_pressure")?,
+        max_pressure: number("max_pressure")?,
+        mean_gap: number("mean_gap")?,
+        iterations: number("iterations")? as usize,
+        convolutions: number("convolutions")? as usize,
+        residual: number("residual")?,
+        certificate: number("certificate")?,
+        time_error: (!time_error.is_nan()).then_some(time_error),
+        stage: number("stage")? as usize,
+    })
 }
 
 /// The rows of columns of equal length: the inverse of [`crate::march::fill`].

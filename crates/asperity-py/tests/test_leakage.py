@@ -107,7 +107,7 @@ def test_a_result_leaks_less_as_it_creeps(tmp_path) -> None:
     case.write_text(CASE)
     result = asp.run(case, output=tmp_path / "seal.zarr")
     stored = result.leakage()
-    assert stored.leak_rate.attrs["units"] == "m3/s" and bool((np.diff(stored.leak_rate) <= 0).all())
+    assert stored.leak_rate.attrs["units"] == "m^3/s" and bool((np.diff(stored.leak_rate) <= 0).all())
     again = result.leakage(pressure_drop=100.0, viscosity=1e-3)
     assert np.array_equal(again.leak_rate, stored.leak_rate) and np.array_equal(again.leak_resolved, stored.leak_resolved)
     gas = result.leakage(gas="air", inlet=1.001e5, outlet=1e5)

@@ -274,8 +274,10 @@ def test_wrong_studies_are_refused(sphere, over, change, words):
 def test_a_case_that_is_not_there_and_keys_that_are_not(tmp_path, case):
     with pytest.raises(asp.CaseError, match="none.toml"):
         asp.study(tmp_path / "none.toml", {"load.history.value": ["1 N"]})
-    data = asp.study(case, {"load.histori.value": ["1 N"]})
-    assert data.status.item() == "failed" and "histori" in data.error.item()
+    with pytest.raises(asp.CaseError, match="histori"):
+        asp.study(case, {"load.histori.value": ["1 N"]})
+    data = asp.study(case, {"load.history.value": ["-1 N"]})
+    assert data.status.item() == "failed" and "load" in data.error.item()
 
 
 def test_a_dask_cluster_solves_the_points(case, sphere, tmp_path):
@@ -304,3 +306,22 @@ def test_datasets_can_be_stored(case, tmp_path):
     data.to_zarr(tmp_path / "data.zarr", zarr_format=3)
     back = xarray.open_zarr(tmp_path / "data.zarr")
     assert np.array_equal(back.approach, data.approach, equal_nan=True) and back.status.values.tolist() == ["complete", "failed"]
+
+
+def test_a_misspelt_parameter_is_an_error_at_once(tmp_path):
+    ball = asp.Surface.sphere(cells=(8, 8), size=(1e-3, 1e-3), radius=1e-2)
+    given = dict(surface=ball, material=asp.Elastic(young=1e6, poisson=0.5), times=[1.0])
+
+    def function(load):
+        raise AssertionError("no point is solved")
+
+    for case, over, words in (
+        (given, {"presure": [1.0, 2.0]}, "did you mean 'pressure'"),
+        ({**given, "hardnes": 1.0}, {"load": [1.0]}, "did you mean 'hardness'"),
+        (function, {"laod": [1.0]}, "did you mean 'load'"),
+        (asp.solve, [{**given, "lod": 1.0}], "'lod'"),
+        (CASE, {"load.history.valeu": ["1 N"]}, "valeu"),
+    ):
+        with pytest.raises(asp.CaseError, match=words):
+            asp.study(case, over, folder=tmp_path / "never", progress=False)
+    assert not list(tmp_path.glob("never/*.zarr"))

@@ -4,7 +4,7 @@
 //! borders share their edges. The labelling is the union-find of two rows at a time (C. Fiorio & J. Gustedt,
 //! Theor. Comput. Sci. 154 (1996) 165).
 
-use ndarray::ArrayView2;
+use ndarray::{Array2, ArrayView2};
 
 use crate::grid::{Boundary, Grid};
 
@@ -42,32 +42,7 @@ impl Spots {
         cells: ArrayView2<T>,
         touches: impl Fn(&T) -> bool,
     ) -> Spots {
-        let (nx, ny) = cells.dim();
-        let at = |i: usize, j: usize| i * ny + j;
-        let on = |i: usize, j: usize| touches(&cells[[i, j]]);
-        let mut forest = Forest::new(nx * ny);
-        for i in 0..nx {
-            for j in (0..ny).filter(|j| on(i, *j)) {
-                if i > 0 && on(i - 1, j) {
-                    forest.join(at(i - 1, j), at(i, j));
-                }
-                if j > 0 && on(i, j - 1) {
-                    forest.join(at(i, j - 1), at(i, j));
-                }
-            }
-        }
-        if boundary == Boundary::Periodic && nx > 0 && ny > 0 {
-            (0..ny)
-                .filter(|j| on(0, *j) && on(nx - 1, *j))
-                .for_each(|j| forest.join(at(0, j), at(nx - 1, j)));
-            (0..nx)
-                .filter(|i| on(*i, 0) && on(*i, ny - 1))
-                .for_each(|i| forest.join(at(i, 0), at(i, ny - 1)));
-        }
-        let mut counts = vec![0usize; nx * ny];
-        for i in 0..nx {
-            (0..ny).filter(|j| on(i, *j)).for_each(|j| counts[forest.root(at(i, j))] += 1);
-        }
+        let (_, counts) = roots(boundary, cells, touches);
         let mut counts: Vec<usize> = counts.into_iter().filter(|count| *count > 0).collect();
         counts.sort_unstable_by(|a, b| b.cmp(a));
         Spots { areas: counts.into_iter().map(|count| count as f64 * grid.cell_area()).collect() }
@@ -87,6 +62,61 @@ impl Spots {
     pub fn mean_area(&self) -> f64 {
         if self.areas.is_empty() { 0.0 } else { self.areas.iter().sum::<f64>() / self.areas.len() as f64 }
     }
+}
+
+/// The number of the spot of each cell, 1 for the largest, and 0 where nothing touches. Of two spots of one size the one
+/// that has the earlier cell comes first.
+///
+/// ```
+/// use asperity::{Boundary, spots::labels};
+/// let p = ndarray::array![[1, 0, 1], [0, 0, 1]];
+/// assert_eq!(labels(Boundary::Free, p.view(), |p| *p > 0), ndarray::array![[2, 0, 1], [0, 0, 1]]);
+/// ```
+pub fn labels<T>(boundary: Boundary, cells: ArrayView2<T>, touches: impl Fn(&T) -> bool) -> Array2<u32> {
+    let (roots, counts) = roots(boundary, cells.view(), touches);
+    let mut spots: Vec<usize> = (0..counts.len()).filter(|root| counts[*root] > 0).collect();
+    spots.sort_by(|a, b| counts[*b].cmp(&counts[*a]).then(a.cmp(b)));
+    let mut numbers = vec![0; counts.len()];
+    spots.iter().zip(1..).for_each(|(root, number)| numbers[*root] = number);
+    let mut labels = Array2::zeros(cells.dim());
+    labels.iter_mut().zip(roots).for_each(|(label, root)| *label = root.map_or(0, |root| numbers[root]));
+    labels
+}
+
+/// The cell that stands for the spot of each cell, `None` where nothing touches; and how many cells each stands for.
+fn roots<T>(
+    boundary: Boundary,
+    cells: ArrayView2<T>,
+    touches: impl Fn(&T) -> bool,
+) -> (Vec<Option<usize>>, Vec<usize>) {
+    let (nx, ny) = cells.dim();
+    let at = |i: usize, j: usize| i * ny + j;
+    let on = |i: usize, j: usize| touches(&cells[[i, j]]);
+    let mut forest = Forest::new(nx * ny);
+    for i in 0..nx {
+        for j in (0..ny).filter(|j| on(i, *j)) {
+            if i > 0 && on(i - 1, j) {
+                forest.join(at(i - 1, j), at(i, j));
+            }
+            if j > 0 && on(i, j - 1) {
+                forest.join(at(i, j - 1), at(i, j));
+            }
+        }
+    }
+    if boundary == Boundary::Periodic && nx > 0 && ny > 0 {
+        (0..ny).filter(|j| on(0, *j) && on(nx - 1, *j)).for_each(|j| forest.join(at(0, j), at(nx - 1, j)));
+        (0..nx).filter(|i| on(*i, 0) && on(*i, ny - 1)).for_each(|i| forest.join(at(i, 0), at(i, ny - 1)));
+    }
+    let mut counts = vec![0usize; nx * ny];
+    let mut roots = vec![None; nx * ny];
+    for i in 0..nx {
+        for j in (0..ny).filter(|j| on(i, *j)) {
+            let root = forest.root(at(i, j));
+            counts[root] += 1;
+            roots[at(i, j)] = Some(root);
+        }
+    }
+    (roots, counts)
 }
 
 /// Whether connected cells reach from one border of the domain to the opposite one, along x and along y. Cells that share an

@@ -1,5 +1,7 @@
 """Contact of rough, linear viscoelastic bodies.
 
+``asp.open`` opens a result; ``from asperity import *`` leaves it out, so that it hides no builtin.
+
 Quantities are SI floats, arrays are numpy float64 with axes (x, y); pressure is positive in compression and the
 approach is zero at first touch.
 
@@ -14,7 +16,8 @@ True
 
 from . import compat
 from ._core import CaseError, ConvergenceError, __version__
-from ._contact import ElasticContact, elastic
+from ._cite import cite
+from ._contact import ConvergenceHistory, ElasticContact, ElasticCurve, elastic
 from ._findings import Finding, ResultWarning
 from ._fit import Fit, fit_creep, fit_dma, fit_file, fit_relaxation
 from ._histories import (
@@ -66,10 +69,12 @@ __all__ = [
     "Burgers",
     "CaseError",
     "ConvergenceError",
+    "ConvergenceHistory",
     "Creep",
     "Cycle",
     "Elastic",
     "ElasticContact",
+    "ElasticCurve",
     "Finding",
     "Fit",
     "FractionalMaxwell",
@@ -99,6 +104,7 @@ __all__ = [
     "adaptive",
     "arrhenius",
     "check",
+    "cite",
     "compat",
     "elastic",
     "fit_creep",
@@ -112,7 +118,6 @@ __all__ = [
     "listed",
     "log",
     "march",
-    "open",
     "persson_friction",
     "rubber_friction",
     "slide",

@@ -1,4 +1,4 @@
-"""Numbers from outside, made what the core takes: C-ordered float64, or an error."""
+"""Numbers from outside, made what the core takes: C-ordered float64 in SI units, or an error."""
 
 from __future__ import annotations
 
@@ -8,12 +8,15 @@ import numpy as np
 import numpy.typing as npt
 
 from ._core import CaseError
+from ._units import bare, carries, is_labelled
 
 Floats = npt.NDArray[np.float64]
 
 
-def number(what: str, value: Any) -> float:
-    """A real number; an array of one counts, text and complex numbers do not."""
+def number(what: str, value: Any, unit: str | None = None) -> float:
+    """A real number in SI units; an array of one counts, text and complex numbers do not. A quantity of pint, say, is converted to
+    `unit`, by default that of the parameter `what`."""
+    value = bare(what, value, unit)
     if isinstance(value, (str, bytes, bool)) or value is None:
         raise CaseError(f"{what} is {value!r}, but must be a number in SI units")
     try:
@@ -25,8 +28,14 @@ def number(what: str, value: Any) -> float:
         raise CaseError(f"{what} is {value!r}, but must be a number in SI units") from None
 
 
+def angle(what: str, value: Any) -> float:
+    """An angle in rad; a quantity of pint, say, may be in degrees."""
+    return number(what, value, "rad") if carries(value) else number(what, value)
+
+
 def count(what: str, value: Any, least: int = 1, most: int = 2**53) -> int:
     """A whole number; one that is an integer already keeps all its digits."""
+    value = bare(what, value)
     if isinstance(value, (int, np.integer)) and not isinstance(value, bool):
         whole = int(value)
     else:
@@ -43,6 +52,7 @@ def count(what: str, value: Any, least: int = 1, most: int = 2**53) -> int:
 
 def pair(what: str, value: Any) -> tuple[float, float]:
     """Two numbers, along x and y."""
+    value = bare(what, value)
     if isinstance(value, (str, bytes)):
         raise CaseError(f"{what} is {value!r}, but must be two numbers, along x and y")
     try:
@@ -54,6 +64,7 @@ def pair(what: str, value: Any) -> tuple[float, float]:
 
 def lengths(what: str, value: Any) -> tuple[float, ...]:
     """Numbers along the directions of a grid: two, along x and y, or one of a line, which may stand without a list."""
+    value = bare(what, value)
     if isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool):
         return (number(what, value),)
     if not isinstance(value, (str, bytes)) and np.ndim(value) == 1 and len(value) == 1:
@@ -66,6 +77,7 @@ def lengths(what: str, value: Any) -> tuple[float, ...]:
 
 def cell_counts(what: str, value: Any) -> tuple[int, ...]:
     """Whole numbers along the directions of a grid, as :func:`lengths`."""
+    value = bare(what, value)
     found = lengths(what, value)
     # The numbers as they were given keep all their digits.
     given = [value] if np.ndim(value) == 0 else list(value)
@@ -93,9 +105,38 @@ def plain(array: Any) -> Floats:
     return out
 
 
+def array(what: str, value: Any, unit: str | None = None) -> Floats:
+    """Real numbers of any shape in SI units."""
+    value = bare(what, value, unit)
+    found = np.asarray(value)
+    if found.dtype.kind not in "fiu":
+        raise CaseError(f"{what} is {value!r}, but must hold real numbers in SI units")
+    return np.asarray(found, dtype=np.float64)
+
+
+def frozen(values: Any) -> Any:
+    """The array, read-only."""
+    view = values.view()
+    view.flags.writeable = False
+    return view
+
+
+def in_order(what: str, value: Any) -> Any:
+    """An array of xarray with its dimensions in the order x, y; anything else as it is."""
+    if not is_labelled(value):
+        return value
+    names = tuple(str(name) for name in value.dims)
+    if len(names) == 1:
+        return value
+    if sorted(names) != ["x", "y"]:
+        raise CaseError(f"{what} has the dimensions {names}, but must have x and y, or one: select one of the others, as in isel(time=-1)")
+    return value.transpose("x", "y")
+
+
 def field(what: str, value: Any, line: bool = False) -> Floats:
-    """A two-dimensional array of real numbers as C-ordered float64; no copy where it is one already. With `line` one of one
-    dimension counts too."""
+    """A two-dimensional array of real numbers as C-ordered float64 in SI units; no copy where it is one already. With `line` one
+    of one dimension counts too."""
+    value = bare(what, in_order(what, value))
     mask = np.ma.getmask(value)
     array = np.asarray(np.ma.getdata(value))
     if array.dtype.kind not in "fiu":
@@ -129,17 +170,26 @@ def cells_of(array: Floats) -> str:
     return f"a line of {array.shape[0]} cells" if array.ndim == 1 else f"{array.shape[0]} x {array.shape[1]} cells"
 
 
-def line(what: str, value: Any) -> Floats:
-    """A one-dimensional array of real numbers as float64."""
-    array = np.asarray(value)
+def line(what: str, value: Any, unit: str | None = None) -> Floats:
+    """A one-dimensional array of real numbers as float64 in SI units."""
+    array = np.asarray(bare(what, value, unit))
     if array.dtype.kind not in "fiu" or array.ndim != 1:
         raise CaseError(f"{what} has shape {array.shape} and dtype {array.dtype}, but must be a list of real numbers")
     return plain(array)
 
 
-def points(what: str, value: Any) -> list[tuple[float, float]]:
-    """A list of pairs."""
+def points(what: str, value: Any, units: tuple[str, str] = ("", "")) -> list[tuple[float, float]]:
+    """A list of pairs, whose numbers have these units."""
+    if isinstance(value, (list, tuple)) and all(isinstance(pair, (list, tuple)) and len(pair) == 2 for pair in value):
+        value = [tuple(bare(what, one, unit) for one, unit in zip(pair, units)) for pair in value]
+    else:
+        value = bare(what, value)
     array = np.asarray(value)
     if array.dtype.kind not in "fiu" or array.ndim != 2 or array.shape[1] != 2:
         raise CaseError(f"{what} is {value!r}, but must be a list of pairs of numbers")
     return [(float(a), float(b)) for a, b in array]
+
+
+def centres(cells: int, length: float) -> Floats:
+    """Centres of equal cells along a length."""
+    return np.asarray((np.arange(cells) + 0.5) * (length / cells), dtype=np.float64)

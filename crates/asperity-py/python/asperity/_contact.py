@@ -1,36 +1,132 @@
-"""One elastic contact."""
+"""Elastic contacts."""
 
 from __future__ import annotations
 
+import json
 import math
-from collections.abc import Sequence
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, as_plane, cells_of, count, field, number, size_of
-from ._surface import as_surface
+from ._arrays import Floats, as_plane, cells_of, centres, count, field, frozen, number
+from ._columns import ROW, Column
+from ._core import CaseError
+from ._findings import Finding, findings_of, warn
+from ._result import Result
+from ._surface import Surface, surface_of
+from ._units import bare
+from ._words import Boundary, Method
+
+if TYPE_CHECKING:
+    from .plot import CurvePlots, Plots
+
+#: A kernel: numbers, or a function of two coordinates that gives them.
+Kernel = npt.ArrayLike | Callable[[Floats, Floats], npt.ArrayLike]
 
 
 @dataclass(frozen=True, eq=False)
-class ElasticContact:
-    """The solution of one elastic contact, fields of shape (nx, ny), of a line contact (n,)."""
+class ConvergenceHistory:
+    """What a solver did, one entry for each iteration, and the state in which it stopped."""
 
-    #: Pressure [Pa], positive in compression.
-    pressure: Floats
-    #: Normal displacement [m].
-    displacement: Floats
-    #: Gap of the deformed surfaces [m]; below zero where the pressure is cut off.
-    gap: Floats
+    iteration: npt.NDArray[np.int64]
+    #: Largest violation of the contact conditions over the mean displacement, before the step.
+    residual: Floats
+    #: Cells in the working set.
+    working_cells: Floats
+    #: Kind of the step, "converged" at the end.
+    step: tuple[str, ...]
+    #: Convolutions so far.
+    convolutions: npt.NDArray[np.int64]
+
+    def __len__(self) -> int:
+        return len(self.iteration)
+
+    def to_dataframe(self) -> Any:
+        """The history as pandas.DataFrame."""
+        import pandas  # type: ignore[import-not-found,import-untyped,unused-ignore]
+
+        names = ("residual", "working_cells", "step", "convolutions")
+        return pandas.DataFrame({name: getattr(self, name) for name in names}, index=pandas.Index(self.iteration, name="iteration"))
+
+    def __repr__(self) -> str:
+        return f"<ConvergenceHistory: {len(self)} entries, residual {self.residual[0]:.2e} to {self.residual[-1]:.2e}>"
+
+
+class _Planned:
+    """The contact of one surface, planned for any number of loads."""
+
+    def __init__(self, surface: Surface, modulus: float, hardness: Any, kernel: Any, keys: dict[str, Any]) -> None:
+        gap = surface.gap()
+        self.gap: Floats = frozen(gap)
+        self.size = surface.size
+        self.keys = {"contact_modulus": modulus, **keys}
+        self.kernel, self.hardness = kernel, hardness
+        cells = isinstance(hardness, np.ndarray)
+        self.core = _core.Elastic(
+            gap=as_plane(gap),
+            size=list(surface.size),
+            hardness=math.inf if hardness is None or cells else hardness,
+            hardness_map=as_plane(hardness) if cells else None,
+            kernel=kernel,
+            **self.keys,
+        )
+
+    def is_for(self, surface: Surface, modulus: float, hardness: Any, kernel: Any, keys: dict[str, Any]) -> bool:
+        """Whether it was planned for this."""
+        if self.keys != {"contact_modulus": modulus, **keys} or self.size != surface.size:
+            return False
+        same = (np.array_equal(ours, theirs) for ours, theirs in ((self.hardness, hardness), (self.kernel, kernel)))
+        return all(same) and np.array_equal(self.gap, surface.gap())
+
+    def solve(self, load: float | None, approach: float | None, start: Floats | None, history: bool, out: Any) -> ElasticContact:
+        """One contact."""
+        found = self.core.solve(load, approach, None if start is None else as_plane(start), history)
+        fields = {name: found.pop(name).reshape(self.gap.shape) for name in ("pressure", "displacement")}
+        for name, values in fields.items():
+            if name in out:
+                out[name][...] = values
+                fields[name] = out[name].view()
+        findings, iterations = findings_of(json.loads(found.pop("findings"))), found.pop("history")
+        told = None
+        if history:
+            number_, residual, working, steps, convolutions = zip(*iterations)
+            whole = (np.array(values, dtype=np.int64) for values in (number_, convolutions))
+            told = ConvergenceHistory(next(whole), np.array(residual), np.array(working), tuple(steps), next(whole))
+        contact = ElasticContact(self, found, fields["pressure"], fields["displacement"], findings, told)
+        if "gap" in out:
+            out["gap"][...] = contact.gap
+        return contact
+
+
+class ElasticContact:
+    """The solution of one elastic contact; made by :func:`elastic`. Fields have the shape (nx, ny), of a line contact (n,).
+
+    Its numbers are those of a row of a :class:`Result`; all arrays are read-only.
+    """
+
     #: Load [N]; of a line contact per length [N/m].
     load: float
     #: Approach [m]; of a free line contact measured from the end of the domain.
     approach: float
     #: Area of the cells with pressure [m^2]; of a line contact its length [m].
     contact_area: float
+    #: The same less the share of the cells at the border of the contact that does not touch (Yastrebov, Anciaux, Molinari 2017).
+    contact_area_corrected: float
+    #: Contact area over nominal area.
+    contact_fraction: float
+    #: Area at the hardness [m^2].
+    capped_area: float
+    #: Load over nominal area [Pa].
+    mean_pressure: float
+    #: Largest pressure [Pa].
+    max_pressure: float
+    #: Mean gap [m].
+    mean_gap: float
     #: Largest violation of the contact conditions over the mean displacement.
     residual: float
     #: Certified relative error of the pressure in the energy norm.
@@ -39,56 +135,321 @@ class ElasticContact:
     iterations: int
     convolutions: int
 
+    def __init__(
+        self,
+        planned: _Planned,
+        row: dict[str, Any],
+        pressure: Floats,
+        displacement: Floats,
+        findings: list[Finding],
+        history: ConvergenceHistory | None,
+    ) -> None:
+        self._planned: _Planned | None = planned
+        self._row = row
+        self.__dict__.update({name: value for name, value in row.items() if name not in ("time", "stage", "time_error")})
+        #: Pressure [Pa], positive in compression.
+        self.pressure: Floats = frozen(pressure)
+        #: Normal displacement [m].
+        self.displacement: Floats = frozen(displacement)
+        #: Undeformed gap [m].
+        self.initial_gap: Floats = planned.gap
+        #: Lengths of the domain [m].
+        self.size: tuple[float, ...] = planned.size
+        #: "free" or "periodic".
+        self.boundary: str = planned.keys["boundary"]
+        #: Where the numbers may be off (docs/findings.md).
+        self.findings = findings
+        #: What the solver did, where it was asked for.
+        self.history = history
+        self._stiffness: float | None = None
+
+    @property
+    def gap(self) -> Floats:
+        """Gap of the deformed surfaces [m]; below zero where the pressure is cut off."""
+        values: Floats = self.initial_gap + self.displacement - self.approach
+        return values
+
+    @property
+    def cells(self) -> tuple[int, ...]:
+        """Number of cells along x and y; of a line contact along x."""
+        return self.pressure.shape
+
+    @property
+    def is_line(self) -> bool:
+        """Whether it is a line contact."""
+        return self.pressure.ndim == 1
+
+    @property
+    def x(self) -> Floats:
+        """Cell centres along x [m]."""
+        return centres(self.cells[0], self.size[0])
+
+    @property
+    def y(self) -> Floats:
+        """Cell centres along y [m]."""
+        if self.is_line:
+            raise CaseError("a line contact has no y: nothing changes along it")
+        return centres(self.cells[1], self.size[1])
+
+    @property
+    def stiffness(self) -> float:
+        """Contact stiffness dW/dw [N/m], of a line contact per length [N/m^2]: at a contact of that area, of cells below the hardness.
+        Computed when it is first asked for.
+        """
+        if self._stiffness is None:
+            if self._planned is None:
+                raise CaseError("the stiffness is computed where the contact was: ask for it before it is sent to another process")
+            self._stiffness = self._planned.core.stiffness(np.array(as_plane(self.pressure)))
+        return self._stiffness
+
+    def spots(self) -> npt.NDArray[np.uint32]:
+        """The contact spots as a labelled image; see :meth:`Result.spots`."""
+        labels = _core.spot_labels(np.array(as_plane(self.pressure)), self.boundary)
+        return labels.reshape(self.pressure.shape)
+
+    def to_result(self) -> Result:
+        """The contact as a result of one row at the time 0, with the fields "pressure", "gap" and "displacement"."""
+        return _result([self], True)
+
+    def to_xarray(self) -> Any:
+        """The contact as xarray.Dataset with coordinates and units."""
+        data = self.to_result().to_xarray().isel(time=0, field_time=0, drop=True)
+        return data.drop_vars(["time_error", "stage"])
+
+    def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
+        """Writes the contact as a result of one row, as :meth:`Result.save`."""
+        self.to_result().save(path, force=force)
+
+    @property
+    def plot(self) -> Plots:
+        """Figures by matplotlib: ``contact.plot.pressure()``, ``contact.plot.gap()``, ..."""
+        return self.to_result().plot
+
+    def __getstate__(self) -> dict[str, Any]:
+        # What is planned stays where it is.
+        return {**self.__dict__, "_planned": None}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        for name in ("pressure", "displacement", "initial_gap"):
+            self.__dict__[name] = frozen(state[name])
+
     def _repr_html_(self) -> str:
-        on_line = self.pressure.ndim == 1
         lines = [
-            ("load", f"{self.load:.6g} {'N/m' if on_line else 'N'}"),
+            ("load", f"{self.load:.6g} {'N/m' if self.is_line else 'N'}"),
             ("approach", f"{self.approach:.6g} m"),
-            ("contact length" if on_line else "contact area", f"{self.contact_area:.6g} {'m' if on_line else 'm²'}"),
-            ("largest pressure", f"{self.pressure.max():.6g} Pa"),
+            ("contact length" if self.is_line else "contact area", f"{self.contact_area:.6g} {'m' if self.is_line else 'm²'}"),
+            ("contact fraction", f"{100 * self.contact_fraction:.4g} %"),
+            ("largest pressure", f"{self.max_pressure:.6g} Pa"),
             ("certified error", f"{self.certificate:.1e}"),
         ]
         rows = "".join(f"<tr><th style='text-align:left'>{a}</th><td>{b}</td></tr>" for a, b in lines)
         return f"<b>Elastic contact</b>, {cells_of(self.pressure)}<table>{rows}</table>"
 
     def __repr__(self) -> str:
-        load, area = ("N/m", "length") if self.pressure.ndim == 1 else ("N", "area")
         return (
-            f"<ElasticContact: {cells_of(self.pressure)}, load {self.load:.4g} {load}, approach {self.approach:.4g} m, "
-            f"{area} {self.contact_area:.4g} {'m' if area == 'length' else 'm^2'}, certified error {self.certificate:.1e}>"
+            f"<ElasticContact: {cells_of(self.pressure)}, load {self.load:.4g} {'N/m' if self.is_line else 'N'}, approach {self.approach:.4g} m, "
+            f"contact {'length' if self.is_line else 'area'} {100 * self.contact_fraction:.4g} %, certified error {self.certificate:.1e}>"
         )
 
 
+class ElasticCurve(Sequence[ElasticContact]):
+    """Elastic contacts of one surface under a list of loads, pressures or approaches; made by :func:`elastic`.
+
+    ``curve[n]`` is a contact with its fields; `load`, `approach`, `contact_area`, ... are arrays over all of them.
+    """
+
+    load = Column()
+    approach = Column()
+    contact_area = Column()
+    contact_area_corrected = Column()
+    contact_fraction = Column()
+    capped_area = Column()
+    mean_pressure = Column()
+    max_pressure = Column()
+    mean_gap = Column()
+    residual = Column()
+    certificate = Column()
+    iterations = Column()
+    convolutions = Column()
+
+    def __init__(self, contacts: list[ElasticContact]) -> None:
+        self._contacts = contacts
+
+    def _column(self, name: str) -> Floats:
+        values: Floats = frozen(np.array([contact._row[name] for contact in self._contacts]))
+        return values
+
+    @property
+    def stiffness(self) -> Floats:
+        """Contact stiffness dW/dw [N/m] of each."""
+        return np.array([contact.stiffness for contact in self._contacts])
+
+    @property
+    def findings(self) -> list[Finding]:
+        """Where the numbers may be off, of any of the contacts."""
+        found = {finding["code"]: finding for contact in reversed(self._contacts) for finding in contact.findings}
+        return list(found.values())
+
+    @overload
+    def __getitem__(self, index: int) -> ElasticContact: ...
+    @overload
+    def __getitem__(self, index: slice) -> ElasticCurve: ...
+    def __getitem__(self, index: int | slice) -> ElasticContact | ElasticCurve:
+        return ElasticCurve(self._contacts[index]) if isinstance(index, slice) else self._contacts[index]
+
+    def __len__(self) -> int:
+        return len(self._contacts)
+
+    def __iter__(self) -> Iterator[ElasticContact]:
+        return iter(self._contacts)
+
+    def to_dataframe(self) -> Any:
+        """The numbers as pandas.DataFrame, a row for each contact."""
+        import pandas  # type: ignore[import-not-found,import-untyped,unused-ignore]
+
+        return pandas.DataFrame({name: np.array(self._column(name)) for name in ROW if name not in ("time", "time_error", "stage")})
+
+    def to_xarray(self) -> Any:
+        """The numbers and the pressures as xarray.Dataset over `load`."""
+        import xarray
+
+        rows = _result(self._contacts, False).to_xarray().drop_vars(["time_error", "stage", "field_time"])
+        rows = rows.swap_dims(time="load").set_coords("load").drop_vars("time")
+        first = self._contacts[0]
+        over = ("load", "x") if first.is_line else ("load", "x", "y")
+        pressures = np.array([contact.pressure for contact in self._contacts])
+        return rows.assign(pressure=xarray.Variable(over, pressures, {"units": "Pa", "long_name": "contact pressure"}))
+
+    @property
+    def plot(self) -> CurvePlots:
+        """Figures by matplotlib: ``curve.plot.area()``, ``curve.plot.load_displacement()``."""
+        from .plot import CurvePlots
+
+        return CurvePlots(self)
+
+    def __repr__(self) -> str:
+        first, last = self._contacts[0], self._contacts[-1]
+        unit = "N/m" if first.is_line else "N"
+        return (
+            f"<ElasticCurve: {len(self)} contacts of {cells_of(first.pressure)}, load {first.load:.4g} to {last.load:.4g} {unit}, contact "
+            f"{100 * first.contact_fraction:.4g} to {100 * last.contact_fraction:.4g} %>"
+        )
+
+
+def _result(contacts: list[ElasticContact], with_fields: bool) -> Result:
+    """Contacts as the rows of a result."""
+    first = contacts[0]
+    table = {name: np.array([float(contact._row[name]) for contact in contacts]) for name in ROW}
+    names = ("pressure", "gap", "displacement") if with_fields else ()
+    return Result(
+        table=table,
+        fields={name: np.array([getattr(contact, name) for contact in contacts]) for name in names},
+        field_steps=range(len(contacts)) if with_fields else [],
+        initial_gap=first.initial_gap,
+        size=first.size,
+        attributes={
+            "title": "Elastic contact",
+            "version": _core.__version__,
+            "status": "complete",
+            "setup": json.dumps({"boundary": first.boundary}),
+            "findings": [dict(finding) for finding in first.findings],
+        },
+    )
+
+
+@overload
 def elastic(
-    gap: Any,
-    contact_modulus: float,
+    surface: Any = ...,
+    contact_modulus: float | None = ...,
     *,
-    load: float | None = None,
-    approach: float | None = None,
+    load: float | None = ...,
+    pressure: float | None = ...,
+    approach: float | None = ...,
+    gap: Any = ...,
+    size: float | Sequence[float] | None = ...,
+    hardness: float | npt.ArrayLike | None = ...,
+    boundary: Boundary = ...,
+    kernel: Kernel | None = ...,
+    start: ElasticContact | npt.ArrayLike | None = ...,
+    out: Floats | Mapping[str, Floats] | None = ...,
+    history: bool = ...,
+    method: Method = ...,
+    tolerance: float = ...,
+    max_iterations: int = ...,
+) -> ElasticContact: ...
+@overload
+def elastic(
+    surface: Any = ...,
+    contact_modulus: float | None = ...,
+    *,
+    load: Sequence[float] | npt.NDArray[Any] | None = ...,
+    pressure: Sequence[float] | npt.NDArray[Any] | None = ...,
+    approach: Sequence[float] | npt.NDArray[Any] | None = ...,
+    gap: Any = ...,
+    size: float | Sequence[float] | None = ...,
+    hardness: float | npt.ArrayLike | None = ...,
+    boundary: Boundary = ...,
+    kernel: Kernel | None = ...,
+    start: ElasticContact | npt.ArrayLike | None = ...,
+    history: bool = ...,
+    method: Method = ...,
+    tolerance: float = ...,
+    max_iterations: int = ...,
+) -> ElasticCurve: ...
+def elastic(
+    surface: Any = None,
+    contact_modulus: float | None = None,
+    *,
+    load: Any = None,
+    pressure: Any = None,
+    approach: Any = None,
+    gap: Any = None,
     size: float | Sequence[float] | None = None,
     hardness: float | npt.ArrayLike | None = None,
-    boundary: str = "free",
-    method: str = "projected-cg",
+    boundary: Boundary = "free",
+    kernel: Kernel | None = None,
+    start: ElasticContact | npt.ArrayLike | None = None,
+    out: Floats | Mapping[str, Floats] | None = None,
+    history: bool = False,
+    method: Method = "projected-cg",
     tolerance: float = 1e-6,
     max_iterations: int = 5000,
-) -> ElasticContact:
-    """Solves one elastic contact.
+) -> ElasticContact | ElasticCurve:
+    """Solves an elastic contact, or those of a list of loads.
 
     Parameters
     ----------
-    gap : undeformed gap [m] as array (nx, ny), infinite where nothing can touch; or a Surface. An array (n,) is a line contact in
-        plane strain: nothing changes along y, and the load is per length [N/m]
+    surface : as in :func:`solve`: a Surface, or heights [m] as array (nx, ny), or (n,) of a line contact in plane strain, whose load
+        is per length [N/m]
     contact_modulus : E* [Pa], (1 - nu1^2)/E1 + (1 - nu2^2)/E2 = 1/E*
-    load, approach : normal load [N] or approach [m], exactly one of them
-    size : lengths of the domain along x and y [m], of a line its length, where the gap is an array
+    load, pressure, approach : normal load [N], load over nominal area [Pa], or approach [m], exactly one of them; a list gives an
+        :class:`ElasticCurve`, in which each contact starts from the one before
+    gap : instead of the surface the undeformed gap [m], infinite where nothing can touch; it is shifted to the least value 0
+    size : lengths of the domain along x and y [m], of a line its length, where the surface is an array
     hardness : largest pressure [Pa], of all cells or as array (nx, ny)
     boundary : "free" or "periodic"
+    kernel : of another body than the half-space, K in u = K p/E* [m]; without a contact_modulus [m/Pa]. Periodic: its symbol K(qx, qy) as
+        a function of wave numbers [rad/m], or as array (nx//2 + 1, ny//2 + 1) on 2 pi (k/Lx, l/Ly); that of the uniform
+        pressure may be infinite. Free: the influence coefficients K(x, y), the displacement at that distance [m] from a cell under
+        unit pressure, as a function or as array (nx, ny) at (i dx, j dy). It must be even in x and in y
+    start : warm start: a pressure [Pa], or a contact. Where a contact of the same surface is given, its plan is used again: for thousands
+        of solves
+    out : array (nx, ny) that takes the pressure, or a dictionary of arrays for "pressure", "displacement", "gap"; the fields of the
+        contact are views of them
+    history : keep what the solver did as `history`: residual, working cells and kind of step of each iteration
     method : "projected-cg" or "polonsky-keer"
+    tolerance : largest residual
+    max_iterations : iterations after which it gives up
 
     Raises
     ------
     CaseError : the input is wrong, or the load is more than the hardness can carry
     ConvergenceError : not solved to the tolerance; carries the best pressure as `best`
+
+    Warns
+    -----
+    ResultWarning : the numbers may be off; the `findings` say where and why
 
     Examples
     --------
@@ -98,27 +459,92 @@ def elastic(
     >>> exact = (9 * 1.0**2 / (16 * 5e-3 * 1e9**2)) ** (1 / 3)
     >>> abs(hertz.approach / exact - 1) < 1e-3
     True
+    >>> bool(abs(hertz.stiffness / (1.5 * hertz.load / hertz.approach) - 1) < 0.02)
+    True
+    >>> curve = asp.elastic(sphere, 1e9, load=[0.25, 0.5, 1.0])
+    >>> curve.contact_area.shape, curve[-1].pressure.shape
+    ((3,), (128, 128))
     """
-    if hasattr(gap, "heights"):
-        surface = as_surface(gap, size)
-        gap, size = surface.gap(), surface.size
-    elif size is None:
-        raise _core.CaseError("the gap is an array, so that its size in m is needed: size=(Lx, Ly)")
-    h0 = field("gap", gap, line=True)
-    cells = field("hardness", hardness, line=True) if hardness is not None and np.ndim(hardness) == h0.ndim else None
-    out = _core.elastic(
-        as_plane(h0),
-        size_of("gap", h0, size),
-        number("contact_modulus", contact_modulus),
-        None if load is None else number("load", load),
-        None if approach is None else number("approach", approach),
-        math.inf if hardness is None or cells is not None else number("hardness", hardness),
-        None if cells is None else as_plane(cells),
-        boundary,
-        method,
-        number("tolerance", tolerance),
-        count("max_iterations", max_iterations),
-    )
-    for name in ("pressure", "displacement"):
-        out[name] = out[name].reshape(h0.shape)
-    return ElasticContact(gap=h0 + out["displacement"] - out["approach"], **out)
+    shape = surface_of(surface, gap, size)
+    if contact_modulus is None and kernel is None:
+        raise CaseError("give contact_modulus, E* [Pa] in (1 - nu1^2)/E1 + (1 - nu2^2)/E2 = 1/E*")
+    modulus = 1.0 if contact_modulus is None else number("contact_modulus", contact_modulus)
+    limit = _hardness(hardness, shape.heights.ndim)
+    table = None if kernel is None else _table(kernel, shape, boundary)
+    keys = {"boundary": boundary, "method": method, "tolerance": number("tolerance", tolerance)}
+    keys["max_iterations"] = count("max_iterations", max_iterations)
+    held = start._planned if isinstance(start, ElasticContact) else None
+    planned = held if held is not None and held.is_for(shape, modulus, limit, table, keys) else _Planned(shape, modulus, limit, table, keys)
+
+    what, values = _prescribed(load, pressure, approach)
+    unit = {"load": "N/m" if shape.is_line else "N", "pressure": "Pa", "approach": "m"}[what]
+    scale = math.prod(shape.size) if what == "pressure" else 1.0
+    given = bare(what, values, unit)
+    several = np.ndim(given) > 0
+    numbers = [number(what, one, unit) * scale for one in (given if several else [given])]
+    if not numbers:
+        raise CaseError(f"{what} holds no number, but must hold one at least")
+    receives = _receivers(out, shape)
+    if several and receives:
+        raise CaseError("out is for one contact, but a list is given: the contacts of a curve have fields of their own")
+    first: Floats | None = None
+    if start is not None:
+        first = field("start of the pressure", start.pressure if isinstance(start, ElasticContact) else start, line=True)
+        if first.shape != shape.heights.shape:
+            raise CaseError(f"start has shape {first.shape}, but the surface has {shape.heights.shape} cells")
+    contacts: list[ElasticContact] = []
+    for value in numbers:
+        force, depth = (None, value) if what == "approach" else (value, None)
+        contacts.append(planned.solve(force, depth, contacts[-1].pressure if contacts else first, history, receives))
+    warn({finding["code"]: finding for contact in contacts for finding in contact.findings}.values(), 2)
+    return ElasticCurve(contacts) if several else contacts[0]
+
+
+def _prescribed(load: Any, pressure: Any, approach: Any) -> tuple[str, Any]:
+    given = [(name, value) for name, value in (("load", load), ("pressure", pressure), ("approach", approach)) if value is not None]
+    if len(given) != 1:
+        raise CaseError(f"give load, pressure or approach, exactly one of them; given: {', '.join(name for name, _ in given) or 'none'}")
+    return given[0]
+
+
+def _hardness(hardness: Any, dimensions: int) -> float | Floats | None:
+    from ._solve import hardness_parts
+
+    cells, limit = hardness_parts(hardness, dimensions)
+    return limit if cells is None else np.array(cells)
+
+
+def _receivers(out: Any, shape: Surface) -> dict[str, Floats]:
+    """The arrays that take the fields, by name."""
+    given = {} if out is None else dict(out) if isinstance(out, Mapping) else {"pressure": out}
+    for name, held in given.items():
+        if name not in ("pressure", "displacement", "gap"):
+            raise CaseError(f"out holds {name!r}, but may hold pressure, displacement, gap")
+        if not isinstance(held, np.ndarray) or held.dtype != np.float64 or held.shape != shape.heights.shape or not held.flags.writeable:
+            raise CaseError(f"out must be a writable float64 array of shape {shape.heights.shape}")
+    return given
+
+
+def _table(kernel: Any, shape: Surface, boundary: str) -> Floats:
+    """The numbers of a kernel that the core needs."""
+    if not callable(kernel):
+        return as_plane(field("kernel", kernel, line=True))
+    cells = (*shape.cells, 1)[:2]
+    lengths = (*shape.size, 1.0)[:2]
+    if boundary == "periodic":
+        first, second = (2.0 * np.pi / length * np.arange(n // 2 + 1) for n, length in zip(cells, lengths))
+    else:
+        first, second = (length / n * np.arange(n) for n, length in zip(cells, lengths))
+    at = np.meshgrid(first, second, indexing="ij")
+
+    def values(x: Floats, y: Floats) -> Floats:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            found = np.broadcast_to(np.asarray(kernel(x, y), dtype=np.float64), x.shape)
+        return np.array(found)
+
+    table = values(*at)
+    # Only half of the numbers are asked for: the others must be their mirror images.
+    for mirrored in (values(-at[0], at[1]), values(at[0], -at[1])):
+        if not np.allclose(mirrored, table, rtol=1e-9, atol=0.0, equal_nan=True):
+            raise CaseError("kernel must be even in both of its coordinates, but takes other values for negative ones")
+    return table

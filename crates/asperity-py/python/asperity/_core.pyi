@@ -14,7 +14,10 @@ _Motion = tuple[str, _Grid, list[tuple[float, float]], float, tuple[str, float],
 _Stage = tuple[str, _Grid, list[tuple[float, float]], float | None, tuple[str, float] | None, bool, _Grid | None]
 
 __all__ = [
-    "elastic",
+    "Elastic",
+    "spot_labels",
+    "unit_factor",
+    "Writer",
     "CaseError",
     "FormatError",
     "ConvergenceError",
@@ -73,6 +76,8 @@ class ConvergenceError(RuntimeError):
     iterations: int
     time: float | None
     best: Any
+    #: Rows before it, where :func:`asperity.solve` raises it.
+    result: Any
 
 def cycles_of(
     time: list[float], load: list[float], approach: list[float], frequency: float, start: float
@@ -101,6 +106,42 @@ class Body:
     @property
     def error(self) -> float | None: ...
     def relaxation_terms(self) -> tuple[float, list[tuple[float, float]]]: ...
+
+@final
+class Elastic:
+    def __new__(
+        cls,
+        *,
+        gap: _Floats,
+        size: list[float],
+        contact_modulus: float,
+        hardness: float,
+        hardness_map: _Floats | None,
+        boundary: str,
+        method: str,
+        tolerance: float,
+        max_iterations: int,
+        kernel: _Floats | None,
+    ) -> Elastic: ...
+    def solve(self, load: float | None, approach: float | None, start: _Floats | None, history: bool) -> dict[str, Any]: ...
+    def stiffness(self, pressure: _Floats) -> float: ...
+
+@final
+class Writer:
+    def __new__(
+        cls,
+        path: str,
+        force: bool,
+        title: str,
+        setup: str,
+        size: list[float],
+        initial_gap: _Floats,
+        fields: list[str],
+        quantities: list[tuple[str, _Floats]],
+        rows: int | None,
+    ) -> Writer: ...
+    def append(self, row: dict[str, Any], quantities: list[float], fields: dict[str, Any]) -> None: ...
+    def finish(self, status: str, findings: str, message: str | None) -> None: ...
 
 @final
 class March:
@@ -136,6 +177,8 @@ class March:
     def __len__(self) -> int: ...
     @property
     def rows_expected(self) -> int | None: ...
+    @property
+    def finished(self) -> bool: ...
     @property
     def done(self) -> int: ...
     def times(self) -> list[float]: ...
@@ -188,19 +231,6 @@ class Store:
     @property
     def attributes(self) -> str: ...
 
-def elastic(
-    gap: _Floats,
-    size: list[float],
-    contact_modulus: float,
-    load: float | None,
-    approach: float | None,
-    hardness: float,
-    hardness_map: _Floats | None,
-    boundary: str,
-    method: str,
-    tolerance: float,
-    max_iterations: int,
-) -> dict[str, Any]: ...
 def stress_check(
     pressure: _Floats, size: list[float], boundary: str, poisson: float, transverse: tuple[_Floats, float] | None, depths: list[float]
 ) -> None: ...
@@ -270,6 +300,8 @@ def fit_indentation(
 def layer_compliance(
     waves: _Floats, bodies: list[Body], stack: tuple[list[tuple[float, str]], bool], time: float
 ) -> _Floats: ...
+def spot_labels(pressure: _Floats, boundary: str) -> npt.NDArray[np.uint32]: ...
+def unit_factor(text: str, wanted: str) -> float | None: ...
 def shift_factor(words: _Shift, temperatures: _Floats) -> _Floats: ...
 def case_text(json: str) -> str: ...
 def check(path: str, text: str | None, overrides: list[str]) -> str: ...
@@ -288,6 +320,7 @@ def save(
     field_times: list[float],
     quantities: list[tuple[str, _Floats, _Floats]],
     findings: str,
+    status: str,
 ) -> None: ...
 def quantities() -> list[tuple[str, str, str, bool]]: ...
 def set_threads(number: int | None) -> None: ...

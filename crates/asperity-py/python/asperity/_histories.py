@@ -4,10 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
 
 from . import _core
 from ._arrays import count, line, number, points
 from ._core import CaseError
+from ._units import carries, unit_among
 
 __all__ = ["History", "Stage", "Times", "adaptive", "hold", "listed", "log", "ramp", "ramp_to", "sine", "step", "table", "trapezoid", "triangle", "uniform"]
 
@@ -19,6 +24,14 @@ class History:
     kind: str
     numbers: tuple[float, ...]
     points: tuple[tuple[float, float], ...] = ()
+    #: SI unit of its values, where they were given with one.
+    unit: str | None = None
+
+    def __repr__(self) -> str:
+        if len(self.points) > 4:
+            return f"{self.kind}({len(self.points)} points from {self.points[0]} to {self.points[-1]})"
+        words = ", ".join(f"{value!r}" for value in self.numbers)
+        return f"{self.kind.replace('-', '_')}({words or list(self.points) or ''})"
 
 
 @dataclass(frozen=True)
@@ -28,35 +41,62 @@ class Times:
     kind: str
     numbers: tuple[float, ...]
 
+    def __repr__(self) -> str:
+        if self.kind == "list" and len(self.numbers) > 4:
+            return f"listed({len(self.numbers)} times from {self.numbers[0]:g} to {self.numbers[-1]:g} s)"
+        name = "listed" if self.kind == "list" else self.kind
+        return f"{name}({', '.join(f'{value:g}' for value in self.numbers)})"
+
+
+#: What the values of a history may be: a load, a load per length, a pressure, an approach or path, a velocity.
+_UNITS = ("N", "N/m", "Pa", "m", "m/s")
+
+
+def _values(**given: Any) -> tuple[tuple[float, ...], str | None]:
+    """The values of a history, and their unit where they carry one: all of them then, but zeros."""
+    unit = unit_among("the value of a history", list(given.values()), _UNITS)
+    for name, value in given.items():
+        if unit is not None and not carries(value) and number(name, value, unit) != 0.0:
+            raise CaseError(f"{name} is {value!r} without a unit, but other values of the history are in {unit}")
+    return tuple(number(name.replace("_", " "), value, unit or "") for name, value in given.items()), unit
+
 
 def step(value: float) -> History:
     """The value from t = 0+ on."""
-    return History("step", (number("value of the step", value),))
+    values, unit = _values(value_of_the_step=value)
+    return History("step", values, unit=unit)
 
 
 def ramp(value: float, *, duration: float) -> History:
     """Linear from 0 to `value` during `duration` [s], then held."""
-    return History("ramp", (number("value of the ramp", value), number("duration", duration)))
+    values, unit = _values(value_of_the_ramp=value)
+    return History("ramp", (*values, number("duration", duration)), unit=unit)
 
 
 def triangle(peak: float, *, rise: float, fall: float) -> History:
     """Linear from 0 to `peak` during `rise` [s] and back to 0 during `fall` [s], then 0."""
-    return History("triangle", (number("peak", peak), number("rise", rise), number("fall", fall)))
+    values, unit = _values(peak=peak)
+    return History("triangle", (*values, number("rise", rise), number("fall", fall)), unit=unit)
 
 
 def trapezoid(peak: float, *, rise: float, hold: float, fall: float) -> History:
     """As :func:`triangle`, with `hold` [s] at the peak."""
-    return History("trapezoid", (number("peak", peak), number("rise", rise), number("hold", hold), number("fall", fall)))
+    values, unit = _values(peak=peak)
+    times = number("rise", rise), number("hold", hold), number("fall", fall)
+    return History("trapezoid", (*values, *times), unit=unit)
 
 
 def sine(*, mean: float, amplitude: float, frequency: float) -> History:
     """mean + amplitude sin(2 pi frequency t), the frequency in Hz."""
-    return History("sine", (number("mean", mean), number("amplitude", amplitude), number("frequency", frequency)))
+    values, unit = _values(mean=mean, amplitude=amplitude)
+    return History("sine", (*values, number("frequency", frequency)), unit=unit)
 
 
-def table(pairs: Sequence[tuple[float, float]]) -> History:
+def table(pairs: Sequence[tuple[float, float]] | npt.NDArray[Any]) -> History:
     """Linear between (time [s], value) points; two points at one time are a jump; held after the last."""
-    return History("table", (), tuple(points("points of the table", pairs)))
+    ends = [pair[1] for pair in pairs] if isinstance(pairs, (list, tuple)) and all(np.size(pair) == 2 for pair in pairs) else []
+    unit = unit_among("the value of a history", ends, _UNITS)
+    return History("table", (), tuple(points("points of the table", pairs, ("s", unit or ""))), unit=unit)
 
 
 def hold() -> History:
@@ -67,7 +107,8 @@ def hold() -> History:
 def ramp_to(value: float, *, duration: float) -> History:
     """Linear from the value that the quantity has when the stage starts to `value` during `duration` [s], then held; for a
     :class:`Stage`."""
-    return History("ramp-to", (number("value of the ramp", value), number("duration", duration)))
+    values, unit = _values(value_of_the_ramp=value)
+    return History("ramp-to", (*values, number("duration", duration)), unit=unit)
 
 
 @dataclass(frozen=True)
@@ -107,7 +148,7 @@ class Stage:
     duration: float | None = None
     until: str | tuple[str, float] | None = None
     after_jump: bool = False
-    times: Times | Sequence[float] | None = None
+    times: Times | npt.ArrayLike | None = None
 
     def _parts(self) -> _core._Stage:
         given = {"load": self.load, "pressure": self.pressure, "approach": self.approach}
@@ -120,7 +161,7 @@ class Stage:
                 raise CaseError(f"until is {self.until!r}, but must be 'contact-lost' or a pair as in ('load', 0.1)")
         elif self.until is not None:
             event, limit = self.until
-            until = (str(event), number(f"until {event}", limit))
+            until = (str(event), number(f"until {event}", limit, {"approach": "m", "load": "N", "pressure": "Pa"}.get(str(event))))
         grid = None if self.times is None else as_times(self.times)
         return (
             control,
@@ -171,20 +212,26 @@ def adaptive(end: float, *, tolerance: float = 1e-3, first: float | None = None)
     >>> float(result.time[-1]), bool(np.max(result.time_error) < 1e-3)
     (5.0, True)
     """
+    end = number("end", end)
     soon = 1e-3 * end if first is None else first
     return Times("adaptive", (number("end", end), number("tolerance", tolerance), number("first step", soon)))
 
 
-def listed(instants: Sequence[float]) -> Times:
+def listed(instants: npt.ArrayLike) -> Times:
     """The times after 0 [s], increasing."""
     return Times("list", tuple(float(t) for t in line("times", instants)))
 
 
-def as_history(what: str, value: History | float) -> History:
-    """A history; a number is a step."""
-    return value if isinstance(value, History) else step(number(what, value))
+def as_history(what: str, value: Any, unit: str | None = None) -> History:
+    """A history of what is prescribed, in the SI unit `unit`, by default that of the parameter; a number is a step."""
+    unit = {"load": "N", "pressure": "Pa", "approach": "m", "path": "m", "velocity": "m/s"}[what] if unit is None else unit
+    if not isinstance(value, History):
+        return History("step", (number(what, value, unit),), unit=unit if carries(value) else None)
+    if value.unit not in (None, unit):
+        raise CaseError(f"{what} is a history in {value.unit}, but must be in {unit}")
+    return value
 
 
-def as_times(value: Times | Sequence[float]) -> Times:
-    """A time grid; a sequence holds the times."""
+def as_times(value: Times | npt.ArrayLike) -> Times:
+    """A time grid; a sequence or an array holds the times."""
     return value if isinstance(value, Times) else listed(value)

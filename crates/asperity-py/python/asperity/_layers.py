@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, line, number
+from ._arrays import Floats, array, line, number
 from ._core import CaseError
 from ._materials import Material
 
@@ -37,6 +37,9 @@ class Layer:
         thickness = number("thickness of a layer", self.thickness)
         if not (np.isfinite(thickness) and thickness > 0.0):
             raise CaseError(f"thickness of a layer is {self.thickness!r} m, but must be greater than 0 m and finite")
+        object.__setattr__(self, "thickness", thickness)
+        if self.poisson is not None:
+            object.__setattr__(self, "poisson", number("poisson", self.poisson))
         if self.interface not in ("bonded", "slip"):
             raise CaseError(f"interface is {self.interface!r}, but must be 'bonded' or 'slip'")
 
@@ -64,6 +67,8 @@ class Body:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "layers", tuple(self.layers))
+        if self.hardness is not None:
+            object.__setattr__(self, "hardness", number("hardness", self.hardness))
         if not self.layers or not all(isinstance(layer, Layer) for layer in self.layers):
             raise CaseError("layers is a list of asperity.Layer, one at least, from the surface down")
         if not isinstance(self.base, Material) and self.base != "rigid":
@@ -123,7 +128,7 @@ def layer_compliance(q: npt.ArrayLike, body: Material | Body, *, time: float = 0
     """
     if not isinstance(body, (Material, Body)):
         raise CaseError(f"body is {body!r}, but must be an asperity.Body or a material")
-    at = np.asarray(q, dtype=np.float64)
+    at = array("wave numbers", q)
     waves = line("wave numbers", at.reshape(-1))
     if not (np.isfinite(waves) & (waves > 0.0)).all():
         raise CaseError("wave numbers must be finite and greater than 0 rad/m")

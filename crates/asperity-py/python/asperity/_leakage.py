@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._arrays import Floats, field, number, pair
+from ._arrays import Floats, field, in_order, number, pair
 from ._findings import ResultWarning, findings_of
 
 if TYPE_CHECKING:
@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
 #: Numbers of a leak: unit (of a liquid) and meaning.
 LEAKS: dict[str, tuple[str, str]] = {
-    "leak_rate": ("m3/s", "leak rate"),
-    "leak_rate_standard": ("Pa m3/s", "leak rate at 0 degC"),
-    "leak_estimate_junction": ("m3/s", "leak rate of plates at the critical gap"),
-    "leak_estimate_medium": ("m3/s", "leak rate of the effective medium"),
+    "leak_rate": ("m^3/s", "leak rate"),
+    "leak_rate_standard": ("Pa m^3/s", "leak rate at 0 degC"),
+    "leak_estimate_junction": ("m^3/s", "leak rate of plates at the critical gap"),
+    "leak_estimate_medium": ("m^3/s", "leak rate of the effective medium"),
     "hydraulic_gap": ("m", "gap of plates that leak as much"),
     "critical_gap": ("m", "gap at the critical constriction"),
     "critical_x": ("m", "x of the critical constriction"),
@@ -31,8 +31,8 @@ LEAKS: dict[str, tuple[str, str]] = {
     "percolates": ("1", "whether inlet and outlet are connected"),
     "leak_resolved": ("1", "whether gap, grid and fluid pressure carry the leak"),
     "open_fraction": ("1", "share of the cells that are open"),
-    "trapped_area": ("m2", "open area connected to neither inlet nor outlet"),
-    "trapped_volume": ("m3", "volume of it"),
+    "trapped_area": ("m^2", "open area connected to neither inlet nor outlet"),
+    "trapped_volume": ("m^3", "volume of it"),
     "knudsen_number": ("1", "mean free path over critical gap"),
 }
 #: Those whose unit is kg/s for a gas.
@@ -119,7 +119,7 @@ class Leakage:
         given = {"gas": gas, "viscosity": viscosity, "molar_mass": molar_mass, "rarefaction": rarefaction}
         numbers = {"inlet": inlet, "outlet": outlet, "temperature": temperature}
         fluid: dict[str, Any] = {name: number(name, value) for name, value in numbers.items()}
-        fluid |= {name: value for name, value in given.items() if value is not None}
+        fluid |= {name: value if isinstance(value, str) else number(name, value) for name, value in given.items() if value is not None}
         found = self._solved(fluid)
         rate: float = found["leak_rate_standard" if standard else "leak_rate"]
         return rate
@@ -171,7 +171,8 @@ def leakage(
     '4.20e-05 mbar l/s'
     """
     h = field("gap", gap)
-    touches = None if contact is None else np.ascontiguousarray(np.asarray(contact) != 0, dtype=np.uint8)
+    held = None if contact is None else in_order("contact", contact)
+    touches = None if held is None else np.ascontiguousarray(np.asarray(getattr(held, "magnitude", held)) != 0, dtype=np.uint8)
     if touches is not None and touches.shape != h.shape:
         raise _core.CaseError(f"contact has shape {touches.shape}, but gap has {h.shape}")
     keys = {"direction": direction, "sides": sides, "smallest_gap": number("smallest_gap", smallest_gap)}
@@ -261,7 +262,7 @@ def dataset(
     data: dict[str, Any] = {name: column(name) for name in columns if name in LEAKS}
     coordinates: dict[str, Any] = {"leak_time": ("leak_time", np.asarray(times), {"units": "s", "long_name": "time of the leak"})}
     if conductance is not None:
-        words = {"units": "m3", "long_name": "effective conductance"}
+        words = {"units": "m^3", "long_name": "effective conductance"}
         data["conductance"] = (("leak_time", "flow_direction", "gradient_direction"), conductance, words)
         coordinates |= {"flow_direction": ["x", "y"], "gradient_direction": ["x", "y"]}
     if pressures is not None:

@@ -21,9 +21,10 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, line, number, points
+from ._arrays import Floats, array, line, number, points
 from ._core import CaseError
 from ._shifts import Shift
+from ._units import carries
 
 
 class Material:
@@ -43,7 +44,12 @@ class Material:
         *,
         given: dict[str, Any],
     ) -> None:
-        self._given = {key: value for key, value in given.items() if value is not None and key not in ("self", "__class__")}
+        # Plain numbers, so that materials are compared, shown and sent without the package of their units.
+        self._given = {
+            key: number(key, value) if carries(value) else value
+            for key, value in given.items()
+            if value is not None and key not in ("self", "__class__")
+        }
 
         def optional(name: str) -> float | None:
             value = given.get(name)
@@ -66,8 +72,17 @@ class Material:
             optional("temperature"),
         )
 
-    def __repr__(self) -> str:
+    @property
+    def _whole(self) -> str:
+        """All numbers, as Python takes them."""
         return f"{type(self).__name__}({', '.join(f'{key}={value!r}' for key, value in self._given.items())})"
+
+    def __repr__(self) -> str:
+        terms = self._given.get("terms", [])
+        if len(terms) <= 3:
+            return self._whole
+        others = ", ".join(f"{key}={value!r}" for key, value in self._given.items() if key != "terms")
+        return f"{type(self).__name__}({others}, {len(terms)} terms from {terms[0]} to {terms[-1]})"
 
     def _repr_html_(self) -> str:
         import html
@@ -114,7 +129,7 @@ class Material:
         >>> round(float(storage)), round(float(loss))
         (500000, 500000)
         """
-        at = np.asarray(omega, dtype=np.float64)
+        at = array("angular frequencies", omega)
         storage, loss = self._body.complex(line("angular frequencies", at.reshape(-1)))
         return storage.reshape(at.shape), loss.reshape(at.shape)
 
@@ -139,7 +154,7 @@ class Material:
 
     @staticmethod
     def _curve(function: Any, t: npt.ArrayLike) -> Floats:
-        at = np.asarray(t, dtype=np.float64)
+        at = array("times", t)
         out: Floats = function(line("times", at.reshape(-1)))
         return out.reshape(at.shape)
 
@@ -310,12 +325,12 @@ class Prony(Material):
             raise CaseError(
                 "give equilibrium with terms of (modulus, time), or instantaneous with terms of (fraction, time)"
             )
-        pairs = points("terms", terms)
+        pairs = points("terms", terms, ("Pa" if equilibrium is not None else "", "s"))
         given["terms"] = pairs
         if equilibrium is not None:
             super().__init__("prony", modulus, [number("equilibrium", equilibrium)], pairs, given=given)
         else:
-            first = number("instantaneous", instantaneous)
+            first = given["instantaneous"] = number("instantaneous", instantaneous, "Pa")
             super().__init__("prony-instantaneous", modulus, [first], pairs, given=given)
 
 
@@ -340,9 +355,10 @@ class Creep(Material):
         temperature: float | None = None,
     ) -> None:
         given = dict(locals())
-        pairs = points("terms", terms) if len(terms) else []
+        pairs = points("terms", terms, ("1/Pa", "s")) if len(terms) else []
         given["terms"] = pairs
-        numbers = [number("instantaneous", instantaneous), number("fluidity", fluidity)]
+        given["instantaneous"] = number("instantaneous", instantaneous, "1/Pa")
+        numbers = [given["instantaneous"], number("fluidity", fluidity)]
         super().__init__("creep", compliance, numbers, pairs, given=given)
 
 
@@ -376,7 +392,7 @@ class Springpot(Material):
     ) -> None:
         given = dict(locals())
         measure, modulus = _modulus(given)
-        numbers = [modulus, number("time", time), number("order", order), *_window(window), number("tolerance", tolerance)]
+        numbers = [modulus, number("time", time), number("order", order), *_windowed(given), number("tolerance", tolerance)]
         super().__init__("springpot", measure, numbers, given=given)
 
 
@@ -401,7 +417,7 @@ class FractionalMaxwell(Material):
     ) -> None:
         given = dict(locals())
         measure, modulus = _modulus(given)
-        numbers = [modulus, number("time", time), number("order", order), *_window(window), number("tolerance", tolerance)]
+        numbers = [modulus, number("time", time), number("order", order), *_windowed(given), number("tolerance", tolerance)]
         super().__init__("fractional-maxwell", measure, numbers, given=given)
 
 
@@ -441,15 +457,18 @@ class FractionalZener(Material):
             number("instantaneous modulus", instantaneous),
             number("time", time),
             number("order", order),
-            *_window(window),
+            *_windowed(given),
             number("tolerance", tolerance),
         ]
         super().__init__("fractional-zener", whole[0], numbers, given=given)
 
 
-def _window(window: tuple[float, float]) -> tuple[float, float]:
+def _windowed(given: dict[str, Any]) -> tuple[float, float]:
+    """The window [s], which is plain numbers in `given` then."""
     try:
-        first, last = window
+        first, last = given["window"]
     except (TypeError, ValueError):
-        raise CaseError(f"window is {window!r}, but must be (first, last) time in s") from None
-    return number("first time of the window", first), number("last time of the window", last)
+        raise CaseError(f"window is {given['window']!r}, but must be (first, last) time in s") from None
+    window = number("first time of the window", first), number("last time of the window", last)
+    given["window"] = window
+    return window

@@ -10,11 +10,12 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, line, number
+from ._arrays import Floats, angle, line, number
 from ._core import CaseError
 from ._histories import History, Times, as_history
 
 if TYPE_CHECKING:
+    from ._words import Field
     from ._layers import Body
     from ._materials import Material
     from ._result import Result
@@ -77,7 +78,7 @@ def _direction(direction: str | float) -> tuple[str, float]:
         if direction not in ("x", "y"):
             raise CaseError(f"direction is {direction!r}, but must be 'x', 'y' or an angle from x towards y [rad]")
         return direction, 0.0
-    return "angle", number("direction", direction)
+    return "angle", angle("direction", direction)
 
 
 def _rolls(kind: str) -> bool:
@@ -87,10 +88,10 @@ def _rolls(kind: str) -> bool:
 
 
 def slide(
-    surface: Any,
-    material: Material | Body | Sequence[Material | Body],
+    surface: Any = None,
+    material: Material | Body | Sequence[Material | Body] | None = None,
     *,
-    times: Times | Sequence[float],
+    times: Times | npt.ArrayLike,
     load: History | float | None = None,
     pressure: History | float | None = None,
     velocity: History | float | None = None,
@@ -115,7 +116,7 @@ def slide(
     kind : "slide", or "roll": the contact moves over both bodies
     cells_per_step : cells that the surface moves in a step, at most
     shear_stress : on the area in contact [Pa], for `friction_coefficient_total`
-    options : further ones of :func:`solve`: size, boundary, hardness, temperature, quantities, fields, every, ...
+    options : further ones of :func:`solve`: gap, size, boundary, hardness, temperature, quantities, fields, every, ...
 
     Returns
     -------
@@ -140,7 +141,7 @@ def slide(
     if (velocity is None) == (path is None):
         raise CaseError("give velocity or path, exactly one of them")
     what, given = ("path", path) if velocity is None else ("velocity", velocity)
-    history = as_history(what, given)  # type: ignore[arg-type]
+    history = as_history(what, given)
     motion = Motion(
         what=what,
         kind=history.kind,
@@ -156,8 +157,8 @@ def slide(
 
 
 def steady(
-    surface: Any,
-    material: Material | Body | Sequence[Material | Body],
+    surface: Any = None,
+    material: Material | Body | Sequence[Material | Body] | None = None,
     *,
     velocities: npt.ArrayLike,
     load: float | None = None,
@@ -165,7 +166,7 @@ def steady(
     direction: str | float = "x",
     kind: str = "slide",
     shear_stress: float | None = None,
-    fields: Sequence[str] = ("pressure",),
+    fields: Sequence[Field] = ("pressure",),
     every: int | None = None,
     progress: bool | None = None,
     on_step: Callable[[Any], object] | None = None,
@@ -180,7 +181,7 @@ def steady(
     load, pressure : held [N], [Pa], one of them
     direction, kind, shear_stress : as in :func:`slide`
     fields, every, progress, on_step : as in :func:`solve`
-    options : further ones of :func:`solve`: size, boundary, hardness, temperature, tolerance, ...
+    options : further ones of :func:`solve`: gap, size, boundary, hardness, temperature, tolerance, ...
 
     Returns
     -------

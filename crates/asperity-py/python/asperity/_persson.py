@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, line, number
+from ._arrays import Floats, angle, array, line, number
 from ._core import CaseError
 from ._materials import Material
 from ._surface import as_surface
@@ -107,12 +107,12 @@ def persson_friction(
     if not isinstance(material, Material):
         raise CaseError(f"material is {material!r}, but must be a material, such as asperity.Prony(...)")
     shape = as_surface(surface, size)
-    speeds = line("velocities", np.atleast_1d(np.asarray(velocities)))
+    speeds = line("velocities", np.atleast_1d(array("velocities", velocities)))
     if speeds.size == 0:
         raise CaseError("velocities is empty, but must hold one velocity at least, in m/s")
     if isinstance(direction, str) and direction not in ("x", "y"):
         raise CaseError(f"direction is {direction!r}, but must be 'x', 'y' or an angle in rad")
-    along, angle = (direction, 0.0) if isinstance(direction, str) else ("angle", number("direction", direction))
+    along, turned = (direction, 0.0) if isinstance(direction, str) else ("angle", angle("direction", direction))
     theory = _core.Persson(
         shape.heights,
         list(shape.size),
@@ -120,7 +120,7 @@ def persson_friction(
         None if temperature is None else number("temperature", temperature),
         number("pressure", pressure),
         along,
-        angle,
+        turned,
         correction,
     )
     return PerssonFriction(theory, speeds)

@@ -239,8 +239,9 @@ def label(value: Any) -> Any:
         value = value.item()
     if isinstance(value, (bool, int, float, str)):
         return value
-    name = getattr(value, "_given", {}).get("name") if isinstance(value, Material) else None
-    return str(name) if name else repr(value)
+    if isinstance(value, Material):
+        return str(value._given.get("name") or value._whole)
+    return repr(value)
 
 
 def label_all(settings: dict[str, Any]) -> dict[str, Any]:

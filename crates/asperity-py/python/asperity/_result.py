@@ -8,9 +8,11 @@ import os
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, as_plane, cells_of, number, plain
+from ._arrays import Floats, as_plane, cells_of, centres, frozen, number, plain
+from ._columns import HISTOGRAMS, QUANTITIES, ROW, Column, units_of
 from ._core import CaseError
 from ._findings import Finding, findings_of
 
@@ -28,48 +30,6 @@ FIELDS: dict[str, tuple[str, str]] = {
     "contact": ("1", "contact state"),
     "flattening": ("m", "permanent flattening"),
 }
-
-#: Numbers of each row: unit and meaning.
-ROW: dict[str, tuple[str, str]] = {
-    "time": ("s", "time"),
-    "load": ("N", "normal load"),
-    "approach": ("m", "rigid-body approach"),
-    "contact_area": ("m2", "contact area"),
-    "contact_area_corrected": ("m2", "contact area corrected by its perimeter"),
-    "contact_fraction": ("1", "contact area over nominal area"),
-    "capped_area": ("m2", "area at the hardness"),
-    "mean_pressure": ("Pa", "load over nominal area"),
-    "max_pressure": ("Pa", "largest pressure"),
-    "mean_gap": ("m", "mean gap"),
-    "iterations": ("1", "iterations of the solver"),
-    "convolutions": ("1", "convolutions"),
-    "residual": ("1", "KKT residual"),
-    "certificate": ("1", "certified relative error in the energy norm"),
-    "time_error": ("1", "estimated error of the stress, relative"),
-    "stage": ("1", "stage of the load"),
-}
-
-#: Optional quantities of a row: unit and meaning.
-QUANTITIES: dict[str, tuple[str, str]] = {name: (unit, words) for name, unit, words, _ in _core.quantities()}
-#: Those of them with a number for each bin: names of dimension and ends, unit and meaning of what is counted.
-HISTOGRAMS: dict[str, tuple[str, str, str, str]] = {
-    "spot_histogram": ("spot_bin", "spot_edge", "m2", "a class of spots"),
-    "pressure_histogram": ("pressure_bin", "pressure_edge", "Pa", "a bin of the pressure"),
-    "gap_histogram": ("gap_bin", "gap_edge", "m", "a bin of the gap"),
-}
-
-
-#: Units on a line contact, where forces, areas and energies are per length along y.
-ON_LINE = {"N": "N/m", "m2": "m", "J": "J/m", "N/m": "N/m2", "N m": "N", "W": "W/m"}
-
-
-def units_of(name: str, unit: str, line: bool) -> str:
-    """The unit of a number of a row, of a line contact where `line`."""
-    if not line:
-        return unit
-    # The border of a contact on a line are its ends.
-    return "1" if name == "contact_perimeter" else ON_LINE.get(unit, unit)
-
 
 class Cycle(NamedTuple):
     """One period of a cyclic load; made by :meth:`Result.cycles`."""
@@ -93,7 +53,70 @@ class Result:
     `contact_fraction`, `mean_pressure`, `max_pressure` [Pa], `mean_gap` [m], `iterations`, `convolutions`, `residual`,
     `certificate`, `time_error`, `stage` are attributes, and so are the requested quantities. The first row is
     the state right after t = 0.
+
+    The arrays are read-only: take ``result.approach.copy()`` to change numbers. Fields of a result in memory are read-only views,
+    those of a result on disk are read anew each time, into arrays of your own.
     """
+
+    time = Column()
+    load = Column()
+    approach = Column()
+    contact_area = Column()
+    contact_area_corrected = Column()
+    contact_fraction = Column()
+    capped_area = Column()
+    mean_pressure = Column()
+    max_pressure = Column()
+    mean_gap = Column()
+    iterations = Column()
+    convolutions = Column()
+    residual = Column()
+    certificate = Column()
+    time_error = Column()
+    stage = Column()
+    # Where they were requested, or the contact moves.
+    contact_stiffness = Column()
+    contact_spots = Column()
+    largest_spot = Column()
+    mean_spot = Column()
+    contact_perimeter = Column()
+    contact_percolation = Column()
+    gap_percolation = Column()
+    rms_gap = Column()
+    elastic_energy = Column()
+    dissipated_energy = Column()
+    flattening_work = Column()
+    external_work = Column()
+    velocity = Column()
+    sliding_distance = Column()
+    friction_force = Column()
+    side_force = Column()
+    friction_coefficient = Column()
+    friction_coefficient_total = Column()
+    friction_uncertainty = Column()
+    rolling_moment = Column()
+    dissipated_power = Column()
+    # Stress below the surface, where it is stored, over `field_times` and `depth`.
+    depth = Column()
+    max_mises = Column()
+    max_mises_depth = Column()
+    max_mises_x = Column()
+    max_mises_y = Column()
+    mises_by_depth = Column()
+    max_tresca = Column()
+    max_tresca_depth = Column()
+    max_tresca_x = Column()
+    max_tresca_y = Column()
+    tresca_by_depth = Column()
+    max_tension = Column()
+    max_tension_depth = Column()
+    max_tension_x = Column()
+    max_tension_y = Column()
+    tension_by_depth = Column()
+    stressed_volume = Column()
+    orthogonal_shear = Column()
+    orthogonal_shear_depth = Column()
+    orthogonal_shear_by_depth = Column()
 
     def __init__(
         self,
@@ -127,8 +150,19 @@ class Result:
         self._histograms = dict(histograms or {})
         self._stress = dict(stress or {})
         self._leaks = dict(leaks or {})
+        self._freeze()
 
-    def __getattr__(self, name: str) -> Floats:
+    def _freeze(self) -> None:
+        """Makes all arrays read-only."""
+        self._table = {name: frozen(np.asarray(values)) for name, values in self._table.items()}
+        self._fields = {name: held if isinstance(held, _core.Store) else frozen(np.asarray(held)) for name, held in self._fields.items()}
+        self._histograms = {name: (frozen(edges), frozen(numbers)) for name, (edges, numbers) in self._histograms.items()}
+        self._stress = {name: frozen(values) for name, values in self._stress.items()}
+        if not isinstance(self._initial_gap, _core.Store):
+            self._initial_gap = frozen(np.asarray(self._initial_gap))
+
+    def _column(self, name: str) -> Floats:
+        """A column of the rows, or why there is none."""
         table = self.__dict__.get("_table")
         if self.__dict__.get("_sweep") and table is not None:
             if name == "velocity":
@@ -152,8 +186,16 @@ class Result:
             raise AttributeError(f"the result has no {name!r}, because it was not requested: quantities=[{name!r}]")
         raise AttributeError(f"a result has no {name!r}; it has {', '.join(ROW)}, field(name, time=...) and plot")
 
+    if not TYPE_CHECKING:  # where it would hide misspelt names
+
+        def __getattr__(self, name):
+            return self._column(name)
+
     def __dir__(self) -> list[str]:
-        return sorted([*super().__dir__(), *self._table, *self._stress])
+        # Columns that it does not have are left out.
+        columns = {name for name, value in vars(Result).items() if isinstance(value, Column)}
+        here = {*self._table, *self._stress, *(["velocity"] if self._sweep else [])} - ({"time"} if self._sweep else set())
+        return sorted({*super().__dir__()} - columns | here)
 
     def __len__(self) -> int:
         """Rows."""
@@ -168,6 +210,7 @@ class Result:
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
+        self._freeze()
 
     @property
     def path(self) -> str | None:
@@ -267,21 +310,21 @@ class Result:
     @property
     def x(self) -> Floats:
         """Cell centres along x [m]."""
-        return _centres(self.cells[0], self._size[0])
+        return centres(self.cells[0], self._size[0])
 
     @property
     def y(self) -> Floats:
         """Cell centres along y [m]."""
         if self.is_line:
             raise CaseError("a line contact has no y: nothing changes along it")
-        return _centres(self.cells[1], self._size[1])
+        return centres(self.cells[1], self._size[1])
 
     @property
     def initial_gap(self) -> Floats:
         """Undeformed gap [m], shape (nx, ny)."""
         if isinstance(self._initial_gap, _core.Store):
             stored = self._initial_gap.initial_gap()
-            self._initial_gap = stored[:, 0] if self.is_line else stored
+            self._initial_gap = frozen(stored[:, 0] if self.is_line else stored)
         gap: Floats = self._initial_gap
         return gap
 
@@ -292,6 +335,7 @@ class Result:
         last. Of a sweep at the stored velocity nearest to `velocity` [m/s]. Fields of a contact that moves are in its frame.
 
         "pressure" [Pa], "gap", "displacement", "flattening" [m], "contact" (0 out of contact, 1 in contact, 2 at the hardness).
+        Read-only for a result in memory, a new array for one on disk.
         """
         if name not in self._fields:
             raise CaseError(f"the field {name!r} was not kept; kept: {', '.join(self._fields) or 'none'}")
@@ -354,32 +398,32 @@ class Result:
 
     def to_xarray(self) -> Any:
         """The result as xarray.Dataset, as ``xarray.open_zarr`` gives it for one on disk, with the stress below the surface and the
-        leaks that are stored in it."""
+        leaks that are stored in it. Its arrays are copies; their `units` are read by pint and cf-xarray."""
         import xarray
 
         along, at = ("velocity", "field_velocity") if self._sweep else ("time", "field_time")
         rows = {
-            name: (along, np.asarray(self._table[name]), {"units": self.units(name), "long_name": words})
+            name: (along, np.array(self._table[name]), {"units": self.units(name), "long_name": words})
             for name, (_, words) in {**ROW, **QUANTITIES}.items()
             if name != "time" and name in self._table
         }
         over = ("x",) if self.is_line else ("x", "y")
         maps = {
-            name: ((at, *over), self._stack(name), {"units": FIELDS[name][0], "long_name": FIELDS[name][1]})
+            name: ((at, *over), np.array(self._stack(name)), {"units": FIELDS[name][0], "long_name": FIELDS[name][1]})
             for name in self._fields
         }
         for name, values in self._stress.items():
             if name != "depth":
-                volume = "m2" if self.is_line else "m3"
+                volume = "m^2" if self.is_line else "m^3"
                 unit = volume if name == "stressed_volume" else "m" if name.endswith(("_depth", "_x", "_y")) and "_by_" not in name else "Pa"
                 dimensions = (at, "depth")[: values.ndim]
-                maps[name] = (dimensions, values, {"units": unit, "long_name": name.replace("_", " ")})
+                maps[name] = (dimensions, np.array(values), {"units": unit, "long_name": name.replace("_", " ")})
         for name in self._stress_fields:
             told = {"units": "Pa", "long_name": name.replace("_", " ")}
             maps[name] = ((at, "depth", *over), self._stress_volume(name), told)
-        gap = ("initial_gap", (over, self.initial_gap, {"units": "m", "long_name": "undeformed gap"}))
+        gap = ("initial_gap", (over, np.array(self.initial_gap), {"units": "m", "long_name": "undeformed gap"}))
         coordinates = {
-            along: (along, np.asarray(self._table["time"]), {"units": self.units("time"), "long_name": along}),
+            along: (along, np.array(self._table["time"]), {"units": self.units("time"), "long_name": along}),
             at: (at, self.field_times, {"units": self.units("time"), "long_name": f"{along} of the fields"}),
             "x": ("x", self.x, {"units": "m", "long_name": "x"}),
         }
@@ -391,9 +435,9 @@ class Result:
             bins, ends, unit, words = HISTOGRAMS[name]
             middle = np.sqrt(edges[1:] * edges[:-1]) if name == "spot_histogram" else 0.5 * (edges[1:] + edges[:-1])
             unit = units_of(bins, unit, self.is_line)
-            rows[name] = ((along, bins), numbers, dict(zip(("units", "long_name"), QUANTITIES[name])))  # type: ignore[assignment]
+            rows[name] = ((along, bins), np.array(numbers), dict(zip(("units", "long_name"), QUANTITIES[name])))  # type: ignore[assignment]
             coordinates[bins] = (bins, middle, {"units": unit, "long_name": f"middle of {words}"})
-            coordinates[ends] = (ends, edges, {"units": unit, "long_name": f"ends of {words}"})
+            coordinates[ends] = (ends, np.array(edges), {"units": unit, "long_name": f"ends of {words}"})
         # Text, as all other attributes, so that the dataset can be written.
         attributes = {**self._attributes, "findings": json.dumps(self._attributes.get("findings", []))}
         whole = xarray.Dataset({**rows, **maps, **dict([gap])}, coords=coordinates, attrs=attributes)
@@ -441,6 +485,7 @@ class Result:
             "smallest_gap": smallest_gap,
             "field": field,
         }
+        given = {name: value if value is None or isinstance(value, (str, bool)) else number(name, value) for name, value in given.items()}
         if self._leaks and all(value is None for value in given.values()):
             return stored(self)
         return over_time(self, given)
@@ -451,6 +496,37 @@ class Result:
         from .plot import Plots
 
         return Plots(self)
+
+    def spots(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None) -> npt.NDArray[np.uint32]:
+        """The contact spots as a labelled image of shape (nx, ny): the number of the spot of each cell, 1 for the largest, 0 where
+        nothing touches. Cells that share an edge are of one spot, on a periodic domain also across the borders. At the stored time
+        nearest to `time`, as :meth:`field`.
+
+        >>> import asperity as asp
+        >>> wave = asp.Surface.wave(cells=(32, 32), size=(1e-3, 1e-3), amplitude=1e-6, wavelength=(5e-4, 5e-4))
+        >>> result = asp.solve(wave, asp.Elastic(young=1e9, poisson=0.3), pressure=1e4, times=[1.0], boundary="periodic")
+        >>> int(result.spots().max())
+        8
+        """
+        at = dict(time=time, velocity=velocity, index=index)
+        if "contact" in self._fields:
+            touches = np.asarray(self.field("contact", **at) > 0, dtype=np.float64)  # type: ignore[arg-type]
+        else:
+            touches = self.field("pressure", **at)  # type: ignore[arg-type]
+        boundary = json.loads(self._attributes.get("setup") or "{}").get("boundary", "free")
+        labels: npt.NDArray[np.uint32] = _core.spot_labels(plain(as_plane(touches)), boundary)
+        return labels.reshape(touches.shape)
+
+    def to_dataframe(self) -> Any:
+        """The rows as pandas.DataFrame, with the time (of a sweep the velocity) as index and a column for each number; units are in
+        ``frame.attrs["units"]``."""
+        import pandas  # type: ignore[import-not-found,import-untyped,unused-ignore]
+
+        along = "velocity" if self._sweep else "time"
+        columns = {name: np.array(self._table[name]) for name in {**ROW, **QUANTITIES} if name != "time" and name in self._table}
+        frame = pandas.DataFrame(columns, index=pandas.Index(np.array(self._table["time"]), name=along))
+        frame.attrs["units"] = {along: self.units("time"), **{name: self.units(name) for name in columns}}
+        return frame
 
     def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
         """Writes the result as a Zarr group, as a run of a case file does: :func:`open` and xarray read it. Stress below the surface
@@ -483,6 +559,7 @@ class Result:
                 *((name, plain(edges), plain(numbers)) for name, (edges, numbers) in self._histograms.items()),
             ],
             json.dumps(attributes.get("findings", [])),
+            str(attributes.get("status") or "complete"),
         )
         if self._path is not None and (self._stress or self._leaks):
             _core.derive_again(self._path, os.fspath(path))
@@ -584,10 +661,6 @@ class Result:
         shape = (0, *self.cells)
         maps = [self._one(name, n) for n in range(len(self._field_steps))]
         return np.array(maps) if maps else np.empty(shape)
-
-
-def _centres(cells: int, length: float) -> Floats:
-    return np.asarray((np.arange(cells) + 0.5) * (length / cells), dtype=np.float64)
 
 
 def open(path: str | os.PathLike[str]) -> Result:

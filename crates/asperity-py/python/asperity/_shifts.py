@@ -17,8 +17,9 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, line, number, points
+from ._arrays import Floats, array, line, number, points
 from ._core import CaseError
+from ._units import carries
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,7 @@ class Shift:
         >>> round(float(asp.wlf(c1=8.86, c2=101.6, reference=293.15).factor(303.15)), 3)
         0.161
         """
-        at = np.asarray(temperature, dtype=np.float64)
+        at = array("temperatures", temperature)
         out: Floats = _core.shift_factor(self._words, line("temperatures", at.reshape(-1)))
         return out.reshape(at.shape)
 
@@ -74,7 +75,7 @@ def shift_table(pairs: Sequence[tuple[float, float]]) -> Shift:
     3.16227766
     """
     ln10 = math.log(10.0)
-    return _checked(Shift("table", (), tuple((t, decades * ln10) for t, decades in points("points of the shift", pairs))))
+    return _checked(Shift("table", (), tuple((t, decades * ln10) for t, decades in points("points of the shift", pairs, ("K", "")))))
 
 
 def _checked(shift: Shift) -> Shift:
@@ -95,9 +96,9 @@ def temperatures(value: float | Sequence[tuple[float, float]] | None) -> list[tu
     """A temperature of the run [K], or its (time [s], temperature [K]) points."""
     if value is None:
         return []
-    if np.ndim(value) == 0:
+    if carries(value) or np.ndim(value) == 0:
         return [(0.0, number("temperature", value))]
-    pairs = points("temperature", value)
+    pairs = points("temperature", value, ("s", "K"))
     if not pairs:
         raise CaseError("temperature holds no points: give a number [K] or (time [s], temperature [K]) pairs")
     return pairs

@@ -2,26 +2,34 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, as_plane, count, field, line, number
-from ._core import CaseError
+from ._arrays import as_plane, count, field, frozen, in_order, number
+from ._columns import HISTOGRAMS, ROW, Number
+from ._core import CaseError, ConvergenceError
 from ._findings import Finding, findings_of, warn
 from ._histories import History, Stage, Times, as_history, as_stage, as_times, one_of
 from ._layers import Body, hardness_of, parts_of, with_hardness
 from ._materials import Material
 from ._motion import Motion
 from ._progress import Progress
-from ._result import FIELDS, HISTOGRAMS, ROW, Result, open
+from ._record import Keep, Record, path_of
+from ._result import Result, open
 from ._shifts import temperatures
-from ._surface import as_surface
+from ._surface import surface_of
+from ._units import bare
+from ._words import Boundary, Field, Method, Plasticity, Quantity, Scheme
+
+if TYPE_CHECKING:
+    from ._arrays import Floats
 
 
 class Step:
@@ -30,6 +38,45 @@ class Step:
     `time`, `load`, `approach`, `contact_area`, ... as in results. A step is a view: when the march has moved on, its fields can
     no longer be read.
     """
+
+    time = Number()
+    load = Number()
+    approach = Number()
+    contact_area = Number()
+    contact_area_corrected = Number()
+    contact_fraction = Number()
+    capped_area = Number()
+    mean_pressure = Number()
+    max_pressure = Number()
+    mean_gap = Number()
+    iterations = Number()
+    convolutions = Number()
+    residual = Number()
+    certificate = Number()
+    time_error = Number()
+    stage = Number()
+    # Where they were requested, or the contact moves.
+    contact_stiffness = Number()
+    contact_spots = Number()
+    largest_spot = Number()
+    mean_spot = Number()
+    contact_perimeter = Number()
+    contact_percolation = Number()
+    gap_percolation = Number()
+    rms_gap = Number()
+    elastic_energy = Number()
+    dissipated_energy = Number()
+    flattening_work = Number()
+    external_work = Number()
+    velocity = Number()
+    sliding_distance = Number()
+    friction_force = Number()
+    side_force = Number()
+    friction_coefficient = Number()
+    friction_coefficient_total = Number()
+    friction_uncertainty = Number()
+    rolling_moment = Number()
+    dissipated_power = Number()
 
     def __init__(self, march: March, row: dict[str, Any], index: int) -> None:
         self._march = march
@@ -51,8 +98,12 @@ class Step:
         array; of a line contact (n,), as all fields."""
         if self._march._core.done != self._index + 1:
             raise CaseError(f"the march has moved on from row {self._index}: read fields before the next row")
+        return self._map(name).reshape(self._march.initial_gap.shape)
+
+    def _map(self, name: str) -> Floats:
+        """A field as the core gives it."""
         values: Floats = self._march._core.field(name)
-        return values.reshape(self._march.initial_gap.shape)
+        return values
 
     @property
     def pressure(self) -> Floats:
@@ -64,11 +115,23 @@ class Step:
         """Gap of the deformed surfaces [m], shape (nx, ny)."""
         return self.field("gap")
 
-    def __getattr__(self, name: str) -> Any:
-        try:
-            return self.__dict__["_row"][name]
-        except KeyError:
-            raise AttributeError(f"a step has no {name!r}; it has {', '.join(ROW)} and field(name)") from None
+    def _number(self, name: str) -> float:
+        row = self.__dict__["_row"]
+        if name not in row or name in HISTOGRAMS:
+            numbers = ", ".join(key for key in row if key not in HISTOGRAMS)
+            raise AttributeError(f"a step has no {name!r}; it has {numbers}, row and field(name)")
+        value: float = row[name]
+        return value
+
+    if not TYPE_CHECKING:  # where it would hide misspelt names
+
+        def __getattr__(self, name):
+            return self._number(name)
+
+    def __dir__(self) -> list[str]:
+        # Numbers that it does not have are left out.
+        numbers = {name for name, value in vars(Step).items() if isinstance(value, Number)}
+        return sorted({*super().__dir__()} - numbers | {name for name in self._row if name not in HISTOGRAMS})
 
     def __repr__(self) -> str:
         row, unit = self._row, "N/m" if self._march.initial_gap.ndim == 1 else "N"
@@ -81,13 +144,24 @@ class Step:
 class March:
     """A simulation that is solved step by step: iterate over it for its :class:`Step` s. Made by :func:`march`."""
 
-    def __init__(self, core: _core.March, initial_gap: Floats, size: tuple[float, ...], setup: dict[str, Any]) -> None:
+    def __init__(
+        self,
+        core: _core.March,
+        initial_gap: Floats,
+        size: tuple[float, ...],
+        setup: dict[str, Any],
+        keep: Keep,
+        title: str,
+        output: str | None,
+        force: bool,
+    ) -> None:
         self._core = core
-        #: Undeformed gap [m], shape (nx, ny), of a line contact (n,).
-        self.initial_gap = initial_gap
+        #: Undeformed gap [m], shape (nx, ny), of a line contact (n,); read-only.
+        self.initial_gap = frozen(initial_gap)
         #: Lengths of the domain along x and y [m], of a line contact along x.
         self.size = size
         self._setup = setup
+        self._record = Record(self, keep, title, output, force)
 
     def __len__(self) -> int:
         """Number of rows, as far as it is known: with adaptive steps it is not known in advance."""
@@ -109,35 +183,58 @@ class March:
     def __next__(self) -> Step:
         if not self._core.advance():
             raise StopIteration
-        return Step(self, self._core.row(), self._core.done - 1)
+        step = Step(self, self._core.row(), self._core.done - 1)
+        self._record.see(step)
+        return step
+
+    def result(self) -> Result:
+        """The rows so far, with the fields that :func:`march` was told to keep, and those of the last row. The march can go on.
+
+        >>> import asperity as asp
+        >>> cone = asp.Surface.cone(cells=(32, 32), size=(1e-3, 1e-3), slope=0.1)
+        >>> run = asp.march(cone, asp.Elastic(young=1e6, poisson=0.5), approach=1e-5, times=[1.0, 2.0], fields=["pressure"])
+        >>> first = next(run)
+        >>> len(run.result()), run.result().fields
+        (1, ['pressure'])
+        """
+        rows = self._core.rows_expected
+        done = len(self._record) > 0 and self._core.finished
+        return self._record.result("complete" if done or len(self._record) == rows else "interrupted")
 
 
 def march(
-    surface: Any,
-    material: Material | Body | Sequence[Material | Body],
+    surface: Any = None,
+    material: Material | Body | Sequence[Material | Body] | None = None,
     *,
-    times: Times | Sequence[float],
+    times: Times | npt.ArrayLike,
     load: History | float | None = None,
     pressure: History | float | None = None,
     approach: History | float | None = None,
     stages: Sequence[Stage] | None = None,
+    gap: Any = None,
     size: float | Sequence[float] | None = None,
     hardness: float | npt.ArrayLike | None = None,
     temperature: float | Sequence[tuple[float, float]] | None = None,
-    boundary: str = "free",
-    scheme: str = "linear",
-    method: str = "projected-cg",
+    boundary: Boundary = "free",
+    scheme: Scheme = "linear",
+    method: Method = "projected-cg",
     tolerance: float = 1e-6,
     max_iterations: int = 5000,
-    plasticity: str = "cap",
-    quantities: Sequence[str] = (),
+    plasticity: Plasticity = "cap",
+    quantities: Sequence[Quantity] = (),
     bins: int = 50,
     largest_pressure: float | None = None,
     largest_gap: float | None = None,
-    include: Sequence[float] = (),
+    fields: Sequence[Field] = (),
+    every: int | None = None,
+    field_times: npt.ArrayLike | None = None,
+    title: str = "",
     _motion: Motion | None = None,
+    _output: str | None = None,
+    _force: bool = False,
 ) -> March:
-    """A simulation, step by step; the parameters are those of :func:`solve`.
+    """A simulation, step by step; the parameters are those of :func:`solve`. `fields` are those that :meth:`March.result` has: by
+    default none.
 
     >>> import asperity as asp
     >>> cone = asp.Surface.cone(cells=(32, 32), size=(1e-3, 1e-3), slope=0.1)
@@ -146,18 +243,12 @@ def march(
     0 0.0 (32, 32)
     1 1.0 (32, 32)
     """
-    shape = as_surface(surface, size)
+    keep = Keep(fields, every, field_times)
+    shape = surface_of(surface, gap, size)
     gap = shape.gap()
-    bodies = [material] if isinstance(material, (Material, Body)) else list(material)
-    if not 1 <= len(bodies) <= 2 or not all(isinstance(body, (Material, Body)) for body in bodies):
-        raise CaseError(
-            f"material is {material!r}, but must be a material or an asperity.Body, or a pair of them for two deformable bodies"
-        )
-    cells = None
-    if hardness is not None and np.ndim(hardness) == gap.ndim:
-        cells = field("hardness", hardness, line=True)
-    elif hardness is not None:
-        limit = number("hardness", hardness)
+    bodies = bodies_of(material)
+    cells, limit = hardness_parts(hardness, gap.ndim)
+    if limit is not None:
         bodies = [with_hardness(body, limit) for body in bodies]
     given = {"load": load, "pressure": pressure, "approach": approach}
     if stages is not None:
@@ -169,12 +260,16 @@ def march(
         control, history = "stages", repr(programme)
     else:
         control, value = one_of(given, "give load, pressure, approach or stages")
-        prescribed = as_history(control, value)
+        prescribed = as_history(control, value, "N/m" if control == "load" and shape.is_line else None)
         programme = [as_stage(control, prescribed)]
         history = repr(prescribed)
     grid = as_times(times)
     parts = [parts_of(body) for body in bodies]
+    if isinstance(quantities, str):
+        raise CaseError(f"quantities is {quantities!r}, but must be a list, as in quantities=[{quantities!r}]")
     names = [str(name) for name in quantities]
+    steady = _motion is not None and _motion.steady
+    include = [] if keep.times is None or steady else [t for t in keep.times.tolist() if t > 0]
     of_motion = [] if _motion is None else _motion.quantities(shape, boundary)
     core = _core.March(
         gap=as_plane(gap),
@@ -185,7 +280,7 @@ def march(
         stages=[stage._parts() for stage in programme],
         times=grid.kind,
         times_numbers=list(grid.numbers),
-        include=[float(t) for t in line("include", np.asarray(include, dtype=float))],
+        include=include,
         temperatures=temperatures(temperature),
         scheme=scheme,
         method=method,
@@ -203,7 +298,7 @@ def march(
     ratios = [body._body.poisson() if isinstance(body, Material) else (None, None) for body in bodies]
     setup: dict[str, Any] = {
         "boundary": boundary,
-        "bodies": [repr(body) for body in bodies],
+        "bodies": [body._whole if isinstance(body, Material) else repr(body) for body in bodies],
         # None where it changes with time.
         "poisson": [ratio for ratio, _ in ratios],
         "control": control,
@@ -229,35 +324,59 @@ def march(
     limits = [limit for limit in map(hardness_of, bodies) if limit is not None]
     if limits:
         setup["hardness"] = float(min(limits))
-    return March(core, gap, shape.size, setup)
+    return March(core, gap, shape.size, setup, keep, title, _output, _force)
+
+
+def bodies_of(material: Any) -> list[Material | Body]:
+    """The deformable bodies, one or two."""
+    bodies = list(material) if isinstance(material, (list, tuple)) else [material]
+    if 1 <= len(bodies) <= 2 and all(isinstance(body, (Material, Body)) for body in bodies):
+        return bodies
+    shown = repr(material) if len(repr(material)) < 60 else type(material).__name__
+    raise CaseError(
+        f"material is {shown}, but must be a material, such as asperity.Elastic(young=1e6, poisson=0.5), asperity.Prony(...) or "
+        "asperity.Zener(...), an asperity.Body of layers, or a pair of them for two deformable bodies"
+    )
+
+
+def hardness_parts(hardness: Any, dimensions: int) -> tuple[Floats | None, float | None]:
+    """The hardness [Pa] of each cell, or that of all."""
+    if hardness is None:
+        return None, None
+    if np.ndim(bare("hardness", in_order("hardness", hardness))) == dimensions:
+        return field("hardness", hardness, line=True), None
+    return None, number("hardness", hardness)
 
 
 def solve(
-    surface: Any,
-    material: Material | Body | Sequence[Material | Body],
+    surface: Any = None,
+    material: Material | Body | Sequence[Material | Body] | None = None,
     *,
-    times: Times | Sequence[float],
+    times: Times | npt.ArrayLike,
     load: History | float | None = None,
     pressure: History | float | None = None,
     approach: History | float | None = None,
     stages: Sequence[Stage] | None = None,
+    gap: Any = None,
     size: float | Sequence[float] | None = None,
     hardness: float | npt.ArrayLike | None = None,
     temperature: float | Sequence[tuple[float, float]] | None = None,
-    boundary: str = "free",
-    scheme: str = "linear",
-    method: str = "projected-cg",
+    boundary: Boundary = "free",
+    scheme: Scheme = "linear",
+    method: Method = "projected-cg",
     tolerance: float = 1e-6,
     max_iterations: int = 5000,
-    plasticity: str = "cap",
-    quantities: Sequence[str] = (),
+    plasticity: Plasticity = "cap",
+    quantities: Sequence[Quantity] = (),
     bins: int = 50,
     largest_pressure: float | None = None,
     largest_gap: float | None = None,
-    fields: Sequence[str] = ("pressure",),
+    fields: Sequence[Field] = ("pressure",),
     every: int | None = None,
-    field_times: Sequence[float] | None = None,
+    field_times: npt.ArrayLike | None = None,
     title: str = "",
+    output: str | os.PathLike[str] | None = None,
+    force: bool = False,
     progress: bool | None = None,
     on_step: Callable[[Step], object] | None = None,
     _motion: Motion | None = None,
@@ -269,6 +388,7 @@ def solve(
     surface : Surface, or heights [m] as array (nx, ny) with `size`, or a SurfaceTopography or xarray array. A surface of one
         dimension, (n,) with size=(L,), is a line contact in plane strain: loads and energies are per length [N/m], [J/m], the
         contact area is a length [m], and fields have the shape (n,)
+    gap : instead of the surface the undeformed gap [m], infinite where nothing can touch; it is shifted to the least value 0
     material : the deformable body (a material for a half-space, an asperity.Body for layers), or a pair of them
     times : times to solve for: uniform, log, adaptive, listed, or a sequence [s]; breaks of the history are added
     load, pressure, approach : what is prescribed [N], [Pa] or [m]: a history, or a number for a step
@@ -287,13 +407,18 @@ def solve(
     fields : fields to keep: "pressure", "gap", "displacement", "contact", "flattening"
     every : keep the fields of every n-th row, and of the first and the last; default: of every row, up to 20 rows
     field_times : instead, times at which fields are kept [s]; each becomes a step
+    output : path of a result on disk, which is written row by row; the result that is returned reads its fields from there. `force`
+        replaces one that is there
     progress : show a line with the progress; default: in terminals and notebooks
-    on_step : called with each Step
+    on_step : called with each Step; if it returns True, the run stops after that row, and its result has the status "interrupted"
 
     Raises
     ------
     CaseError : the input is wrong
     ConvergenceError : a step was not solved to the tolerance; its `best` is the best state that was found
+    KeyboardInterrupt : Ctrl-C
+
+    An error that comes after the first row has the rows so far as `error.result`.
 
     Returns
     -------
@@ -303,12 +428,6 @@ def solve(
     -----
     ResultWarning : the numbers may be off; the result's `findings` say where and why
     """
-    kept = [str(name) for name in fields]
-    if unknown := [name for name in kept if name not in FIELDS]:
-        raise CaseError(f"fields holds {unknown[0]!r}, but may hold {', '.join(FIELDS)}")
-    wanted = None if field_times is None else line("field_times", field_times)
-    if wanted is not None and every is not None:
-        raise CaseError("give every or field_times, exactly one of them")
     run = march(
         surface,
         material,
@@ -317,6 +436,7 @@ def solve(
         pressure=pressure,
         approach=approach,
         stages=stages,
+        gap=gap,
         size=size,
         hardness=hardness,
         temperature=temperature,
@@ -330,62 +450,32 @@ def solve(
         bins=bins,
         largest_pressure=largest_pressure,
         largest_gap=largest_gap,
-        include=[] if wanted is None or (_motion is not None and _motion.steady) else [t for t in wanted.tolist() if t > 0],
+        fields=fields,
+        every=every,
+        field_times=field_times,
+        title=title,
         _motion=_motion,
+        _output=path_of(output),
+        _force=force,
     )
-    # Adaptive steps find their rows as they go.
-    rows = run._core.rows_expected
-    stride = count("every", every) if every is not None else max(1, -(-((rows or 1) - 1) // 20))
-
-    def kept_at(step: Step) -> bool:
-        if step.index == 0 or step.index + 1 == rows:
-            return True
-        if wanted is None:
-            return step.index % stride == 0
-        return bool(np.any(np.abs(wanted - step.time) <= 1e-12 * end))
-
-    end = run._core.times()[-1]
-    edges = {name: np.array(ends) for name, ends in run._core.columns()}
-    table: dict[str, list[Any]] = {name: [] for name in [*ROW, *edges]}
-    maps: dict[str, list[Any]] = {name: [] for name in kept}
-    steps: list[int] = []
-    teller = Progress(rows, progress)
-    last: Step | None = None
+    teller = Progress(run._core.rows_expected, progress)
+    status, message = "complete", None
     try:
         for step in run:
-            for name, values in table.items():
-                values.append(step.row[name])
-            if kept_at(step):
-                steps.append(step.index)
-                for name in kept:
-                    maps[name].append(step.field(name))
-            last = step
-            if on_step is not None:
-                on_step(step)
+            told = None if on_step is None else on_step(step)
             teller.tell(step.row, step.index + 1)
-        if last is not None and last.index not in steps:
-            steps.append(last.index)
-            for name in kept:
-                maps[name].append(last.field(name))
+            if isinstance(told, (bool, np.bool_)) and told and not run._core.finished:
+                status, message = "interrupted", "on_step returned True"
+                break
+    except BaseException as error:
+        ended = "failed" if isinstance(error, Exception) else "interrupted"
+        error.result = run._record.close(ended, str(error) or type(error).__name__)  # type: ignore[attr-defined]
+        raise
     finally:
         teller.end()
-    found = run.findings
-    warn(found, 2 if _motion is None else 3)
-    return Result(
-        table={name: np.array(values) for name, values in table.items() if name not in HISTOGRAMS},
-        histograms={name: (ends, np.array(table[name])) for name, ends in edges.items() if name in HISTOGRAMS},
-        fields={name: np.array(stack) for name, stack in maps.items()},
-        field_steps=np.array(steps),
-        initial_gap=run.initial_gap,
-        size=run.size,
-        attributes={
-            "title": title,
-            "version": _core.__version__,
-            "status": "complete",
-            "setup": json.dumps(run._setup),
-            "findings": [dict(finding) for finding in found],
-        },
-    )
+    result = run._record.close(status, message)
+    warn(run.findings, 2 if _motion is None else 3)
+    return result
 
 
 def run(
@@ -417,6 +507,8 @@ def run(
     ConvergenceError : a step was not solved to the tolerance; the rows before it are stored
     OSError : a file cannot be read or written
 
+    With `output` an error that comes after the first row has the rows so far as `error.result`.
+
     Examples
     --------
     >>> import asperity as asp, tempfile
@@ -444,6 +536,11 @@ def run(
 
     try:
         summary = _core.run(*_source(case), _keys(set), None if output is None else os.fspath(output), force, resume, told)
+    except BaseException as error:
+        if output is not None and teller is not None:
+            with contextlib.suppress(OSError, CaseError):
+                error.result = open(output)  # type: ignore[attr-defined]
+        raise
     finally:
         if teller is not None:
             teller.end()

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._arrays import Floats, as_plane, cells_of, field, number, plain, size_of
+from ._arrays import Floats, array, as_plane, cells_of, field, number, plain, size_of
 
 
 class Stress:
@@ -194,7 +194,7 @@ def depths_below(pressure: Floats, size: list[float], boundary: str, depths: str
         if depths != "auto":
             raise _core.CaseError(f'depths is {depths!r}, but must be "auto" or numbers in m')
         return np.asarray(_core.stress_depths(as_plane(pressure), size, boundary))
-    below = np.atleast_1d(np.asarray(depths, dtype=float))
+    below = np.atleast_1d(array("depths", depths))
     if below.ndim != 1 or below.size == 0:
         raise _core.CaseError("depths must be one row of numbers in m, at least one")
     return below

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import difflib
 import importlib
+import inspect
 import itertools
 import json
 import os
@@ -21,10 +23,11 @@ from . import _core
 from ._arrays import count
 from ._core import CaseError
 from ._leakage import LEAKS, units_of
-from ._points import Point, Solved, base_of, found, label, label_all, note, solve_point
+from ._points import Point, Solved, _toml, base_of, found, label, label_all, note, solve_point
 from ._processes import cores, shared, solved
 from ._progress import line_of
-from ._result import FIELDS, QUANTITIES, ROW, Result
+from ._columns import QUANTITIES, ROW
+from ._result import FIELDS, Result
 from ._solve import _source
 
 if TYPE_CHECKING:
@@ -77,7 +80,7 @@ def study(
 
     Raises
     ------
-    CaseError : the parameters or the case are wrong. A single point that fails raises nothing; see `status` and `error`.
+    CaseError : the parameters or the case are wrong, or there is no parameter or key of a name in `over`. A single point that fails raises nothing; see `status` and `error`.
 
     Notes
     -----
@@ -111,6 +114,7 @@ def study(
         if number is not None:
             count(what, number)
     common = _common(case, plan.names)
+    _check_names(common, plan)
     place = None if folder is None else os.path.abspath(os.fspath(folder))
     if place is not None:
         os.makedirs(place, exist_ok=True)
@@ -220,6 +224,41 @@ def _common(case: Any, names: list[str]) -> dict[str, Any]:
         directory = os.path.dirname(path)
     directory = os.path.abspath(directory)
     return {"case": text, "directory": directory, "base": base_of(text, directory, None, {})}
+
+
+def _check_names(common: dict[str, Any], plan: _Plan) -> None:
+    """Refuses parameters that what is solved does not have: every point would fail."""
+    if "case" in common:
+        _check_keys(common, plan)
+        return
+    from ._solve import solve
+
+    function = common.get("function") or solve
+    try:
+        parameters = inspect.signature(function).parameters
+    except (TypeError, ValueError):  # of some compiled functions it is not known
+        return
+    words = f"asperity.{function.__name__}" if function is solve else f"the function {getattr(function, '__name__', function)!r}"
+    if any(parameter.kind is parameter.VAR_KEYWORD for parameter in parameters.values()):
+        return
+    known = [name for name, parameter in parameters.items() if parameter.kind is not parameter.POSITIONAL_ONLY and name[0] != "_"]
+    for name in [*common.get("fixed", {}), *plan.names]:
+        if name not in known:
+            near = difflib.get_close_matches(name, known, 1)
+            hint = f"did you mean {near[0]!r}?" if near else f"it takes {', '.join(known)}"
+            raise CaseError(f"{words} has no parameter {name!r}: {hint}")
+
+
+def _check_keys(common: dict[str, Any], plan: _Plan) -> None:
+    """Refuses keys that a case does not have; wrong values are errors of their points."""
+    keys = [f"{key}={_toml(value)}" for key, value in plan.points[0].items()]
+    try:
+        _core.check(common["directory"], common["case"], keys)
+    except CaseError as error:
+        if told := [line for line in str(error).splitlines() if "has no key" in line]:
+            raise CaseError("\n".join(told)) from None
+    except OSError:
+        pass
 
 
 def _on_cluster(client: Any, points: list[Point]) -> Generator[tuple[int, Solved], None, None]:

@@ -4,29 +4,38 @@ from __future__ import annotations
 
 import json
 import os
+import re
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass, field as dataclass_field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
 from . import _core, _foreign
 from ._arrays import (
     Floats,
     along,
+    angle,
+    array,
     as_plane,
     cell_counts,
     cells_of,
+    centres,
     count,
     counts,
     field,
+    frozen,
+    in_order,
     lengths,
     number,
     pair,
     size_of,
 )
 from ._core import CaseError
-from ._findings import findings_of, warn
+from ._findings import ResultWarning, findings_of, warn
+from ._units import factor_of, is_labelled
 
 if TYPE_CHECKING:
     from .plot import SurfacePlots
@@ -53,18 +62,34 @@ class Surface:
 
     A line is for line contacts in plane strain, in which nothing changes along y; its `size` is one length, (L,).
 
-    NaN where a measurement has no value; minus infinity where a punch cannot touch. Surfaces of the same cells and
-    size add up: a sphere plus roughness, one rough surface against another.
+    NaN where a measurement has no value; minus infinity where a punch cannot touch. Made from an array with its `size` [m], from a
+    topography of SurfaceTopography, or from an xarray.DataArray with the dimensions x and y (in any order) and their coordinates; the
+    attribute `units` of the heights and of each coordinate is honoured, without it they are in m. The numbers are copied, and
+    `heights` is read-only.
+
+    Surfaces of the same cells and size add up: a sphere plus roughness, one rough surface against another. A surface times a number
+    has scaled heights, and its negative is the replica.
+
+    >>> import asperity as asp, numpy as np
+    >>> wave = asp.Surface.wave(cells=(32, 32), size=(1e-3, 1e-3), amplitude=1e-6, wavelength=(1e-3, 5e-4))
+    >>> bool(np.allclose(np.asarray(2 * wave - wave), wave.heights)), wave == -(-wave), wave.x.shape
+    (True, True, (32,))
     """
 
     heights: Floats
     size: tuple[float, ...]
     metadata: dict[str, Any] = dataclass_field(default_factory=dict)
 
-    def __init__(self, heights: Any, *, size: float | Sequence[float], metadata: dict[str, Any] | None = None) -> None:
-        object.__setattr__(self, "heights", field("heights", heights, line=True))
+    # Operators of numpy arrays leave a surface to its own.
+    __array_ufunc__ = None
+    __hash__ = None  # type: ignore[assignment]
+
+    def __init__(self, heights: Any, *, size: float | Sequence[float] | None = None, metadata: dict[str, Any] | None = None) -> None:
+        values, size, known = _parts(heights, size)
+        values = field("heights", values, line=True)
+        object.__setattr__(self, "heights", frozen(np.array(values)))
         object.__setattr__(self, "size", tuple(size_of("heights", self.heights, size)))
-        object.__setattr__(self, "metadata", dict(metadata or {}))
+        object.__setattr__(self, "metadata", {**known, **(metadata or {})})
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _surface, (self.heights, self.size, self.metadata)
@@ -79,15 +104,92 @@ class Surface:
         """Whether it is a line of cells, for a line contact."""
         return self.heights.ndim == 1
 
-    def __add__(self, other: Surface) -> Surface:
+    @property
+    def x(self) -> Floats:
+        """Cell centres along x [m]."""
+        return centres(self.cells[0], self.size[0])
+
+    @property
+    def y(self) -> Floats:
+        """Cell centres along y [m]."""
+        if self.is_line:
+            raise CaseError("a line of cells has no y: nothing changes along it")
+        return centres(self.cells[1], self.size[1])
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> npt.NDArray[Any]:
+        """The heights [m]."""
+        wanted = self.heights.dtype if dtype is None else np.dtype(dtype)
+        if copy is None:
+            return self.heights.astype(wanted, copy=False)
+        if not copy and wanted != self.heights.dtype:
+            raise ValueError(f"the heights are float64: {wanted} needs a copy")
+        return self.heights.astype(wanted, copy=copy)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether cells, size and all heights are the same; undefined points equal each other."""
         if not isinstance(other, Surface):
             return NotImplemented
-        if self.cells != other.cells or self.size != other.size:
+        return self.size == other.size and np.array_equal(self.heights, other.heights, equal_nan=True)
+
+    def __add__(self, other: Any) -> Surface:
+        if _is_number(other):
+            if other == 0:  # the start of sum()
+                return self
+            raise CaseError("a number cannot be added to a surface, whose heights are measured from no fixed level: add surfaces")
+        try:
+            other = as_surface(other, self.size if isinstance(other, np.ndarray) else None)
+        except CaseError:
+            if isinstance(other, np.ndarray) or is_labelled(other) or hasattr(other, "physical_sizes"):
+                raise
+            return NotImplemented
+        if self.cells != other.cells or not np.allclose(self.size, other.size, rtol=1e-9, atol=0.0):
             raise CaseError(
                 f"surfaces of {self.cells} cells on {self.size} m and of {other.cells} cells on {other.size} m "
                 "cannot be added: they must have the same cells and size"
             )
-        return Surface(self.heights + other.heights, size=self.size)
+        # What was measured does not repeat beyond its edges, and the sum neither.
+        known = {"format": one.metadata["format"] for one in (self, other) if "format" in one.metadata}
+        return Surface(self.heights + other.heights, size=self.size, metadata=known)
+
+    __radd__ = __add__
+
+    def __sub__(self, other: Any) -> Surface:
+        if isinstance(other, Surface):
+            return self + -other
+        return NotImplemented if _is_number(other) else self + _negative(other, self.size)
+
+    def __mul__(self, factor: Any) -> Surface:
+        if not _is_number(factor):
+            return NotImplemented
+        scale = number("factor", factor)
+        if not np.isfinite(scale):
+            raise CaseError(f"factor is {scale}, but must be finite")
+        words = f"heights times {scale:g}"
+        return Surface(self.heights * scale, size=self.size, metadata={**self.metadata, "history": [*self.history, words]})
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, divisor: Any) -> Surface:
+        if not _is_number(divisor):
+            return NotImplemented
+        if number("divisor", divisor) == 0.0:
+            raise CaseError("heights cannot be divided by 0")
+        return self * (1.0 / number("divisor", divisor))
+
+    def __neg__(self) -> Surface:
+        return Surface(-self.heights, size=self.size, metadata={**self.metadata, "history": [*self.history, "inverted"]})
+
+    def __pos__(self) -> Surface:
+        return self
+
+    def to_xarray(self) -> Any:
+        """The heights as xarray.DataArray with coordinates x and y, and units."""
+        import xarray
+
+        names = ("x",) if self.is_line else ("x", "y")
+        axes = {name: (name, getattr(self, name), {"units": "m", "long_name": name}) for name in names}
+        attributes = {"units": "m", "long_name": "height"}
+        return xarray.DataArray(np.array(self.heights), dims=names, coords=axes, name="heights", attrs=attributes)
 
     def __repr__(self) -> str:
         return f"Surface({cells_of(self.heights)}, {' x '.join(f'{length:g} m' for length in self.size)})"
@@ -235,9 +337,63 @@ class Surface:
     def power_spectrum(self, per_decade: int = 16) -> tuple[Floats, Floats]:
         """Wavenumbers [1/m] and radially averaged power spectrum C(q) [m^4]; 0 rings per decade: linear rings.
 
-        The surface is taken as periodic, so that the mean of z^2 is the integral of C d^2q / (2 pi)^2.
+        The surface is taken as periodic, so that the mean of z^2 is the integral of C d^2q / (2 pi)^2. Of a profile it is
+        :meth:`power_spectrum_1d`.
         """
-        return _core.power_spectrum(self._plane("power_spectrum"), list(self.size), count("per_decade", per_decade, 0, 1000))
+        if self.is_line:
+            return self.power_spectrum_1d()
+        return _core.power_spectrum(self.heights, list(self.size), count("per_decade", per_decade, 0, 1000))
+
+    def power_spectrum_1d(self, direction: str = "x") -> tuple[Floats, Floats]:
+        """Wavenumbers q > 0 [1/m] and power spectrum C1(q) [m^3] of the profiles along "x" or "y", their mean.
+
+        Of profiles that are taken as periodic and about their own mean, so that the mean of their squares is the integral of
+        C1 dq / pi over q > 0 (T. D. B. Jacobs, T. Junge, L. Pastewka, Surf. Topogr. 5 (2017) 013001, where C1 counts both signs of q).
+
+        >>> import asperity as asp, numpy as np
+        >>> wave = asp.Surface.wave(cells=64, size=1e-3, amplitude=1e-6, wavelength=2.5e-4)
+        >>> q, c = wave.power_spectrum_1d()
+        >>> peak = np.argmax(c)
+        >>> bool(np.isclose(q[peak], 2 * np.pi / 2.5e-4)), bool(np.isclose(np.sum(c) * q[0] / np.pi, np.var(wave.heights)))
+        (True, True)
+        """
+        if direction not in ("x", "y") or (self.is_line and direction == "y"):
+            raise CaseError(f"direction is {direction!r}, but must be {'x of a line' if self.is_line else 'x or y'}")
+        z = self._defined("power_spectrum_1d")
+        axis = "xy".index(direction)
+        n, length = z.shape[axis], self.size[axis]
+        amplitudes = np.abs(np.fft.rfft(z, axis=axis)) ** 2 * (length / n**2)
+        both = np.moveaxis(amplitudes, axis, 0).reshape(n // 2 + 1, -1).mean(axis=1)
+        # The wave of two cells has no partner of the other sign: half of it counts.
+        if n % 2 == 0:
+            both[-1] *= 0.5
+        q: Floats = 2.0 * np.pi / length * np.arange(1, n // 2 + 1)
+        return q, both[1:]
+
+    def power_spectrum_2d(self) -> tuple[Floats, Floats, Floats]:
+        """Wavenumbers along x and y [1/m], rising, and the power spectrum C(qx, qy) [m^4] of shape (nx, ny).
+
+        The surface is taken as periodic, so that the mean of z^2 (about its mean) is the sum of C dqx dqy / (2 pi)^2.
+
+        >>> import asperity as asp, numpy as np
+        >>> rough = asp.Surface.self_affine(cells=(64, 48), size=(1e-3, 1e-3), hurst=0.8, rms_height=1e-6, longest=5e-4, shortest=5e-5)
+        >>> qx, qy, c = rough.power_spectrum_2d()
+        >>> bool(np.isclose(np.sum(c) * (qx[1] - qx[0]) * (qy[1] - qy[0]) / (2 * np.pi) ** 2, 1e-12))
+        True
+        """
+        self._plane("power_spectrum_2d")
+        z = self._defined("power_spectrum_2d")
+        (nx, ny), (lx, ly) = z.shape, self.size
+        power = np.fft.fftshift(np.abs(np.fft.fft2(z - z.mean())) ** 2) * (lx * ly / (nx * ny) ** 2)
+        qx, qy = (2.0 * np.pi * np.fft.fftshift(np.fft.fftfreq(n, length / n)) for n, length in ((nx, lx), (ny, ly)))
+        return qx, qy, power
+
+    def _defined(self, what: str) -> Floats:
+        """The heights, all of which `what` needs."""
+        missing = int(np.count_nonzero(~np.isfinite(self.heights)))
+        if missing:
+            raise CaseError(f"{what} needs every height, but {missing} of {self.heights.size} points are undefined: fill() them first")
+        return self.heights
 
     def bearing_curve(self, levels: int = 200) -> tuple[Floats, Floats]:
         """Heights [m] and the share of the points at or above each (Abbott and Firestone 1933)."""
@@ -300,6 +456,7 @@ class Surface:
         channel: str | int | None = None,
         level: str | None = None,
         fill: str | None = None,
+        transpose: bool | None = None,
     ) -> Surface:
         """Reads a measured surface; the format is found from the content.
 
@@ -313,6 +470,12 @@ class Surface:
         channel : which one, by name or number (from 0), where the file holds several; by default the first of heights.
             ``surface.metadata["channels"]`` lists them.
         level, fill : as the methods of that name; by default the heights are as measured, undefined points NaN
+        transpose : whether the lines of a text matrix run along y, as ``np.savetxt(path, surface.heights)`` writes them; by default
+            they run along x, as instruments write them
+
+        Warns
+        -----
+        ResultWarning : a text matrix looks as if numpy.savetxt had written it, and `transpose` is not given
         """
         path = os.fspath(path)
         given = None if size is None else list(lengths("size", size))
@@ -323,6 +486,19 @@ class Surface:
         except _core.FormatError as error:
             found = _foreign.read(path, given, unit, name, error)
         heights, extent = found.pop("heights"), found.pop("size")
+        if transpose is None and len(extent) == 2 and _is_savetxt(path):
+            warnings.warn(
+                f"{path} looks as if numpy.savetxt had written it: its lines are read along x, so that an array with axes (x, y) comes out "
+                "transposed. Give transpose=True for such an array, or transpose=False if the lines run along x.",
+                ResultWarning,
+                stacklevel=2,
+            )
+        if transpose:
+            if len(extent) != 2:
+                raise CaseError("transpose is for surfaces over a plane, but the file holds a profile")
+            # A size that was given is along x and y already.
+            heights, extent = np.ascontiguousarray(heights.T), extent if given is not None else extent[::-1]
+            found = {**found, "history": [*found.get("history", []), "transposed"]}
         surface = Surface(heights[:, 0] if len(extent) == 1 else heights, size=extent, metadata=found)
         if level is not None:
             surface = surface.level(level)
@@ -361,7 +537,7 @@ class Surface:
         """
         extent, grid = lengths("size", size), cell_counts("cells", cells)
         special = {
-            "lay.angle": lay_angle,
+            "lay.angle": None if lay_angle is None else angle("lay_angle", lay_angle),
             "lay.ratio": lay_ratio,
             "distribution.skewness": skewness,
             "distribution.kurtosis": kurtosis,
@@ -508,36 +684,95 @@ def check_dimensions(cells: tuple[int, ...], size: tuple[float, ...]) -> None:
 
 def as_surface(value: Any, size: float | Sequence[float] | None) -> Surface:
     """A surface; heights as an array need their size; topographies of SurfaceTopography and xarray are understood."""
+    return value if isinstance(value, Surface) and size is None else Surface(value, size=size)
+
+
+def surface_of(surface: Any, gap: Any, size: float | Sequence[float] | None) -> Surface:
+    """The surface that is given by its heights, or by the undeformed gap that it leaves."""
+    if (surface is None) == (gap is None):
+        raise CaseError("give a surface (its heights), or gap= (the undeformed gap), exactly one of them")
+    if gap is None:
+        return as_surface(surface, size)
+    if isinstance(gap, Surface):
+        raise CaseError("gap is a Surface, which holds heights: give it as the surface, or its gap()")
+    values, size, _ = _parts(gap, size, "gap")
+    values = field("gap", values, line=True)
+    if wrong := [value for value in values[np.isnan(values) | (values == -np.inf)][:1]]:
+        raise CaseError(f"gap holds {wrong[0]}, but must be finite, or infinite where a cell cannot touch")
+    return Surface(-values, size=size)
+
+
+def _parts(value: Any, size: Any, what: str = "heights") -> tuple[Any, Any, dict[str, Any]]:
+    """The numbers [m] of what stands for a surface, its size [m] and its metadata."""
     if isinstance(value, Surface):
-        return value
+        if size is not None and not np.allclose(size_of("heights", value.heights, size), value.size, rtol=1e-9, atol=0.0):
+            raise CaseError(f"size is {size!r}, but the surface has the size {value.size} m already")
+        return value.heights, value.size, value.metadata
     if hasattr(value, "heights") and hasattr(value, "physical_sizes"):
-        return _from_surface_topography(value, size)
-    if hasattr(value, "coords") and hasattr(value, "dims"):
-        return _from_xarray(value, size)
+        return _of_topography(value, size)
+    if is_labelled(value):
+        return _of_labelled(what, value, size)
     if size is None:
-        raise CaseError("the surface is an array, so that its size in m is needed: size=(Lx, Ly), or size=(L,) of a line")
-    return Surface(value, size=size)
+        article = "gap is" if what == "gap" else "surface is"
+        raise CaseError(f"the {article} an array, so that its size in m is needed: size=(Lx, Ly), or size=(L,) of a line")
+    return value, size, {}
 
 
-def _from_surface_topography(topography: Any, size: float | Sequence[float] | None) -> Surface:
-    units = {"m": 1.0, "mm": 1e-3, "µm": 1e-6, "um": 1e-6, "nm": 1e-9, "pm": 1e-12, "Å": 1e-10}
+def _of_topography(topography: Any, size: Any) -> tuple[Any, Any, dict[str, Any]]:
     unit = getattr(topography, "unit", None)
-    if unit not in units:
-        raise CaseError(f"the unit of the topography is {unit!r}, but must be one of {', '.join(units)}")
-    factor = units[unit]
+    if unit is None:
+        raise CaseError("the topography has no unit: give it one, as in topography.to_unit('m') or unit='m'")
+    factor = factor_of("topography", unit, "m")
     extent = [length * factor for length in topography.physical_sizes] if size is None else size
-    return Surface(np.ma.filled(np.ma.asarray(topography.heights(), dtype=float), np.nan) * factor, size=extent)
+    # What was measured does not repeat beyond its edges.
+    known = {} if getattr(topography, "is_periodic", True) else {"format": "SurfaceTopography"}
+    return np.ma.filled(np.ma.asarray(topography.heights(), dtype=float), np.nan) * factor, extent, known
 
 
-def _from_xarray(array: Any, size: float | Sequence[float] | None) -> Surface:
-    if tuple(array.dims) == ("y", "x"):
-        array = array.transpose("x", "y")
-    if tuple(array.dims) not in (("x", "y"), ("x",)):
-        raise CaseError(f"the array has dimensions {tuple(array.dims)}, but must have x and y, or x alone")
+def _of_labelled(what: str, given: Any, size: Any) -> tuple[Any, Any, dict[str, Any]]:
+    values = in_order(what, given)
+    names = [str(name) for name in values.dims]
+    if names not in (["x", "y"], ["x"]):
+        raise CaseError(f"{what} has the dimensions {tuple(names)}, but must have x and y, or x alone")
+    extent: list[float] = []
+    for name in names:
+        if name not in values.coords:
+            continue
+        places = array(name, values.coords[name])
+        if len(places) < 2:
+            continue
+        pitch = (places[-1] - places[0]) / (len(places) - 1)
+        # Coordinates of single precision carry 1e-7 of their largest value.
+        slack = 1e-6 * np.abs(places).max() + 1e-3 * abs(pitch)
+        if pitch == 0.0 or not np.allclose(np.diff(places), pitch, rtol=0.0, atol=slack):
+            raise CaseError(f"the coordinate {name} of {what} is not evenly spaced: resample it to equal cells")
+        if pitch < 0.0:
+            values = values.isel({name: slice(None, None, -1)})
+        extent.append(abs(pitch) * len(places))
     if size is None:
-        try:
-            axes = [np.asarray(array.coords[name], dtype=float) for name in array.dims]
-            size = [(axis[-1] - axis[0]) / (len(axis) - 1) * len(axis) for axis in axes]
-        except (KeyError, ZeroDivisionError, IndexError):
-            raise CaseError("the array has no coordinates x and y in m, so that its size is needed: size=(Lx, Ly)") from None
-    return Surface(np.asarray(array), size=size)
+        if len(extent) < len(names):
+            raise CaseError("the array has no coordinates x and y in m, so that its size is needed: size=(Lx, Ly)")
+        return values, extent, {}
+    told = [str(values.coords[name].attrs.get("units", "")) for name in names if name in values.coords]
+    if len(extent) == len(names) and any(told) and not np.allclose(lengths("size", size), extent, rtol=1e-6, atol=0.0):
+        raise CaseError(f"size is {size!r} m, but the coordinates of {what} tell {tuple(extent)} m: leave size out")
+    return values, size, {}
+
+
+def _negative(value: Any, size: Any) -> Surface:
+    return -as_surface(value, size if isinstance(value, np.ndarray) else None)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float, np.integer, np.floating)) and not isinstance(value, bool)
+
+
+def _is_savetxt(path: str) -> bool:
+    """Whether a text file has the numbers that numpy.savetxt writes by default, "%.18e"."""
+    try:
+        with open(path, "rb") as file:
+            start = file.read(4096)
+    except OSError:
+        return False
+    lines = [one for one in start.splitlines() if not one.startswith(b"#")]
+    return bool(lines) and re.match(rb"\s*[-+]?(\d\.\d{18}e[-+]\d{2,3}|nan|inf)([\s,;]|$)", lines[0]) is not None and b"e" in lines[0]

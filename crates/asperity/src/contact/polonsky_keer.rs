@@ -86,8 +86,16 @@ impl PolonskyKeer {
                 return Err(Error::Interrupted);
             }
             iteration += 1;
+            let stalled = progress.has_stalled(outcome.residual) || rating.no_cell_is_free();
+            tracing::debug!(
+                iterations = iteration,
+                residual = outcome.residual,
+                working = rating.working_cells(),
+                step = if stalled { "gradient" } else { "conjugate" },
+                convolutions
+            );
 
-            if progress.has_stalled(outcome.residual) || rating.no_cell_is_free() {
+            if stalled {
                 if !self.gradient_step(operator, problem, state, &mut gradient_length) {
                     // Nothing descends: rounding is all that is left.
                     return Err(not_converged("polonsky-keer", options, &outcome));

@@ -1,5 +1,7 @@
 //! The judge of a run: what is known before it, what each row adds, and what is found in the end.
 
+use ndarray::ArrayView2;
+
 use super::contact::{Counted, Resolution};
 use super::energy::Balance;
 use super::expected::{ROOM, radius};
@@ -135,11 +137,30 @@ impl Judge {
     /// Looks at a row.
     pub fn see(&mut self, step: &Step<'_>, row: &Row) {
         let index = step.index();
-        if self.free && row.contact_area > 0.0 && domain::touches_border(&self.grid, step.pressure()) {
+        let (control, compliance) = (step.instant().control, step.simulation().compliance(row.time));
+        self.see_contact(index, row, step.pressure(), control, compliance);
+        self.capped |= row.capped_area > 0.0 && control == Control::Approach;
+        if let Some(friction) = step.friction() {
+            self.slides.see(index, &friction);
+        }
+        if let Some(balance) = step.energy_balance() {
+            self.balance.see(index, balance);
+        }
+    }
+
+    /// Looks at a contact that has this row and pressure \[Pa\], under what `control` says, with a compliance \[1/Pa\].
+    pub fn see_contact(
+        &mut self,
+        index: usize,
+        row: &Row,
+        pressure: ArrayView2<'_, f64>,
+        control: Control,
+        compliance: f64,
+    ) {
+        if self.free && row.contact_area > 0.0 && domain::touches_border(&self.grid, pressure) {
             self.border = Some(self.border.map_or([index; 2], |[first, _]| [first, index]));
-            let compliance = step.simulation().compliance(row.time);
             let needed = ROOM
-                * self.radius.map_or(0.0, |radius| match step.instant().control {
+                * self.radius.map_or(0.0, |radius| match control {
                     Control::Approach => (radius * row.approach.max(0.0)).sqrt(),
                     Control::Load | Control::Pressure if self.grid.is_line() => {
                         (4.0 * radius * row.load * compliance / std::f64::consts::PI).sqrt()
@@ -148,15 +169,8 @@ impl Judge {
                 });
             self.needed = self.needed.max(needed);
         }
-        self.capped |= row.capped_area > 0.0 && step.instant().control == Control::Approach;
-        if let Some(friction) = step.friction() {
-            self.slides.see(index, &friction);
-        }
-        if let Some(balance) = step.energy_balance() {
-            self.balance.see(index, balance);
-        }
         let contact = match self.grid.is_line() {
-            true => Counted::on_line(step.pressure()),
+            true => Counted::on_line(pressure),
             false => Counted::of(&self.grid, row),
         };
         self.take(index, row, contact);

@@ -4,6 +4,7 @@ use asperity_sweep::eights::{Eight, Work, vectorize};
 use ndarray::{Array2, ArrayView2};
 
 use crate::contact::{ContactState, Hardness, Outcome};
+use crate::grid::{Boundary, Grid};
 use crate::march::dents::Dents;
 use crate::march::measure::Meter;
 use crate::march::{Past, Simulation};
@@ -194,43 +195,16 @@ impl<'a> Step<'a> {
 
     /// The numbers of the row.
     pub fn row(&self) -> Row {
-        let grid = &self.simulation.grid;
-        let (c, w) = (self.compliance, self.state.approach);
-        let ([pressure, touching, capped, gap, touchable], Max(peak)) = sweep(
-            (&self.state.pressure[..], &self.state.unit_displacement[..], self.gap, self.hardness),
-            &|(p, u, h, hardness): (&[f64], &[f64], &[f64], Hardness)| {
-                vectorize(Survey { p, u, h, hardness, c, w })
-            },
-        );
-        let cell = grid.cell_area();
-        let contact_area = touching * cell;
+        let Simulation { grid, boundary, .. } = self.simulation;
+        let bodies = (self.gap, self.hardness, self.compliance);
+        let contact = Row::of_contact(grid, *boundary, bodies, self.state, &self.outcome);
         Row {
             time: self.instant.time,
-            load: pressure * cell,
-            approach: w - self.datum,
-            contact_area,
-            contact_area_corrected: contact_area - PERIMETER_SHARE * self.contact_edges() as f64 * cell,
-            contact_fraction: touching / grid.len() as f64,
-            capped_area: capped * cell,
-            mean_pressure: pressure / grid.len() as f64,
-            max_pressure: peak,
-            mean_gap: gap / touchable,
-            iterations: self.outcome.iterations,
-            convolutions: self.outcome.convolutions,
-            residual: self.outcome.residual,
-            certificate: self.outcome.certificate,
+            approach: self.state.approach - self.datum,
             time_error: self.time_error,
             stage: self.instant.stage,
+            ..contact
         }
-    }
-
-    /// Number of edges between a touching and an open cell that a contour runs along; the border of a free domain is none, and
-    /// the ends of a line contact are points.
-    fn contact_edges(&self) -> usize {
-        if self.simulation.grid.is_line() {
-            return 0;
-        }
-        contact_edges(self.pressure(), self.simulation.boundary).number()
     }
 
     /// Permanent flattening \[m\] since t = 0, 0 or more: what [`Plasticity::Accumulate`](super::Plasticity) has added to the
@@ -259,6 +233,51 @@ impl<'a> Step<'a> {
     /// A quantity of this row: one number, or one per bin; `None` where it was not asked for.
     pub fn quantity(&self, quantity: Quantity) -> Option<&'a [f64]> {
         self.meter?.of(quantity)
+    }
+}
+
+impl Row {
+    /// The numbers of one elastic contact, at the time 0: of a state that solves the problem of this gap \[m\], hardness and
+    /// compliance \[1/Pa\], each cell of the grid.
+    pub fn of_contact(
+        grid: &Grid,
+        boundary: Boundary,
+        (gap, hardness, compliance): (&[f64], Hardness<'_>, f64),
+        state: &ContactState,
+        outcome: &Outcome,
+    ) -> Row {
+        let (c, w) = (compliance, state.approach);
+        let ([pressure, touching, capped, gap, touchable], Max(peak)) = sweep(
+            (&state.pressure[..], &state.unit_displacement[..], gap, hardness),
+            &|(p, u, h, hardness): (&[f64], &[f64], &[f64], Hardness)| {
+                vectorize(Survey { p, u, h, hardness, c, w })
+            },
+        );
+        // The border of a free domain is no edge of the contact, and the ends of a line contact are points.
+        let edges = match grid.is_line() {
+            true => 0,
+            false => contact_edges(to_view(grid.shape(), &state.pressure), boundary).number(),
+        };
+        let cell = grid.cell_area();
+        let contact_area = touching * cell;
+        Row {
+            time: 0.0,
+            load: pressure * cell,
+            approach: w,
+            contact_area,
+            contact_area_corrected: contact_area - PERIMETER_SHARE * edges as f64 * cell,
+            contact_fraction: touching / grid.len() as f64,
+            capped_area: capped * cell,
+            mean_pressure: pressure / grid.len() as f64,
+            max_pressure: peak,
+            mean_gap: gap / touchable,
+            iterations: outcome.iterations,
+            convolutions: outcome.convolutions,
+            residual: outcome.residual,
+            certificate: outcome.certificate,
+            time_error: None,
+            stage: 0,
+        }
     }
 }
 

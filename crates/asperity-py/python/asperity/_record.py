@@ -1,0 +1,121 @@
+"""What a march leaves: its rows so far, and the fields of some of them, in memory or on disk."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _core
+from ._arrays import Floats, as_plane, count, line
+from ._columns import HISTOGRAMS, ROW
+from ._core import CaseError
+from ._result import FIELDS, Result, open
+
+if TYPE_CHECKING:
+    from ._solve import March, Step
+
+
+class Keep:
+    """Which fields are kept, and of which rows."""
+
+    def __init__(self, fields: Sequence[str], every: int | None, field_times: Any) -> None:
+        if isinstance(fields, str):
+            raise CaseError(f"fields is {fields!r}, but must be a list, as in fields=[{fields!r}]")
+        self.fields = [str(name) for name in fields]
+        if unknown := [name for name in self.fields if name not in FIELDS]:
+            raise CaseError(f"fields holds {unknown[0]!r}, but may hold {', '.join(FIELDS)}")
+        self.times = None if field_times is None else line("field_times", field_times)
+        if self.times is not None and every is not None:
+            raise CaseError("give every or field_times, exactly one of them")
+        self.every = None if every is None else count("every", every)
+
+
+class Record:
+    """The rows of a march so far, and their fields; with an `output` the fields are on disk only."""
+
+    def __init__(self, march: March, keep: Keep, title: str, output: str | None, force: bool) -> None:
+        core = march._core
+        self._march, self._keep, self._title = march, keep, title
+        self._edges: dict[str, Floats] = {name: np.array(ends) for name, ends in core.columns()}
+        self._table: dict[str, list[Any]] = {name: [] for name in [*ROW, *self._edges]}
+        self._maps: dict[str, list[Any]] = {name: [] for name in keep.fields}
+        self._steps: list[int] = []
+        # Adaptive steps find their rows as they go.
+        rows = core.rows_expected
+        self._stride = keep.every if keep.every is not None else max(1, -(-((rows or 1) - 1) // 20))
+        self._end = core.times()[-1]
+        self._output = output
+        self._writer: _core.Writer | None = None
+        if output is not None:
+            columns = [(name, ends) for name, ends in self._edges.items()]
+            setup, gap = json.dumps(march._setup), np.array(as_plane(march.initial_gap))
+            self._writer = _core.Writer(output, force, title, setup, list(march.size), gap, keep.fields, columns, rows)
+
+    def __len__(self) -> int:
+        return len(self._table["time"])
+
+    def see(self, step: Step) -> None:
+        """Takes in a row."""
+        row = step.row
+        for name, values in self._table.items():
+            values.append(row[name])
+        maps = {name: step._map(name) for name in self._keep.fields} if self._keeps(step) else {}
+        if self._writer is not None:
+            numbers = [float(n) for name in self._edges for n in np.ravel(row[name])]
+            self._writer.append(row, numbers, maps)
+        elif self._keeps(step):
+            self._take(step.index, maps)
+
+    def _take(self, index: int, maps: dict[str, Any]) -> None:
+        self._steps.append(index)
+        shape = self._march.initial_gap.shape
+        for name in self._keep.fields:
+            self._maps[name].append(maps[name].reshape(shape))
+
+    def _keeps(self, step: Step) -> bool:
+        if step.index == 0 or self._march._core.finished:
+            return True
+        if self._keep.times is None:
+            return step.index % self._stride == 0
+        return bool(np.any(np.abs(self._keep.times - step.time) <= 1e-12 * self._end))
+
+    def close(self, status: str, message: str | None = None) -> Result:
+        """The result of a march that goes no further: "complete", "interrupted" or "failed"."""
+        if self._writer is None or self._output is None:
+            return self.result(status)
+        self._writer.finish(status, self._march._core.findings(), message)
+        self._writer = None
+        return open(self._output)
+
+    def result(self, status: str) -> Result:
+        """The rows so far with the fields that were kept, and those of the last row."""
+        core = self._march._core
+        last = len(self) - 1
+        if last >= 0 and last not in self._steps and core.done == last + 1:
+            self._take(last, {name: core.field(name) for name in self._keep.fields})
+        table = {name: np.array(values) for name, values in self._table.items() if name not in HISTOGRAMS}
+        shape = self._march.initial_gap.shape
+        return Result(
+            table={name: values if last >= 0 else np.empty(0) for name, values in table.items()},
+            histograms={name: (ends, np.array(self._table[name])) for name, ends in self._edges.items() if name in HISTOGRAMS},
+            fields={name: np.array(stack) if stack else np.empty((0, *shape)) for name, stack in self._maps.items()},
+            field_steps=np.array(self._steps, dtype=np.int64),
+            initial_gap=self._march.initial_gap,
+            size=self._march.size,
+            attributes={
+                "title": self._title,
+                "version": _core.__version__,
+                "status": status,
+                "setup": json.dumps(self._march._setup),
+                "findings": [dict(finding) for finding in self._march.findings],
+            },
+        )
+
+
+def path_of(output: str | os.PathLike[str] | None) -> str | None:
+    """The path of a result that is written as it grows."""
+    return None if output is None else os.fspath(output)

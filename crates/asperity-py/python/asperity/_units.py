@@ -1,0 +1,125 @@
+"""Numbers that carry a unit: quantities of pint, astropy and unyt, and xarray arrays with the attribute `units`.
+
+They become plain numbers in the SI unit that is asked for, or they are refused. A number without a unit is in SI units.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from . import _core
+from ._core import CaseError
+
+#: SI unit of each parameter, by its name in messages; parameters that are not listed have no unit.
+UNITS: dict[str, str] = {
+    **dict.fromkeys(["size", "size along x", "size along y", "center", "center along x", "center along y"], "m"),
+    **dict.fromkeys(["corner", "corner along x", "corner along y", "sides", "sides along x", "sides along y"], "m"),
+    **dict.fromkeys(["wavelength", "wavelength along x", "wavelength along y", "amplitude", "radius", "radius_x", "radius_y"], "m"),
+    **dict.fromkeys(["heights", "gap", "initial gap", "depth", "depths", "thickness of a layer", "height_unit", "smallest_gap"], "m"),
+    **dict.fromkeys(["longest", "shortest", "roll_off", "rms_height", "largest_gap", "x", "y", "approach", "path"], "m"),
+    **dict.fromkeys(["young", "young_kelvin", "shear", "shear_kelvin", "bulk_modulus", "equilibrium", "instantaneous modulus"], "Pa"),
+    **dict.fromkeys(["young_equilibrium", "young_instantaneous", "shear_equilibrium", "shear_instantaneous"], "Pa"),
+    **dict.fromkeys(["equilibrium modulus", "contact_modulus", "hardness", "pressure", "largest_pressure", "shear_stress"], "Pa"),
+    **dict.fromkeys(["pressure_drop", "inlet", "outlet", "threshold", "shear_moduli", "E", "modulus", "storage modulus"], "Pa"),
+    **dict.fromkeys(["loss modulus", "relaxation modulus", "start of the pressure"], "Pa"),
+    **dict.fromkeys(["compliance", "creep compliance"], "1/Pa"),
+    "fluidity": "1/(Pa s)",
+    "viscosity": "Pa s",
+    "molar_mass": "kg/mol",
+    "activation_energy": "J/mol",
+    "load": "N",
+    **dict.fromkeys(["time", "times", "end", "first instant", "first step", "duration", "duration of the stage", "start"], "s"),
+    **dict.fromkeys(["rise", "fall", "hold", "relaxation_time", "retardation_time", "characteristic_times", "field_times"], "s"),
+    **dict.fromkeys(["first time of the window", "last time of the window", "include"], "s"),
+    **dict.fromkeys(["temperature", "temperatures", "reference", "c2"], "K"),
+    **dict.fromkeys(["velocity", "velocities"], "m/s"),
+    "frequency": "1/s",
+    "angular frequencies": "1/s",
+    "wave numbers": "1/m",
+}
+#: Words that units of arrays are written in besides their symbols.
+WORDS = {
+    **dict.fromkeys(["meter", "meters", "metre", "metres"], "m"),
+    **dict.fromkeys(["millimeter", "millimeters", "millimetre", "millimetres"], "mm"),
+    **dict.fromkeys(["micrometer", "micrometers", "micrometre", "micrometres", "micron", "microns"], "um"),
+    **dict.fromkeys(["nanometer", "nanometers", "nanometre", "nanometres"], "nm"),
+    **dict.fromkeys(["angstrom", "Angstrom", "A"], "Å"),
+    **dict.fromkeys(["pascal", "pascals"], "Pa"),
+    **dict.fromkeys(["newton", "newtons"], "N"),
+    **dict.fromkeys(["second", "seconds", "sec"], "s"),
+    **dict.fromkeys(["kelvin"], "K"),
+}
+
+
+def carries(value: Any) -> bool:
+    """Whether it is a quantity of pint, astropy or unyt."""
+    return hasattr(value, "m_as") or (hasattr(value, "to_value") and (hasattr(value, "unit") or hasattr(value, "units")))
+
+
+def is_labelled(value: Any) -> bool:
+    """Whether it is an array of xarray."""
+    return hasattr(value, "dims") and hasattr(value, "coords") and hasattr(value, "attrs")
+
+
+def bare(what: str, value: Any, unit: str | None = None) -> Any:
+    """`value` in the SI unit `unit`, by default that of the parameter `what`; what carries no unit is returned as it is."""
+    unit = UNITS.get(what, "") if unit is None else unit
+    if is_labelled(value):
+        given = value.attrs.get("units")
+        if carries(value.data):
+            return bare(what, value.data, unit)
+        numbers = np.ma.getdata(value.data) if np.ma.isMaskedArray(value.data) else np.asarray(value.data)
+        factor = 1.0 if given is None else factor_of(what, given, unit)
+        return numbers if factor == 1.0 else numbers * factor
+    if isinstance(value, (list, tuple)) and any(carries(one) or is_labelled(one) for one in value):
+        return type(value)([bare(what, one, unit) for one in value])
+    if not carries(value):
+        return value
+    wanted = "dimensionless" if unit == "" else unit
+    try:
+        if hasattr(value, "m_as"):
+            return value.m_as(wanted)
+        return value.to_value(unit)
+    except Exception as error:  # each package has errors of its own
+        given = getattr(value, "units", None) or getattr(value, "unit", None)
+        raise CaseError(f"{what} is in {given}, but must be {expected(unit)}: {error}") from None
+
+
+def factor_of(what: str, given: Any, unit: str) -> float:
+    """What a number in the unit `given`, the text of an array, is times in the SI unit `unit`."""
+    text = str(given).strip()
+    try:
+        factor = _core.unit_factor(WORDS.get(text, text), unit)
+    except CaseError as error:
+        raise CaseError(f"{what} has the unit {text!r}, which is not understood ({error}): convert it to SI units") from None
+    if factor is None:
+        raise CaseError(f"{what} is in {text}, but must be {expected(unit)}")
+    return factor
+
+
+def expected(unit: str) -> str:
+    """A unit in the words of a message."""
+    return f"in {unit} or a unit of the same kind" if unit else "a plain number"
+
+
+def unit_among(what: str, values: list[Any], units: tuple[str, ...]) -> str | None:
+    """The unit, out of these, that the values which carry one can be converted to; None where none carries one."""
+    held = [value for value in values if carries(value) or (is_labelled(value) and "units" in value.attrs)]
+    for unit in units:
+        try:
+            for value in held:
+                bare(what, value, unit)
+        except CaseError:
+            continue
+        return unit if held else None
+    given = ", ".join(str(getattr(value, "units", value)) for value in held)
+    raise CaseError(f"{what} is in {given}, but must be in {', '.join(units[:-1])} or {units[-1]}, or a number in SI units")
+
+
+def written(unit: str) -> str:
+    """A unit as pint and UDUNITS both read it: m^2 for m2."""
+    for power in "234":
+        unit = unit.replace(f"m{power}", f"m^{power}")
+    return unit

@@ -1,0 +1,37 @@
+"""The words that parameters take."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+Boundary = Literal["free", "periodic"]
+Method = Literal["projected-cg", "polonsky-keer"]
+Scheme = Literal["linear", "constant", "direct"]
+Plasticity = Literal["cap", "accumulate"]
+Field = Literal["pressure", "gap", "displacement", "contact", "flattening"]
+Quantity = Literal[
+    "contact_stiffness",
+    "contact_spots",
+    "largest_spot",
+    "mean_spot",
+    "contact_perimeter",
+    "contact_percolation",
+    "gap_percolation",
+    "rms_gap",
+    "elastic_energy",
+    "dissipated_energy",
+    "flattening_work",
+    "external_work",
+    "spot_histogram",
+    "pressure_histogram",
+    "gap_histogram",
+    "velocity",
+    "sliding_distance",
+    "friction_force",
+    "side_force",
+    "friction_coefficient",
+    "friction_coefficient_total",
+    "friction_uncertainty",
+    "rolling_moment",
+    "dissipated_power",
+]

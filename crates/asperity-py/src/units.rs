@@ -1,0 +1,18 @@
+//! Units in text, as attributes of arrays have them.
+
+use asperity_io::case::quantity::unit::Unit;
+use pyo3::prelude::*;
+
+use crate::error::CaseError;
+
+/// What a number in the unit `text` is times in the SI unit `wanted`; None where the two differ in dimension.
+#[pyfunction]
+pub fn unit_factor(text: &str, wanted: &str) -> PyResult<Option<f64>> {
+    let [given, wanted] = [text, wanted].map(|text| Unit::parse(text).map_err(CaseError::new_err));
+    let (given, wanted) = (given?, wanted?);
+    let scale = |unit: &Unit| (unit.exponent, unit.numerator / unit.denominator);
+    let ((exponent, factor), (base, of)) = (scale(&given), scale(&wanted));
+    // A power of ten is read as text, so that a micrometre is the very number 1e-6.
+    let decimal: f64 = format!("1e{}", exponent - base).parse().unwrap_or(f64::NAN);
+    Ok((given.powers == wanted.powers).then_some(factor / of * decimal))
+}

@@ -1,0 +1,109 @@
+"""Figures: what they show, and that they take what matplotlib takes."""
+
+import numpy as np
+import pytest
+
+import asperity as asp
+
+matplotlib = pytest.importorskip("matplotlib")
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+from matplotlib.colors import LogNorm  # noqa: E402
+
+
+@pytest.fixture(autouse=True)
+def closed():
+    yield
+    plt.close("all")
+
+
+@pytest.fixture(scope="module")
+def rough():
+    return asp.Surface.self_affine(cells=(40, 32), size=(1e-3, 8e-4), hurst=0.8, rms_gradient=0.05, longest=4e-4, shortest=1e-4, seed=2)
+
+
+@pytest.fixture(scope="module")
+def result(rough):
+    zener = asp.Zener(shear=1e6, shear_kelvin=1e6, retardation_time=1.0, poisson=0.5)
+    fields = ["pressure", "gap", "displacement", "contact", "flattening"]
+    return asp.solve(rough, zener, pressure=1e4, times=[1.0, 5.0], fields=fields, boundary="periodic", progress=False)
+
+
+def test_maps_take_what_imshow_takes_in_si_units(result):
+    figure, (left, right) = plt.subplots(1, 2)
+    assert result.plot.pressure(ax=left, cmap="Greys", vmin=1e3, vmax=1e5) is left
+    image = left.images[0]
+    assert image.get_clim() == (1e3, 1e5) and image.get_cmap().name == "Greys"
+    # The image shows the field, x along its width.
+    assert np.array_equal(image.get_array(), result.field("pressure").T) and left.get_xlabel() == "x [mm]"
+    assert left.get_title() == "t = 5 s" and result.plot.pressure(time=0.0, ax=right, norm=LogNorm(1e2, 1e5)).get_title() == "t = 0 s"
+    assert isinstance(right.images[0].norm, LogNorm)
+    figure.canvas.draw()
+    bar = figure.axes[-1]
+    # Ticks are told in the unit of the label.
+    assert bar.get_ylabel() in ("contact pressure [kPa]", "contact pressure [Pa]")
+    for name in ("gap", "displacement", "contact", "spots", "flattening"):
+        getattr(result.plot, name)(index=0, alpha=0.5).figure.canvas.draw()
+
+
+def test_the_colour_bar_counts_in_its_unit(result):
+    ax = result.plot.gap()
+    bar = ax.figure.axes[-1]
+    ax.figure.canvas.draw()
+    assert bar.get_ylabel() == "gap [µm]"
+    for place, text in zip(bar.get_yticks(), bar.get_yticklabels()):
+        assert float(text.get_text().replace("−", "-")) == pytest.approx(1e6 * place, abs=1e-9)
+
+
+def test_curves_take_labels_and_styles_and_share_axes(result):
+    axes = result.plot.evolution(label="soft", color="k")
+    again = result.plot.evolution(axes=axes, label="stiff", linestyle=":")
+    assert again is axes and [line.get_label() for line in axes.flat[0].lines] == ["soft, counted", "soft, corrected", "stiff, counted", "stiff, corrected"]
+    assert axes.flat[1].get_xlabel() == "time [s]" and axes.flat[1].lines[0].get_color() == "k"
+    with pytest.raises(asp.CaseError, match="four"):
+        result.plot.evolution(axes=axes[0])
+    ax = result.plot.load_displacement(label="one", marker="o")
+    result.plot.profile(y=1e-4, field="gap", ls="--").figure.canvas.draw()
+    assert ax.get_legend() is not None and ax.get_xlabel().startswith("approach [")
+
+
+def test_a_second_curve_has_the_unit_of_the_first(rough):
+    rubber = asp.Elastic(young=1e6, poisson=0.5)
+    light, heavy = (asp.solve(rough, rubber, pressure=p, times=[1.0], boundary="periodic", fields=[], progress=False) for p in (1e2, 1e4))
+    ax = light.plot.load_displacement()
+    heavy.plot.load_displacement(ax=ax)
+    unit = {"nN": 1e9, "µN": 1e6, "mN": 1e3, "N": 1.0}[ax.get_ylabel().split("[")[1][:-1]]
+    for line, loads in zip(ax.lines, (light.load, heavy.load)):
+        assert np.allclose(line.get_ydata(), loads * unit)
+
+
+def test_spots_are_a_labelled_image(result):
+    labels = result.spots()
+    sizes = np.bincount(labels.ravel())[1:]
+    assert labels.shape == result.cells and np.array_equal(labels > 0, result.field("pressure") > 0)
+    assert np.all(np.diff(sizes.astype(int)) <= 0) and result.spots(time=0.0).max() >= 1
+    assert result.plot.spots().get_title().startswith(f"{len(sizes)} contact spots")
+
+
+def test_surfaces_and_curves_are_drawn(rough):
+    for name in ("heights", "power_spectrum", "power_spectrum_1d", "power_spectrum_2d", "autocorrelation", "height_distribution", "bearing_curve"):
+        figure, ax = plt.subplots()
+        assert getattr(rough.plot, name)(ax=ax) is ax
+        assert ax.get_xlabel() and ax.get_ylabel()
+        figure.canvas.draw()
+    assert rough.plot.power_spectrum(label="one", color="r", marker="").get_legend() is not None
+    assert rough.plot.heights(cmap="Greys").images[0].get_cmap().name == "Greys"
+    profile = asp.Surface.self_affine(cells=64, size=1e-3, hurst=0.8, rms_height=1e-6, longest=5e-4, shortest=5e-5)
+    assert "m³" in profile.plot.power_spectrum().get_ylabel()
+    curve = asp.elastic(rough, 4e6, pressure=[1e3, 1e4], boundary="periodic")
+    assert "mean pressure" in curve.plot.area(label="a").get_xlabel() and curve.plot.load_displacement().get_ylabel().startswith("load")
+    curve[0].plot.pressure().figure.canvas.draw()
+
+
+def test_a_sweep_is_drawn_over_its_velocities():
+    wave = asp.Surface.wave(cells=(32, 4), size=(1e-3, 125e-6), amplitude=1e-6, wavelength=(1e-3, float("inf")))
+    rubber = asp.Zener(shear=1e6, shear_kelvin=0.2e6, retardation_time=0.01, poisson=0.5)
+    held = asp.steady(wave, rubber, pressure=20e3, velocities=[0.01, 0.1], boundary="periodic", progress=False)
+    axes = held.plot.evolution()
+    assert axes.flat[0].get_xlabel() == "velocity [m/s]" and axes.flat[0].get_xscale() == "log"
+    assert held.plot.pressure(velocity=0.01).get_title() == "v = 0.01 m/s"

@@ -86,9 +86,8 @@ fn constant(cells: &[Vec<String>], name: &str) -> Option<f64> {
     };
     let in_row = |row: &Vec<String>| {
         row.iter().enumerate().find_map(|(n, cell)| {
-            let lower = cell.to_lowercase();
-            let rest = &cell[lower.strip_prefix(name).map(|rest| cell.len() - rest.len())?..];
-            number(rest).or_else(|| number(row.get(n + 1)?))
+            cell.get(..name.len()).filter(|start| start.eq_ignore_ascii_case(name))?;
+            number(&cell[name.len()..]).or_else(|| number(row.get(n + 1)?))
         })
     };
     cells.iter().find_map(in_row)
@@ -116,7 +115,11 @@ fn written(name: &str) -> Option<Written> {
 fn factors(table: &Table, unit: Option<&str>) -> Result<Shift, Fault> {
     let named = |names: &[&str]| table.names.iter().position(|name| names.contains(&bare(name).as_str()));
     let temperature = named(&["t", "temp", "temperature", "temperatur"]);
-    let factor = (0..table.columns).find_map(|n| Some((n, written(table.names.get(n)?)?)));
+    // The brackets of "log10(aT)" hold no unit.
+    let factor = (0..table.columns).find_map(|n| {
+        let [name, header] = [table.names.get(n)?, table.headers.get(n)?];
+        Some((n, written(header).or_else(|| written(name))?))
+    });
     let (Some(temperature), Some((column, how))) = (temperature, factor) else {
         return Err(fault(format!(
             "a table of shift factors has a column of temperatures (T) and one of log_aT, ln_aT or aT; the file has {}",

@@ -197,7 +197,9 @@ fn repeated_heading(
     named: &[&str],
     numbers: &dyn Fn(&str) -> usize,
 ) -> Option<usize> {
-    let next = (from..lines.len()).find(|n| numbers(lines[*n]) >= 2)?;
+    /// Lines between two sweeps.
+    const MOST: usize = 50;
+    let next = (from..lines.len().min(from + MOST)).find(|n| numbers(lines[*n]) >= 2)?;
     lines[from..next].iter().any(|line| named.contains(line)).then_some(next)
 }
 
@@ -430,12 +432,13 @@ mod tests {
         for (text, names, units) in [
             ("\u{feff}T,log_aT\nC, -\n100,-11.7\n92,-10.92\n", ["T", "log_aT"], ["C", "-"]),
             ("Zeit;Kraft;\ns;N;\n0,5;2;\n1,5;1;\n", ["Zeit", "Kraft"], ["s", "N"]),
-            ("\tE\n\tMPa\n0.5\t2\n1.5\t1\n", ["", "E"], ["", "MPa"]),
         ] {
             let table = Table::parse(text.as_bytes()).unwrap();
             assert_eq!(table.names, names, "{text}");
             assert_eq!(table.units, units, "{text}");
         }
+        let tabs = Table::parse(b"\tt\tE\n\ts\tMPa\nA\t0.5\t2\nA\t1.5\t1\n").unwrap();
+        assert_eq!((tabs.names[1].as_str(), tabs.units[2].as_str()), ("t", "MPa"));
         let five = "f,E',E'',T,Set\nHz,MPa,MPa,C,-\n1,2,3,4,0\n2,3,4,4,0\n";
         assert_eq!(Table::parse(five.as_bytes()).unwrap().names, ["f", "E'", "E''", "T", "Set"]);
     }

@@ -91,7 +91,7 @@ fn solve(curves: &[Curve; 2], window: [f64; 2], options: &FitOptions) -> Result<
     Ok(solved)
 }
 
-fn of(curves: &[Curve; 2], moduli: Moduli) -> &[Curve<'_>] {
+fn of<'a, 'c>(curves: &'a [Curve<'c>; 2], moduli: Moduli) -> &'a [Curve<'c>] {
     match moduli {
         Moduli::Both => curves,
         Moduli::Storage => &curves[..1],
@@ -135,7 +135,8 @@ fn alone(curves: &[Curve; 2], window: [f64; 2], options: &FitOptions) -> Option<
         "rms misfit of storage and loss modulus together",
         format!("{storage} and {loss}"),
         format!(
-            "at most {:.0} %; {}; the two contradict each other (Kramers-Kronig): fit one of them and look at the other",
+            "at most {:.0} %; {}; they contradict each other, no passive material has both (Kramers-Kronig): fit one and look at \
+             the other",
             100.0 * options.limit,
             reached.join(", ")
         ),

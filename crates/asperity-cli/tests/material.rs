@@ -292,7 +292,10 @@ fn moduli_that_contradict_each_other_are_fitted_one_at_a_time() {
         stdout(&output)
     };
     assert!(to("abaqus").contains("*VISCOELASTIC, TIME=PRONY") && to("ansys").contains("TB,PRONY,1,1,"));
-    assert!(to("comsol").lines().any(|line| line.starts_with("1 ")) && to("csv").contains("time [s],modulus [Pa]"));
+    assert!(
+        to("comsol").lines().any(|line| line.starts_with("1 "))
+            && to("csv").contains("time [s],modulus [Pa]")
+    );
     let output = asperity(dir.path(), &["material", "export", "m.toml", "--to", "abaqus"]);
     assert!(stderr(&output).contains("--poisson"), "{}", stderr(&output));
     // The fewest terms for two per cent are fewer than for a tenth of it.

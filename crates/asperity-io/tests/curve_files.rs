@@ -39,9 +39,14 @@ fn is_the_rubber(text: &str, measure: Option<Modulus>) {
 fn what_instruments_give_in_place_of_the_moduli_becomes_them() {
     let mega = |value: f64| 1e-6 * value;
     for (text, measure) in [
-        (table("f,E_stor,E_loss\nHz,MPa,MPa", |f, s, l| format!("{f},{},{}", mega(s), mega(l))), Some(Modulus::Young)),
         (
-            table("Frequenz [Hz];Speichermodul G' [Pa];Verlustfaktor", |f, s, l| format!("{f};{s};{}", l / s)),
+            table("f,E_stor,E_loss\nHz,MPa,MPa", |f, s, l| format!("{f},{},{}", mega(s), mega(l))),
+            Some(Modulus::Young),
+        ),
+        (
+            table("Frequenz [Hz];Speichermodul G' [Pa];Verlustfaktor", |f, s, l| {
+                format!("{f};{s};{}", l / s)
+            }),
             Some(Modulus::Shear),
         ),
         (
@@ -58,14 +63,19 @@ fn what_instruments_give_in_place_of_the_moduli_becomes_them() {
             Some(Modulus::Shear),
         ),
         (
-            table("Point No.;Angular Frequency;Complex Viscosity;Loss Factor\n;[rad/s];[Pa·s];[1]", |f, s, l| {
-                let omega = TAU * f;
-                format!("1;{omega};{};{}", s.hypot(l) / omega, l / s)
-            }),
+            table(
+                "Point No.;Angular Frequency;Complex Viscosity;Loss Factor\n;[rad/s];[Pa·s];[1]",
+                |f, s, l| {
+                    let omega = TAU * f;
+                    format!("1;{omega};{};{}", s.hypot(l) / omega, l / s)
+                },
+            ),
             Some(Modulus::Shear),
         ),
         (
-            table("f [Hz];η' [Pa s];η'' [Pa s]", |f, s, l| format!("{f};{};{}", l / (TAU * f), s / (TAU * f))),
+            table("f [Hz];η' [Pa s];η'' [Pa s]", |f, s, l| {
+                format!("{f};{};{}", l / (TAU * f), s / (TAU * f))
+            }),
             Some(Modulus::Shear),
         ),
     ] {
@@ -112,15 +122,25 @@ fn xlsx(sheets: &[(&str, Vec<Vec<String>>)]) -> Vec<u8> {
             format!("{head}<worksheet xmlns=\"{main}\"><sheetData>{data}</sheetData></worksheet>"),
         );
     }
-    put("xl/workbook.xml".into(), format!("{head}<workbook xmlns=\"{main}\" xmlns:r=\"{office}\"><sheets>{names}</sheets></workbook>"));
-    put("xl/_rels/workbook.xml.rels".into(), format!("{head}<Relationships xmlns=\"{package}/relationships\">{relations}</Relationships>"));
+    put(
+        "xl/workbook.xml".into(),
+        format!("{head}<workbook xmlns=\"{main}\" xmlns:r=\"{office}\"><sheets>{names}</sheets></workbook>"),
+    );
+    put(
+        "xl/_rels/workbook.xml.rels".into(),
+        format!("{head}<Relationships xmlns=\"{package}/relationships\">{relations}</Relationships>"),
+    );
     put(
         "_rels/.rels".into(),
-        format!("{head}<Relationships xmlns=\"{package}/relationships\"><Relationship Id=\"a\" Type=\"{office}/officeDocument\" Target=\"xl/workbook.xml\"/></Relationships>"),
+        format!(
+            "{head}<Relationships xmlns=\"{package}/relationships\"><Relationship Id=\"a\" Type=\"{office}/officeDocument\" Target=\"xl/workbook.xml\"/></Relationships>"
+        ),
     );
     put(
         "[Content_Types].xml".into(),
-        format!("{head}<Types xmlns=\"{package}/content-types\"><Default Extension=\"xml\" ContentType=\"application/xml\"/>{types}</Types>"),
+        format!(
+            "{head}<Types xmlns=\"{package}/content-types\"><Default Extension=\"xml\" ContentType=\"application/xml\"/>{types}</Types>"
+        ),
     );
     zip.finish().unwrap().into_inner()
 }
@@ -146,8 +166,18 @@ fn workbook() -> Vec<u8> {
     for k in 0..40 {
         let f = 10f64.powf(-2.0 + 0.15 * f64::from(k));
         let (storage, loss) = rubber().complex(TAU * f);
-        let numbers =
-            [f64::from(k), -0.4, 100.0, f, 25.0, 1e-6 * storage, 1e-6 * loss, 1e-6 * storage.hypot(loss), loss / storage, 0.0];
+        let numbers = [
+            f64::from(k),
+            -0.4,
+            100.0,
+            f,
+            25.0,
+            1e-6 * storage,
+            1e-6 * loss,
+            1e-6 * storage.hypot(loss),
+            loss / storage,
+            0.0,
+        ];
         points.push(numbers.map(|number| format!("{number:?}")).to_vec());
     }
     let remarks = vec![row(&["Operator", "x"]), row(&["Width", "2.0", "mm"])];

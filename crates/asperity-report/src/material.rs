@@ -97,25 +97,28 @@ pub fn isotherms(title: &str, measured: &Measured) -> Figure {
     let panels = match measured.kind {
         Kind::Relaxation => vec![("Relaxation", Axis::log("relaxation modulus", "Pa"))],
         Kind::Creep => vec![("Creep", Axis::log("creep compliance", "1/Pa"))],
-        Kind::Dma => vec![
-            ("Storage", Axis::log("storage modulus", "Pa")),
-            ("Loss", Axis::log("loss modulus", "Pa")),
-        ],
+        Kind::Dma => {
+            vec![("Storage", Axis::log("storage modulus", "Pa")), ("Loss", Axis::log("loss modulus", "Pa"))]
+        }
     };
     let count = measured.sweeps.len();
     let every = count.div_ceil(MOST_NAMES).max(1);
     let panels = panels.iter().enumerate().map(|(n, (title, y))| {
-        measured.sweeps.iter().enumerate().fold(Curves::new(*title, x.clone(), y.clone()), |panel, (k, sweep)| {
-            let name = match sweep.temperature {
-                Some(kelvin) if k % every == 0 || k + 1 == count => format!("{:.0} °C", kelvin - 273.15),
-                _ => String::new(),
-            };
-            let places: Vec<f64> = sweep.x.iter().map(|x| x / scale).collect();
-            let values = sweep.curves.get(n).cloned().unwrap_or_default();
-            let colour = temperature_colour(k as f64 / (count.max(2) - 1) as f64);
-            let points = Series::new("", Style::Points, places.clone(), values.clone()).in_colour(colour.clone());
-            panel.with(points).with(Series::new(name, Style::Line, places, values).in_colour(colour))
-        })
+        measured.sweeps.iter().enumerate().fold(
+            Curves::new(*title, x.clone(), y.clone()),
+            |panel, (k, sweep)| {
+                let name = match sweep.temperature {
+                    Some(kelvin) if k % every == 0 || k + 1 == count => format!("{:.0} °C", kelvin - 273.15),
+                    _ => String::new(),
+                };
+                let places: Vec<f64> = sweep.x.iter().map(|x| x / scale).collect();
+                let values = sweep.curves.get(n).cloned().unwrap_or_default();
+                let colour = temperature_colour(k as f64 / (count.max(2) - 1) as f64);
+                let points =
+                    Series::new("", Style::Points, places.clone(), values.clone()).in_colour(colour.clone());
+                panel.with(points).with(Series::new(name, Style::Line, places, values).in_colour(colour))
+            },
+        )
     });
     let caption = format!("{}, {}.", counted(count, "sweep"), counted(measured.points(), "point"));
     panels.fold(Figure::new(title), Figure::with).caption(caption)

@@ -219,11 +219,12 @@ fn one_pair(places: &mut BTreeMap<Role, usize>, form: Form, said: &Columns) -> O
         }
         // The other one of a pair that has one, else the first of all.
         None => {
-            let half = form.pairs.iter().find_map(|[a, b]| match (places.contains_key(a), places.contains_key(b)) {
-                (true, false) => Some(*b),
-                (false, true) => Some(*a),
-                _ => None,
-            });
+            let half =
+                form.pairs.iter().find_map(|[a, b]| match (places.contains_key(a), places.contains_key(b)) {
+                    (true, false) => Some(*b),
+                    (false, true) => Some(*a),
+                    _ => None,
+                });
             half.or_else(|| form.pairs.first().map(|pair| pair[0]))
         }
     }
@@ -241,7 +242,10 @@ fn means(table: &Table, column: usize, role: Role, form: Form) -> bool {
 /// What a column called t or T holds: as its unit says; else T is a temperature where another column is a time.
 fn time_or_temperature(table: &Table, column: usize, form: Form) -> Role {
     let unit = table.units.get(column).map_or("", String::as_str);
-    let another = || (0..table.names.len()).any(|n| n != column && (table.names[n] == "t" || Role::Time.is_called(&table.names[n])));
+    let another = || {
+        (0..table.names.len())
+            .any(|n| n != column && (table.names[n] == "t" || Role::Time.is_called(&table.names[n])))
+    };
     match tidy(Role::Temperature, "", unit).as_str() {
         "K" | "°C" => Role::Temperature,
         unit if Unit::parse(unit).is_ok_and(|unit| unit.powers == dimension::Time::POWERS) => Role::Time,
@@ -304,7 +308,11 @@ pub(super) fn tidy(role: Role, name: &str, unit: &str) -> String {
     let bare = role::bare(unit);
     let tidied = match role {
         _ if unit == "-" => "",
-        Role::Temperature if matches!(bare.as_str(), "c" | "degc" | "celsius" | "degreesc" | "gradc" | "degcelsius") => "°C",
+        Role::Temperature
+            if matches!(bare.as_str(), "c" | "degc" | "celsius" | "degreesc" | "gradc" | "degcelsius") =>
+        {
+            "°C"
+        }
         Role::Temperature if matches!(bare.as_str(), "k" | "kelvin") => "K",
         Role::Frequency if bare == "hz" || bare == "hertz" => "Hz",
         // Angular frequencies in 1/s are those in rad/s.
@@ -314,7 +322,12 @@ pub(super) fn tidy(role: Role, name: &str, unit: &str) -> String {
             // "mPa·s" and "MPa·s" differ by their first letter.
             if unit.starts_with('m') { "mPa s" } else { "MPa s" }
         }
-        Role::Phase if matches!(unit, "°" | "º") || matches!(bare.as_str(), "deg" | "degree" | "degrees" | "grad") => "deg",
+        Role::Phase
+            if matches!(unit, "°" | "º")
+                || matches!(bare.as_str(), "deg" | "degree" | "degrees" | "grad") =>
+        {
+            "deg"
+        }
         Role::Time if matches!(bare.as_str(), "sec" | "second" | "seconds" | "sekunden") => "s",
         _ => unit,
     };

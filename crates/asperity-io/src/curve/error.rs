@@ -46,12 +46,16 @@ impl Remedy {
                 role.name(),
                 role.example()
             ),
-            Remedy::Header => "name each column with its unit, as in \"modulus [MPa]\", or say columns = { ... } and \
+            Remedy::Header => {
+                "name each column with its unit, as in \"modulus [MPa]\", or say columns = { ... } and \
                                units = { ... }"
-                .to_owned(),
-            Remedy::Shift => "state how times depend on temperature, as in shift = { model = \"wlf\", c1 = 8.86, c2 = \
+                    .to_owned()
+            }
+            Remedy::Shift => {
+                "state how times depend on temperature, as in shift = { model = \"wlf\", c1 = 8.86, c2 = \
                               \"101.6 K\", reference = \"20 °C\" }, or model = \"estimated\" or \"table\""
-                .to_owned(),
+                    .to_owned()
+            }
             Remedy::Moduli => "say fit = { moduli = \"storage\" } (or \"loss\")".to_owned(),
             Remedy::Sheet(sheets) => format!("say which with sheet = \"...\": {sheets}"),
         }
@@ -69,11 +73,14 @@ impl Remedy {
                 role.example()
             ),
             Remedy::Header => {
-                "name each column with its unit, as in \"modulus [MPa]\", or give --column and --unit".to_owned()
+                "name each column with its unit, as in \"modulus [MPa]\", or give --column and --unit"
+                    .to_owned()
             }
-            Remedy::Shift => "state how times depend on temperature with --wlf, --arrhenius, --shift-table or \
+            Remedy::Shift => {
+                "state how times depend on temperature with --wlf, --arrhenius, --shift-table or \
                               --estimate-shift"
-                .to_owned(),
+                    .to_owned()
+            }
             Remedy::Moduli => "give --fit storage (or loss)".to_owned(),
             Remedy::Sheet(sheets) => format!("say which with --sheet NAME: {sheets}"),
         }

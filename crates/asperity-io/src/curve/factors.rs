@@ -53,7 +53,8 @@ pub fn read_shift_table(path: &Path) -> Result<Shift, CurveError> {
 pub(super) fn held(sheets: &[Sheet]) -> HeldShift {
     let mut found = HeldShift::default();
     for sheet in sheets {
-        let reference = labelled(&sheet.cells, &["reftemp", "referencetemperature", "tref", "referenztemperatur"]);
+        let reference =
+            labelled(&sheet.cells, &["reftemp", "referencetemperature", "tref", "referenztemperatur"]);
         let reference = reference.and_then(|text| text.parse::<Temperature>().ok());
         if let (Some(c1), Some(c2), Some(reference)) =
             (constant(&sheet.cells, "c1"), constant(&sheet.cells, "c2"), reference)

@@ -3,8 +3,8 @@
 use std::f64::consts::LN_10;
 
 use asperity::material::{
-    Abscissa, Creep, Fit, FitOptions, Isotherm, MasterCurve, Material, Misfit, Moduli, Modulus, Relaxation, Shift,
-    estimate_shift, fit_arrhenius, fit_creep, fit_dma, fit_relaxation, fit_wlf, master_curve,
+    Abscissa, Creep, Fit, FitOptions, Isotherm, MasterCurve, Material, Misfit, Moduli, Modulus, Relaxation,
+    Shift, estimate_shift, fit_arrhenius, fit_creep, fit_dma, fit_relaxation, fit_wlf, master_curve,
 };
 
 use super::error::{CurveError, Fault, Remedy, fault};
@@ -110,8 +110,7 @@ impl Fitted {
     /// A sentence with the numbers where a run from `first` to `last` \[s\] leaves what was measured.
     pub fn beyond(&self, first: f64, last: f64) -> Option<String> {
         let Fitted { misfit, window, noise, .. } = *self;
-        let fit =
-            Fit { function: (), misfit, columns: Vec::new(), window, noise, uncertainty: Vec::new() };
+        let fit = Fit { function: (), misfit, columns: Vec::new(), window, noise, uncertainty: Vec::new() };
         fit.beyond(first, last)
     }
 }

@@ -49,7 +49,7 @@ use asperity::material::Modulus;
 use serde::Deserialize;
 
 use crate::choice;
-use error::{Fault, Remedy, fault};
+use error::{Fault, fault};
 use table::Table;
 use workbook::Sheet;
 
@@ -164,7 +164,8 @@ impl Curves {
             let lines: Vec<usize> = table.rows.iter().map(|row| row.line).collect();
             let measure = columns::measure(&used, &table);
             let unused = (1..=table.columns).filter(|n| !used.iter().any(|place| place.column == *n));
-            let unused = unused.filter_map(|n| table.headers.get(n - 1).filter(|name| !name.is_empty()).cloned());
+            let unused =
+                unused.filter_map(|n| table.headers.get(n - 1).filter(|name| !name.is_empty()).cloned());
             Ok(Curves {
                 path: path.to_owned(),
                 kind,

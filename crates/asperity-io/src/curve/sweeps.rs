@@ -47,7 +47,8 @@ pub(super) fn sweeps(kind: Kind, values: &Values, lines: &[usize]) -> Result<Vec
     let sets = by_set(values);
     let Some(temperatures) = values.get(&Role::Temperature) else {
         if sets.len() > 1 {
-            let message = format!("the file holds {} sweeps (column of sets), but no temperatures", sets.len());
+            let message =
+                format!("the file holds {} sweeps (column of sets), but no temperatures", sets.len());
             return Err(fault(message).remedy(Remedy::Column(Role::Temperature)));
         }
         return Ok(vec![sweep(None, &all)]);
@@ -124,7 +125,9 @@ fn by_set(values: &Values) -> Vec<Vec<usize>> {
 /// Whether each set was measured at one temperature, and no two at the same.
 fn held(sets: &[Vec<usize>], temperatures: &[f64]) -> bool {
     let spread = |rows: &Vec<usize>| {
-        let of = |fold: fn(f64, f64) -> f64, start: f64| rows.iter().map(|row| temperatures[*row]).fold(start, fold);
+        let of = |fold: fn(f64, f64) -> f64, start: f64| {
+            rows.iter().map(|row| temperatures[*row]).fold(start, fold)
+        };
         of(f64::max, f64::NEG_INFINITY) - of(f64::min, f64::INFINITY)
     };
     let mut means: Vec<f64> = sets.iter().map(|rows| mean(temperatures, rows)).collect();

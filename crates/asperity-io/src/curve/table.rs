@@ -77,7 +77,11 @@ impl Table {
         }
         let (headers, units) = header(&lines[..first], separator, columns);
         let unread = match headers.iter().all(String::is_empty) && units.is_none() {
-            true => lines[..first].iter().rev().find(|line| !is_blank(line, separator)).map(|line| (*line).to_owned()),
+            true => lines[..first]
+                .iter()
+                .rev()
+                .find(|line| !is_blank(line, separator))
+                .map(|line| (*line).to_owned()),
             false => None,
         };
         let named: Vec<&str> = if unread.is_none() { heading(&lines[..first]) } else { vec![] };
@@ -262,7 +266,9 @@ fn header(lines: &[&str], separator: Option<char>, columns: usize) -> (Vec<Strin
 /// least are units for sure, and no more than a third of the cells are none; nor is the line above one of units.
 fn are_units(names: &[String], cells: &[String]) -> bool {
     let sure = |cell: &&String| !matches!(bare_unit(cell), "" | "1") && is_unit(cell);
-    let letter = |cell: &str| matches!(bare_unit(cell), "C" | "N" | "m" | "F" | "%" | "°" | "deg" | "rad" | "C°" | "Grad");
+    let letter = |cell: &str| {
+        matches!(bare_unit(cell), "C" | "N" | "m" | "F" | "%" | "°" | "deg" | "rad" | "C°" | "Grad")
+    };
     let other = cells.iter().filter(|cell| !is_unit(cell) && !letter(cell)).count();
     let certain = cells.iter().filter(sure).count() + cells.iter().filter(|cell| letter(cell)).count();
     certain >= 2 && 3 * other <= cells.len() && names.iter().filter(sure).count() < 2

@@ -37,8 +37,12 @@ pub(super) fn sheets(bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Sheet>, F
     }
     // A damaged spreadsheet must not end the program, whatever the reader makes of it.
     let read = catch_unwind(AssertUnwindSafe(|| rows(bytes, wanted)));
-    let rows = read.unwrap_or_else(|_| Err(fault("the spreadsheet is damaged; save it again or as text (csv)")))?;
-    Ok(rows.into_iter().map(|(name, cells)| Sheet { table: table(&cells), name: Some(name), cells }).collect())
+    let rows =
+        read.unwrap_or_else(|_| Err(fault("the spreadsheet is damaged; save it again or as text (csv)")))?;
+    Ok(rows
+        .into_iter()
+        .map(|(name, cells)| Sheet { table: table(&cells), name: Some(name), cells })
+        .collect())
 }
 
 /// A compound document (.xls) or a zip archive (.xlsx, .ods).
@@ -53,9 +57,8 @@ fn rows(bytes: &[u8], wanted: Option<&str>) -> Result<Vec<(String, Rows)>, Fault
     let mut book: Sheets<Cursor<&[u8]>> =
         open_workbook_auto_from_rs(Cursor::new(bytes)).map_err(unreadable)?;
     let names = book.sheet_names();
-    let listed = || {
-        names.iter().take(20).map(|name| format!("\"{name}\"")).collect::<Vec<String>>().join(", ")
-    };
+    let listed =
+        || names.iter().take(20).map(|name| format!("\"{name}\"")).collect::<Vec<String>>().join(", ");
     if let Some(name) = wanted
         && !names.iter().any(|known| known == name)
     {

@@ -48,8 +48,14 @@ pub(super) fn distance(first: &Logs, second: &Logs, change: f64) -> Distance {
         if degree + 4 > first.len() + second.len() {
             break;
         }
-        let squares = |d: f64| Polynomial::fit(first, second, d, degree).squares;
+        let squares = |d: f64| match degree <= most_degree(a1.min(b1 + d) - a0.max(b0 + d)) {
+            true => Polynomial::fit(first, second, d, degree).squares,
+            false => f64::INFINITY,
+        };
         let d = minimise(low, high, steps, squares);
+        if !squares(d).is_finite() {
+            break;
+        }
         let floor = count * DIGITS * DIGITS;
         let information = count * (squares(d) + floor).ln() + (degree + 2) as f64 * count.ln();
         if best.is_none_or(|(least, ..)| information < least) {
@@ -68,6 +74,12 @@ pub(super) fn distance(first: &Logs, second: &Logs, change: f64) -> Distance {
     Distance { value, deviation: if deviation.is_finite() { deviation } else { f64::INFINITY } }
 }
 
+/// Highest degree of a polynomial through two curves that overlap by this much of ln x: a parabola where they do not, one more
+/// for each half decade. A polynomial that bends more often would describe two separate curves by itself.
+fn most_degree(overlap: f64) -> usize {
+    2 + (overlap.max(0.0) / 1.15) as usize
+}
+
 fn ends(curve: &Logs) -> Option<[f64; 2]> {
     Some([curve.first()?.0, curve.last()?.0])
 }
@@ -84,9 +96,9 @@ impl Polynomial {
     fn fit(first: &Logs, second: &Logs, d: f64, degree: usize) -> Polynomial {
         let points: Vec<(f64, f64)> =
             first.iter().copied().chain(second.iter().map(|(x, y)| (x + d, *y))).collect();
-        let [low, high] = points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (x, _)| {
-            [low.min(*x), high.max(*x)]
-        });
+        let [low, high] = points
+            .iter()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (x, _)| [low.min(*x), high.max(*x)]);
         let unit = 2.0 / (high - low).max(f64::MIN_POSITIVE);
         let places: Vec<f64> = points.iter().map(|(x, _)| unit * (x - low) - 1.0).collect();
         // Chebyshev polynomials, made orthogonal one after the other (modified Gram-Schmidt); what is left of the values

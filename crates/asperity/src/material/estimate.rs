@@ -5,7 +5,7 @@
 //!    the others join in where it is flat.
 //! 2. The WLF or the Arrhenius law through all distances, weighted by their variances, says what a pair has that says
 //!    little itself: each distance becomes the mean of the measured one and that of the law, weighted by one over their
-//!    variances, where a law is taken to be right to 0.3 decades and 30 % of the distance. Warmer is faster: no distance is
+//!    variances, where a law is taken to be right to 0.6 decades and 60 % of the distance. Warmer is faster: no distance is
 //!    negative.
 //! 3. Distances add up from the reference to each temperature, and so do their variances. A factor that is uncertain by
 //!    more than a decade is refused.
@@ -28,7 +28,9 @@ pub struct ShiftEstimate {
 /// Standard deviation of the logarithm of a factor beyond which it is refused \[decades\].
 const MOST_UNCERTAIN: f64 = 1.0;
 /// Standard deviation of the distance of a pair by a law \[decades\], and per distance.
-const LAW: [f64; 2] = [0.3, 0.3];
+const LAW: [f64; 2] = [0.6, 0.6];
+/// Rubbers have lower moduli \[Pa\].
+const RUBBER: f64 = 1e8;
 /// Curves of more points are averaged over tenths of ln x.
 const MOST_POINTS: usize = 100;
 /// A pair is flat, and all curves are used, where the first one leaves its distance uncertain by more \[decades\].
@@ -73,8 +75,7 @@ pub fn estimate_shift(isotherms: &[Isotherm], abscissa: Abscissa, reference: f64
         let expected = format!("one of the isotherms: {}", known.join(", "));
         return Err(Error::invalid("reference temperature", format!("{reference} K"), expected));
     };
-    let measured: Vec<Distance> =
-        sorted.windows(2).map(|pair| between(pair[0], pair[1], abscissa)).collect();
+    let measured: Vec<Distance> = sorted.windows(2).map(|pair| between(pair[0], pair[1], abscissa)).collect();
     let found = with_law(&temperatures, &measured);
     let sums = |of: &dyn Fn(&Distance) -> f64| -> Vec<f64> {
         std::iter::once(0.0)
@@ -97,13 +98,25 @@ pub fn estimate_shift(isotherms: &[Isotherm], abscissa: Abscissa, reference: f64
 
 /// The distance in ln t by which the colder isotherm is behind the warmer one.
 fn between(cold: &Isotherm, warm: &Isotherm, abscissa: Abscissa) -> Distance {
-    let change = (warm.temperature / cold.temperature).ln().abs();
-    let of = |curve: usize| align::distance(&logs(cold, abscissa, curve), &logs(warm, abscissa, curve), change);
+    let of = |curve: usize| {
+        let [first, second] = [cold, warm].map(|isotherm| logs(isotherm, abscissa, curve));
+        let change = (warm.temperature / cold.temperature).ln() * share_of_temperature(&first, &second);
+        align::distance(&first, &second, change)
+    };
     let first = of(0);
     if first.deviation <= FLAT * LN_10 {
         return first;
     }
     (1..cold.curves.len()).map(of).fold(first, mean)
+}
+
+/// How the modulus itself changes with the absolute temperature, as a power: a rubber's grows in proportion (elasticity of
+/// entropy), that of a glass changes some seven times less.
+fn share_of_temperature(first: &Logs, second: &Logs) -> f64 {
+    let count = (first.len() + second.len()) as f64;
+    let mean = first.iter().chain(second).map(|point| point.1).sum::<f64>() / count;
+    // The logarithm of a compliance is negative; its absolute value is that of a modulus.
+    if mean.abs() < RUBBER.ln() { 1.0 } else { 0.15 }
 }
 
 /// ln t or -ln omega, rising, and the logarithm of the values.

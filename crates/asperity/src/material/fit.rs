@@ -177,7 +177,7 @@ pub fn fit_relaxation(times: &[f64], moduli: &[f64], options: &FitOptions) -> Re
     options.validate()?;
     data::check_abscissae(words, times, true)?;
     data::check_values(words, times, moduli, false)?;
-    data::check_trend(words, Trend::Falls, times, moduli)?;
+    data::check_trend(words, Trend::Falls, times, moduli, options.limit)?;
     let window = window(times);
     // A term much faster than the first time is invisible, exp(-10) of itself there, and would follow
     // the noise of one point to any size; half the first time still shows (unless t = 0 is measured).
@@ -220,7 +220,7 @@ pub fn fit_creep(times: &[f64], compliances: &[f64], options: &FitOptions) -> Re
     let from_zero = times[0] == 0.0 && compliances.first() == Some(&0.0);
     let (kept, values) = if from_zero { (&times[1..], &compliances[1..]) } else { (times, compliances) };
     data::check_values(words, kept, values, false)?;
-    data::check_trend(words, Trend::Rises, kept, values)?;
+    data::check_trend(words, Trend::Rises, kept, values, options.limit)?;
     let (window, margin) = (window(times), 10f64.powf(options.margin));
     let curve = Curve { words, kernel: Kernel::Creep, xs: kept, values, floor: 0.0, weight: 1.0 };
     let problem = Problem {
@@ -281,13 +281,7 @@ impl FitOptions {
             ));
         }
         for curve in curves {
-            data::check_misfit(
-                curve.words,
-                curve.xs,
-                curve.values,
-                &curve.residuals(&spectrum),
-                self.limit,
-            )?;
+            data::check_misfit(curve.words, curve.xs, curve.values, &curve.residuals(&spectrum), self.limit)?;
         }
         if misfit.rms.is_nan() || misfit.rms > self.limit {
             return Err(Error::invalid(

@@ -30,9 +30,8 @@ pub fn export(args: &Export) -> Result<(), Failure> {
         To::Csv => Program::Csv,
     };
     let help = if lateral.is_none() { " (--poisson NU)" } else { "" };
-    let text = text(&exported, program).map_err(|error| {
-        Failure::input(format!("{}: {error}{help}", args.file.display()))
-    })?;
+    let text = text(&exported, program)
+        .map_err(|error| Failure::input(format!("{}: {error}{help}", args.file.display())))?;
     match &args.output {
         Some(path) => write(path, &text, args.force),
         None => crate::print(&text),
@@ -48,9 +47,10 @@ fn chosen<'a>(specimens: &'a [Specimen], args: &Export) -> Result<&'a Specimen, 
         !creep.terms.is_empty() || creep.fluidity > 0.0
     };
     match &args.body {
-        Some(name) => specimens.iter().find(|specimen| specimen.name == *name).ok_or_else(|| {
-            Failure::input(format!("--body is \"{name}\", but the bodies are {names}"))
-        }),
+        Some(name) => specimens
+            .iter()
+            .find(|specimen| specimen.name == *name)
+            .ok_or_else(|| Failure::input(format!("--body is \"{name}\", but the bodies are {names}"))),
         None => {
             let mut several = specimens.iter().filter(viscoelastic);
             match (several.next(), several.next()) {

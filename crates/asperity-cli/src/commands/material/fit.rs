@@ -97,8 +97,9 @@ fn report(args: &Fit, curves: &Curves, fitted: &Fitted) -> String {
         line("sweeps", format!("{} °C", shown.join(", ")));
     }
     if let Some(shift) = &fitted.shift {
-        let rms =
-            fitted.shift_rms.map_or(String::new(), |rms| format!(", {rms:.3} decades (rms) from the factors"));
+        let rms = fitted
+            .shift_rms
+            .map_or(String::new(), |rms| format!(", {rms:.3} decades (rms) from the factors"));
         line("shift", format!("{}{rms}", law(shift)));
     }
     for [kelvin, decades, uncertainty] in &fitted.factors {

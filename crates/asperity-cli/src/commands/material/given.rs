@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use asperity::material::{FitOptions, Shift};
 use asperity_io::case::quantity::{MolarEnergy, Number, Temperature, TemperatureDifference, Time, range};
 use asperity_io::curve::{
-    Column, Columns, CurveError, Curves, Kind, Remedy, Role, ShiftRequest, angular_frequency, read_shift_table,
+    Column, Columns, CurveError, Curves, Kind, Remedy, Role, ShiftRequest, angular_frequency,
+    read_shift_table,
 };
 
 use super::told;

@@ -23,7 +23,9 @@ pub fn is_data(path: &Path) -> bool {
 pub fn show(args: &Show) -> Result<(), Failure> {
     if args.from.is_some() || args.to.is_some() || !args.set.is_empty() {
         let path = args.file.display();
-        return Err(Failure::input(format!("{path} holds measured data: --from, --to and --set are for materials")));
+        return Err(Failure::input(format!(
+            "{path} holds measured data: --from, --to and --set are for materials"
+        )));
     }
     let curves = given::curves(&args.file, &args.table)?;
     if let Some(path) = &args.plot {

@@ -198,7 +198,10 @@ fn findings(
         (Some(words), Some(needed), Some(known)) => Some(finding::beyond_data(name, needed, known, &words)),
         _ => None,
     };
-    let other = report.other_misfit.as_ref().and_then(|(column, misfit)| finding::contradiction(name, column, *misfit));
+    let other = report
+        .other_misfit
+        .as_ref()
+        .and_then(|(column, misfit)| finding::contradiction(name, column, *misfit));
     misfit.into_iter().chain(other).chain(beyond).collect()
 }
 
@@ -310,7 +313,11 @@ fn reference(
                 rms_misfit: Some(fitted.misfit.rms),
                 noise: Some(fitted.noise),
                 other_misfit: fitted.other().map(|(name, misfit)| (name.to_owned(), misfit.rms)),
-                columns: fitted.columns.iter().map(|(name, m)| ((*name).to_owned(), [m.rms, m.max])).collect(),
+                columns: fitted
+                    .columns
+                    .iter()
+                    .map(|(name, m)| ((*name).to_owned(), [m.rms, m.max]))
+                    .collect(),
                 window: Some(fitted.window),
                 points: Some(fitted.data.x.len()),
                 temperatures: fitted.temperatures.clone(),

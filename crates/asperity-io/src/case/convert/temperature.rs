@@ -25,9 +25,7 @@ pub fn shift(checks: &mut Checks<'_, '_>, at: &At<raw::Shift>) -> Option<ShiftRe
             };
             match (&table.points, &table.path) {
                 (_, Some(path)) => shift_table(checks, path)?,
-                (points, None) => {
-                    Shift::Table { points: points.iter().flatten().map(point).collect() }
-                }
+                (points, None) => Shift::Table { points: points.iter().flatten().map(point).collect() },
             }
         }
         raw::Shift::Estimated(estimated) => return Some(ShiftRequest::Estimate(estimated.reference.get())),

@@ -52,7 +52,7 @@ pub fn fit_dma(
     data::check_abscissae(words, omega, false)?;
     data::check_values(words, omega, storage, false)?;
     data::check_values(loss_words, omega, loss, true)?;
-    data::check_trend(words, Trend::Rises, omega, storage)?;
+    data::check_trend(words, Trend::Rises, omega, storage, options.limit)?;
     // A loss below a thousandth of the stored energy is below what instruments tell.
     let floor = 1e-3 * storage.iter().copied().fold(f64::INFINITY, f64::min);
     let weight = options.loss_weight;

@@ -16,7 +16,7 @@ pub enum Material {
     /// Fit a Prony series to a relaxation test, a creep test or DMA sweeps
     Fit(Fit),
     /// Write a material for another program: relative moduli, times and the shift with temperature
-    Export(Export),
+    Export(MaterialExport),
 }
 
 /// A program that reads materials.
@@ -33,7 +33,7 @@ pub enum To {
 }
 
 #[derive(Debug, clap::Args)]
-pub struct Export {
+pub struct MaterialExport {
     /// A case file, or a file with the `material = { ... }` of a body, as the fits write it
     pub file: PathBuf,
     /// The program

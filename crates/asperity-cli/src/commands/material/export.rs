@@ -6,11 +6,11 @@ use asperity_io::case::{Specimen, specimens};
 use asperity_io::material_export::{Exported, Program, text};
 
 use super::{parsed, told, write};
-use crate::args::{Export, To};
+use crate::args::{MaterialExport, To};
 use crate::failure::Failure;
 
 /// Writes or prints it.
-pub fn export(args: &Export) -> Result<(), Failure> {
+pub fn export(args: &MaterialExport) -> Result<(), Failure> {
     if let Some(path) = &args.output {
         crate::commands::free(path, args.force)?;
     }
@@ -39,7 +39,7 @@ pub fn export(args: &Export) -> Result<(), Failure> {
 }
 
 /// The body that is named, or the only one that is viscoelastic.
-fn chosen<'a>(specimens: &'a [Specimen], args: &Export) -> Result<&'a Specimen, Failure> {
+fn chosen<'a>(specimens: &'a [Specimen], args: &MaterialExport) -> Result<&'a Specimen, Failure> {
     let names: Vec<&str> = specimens.iter().map(|specimen| specimen.name.as_str()).collect();
     let names = names.join(", ");
     let viscoelastic = |specimen: &&Specimen| {

@@ -156,7 +156,6 @@ fn a_fit_says_what_is_wrong() {
         (&["plain.csv"][..], &["--kind"][..]),
         (&["soft.csv"], &["soft.csv, line 3", "\"x\" is not a finite number"]),
         (&["none.csv"], &["none.csv", "cannot be read"]),
-        (&[rubber], &["8 temperatures", "shift"]),
         (&[rubber, "--wlf", "8.86, 20 °C"], &["--wlf", "8.86, 101.6 K, 20 °C"]),
         (&[rubber, "--wlf", "8.86, 101.6 °C, 20 °C"], &["c2 of --wlf", "difference of temperatures"]),
         (&[rubber, "--estimate-shift", "20"], &["temperature"]),
@@ -172,6 +171,10 @@ fn a_fit_says_what_is_wrong() {
             assert!(stderr(&output).contains(word), "{arguments:?}: {}", stderr(&output));
         }
     }
+    // Hints are options of the command.
+    write("half.csv", "f [Hz], E' [MPa]\n1, 2\n2, 3\n");
+    let output = asperity(dir.path(), &["material", "fit", "half.csv", "--kind", "dma"]);
+    assert!(stderr(&output).contains("--column loss=1"), "{}", stderr(&output));
     // Without units the numbers are SI, and that is said.
     let output = asperity(dir.path(), &["material", "fit", "plain.csv", "--kind", "relaxation"]);
     assert!(stdout(&output).contains("names no unit and is taken in Pa"), "{}", stdout(&output));
@@ -237,4 +240,104 @@ fn the_header_says_which_modulus_it_is() {
         assert_eq!(found, modulus, "{symbol} {options:?}");
         assert!(notes.contains(note) && (note.is_empty() != notes.contains("header")), "{symbol}: {notes}");
     }
+}
+
+/// A polymer with a glass transition: 13 terms over twelve decades.
+fn polymer() -> asperity::material::Relaxation {
+    let weights = [3.0, 8.0, 20.0, 60.0, 90.0, 40.0, 25.0, 10.0, 6.0, 3.0, 1.5, 0.8, 0.3];
+    let terms: Vec<(f64, f64)> =
+        weights.iter().enumerate().map(|(k, w)| (1e7 * w, 2.3 * 10f64.powi(k as i32 - 7))).collect();
+    asperity::material::Relaxation::absolute(5e6, &terms).unwrap()
+}
+
+/// A master curve as a user of Python keeps it: a line of units under the names, a loss modulus that contradicts the storage
+/// modulus, and its shift factors in a file of their own.
+fn master(dir: &Path) {
+    let mut text = "f, E_stor, E_loss\nHz, MPa, MPa\n".to_owned();
+    for k in 0..150 {
+        let f = 10f64.powf(-7.0 + 14.0 * f64::from(k) / 149.0);
+        let (storage, loss) = polymer().complex(std::f64::consts::TAU * f);
+        text += &format!("{f:e},{},{}\n", 1e-6 * storage, 1.5e-6 * loss);
+    }
+    std::fs::write(dir.join("master.csv"), text).unwrap();
+    let factors = "\u{feff}T,log_aT\nC, -\n60,-4.5\n40,-2.5\n20,0\n0,4.2\n";
+    std::fs::write(dir.join("shift.csv"), factors).unwrap();
+}
+
+#[test]
+fn moduli_that_contradict_each_other_are_fitted_one_at_a_time() {
+    let dir = tempfile::tempdir().unwrap();
+    master(dir.path());
+    let fit = |more: &[&str]| asperity(dir.path(), &[&["material", "fit", "master.csv"], more].concat());
+    let refused = fit(&[]);
+    assert_eq!(refused.status.code(), Some(2));
+    let words = stderr(&refused);
+    for word in ["storage modulus alone is fitted to", "Kramers-Kronig", "--fit storage"] {
+        assert!(words.contains(word), "{word}: {words}");
+    }
+    let object = json(&fit(&["--fit", "storage", "--shift-table", "shift.csv", "-o", "m.toml", "--json"]));
+    let column = |name: &str, key: &str| object["columns"][name][key].as_f64().unwrap();
+    // Nothing scatters; two terms per decade of 14 reach the digits that the criterion counts.
+    assert!(column("storage", "misfit_rms") < 0.02, "{object}");
+    assert!(object["terms"].as_u64().unwrap() <= 28);
+    // 1/1.5 - 1.
+    assert!((column("loss", "misfit_rms") - 1.0 / 3.0).abs() < 0.02, "{object}");
+    assert!(object["findings"][0]["text"].as_str().unwrap().contains("loss modulus is off"), "{object}");
+    let Value::Array(factors) = &object["shift"]["ln_factors"] else { panic!("{object}") };
+    assert_eq!(factors.len(), 4);
+    // The material stands in a file, and leaves it for another program.
+    let to = |to: &str| {
+        let output = asperity(dir.path(), &["material", "export", "m.toml", "--to", to, "--poisson", "0.45"]);
+        assert!(output.status.success(), "{}", stderr(&output));
+        stdout(&output)
+    };
+    assert!(to("abaqus").contains("*VISCOELASTIC, TIME=PRONY") && to("ansys").contains("TB,PRONY,1,1,"));
+    assert!(
+        to("comsol").lines().any(|line| line.starts_with("1 "))
+            && to("csv").contains("time [s],modulus [Pa]")
+    );
+    let output = asperity(dir.path(), &["material", "export", "m.toml", "--to", "abaqus"]);
+    assert!(stderr(&output).contains("--poisson"), "{}", stderr(&output));
+    // The fewest terms for two per cent are fewer than for a tenth of it.
+    let terms = |misfit: &str| {
+        let object = json(&fit(&["--fit", "storage", "--misfit", misfit, "--json"]));
+        let rms = object["columns"]["storage"]["misfit_rms"].as_f64().unwrap();
+        assert!(rms <= misfit.parse::<f64>().unwrap(), "{misfit}: {rms}");
+        object["terms"].as_u64().unwrap()
+    };
+    assert!(terms("0.02") < terms("0.002"));
+}
+
+#[test]
+fn relaxation_at_several_temperatures_needs_no_option() {
+    let dir = tempfile::tempdir().unwrap();
+    let law = asperity::material::Shift::Wlf { c1: 10.0, c2: 110.0, reference: 293.15 };
+    let mut text = "t,E_relax,T,Set\ns,MPa,°C,-\n".to_owned();
+    let temperatures = [-12.0, -4.0, 4.0, 12.0, 20.0, 28.0, 36.0];
+    for (set, celsius) in temperatures.iter().enumerate() {
+        let a = law.factor(celsius + 273.15).unwrap();
+        // As a machine saves them: the last time first, the temperature not quite held.
+        for k in (0..13).rev() {
+            let t = 10f64.powf(-2.0 + 0.25 * f64::from(k));
+            let value = 1e-6 * polymer().value(t / a);
+            text += &format!("{t},{value},{},{set}\n", celsius + 0.02 * f64::from(k % 3));
+        }
+    }
+    std::fs::write(dir.path().join("raw.csv"), text).unwrap();
+    let shown = stdout(&asperity(dir.path(), &["material", "show", "raw.csv", "--plot", "raw.svg"]));
+    for word in ["\"E_relax\"", "modulus", "[MPa]", "set", "28.0 °C: 13 points", "Young's"] {
+        assert!(shown.contains(word), "{word}: {shown}");
+    }
+    let svg = std::fs::read_to_string(dir.path().join("raw.svg")).unwrap();
+    assert!(svg.contains("-12 °C") && svg.contains("36 °C"));
+    let object = json(&asperity(dir.path(), &["material", "fit", "raw.csv", "--json"]));
+    assert!(object["notes"].to_string().contains("about 20.0 °C"), "{object}");
+    for factor in object["shift_factors"].as_array().unwrap() {
+        let number = |key: &str| factor[key].as_f64().unwrap();
+        let truth = law.ln_factor(number("temperature")).unwrap() / 10f64.ln();
+        // What is asked of an estimate where sweeps overlap by half a decade.
+        assert!((number("log10_factor") - truth).abs() < 0.3, "{factor}: {truth}");
+    }
+    let below = asperity(dir.path(), &["material", "fit", "raw.csv", "--estimate-shift", "-4 °C", "--json"]);
+    assert!(json(&below)["shift"].to_string().contains("269.15"), "{}", stdout(&below));
 }

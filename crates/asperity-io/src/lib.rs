@@ -10,6 +10,7 @@ pub mod export;
 pub mod finding;
 mod instants;
 pub mod leakage;
+pub mod material_export;
 pub mod preparation;
 pub mod readable;
 pub mod resources;

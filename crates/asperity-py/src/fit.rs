@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use asperity::material::FitOptions;
 use asperity_io::curve::{
-    Column, Columns, CurveError, Curves, Fitted, Request, Role, Series, ShiftRequest, Sweep,
+    Column, Columns, CurveError, Curves, Fitted, Remedy, Request, Role, Series, ShiftRequest, Sweep,
 };
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -30,6 +30,9 @@ pub struct Options {
     long_time: String,
     limit: f64,
     max_terms: Option<usize>,
+    misfit: Option<f64>,
+    moduli: String,
+    loss_weight: f64,
 }
 
 impl Options {
@@ -49,6 +52,9 @@ impl Options {
                 long_time: choose("long_time", &self.long_time)?,
                 limit: self.limit,
                 max_terms: self.max_terms.unwrap_or(usize::MAX),
+                misfit: self.misfit,
+                moduli: choose("moduli", &self.moduli)?,
+                loss_weight: self.loss_weight,
             },
         })
     }
@@ -72,14 +78,7 @@ pub fn fit<'py>(
         points += x.len();
         Sweep { temperature: *temperature, x, curves: curves.iter().map(array).collect(), lines }
     });
-    let curves = Curves {
-        measure: None,
-        path: PathBuf::from("the data"),
-        kind: choose("kind", kind)?,
-        sweeps: sweeps.collect(),
-        notes: vec![],
-        digest: String::new(),
-    };
+    let curves = Curves::of("the data", choose("kind", kind)?, sweeps.collect());
     let request = options.request()?;
     let fitted = detached(py, || request.fit(&curves))?;
     told(py, fitted.map_err(located)?, &curves)
@@ -88,7 +87,8 @@ pub fn fit<'py>(
 /// A fault of the caller's arrays: the number is that of a point, not a line.
 fn located(error: CurveError) -> PyErr {
     let point = error.line.map(|n| format!("point {n}: ")).unwrap_or_default();
-    CaseError::new_err(format!("{point}{}", error.message))
+    let remedy = error.remedy.as_ref().map(|remedy| format!("; {}", remedy.in_python())).unwrap_or_default();
+    CaseError::new_err(format!("{point}{}{remedy}", error.message))
 }
 
 /// What is said of a column: quantity, name or number, unit.
@@ -101,9 +101,10 @@ pub fn fit_file<'py>(
     path: PathBuf,
     kind: Option<String>,
     columns: Vec<Said>,
+    sheet: Option<String>,
     options: Options,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let mut said = Columns::default();
+    let mut said = Columns { sheet, ..Columns::default() };
     for (role, name, number, unit) in columns {
         let role = Role::from_str(&role).map_err(CaseError::new_err)?;
         match (name, number) {
@@ -116,9 +117,13 @@ pub fn fit_file<'py>(
         }
     }
     let request = options.request()?;
+    let unreadable = |error: CurveError| match error.path.is_file() {
+        true => CaseError::new_err(error.told(Remedy::in_python)),
+        false => file(error),
+    };
     let found = match kind {
         Some(word) => Some(choose("kind", &word)?),
-        None => Curves::kind_of(&path).map_err(file)?,
+        None => Curves::kind_of(&path, said.sheet.as_deref()).map_err(unreadable)?,
     };
     let Some(found) = found else {
         return Err(CaseError::new_err(format!(
@@ -130,10 +135,6 @@ pub fn fit_file<'py>(
         let curves = Curves::read(&path, found, &said)?;
         request.fit(&curves).map(|fitted| (fitted, curves))
     })?;
-    let unreadable = |error: CurveError| match error.path.is_file() {
-        true => CaseError::new_err(error.to_string()),
-        false => file(error),
-    };
     let (fitted, curves) = fitted.map_err(unreadable)?;
     told(py, fitted, &curves)
 }
@@ -153,6 +154,8 @@ fn told<'py>(py: Python<'py>, fitted: Fitted, curves: &Curves) -> PyResult<Bound
     }
     out.set_item("max_misfit", fitted.misfit.max)?;
     out.set_item("rms_misfit", fitted.misfit.rms)?;
+    let columns = fitted.columns.iter().map(|(name, m)| (*name, (m.rms, m.max)));
+    out.set_item("misfits", columns.collect::<std::collections::BTreeMap<_, _>>())?;
     out.set_item("worst", fitted.misfit.worst)?;
     out.set_item("noise", fitted.noise)?;
     out.set_item("uncertainty", fitted.uncertainty.iter().map(|u| (u[0], u[1])).collect::<Vec<_>>())?;

@@ -85,6 +85,51 @@ pub fn layers(title: &str, waves: &[WaveReport]) -> Figure {
         .with(panel("Half-space that yields as much", Axis::log("contact modulus", "Pa"), |modulus| modulus))
 }
 
+/// Most temperatures that the legend of a picture names.
+const MOST_NAMES: usize = 9;
+
+/// Measured curves in the colours of their temperatures, from the coldest (dark) to the warmest (bright).
+pub fn isotherms(title: &str, measured: &Measured) -> Figure {
+    let (x, scale) = match measured.kind {
+        Kind::Dma => (Axis::log("frequency", "Hz"), std::f64::consts::TAU),
+        _ => (Axis::log("time", "s"), 1.0),
+    };
+    let panels = match measured.kind {
+        Kind::Relaxation => vec![("Relaxation", Axis::log("relaxation modulus", "Pa"))],
+        Kind::Creep => vec![("Creep", Axis::log("creep compliance", "1/Pa"))],
+        Kind::Dma => {
+            vec![("Storage", Axis::log("storage modulus", "Pa")), ("Loss", Axis::log("loss modulus", "Pa"))]
+        }
+    };
+    let count = measured.sweeps.len();
+    let every = count.div_ceil(MOST_NAMES).max(1);
+    let panels = panels.iter().enumerate().map(|(n, (title, y))| {
+        measured.sweeps.iter().enumerate().fold(
+            Curves::new(*title, x.clone(), y.clone()),
+            |panel, (k, sweep)| {
+                let name = match sweep.temperature {
+                    Some(kelvin) if k % every == 0 || k + 1 == count => format!("{:.0} °C", kelvin - 273.15),
+                    _ => String::new(),
+                };
+                let places: Vec<f64> = sweep.x.iter().map(|x| x / scale).collect();
+                let values = sweep.curves.get(n).cloned().unwrap_or_default();
+                let colour = temperature_colour(k as f64 / (count.max(2) - 1) as f64);
+                let points =
+                    Series::new("", Style::Points, places.clone(), values.clone()).in_colour(colour.clone());
+                panel.with(points).with(Series::new(name, Style::Line, places, values).in_colour(colour))
+            },
+        )
+    });
+    let caption = format!("{}, {}.", counted(count, "sweep"), counted(measured.points(), "point"));
+    panels.fold(Figure::new(title), Figure::with).caption(caption)
+}
+
+/// From dark blue (0) over red to yellow (1), without the brightest end.
+fn temperature_colour(share: f64) -> String {
+    let colour = colorous::PLASMA.eval_continuous(0.88 * share.clamp(0.0, 1.0));
+    format!("#{:02x}{:02x}{:02x}", colour.r, colour.g, colour.b)
+}
+
 /// The measured points and the function fitted to them, and their relative distance.
 ///
 /// # Errors
@@ -125,11 +170,15 @@ pub fn fit(title: &str, measured: &Measured, fitted: &Fitted) -> asperity::Resul
         let apart: Vec<f64> = at(places).iter().zip(values).map(|(fit, data)| fit / data - 1.0).collect();
         distance = distance.with(Series::new(*name, Style::Points, places.clone(), apart));
     }
+    let columns: Vec<String> = fitted
+        .columns
+        .iter()
+        .map(|(name, m)| format!("{name} {:.2} % rms, {:.2} % at most", 100.0 * m.rms, 100.0 * m.max))
+        .collect();
     let caption = format!(
-        "{}; misfit {:.2} % rms, {:.2} % at most; scatter of the data {:.2} %.",
+        "{}; misfit of {}; scatter of the data {:.2} %.",
         counted(fitted.terms(), "term"),
-        100.0 * fitted.misfit.rms,
-        100.0 * fitted.misfit.max,
+        columns.join("; "),
         100.0 * fitted.noise
     );
     Ok(Figure::new(title).with(panel).with(distance).caption(caption))

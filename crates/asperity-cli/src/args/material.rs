@@ -3,24 +3,86 @@
 use std::path::PathBuf;
 
 use asperity::indentation::Given;
-use asperity::material::{LongTime, Modulus};
+use asperity::material::{LongTime, Moduli, Modulus};
 use asperity_io::curve::Kind;
-use clap::Subcommand;
+use clap::{Subcommand, ValueEnum};
 
 use super::choice;
 
 #[derive(Debug, Subcommand)]
 pub enum Material {
-    /// Print relaxation, creep, storage, loss and tan delta over decades
+    /// Print relaxation, creep, storage, loss and tan delta over decades; of measured data, what the file holds
     Show(Show),
     /// Fit a Prony series to a relaxation test, a creep test or DMA sweeps
     Fit(Fit),
+    /// Write a material for another program: relative moduli, times and the shift with temperature
+    Export(MaterialExport),
+}
+
+/// A program that reads materials.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum To {
+    /// Keywords of an Abaqus input file
+    Abaqus,
+    /// Commands of Ansys Mechanical APDL
+    Ansys,
+    /// Branches of COMSOL's generalised Maxwell model
+    Comsol,
+    /// Comma-separated values
+    Csv,
+}
+
+#[derive(Debug, clap::Args)]
+pub struct MaterialExport {
+    /// A case file, or a file with the `material = { ... }` of a body, as the fits write it
+    pub file: PathBuf,
+    /// The program
+    #[arg(long, value_enum)]
+    pub to: To,
+    /// The body of a case [default: the only one with a viscoelastic material]
+    #[arg(long, value_name = "NAME")]
+    pub body: Option<String>,
+    /// Poisson's ratio, where the file is no case
+    #[arg(long, value_name = "NU")]
+    pub poisson: Option<String>,
+    /// Set a key of the case
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub set: Vec<String>,
+    /// The file to write [default: printed]
+    #[arg(short, long, value_name = "PATH")]
+    pub output: Option<PathBuf>,
+    /// Replace an existing file
+    #[arg(long)]
+    pub force: bool,
+}
+
+/// What is said about a file of measured data.
+#[derive(Debug, Default, clap::Args)]
+pub struct Data {
+    /// What was measured: relaxation modulus over time, creep compliance over time, or storage and loss modulus over
+    /// frequency (dma) [default: what the header says]
+    #[arg(long, value_parser = choice::<Kind>())]
+    pub kind: Option<Kind>,
+    /// Column of a quantity, by number from 1 or by header: --column frequency=1 --column storage="E' [MPa]";
+    /// quantities: time, modulus, compliance, frequency, storage, loss, tan_delta, phase, complex_modulus,
+    /// storage_compliance, loss_compliance, complex_viscosity, real_viscosity, imaginary_viscosity, temperature, set
+    #[arg(long, value_name = "QUANTITY=COLUMN")]
+    pub column: Vec<String>,
+    /// Unit of a quantity, if the header does not name it: --unit storage=MPa
+    #[arg(long, value_name = "QUANTITY=UNIT")]
+    pub unit: Vec<String>,
+    /// Sheet of a spreadsheet (.xls, .xlsx) [default: the first one that names such columns]
+    #[arg(long, value_name = "NAME")]
+    pub sheet: Option<String>,
 }
 
 #[derive(Debug, clap::Args)]
 pub struct Show {
-    /// A case file, or a file with the `material = { ... }` of a body, as the fits write it
+    /// A case file, a file with the `material = { ... }` of a body, as the fits write it, or a file of measured data
     pub file: PathBuf,
+    /// The table of measured data
+    #[command(flatten)]
+    pub table: Data,
     /// First time, e.g. --from '1 ms' [default: a decade before the material's times]
     #[arg(long, value_name = "TIME")]
     pub from: Option<String>,
@@ -49,22 +111,24 @@ pub struct Show {
 
 #[derive(Debug, clap::Args)]
 pub struct Fit {
-    /// A text table with one point per line; separator and decimal mark are detected, units come from the header
+    /// A text table or spreadsheet with one point per line; separator and decimal mark are detected, quantities and units come
+    /// from the header (asperity material show FILE says what is found)
     pub data: PathBuf,
-    /// What was measured: relaxation modulus over time, creep compliance over time, or storage and loss modulus over
-    /// frequency (dma) [default: what the header says]
-    #[arg(long, value_parser = choice::<Kind>())]
-    pub kind: Option<Kind>,
+    /// The table of measured data
+    #[command(flatten)]
+    pub table: Data,
     /// Whether the numbers are Young's or shear moduli (or compliances) [default: what the header says, E or G, D or J]
     #[arg(long, value_parser = choice::<Modulus>())]
     pub modulus: Option<Modulus>,
-    /// Column of a quantity, by number from 1 or by header: --column frequency=1 --column storage="E' [MPa]";
-    /// quantities: time, modulus, compliance, frequency, storage, loss, tan_delta, temperature
-    #[arg(long, value_name = "QUANTITY=COLUMN")]
-    pub column: Vec<String>,
-    /// Unit of a quantity, if the header does not name it: --unit storage=MPa
-    #[arg(long, value_name = "QUANTITY=UNIT")]
-    pub unit: Vec<String>,
+    /// Moduli of a dma to fit; measured ones often contradict each other, and then storage is usual
+    #[arg(long, value_parser = choice::<Moduli>(), default_value = "both")]
+    pub fit: Moduli,
+    /// Weight of a residual of the loss modulus over one of the storage modulus [default: 1]
+    #[arg(long, value_name = "WEIGHT")]
+    pub loss_weight: Option<f64>,
+    /// Rms misfit to hold with as few terms as possible, e.g. 0.02 [default: the data justify the number of terms]
+    #[arg(long, value_name = "SHARE", conflicts_with = "max_terms")]
+    pub misfit: Option<f64>,
     /// Part of the curve to fit: --window '0.1 s, 100 s', for a dma --window '0.1 Hz, 100 Hz'
     #[arg(long, value_name = "A,B")]
     pub window: Option<String>,
@@ -78,19 +142,23 @@ pub struct Fit {
     #[arg(long, value_name = "DECADES")]
     pub margin: Option<f64>,
     /// Largest relative misfit (rms) before the data are refused [default: 0.1]
-    #[arg(long, value_name = "SHARE", visible_alias = "misfit")]
+    #[arg(long, value_name = "SHARE")]
     pub max_misfit: Option<f64>,
     /// What comes after the data: whatever fits best (free), no flow (solid), or no modulus left (fluid)
     #[arg(long, value_parser = choice::<LongTime>(), default_value = "free")]
     pub long_time: LongTime,
     /// Shift for data at several temperatures: --wlf 'C1, C2, REFERENCE', e.g. '8.86, 101.6 K, 20 °C'
-    #[arg(long, value_name = "C1,C2,REF", conflicts_with_all = ["arrhenius", "estimate_shift"])]
+    #[arg(long, value_name = "C1,C2,REF", conflicts_with_all = ["arrhenius", "estimate_shift", "shift_table"])]
     pub wlf: Option<String>,
     /// Shift for data at several temperatures: --arrhenius 'ENERGY, REFERENCE', e.g. '120 kJ/mol, 20 °C'
-    #[arg(long, value_name = "ENERGY,REF", conflicts_with = "estimate_shift")]
+    #[arg(long, value_name = "ENERGY,REF", conflicts_with_all = ["estimate_shift", "shift_table"])]
     pub arrhenius: Option<String>,
-    /// Estimate the shift from the overlap of the sweeps, with this reference temperature
-    #[arg(long, value_name = "REF")]
+    /// Table of shift factors, with columns T and log_aT (or ln_aT, aT)
+    #[arg(long, value_name = "PATH", conflicts_with = "estimate_shift")]
+    pub shift_table: Option<PathBuf>,
+    /// Estimate the shift from the sweeps, with this reference temperature, e.g. --estimate-shift '-5 °C' [default where a
+    /// file holds several temperatures and no shift: the temperature nearest to 20 °C]
+    #[arg(long, value_name = "REF", allow_hyphen_values = true)]
     pub estimate_shift: Option<String>,
     /// The file to write, with a `material = { ... }` for a case [default: printed]
     #[arg(short, long, value_name = "PATH")]

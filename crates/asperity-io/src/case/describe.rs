@@ -2,7 +2,7 @@
 
 use asperity::kernel::Kernel;
 use asperity::layer::{Base, Interface, Layered, Stack};
-use asperity::material::{Body, Creep};
+use asperity::material::{Body, Creep, Shift};
 use asperity::quantities::Quantity;
 use asperity::surface::Part;
 use asperity::{Course, History, Simulation};
@@ -29,6 +29,10 @@ pub struct MaterialReport {
     pub max_misfit: Option<f64>,
     /// Root of the mean square of these distances.
     pub rms_misfit: Option<f64>,
+    /// Rms and largest misfit of each column, fitted or not.
+    pub columns: Vec<(String, [f64; 2])>,
+    /// The modulus of a dma that was not fitted, and its rms misfit.
+    pub other_misfit: Option<(String, f64)>,
     /// Relative scatter of the measured points (standard deviation).
     pub noise: Option<f64>,
     /// First and last time that the error or the measurement covers, at the reference temperature \[s\].
@@ -41,6 +45,9 @@ pub struct MaterialReport {
     pub file: Option<String>,
     /// The law of the shift, where a measured material has one.
     pub shift: Option<String>,
+    /// The shift of the material, where it has one.
+    #[serde(skip)]
+    pub law: Option<Shift>,
     /// Shift factor a_T at the constant temperature of the body, where it has a shift.
     pub shift_factor: Option<f64>,
     /// What was assumed.

@@ -3,7 +3,7 @@
 
 use std::path::Path;
 
-use asperity::material::Material;
+use asperity::material::{Lateral, Material, Shift};
 
 use super::convert;
 use super::text::Text;
@@ -17,10 +17,23 @@ pub struct Specimen {
     /// The material as the run has it: at the temperature of the body where it is constant, else at the reference
     /// temperature of its shift.
     pub material: Material,
+    /// Poisson's ratio or bulk modulus of the body, where the file is a case.
+    pub lateral: Option<Lateral>,
     /// Where it comes from, and how well it is known.
     pub report: MaterialReport,
     /// What should be known before the numbers are believed.
     pub warnings: Vec<String>,
+}
+
+impl Specimen {
+    /// The material at the reference temperature of its shift, and the shift.
+    ///
+    /// # Errors
+    /// [`asperity::Error`] where its times leave the range of numbers.
+    pub fn at_reference(&self) -> asperity::Result<(Material, Option<&Shift>)> {
+        let factor = self.report.shift_factor.unwrap_or(1.0);
+        Ok((self.material.stretched(1.0 / factor)?, self.report.law.as_ref()))
+    }
 }
 
 /// The materials of a case file, or the one of a file that holds `material = { ... }` and other lines of a `[[body]]`. Fractional
@@ -48,6 +61,7 @@ pub fn specimens(
             .map(|(body, report)| Specimen {
                 name: body.name,
                 material: body.material,
+                lateral: Some(body.lateral),
                 report,
                 warnings: Vec::new(),
             })
@@ -66,7 +80,7 @@ pub fn specimens(
     match made {
         Ok((material, report)) => {
             let report = MaterialReport { body: stem.clone(), ..report };
-            Ok(vec![Specimen { name: stem, material, report, warnings: Vec::new() }])
+            Ok(vec![Specimen { name: stem, material, lateral: None, report, warnings: Vec::new() }])
         }
         Err(errors) => Err(CaseErrors { name, source, errors }),
     }

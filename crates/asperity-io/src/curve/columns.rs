@@ -2,124 +2,67 @@
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
-use std::str::FromStr;
 
 use asperity::material::Modulus;
 
 use super::Kind;
-use super::error::{Fault, fault};
+use super::error::{Fault, Remedy, fault};
+use super::role::{self, Role};
 use super::table::Table;
 use crate::case::quantity::unit::Unit;
 use crate::case::quantity::{Dimension, Quantity, QuantityError, Temperature, dimension, range};
-
-/// What a column holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Role {
-    /// Time since the step.
-    Time,
-    /// Relaxation modulus.
-    Modulus,
-    /// Creep compliance.
-    Compliance,
-    /// Frequency, in Hz or rad/s.
-    Frequency,
-    /// Storage modulus.
-    Storage,
-    /// Loss modulus.
-    Loss,
-    /// Loss factor E''/E', in place of the loss modulus.
-    TanDelta,
-    /// Temperature of the point.
-    Temperature,
-    /// Load of an indentation.
-    Load,
-    /// Depth of an indentation.
-    Depth,
-}
 
 /// The columns of a kind of file.
 #[derive(Clone, Copy)]
 pub(super) struct Form {
     /// "relaxation"
     pub(super) name: &'static str,
-    /// What its columns hold or may hold, in their order.
-    pub(super) roles: &'static [Role],
+    /// What its columns must hold, in their order where the file does not name them.
+    pub(super) needed: &'static [Role],
+    /// Pairs of columns, of which it must hold one as well; the first that it holds is taken. Without names it is the first.
+    pub(super) pairs: &'static [[Role; 2]],
+    /// What it may hold besides.
+    pub(super) optional: &'static [Role],
     /// What "t" means.
     pub(super) t: Role,
 }
 
+/// The columns from which storage and loss modulus follow.
+const DYNAMIC: [[Role; 2]; 9] = [
+    [Role::Storage, Role::Loss],
+    [Role::Storage, Role::TanDelta],
+    [Role::Storage, Role::Phase],
+    [Role::ComplexModulus, Role::TanDelta],
+    [Role::ComplexModulus, Role::Phase],
+    [Role::StorageCompliance, Role::LossCompliance],
+    [Role::ImaginaryViscosity, Role::RealViscosity],
+    [Role::ComplexViscosity, Role::TanDelta],
+    [Role::ComplexViscosity, Role::Phase],
+];
+
 impl From<Kind> for Form {
     fn from(kind: Kind) -> Self {
-        let t = if kind == Kind::Dma { Role::Temperature } else { Role::Time };
-        Form { name: kind.name(), roles: kind.roles(), t }
-    }
-}
-
-impl Role {
-    const ALL: [Role; 10] = [
-        Role::Time,
-        Role::Modulus,
-        Role::Compliance,
-        Role::Frequency,
-        Role::Storage,
-        Role::Loss,
-        Role::TanDelta,
-        Role::Temperature,
-        Role::Load,
-        Role::Depth,
-    ];
-
-    /// Its key in case files and on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Role::Time => "time",
-            Role::Modulus => "modulus",
-            Role::Compliance => "compliance",
-            Role::Frequency => "frequency",
-            Role::Storage => "storage",
-            Role::Loss => "loss",
-            Role::TanDelta => "tan_delta",
-            Role::Temperature => "temperature",
-            Role::Load => "load",
-            Role::Depth => "depth",
-        }
-    }
-
-    /// Names of columns that mean nothing else in a file of this kind.
-    fn aliases(self, form: Form) -> &'static [&'static str] {
-        match (self, form.t) {
-            (Role::Time, Role::Time) => &["time", "t"],
-            (Role::Time, _) => &["time"],
-            (Role::Modulus, _) => &["modulus", "relaxation modulus", "e", "g", "e(t)", "g(t)"],
-            (Role::Compliance, _) => &["compliance", "creep compliance", "d", "j", "d(t)", "j(t)"],
-            (Role::Frequency, _) => {
-                &["frequency", "freq", "freq.", "f", "angular frequency", "omega", "ω", "w"]
-            }
-            (Role::Storage, _) => &["storage", "storage modulus", "e'", "g'", "e′", "g′"],
-            (Role::Loss, _) => {
-                &["loss", "loss modulus", "e''", "g''", "e\"", "g\"", "e″", "g″", "e′′", "g′′"]
-            }
-            (Role::TanDelta, _) => {
-                &["tan_delta", "tan delta", "tan(delta)", "tandelta", "tan δ", "tan(δ)", "loss factor"]
-            }
-            (Role::Temperature, Role::Temperature) => &["temperature", "temp", "temp.", "t"],
-            (Role::Temperature, _) => &["temperature", "temp", "temp."],
-            (Role::Load, _) => &["load", "force", "normal load", "normal force", "w", "p", "f", "fn"],
-            (Role::Depth, _) => {
-                &["depth", "indentation", "displacement", "indentation depth", "approach", "h", "d"]
-            }
+        let optional = &[Role::Temperature, Role::Set];
+        let form = |needed, pairs, t| Form { name: kind.name(), needed, pairs, optional, t };
+        match kind {
+            Kind::Relaxation => form(&[Role::Time, Role::Modulus], &[], Role::Time),
+            Kind::Creep => form(&[Role::Time, Role::Compliance], &[], Role::Time),
+            Kind::Dma => form(&[Role::Frequency], &DYNAMIC, Role::Temperature),
         }
     }
 }
 
-impl FromStr for Role {
-    type Err = String;
-
-    fn from_str(name: &str) -> Result<Self, String> {
-        Role::ALL.into_iter().find(|role| role.name() == name).ok_or_else(|| {
-            let names: Vec<&str> = Role::ALL.iter().map(|role| role.name()).collect();
-            format!("\"{name}\" is no quantity of a curve; there are {}", names.join(", "))
-        })
+impl Form {
+    /// All that its columns may hold, each once.
+    fn roles(&self) -> Vec<Role> {
+        let mut roles: Vec<Role> = Vec::new();
+        let all = self.needed.iter().chain(self.pairs.iter().flatten()).chain(self.optional);
+        for role in all {
+            if !roles.contains(role) {
+                roles.push(*role);
+            }
+        }
+        roles
     }
 }
 
@@ -132,20 +75,39 @@ pub enum Column {
     Number(usize),
 }
 
-/// What is said about the columns; the rest is found from the header.
+/// What is said about the table; the rest is found from the header.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Columns {
     /// Where the quantities stand.
     pub columns: BTreeMap<Role, Column>,
     /// Their units, which go before those of the header.
     pub units: BTreeMap<Role, String>,
+    /// The sheet of a spreadsheet, by its name; the first with a curve where none is named.
+    pub sheet: Option<String>,
 }
 
 /// The numbers of a role in SI, per row.
 pub(super) type Values = BTreeMap<Role, Vec<f64>>;
 
-/// The values of all quantities of a curve of `kind`, in SI, and what was assumed.
-pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<(Values, Vec<String>), Fault> {
+/// A column that was used.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// What it holds.
+    pub role: Role,
+    /// Its number, from 1.
+    pub column: usize,
+    /// Its header, empty where it has none.
+    pub header: String,
+    /// The unit in which its numbers are taken.
+    pub unit: String,
+}
+
+/// The values of all quantities of a curve of `form` in SI, the columns that hold them, and what was assumed.
+pub(super) fn values(
+    table: &Table,
+    form: Form,
+    said: &Columns,
+) -> Result<(Values, Vec<Place>, Vec<String>), Fault> {
     let places = places(table, form, said)?;
     for (role, column) in &places {
         if table.names.get(*column).is_some_and(|name| is_logarithm(name)) {
@@ -156,41 +118,42 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<(Value
             )));
         }
     }
-    let (mut values, mut notes) = (Values::new(), Vec::new());
+    let (mut values, mut used, mut notes) = (Values::new(), Vec::new(), Vec::new());
     for (role, column) in places {
+        let name = table.names.get(column).map_or("", String::as_str);
         let header_unit = table.units.get(column).map_or("", String::as_str);
         let unit = match (said.units.get(&role), role) {
-            (Some(unit), _) => unit.trim(),
+            (Some(unit), _) => tidy(role, name, unit.trim()),
             // "tan(delta) [-]": a ratio whatever the brackets say, but for per cent.
-            (None, Role::TanDelta) if header_unit != "%" => "",
-            (None, _) => header_unit,
+            (None, Role::TanDelta) if header_unit != "%" => String::new(),
+            (None, _) => tidy(role, name, header_unit),
         };
-        let numbers = table.numbers(column)?;
         let place = format!("column {}{}", column + 1, table.quoted(column));
-        let converted = convert(role, unit, numbers).map_err(|(row, why)| {
-            let help = format!(
-                "name the unit in the header, as in \"{} [{}]\", or in `units`",
-                role.name(),
-                example(role)
-            );
-            let fault = fault(format!("{} ({place}): {why}; {help}", role.name()));
+        let numbers = match role {
+            Role::Set => table.labels(column),
+            _ => table.numbers(column)?,
+        };
+        let converted = convert(role, &unit, numbers).map_err(|(row, why)| {
+            let fault = fault(format!("{} ({place}): {why}", role.name())).remedy(Remedy::Unit(role));
             match row {
                 Some(row) => fault.at(table.rows[row].line),
                 None => fault,
             }
         })?;
-        if unit.is_empty() && role != Role::TanDelta {
-            notes.push(format!("{} ({place}) names no unit and is taken in {}", role.name(), si(role)));
+        if unit.is_empty() && !matches!(role, Role::TanDelta | Role::Set) {
+            notes.push(format!("{} ({place}) names no unit and is taken in {}", role.name(), role.si()));
         }
         values.insert(role, converted);
+        let header = table.headers.get(column).cloned().unwrap_or_default();
+        let unit = if unit.is_empty() { role.si().to_owned() } else { unit };
+        used.push(Place { role, column: column + 1, header, unit });
     }
-    Ok((values, notes))
+    Ok((values, used, notes))
 }
 
 /// The column of each quantity: as said; else by the names in the header; else in order.
-fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeMap<Role, usize>, Fault> {
-    let mut places = BTreeMap::new();
-    let possible = form.roles;
+pub(super) fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeMap<Role, usize>, Fault> {
+    let possible = form.roles();
     for role in said.columns.keys().chain(said.units.keys()) {
         if !possible.contains(role) {
             let names: Vec<&str> = possible.iter().map(|role| role.name()).collect();
@@ -203,71 +166,109 @@ fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeMap<Role, us
             return Err(fault(message));
         }
     }
+    let mut places = BTreeMap::new();
     for (role, column) in &said.columns {
         places.insert(*role, find(table, *role, column)?);
     }
-    for role in possible {
-        let known = |name: &String| role.aliases(form).contains(&name.to_lowercase().as_str());
+    for role in &possible {
         let taken = |n: &usize| places.values().any(|place| place == n);
-        let both = matches!(role, Role::TanDelta) && places.contains_key(&Role::Loss)
-            || matches!(role, Role::Loss) && places.contains_key(&Role::TanDelta);
-        let column = (0..table.names.len()).find(|n| known(&table.names[*n]) && !taken(n));
-        if let (false, false, Some(column)) = (places.contains_key(role), both, column) {
+        let column = (0..table.names.len()).find(|n| means(table, *n, *role, form) && !taken(n));
+        if let (false, Some(column)) = (places.contains_key(role), column) {
             places.insert(*role, column);
         }
     }
-    let required = |places: &BTreeMap<Role, usize>| -> Vec<Role> {
-        let missing = |role: &Role| match role {
-            Role::Temperature | Role::TanDelta => false,
-            Role::Loss => !places.contains_key(role) && !places.contains_key(&Role::TanDelta),
-            _ => !places.contains_key(role),
-        };
-        possible.iter().copied().filter(missing).collect()
-    };
-    if places.keys().all(|role| *role == Role::Temperature) && said.columns.is_empty() {
+    if places.keys().all(|role| form.optional.contains(role)) && said.columns.is_empty() {
         if let Some(line) = table.unread.as_ref().filter(|line| line.contains("Pa") || line.contains("log")) {
             let shown: String = line.chars().take(60).collect();
             return Err(fault(format!(
-                "the line before the numbers, {shown:?}, does not name {} columns, and it may hold a unit; name each column \
-                 with its unit, as in \"modulus [MPa]\", or say columns = {{ ... }} and units = {{ ... }}",
+                "the line before the numbers, {shown:?}, does not name {} columns, and it may hold a unit",
                 table.columns
-            )));
+            ))
+            .remedy(Remedy::Header));
         }
         // No names: the columns in the order of the documentation.
-        for (n, role) in required(&places).into_iter().enumerate() {
+        let order = form.needed.iter().chain(form.pairs.first().into_iter().flatten());
+        for (n, role) in order.enumerate() {
             if n < table.columns && !places.values().any(|place| *place == n) {
-                places.insert(role, n);
+                places.insert(*role, n);
             }
         }
     }
-    match required(&places).first() {
+    let missing = form.needed.iter().find(|role| !places.contains_key(role)).copied();
+    let missing = missing.or_else(|| one_pair(&mut places, form, said));
+    match missing {
         None => Ok(places),
         Some(role) => {
-            let name = role.name();
             let columns = table.listed();
-            let message = format!(
-                "no column is recognised as {name}; the file has {columns}; name it as in columns = {{ {name} = 1 }}, by \
-                 number or header"
-            );
-            Err(fault(message))
+            let message = format!("no column is recognised as {}; the file has {columns}", role.name());
+            Err(fault(message).remedy(Remedy::Column(role)))
         }
     }
 }
 
+/// Keeps one pair of columns and drops those of all others: the pair with most columns that were said, the first of those
+/// that are there. What is missing, if there is none.
+fn one_pair(places: &mut BTreeMap<Role, usize>, form: Form, said: &Columns) -> Option<Role> {
+    let told = |pair: &[Role; 2]| pair.iter().filter(|role| said.columns.contains_key(role)).count();
+    let complete = form.pairs.iter().filter(|pair| pair.iter().all(|role| places.contains_key(role)));
+    let most = complete.clone().map(told).max();
+    match complete.clone().find(|pair| Some(told(pair)) == most) {
+        Some(pair) => {
+            places.retain(|role, _| pair.contains(role) || !form.pairs.iter().flatten().any(|r| r == role));
+            None
+        }
+        // The other one of a pair that has one, else the first of all.
+        None => {
+            let half =
+                form.pairs.iter().find_map(|[a, b]| match (places.contains_key(a), places.contains_key(b)) {
+                    (true, false) => Some(*b),
+                    (false, true) => Some(*a),
+                    _ => None,
+                });
+            half.or_else(|| form.pairs.first().map(|pair| pair[0]))
+        }
+    }
+}
+
+/// Whether the name of a column says that it holds the role.
+fn means(table: &Table, column: usize, role: Role, form: Form) -> bool {
+    let name = table.names[column].trim();
+    match role::bare(name).as_str() {
+        "t" => time_or_temperature(table, column, form) == role,
+        _ => role.is_called(name),
+    }
+}
+
+/// What a column called t or T holds: as its unit says; else T is a temperature where another column is a time.
+fn time_or_temperature(table: &Table, column: usize, form: Form) -> Role {
+    let unit = table.units.get(column).map_or("", String::as_str);
+    let another = || {
+        (0..table.names.len())
+            .any(|n| n != column && (table.names[n] == "t" || Role::Time.is_called(&table.names[n])))
+    };
+    match tidy(Role::Temperature, "", unit).as_str() {
+        "K" | "°C" => Role::Temperature,
+        unit if Unit::parse(unit).is_ok_and(|unit| unit.powers == dimension::Time::POWERS) => Role::Time,
+        _ if table.names[column] == "T" && another() => Role::Temperature,
+        _ => form.t,
+    }
+}
+
 /// What the names of the columns call the modulus or compliance: E and D are Young's, G and J shear.
-pub(super) fn measure(table: &Table, form: Form, said: &Columns) -> Option<Modulus> {
-    let places = places(table, form, said).ok()?;
-    let of = |role: &Role| places.get(role).and_then(|column| table.names.get(*column));
-    let name = [Role::Storage, Role::Modulus, Role::Compliance].iter().find_map(of)?.to_lowercase();
-    let mut letters = name.chars();
-    let symbol = letters.next()?;
-    match symbol {
-        _ if name.contains("shear") => Some(Modulus::Shear),
-        _ if name.contains("young") || name.contains("tensile") => Some(Modulus::Young),
-        _ if letters.next().is_some_and(char::is_alphanumeric) => None,
-        'g' | 'j' => Some(Modulus::Shear),
-        'e' | 'd' => Some(Modulus::Young),
-        _ => None,
+pub(super) fn measure(used: &[Place], table: &Table) -> Option<Modulus> {
+    let moduli = [
+        Role::Storage,
+        Role::Modulus,
+        Role::Compliance,
+        Role::ComplexModulus,
+        Role::StorageCompliance,
+        Role::Loss,
+    ];
+    let place = moduli.iter().find_map(|role| used.iter().find(|place| place.role == *role));
+    match place {
+        Some(place) => role::measure_of(table.names.get(place.column - 1)?),
+        // Viscosities of rheometers are those of shear.
+        None => used.iter().any(|place| place.role.name().ends_with("viscosity")).then_some(Modulus::Shear),
     }
 }
 
@@ -280,14 +281,10 @@ fn is_logarithm(name: &str) -> bool {
 
 /// Whether the header names all that a file of this kind needs.
 pub(super) fn named(table: &Table, kind: Kind) -> bool {
-    let has = |role: Role| {
-        table.names.iter().any(|name| role.aliases(kind.into()).contains(&name.to_lowercase().as_str()))
-    };
-    match kind {
-        Kind::Relaxation => has(Role::Time) && has(Role::Modulus),
-        Kind::Creep => has(Role::Time) && has(Role::Compliance),
-        Kind::Dma => has(Role::Frequency) && has(Role::Storage) && (has(Role::Loss) || has(Role::TanDelta)),
-    }
+    let form = Form::from(kind);
+    let has = |role: &Role| (0..table.names.len()).any(|n| means(table, n, *role, form));
+    let pair = form.pairs.is_empty() || form.pairs.iter().any(|pair| pair.iter().all(&has));
+    form.needed.iter().all(&has) && pair
 }
 
 fn find(table: &Table, role: Role, column: &Column) -> Result<usize, Fault> {
@@ -306,6 +303,42 @@ fn find(table: &Table, role: Role, column: &Column) -> Result<usize, Fault> {
     }
 }
 
+/// A unit as programs write it in the way that it is read here.
+pub(super) fn tidy(role: Role, name: &str, unit: &str) -> String {
+    let bare = role::bare(unit);
+    let tidied = match role {
+        _ if unit == "-" => "",
+        Role::Temperature
+            if matches!(bare.as_str(), "c" | "degc" | "celsius" | "degreesc" | "gradc" | "degcelsius") =>
+        {
+            "°C"
+        }
+        Role::Temperature if matches!(bare.as_str(), "k" | "kelvin") => "K",
+        Role::Frequency if bare == "hz" || bare == "hertz" => "Hz",
+        // Angular frequencies in 1/s are those in rad/s.
+        Role::Frequency if matches!(unit, "1/s" | "s^-1" | "s-1") && is_angular(name) => "rad/s",
+        Role::ComplexViscosity | Role::RealViscosity | Role::ImaginaryViscosity if bare == "pas" => "Pa s",
+        Role::ComplexViscosity | Role::RealViscosity | Role::ImaginaryViscosity if bare == "mpas" => {
+            // "mPa·s" and "MPa·s" differ by their first letter.
+            if unit.starts_with('m') { "mPa s" } else { "MPa s" }
+        }
+        Role::Phase
+            if matches!(unit, "°" | "º")
+                || matches!(bare.as_str(), "deg" | "degree" | "degrees" | "grad") =>
+        {
+            "deg"
+        }
+        Role::Time if matches!(bare.as_str(), "sec" | "second" | "seconds" | "sekunden") => "s",
+        _ => unit,
+    };
+    tidied.to_owned()
+}
+
+fn is_angular(name: &str) -> bool {
+    let name = role::bare(name);
+    ["ang", "omega", "ω", "kreis", "winkel"].iter().any(|start| name.starts_with(start))
+}
+
 /// The numbers in SI, or the row and why not.
 fn convert(role: Role, unit: &str, numbers: Vec<f64>) -> Result<Vec<f64>, (Option<usize>, String)> {
     let whole = |why: String| (None, why);
@@ -320,10 +353,19 @@ fn convert(role: Role, unit: &str, numbers: Vec<f64>) -> Result<Vec<f64>, (Optio
             };
             return numbers.iter().enumerate().map(kelvin).collect();
         }
+        Role::Set => 1.0,
+        Role::Phase => degrees(unit, &numbers).map_err(whole)?,
         Role::Frequency => frequency(unit).map_err(whole)?,
         Role::Time => scale::<dimension::Time>(unit).map_err(whole)?,
-        Role::Modulus | Role::Storage | Role::Loss => scale::<dimension::Pressure>(unit).map_err(whole)?,
-        Role::Compliance => scale::<dimension::Compliance>(unit).map_err(whole)?,
+        Role::Modulus | Role::Storage | Role::Loss | Role::ComplexModulus => {
+            scale::<dimension::Pressure>(unit).map_err(whole)?
+        }
+        Role::Compliance | Role::StorageCompliance | Role::LossCompliance => {
+            scale::<dimension::Compliance>(unit).map_err(whole)?
+        }
+        Role::ComplexViscosity | Role::RealViscosity | Role::ImaginaryViscosity => {
+            scale::<dimension::Viscosity>(unit).map_err(whole)?
+        }
         Role::TanDelta => scale::<dimension::Number>(unit).map_err(whole)?,
         Role::Load => scale::<dimension::Force>(unit).map_err(whole)?,
         Role::Depth => scale::<dimension::Length>(unit).map_err(whole)?,
@@ -333,9 +375,21 @@ fn convert(role: Role, unit: &str, numbers: Vec<f64>) -> Result<Vec<f64>, (Optio
 
 /// SI of one unit.
 fn scale<D: Dimension>(unit: &str) -> Result<f64, String> {
-    let one = format!("1 {}", if unit == "-" { "" } else { unit });
+    let one = format!("1 {unit}");
     let quantity = one.parse::<Quantity<D, range::Positive>>();
     quantity.map(Quantity::get).map_err(|error| error.help.unwrap_or(error.expected))
+}
+
+/// Radians of one unit of a phase angle, which is at most a right angle.
+fn degrees(unit: &str, numbers: &[f64]) -> Result<f64, String> {
+    let most = numbers.iter().copied().fold(0.0, f64::max);
+    match unit {
+        "deg" => Ok(std::f64::consts::PI / 180.0),
+        "" if most > std::f64::consts::FRAC_PI_2 => Ok(std::f64::consts::PI / 180.0),
+        "rad" => Ok(1.0),
+        "" => Err("has no unit: give deg or rad".to_owned()),
+        _ => Err(format!("\"{unit}\" is not a unit of an angle (deg, rad)")),
+    }
 }
 
 /// rad/s of one unit: cycles and radians are told apart, never guessed.
@@ -374,30 +428,5 @@ pub fn angular_frequency(text: &str) -> Result<f64, QuantityError> {
     match value.is_finite() && value > 0.0 {
         true => Ok(factor * value),
         false => Err(expected()),
-    }
-}
-
-fn si(role: Role) -> &'static str {
-    match role {
-        Role::Time => "s",
-        Role::Modulus | Role::Storage | Role::Loss => "Pa",
-        Role::Compliance => "1/Pa",
-        Role::Frequency => "Hz",
-        Role::TanDelta => "",
-        Role::Temperature => "K",
-        Role::Load => "N",
-        Role::Depth => "m",
-    }
-}
-
-fn example(role: Role) -> &'static str {
-    match role {
-        Role::Modulus | Role::Storage | Role::Loss => "MPa",
-        Role::Compliance => "1/MPa",
-        Role::TanDelta => "-",
-        Role::Temperature => "°C",
-        Role::Load => "mN",
-        Role::Depth => "um",
-        role => si(role),
     }
 }

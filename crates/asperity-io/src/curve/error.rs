@@ -1,30 +1,142 @@
-//! What is wrong with a file of measured curves.
+//! What is wrong with a file of measured curves, and what to do about it.
 
 use std::path::PathBuf;
 
-use thiserror::Error;
+use super::Role;
 
 /// A file of measured curves that cannot be used, with the line.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("{}{}: {message}", path.display(), line.map(|line| format!(", line {line}")).unwrap_or_default())]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CurveError {
     /// The file.
     pub path: PathBuf,
-    /// Line of the file, from 1, where one is to blame.
+    /// Line of the file (row of the sheet), from 1, where one is to blame.
     pub line: Option<usize>,
-    /// What is wrong, what was expected, what to do.
+    /// What is wrong and what was expected.
     pub message: String,
+    /// What to do.
+    pub remedy: Option<Remedy>,
 }
+
+/// What to do about a file, which is said in the words of a case file, of the command or of Python.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Remedy {
+    /// Say which column holds a quantity.
+    Column(Role),
+    /// Say the unit of a quantity.
+    Unit(Role),
+    /// Say which columns there are, with their units.
+    Header,
+    /// Say how times depend on temperature.
+    Shift,
+    /// Fit one of the two moduli of a DMA.
+    Moduli,
+    /// Say which of the sheets, named here, to read.
+    Sheet(String),
+}
+
+impl Remedy {
+    /// As keys of a material in a case file.
+    pub fn in_case(&self) -> String {
+        match self {
+            Remedy::Column(role) => {
+                format!("name it as in columns = {{ {} = 1 }}, by number or header", role.name())
+            }
+            Remedy::Unit(role) => format!(
+                "name the unit in the header, as in \"{0} [{1}]\", or say units = {{ {0} = \"{1}\" }}",
+                role.name(),
+                role.example()
+            ),
+            Remedy::Header => {
+                "name each column with its unit, as in \"modulus [MPa]\", or say columns = { ... } and \
+                               units = { ... }"
+                    .to_owned()
+            }
+            Remedy::Shift => {
+                "state how times depend on temperature, as in shift = { model = \"wlf\", c1 = 8.86, c2 = \
+                              \"101.6 K\", reference = \"20 °C\" }, or model = \"estimated\" or \"table\""
+                    .to_owned()
+            }
+            Remedy::Moduli => "say fit = { moduli = \"storage\" } (or \"loss\")".to_owned(),
+            Remedy::Sheet(sheets) => format!("say which with sheet = \"...\": {sheets}"),
+        }
+    }
+
+    /// As options of `asperity material fit` and `show`.
+    pub fn in_command(&self) -> String {
+        match self {
+            Remedy::Column(role) => {
+                format!("name it as in --column {}=1, by number or header", role.name())
+            }
+            Remedy::Unit(role) => format!(
+                "name the unit in the header, as in \"{0} [{1}]\", or give --unit '{0}={1}'",
+                role.name(),
+                role.example()
+            ),
+            Remedy::Header => {
+                "name each column with its unit, as in \"modulus [MPa]\", or give --column and --unit"
+                    .to_owned()
+            }
+            Remedy::Shift => {
+                "state how times depend on temperature with --wlf, --arrhenius, --shift-table or \
+                              --estimate-shift"
+                    .to_owned()
+            }
+            Remedy::Moduli => "give --fit storage (or loss)".to_owned(),
+            Remedy::Sheet(sheets) => format!("say which with --sheet NAME: {sheets}"),
+        }
+    }
+
+    /// As arguments of Python's `fit_file`.
+    pub fn in_python(&self) -> String {
+        match self {
+            Remedy::Column(role) => {
+                format!("name it as in columns={{\"{}\": 1}}, by number or header", role.name())
+            }
+            Remedy::Unit(role) => format!(
+                "name the unit in the header, as in \"{0} [{1}]\", or say units={{\"{0}\": \"{1}\"}}",
+                role.name(),
+                role.example()
+            ),
+            Remedy::Header => {
+                "name each column with its unit, as in \"modulus [MPa]\", or say columns={...} and units={...}"
+                    .to_owned()
+            }
+            Remedy::Shift => "state how times depend on temperature: shift=asperity.wlf(c1=..., c2=..., reference=...), \
+                              or shift=\"estimated\" with reference=..."
+                .to_owned(),
+            Remedy::Moduli => "say moduli=\"storage\" (or \"loss\")".to_owned(),
+            Remedy::Sheet(sheets) => format!("say which with sheet=\"...\": {sheets}"),
+        }
+    }
+}
+
+impl CurveError {
+    /// The whole message, with the remedy in the given words.
+    pub fn told(&self, words: impl Fn(&Remedy) -> String) -> String {
+        let line = self.line.map(|line| format!(", line {line}")).unwrap_or_default();
+        let remedy = self.remedy.as_ref().map(|remedy| format!("; {}", words(remedy))).unwrap_or_default();
+        format!("{}{line}: {}{remedy}", self.path.display(), self.message)
+    }
+}
+
+impl std::fmt::Display for CurveError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.told(Remedy::in_case))
+    }
+}
+
+impl std::error::Error for CurveError {}
 
 /// A fault before its file is known.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Fault {
     pub line: Option<usize>,
     pub message: String,
+    pub remedy: Option<Remedy>,
 }
 
 pub(super) fn fault(message: impl Into<String>) -> Fault {
-    Fault { line: None, message: message.into() }
+    Fault { line: None, message: message.into(), remedy: None }
 }
 
 impl Fault {
@@ -32,7 +144,11 @@ impl Fault {
         Fault { line: Some(line), ..self }
     }
 
+    pub(super) fn remedy(self, remedy: Remedy) -> Fault {
+        Fault { remedy: Some(remedy), ..self }
+    }
+
     pub(super) fn of(self, path: &std::path::Path) -> CurveError {
-        CurveError { path: path.to_owned(), line: self.line, message: self.message }
+        CurveError { path: path.to_owned(), line: self.line, message: self.message, remedy: self.remedy }
     }
 }

@@ -1,11 +1,14 @@
 //! From measured curves to a material: one temperature as it is, several through a master curve.
 
+use std::f64::consts::LN_10;
+
 use asperity::material::{
-    Abscissa, Creep, Fit, FitOptions, Isotherm, MasterCurve, Material, Misfit, Modulus, Relaxation, Shift,
-    estimate_shift, fit_arrhenius, fit_creep, fit_dma, fit_relaxation, fit_wlf, master_curve,
+    Abscissa, Creep, Fit, FitOptions, Isotherm, MasterCurve, Material, Misfit, Moduli, Modulus, Relaxation,
+    Shift, estimate_shift, fit_arrhenius, fit_creep, fit_dma, fit_relaxation, fit_wlf, master_curve,
 };
 
-use super::error::{CurveError, Fault, fault};
+use super::error::{CurveError, Fault, Remedy, fault};
+use super::sweeps::SAME_TEMPERATURE;
 use super::{Curves, Kind, Sweep};
 
 /// How times depend on temperature.
@@ -60,8 +63,12 @@ pub struct Fitted {
     pub material: Material,
     /// The function that was fitted.
     pub series: Series,
-    /// Distance between data and function.
+    /// Distance between the data that were fitted and the function.
     pub misfit: Misfit,
+    /// The moduli of a DMA that were fitted.
+    pub moduli: Moduli,
+    /// The misfit of each column, fitted or not, behind its name.
+    pub columns: Vec<(&'static str, Misfit)>,
     /// Scatter of the data (standard deviation, relative).
     pub noise: f64,
     /// Relative standard deviations of modulus (or compliance) and time of each term.
@@ -74,6 +81,8 @@ pub struct Fitted {
     pub shift: Option<Shift>,
     /// Distance of the estimated law from the shift factors found [decades of a_T].
     pub shift_rms: Option<f64>,
+    /// Temperature \[K\], log10 a_T and standard deviation \[decades\] of the shift factors that were estimated.
+    pub factors: Vec<[f64; 3]>,
     /// Temperatures of the sweeps \[K\], where the file holds them.
     pub temperatures: Vec<f64>,
     /// What was assumed.
@@ -89,10 +98,19 @@ impl Fitted {
         }
     }
 
+    /// The modulus of a DMA that was not fitted, and its misfit.
+    pub fn other(&self) -> Option<(&'static str, Misfit)> {
+        match (self.moduli, self.columns.as_slice()) {
+            (Moduli::Storage, [_, loss]) => Some(*loss),
+            (Moduli::Loss, [storage, _]) => Some(*storage),
+            _ => None,
+        }
+    }
+
     /// A sentence with the numbers where a run from `first` to `last` \[s\] leaves what was measured.
     pub fn beyond(&self, first: f64, last: f64) -> Option<String> {
         let Fitted { misfit, window, noise, .. } = *self;
-        let fit = Fit { function: (), misfit, window, noise, uncertainty: Vec::new() };
+        let fit = Fit { function: (), misfit, columns: Vec::new(), window, noise, uncertainty: Vec::new() };
         fit.beyond(first, last)
     }
 }
@@ -133,11 +151,14 @@ impl Request {
                 .map(|named| contradiction(named, self.measure)),
         );
         let temperatures: Vec<f64> = curves.sweeps.iter().filter_map(|sweep| sweep.temperature).collect();
-        let (shift, shift_rms) = self.shift_of(curves, &mut notes)?;
+        let Found { shift, rms: shift_rms, factors } = self.shift_of(curves, &mut notes)?;
         let (data, lines) = master(curves, shift.as_ref())?;
         let (data, lines) = self.inside(data, lines)?;
         let located = |error: asperity::Error| {
             let message = error.to_string();
+            if message.contains("Kramers-Kronig") {
+                return fault(message).remedy(Remedy::Moduli);
+            }
             match point(&message).and_then(|n| lines.get(n.checked_sub(1)?)) {
                 Some(line) => fault(message).at(*line),
                 None => fault(message),
@@ -145,10 +166,10 @@ impl Request {
         };
         let (options, none) = (&self.options, Vec::new());
         let curve = |n: usize| data.curves.get(n).unwrap_or(&none).as_slice();
-        let (series, misfit, noise, window, uncertainty) = match curves.kind {
+        let (series, misfit, columns, noise, window, uncertainty) = match curves.kind {
             Kind::Creep => {
                 let fit = fit_creep(&data.x, curve(0), options).map_err(located)?;
-                (Series::Creep(fit.function), fit.misfit, fit.noise, fit.window, fit.uncertainty)
+                (Series::Creep(fit.function), fit.misfit, fit.columns, fit.noise, fit.window, fit.uncertainty)
             }
             Kind::Relaxation | Kind::Dma => {
                 let fit = match curves.kind {
@@ -156,7 +177,8 @@ impl Request {
                     _ => fit_relaxation(&data.x, curve(0), options),
                 };
                 let fit = fit.map_err(located)?;
-                (Series::Relaxation(fit.function), fit.misfit, fit.noise, fit.window, fit.uncertainty)
+                let Fit { function, misfit, columns, noise, window, uncertainty } = fit;
+                (Series::Relaxation(function), misfit, columns, noise, window, uncertainty)
             }
         };
         let material = match &series {
@@ -164,47 +186,46 @@ impl Request {
             Series::Creep(creep) => Material::generalised_kelvin(self.measure, creep.clone()),
         };
         let material = material.map_err(|error| fault(error.to_string()))?;
+        let columns: Vec<(&str, Misfit)> = curves.kind.columns().iter().copied().zip(columns).collect();
+        notes.extend(left_out(self.options.moduli, &columns));
         Ok(Fitted {
             material,
             series,
             misfit,
+            moduli: self.options.moduli,
+            columns,
             noise,
             uncertainty,
             window,
             data,
             shift,
             shift_rms,
+            factors,
             temperatures,
             notes,
         })
     }
 
-    /// The shift of the material, and how far an estimated one is from its factors.
-    fn shift_of(
-        &self,
-        curves: &Curves,
-        notes: &mut Vec<String>,
-    ) -> Result<(Option<Shift>, Option<f64>), Fault> {
-        match &self.shift {
-            ShiftRequest::None if curves.sweeps.len() > 1 => {
+    /// The shift of the material.
+    fn shift_of(&self, curves: &Curves, notes: &mut Vec<String>) -> Result<Found, Fault> {
+        let known = |shift: Option<Shift>| Found { shift, rms: None, factors: Vec::new() };
+        match (&self.shift, curves.held.shift()) {
+            (ShiftRequest::None, Some(shift)) => {
+                notes.extend(told_of_held(curves, shift));
+                Ok(known(Some(shift.clone())))
+            }
+            (ShiftRequest::None, None) if curves.sweeps.len() > 1 => {
                 let known: Vec<String> = curves.sweeps.iter().take(20).filter_map(celsius).collect();
-                Err(fault(format!(
-                    "the file holds {} temperatures ({}); state how times depend on temperature, as in shift = {{ \
-                     model = \"wlf\", c1 = 8.86, c2 = \"101.6 K\", reference = \"20 °C\" }}, or model = \
-                     \"estimated\"",
-                    curves.sweeps.len(),
-                    known.join(", ")
-                )))
+                let message =
+                    format!("the file holds {} temperatures ({})", curves.sweeps.len(), known.join(", "));
+                Err(fault(message).remedy(Remedy::Shift))
             }
-            ShiftRequest::None => Ok((None, None)),
-            ShiftRequest::Given(shift) => {
+            (ShiftRequest::None, None) => Ok(known(None)),
+            (ShiftRequest::Given(shift), _) => {
                 shift.validate().map_err(|error| fault(error.to_string()))?;
-                Ok((Some(shift.clone()), None))
+                Ok(known(Some(shift.clone())))
             }
-            ShiftRequest::Estimate(reference) => {
-                let (shift, rms) = estimated(curves, *reference, notes)?;
-                Ok((Some(shift), rms))
-            }
+            (ShiftRequest::Estimate(reference), _) => estimated(curves, *reference, notes),
         }
     }
 
@@ -240,12 +261,27 @@ fn master(curves: &Curves, shift: Option<&Shift>) -> Result<(MasterCurve, Vec<us
         return Ok((MasterCurve { x: sweep.x.clone(), curves: sweep.curves.clone() }, sweep.lines.clone()));
     }
     let Some(shift) = shift else { return Err(fault("several temperatures need a shift")) };
-    let master = master_curve(&isotherms(curves), abscissa(curves.kind), shift);
+    let mut isotherms = isotherms(curves);
+    if let Shift::Table { points } = shift {
+        isotherms.iter_mut().for_each(|isotherm| snap(&mut isotherm.temperature, points));
+    }
+    let master = master_curve(&isotherms, abscissa(curves.kind), shift);
     let lines = match curves.sweeps.as_slice() {
         [sweep] => sweep.lines.clone(),
         _ => Vec::new(),
     };
     master.map(|master| (master, lines)).map_err(|error| at_isotherm(curves, &error))
+}
+
+/// The temperature of the shift factor that belongs to a sweep: chambers hold it to about a kelvin.
+fn snap(temperature: &mut f64, points: &[(f64, f64)]) {
+    let nearest = points.iter().map(|point| point.0).min_by(|a, b| {
+        let away = |kelvin: f64| (kelvin - *temperature).abs();
+        away(*a).total_cmp(&away(*b))
+    });
+    if let Some(kelvin) = nearest.filter(|kelvin| (kelvin - *temperature).abs() <= SAME_TEMPERATURE) {
+        *temperature = kelvin;
+    }
 }
 
 /// A fault of the isotherms, with the line of the point that it names.
@@ -276,28 +312,34 @@ fn abscissa(kind: Kind) -> Abscissa {
     }
 }
 
-/// The shift about `reference` from the overlap of the sweeps: the WLF or the Arrhenius law where one meets the
-/// factors, else the factors themselves.
-fn estimated(
-    curves: &Curves,
-    reference: f64,
-    notes: &mut Vec<String>,
-) -> Result<(Shift, Option<f64>), Fault> {
+/// A shift, the distance of an estimated law from its factors, and these.
+struct Found {
+    shift: Option<Shift>,
+    rms: Option<f64>,
+    factors: Vec<[f64; 3]>,
+}
+
+/// The shift about `reference` from the sweeps themselves: the WLF or the Arrhenius law where one describes the factors, else
+/// the factors.
+fn estimated(curves: &Curves, reference: f64, notes: &mut Vec<String>) -> Result<Found, Fault> {
     let isotherms = isotherms(curves);
     if isotherms.len() < 2 {
-        return Err(fault(
-            "a shift can be estimated from sweeps at two temperatures or more; name the column of the temperature, \
-             or give the shift",
-        ));
+        return Err(fault("a shift can be estimated from sweeps at two temperatures or more")
+            .remedy(Remedy::Column(super::Role::Temperature)));
     }
     let distance = |isotherm: &Isotherm| (isotherm.temperature - reference).abs();
     let nearest = isotherms.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
     let Some(anchor) = nearest.map(|isotherm| isotherm.temperature) else {
         return Err(fault("there are no sweeps"));
     };
-    let table = estimate_shift(&isotherms, abscissa(curves.kind), anchor)
+    let estimate = estimate_shift(&isotherms, abscissa(curves.kind), anchor)
         .map_err(|error| at_isotherm(curves, &error))?;
-    let Shift::Table { points } = &table else { return Ok((table, None)) };
+    let table = estimate.shift;
+    let Shift::Table { points } = &table else {
+        return Ok(Found { shift: Some(table), rms: None, factors: Vec::new() });
+    };
+    let factors = points.iter().zip(&estimate.uncertainty);
+    let factors = factors.map(|((kelvin, ln), u)| [*kelvin, ln / LN_10, *u]).collect();
     let laws = [fit_wlf(points, anchor), fit_arrhenius(points, anchor)];
     let best = laws.into_iter().flatten().filter(|law| law.rms <= LAW).min_by(|a, b| a.rms.total_cmp(&b.rms));
     let (shift, rms) = match best {
@@ -311,7 +353,45 @@ fn estimated(
         }
     };
     let moved = shift.about(reference).map_err(|error| fault(error.to_string()))?;
-    Ok((moved, rms))
+    Ok(Found { shift: Some(moved), rms, factors })
+}
+
+/// Says that the shift of the file is used, and how far its law is from its list.
+fn told_of_held(curves: &Curves, shift: &Shift) -> Option<String> {
+    let source = match (&curves.held.list, &curves.held.wlf) {
+        (Some(Shift::Table { points }), Some(wlf)) => {
+            let apart: Option<Vec<f64>> =
+                points.iter().map(|(kelvin, ln)| Some((wlf.ln_factor(*kelvin).ok()? - ln) / LN_10)).collect();
+            let rms = apart.map(|apart| {
+                let mean = apart.iter().sum::<f64>() / apart.len() as f64;
+                (apart.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / apart.len() as f64).sqrt()
+            });
+            let apart = rms.map_or("not defined at all of its temperatures".to_owned(), |rms| {
+                format!("{rms:.2} decades away from it (rms)")
+            });
+            format!("list of {} shift factors; its WLF constants are {apart}", points.len())
+        }
+        (Some(Shift::Table { points }), _) => format!("list of {} shift factors", points.len()),
+        _ => "WLF constants".to_owned(),
+    };
+    shift.validate().ok().map(|()| format!("the shift is the file's {source}"))
+}
+
+/// Says what the fit of one modulus of a DMA does to the other.
+fn left_out(moduli: Moduli, columns: &[(&'static str, Misfit)]) -> Option<String> {
+    let (fitted, other) = match (moduli, columns) {
+        (Moduli::Storage, [storage, loss]) => (storage, loss),
+        (Moduli::Loss, [storage, loss]) => (loss, storage),
+        _ => return None,
+    };
+    Some(format!(
+        "only the {} modulus is fitted, to {:.1} % rms; the {} modulus is off by {:.1} % rms: measured moduli that contradict \
+         each other more than they scatter belong to no linear viscoelastic material (Kramers-Kronig)",
+        fitted.0,
+        100.0 * fitted.1.rms,
+        other.0,
+        100.0 * other.1.rms
+    ))
 }
 
 /// The number in "of point 31" or "point 31 of".

@@ -15,13 +15,20 @@ use asperity::indentation::{IndentationFit, Interval};
 use asperity::material::Modulus;
 
 use super::bytes;
-use super::columns::{self, Columns, Form, Role};
-use super::error::CurveError;
-use super::table::Table;
+use super::columns::{self, Columns, Form};
+use super::error::{CurveError, fault};
+use super::role::Role;
+use super::workbook::sheets;
 use crate::choice;
 
 /// The columns of a record.
-const FORM: Form = Form { name: "indentation", roles: &[Role::Time, Role::Load, Role::Depth], t: Role::Time };
+const FORM: Form = Form {
+    name: "indentation",
+    needed: &[Role::Time, Role::Load, Role::Depth],
+    pairs: &[],
+    optional: &[],
+    t: Role::Time,
+};
 
 /// A record of an indentation, in SI.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,8 +60,17 @@ impl Indentation {
     /// # Errors
     /// As [`read`](Self::read).
     pub fn parse(path: &Path, bytes: &[u8], columns: &Columns) -> Result<Indentation, CurveError> {
-        let parsed = Table::parse(bytes).and_then(|table| columns::values(&table, FORM, columns));
-        let (values, notes) = parsed.map_err(|fault| fault.of(path))?;
+        let parsed = sheets(bytes, columns.sheet.as_deref()).and_then(|sheets| {
+            // The first sheet that holds such columns, or what is wrong with the first.
+            let mut read = sheets
+                .into_iter()
+                .map(|sheet| sheet.table.and_then(|table| columns::values(&table, FORM, columns)))
+                .collect::<Vec<_>>()
+                .into_iter();
+            let first = read.next().unwrap_or_else(|| Err(fault("the file holds no table")));
+            if first.is_ok() { first } else { read.find(Result::is_ok).unwrap_or(first) }
+        });
+        let (values, _, notes) = parsed.map_err(|fault| fault.of(path))?;
         let of = |role: Role| values.get(&role).cloned().unwrap_or_default();
         let [times, loads, depths] = [Role::Time, Role::Load, Role::Depth].map(of);
         Ok(Indentation { path: path.to_owned(), times, loads, depths, notes })

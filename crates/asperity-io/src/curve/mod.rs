@@ -1,4 +1,4 @@
-//! Measured curves of materials: relaxation tests, creep tests and DMA sweeps from text tables.
+//! Measured curves of materials: relaxation tests, creep tests and DMA sweeps from text tables and spreadsheets.
 //!
 //! ```text
 //! file --Table--> names, units, cells --Columns--> quantities in SI --Curves--> sweeps, one per temperature
@@ -6,7 +6,8 @@
 //! ```
 //!
 //! Separator and decimal mark are found from the file; which column is what, from its header or as told; a unit
-//! stands in the header or is told. What does not fit is refused with the line.
+//! stands in the header or is told. A spreadsheet may hold shift factors as well. What does not fit is refused with the
+//! line.
 //!
 //! ```
 //! use asperity_io::curve::{Columns, Curves, Kind, Request};
@@ -26,25 +27,31 @@
 mod block;
 mod columns;
 mod error;
+mod factors;
 mod fit;
 mod indentation;
+mod role;
+mod sweeps;
 mod table;
+mod workbook;
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-pub use columns::{Column, Columns, Role, angular_frequency};
-pub use error::CurveError;
+pub use columns::{Column, Columns, Place, angular_frequency};
+pub use error::{CurveError, Remedy};
+pub use factors::{HeldShift, read_shift_table};
 pub use fit::{Fitted, Request, Series, ShiftRequest};
 pub use indentation::{Indentation, MaterialOf, indentation_block};
+pub use role::Role;
 
 use asperity::material::Modulus;
 use serde::Deserialize;
 
 use crate::choice;
-use columns::Values;
 use error::{Fault, fault};
 use table::Table;
+use workbook::Sheet;
 
 /// What was measured.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Deserialize)]
@@ -65,12 +72,12 @@ impl Kind {
         choice::word(&self)
     }
 
-    /// The quantities that a file has or may have, in the order of its columns.
-    fn roles(self) -> &'static [Role] {
+    /// The names of its curves.
+    fn columns(self) -> &'static [&'static str] {
         match self {
-            Kind::Relaxation => &[Role::Time, Role::Modulus, Role::Temperature],
-            Kind::Creep => &[Role::Time, Role::Compliance, Role::Temperature],
-            Kind::Dma => &[Role::Frequency, Role::Storage, Role::Loss, Role::TanDelta, Role::Temperature],
+            Kind::Relaxation => &["relaxation modulus"],
+            Kind::Creep => &["creep compliance"],
+            Kind::Dma => &["storage", "loss"],
         }
     }
 }
@@ -99,6 +106,14 @@ pub struct Curves {
     pub measure: Option<Modulus>,
     /// One sweep per temperature, the coldest first.
     pub sweeps: Vec<Sweep>,
+    /// The sheet of a spreadsheet that was read.
+    pub sheet: Option<String>,
+    /// The columns that were read.
+    pub columns: Vec<Place>,
+    /// Headers of the columns that were not.
+    pub unused: Vec<String>,
+    /// What the other sheets of a spreadsheet say of the shift.
+    pub held: HeldShift,
     /// What was assumed about the file.
     pub notes: Vec<String>,
     /// MD5 of its bytes: another file has another one.
@@ -107,15 +122,9 @@ pub struct Curves {
 
 /// A larger file is no curve.
 const MOST_BYTES: u64 = 64 << 20;
-/// Temperatures closer than this belong to one sweep \[K\]: chambers hold no better.
-const SAME_TEMPERATURE: f64 = 1.0;
-/// Temperatures of one sweep spread by no more \[K\].
-const SPREAD: f64 = 3.0;
-/// More sweeps than anybody measures.
-const MOST_SWEEPS: usize = 1000;
 
 impl Curves {
-    /// Reads a text table.
+    /// Reads a text table or a sheet of a spreadsheet.
     ///
     /// # Errors
     /// [`CurveError`] with the line: no table, a column that is not there, a cell that is no number, a unit of
@@ -124,29 +133,70 @@ impl Curves {
         Curves::parse(path, &bytes(path)?, kind, columns)
     }
 
-    /// What a file holds, where its header tells it.
+    /// What a file (or the sheet of it) holds, where its header tells it.
     ///
     /// # Errors
     /// [`CurveError`] where the file cannot be read or holds no table.
-    pub fn kind_of(path: &Path) -> Result<Option<Kind>, CurveError> {
-        let table = Table::parse(&bytes(path)?).map_err(|fault| fault.of(path))?;
-        Ok([Kind::Dma, Kind::Relaxation, Kind::Creep].into_iter().find(|kind| columns::named(&table, *kind)))
+    pub fn kind_of(path: &Path, sheet: Option<&str>) -> Result<Option<Kind>, CurveError> {
+        let kinds = |bytes: Vec<u8>| -> Result<Option<Kind>, Fault> {
+            let sheets = workbook::sheets(&bytes, sheet)?;
+            Ok(sheets.iter().find_map(|sheet| kind_of(sheet.table.as_ref().ok()?)))
+        };
+        kinds(bytes(path)?).map_err(|fault| fault.of(path))
     }
 
-    /// From the bytes of a text table that is called `path` in messages.
+    /// From the bytes of a file that is called `path` in messages.
     ///
     /// # Errors
     /// As [`read`](Self::read).
     pub fn parse(path: &Path, bytes: &[u8], kind: Kind, columns: &Columns) -> Result<Curves, CurveError> {
         let digest = crate::digest::md5(bytes);
-        let parsed = Table::parse(bytes).and_then(|table| {
-            let (values, notes) = columns::values(&table, kind.into(), columns)?;
+        let parse = || -> Result<Curves, Fault> {
+            let sheets = workbook::sheets(bytes, columns.sheet.as_deref())?;
+            let held = match sheets.as_slice() {
+                [Sheet { name: None, .. }] => HeldShift::default(),
+                // The shift may stand on another sheet than the one that is read.
+                _ if columns.sheet.is_some() => factors::held(&workbook::sheets(bytes, None)?),
+                sheets => factors::held(sheets),
+            };
+            let (sheet, table) = chosen(sheets, kind)?;
+            let (values, used, notes) = columns::values(&table, kind.into(), columns)?;
             let lines: Vec<usize> = table.rows.iter().map(|row| row.line).collect();
-            let measure = columns::measure(&table, kind.into(), columns);
-            Ok((sweeps(kind, &values, &lines)?, measure, notes))
-        });
-        let (sweeps, measure, notes) = parsed.map_err(|fault| fault.of(path))?;
-        Ok(Curves { path: path.to_owned(), kind, measure, sweeps, notes, digest })
+            let measure = columns::measure(&used, &table);
+            let unused = (1..=table.columns).filter(|n| !used.iter().any(|place| place.column == *n));
+            let unused =
+                unused.filter_map(|n| table.headers.get(n - 1).filter(|name| !name.is_empty()).cloned());
+            Ok(Curves {
+                path: path.to_owned(),
+                kind,
+                measure,
+                sweeps: sweeps::sweeps(kind, &values, &lines)?,
+                sheet,
+                unused: unused.collect(),
+                columns: used,
+                held,
+                notes,
+                digest: String::new(),
+            })
+        };
+        let curves = parse().map_err(|fault| fault.of(path))?;
+        Ok(Curves { digest, ..curves })
+    }
+
+    /// Curves that no file holds; `name` is what messages call them.
+    pub fn of(name: &str, kind: Kind, sweeps: Vec<Sweep>) -> Curves {
+        Curves {
+            path: PathBuf::from(name),
+            kind,
+            measure: None,
+            sweeps,
+            sheet: None,
+            columns: Vec::new(),
+            unused: Vec::new(),
+            held: HeldShift::default(),
+            notes: Vec::new(),
+            digest: String::new(),
+        }
     }
 
     /// Number of points.
@@ -166,59 +216,31 @@ fn bytes(path: &Path) -> Result<Vec<u8>, CurveError> {
     Ok(bytes)
 }
 
-/// The rows by temperature; each sweep in the order of the file, or the reverse where that goes down.
-fn sweeps(kind: Kind, values: &Values, lines: &[usize]) -> Result<Vec<Sweep>, Fault> {
-    let of = |role: Role| values.get(&role).cloned().unwrap_or_default();
-    let (x, curves) = match kind {
-        Kind::Relaxation => (of(Role::Time), vec![of(Role::Modulus)]),
-        Kind::Creep => (of(Role::Time), vec![of(Role::Compliance)]),
-        Kind::Dma => {
-            let (storage, tan_delta) = (of(Role::Storage), of(Role::TanDelta));
-            let loss = match values.get(&Role::Loss) {
-                Some(loss) => loss.clone(),
-                None => storage.iter().zip(&tan_delta).map(|(storage, tan)| storage * tan).collect(),
-            };
-            (of(Role::Frequency), vec![storage, loss])
+/// What the header of a table says that it holds.
+fn kind_of(table: &Table) -> Option<Kind> {
+    [Kind::Dma, Kind::Relaxation, Kind::Creep].into_iter().find(|kind| columns::named(table, *kind))
+}
+
+/// The first sheet whose header names a curve of the kind, or the only one with a table.
+fn chosen(sheets: Vec<Sheet>, kind: Kind) -> Result<(Option<String>, Table), Fault> {
+    let mut names = Vec::new();
+    let mut tables = Vec::new();
+    let mut refused = None;
+    for sheet in sheets {
+        names.extend(sheet.name.clone());
+        match sheet.table {
+            Ok(table) if columns::named(&table, kind) => return Ok((sheet.name, table)),
+            Ok(table) => tables.push((sheet.name, table)),
+            Err(fault) => refused = Some(fault),
         }
-    };
-    let sweep = |temperature: Option<f64>, rows: &[usize]| {
-        let mut rows = rows.to_vec();
-        let falls = rows.len() > 1 && rows.windows(2).all(|pair| x[pair[1]] < x[pair[0]]);
-        if falls {
-            rows.reverse();
-        }
-        let pick = |column: &Vec<f64>| rows.iter().map(|row| column[*row]).collect::<Vec<f64>>();
-        Sweep {
-            temperature,
-            x: pick(&x),
-            curves: curves.iter().map(pick).collect(),
-            lines: rows.iter().map(|row| lines[*row]).collect(),
-        }
-    };
-    let Some(temperatures) = values.get(&Role::Temperature) else {
-        let rows: Vec<usize> = (0..x.len()).collect();
-        return Ok(vec![sweep(None, &rows)]);
-    };
-    let mut order: Vec<usize> = (0..x.len()).collect();
-    order.sort_by(|a, b| temperatures[*a].total_cmp(&temperatures[*b]));
-    let same = |a: &usize, b: &usize| temperatures[*b] - temperatures[*a] <= SAME_TEMPERATURE;
-    let mut found = Vec::new();
-    for group in order.chunk_by(same) {
-        let (coldest, warmest) = (temperatures[group[0]], temperatures[group[group.len() - 1]]);
-        if warmest - coldest > SPREAD {
-            return Err(fault(format!(
-                "the temperatures from {coldest} K to {warmest} K follow each other within {SAME_TEMPERATURE} K; \
-                 sweeps at held temperatures are needed"
-            )));
-        }
-        if found.len() == MOST_SWEEPS {
-            return Err(fault(format!("there are more than {MOST_SWEEPS} temperatures")));
-        }
-        let mean =
-            coldest + group.iter().map(|row| temperatures[*row] - coldest).sum::<f64>() / group.len() as f64;
-        let mut rows = group.to_vec();
-        rows.sort_unstable();
-        found.push(sweep(Some(mean), &rows));
     }
-    Ok(found)
+    match (tables.len(), tables.pop(), refused) {
+        (1, Some(only), _) => Ok(only),
+        (0, _, Some(refused)) => Err(refused),
+        _ => {
+            let names: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
+            let message = format!("no sheet names the columns of a {} file", kind.name());
+            Err(fault(message).remedy(Remedy::Sheet(names.join(", "))))
+        }
+    }
 }

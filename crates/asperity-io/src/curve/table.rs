@@ -45,20 +45,26 @@ const MOST_ROWS: usize = 2_000_000;
 const MOST_COLUMNS: usize = 1000;
 
 impl Table {
+    /// From the bytes of a text file.
     pub(super) fn parse(bytes: &[u8]) -> Result<Table, Fault> {
         let text = to_text(bytes).ok_or_else(|| fault("the file is binary, not a text table"))?;
-        let lines: Vec<&str> = text.lines().map(str::trim).collect();
+        let lines: Vec<&str> = text.lines().map(trim).collect();
         let numeric = lines.iter().copied().filter(|line| !is_comment(line) && is_numbers(line));
         let (separator, decimal_comma) = match numeric.clone().next() {
             Some(_) => dialect(numeric).map_err(|problem| fault(problem.to_string()))?,
             // Columns of text beside the numbers.
             None => guess(&lines),
         };
+        drop(lines);
+        Table::split(text, separator, decimal_comma)
+    }
+
+    /// From text whose separator and decimal mark are known.
+    pub(super) fn split(text: String, separator: Option<char>, decimal_comma: bool) -> Result<Table, Fault> {
+        let lines: Vec<&str> = text.lines().map(trim).collect();
         let number = |cell: &str| parse_number(cell, decimal_comma).is_some();
-        let first = lines.iter().position(|line| {
-            !is_comment(line) && cells(line, separator).iter().filter(|cell| number(cell)).count() >= 2
-        });
-        let first = first.ok_or_else(|| {
+        let numbers = |line: &str| cells(line, separator).iter().filter(|cell| number(cell)).count();
+        let first = first_row(&lines, separator, &numbers).ok_or_else(|| {
             fault("there is no line with two numbers; a curve is a text table with one point per line")
         })?;
         let mut cells_of_first = cells(lines[first], separator);
@@ -71,12 +77,24 @@ impl Table {
         }
         let (headers, units) = header(&lines[..first], separator, columns);
         let unread = match headers.iter().all(String::is_empty) && units.is_none() {
-            true => lines[..first].iter().rev().find(|line| !line.is_empty()).map(|line| (*line).to_owned()),
+            true => lines[..first]
+                .iter()
+                .rev()
+                .find(|line| !is_blank(line, separator))
+                .map(|line| (*line).to_owned()),
             false => None,
         };
+        let named: Vec<&str> = if unread.is_none() { heading(&lines[..first]) } else { vec![] };
         let mut rows = Vec::new();
+        let mut skipped = first;
         for (n, line) in lines.iter().enumerate().skip(first) {
-            if line.is_empty() || is_comment(line) {
+            if n < skipped || is_blank(line, separator) || is_comment(line) {
+                continue;
+            }
+            if numbers(line) == 0
+                && let Some(next) = repeated_heading(&lines, n, &named, &numbers)
+            {
+                skipped = next;
                 continue;
             }
             let mut cells = cells(line, separator);
@@ -114,12 +132,23 @@ impl Table {
                     "" => "the cell is empty".to_owned(),
                     _ => format!("the cell {shown:?} is not a finite number"),
                 };
-                let help =
-                    "a unit belongs to the column: in the header, as in \"modulus [MPa]\", or in `units`";
+                let help = "a unit belongs to the column: in the header, as in \"modulus [MPa]\", or said";
                 fault(format!("{why} (column {}{}); {help}", column + 1, self.quoted(column))).at(row.line)
             })
         };
         self.rows.iter().map(parse).collect()
+    }
+
+    /// The entries of a column as numbers from 0, equal where the entries are equal, in the order of the file.
+    pub(super) fn labels(&self, column: usize) -> Vec<f64> {
+        let mut known = std::collections::HashMap::new();
+        let label = |row: &Row| {
+            let line = self.text.get(row.span.clone()).unwrap_or_default();
+            let cell = cells(line, self.separator).get(column).copied().unwrap_or_default();
+            let next = known.len();
+            *known.entry(cell.to_owned()).or_insert(next) as f64
+        };
+        self.rows.iter().map(label).collect()
     }
 
     /// `, "f [Hz]"`, or nothing where the column has no name.
@@ -139,6 +168,48 @@ impl Table {
         let shown: Vec<String> = (0..self.columns.min(20)).map(name).collect();
         shown.join(", ")
     }
+}
+
+/// Without blanks at its ends; a tab before other cells stands for an empty cell.
+fn trim(line: &str) -> &str {
+    let line = line.trim_end();
+    match line.trim_start().contains('\t') {
+        true => line.trim_start_matches([' ', '\u{feff}']),
+        false => line.trim_start(),
+    }
+}
+
+/// The first line of the table: with two numbers at least, and with as many cells as the next such line (exports begin with
+/// lines of other numbers); where there is no such pair, the first line with two numbers.
+fn first_row(lines: &[&str], separator: Option<char>, numbers: &dyn Fn(&str) -> usize) -> Option<usize> {
+    let width = |line: &str| cells(line, separator).len();
+    let rows: Vec<usize> =
+        (0..lines.len()).filter(|n| !is_comment(lines[*n]) && numbers(lines[*n]) >= 2).take(200).collect();
+    let pair = rows.windows(2).find(|pair| width(lines[pair[0]]) == width(lines[pair[1]]));
+    pair.map(|pair| pair[0]).or_else(|| rows.first().copied())
+}
+
+/// The lines that name the columns and their units.
+fn heading<'a>(before: &[&'a str]) -> Vec<&'a str> {
+    before.iter().rev().filter(|line| !line.trim().is_empty()).take(2).copied().collect()
+}
+
+/// Where a file repeats its heading before the points of another sweep, the line on which they begin.
+fn repeated_heading(
+    lines: &[&str],
+    from: usize,
+    named: &[&str],
+    numbers: &dyn Fn(&str) -> usize,
+) -> Option<usize> {
+    /// Lines between two sweeps.
+    const MOST: usize = 50;
+    let next = (from..lines.len().min(from + MOST)).find(|n| numbers(lines[*n]) >= 2)?;
+    lines[from..next].iter().any(|line| named.contains(line)).then_some(next)
+}
+
+/// Whether a line holds separators only.
+fn is_blank(line: &str, separator: Option<char>) -> bool {
+    line.chars().all(|c| c.is_whitespace() || Some(c) == separator)
 }
 
 fn is_comment(line: &str) -> bool {
@@ -177,22 +248,37 @@ fn cells(line: &str, separator: Option<char>) -> Vec<&str> {
 
 /// The header cells of the columns, and the units where a line of their own names them.
 fn header(lines: &[&str], separator: Option<char>, columns: usize) -> (Vec<String>, Option<Vec<String>>) {
-    let fitting = lines.iter().rev().filter(|line| !line.is_empty()).take(2);
+    let fitting = lines.iter().rev().filter(|line| !is_blank(line, separator)).take(2);
     let mut found = fitting.map_while(|line| header_cells(line, separator, columns));
     let none = || vec![String::new(); columns];
     let Some(last) = found.next() else { return (none(), None) };
+    let before = found.next();
     let only_units = last.iter().any(|cell| !cell.is_empty()) && last.iter().all(|cell| is_unit(cell));
-    match (only_units, found.next()) {
+    let only_units = only_units || before.as_ref().is_some_and(|names| are_units(names, &last));
+    match (only_units, before) {
         (true, Some(names)) => (names, Some(last.iter().map(|cell| bare_unit(cell).to_owned()).collect())),
         (true, None) => (none(), Some(last.iter().map(|cell| bare_unit(cell).to_owned()).collect())),
         (false, _) => (last, None),
     }
 }
 
+/// Whether a line under a line of names holds their units, which may be single letters or unknown here: two of them at
+/// least are units for sure, and no more than a third of the cells are none; nor is the line above one of units.
+fn are_units(names: &[String], cells: &[String]) -> bool {
+    let sure = |cell: &&String| !matches!(bare_unit(cell), "" | "1") && is_unit(cell);
+    let letter = |cell: &str| {
+        matches!(bare_unit(cell), "C" | "N" | "m" | "F" | "%" | "°" | "deg" | "rad" | "C°" | "Grad")
+    };
+    let other = cells.iter().filter(|cell| !is_unit(cell) && !letter(cell)).count();
+    let certain = cells.iter().filter(sure).count() + cells.iter().filter(|cell| letter(cell)).count();
+    certain >= 2 && 3 * other <= cells.len() && names.iter().filter(sure).count() < 2
+}
+
 /// The cells of a header line, where it has as many as there are columns. Names may hold blanks: where these part
 /// the columns, two of them do.
 fn header_cells(line: &str, separator: Option<char>, columns: usize) -> Option<Vec<String>> {
-    let line = line.trim_start_matches(['#', '%', '/']).trim();
+    let line = line.trim_start_matches(['#', '%', '/']);
+    let line = if line.contains('\t') { line.trim_end() } else { line.trim() };
     let clean = |cells: Vec<&str>| -> Vec<String> {
         cells.iter().map(|cell| cell.trim().trim_matches('"').trim().to_owned()).collect()
     };
@@ -202,6 +288,10 @@ fn header_cells(line: &str, separator: Option<char>, columns: usize) -> Option<V
     }
     if plain.len() > columns {
         plain = with_units(plain);
+    }
+    // The last cells of a line with tabs may be empty.
+    if separator.is_none() && line.contains('\t') && plain.len() < columns && plain.len() > columns / 2 {
+        plain.resize(columns, String::new());
     }
     if plain.len() == columns {
         return Some(plain);
@@ -324,6 +414,10 @@ mod tests {
             "t/s\tE/MPa\n0,5\t2,0\n1,5\t1,0\n",
             "# made by hand\n# t (s)  E (MPa)\n0.5 2\n1.5 1\n",
             "t,E\ns,MPa\n0.5,2\n\n# half way\n1.5,1\n",
+            // A heading that is repeated before the next points.
+            "t,E\ns,MPa\n0.5,2\n\nnext step\nt,E\ns,MPa\n1.5,1\n",
+            // Other numbers before the table.
+            "3 samples of 2 mm\nmade 2024 5 17\nt\tE\ns\tMPa\n0.5\t2\n1.5\t1\n",
             "sample A\nt;E;\n[s];[MPa];\n0,5;2;\n1,5;1;\n",
         ] {
             let table = Table::parse(text.as_bytes()).unwrap();
@@ -337,6 +431,22 @@ mod tests {
         }
         let table = Table::parse(b"0.5 2\n1.5 1\n").unwrap();
         assert_eq!(table.names, ["", ""]);
+    }
+
+    #[test]
+    fn a_line_of_units_may_hold_single_letters_and_dashes() {
+        for (text, names, units) in [
+            ("\u{feff}T,log_aT\nC, -\n100,-11.7\n92,-10.92\n", ["T", "log_aT"], ["C", "-"]),
+            ("Zeit;Kraft;\ns;N;\n0,5;2;\n1,5;1;\n", ["Zeit", "Kraft"], ["s", "N"]),
+        ] {
+            let table = Table::parse(text.as_bytes()).unwrap();
+            assert_eq!(table.names, names, "{text}");
+            assert_eq!(table.units, units, "{text}");
+        }
+        let tabs = Table::parse(b"\tt\tE\n\ts\tMPa\nA\t0.5\t2\nA\t1.5\t1\n").unwrap();
+        assert_eq!((tabs.names[1].as_str(), tabs.units[2].as_str()), ("t", "MPa"));
+        let five = "f,E',E'',T,Set\nHz,MPa,MPa,C,-\n1,2,3,4,0\n2,3,4,4,0\n";
+        assert_eq!(Table::parse(five.as_bytes()).unwrap().names, ["f", "E'", "E''", "T", "Set"]);
     }
 
     #[test]

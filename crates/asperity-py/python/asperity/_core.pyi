@@ -282,6 +282,7 @@ def fit_file(
     path: str,
     kind: str | None,
     columns: list[tuple[str, str | None, int | None, str | None]],
+    sheet: str | None,
     options: dict[str, Any],
 ) -> dict[str, Any]: ...
 def fit_indentation(

@@ -49,6 +49,8 @@ class Fit:
     #: Largest and root mean square of |fit/data - 1|.
     max_misfit: float
     rms_misfit: float
+    #: (rms, largest) misfit of each curve, fitted or not: "storage" and "loss" of a DMA.
+    misfits: dict[str, tuple[float, float]]
     #: Where the largest is: time [s] or angular frequency [rad/s].
     worst: float
     #: Relative scatter of the data (standard deviation).
@@ -163,6 +165,7 @@ def fit_relaxation(
     long_time: str = "free",
     max_misfit: float = 0.1,
     max_terms: int | None = None,
+    misfit: float | None = None,
 ) -> Fit:
     """Fits a relaxation modulus.
 
@@ -180,6 +183,7 @@ def fit_relaxation(
     long_time : "free", "solid" (no flow) or "fluid" (no modulus is left)
     max_misfit : largest mean relative misfit of neighbours before the data are refused
     max_terms : most terms; by default as many as the data call for
+    misfit : rms misfit to be held by as few terms as possible
 
     Raises
     ------
@@ -217,6 +221,7 @@ def fit_creep(
     long_time: str = "free",
     max_misfit: float = 0.1,
     max_terms: int | None = None,
+    misfit: float | None = None,
 ) -> Fit:
     """Fits a creep compliance [1/Pa]; the parameters are those of :func:`fit_relaxation`.
 
@@ -250,10 +255,15 @@ def fit_dma(
     long_time: str = "free",
     max_misfit: float = 0.1,
     max_terms: int | None = None,
+    misfit: float | None = None,
+    moduli: str = "both",
+    loss_weight: float = 1.0,
 ) -> Fit:
     """Fits storage and loss modulus [Pa] over frequency [Hz], or [rad/s] where `angular`, by one spectrum.
 
-    `window` is in rad/s; the other parameters are those of :func:`fit_relaxation`.
+    `window` is in rad/s; `moduli` is "both", "storage" or "loss", the ones that are fitted (measured ones often contradict
+    each other: then the storage modulus is usual, and :attr:`Fit.misfits` says how far off the other is); `loss_weight` is the
+    weight of a residual of the loss modulus. The other parameters are those of :func:`fit_relaxation`.
 
     >>> import asperity as asp, numpy as np
     >>> rubber = asp.Prony(equilibrium=1e6, terms=[(5e6, 0.01), (2e6, 1.0)], poisson=0.5)
@@ -271,6 +281,7 @@ def fit_file(
     path: str | os.PathLike[str],
     *,
     kind: str | None = None,
+    sheet: str | None = None,
     columns: Mapping[str, str | int] | None = None,
     units: Mapping[str, str] | None = None,
     modulus: str = "young",
@@ -286,18 +297,22 @@ def fit_file(
     long_time: str = "free",
     max_misfit: float = 0.1,
     max_terms: int | None = None,
+    misfit: float | None = None,
+    moduli: str = "both",
+    loss_weight: float = 1.0,
 ) -> Fit:
     """Fits a text table of a relaxation test, a creep test or a DMA, as ``asperity material fit`` does.
 
     Parameters
     ----------
-    path : table with one point per line; quantities and units are found from its header
+    path : table or spreadsheet (.xls, .xlsx) with one point per line; quantities and units are found from its header
     kind : "relaxation", "creep" or "dma", if the header does not state it
     columns : names or numbers (from 1) of columns by quantity: time, modulus, compliance, frequency, storage, loss,
         tan_delta, temperature
     units : units by quantity, which go before those of the header
+    sheet : sheet of a spreadsheet; by default the first one that names such columns
 
-    The others are those of :func:`fit_relaxation`; `window` in s, or rad/s of a DMA.
+    The others are those of :func:`fit_dma` and :func:`fit_relaxation`; `window` in s, or rad/s of a DMA.
 
     Raises
     ------
@@ -313,15 +328,15 @@ def fit_file(
         said.append((role, told, place, given_units.get(role)))
     rest = _rest(locals())
     options = _options(rest)
-    return _made(_core.fit_file(os.fspath(path), kind, said, options), rest)
+    return _made(_core.fit_file(os.fspath(path), kind, said, sheet, options), rest)
 
 
 def _rest(given: dict[str, Any]) -> dict[str, Any]:
     names = [
         *("modulus", "shift", "reference", "poisson", "bulk_modulus", "hardness", "name"),
-        *("window", "per_decade", "margin", "long_time", "max_misfit", "max_terms"),
+        *("window", "per_decade", "margin", "long_time", "max_misfit", "max_terms", "misfit", "moduli", "loss_weight"),
     ]
-    return {key: given[key] for key in names}
+    return {key: given[key] for key in names if key in given}
 
 
 def _options(rest: dict[str, Any]) -> dict[str, Any]:
@@ -344,6 +359,9 @@ def _options(rest: dict[str, Any]) -> dict[str, Any]:
         "long_time": rest["long_time"],
         "limit": number("max_misfit", rest["max_misfit"]),
         "max_terms": None if most is None else count("max_terms", most),
+        "misfit": None if rest.get("misfit") is None else number("misfit", rest["misfit"]),
+        "moduli": rest.get("moduli", "both"),
+        "loss_weight": number("loss_weight", rest.get("loss_weight", 1.0)),
     }
 
 
@@ -410,6 +428,7 @@ def _made(found: dict[str, Any], rest: dict[str, Any]) -> Fit:
         fluidity=fluidity,
         max_misfit=found["max_misfit"],
         rms_misfit=found["rms_misfit"],
+        misfits=found["misfits"],
         worst=found["worst"],
         noise=found["noise"],
         uncertainty=found["uncertainty"],

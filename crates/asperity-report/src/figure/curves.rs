@@ -34,6 +34,8 @@ pub struct Series {
     pub y: Vec<f64>,
     /// How it is drawn.
     pub style: Style,
+    /// Its colour, "#rrggbb"; `None` for the next one of the panel.
+    pub colour: Option<String>,
 }
 
 /// A panel of curves.
@@ -71,7 +73,13 @@ impl Series {
         x: impl Into<Vec<f64>>,
         y: impl Into<Vec<f64>>,
     ) -> Series {
-        Series { name: name.into(), x: x.into(), y: y.into(), style }
+        Series { name: name.into(), x: x.into(), y: y.into(), style, colour: None }
+    }
+
+    /// The same in a colour of its own, "#rrggbb".
+    pub fn in_colour(mut self, colour: impl Into<String>) -> Series {
+        self.colour = Some(colour.into());
+        self
     }
 
     pub(super) fn points(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
@@ -155,11 +163,12 @@ impl Curves {
     }
 
     /// The series with their colours.
-    pub(super) fn coloured(&self) -> impl Iterator<Item = (&Series, &'static str)> {
+    pub(super) fn coloured(&self) -> impl Iterator<Item = (&Series, &str)> {
         let mut colours = COLOURS.iter().copied().cycle();
-        self.series.iter().map(move |series| match series.style {
-            Style::Reference => (series, INK),
-            _ => (series, colours.next().unwrap_or(INK)),
+        self.series.iter().map(move |series| match (&series.colour, series.style) {
+            (Some(own), _) => (series, own.as_str()),
+            (None, Style::Reference) => (series, INK),
+            (None, _) => (series, colours.next().unwrap_or(INK)),
         })
     }
 

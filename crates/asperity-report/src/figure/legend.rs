@@ -12,7 +12,7 @@ const GAP: f64 = 4.0;
 
 /// The series that have a name, with their colours.
 pub(super) struct Legend<'a> {
-    named: Vec<(&'a Series, &'static str)>,
+    named: Vec<(&'a Series, &'a str)>,
 }
 
 impl<'a> Legend<'a> {
@@ -51,7 +51,7 @@ impl<'a> Legend<'a> {
     }
 
     /// The names in rows of this width.
-    pub(super) fn rows(&self, width: f64) -> Vec<Vec<(&'a Series, &'static str)>> {
+    pub(super) fn rows(&self, width: f64) -> Vec<Vec<(&'a Series, &'a str)>> {
         let mut rows: Vec<Vec<_>> = vec![];
         let mut used = f64::INFINITY;
         for entry in &self.named {

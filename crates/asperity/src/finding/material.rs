@@ -49,6 +49,18 @@ pub fn misfit(name: &str, rms: f64, largest: f64, scatter: f64) -> Option<Findin
     })
 }
 
+/// A fit of one modulus of a DMA, which misses the other one, `column`, by this rms share.
+pub fn contradiction(name: &str, column: &str, rms: f64) -> Option<Finding> {
+    (rms.is_nan() || rms > MISFIT).then(|| {
+        let text = format!(
+            "The material of {name} is fitted to one of the measured moduli, and its {column} modulus is off by {} % rms: \
+             the two contradict each other (Kramers-Kronig). What depends on the {column} modulus is uncertain by that.",
+            digits(100.0 * rms)
+        );
+        Finding::warning(MATERIAL_MISFIT, rms, MISFIT, text)
+    })
+}
+
 /// A run that needs the material of `name` from the first to the last time \[s\], where data cover `window` \[s\] only;
 /// `words` say so.
 pub fn beyond_data(name: &str, [first, last]: [f64; 2], window: [f64; 2], words: &str) -> Finding {

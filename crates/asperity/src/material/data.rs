@@ -150,12 +150,13 @@ pub(super) fn thin(xs: &[f64], values: &[f64]) -> Vec<(f64, f64, f64)> {
 }
 
 /// Refuses a curve that goes the wrong way by more than its scatter explains: the distance of the two
-/// extremes of N normal deviates, and at least one per cent. The scatter of a few points cannot be told from the
-/// bends of their curve: these may go wrong by a tenth at most.
-pub(super) fn check_trend(words: Words, trend: Trend, xs: &[f64], values: &[f64]) -> Result<()> {
+/// extremes of N normal deviates, and at least `limit`, the misfit that a fit may have: sweeps of a master curve often lie
+/// above one another by some per cent. The scatter of a few points cannot be told from the bends of their curve.
+pub(super) fn check_trend(words: Words, trend: Trend, xs: &[f64], values: &[f64], limit: f64) -> Result<()> {
     let extremes = 2.0 * (1.0 + (2.0 * (xs.len() as f64).ln()).sqrt());
-    let most = if xs.len() < FEW_POINTS { 0.1 } else { f64::INFINITY };
-    let allowed = (extremes * noise(xs, values)).clamp(0.01, most);
+    let scatter = if xs.len() < FEW_POINTS { 0.0 } else { extremes * noise(xs, values) };
+    // A fall by all of a value is no scatter.
+    let allowed = scatter.max(limit.min(0.5));
     let mut extreme = 0;
     for (n, value) in values.iter().enumerate() {
         let reference = values[extreme];
@@ -252,8 +253,8 @@ mod tests {
     #[test]
     fn few_points_that_rise_are_refused_though_their_scatter_is_unknown() {
         let xs = [0.1, 1.0, 10.0, 100.0, 1000.0];
-        assert!(check_trend(WORDS, Trend::Falls, &xs, &[3.0, 2.0, 1.5, 1.2, 1.1]).is_ok());
-        let error = check_trend(WORDS, Trend::Falls, &xs, &[3.0, 2.0, 1.5, 1.9, 1.1]).unwrap_err();
+        assert!(check_trend(WORDS, Trend::Falls, &xs, &[3.0, 2.0, 1.5, 1.2, 1.1], 0.1).is_ok());
+        let error = check_trend(WORDS, Trend::Falls, &xs, &[3.0, 2.0, 1.5, 1.9, 1.1], 0.1).unwrap_err();
         assert!(error.to_string().contains("point 4 (time 1e2 s)"), "{error}");
     }
 

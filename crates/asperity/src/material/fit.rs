@@ -27,6 +27,21 @@ pub enum LongTime {
     Fluid,
 }
 
+/// Which moduli of a DMA are fitted. One spectrum gives both; measured ones often contradict each other
+/// (Kramers-Kronig), and then the usual practice is to fit the storage modulus and to look at the loss modulus.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "kebab-case"))]
+#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+pub enum Moduli {
+    /// Storage and loss modulus together.
+    #[default]
+    Both,
+    /// The storage modulus.
+    Storage,
+    /// The loss modulus; the equilibrium modulus comes from the storage modulus.
+    Loss,
+}
+
 /// How to fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FitOptions {
@@ -41,6 +56,13 @@ pub struct FitOptions {
     pub limit: f64,
     /// Most terms, at least 1; by default as many as the data call for.
     pub max_terms: usize,
+    /// The rms misfit to be held by as few terms as possible, greater than 0; by default the data justify the number of
+    /// terms (the Bayesian information criterion).
+    pub misfit: Option<f64>,
+    /// Which moduli of a DMA are fitted, default both.
+    pub moduli: Moduli,
+    /// Weight of a residual of the loss modulus over one of the storage modulus, default 1; used where both are fitted.
+    pub loss_weight: f64,
 }
 
 impl Default for FitOptions {
@@ -51,6 +73,9 @@ impl Default for FitOptions {
             long_time: LongTime::Free,
             limit: 0.1,
             max_terms: usize::MAX,
+            misfit: None,
+            moduli: Moduli::Both,
+            loss_weight: 1.0,
         }
     }
 }
@@ -63,8 +88,10 @@ const MOST_TIMES: f64 = 300.0;
 pub struct Fit<F> {
     /// The Prony series; `function.terms.len()` is the number of terms.
     pub function: F,
-    /// Distance between data and function.
+    /// Distance between the data that were fitted and the function.
     pub misfit: Misfit,
+    /// The same for each column: one of relaxation and creep, storage and loss modulus of a DMA, fitted or not.
+    pub columns: Vec<Misfit>,
     /// First and last time that the data cover \[s\]; for a DMA 1/omega.
     pub window: [f64; 2],
     /// Relative scatter of the data, from the distances of neighbours (standard deviation).
@@ -77,6 +104,7 @@ pub struct Fit<F> {
 
 /// Relative distance between data and fit.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Misfit {
     /// Largest |fit/data - 1|.
     pub max: f64,
@@ -100,12 +128,22 @@ impl<F> Fit<F> {
         let [start, end] = self.window;
         // Rounding of 1/omega is no extrapolation.
         (first < start * (1.0 - 1e-9) || last > end * (1.0 + 1e-9)).then(|| {
+            let covered = 100.0 * covered([first, last], [start, end]);
             let [first, last, start, end] = [first, last, start, end].map(short);
             format!(
                 "the run needs the material from {first} s to {last} s, but the data cover only \
-                 {start} s to {end} s; beyond them the fit is an extrapolation"
+                 {start} s to {end} s ({covered:.0} % of these decades); beyond them the fit is an extrapolation"
             )
         })
+    }
+}
+
+/// The share of the decades from `run[0]` to `run[1]` that lie inside `data`.
+fn covered(run: [f64; 2], data: [f64; 2]) -> f64 {
+    let inside = (run[1].min(data[1]) / run[0].max(data[0])).ln().max(0.0);
+    match (run[1] / run[0]).ln() {
+        decades if decades > 0.0 => inside / decades,
+        _ => 0.0,
     }
 }
 
@@ -139,22 +177,23 @@ pub fn fit_relaxation(times: &[f64], moduli: &[f64], options: &FitOptions) -> Re
     options.validate()?;
     data::check_abscissae(words, times, true)?;
     data::check_values(words, times, moduli, false)?;
-    data::check_trend(words, Trend::Falls, times, moduli)?;
+    data::check_trend(words, Trend::Falls, times, moduli, options.limit)?;
     let window = window(times);
     // A term much faster than the first time is invisible, exp(-10) of itself there, and would follow
     // the noise of one point to any size; half the first time still shows (unless t = 0 is measured).
     let margin = 10f64.powf(options.margin);
     let fastest = if times[0] == 0.0 { margin } else { margin.min(2.0) };
-    let curve = Curve { words, kernel: Kernel::Relaxation, xs: times, values: moduli, floor: 0.0 };
+    let curve =
+        Curve { words, kernel: Kernel::Relaxation, xs: times, values: moduli, floor: 0.0, weight: 1.0 };
     let problem = Problem {
         rows: curve.rows(),
         constant: options.long_time != LongTime::Fluid,
         flow: false,
         range: [window[0] / fastest, window[1] * margin],
     };
-    let Solved { spectrum, misfit, uncertainty } = options.solve(&problem, &[curve])?;
+    let Solved { spectrum, misfit, columns, uncertainty } = options.solve(&problem, &[curve])?;
     let noise = data::noise(times, moduli);
-    Ok(Fit { function: relaxation(spectrum)?, misfit, window, noise, uncertainty })
+    Ok(Fit { function: relaxation(spectrum)?, misfit, columns, window, noise, uncertainty })
 }
 
 /// Fits C(t) \[1/Pa\] at increasing times \[s\] of a creep test, whatever compliance it is (uniaxial or
@@ -181,71 +220,18 @@ pub fn fit_creep(times: &[f64], compliances: &[f64], options: &FitOptions) -> Re
     let from_zero = times[0] == 0.0 && compliances.first() == Some(&0.0);
     let (kept, values) = if from_zero { (&times[1..], &compliances[1..]) } else { (times, compliances) };
     data::check_values(words, kept, values, false)?;
-    data::check_trend(words, Trend::Rises, kept, values)?;
+    data::check_trend(words, Trend::Rises, kept, values, options.limit)?;
     let (window, margin) = (window(times), 10f64.powf(options.margin));
-    let curve = Curve { words, kernel: Kernel::Creep, xs: kept, values, floor: 0.0 };
+    let curve = Curve { words, kernel: Kernel::Creep, xs: kept, values, floor: 0.0, weight: 1.0 };
     let problem = Problem {
         rows: curve.rows(),
         constant: !from_zero,
         flow: options.long_time != LongTime::Solid,
         range: [window[0] / margin, window[1] * margin],
     };
-    let Solved { spectrum, misfit, uncertainty } = options.solve(&problem, &[curve])?;
-    Ok(Fit { function: creep(spectrum)?, misfit, window, noise: data::noise(kept, values), uncertainty })
-}
-
-/// Fits storage and loss modulus E', E'' \[Pa\] at increasing angular frequencies \[rad/s\] (2 pi f) of a
-/// dynamic mechanical analysis. Both moduli are met at once, by one relaxation function.
-///
-/// ```
-/// use asperity::material::{FitOptions, Relaxation, fit_dma};
-/// let rubber = Relaxation::absolute(1e6, &[(5e8, 1e-4), (8e7, 1e-2), (3e6, 2.0)])?;
-/// let omega: Vec<f64> = (0..40).map(|k| 10f64.powf(-2.0 + 0.2 * k as f64)).collect();
-/// let (storage, loss): (Vec<_>, Vec<_>) = omega.iter().map(|w| rubber.complex(*w)).unzip();
-/// let fit = fit_dma(&omega, &storage, &loss, &FitOptions::default())?;
-/// assert!(fit.misfit.max < 1e-4);
-/// assert!((fit.function.value(0.1) / rubber.value(0.1) - 1.0).abs() < 1e-4);
-/// # Ok::<(), asperity::Error>(())
-/// ```
-///
-/// # Errors
-/// As [`fit_relaxation`]: frequencies out of order, negative moduli, a storage modulus that falls with
-/// frequency, and pairs E', E'' that belong to no passive material (Kramers & Kronig).
-pub fn fit_dma(
-    omega: &[f64],
-    storage: &[f64],
-    loss: &[f64],
-    options: &FitOptions,
-) -> Result<Fit<Relaxation>> {
-    let words = Words {
-        abscissa: "angular frequency",
-        abscissa_unit: "rad/s",
-        ordinate: "storage modulus",
-        ordinate_unit: "Pa",
-    };
-    let loss_words = Words { ordinate: "loss modulus", ..words };
-    options.validate()?;
-    data::check_abscissae(words, omega, false)?;
-    data::check_values(words, omega, storage, false)?;
-    data::check_values(loss_words, omega, loss, true)?;
-    data::check_trend(words, Trend::Rises, omega, storage)?;
-    let window = [1.0 / omega[omega.len() - 1], 1.0 / omega[0]];
-    let margin = 10f64.powf(options.margin);
-    // A loss below a thousandth of the stored energy is below what instruments tell.
-    let floor = 1e-3 * storage.iter().copied().fold(f64::INFINITY, f64::min);
-    let curves = [
-        Curve { words, kernel: Kernel::Storage, xs: omega, values: storage, floor: 0.0 },
-        Curve { words: loss_words, kernel: Kernel::Loss, xs: omega, values: loss, floor },
-    ];
-    let problem = Problem {
-        rows: curves.iter().flat_map(Curve::rows).collect(),
-        constant: options.long_time != LongTime::Fluid,
-        flow: false,
-        range: [window[0] / margin, window[1] * margin],
-    };
-    let Solved { spectrum, misfit, uncertainty } = options.solve(&problem, &curves)?;
-    let noise = data::noise(omega, storage).max(data::noise(omega, loss));
-    Ok(Fit { function: relaxation(spectrum)?, misfit, window, noise, uncertainty })
+    let Solved { spectrum, misfit, columns, uncertainty } = options.solve(&problem, &[curve])?;
+    let noise = data::noise(kept, values);
+    Ok(Fit { function: creep(spectrum)?, misfit, columns, window, noise, uncertainty })
 }
 
 impl FitOptions {
@@ -260,6 +246,10 @@ impl FitOptions {
         if self.max_terms == 0 {
             return Err(Error::invalid("most terms of the fit", 0, "1 at least"));
         }
+        if let Some(misfit) = self.misfit {
+            positive("misfit to be held by the fit", misfit, "")?;
+        }
+        positive("weight of the loss modulus", self.loss_weight, "")?;
         positive("largest misfit of the fit", self.limit, "").map(|_| ())
     }
 
@@ -273,21 +263,26 @@ impl FitOptions {
                 format!("at most {MOST_TIMES}: fewer per decade, or data over fewer decades"),
             ));
         }
-        let spectrum = problem.fit(self.per_decade, self.max_terms);
-        let mut misfit = Misfit { max: 0.0, rms: 0.0, worst: 0.0 };
-        let (mut squares, mut count) = (0.0, 0);
-        for curve in curves {
-            let residuals = curve.residuals(&spectrum);
-            data::check_misfit(curve.words, curve.xs, curve.values, &residuals, self.limit)?;
-            for (r, x) in residuals.iter().zip(curve.xs) {
-                squares += r * r;
-                if r.abs() > misfit.max {
-                    (misfit.max, misfit.worst) = (r.abs(), *x);
-                }
-            }
-            count += residuals.len();
+        let spectrum = match self.misfit {
+            Some(misfit) => problem.fit_within(self.per_decade, misfit),
+            None => problem.fit(self.per_decade, self.max_terms),
+        };
+        let columns: Vec<Misfit> = curves.iter().map(|curve| curve.misfit(&spectrum)).collect();
+        let misfit = together(curves, &columns);
+        if let Some(wanted) = self.misfit.filter(|wanted| misfit.rms > wanted * (1.0 + 1e-9)) {
+            return Err(Error::invalid(
+                "misfit to be held by the fit",
+                format!("{:.3} %", 100.0 * wanted),
+                format!(
+                    "at least {:.3} %, which the best passive material reaches with {} times per decade",
+                    100.0 * misfit.rms,
+                    self.per_decade
+                ),
+            ));
         }
-        misfit.rms = (squares / count as f64).sqrt();
+        for curve in curves {
+            data::check_misfit(curve.words, curve.xs, curve.values, &curve.residuals(&spectrum), self.limit)?;
+        }
         if misfit.rms.is_nan() || misfit.rms > self.limit {
             return Err(Error::invalid(
                 "rms misfit of the fit",
@@ -300,14 +295,30 @@ impl FitOptions {
             ));
         }
         let uncertainty = refine::uncertainty(problem, &spectrum);
-        Ok(Solved { spectrum, misfit, uncertainty })
+        Ok(Solved { spectrum, misfit, columns, uncertainty })
     }
+}
+
+/// The misfit of several columns as one.
+fn together(curves: &[Curve], columns: &[Misfit]) -> Misfit {
+    let mut all = Misfit { max: 0.0, rms: 0.0, worst: 0.0 };
+    let (mut squares, mut count) = (0.0, 0.0);
+    for (curve, column) in curves.iter().zip(columns) {
+        squares += curve.xs.len() as f64 * column.rms * column.rms;
+        count += curve.xs.len() as f64;
+        if column.max >= all.max {
+            (all.max, all.worst) = (column.max, column.worst);
+        }
+    }
+    all.rms = (squares / count).sqrt();
+    all
 }
 
 /// A spectrum, and how well it is known.
 struct Solved {
     spectrum: Spectrum,
     misfit: Misfit,
+    columns: Vec<Misfit>,
     uncertainty: Vec<[f64; 2]>,
 }
 
@@ -319,6 +330,8 @@ struct Curve<'a> {
     values: &'a [f64],
     /// Smallest scale of a value: residuals are relative to the larger of the two.
     floor: f64,
+    /// Weight of its residuals in the sum of squares.
+    weight: f64,
 }
 
 impl Curve<'_> {
@@ -328,9 +341,22 @@ impl Curve<'_> {
             kernel: self.kernel,
             x,
             value,
-            weight: count.sqrt() / value.max(self.floor),
+            weight: self.weight * count.sqrt() / value.max(self.floor),
+            count,
         };
         data::thin(self.xs, self.values).into_iter().map(row).collect()
+    }
+
+    fn misfit(&self, spectrum: &Spectrum) -> Misfit {
+        let mut misfit = Misfit { max: 0.0, rms: 0.0, worst: 0.0 };
+        let residuals = self.residuals(spectrum);
+        for (r, x) in residuals.iter().zip(self.xs) {
+            misfit.rms += r * r / residuals.len() as f64;
+            if r.abs() > misfit.max {
+                (misfit.max, misfit.worst) = (r.abs(), *x);
+            }
+        }
+        Misfit { rms: misfit.rms.sqrt(), ..misfit }
     }
 
     /// Relative residuals (fit - value) at all points.
@@ -370,5 +396,8 @@ fn creep(spectrum: Spectrum) -> Result<Creep> {
     Ok(creep)
 }
 
+mod dma;
 #[cfg(test)]
 mod tests;
+
+pub use dma::fit_dma;

@@ -18,11 +18,13 @@
 //! A temperature that changes during the run makes a [`ReducedTime`], the clock of a [`ThermalCreep`];
 //! one that does not stretches the times: [`Material::stretched`].
 
+mod align;
 mod body;
 mod convert;
 mod creep;
 mod data;
 mod dual;
+mod estimate;
 mod fit;
 mod fractional;
 mod master;
@@ -43,9 +45,10 @@ mod thermal;
 pub use body::{Body, Lateral, PoissonCreep, pair_creep, pair_hardness};
 pub use creep::{Creep, CreepTerm};
 pub(crate) use dual::Dual;
-pub use fit::{Fit, FitOptions, LongTime, Misfit, fit_creep, fit_dma, fit_relaxation};
+pub use estimate::{ShiftEstimate, estimate_shift};
+pub use fit::{Fit, FitOptions, LongTime, Misfit, Moduli, fit_creep, fit_dma, fit_relaxation};
 pub use fractional::{Approximation, Fractional};
-pub use master::{Abscissa, Isotherm, MasterCurve, estimate_shift, master_curve};
+pub use master::{Abscissa, Isotherm, MasterCurve, master_curve};
 pub use models::{Material, Modulus};
 pub(crate) use quadrature::integrate;
 pub use reduced_time::ReducedTime;

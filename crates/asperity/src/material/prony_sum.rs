@@ -60,7 +60,7 @@ const MOST_DECADES: f64 = 40.0;
 pub(super) fn by_fit(exact: &Exact, solid: bool) -> Result<Approximation> {
     let row = |x| {
         let value = (exact.relaxation)(x);
-        Row { kernel: Kernel::Relaxation, x, value, weight: 1.0 / value }
+        Row { kernel: Kernel::Relaxation, x, value, weight: 1.0 / value, count: 1.0 }
     };
     const WIDEST: f64 = 3.0;
     let rows: Vec<Row> = samples(widen(exact.window, WIDEST), 12.0).into_iter().map(row).collect();

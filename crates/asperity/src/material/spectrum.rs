@@ -68,6 +68,8 @@ pub(super) struct Row {
     pub value: f64,
     /// One over the scale of the value: residuals are relative.
     pub weight: f64,
+    /// How many points it stands for.
+    pub count: f64,
 }
 
 /// constant + flow x + sum of weights at times.
@@ -127,6 +129,38 @@ impl Problem {
             }
         }
         best
+    }
+
+    /// The fewest terms whose rms residual is at most `misfit`, from a grid of `per_decade` times, left out or merged one
+    /// at a time, the cheapest first; all of the grid where it stays above.
+    pub(super) fn fit_within(&self, per_decade: f64, misfit: f64) -> Spectrum {
+        let mut best = self.fit_grid(per_decade);
+        while let Some(fewer) = self.fewer_within(&best, misfit) {
+            best = fewer;
+        }
+        best
+    }
+
+    /// A spectrum with one term less whose rms residual is at most `misfit`.
+    fn fewer_within(&self, spectrum: &Spectrum, misfit: f64) -> Option<Spectrum> {
+        if self.rms(spectrum) > misfit || spectrum.terms.len() < 2 {
+            return None;
+        }
+        let trials = self.reductions(spectrum);
+        [(0, 15), (1, 15), (2, 15), (0, 100)].into_iter().find_map(|(k, iterations)| {
+            let trial = refine::refine(self, trials.get(k)?.clone(), iterations);
+            (self.rms(&trial) <= misfit).then_some(trial)
+        })
+    }
+
+    /// Root of the mean square of the relative residuals; means of several points count as often.
+    fn rms(&self, spectrum: &Spectrum) -> f64 {
+        let (mut squares, mut count) = (0.0, 0.0);
+        for (residual, row) in self.residuals(spectrum).iter().zip(&self.rows) {
+            squares += residual * residual;
+            count += row.count;
+        }
+        f64::sqrt(squares / count)
     }
 
     /// A spectrum with one term less that the information criterion prefers.

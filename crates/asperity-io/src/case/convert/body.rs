@@ -173,6 +173,7 @@ fn made(
     };
     let report = MaterialReport {
         body: name.clone(),
+        law: sample.shift.clone(),
         shift_factor: factor.filter(|_| sample.shift.is_some()),
         terms: material.creep().terms.len(),
         ..report
@@ -197,7 +198,11 @@ fn findings(
         (Some(words), Some(needed), Some(known)) => Some(finding::beyond_data(name, needed, known, &words)),
         _ => None,
     };
-    misfit.into_iter().chain(beyond).collect()
+    let other = report
+        .other_misfit
+        .as_ref()
+        .and_then(|(column, misfit)| finding::contradiction(name, column, *misfit));
+    misfit.into_iter().chain(other).chain(beyond).collect()
 }
 
 /// A material by itself, and where it comes from.
@@ -219,7 +224,7 @@ pub fn alone(
     let material = checks.core(&at.span, reference.stretched(factor))?;
     let terms = material.creep().terms.len();
     let shift_factor = sample.shift.is_some().then_some(factor);
-    Some((material, MaterialReport { terms, shift_factor, ..report }))
+    Some((material, MaterialReport { terms, shift_factor, law: sample.shift.clone(), ..report }))
 }
 
 /// How warm a body is.
@@ -307,6 +312,12 @@ fn reference(
                 max_misfit: Some(fitted.misfit.max),
                 rms_misfit: Some(fitted.misfit.rms),
                 noise: Some(fitted.noise),
+                other_misfit: fitted.other().map(|(name, misfit)| (name.to_owned(), misfit.rms)),
+                columns: fitted
+                    .columns
+                    .iter()
+                    .map(|(name, m)| ((*name).to_owned(), [m.rms, m.max]))
+                    .collect(),
                 window: Some(fitted.window),
                 points: Some(fitted.data.x.len()),
                 temperatures: fitted.temperatures.clone(),

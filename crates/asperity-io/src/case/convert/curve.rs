@@ -1,7 +1,5 @@
 //! Materials that are fitted to measured curves.
 
-use std::collections::BTreeMap;
-
 use asperity::material::{FitOptions, Modulus};
 
 use super::Checks;
@@ -18,48 +16,35 @@ pub struct Fit {
     pub digest: String,
 }
 
-type Choice<'a> = (Role, Option<&'a raw::Column>);
-type Unit<'a> = (Role, Option<&'a String>);
+/// The columns and units that a material states: `said!(columns, units, sheet; key = Role, ...)`.
+macro_rules! said {
+    ($m:ident; $($key:ident = $role:ident),* $(,)?) => {{
+        let (columns, units) = ($m.columns.as_ref().map(|at| &at.value), $m.units.as_ref().map(|at| &at.value));
+        let mut said = Columns { sheet: $m.sheet.clone(), ..Columns::default() };
+        $(
+            if let Some(choice) = columns.and_then(|c| c.$key.as_ref()) {
+                said.columns.insert(Role::$role, column(choice));
+            }
+            if let Some(unit) = units.and_then(|u| u.$key.as_ref()) {
+                said.units.insert(Role::$role, unit.clone());
+            }
+        )*
+        said
+    }};
+}
 
 pub fn relaxation(checks: &mut Checks<'_, '_>, m: &raw::RelaxationTable, shift: ShiftRequest) -> Option<Fit> {
-    let columns = m.columns.as_ref().map(|at| &at.value);
-    let units = m.units.as_ref().map(|at| &at.value);
-    let columns = said(
-        &[
-            (Role::Time, columns.and_then(|c| c.time.as_ref())),
-            (Role::Modulus, columns.and_then(|c| c.modulus.as_ref())),
-            (Role::Temperature, columns.and_then(|c| c.temperature.as_ref())),
-        ],
-        &[
-            (Role::Time, units.and_then(|u| u.time.as_ref())),
-            (Role::Modulus, units.and_then(|u| u.modulus.as_ref())),
-            (Role::Temperature, units.and_then(|u| u.temperature.as_ref())),
-        ],
-    );
-    fit(checks, Kind::Relaxation, m.modulus, &m.path, &columns, m.fit.as_ref(), shift)
+    let said = said!(m; time = Time, modulus = Modulus, temperature = Temperature, set = Set);
+    fit(checks, Kind::Relaxation, m.modulus, &m.path, &said, m.fit.as_ref(), shift)
 }
 
 pub fn creep(checks: &mut Checks<'_, '_>, m: &raw::CreepTable, shift: ShiftRequest) -> Option<Fit> {
-    let columns = m.columns.as_ref().map(|at| &at.value);
-    let units = m.units.as_ref().map(|at| &at.value);
-    let columns = said(
-        &[
-            (Role::Time, columns.and_then(|c| c.time.as_ref())),
-            (Role::Compliance, columns.and_then(|c| c.compliance.as_ref())),
-            (Role::Temperature, columns.and_then(|c| c.temperature.as_ref())),
-        ],
-        &[
-            (Role::Time, units.and_then(|u| u.time.as_ref())),
-            (Role::Compliance, units.and_then(|u| u.compliance.as_ref())),
-            (Role::Temperature, units.and_then(|u| u.temperature.as_ref())),
-        ],
-    );
-    fit(checks, Kind::Creep, m.compliance, &m.path, &columns, m.fit.as_ref(), shift)
+    let said = said!(m; time = Time, compliance = Compliance, temperature = Temperature, set = Set);
+    fit(checks, Kind::Creep, m.compliance, &m.path, &said, m.fit.as_ref(), shift)
 }
 
 pub fn dma(checks: &mut Checks<'_, '_>, m: &raw::Dma, shift: ShiftRequest) -> Option<Fit> {
     let columns = m.columns.as_ref().map(|at| &at.value);
-    let units = m.units.as_ref().map(|at| &at.value);
     if let (Some(at), Some(_), Some(_)) =
         (&m.columns, columns.and_then(|c| c.loss.as_ref()), columns.and_then(|c| c.tan_delta.as_ref()))
     {
@@ -67,33 +52,30 @@ pub fn dma(checks: &mut Checks<'_, '_>, m: &raw::Dma, shift: ShiftRequest) -> Op
         checks.fault(&at.span, message, "one of the two", Some("leave one of them out"));
         return None;
     }
-    let columns = said(
-        &[
-            (Role::Frequency, columns.and_then(|c| c.frequency.as_ref())),
-            (Role::Storage, columns.and_then(|c| c.storage.as_ref())),
-            (Role::Loss, columns.and_then(|c| c.loss.as_ref())),
-            (Role::TanDelta, columns.and_then(|c| c.tan_delta.as_ref())),
-            (Role::Temperature, columns.and_then(|c| c.temperature.as_ref())),
-        ],
-        &[
-            (Role::Frequency, units.and_then(|u| u.frequency.as_ref())),
-            (Role::Storage, units.and_then(|u| u.storage.as_ref())),
-            (Role::Loss, units.and_then(|u| u.loss.as_ref())),
-            (Role::TanDelta, units.and_then(|u| u.tan_delta.as_ref())),
-            (Role::Temperature, units.and_then(|u| u.temperature.as_ref())),
-        ],
+    let said = said!(
+        m;
+        frequency = Frequency,
+        storage = Storage,
+        loss = Loss,
+        tan_delta = TanDelta,
+        phase = Phase,
+        complex_modulus = ComplexModulus,
+        storage_compliance = StorageCompliance,
+        loss_compliance = LossCompliance,
+        complex_viscosity = ComplexViscosity,
+        real_viscosity = RealViscosity,
+        imaginary_viscosity = ImaginaryViscosity,
+        temperature = Temperature,
+        set = Set,
     );
-    fit(checks, Kind::Dma, m.modulus, &m.path, &columns, m.fit.as_ref(), shift)
+    fit(checks, Kind::Dma, m.modulus, &m.path, &said, m.fit.as_ref(), shift)
 }
 
-fn said(columns: &[Choice<'_>], units: &[Unit<'_>]) -> Columns {
-    let column = |column: &raw::Column| match column {
+fn column(column: &raw::Column) -> curve::Column {
+    match column {
         raw::Column::Number(n) => curve::Column::Number(usize::try_from(*n).unwrap_or(usize::MAX)),
         raw::Column::Header(header) => curve::Column::Name(header.clone()),
-    };
-    let columns = columns.iter().filter_map(|(role, choice)| Some((*role, column((*choice)?))));
-    let units = units.iter().filter_map(|(role, unit)| Some((*role, (*unit)?.clone())));
-    Columns { columns: columns.collect(), units: units.collect::<BTreeMap<_, _>>() }
+    }
 }
 
 fn fit(
@@ -116,7 +98,7 @@ fn fit(
     match fitted {
         Ok((fitted, digest)) => Some(Fit { fitted, file: path.value.clone(), digest }),
         Err(error) => {
-            let expected = format!("a text table of a {} measurement", kind.name());
+            let expected = format!("a table of a {} measurement", kind.name());
             checks.fault(&path.span, error.to_string(), &expected, None);
             None
         }
@@ -131,6 +113,9 @@ fn options(raw: &raw::Fit) -> FitOptions {
         limit: raw.max_misfit.map_or(default.limit, |v| v.get()),
         max_terms: raw.max_terms.map_or(default.max_terms, |n| n.count()),
         long_time: raw.long_time.unwrap_or_default(),
+        misfit: raw.misfit.map(|v| v.get()),
+        moduli: raw.moduli.unwrap_or_default(),
+        loss_weight: raw.loss_weight.map_or(default.loss_weight, |v| v.get()),
     }
 }
 

@@ -40,6 +40,9 @@ const MOST_TERMS: usize = 1000;
 /// Relative error of a Prony sum in place of a fractional model, where the case gives none.
 const TOLERANCE: f64 = 1e-3;
 
+const WITHOUT_SHIFT: &str = "without a `shift` the material does not depend on temperature";
+const ADD_SHIFT: &str = "add shift = { model = \"wlf\", ... } to the material, or leave the temperature out";
+
 pub fn sample(checks: &mut Checks<'_, '_>, at: &At<raw::Material>) -> Option<Sample> {
     let span = &at.span;
     let (shift, temperature) = at.value.thermal();
@@ -47,25 +50,41 @@ pub fn sample(checks: &mut Checks<'_, '_>, at: &At<raw::Material>) -> Option<Sam
         Some(shift) => temperature::shift(checks, shift)?,
         None => ShiftRequest::None,
     };
-    if let (Some(own), ShiftRequest::None) = (temperature, &request) {
-        let message = "without a `shift` the material does not depend on temperature".to_owned();
-        let help = "add shift = { model = \"wlf\", ... } to the material, or leave the temperature out";
-        checks.fault(&own.span, message, "a material with a shift", Some(help));
+    let measured = matches!(
+        &at.value,
+        raw::Material::RelaxationTable(_) | raw::Material::CreepTable(_) | raw::Material::Dma(_)
+    );
+    // A spreadsheet may hold the shift of what it measures.
+    if let (Some(own), ShiftRequest::None, false) = (temperature, &request, measured) {
+        checks.fault(&own.span, WITHOUT_SHIFT.to_owned(), "a material with a shift", Some(ADD_SHIFT));
         return None;
     }
     let name = name(&at.value);
     let own = temperature.map(|at| at.value.get());
-    let fitted = |fit: Option<curve::Fit>| {
+    let fitted = |checks: &mut Checks<'_, '_>, fit: Option<curve::Fit>| {
         let fit = fit?;
         let shift = fit.fitted.shift.clone();
+        if let (Some(at), None) = (temperature, &shift) {
+            checks.fault(&at.span, WITHOUT_SHIFT.to_owned(), "a material with a shift", Some(ADD_SHIFT));
+            return None;
+        }
         let file = Some((fit.file.clone(), fit.digest));
         let model = Model::Fitted { fitted: Box::new(fit.fitted), file: fit.file };
         Some(Sample { model, name, shift, temperature: own, file })
     };
     match &at.value {
-        raw::Material::RelaxationTable(m) => return fitted(curve::relaxation(checks, m, request)),
-        raw::Material::CreepTable(m) => return fitted(curve::creep(checks, m, request)),
-        raw::Material::Dma(m) => return fitted(curve::dma(checks, m, request)),
+        raw::Material::RelaxationTable(m) => {
+            let fit = curve::relaxation(checks, m, request);
+            return fitted(checks, fit);
+        }
+        raw::Material::CreepTable(m) => {
+            let fit = curve::creep(checks, m, request);
+            return fitted(checks, fit);
+        }
+        raw::Material::Dma(m) => {
+            let fit = curve::dma(checks, m, request);
+            return fitted(checks, fit);
+        }
         _ => {}
     }
     let model = match fractional(checks, span, &at.value) {

@@ -7,7 +7,7 @@ use super::{Checks, history_file};
 use crate::case::quantity::{Number, Prescribed, Temperature};
 use crate::case::raw::{self, At, TemperatureHistory, Two};
 use crate::case::words::number;
-use crate::curve::ShiftRequest;
+use crate::curve::{self, ShiftRequest};
 
 pub fn shift(checks: &mut Checks<'_, '_>, at: &At<raw::Shift>) -> Option<ShiftRequest> {
     let shift = match &at.value {
@@ -18,15 +18,32 @@ pub fn shift(checks: &mut Checks<'_, '_>, at: &At<raw::Shift>) -> Option<ShiftRe
             Shift::Arrhenius { activation_energy: law.energy.get(), reference: law.reference.get() }
         }
         raw::Shift::Table(table) => {
+            let keys = [("points", table.points.is_some()), ("path", table.path.is_some())];
+            checks.exactly_one(&at.span, &keys)?;
             let point = |Two(temperature, decades): &Two<Temperature, Number>| {
                 (temperature.get(), decades.get() * std::f64::consts::LN_10)
             };
-            Shift::Table { points: table.points.iter().map(point).collect() }
+            match (&table.points, &table.path) {
+                (_, Some(path)) => shift_table(checks, path)?,
+                (points, None) => Shift::Table { points: points.iter().flatten().map(point).collect() },
+            }
         }
         raw::Shift::Estimated(estimated) => return Some(ShiftRequest::Estimate(estimated.reference.get())),
     };
     checks.core(&at.span, shift.validate())?;
     Some(ShiftRequest::Given(shift))
+}
+
+fn shift_table(checks: &mut Checks<'_, '_>, path: &At<String>) -> Option<Shift> {
+    let file = checks.file(path)?;
+    match curve::read_shift_table(&file) {
+        Ok(shift) => Some(shift),
+        Err(error) => {
+            let expected = "a table of temperatures and shift factors";
+            checks.fault(&path.span, error.to_string(), expected, None);
+            None
+        }
+    }
 }
 
 /// The temperatures of the run as (time [s], temperature [K]), and the MD5 of a file that holds them.

@@ -1,6 +1,6 @@
 //! `material`: the models of a body.
 
-use asperity::material::{LongTime, Modulus};
+use asperity::material::{LongTime, Moduli, Modulus};
 use schemars::JsonSchema;
 use serde::Deserialize;
 
@@ -252,10 +252,13 @@ models! {
     RelaxationTable {
         /// What the moduli measure: uniaxial tension or shear.
         modulus: Modulus,
-        /// The text table, relative to the case file: one point per line, columns for time and modulus. Separator
+        /// The text table or spreadsheet, relative to the case file: one point per line, columns for time and modulus. Separator
         /// and decimal mark are detected; units come from the header, as in "time [s]; E [MPa]".
         #[schemars(example = "relaxation.csv")]
         path: At<String>,
+        /// The sheet of a spreadsheet (.xls, .xlsx); the first one that names such columns if not given.
+        #[schemars(example = "Exported Data")]
+        sheet: Option<String>,
         /// The column of each quantity, by number from 1 or by header; taken from the header if not given.
         #[schemars(example = serde_json::json!({ "time": 1, "modulus": "E [MPa]" }))]
         columns: Option<At<RelaxationColumns>>,
@@ -274,6 +277,9 @@ models! {
         /// Separator and decimal mark are detected; units come from the header, as in "time [s]; D [1/MPa]".
         #[schemars(example = "creep.csv")]
         path: At<String>,
+        /// The sheet of a spreadsheet (.xls, .xlsx); the first one that names such columns if not given.
+        #[schemars(example = "Exported Data")]
+        sheet: Option<String>,
         /// The column of each quantity, by number from 1 or by header; taken from the header if not given.
         #[schemars(example = serde_json::json!({ "time": 1, "compliance": "D [1/MPa]" }))]
         columns: Option<At<CreepColumns>>,
@@ -293,6 +299,9 @@ models! {
         /// detected; units come from the header, as in "f [Hz]; E' [MPa]; E'' [MPa]; T [°C]".
         #[schemars(example = "dma.csv")]
         path: At<String>,
+        /// The sheet of a spreadsheet (.xls, .xlsx); the first one that names such columns if not given.
+        #[schemars(example = "Exported Data")]
+        sheet: Option<String>,
         /// The column of each quantity, by number from 1 or by header; taken from the header if not given.
         #[schemars(example = serde_json::json!({ "frequency": 1, "storage": 2, "loss": "E'' [MPa]" }))]
         columns: Option<At<DmaColumns>>,
@@ -373,6 +382,8 @@ tables! {
         modulus: 2, "MPa";
         /// Temperature of the point, if the file has several.
         temperature: 3, "°C";
+        /// Number or name of the sweep that the point belongs to.
+        set: 4, "-";
     }
     CreepColumns CreepUnits {
         /// Time since the step of stress.
@@ -381,6 +392,8 @@ tables! {
         compliance: 2, "1/MPa";
         /// Temperature of the point, if the file has several.
         temperature: 3, "°C";
+        /// Number or name of the sweep that the point belongs to.
+        set: 4, "-";
     }
     DmaColumns DmaUnits {
         /// Frequency, in Hz or rad/s.
@@ -391,8 +404,24 @@ tables! {
         loss: 3, "MPa";
         /// Loss factor E''/E'; this or `loss`.
         tan_delta: 3, "%";
+        /// Phase angle; in place of `tan_delta`.
+        phase: 3, "deg";
+        /// Absolute value of the complex modulus; in place of `storage`, with `tan_delta` or `phase`.
+        complex_modulus: 2, "MPa";
+        /// Real part of the complex compliance; with `loss_compliance`, in place of the moduli.
+        storage_compliance: 2, "1/MPa";
+        /// Imaginary part of the complex compliance.
+        loss_compliance: 3, "1/MPa";
+        /// Absolute value of the complex viscosity; with `tan_delta` or `phase`, in place of the moduli.
+        complex_viscosity: 2, "Pa s";
+        /// Real part of the complex viscosity, loss modulus over angular frequency; with `imaginary_viscosity`.
+        real_viscosity: 2, "Pa s";
+        /// Imaginary part of the complex viscosity, storage modulus over angular frequency.
+        imaginary_viscosity: 3, "Pa s";
         /// Temperature of the point, if the file has several.
         temperature: 4, "°C";
+        /// Number or name of the sweep that the point belongs to.
+        set: 5, "-";
     }
 }
 
@@ -400,6 +429,15 @@ tables! {
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Fit {
+    /// Which moduli of a dma are fitted; "both" if not given. Measured ones often contradict each other; then "storage" is
+    /// usual.
+    pub moduli: Option<Moduli>,
+    /// Weight of a residual of the loss modulus over one of the storage modulus; 1 if not given.
+    #[schemars(example = 0.3)]
+    pub loss_weight: Option<Number<Positive>>,
+    /// Rms misfit that is held by as few terms as possible; the data justify the number of terms if not given.
+    #[schemars(example = 0.02)]
+    pub misfit: Option<Number<Share>>,
     /// Largest number of terms; as many as the data justify if not given.
     #[schemars(example = 12)]
     pub max_terms: Option<Whole<1>>,

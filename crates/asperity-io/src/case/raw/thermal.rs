@@ -50,10 +50,13 @@ pub struct Arrhenius {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ShiftTable {
-    /// Pairs [temperature, log10 a_T] in order of temperature; 0 at the reference temperature.
+    /// Pairs [temperature, log10 a_T] in order of temperature; 0 at the reference temperature. This or `path`.
     #[schemars(example = [("0 °C", 2.5), ("20 °C", 0.0), ("60 °C", -3.0)])]
-    #[schemars(length(min = 2))]
-    pub points: Vec<Two<Kelvin, Number>>,
+    pub points: Option<Vec<Two<Kelvin, Number>>>,
+    /// A file of them, relative to the case file: a table with columns T and log_aT (or ln_aT, aT), with units in the
+    /// header. This or `points`.
+    #[schemars(example = "shift.csv")]
+    pub path: Option<At<String>>,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]

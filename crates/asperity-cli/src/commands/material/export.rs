@@ -1,0 +1,65 @@
+//! `asperity material export`: a material for another program.
+
+use asperity::material::Lateral;
+use asperity_io::case::quantity::{Number, range};
+use asperity_io::case::{Specimen, specimens};
+use asperity_io::material_export::{Exported, Program, text};
+
+use super::{parsed, told, write};
+use crate::args::{MaterialExport, To};
+use crate::failure::Failure;
+
+/// Writes or prints it.
+pub fn export(args: &MaterialExport) -> Result<(), Failure> {
+    if let Some(path) = &args.output {
+        crate::commands::free(path, args.force)?;
+    }
+    let specimens = specimens(&args.file, &args.set, None)?;
+    let specimen = chosen(&specimens, args)?;
+    let poisson = match &args.poisson {
+        Some(text) => Some(Lateral::Poisson(parsed::<Number<range::Poisson>>("--poisson", text)?.get())),
+        None => None,
+    };
+    let (material, shift) = specimen.at_reference().map_err(told)?;
+    let lateral = poisson.or(specimen.lateral);
+    let exported = Exported { name: &specimen.name, material: &material, lateral, shift };
+    let program = match args.to {
+        To::Abaqus => Program::Abaqus,
+        To::Ansys => Program::Ansys,
+        To::Comsol => Program::Comsol,
+        To::Csv => Program::Csv,
+    };
+    let help = if lateral.is_none() { " (--poisson NU)" } else { "" };
+    let text = text(&exported, program)
+        .map_err(|error| Failure::input(format!("{}: {error}{help}", args.file.display())))?;
+    match &args.output {
+        Some(path) => write(path, &text, args.force),
+        None => crate::print(&text),
+    }
+}
+
+/// The body that is named, or the only one that is viscoelastic.
+fn chosen<'a>(specimens: &'a [Specimen], args: &MaterialExport) -> Result<&'a Specimen, Failure> {
+    let names: Vec<&str> = specimens.iter().map(|specimen| specimen.name.as_str()).collect();
+    let names = names.join(", ");
+    let viscoelastic = |specimen: &&Specimen| {
+        let creep = specimen.material.creep();
+        !creep.terms.is_empty() || creep.fluidity > 0.0
+    };
+    match &args.body {
+        Some(name) => specimens
+            .iter()
+            .find(|specimen| specimen.name == *name)
+            .ok_or_else(|| Failure::input(format!("--body is \"{name}\", but the bodies are {names}"))),
+        None => {
+            let mut several = specimens.iter().filter(viscoelastic);
+            match (several.next(), several.next()) {
+                (Some(only), None) => Ok(only),
+                _ => Err(Failure::input(format!(
+                    "{}: one body must be chosen with --body: {names}",
+                    args.file.display()
+                ))),
+            }
+        }
+    }
+}

@@ -1,0 +1,213 @@
+//! `asperity material fit`: a material from measured data, and how well it describes them.
+
+use std::fmt::Write as _;
+
+use asperity::finding::{self, Finding};
+use asperity::material::{Misfit, Modulus, Shift};
+use asperity_io::curve::{Curves, Fitted, Kind, Request, Series, ShiftRequest};
+use asperity_report::material as pictures;
+use serde_json::{Map, Value, json};
+
+use super::given::{self, refused};
+use super::{symbols, told, write};
+use crate::args::Fit;
+use crate::failure::Failure;
+use crate::words::quantity;
+
+/// Room temperature \[K\]: shifts are estimated about the sweep nearest to it where no reference is given.
+const ROOM: f64 = 293.15;
+
+/// Fits, reports, writes and draws.
+pub fn fit(args: &Fit) -> Result<(), Failure> {
+    // What cannot be written is said before the work.
+    for path in args.output.iter().chain(&args.plot) {
+        crate::commands::free(path, args.force)?;
+    }
+    let (shift, options) = (given::shift(args)?, given::options(args));
+    let mut curves = given::curves(&args.data, &args.table)?;
+    let window = args.window.as_deref().map(|text| given::ends(curves.kind, text)).transpose()?;
+    let measure = args.modulus.or(curves.measure).unwrap_or_else(|| {
+        let note = "the header does not say which: taken as Young's moduli; --modulus shear takes them as shear moduli";
+        curves.notes.push(note.to_owned());
+        Modulus::Young
+    });
+    let shift = estimated_unless_known(shift, &mut curves);
+    let fitted = Request { measure, shift, window, options }.fit(&curves).map_err(refused)?;
+    let findings = findings(&args.data.display().to_string(), &fitted);
+    let block = fitted.to_toml(&curves);
+    if let Some(path) = &args.output {
+        write(path, &block, args.force)?;
+    }
+    if let Some(path) = &args.plot {
+        let title = args.data.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
+        let figure = pictures::fit(&title, &curves, &fitted).map_err(told)?;
+        figure.write(path, args.force).map_err(told)?;
+    }
+    if args.json {
+        let mut object = json_of(&curves, &fitted);
+        object["output"] = json!(args.output);
+        object["material"] = json!(block);
+        object["findings"] = asperity_io::finding::list(&findings);
+        return crate::print(&format!("{object}\n"));
+    }
+    crate::commands::findings::tell(&findings);
+    let mut text = report(args, &curves, &fitted);
+    match &args.output {
+        Some(path) => {
+            let _ = writeln!(text, "written     {}", path.display());
+        }
+        None => text = format!("{text}\n{block}"),
+    }
+    crate::print(&text)
+}
+
+/// Several temperatures without a shift: it is estimated, about the temperature nearest to that of a room.
+fn estimated_unless_known(shift: ShiftRequest, curves: &mut Curves) -> ShiftRequest {
+    let several = curves.sweeps.len() > 1 && curves.held.shift().is_none();
+    let temperatures = curves.sweeps.iter().filter_map(|sweep| sweep.temperature);
+    let nearest = temperatures.min_by(|a, b| (a - ROOM).abs().total_cmp(&(b - ROOM).abs()));
+    match (&shift, nearest) {
+        (ShiftRequest::None, Some(kelvin)) if several => {
+            curves.notes.push(format!(
+                "no shift is given: it is estimated from the sweeps, about {:.1} °C; --estimate-shift, --shift-table, --wlf or \
+                 --arrhenius say it",
+                kelvin - 273.15
+            ));
+            ShiftRequest::Estimate(kelvin)
+        }
+        _ => shift,
+    }
+}
+
+fn findings(name: &str, fitted: &Fitted) -> Vec<Finding> {
+    let Misfit { rms, max, .. } = fitted.misfit;
+    let other = fitted.other().and_then(|(column, misfit)| finding::contradiction(name, column, misfit.rms));
+    finding::misfit(name, rms, max, fitted.noise).into_iter().chain(other).collect()
+}
+
+fn report(args: &Fit, curves: &Curves, fitted: &Fitted) -> String {
+    let mut text = String::new();
+    let mut line = |name: &str, value: String| text += &format!("{name:<12}{value}\n");
+    let (modulus, ..) = symbols(fitted.material.measure());
+    let sheet = curves.sheet.as_ref().map_or(String::new(), |name| format!(", sheet \"{name}\""));
+    line("data", format!("{}{sheet} ({}, {modulus})", args.data.display(), curves.kind.name()));
+    line("points", format!("{} fitted of {}", fitted.data.x.len(), curves.points()));
+    if !fitted.temperatures.is_empty() {
+        let shown: Vec<String> = fitted.temperatures.iter().map(|t| format!("{:.1}", t - 273.15)).collect();
+        line("sweeps", format!("{} °C", shown.join(", ")));
+    }
+    if let Some(shift) = &fitted.shift {
+        let rms = fitted
+            .shift_rms
+            .map_or(String::new(), |rms| format!(", {rms:.3} decades (rms) from the factors"));
+        line("shift", format!("{}{rms}", law(shift)));
+    }
+    for [kelvin, decades, uncertainty] in &fitted.factors {
+        line("", format!("{:8.1} °C  log10 a_T = {decades:7.3} +- {uncertainty:.3}", kelvin - 273.15));
+    }
+    let [first, last] = fitted.window;
+    line("times", format!("{first:.3e} s to {last:.3e} s"));
+    if curves.kind == Kind::Dma {
+        let hertz = [last, first].map(|time| 1.0 / (std::f64::consts::TAU * time));
+        line("frequencies", format!(" {:.3e} Hz to {:.3e} Hz", hertz[0], hertz[1]));
+    }
+    line("terms", fitted.terms().to_string());
+    let unit = if curves.kind == Kind::Dma { "rad/s" } else { "s" };
+    let misfit = |of: &Misfit| {
+        let [rms, max] = [of.rms, of.max].map(|share| 100.0 * share);
+        format!("{rms:.3} % rms, {max:.3} % at most (at {:.3e} {unit})", of.worst)
+    };
+    line("misfit", misfit(&fitted.misfit));
+    if fitted.columns.len() > 1 {
+        for (name, of) in &fitted.columns {
+            let left = fitted.other().is_some_and(|(other, _)| other == *name);
+            line("", format!("{name}: {}{}", misfit(of), if left { ", not fitted" } else { "" }));
+        }
+    }
+    line("scatter", format!("{:.3} % of the data", 100.0 * fitted.noise));
+    line("beyond", beyond(fitted));
+    fitted.notes.iter().for_each(|note| line("note", note.clone()));
+    text
+}
+
+/// What the material does at times that the data do not cover.
+fn beyond(fitted: &Fitted) -> String {
+    match &fitted.series {
+        Series::Relaxation(relaxation) => {
+            let long = match relaxation.equilibrium > 0.0 {
+                true => format!("a plateau of {} at longer ones", quantity(relaxation.equilibrium, "Pa")),
+                false => "no modulus left at longer ones".to_owned(),
+            };
+            format!("a plateau of {} at shorter times, {long}", quantity(relaxation.instantaneous(), "Pa"))
+        }
+        Series::Creep(creep) => {
+            let long = match creep.fluidity > 0.0 {
+                true => format!("flow at longer ones, viscosity {}", quantity(1.0 / creep.fluidity, "Pa s")),
+                false => format!("a plateau of {} at longer ones", quantity(creep.long_time(), "1/Pa")),
+            };
+            format!("a plateau of {} at shorter times, {long}", quantity(creep.instantaneous, "1/Pa"))
+        }
+    }
+}
+
+/// The law in words.
+fn law(shift: &Shift) -> String {
+    match shift {
+        Shift::Wlf { c1, c2, reference } => {
+            format!("WLF c1 = {c1:.4}, c2 = {c2:.4} K about {:.2} °C", reference - 273.15)
+        }
+        Shift::Arrhenius { activation_energy, reference } => {
+            format!("Arrhenius {:.3} kJ/mol about {:.2} °C", 1e-3 * activation_energy, reference - 273.15)
+        }
+        Shift::Table { points } => format!("{} shift factors", points.len()),
+    }
+}
+
+fn json_of(curves: &Curves, fitted: &Fitted) -> Value {
+    let function = match &fitted.series {
+        Series::Relaxation(relaxation) => json!({
+            "equilibrium": relaxation.equilibrium,
+            "terms": relaxation.terms.iter().map(|t| json!([t.modulus, t.relaxation_time])).collect::<Vec<_>>(),
+        }),
+        Series::Creep(creep) => json!({
+            "instantaneous": creep.instantaneous,
+            "fluidity": creep.fluidity,
+            "terms": creep.terms.iter().map(|t| json!([t.compliance, t.retardation_time])).collect::<Vec<_>>(),
+        }),
+    };
+    let shift = fitted.shift.as_ref().map(|shift| match shift {
+        Shift::Wlf { c1, c2, reference } => {
+            json!({ "model": "wlf", "c1": c1, "c2": c2, "reference": reference })
+        }
+        Shift::Arrhenius { activation_energy, reference } => {
+            json!({ "model": "arrhenius", "energy": activation_energy, "reference": reference })
+        }
+        Shift::Table { points } => json!({ "model": "table", "ln_factors": points }),
+    });
+    let mut columns = Map::new();
+    for (name, misfit) in &fitted.columns {
+        let fitted = fitted.other().is_none_or(|(other, _)| other != *name);
+        let of = json!({ "misfit_rms": misfit.rms, "misfit_max": misfit.max, "worst": misfit.worst, "fitted": fitted });
+        columns.insert((*name).to_owned(), of);
+    }
+    json!({
+        "kind": curves.kind.name(),
+        "modulus": fitted.material.measure(),
+        "points": fitted.data.x.len(),
+        "temperatures": fitted.temperatures,
+        "shift": shift,
+        "shift_rms_decades": fitted.shift_rms,
+        "window": fitted.window,
+        "terms": fitted.terms(),
+        "function": function,
+        "misfit": { "max": fitted.misfit.max, "rms": fitted.misfit.rms, "worst": fitted.misfit.worst },
+        "columns": columns,
+        "sheet": curves.sheet,
+        "shift_factors": fitted.factors.iter().map(|[kelvin, decades, uncertainty]| {
+            json!({ "temperature": kelvin, "log10_factor": decades, "uncertainty_decades": uncertainty })
+        }).collect::<Vec<Value>>(),
+        "noise": fitted.noise,
+        "uncertainty": fitted.uncertainty,
+        "notes": fitted.notes,
+    })
+}

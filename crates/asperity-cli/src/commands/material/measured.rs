@@ -1,0 +1,148 @@
+//! `asperity material show FILE` of measured data: what is found in a file, before anything is fitted.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use asperity::material::{Modulus, Shift};
+use asperity_io::curve::{Curves, Kind, Sweep};
+use asperity_report::material as pictures;
+use serde_json::{Value, json};
+
+use super::{given, told};
+use crate::args::Show;
+use crate::failure::Failure;
+use crate::words::{counted, quantity};
+
+/// Whether a file is one of measured data, not a case or a material.
+pub fn is_data(path: &Path) -> bool {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+    ending.is_none_or(|ending| ending != "toml")
+}
+
+/// Prints, and draws, what the file holds.
+pub fn show(args: &Show) -> Result<(), Failure> {
+    if args.from.is_some() || args.to.is_some() || !args.set.is_empty() {
+        let path = args.file.display();
+        return Err(Failure::input(format!(
+            "{path} holds measured data: --from, --to and --set are for materials"
+        )));
+    }
+    let curves = given::curves(&args.file, &args.table)?;
+    if let Some(path) = &args.plot {
+        let title = args.file.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
+        pictures::isotherms(&title, &curves).write(path, args.force).map_err(told)?;
+    }
+    let text = if args.json { format!("{}\n", object(&curves)) } else { text(&curves) };
+    crate::print(&text)
+}
+
+fn text(curves: &Curves) -> String {
+    let sheet = curves.sheet.as_ref().map_or(String::new(), |name| format!(", sheet \"{name}\""));
+    let kind = match curves.kind {
+        Kind::Relaxation => "relaxation modulus over time",
+        Kind::Creep => "creep compliance over time",
+        Kind::Dma => "storage and loss modulus over frequency",
+    };
+    let measure = match curves.measure {
+        Some(Modulus::Young) => "Young's (E)",
+        Some(Modulus::Shear) => "shear (G)",
+        None => "not stated: Young's unless --modulus shear says otherwise",
+    };
+    let mut text = format!("{}{sheet}: {} ({kind})\n\n", curves.path.display(), curves.kind.name());
+    for place in &curves.columns {
+        let _ = writeln!(
+            text,
+            "  column {:<3} {:<22} {:<20} [{}]",
+            place.column,
+            format!("\"{}\"", place.header),
+            place.role.name(),
+            place.unit
+        );
+    }
+    if !curves.unused.is_empty() {
+        let _ = writeln!(text, "  not used: {}", curves.unused.join(", "));
+    }
+    let _ = writeln!(text, "  modulus: {measure}\n");
+    let names: &[&str] = match curves.kind {
+        Kind::Relaxation => &["modulus"],
+        Kind::Creep => &["compliance"],
+        Kind::Dma => &["storage", "loss"],
+    };
+    for sweep in &curves.sweeps {
+        let at = sweep.temperature.map_or(String::new(), |kelvin| format!("{:7.1} °C: ", kelvin - 273.15));
+        let _ = write!(text, "  {at}{}", counted(sweep.x.len(), "point"));
+        let _ = write!(text, ", {}", range(&abscissae(curves.kind, sweep), abscissa_unit(curves.kind)));
+        for (name, curve) in names.iter().zip(&sweep.curves) {
+            let unit = if curves.kind == Kind::Creep { "1/Pa" } else { "Pa" };
+            let _ = write!(text, ", {name} {}", range(curve, unit));
+        }
+        text.push('\n');
+    }
+    for (name, shift) in [("list", &curves.held.list), ("constants", &curves.held.wlf)] {
+        if let Some(shift) = shift {
+            let _ = writeln!(text, "\n  shift of the file ({name}): {}", law(shift));
+        }
+    }
+    curves.notes.iter().for_each(|note| text += &format!("\n  note: {note}\n"));
+    text
+}
+
+fn abscissa_unit(kind: Kind) -> &'static str {
+    if kind == Kind::Dma { "Hz" } else { "s" }
+}
+
+/// Times, or frequencies in Hz.
+fn abscissae(kind: Kind, sweep: &Sweep) -> Vec<f64> {
+    let scale = if kind == Kind::Dma { std::f64::consts::TAU } else { 1.0 };
+    sweep.x.iter().map(|x| x / scale).collect()
+}
+
+fn range(values: &[f64], unit: &str) -> String {
+    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    format!("{} to {}", quantity(least, unit), quantity(most, unit))
+}
+
+fn law(shift: &Shift) -> String {
+    match shift {
+        Shift::Wlf { c1, c2, reference } => {
+            format!("WLF c1 = {c1}, c2 = {c2} K about {:.2} °C", reference - 273.15)
+        }
+        Shift::Arrhenius { activation_energy, reference } => {
+            format!("Arrhenius {} kJ/mol about {:.2} °C", 1e-3 * activation_energy, reference - 273.15)
+        }
+        Shift::Table { points } => {
+            let celsius = |point: Option<&(f64, f64)>| point.map_or(0.0, |point| point.0 - 273.15);
+            format!(
+                "{} shift factors from {:.1} °C to {:.1} °C",
+                points.len(),
+                celsius(points.first()),
+                celsius(points.last())
+            )
+        }
+    }
+}
+
+fn object(curves: &Curves) -> Value {
+    let columns: Vec<Value> = curves
+        .columns
+        .iter()
+        .map(|p| json!({ "quantity": p.role.name(), "column": p.column, "header": p.header, "unit": p.unit }))
+        .collect();
+    let sweeps: Vec<Value> = curves
+        .sweeps
+        .iter()
+        .map(|sweep| json!({ "temperature": sweep.temperature, "x": sweep.x, "curves": sweep.curves }))
+        .collect();
+    json!({
+        "kind": curves.kind.name(),
+        "modulus": curves.measure,
+        "sheet": curves.sheet,
+        "columns": columns,
+        "unused": curves.unused,
+        "sweeps": sweeps,
+        "shift_list": curves.held.list.as_ref().map(law),
+        "shift_law": curves.held.wlf.as_ref().map(law),
+        "notes": curves.notes,
+    })
+}

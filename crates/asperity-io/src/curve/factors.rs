@@ -1,0 +1,215 @@
+//! Shift factors that a file holds: a table of temperature and factor, or the constants of the WLF law.
+
+use std::f64::consts::LN_10;
+use std::path::Path;
+
+use asperity::material::Shift;
+
+use super::bytes;
+use super::columns::tidy;
+use super::error::{CurveError, Fault, Remedy, fault};
+use super::role::{Role, bare};
+use super::table::Table;
+use super::workbook::{Sheet, sheets};
+use crate::case::quantity::Temperature;
+
+/// What a file says of its shift.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct HeldShift {
+    /// Its list of factors.
+    pub list: Option<Shift>,
+    /// Its constants of the WLF law.
+    pub wlf: Option<Shift>,
+}
+
+impl HeldShift {
+    /// The list, which is measured, or else the law.
+    pub fn shift(&self) -> Option<&Shift> {
+        self.list.as_ref().or(self.wlf.as_ref())
+    }
+}
+
+/// Shift factors from a table with a column of temperatures and one of log10 a_T (log_aT), ln a_T or a_T; a_T is the factor
+/// by which processes take longer than at the reference temperature, so that it falls with temperature.
+///
+/// # Errors
+/// [`CurveError`]: no such columns, a unit that is none of a temperature, factors that rise with temperature, a temperature
+/// twice.
+pub fn read_shift_table(path: &Path) -> Result<Shift, CurveError> {
+    let read = || -> Result<Shift, Fault> {
+        let mut last = None;
+        for sheet in sheets(&bytes(path).map_err(|error| fault(error.message))?, None)? {
+            match sheet.table.and_then(|table| factors(&table, None)) {
+                Ok(shift) => return Ok(shift),
+                Err(fault) => last = Some(fault),
+            }
+        }
+        Err(last.unwrap_or_else(|| fault("the file holds no table")))
+    };
+    read().map_err(|fault| fault.of(path))
+}
+
+/// What the sheets of a spreadsheet say of the shift.
+pub(super) fn held(sheets: &[Sheet]) -> HeldShift {
+    let mut found = HeldShift::default();
+    for sheet in sheets {
+        let reference =
+            labelled(&sheet.cells, &["reftemp", "referencetemperature", "tref", "referenztemperatur"]);
+        let reference = reference.and_then(|text| text.parse::<Temperature>().ok());
+        if let (Some(c1), Some(c2), Some(reference)) =
+            (constant(&sheet.cells, "c1"), constant(&sheet.cells, "c2"), reference)
+        {
+            let wlf = Shift::Wlf { c1, c2, reference: reference.get() };
+            found.wlf = found.wlf.or(Some(wlf).filter(|shift| shift.validate().is_ok()));
+        }
+        if let Ok(table) = &sheet.table {
+            let celsius = reference.is_some().then_some("°C");
+            found.list = found.list.or_else(|| factors(table, celsius).ok());
+        }
+    }
+    found
+}
+
+/// The cell behind the one with a label.
+fn labelled(cells: &[Vec<String>], labels: &[&str]) -> Option<String> {
+    let place = |row: &Vec<String>| {
+        let at = row.iter().position(|cell| labels.contains(&bare(cell).as_str()))?;
+        row[at + 1..].iter().find(|cell| !cell.is_empty()).cloned()
+    };
+    cells.iter().find_map(place)
+}
+
+/// The number of "C1 : 13.50" or of "C1" and "13.50" in the next cell, with or without a unit of kelvin.
+fn constant(cells: &[Vec<String>], name: &str) -> Option<f64> {
+    let number = |text: &str| -> Option<f64> {
+        let text = text.trim_start_matches([':', '=', ' ']).trim_end_matches(['K', ' ']);
+        text.replacen(',', ".", 1).parse().ok().filter(|value: &f64| value.is_finite())
+    };
+    let in_row = |row: &Vec<String>| {
+        row.iter().enumerate().find_map(|(n, cell)| {
+            cell.get(..name.len()).filter(|start| start.eq_ignore_ascii_case(name))?;
+            number(&cell[name.len()..]).or_else(|| number(row.get(n + 1)?))
+        })
+    };
+    cells.iter().find_map(in_row)
+}
+
+/// How a column of factors is written.
+#[derive(Clone, Copy)]
+enum Written {
+    Log10,
+    Ln,
+    Plain,
+}
+
+/// How a column of this name writes factors.
+fn written(name: &str) -> Option<Written> {
+    match bare(name).as_str() {
+        "logat" | "log10at" | "lgat" | "logshift" | "logshiftfactor" | "shift" => Some(Written::Log10),
+        "lnat" => Some(Written::Ln),
+        "at" | "shiftfactor" | "shiftfactorat" => Some(Written::Plain),
+        _ => None,
+    }
+}
+
+/// The factors of a table; temperatures without a unit are in `unit`, or kelvin.
+fn factors(table: &Table, unit: Option<&str>) -> Result<Shift, Fault> {
+    let named = |names: &[&str]| table.names.iter().position(|name| names.contains(&bare(name).as_str()));
+    let temperature = named(&["t", "temp", "temperature", "temperatur"]);
+    // The brackets of "log10(aT)" hold no unit.
+    let factor = (0..table.columns).find_map(|n| {
+        let [name, header] = [table.names.get(n)?, table.headers.get(n)?];
+        Some((n, written(header).or_else(|| written(name))?))
+    });
+    let (Some(temperature), Some((column, how))) = (temperature, factor) else {
+        return Err(fault(format!(
+            "a table of shift factors has a column of temperatures (T) and one of log_aT, ln_aT or aT; the file has {}",
+            table.listed()
+        )));
+    };
+    let header = table.units.get(temperature).map_or("", String::as_str);
+    let unit = match tidy(Role::Temperature, "", header) {
+        none if none.is_empty() => unit.unwrap_or_default().to_owned(),
+        unit => unit,
+    };
+    let mut points = Vec::with_capacity(table.rows.len());
+    let numbers = table.numbers(temperature)?.into_iter().zip(table.numbers(column)?);
+    for ((value, factor), row) in numbers.zip(&table.rows) {
+        let kelvin = Temperature::from_unit(value, &unit).map_err(|error| {
+            let why = error.help.unwrap_or_else(|| format!("{value} must be {}", error.expected));
+            fault(format!("temperature: {why}")).remedy(Remedy::Unit(Role::Temperature)).at(row.line)
+        })?;
+        let ln = match how {
+            Written::Log10 => factor * LN_10,
+            Written::Ln => factor,
+            Written::Plain if factor > 0.0 => factor.ln(),
+            Written::Plain => {
+                return Err(fault(format!("the shift factor {factor} must be greater than 0")).at(row.line));
+            }
+        };
+        points.push((kelvin.get(), ln));
+    }
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let rises = points.first().zip(points.last()).is_some_and(|(cold, warm)| warm.1 > cold.1);
+    if rises {
+        return Err(fault(
+            "the shift factors rise with temperature; a_T is the factor by which processes take longer than at the \
+             reference, and falls (give one over it, or the logarithm with the other sign)",
+        ));
+    }
+    let shift = Shift::Table { points };
+    shift.validate().map_err(|error| fault(error.to_string()))?;
+    Ok(shift)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read(text: &str) -> Result<Shift, Fault> {
+        factors(&Table::parse(text.as_bytes()).unwrap(), None)
+    }
+
+    #[test]
+    fn logarithms_and_factors_are_told_by_their_names() {
+        let points = vec![(273.15, LN_10), (293.15, 0.0)];
+        for text in [
+            "\u{feff}T,log_aT\nC, -\n20,0\n0,1\n",
+            "T [°C];log10(aT)\n0;1\n20;0\n",
+            "Temperature (K), aT\n273.15, 10\n293.15, 1\n",
+        ] {
+            let Shift::Table { points: found } = read(text).unwrap() else { panic!("{text}") };
+            for (found, wanted) in found.iter().zip(&points) {
+                assert!((found.0 - wanted.0).abs() < 1e-9 && (found.1 - wanted.1).abs() < 1e-12, "{text}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_wrong_table_is_named() {
+        for (text, words) in [
+            ("T [°C], log_aT\n0,-1\n20,0\n", "rise with temperature"),
+            ("T [°C], factor\n0,1\n20,0\n", "log_aT, ln_aT or aT"),
+            ("T [°C], aT\n0,10\n20,0\n", "greater than 0"),
+            ("T, log_aT\n-20,1\n20,0\n", "temperature"),
+        ] {
+            let fault = read(text).unwrap_err();
+            assert!(fault.message.contains(words), "{text}: {fault:?}");
+        }
+    }
+
+    #[test]
+    fn constants_stand_in_cells_of_their_own_or_not() {
+        let cells = |rows: &[&[&str]]| -> Vec<Vec<String>> {
+            rows.iter().map(|row| row.iter().map(|cell| (*cell).to_owned()).collect()).collect()
+        };
+        for rows in [
+            cells(&[&["Ref.Temp.", "25.0 °C"], &["WLF", "C1 : 13.50", "C2 : 141.19 K"]]),
+            cells(&[&["Ref. Temp.", "25.0 °C"], &["C1", "13,5"], &["C2", "141.19"]]),
+        ] {
+            let sheet = Sheet { name: None, cells: rows, table: Err(fault("")) };
+            let wlf = held(&[sheet]).wlf.unwrap();
+            assert_eq!(wlf, Shift::Wlf { c1: 13.5, c2: 141.19, reference: 298.15 });
+        }
+    }
+}

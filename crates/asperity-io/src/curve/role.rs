@@ -1,0 +1,448 @@
+//! What a column holds, and the names that programs and people give it.
+//!
+//! Names are compared without case, blanks, brackets and other marks: "Tan(Delta)", "tan_delta" and "tan delta" are one.
+//! The names are those of the exports of DMAs and rheometers (TA, Netzsch, Anton Paar, Mettler) in English and German and
+//! of the tables of Python and Matlab users.
+
+use std::str::FromStr;
+
+use asperity::material::Modulus;
+
+/// What a column holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Role {
+    /// Time since the step.
+    Time,
+    /// Relaxation modulus.
+    Modulus,
+    /// Creep compliance.
+    Compliance,
+    /// Frequency, in Hz or rad/s.
+    Frequency,
+    /// Storage modulus.
+    Storage,
+    /// Loss modulus.
+    Loss,
+    /// Loss factor E''/E', in place of the loss modulus.
+    TanDelta,
+    /// Phase angle, in place of the loss factor.
+    Phase,
+    /// Absolute value of the complex modulus, in place of the storage modulus.
+    ComplexModulus,
+    /// Real part of the complex compliance.
+    StorageCompliance,
+    /// Imaginary part of the complex compliance.
+    LossCompliance,
+    /// Absolute value of the complex viscosity.
+    ComplexViscosity,
+    /// Real part of the complex viscosity, loss modulus over angular frequency.
+    RealViscosity,
+    /// Imaginary part of the complex viscosity, storage modulus over angular frequency.
+    ImaginaryViscosity,
+    /// Temperature of the point.
+    Temperature,
+    /// Number or name of the sweep that the point belongs to.
+    Set,
+    /// Load of an indentation.
+    Load,
+    /// Depth of an indentation.
+    Depth,
+}
+
+impl Role {
+    /// All of them.
+    pub const ALL: [Role; 18] = [
+        Role::Time,
+        Role::Modulus,
+        Role::Compliance,
+        Role::Frequency,
+        Role::Storage,
+        Role::Loss,
+        Role::TanDelta,
+        Role::Phase,
+        Role::ComplexModulus,
+        Role::StorageCompliance,
+        Role::LossCompliance,
+        Role::ComplexViscosity,
+        Role::RealViscosity,
+        Role::ImaginaryViscosity,
+        Role::Temperature,
+        Role::Set,
+        Role::Load,
+        Role::Depth,
+    ];
+
+    /// Its key in case files and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Role::Time => "time",
+            Role::Modulus => "modulus",
+            Role::Compliance => "compliance",
+            Role::Frequency => "frequency",
+            Role::Storage => "storage",
+            Role::Loss => "loss",
+            Role::TanDelta => "tan_delta",
+            Role::Phase => "phase",
+            Role::ComplexModulus => "complex_modulus",
+            Role::StorageCompliance => "storage_compliance",
+            Role::LossCompliance => "loss_compliance",
+            Role::ComplexViscosity => "complex_viscosity",
+            Role::RealViscosity => "real_viscosity",
+            Role::ImaginaryViscosity => "imaginary_viscosity",
+            Role::Temperature => "temperature",
+            Role::Set => "set",
+            Role::Load => "load",
+            Role::Depth => "depth",
+        }
+    }
+
+    /// Unit in which a number without one is taken.
+    pub(super) fn si(self) -> &'static str {
+        match self {
+            Role::Time => "s",
+            Role::Modulus | Role::Storage | Role::Loss | Role::ComplexModulus => "Pa",
+            Role::Compliance | Role::StorageCompliance | Role::LossCompliance => "1/Pa",
+            Role::ComplexViscosity | Role::RealViscosity | Role::ImaginaryViscosity => "Pa s",
+            Role::Frequency => "Hz",
+            Role::TanDelta | Role::Set => "",
+            Role::Phase => "rad",
+            Role::Temperature => "K",
+            Role::Load => "N",
+            Role::Depth => "m",
+        }
+    }
+
+    /// A unit of an example.
+    pub(super) fn example(self) -> &'static str {
+        match self {
+            Role::Modulus | Role::Storage | Role::Loss | Role::ComplexModulus => "MPa",
+            Role::Compliance | Role::StorageCompliance | Role::LossCompliance => "1/MPa",
+            Role::TanDelta | Role::Set => "-",
+            Role::Phase => "deg",
+            Role::Temperature => "°C",
+            Role::Load => "mN",
+            Role::Depth => "um",
+            role => role.si(),
+        }
+    }
+
+    /// Names that mean it, bare (see [`bare`]); "t" and "T" are told apart elsewhere.
+    fn names(self) -> &'static [&'static str] {
+        match self {
+            Role::Time => &[
+                "time",
+                "testtime",
+                "steptime",
+                "elapsedtime",
+                "totaltime",
+                "reducedtime",
+                "relaxationtime",
+                "creeptime",
+                "zeit",
+                "messzeit",
+                "prüfzeit",
+                "versuchszeit",
+            ],
+            Role::Modulus => &[
+                "modulus",
+                "e",
+                "g",
+                "et",
+                "gt",
+                "er",
+                "gr",
+                "erelax",
+                "grelax",
+                "erel",
+                "grel",
+                "relaxationmodulus",
+                "relaxationmoduluset",
+                "relaxationmodulusgt",
+                "stressrelaxationmodulus",
+                "shearmodulus",
+                "shearrelaxationmodulus",
+                "tensilemodulus",
+                "tensilerelaxationmodulus",
+                "youngsmodulus",
+                "young'smodulus",
+                "emodulus",
+                "gmodulus",
+                "modul",
+                "emodul",
+                "gmodul",
+                "relaxationsmodul",
+                "schubmodul",
+                "zugmodul",
+                "elastizitätsmodul",
+            ],
+            Role::Compliance => &[
+                "compliance",
+                "d",
+                "j",
+                "dt",
+                "jt",
+                "dcreep",
+                "jcreep",
+                "creepcompliance",
+                "creepcompliancejt",
+                "creepcompliancedt",
+                "shearcompliance",
+                "tensilecompliance",
+                "shearcreepcompliance",
+                "tensilecreepcompliance",
+                "nachgiebigkeit",
+                "kriechnachgiebigkeit",
+                "komplianz",
+                "kriechkomplianz",
+            ],
+            Role::Frequency => &[
+                "frequency",
+                "freq",
+                "f",
+                "testfrequency",
+                "reducedfrequency",
+                "fred",
+                "angularfrequency",
+                "angularfreq",
+                "angfrequency",
+                "angfreq",
+                "reducedangularfrequency",
+                "omega",
+                "ω",
+                "w",
+                "frequenz",
+                "kreisfrequenz",
+                "winkelfrequenz",
+                "prüffrequenz",
+                "messfrequenz",
+            ],
+            Role::Storage => &[
+                "storage",
+                "e'",
+                "g'",
+                "m'",
+                "estor",
+                "gstor",
+                "estorage",
+                "gstorage",
+                "eprime",
+                "gprime",
+                "storagemodulus",
+                "storagemoduluse'",
+                "storagemodulusg'",
+                "shearstoragemodulus",
+                "tensilestoragemodulus",
+                "bendingstoragemodulus",
+                "speichermodul",
+                "speichermodule'",
+                "speichermodulg'",
+            ],
+            Role::Loss => &[
+                "loss",
+                "e''",
+                "g''",
+                "m''",
+                "eloss",
+                "gloss",
+                "edoubleprime",
+                "gdoubleprime",
+                "lossmodulus",
+                "lossmoduluse''",
+                "lossmodulusg''",
+                "shearlossmodulus",
+                "tensilelossmodulus",
+                "bendinglossmodulus",
+                "verlustmodul",
+                "verlustmodule''",
+                "verlustmodulg''",
+            ],
+            Role::TanDelta => &[
+                "tandelta",
+                "tand",
+                "tanδ",
+                "tan",
+                "lossfactor",
+                "losstangent",
+                "lossfactortandelta",
+                "lossfactortanδ",
+                "dampingfactor",
+                "verlustfaktor",
+                "verlustfaktortandelta",
+                "verlustfaktortanδ",
+            ],
+            Role::Phase => &["phase", "phaseangle", "phaseshift", "phaselag", "delta", "δ", "phasenwinkel"],
+            Role::ComplexModulus => &[
+                "e*",
+                "g*",
+                "m*",
+                "estar",
+                "gstar",
+                "ecomplex",
+                "gcomplex",
+                "complexmodulus",
+                "complexmoduluse*",
+                "complexmodulusg*",
+                "complexshearmodulus",
+                "dynamicmodulus",
+                "komplexermodul",
+                "komplexerschubmodul",
+            ],
+            Role::StorageCompliance => {
+                &["d'", "j'", "storagecompliance", "speichernachgiebigkeit", "speicherkomplianz"]
+            }
+            Role::LossCompliance => {
+                &["d''", "j''", "losscompliance", "verlustnachgiebigkeit", "verlustkomplianz"]
+            }
+            Role::ComplexViscosity => {
+                &["η*", "eta*", "complexviscosity", "complexviscosityη*", "komplexeviskosität"]
+            }
+            Role::RealViscosity => {
+                &["η'", "eta'", "realviscosity", "dynamicviscosity", "realpartofviscosity"]
+            }
+            Role::ImaginaryViscosity => &["η''", "eta''", "imaginaryviscosity", "imaginarypartofviscosity"],
+            Role::Temperature => &[
+                "temperature",
+                "temp",
+                "sampletemperature",
+                "sampletemp",
+                "chambertemperature",
+                "meantemperature",
+                "temperatur",
+                "probentemperatur",
+                "messtemperatur",
+            ],
+            Role::Set => {
+                &["set", "run", "sweep", "segment", "interval", "isotherm", "lauf", "messreihe", "intervall"]
+            }
+            Role::Load => &["load", "force", "normalload", "normalforce", "w", "p", "f", "fn"],
+            Role::Depth => {
+                &["depth", "indentation", "displacement", "indentationdepth", "approach", "h", "d"]
+            }
+        }
+    }
+
+    /// Whether a name means it.
+    pub(super) fn is_called(self, name: &str) -> bool {
+        self.names().contains(&bare(name).as_str())
+    }
+}
+
+impl FromStr for Role {
+    type Err = String;
+
+    fn from_str(name: &str) -> Result<Self, String> {
+        Role::ALL.into_iter().find(|role| role.name() == name).ok_or_else(|| {
+            let names: Vec<&str> = Role::ALL.iter().map(|role| role.name()).collect();
+            format!("\"{name}\" is no quantity of a curve; there are {}", names.join(", "))
+        })
+    }
+}
+
+/// A name in lower case, primes written in one way, without blanks, brackets and other marks.
+pub(super) fn bare(name: &str) -> String {
+    let mut text = String::with_capacity(name.len());
+    for c in name.chars().flat_map(char::to_lowercase) {
+        match c {
+            '\u{2032}' | '\u{2019}' | '\u{b4}' | '`' | '\u{2b9}' => text.push('\''),
+            '\u{2033}' | '"' | '\u{2ba}' | '\u{201d}' => text.push_str("''"),
+            '*' | '\'' => text.push(c),
+            c if c.is_alphanumeric() => text.push(c),
+            _ => {}
+        }
+    }
+    text
+}
+
+/// What a name calls the modulus or compliance: E and D are Young's, G and J shear.
+pub(super) fn measure_of(name: &str) -> Option<Modulus> {
+    /// What may follow the symbol.
+    const REST: [&str; 18] = [
+        "",
+        "'",
+        "''",
+        "*",
+        "t",
+        "r",
+        "rel",
+        "relax",
+        "stor",
+        "storage",
+        "loss",
+        "creep",
+        "complex",
+        "prime",
+        "doubleprime",
+        "star",
+        "modul",
+        "modulus",
+    ];
+    let name = bare(name);
+    if name.contains("shear") || name.contains("schub") {
+        return Some(Modulus::Shear);
+    }
+    if ["young", "tensile", "bending", "elastizität", "zugmodul"].iter().any(|word| name.contains(word)) {
+        return Some(Modulus::Young);
+    }
+    let of = |symbol: char| match symbol {
+        'g' | 'j' => Some(Modulus::Shear),
+        'e' | 'd' => Some(Modulus::Young),
+        _ => None,
+    };
+    let (symbol, rest) = (name.chars().next()?, name.get(1..).unwrap_or_default());
+    if REST.contains(&rest) {
+        return of(symbol);
+    }
+    // "Storage modulus G'"
+    let end = name.trim_end_matches(['\'', '*']);
+    if end.len() < name.len() { of(end.chars().next_back()?) } else { None }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn programs_call_a_quantity_by_many_names() {
+        for (role, names) in [
+            (
+                Role::Storage,
+                &["E'", "G′", "E_stor", "Storage Modulus", "Storage modulus G'", "Speichermodul"][..],
+            ),
+            (Role::Loss, &["E''", "E″", "G\"", "E_loss", "Loss Modulus", "Verlustmodul G''"]),
+            (Role::TanDelta, &["tan delta", "Tan(δ)", "tan_delta", "tan d", "Loss Factor", "Verlustfaktor"]),
+            (Role::ComplexModulus, &["|E*|", "G*", "Complex Modulus"]),
+            (Role::ComplexViscosity, &["|η*|", "Complex Viscosity"]),
+            (
+                Role::Frequency,
+                &["f", "freq.", "Angular Frequency", "Ang. frequency", "omega", "ω", "Kreisfrequenz"],
+            ),
+            (Role::Modulus, &["E_relax", "G(t)", "Relaxation Modulus", "E-Modul"]),
+            (Role::Compliance, &["J(t)", "D", "Creep compliance"]),
+            (Role::Temperature, &["Temp.", "Temperature", "Temperatur"]),
+            (Role::Set, &["Set", "run"]),
+        ] {
+            for name in names {
+                assert!(role.is_called(name), "{name}");
+            }
+        }
+        // Instruments have other columns too.
+        for name in ["F stat.", "Strain dyn", "|J*|", "T2", "Lo", "Nr"] {
+            assert!(!Role::ALL.iter().any(|role| role.is_called(name)), "{name}");
+        }
+    }
+
+    #[test]
+    fn a_name_says_which_modulus_it_is() {
+        for name in
+            ["E'", "E_stor", "|E*|", "Storage modulus E'", "tensile storage modulus", "D(t)", "E-Modul"]
+        {
+            assert_eq!(measure_of(name), Some(Modulus::Young), "{name}");
+        }
+        for name in ["G(t)", "Storage modulus G'", "J'", "Schubmodul", "G_relax"] {
+            assert_eq!(measure_of(name), Some(Modulus::Shear), "{name}");
+        }
+        for name in ["storage modulus", "dynamic modulus", "modulus", "Speichermodul"] {
+            assert_eq!(measure_of(name), None, "{name}");
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! The rows of a table as sweeps, one per temperature, and storage and loss modulus from what instruments give in their
+//! place:
+//!
+//! ```text
+//! E'' = E' tan delta        E' = |E*| cos delta     E' = D'/(D'^2 + D''^2)      E' = omega eta''
+//!                           E'' = |E*| sin delta    E'' = D''/(D'^2 + D''^2)    E'' = omega eta'
+//! ```
+
+use super::columns::Values;
+use super::error::{Fault, Remedy, fault};
+use super::{Kind, Role, Sweep};
+
+/// Temperatures closer than this belong to one sweep \[K\]: chambers hold no better.
+pub(super) const SAME_TEMPERATURE: f64 = 1.0;
+/// Temperatures of one sweep spread by no more \[K\].
+const SPREAD: f64 = 3.0;
+/// More sweeps than anybody measures.
+const MOST_SWEEPS: usize = 1000;
+
+/// The rows by temperature, the coldest first; each sweep in the order of the file, or the reverse where that goes down;
+/// a DMA by frequency.
+pub(super) fn sweeps(kind: Kind, values: &Values, lines: &[usize]) -> Result<Vec<Sweep>, Fault> {
+    let of = |role: Role| values.get(&role).cloned().unwrap_or_default();
+    let (x, curves) = match kind {
+        Kind::Relaxation => (of(Role::Time), vec![of(Role::Modulus)]),
+        Kind::Creep => (of(Role::Time), vec![of(Role::Compliance)]),
+        Kind::Dma => (of(Role::Frequency), dynamic(values)),
+    };
+    let sweep = |temperature: Option<f64>, rows: &[usize]| {
+        let mut rows = rows.to_vec();
+        let falls = rows.len() > 1 && rows.windows(2).all(|pair| x[pair[1]] < x[pair[0]]);
+        match kind {
+            // The order of frequencies means nothing.
+            Kind::Dma => rows.sort_by(|a, b| x[*a].total_cmp(&x[*b])),
+            _ if falls => rows.reverse(),
+            _ => {}
+        }
+        let pick = |column: &Vec<f64>| rows.iter().map(|row| column[*row]).collect::<Vec<f64>>();
+        Sweep {
+            temperature,
+            x: pick(&x),
+            curves: curves.iter().map(pick).collect(),
+            lines: rows.iter().map(|row| lines[*row]).collect(),
+        }
+    };
+    let all: Vec<usize> = (0..x.len()).collect();
+    let sets = by_set(values);
+    let Some(temperatures) = values.get(&Role::Temperature) else {
+        if sets.len() > 1 {
+            let message =
+                format!("the file holds {} sweeps (column of sets), but no temperatures", sets.len());
+            return Err(fault(message).remedy(Remedy::Column(Role::Temperature)));
+        }
+        return Ok(vec![sweep(None, &all)]);
+    };
+    let groups = match held(&sets, temperatures) {
+        true if sets.len() > 1 => sets,
+        _ => by_temperature(temperatures, &all)?,
+    };
+    if groups.len() > MOST_SWEEPS {
+        return Err(fault(format!("there are more than {MOST_SWEEPS} temperatures")));
+    }
+    let mut found: Vec<Sweep> =
+        groups.iter().map(|rows| sweep(Some(mean(temperatures, rows)), rows)).collect();
+    found.sort_by(|a, b| a.temperature.unwrap_or(0.0).total_cmp(&b.temperature.unwrap_or(0.0)));
+    Ok(found)
+}
+
+/// Storage and loss modulus.
+fn dynamic(values: &Values) -> Vec<Vec<f64>> {
+    let get = |role: Role| values.get(&role);
+    let both = |a: &[f64], b: &[f64], f: &dyn Fn(f64, f64) -> (f64, f64)| -> Vec<Vec<f64>> {
+        let (storage, loss): (Vec<f64>, Vec<f64>) = a.iter().zip(b).map(|(a, b)| f(*a, *b)).unzip();
+        vec![storage, loss]
+    };
+    let none = Vec::new();
+    let omega = get(Role::Frequency).unwrap_or(&none);
+    // tan delta, of the phase angle where that is given.
+    let tangent: Option<Vec<f64>> = get(Role::TanDelta)
+        .cloned()
+        .or_else(|| get(Role::Phase).map(|angles| angles.iter().map(|angle| libm::tan(*angle)).collect()));
+    let parts = |size: f64, tan: f64| {
+        let real = size / (1.0 + tan * tan).sqrt();
+        (real, real * tan)
+    };
+    if let (Some(storage), Some(loss)) = (get(Role::Storage), get(Role::Loss)) {
+        return vec![storage.clone(), loss.clone()];
+    }
+    if let (Some(storage), Some(tan)) = (get(Role::Storage), &tangent) {
+        return both(storage, tan, &|storage, tan| (storage, storage * tan));
+    }
+    if let (Some(size), Some(tan)) = (get(Role::ComplexModulus), &tangent) {
+        return both(size, tan, &parts);
+    }
+    if let (Some(real), Some(imaginary)) = (get(Role::StorageCompliance), get(Role::LossCompliance)) {
+        return both(real, imaginary, &|real, imaginary| {
+            let squares = real * real + imaginary * imaginary;
+            (real / squares, imaginary / squares)
+        });
+    }
+    if let (Some(real), Some(imaginary)) = (get(Role::RealViscosity), get(Role::ImaginaryViscosity)) {
+        let times = |viscosity: &[f64]| viscosity.iter().zip(omega).map(|(v, w)| v * w).collect::<Vec<f64>>();
+        return vec![times(imaginary), times(real)];
+    }
+    if let (Some(size), Some(tan)) = (get(Role::ComplexViscosity), &tangent) {
+        let sizes: Vec<f64> = size.iter().zip(omega).map(|(v, w)| v * w).collect();
+        return both(&sizes, tan, &parts);
+    }
+    vec![none.clone(), none]
+}
+
+/// The rows of each set, in the order of the file.
+fn by_set(values: &Values) -> Vec<Vec<usize>> {
+    let Some(sets) = values.get(&Role::Set) else { return Vec::new() };
+    let count = sets.iter().copied().fold(-1.0, f64::max) as usize;
+    let mut rows = vec![Vec::new(); (count + 1).min(sets.len())];
+    for (row, set) in sets.iter().enumerate() {
+        if let Some(rows) = rows.get_mut(*set as usize) {
+            rows.push(row);
+        }
+    }
+    rows
+}
+
+/// Whether each set was measured at one temperature, and no two at the same.
+fn held(sets: &[Vec<usize>], temperatures: &[f64]) -> bool {
+    let spread = |rows: &Vec<usize>| {
+        let of = |fold: fn(f64, f64) -> f64, start: f64| {
+            rows.iter().map(|row| temperatures[*row]).fold(start, fold)
+        };
+        of(f64::max, f64::NEG_INFINITY) - of(f64::min, f64::INFINITY)
+    };
+    let mut means: Vec<f64> = sets.iter().map(|rows| mean(temperatures, rows)).collect();
+    means.sort_by(f64::total_cmp);
+    sets.iter().all(|rows| spread(rows) <= SPREAD)
+        && means.windows(2).all(|pair| pair[1] - pair[0] > SAME_TEMPERATURE)
+}
+
+fn mean(temperatures: &[f64], rows: &[usize]) -> f64 {
+    let first = rows.first().map_or(0.0, |row| temperatures[*row]);
+    first + rows.iter().map(|row| temperatures[*row] - first).sum::<f64>() / rows.len().max(1) as f64
+}
+
+/// Rows whose temperatures follow each other closely.
+fn by_temperature(temperatures: &[f64], rows: &[usize]) -> Result<Vec<Vec<usize>>, Fault> {
+    let mut order = rows.to_vec();
+    order.sort_by(|a, b| temperatures[*a].total_cmp(&temperatures[*b]));
+    let same = |a: &usize, b: &usize| temperatures[*b] - temperatures[*a] <= SAME_TEMPERATURE;
+    let mut groups = Vec::new();
+    for group in order.chunk_by(same) {
+        let (coldest, warmest) = (temperatures[group[0]], temperatures[group[group.len() - 1]]);
+        if warmest - coldest > SPREAD {
+            return Err(fault(format!(
+                "the temperatures from {coldest} K to {warmest} K follow each other within {SAME_TEMPERATURE} K; \
+                 sweeps at held temperatures are needed"
+            )));
+        }
+        let mut rows = group.to_vec();
+        rows.sort_unstable();
+        groups.push(rows);
+    }
+    Ok(groups)
+}

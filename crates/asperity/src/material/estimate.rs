@@ -1,0 +1,232 @@
+//! Shift factors from measured isotherms.
+//!
+//! 1. Each pair of neighbours in temperature gives the distance along ln x at which one curve continues the other, and
+//!    its standard deviation ([`super::align`]). The first curve (relaxation modulus, compliance, storage modulus) decides;
+//!    the others join in where it is flat.
+//! 2. The WLF or the Arrhenius law through all distances, weighted by their variances, says what a pair has that says
+//!    little itself: each distance becomes the mean of the measured one and that of the law, weighted by one over their
+//!    variances, where a law is taken to be right to 0.6 decades and 60 % of the distance. Warmer is faster: no distance is
+//!    negative.
+//! 3. Distances add up from the reference to each temperature, and so do their variances. A factor that is uncertain by
+//!    more than a decade is refused.
+
+use super::align::{self, Distance, Logs};
+use super::master::{Abscissa, Isotherm, validate};
+use super::shift::{Shift, minimise};
+use crate::error::{Error, Result};
+use std::f64::consts::LN_10;
+
+/// Shift factors found from isotherms.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShiftEstimate {
+    /// The factors as a table, a_T = 1 at the reference.
+    pub shift: Shift,
+    /// Standard deviation of each factor, in the order of the table \[decades\]; 0 at the reference.
+    pub uncertainty: Vec<f64>,
+}
+
+/// Standard deviation of the logarithm of a factor beyond which it is refused \[decades\].
+const MOST_UNCERTAIN: f64 = 1.0;
+/// Standard deviation of the distance of a pair by a law \[decades\], and per distance.
+const LAW: [f64; 2] = [0.6, 0.6];
+/// Rubbers have lower moduli \[Pa\].
+const RUBBER: f64 = 1e8;
+/// Curves of more points are averaged over tenths of ln x.
+const MOST_POINTS: usize = 100;
+/// A pair is flat, and all curves are used, where the first one leaves its distance uncertain by more \[decades\].
+const FLAT: f64 = 1.0;
+
+/// The shift factors that let isotherms at neighbouring temperatures continue each other, as a table with a_T = 1 at the
+/// `reference` temperature \[K\], which must be that of an isotherm, and how well each is known.
+///
+/// [`fit_wlf`](crate::material::fit_wlf) and [`fit_arrhenius`](crate::material::fit_arrhenius) turn the table into a law.
+///
+/// ```
+/// use asperity::material::{Abscissa, Isotherm, estimate_shift};
+/// // Power-law relaxation t^-0.3, ten times as fast at the warmer temperature.
+/// let x: Vec<f64> = (0..13).map(|k| 10f64.powf(k as f64 / 4.0)).collect();
+/// let curve = |a: f64| vec![x.iter().map(|t| 1e6 / (1.0 + (t / a).powf(0.3))).collect()];
+/// let cold = Isotherm { temperature: 290.0, x: x.clone(), curves: curve(10.0) };
+/// let warm = Isotherm { temperature: 300.0, x: x.clone(), curves: curve(1.0) };
+/// let found = estimate_shift(&[cold, warm], Abscissa::Time, 300.0)?;
+/// assert!((found.shift.factor(290.0)? / 10.0 - 1.0).abs() < 0.01);
+/// // A modulus in proportion to the temperature would shift the curve as well: 0.034/0.25/ln 10 decades.
+/// assert!(found.uncertainty[0] < 0.1);
+/// # Ok::<(), asperity::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::Invalid`] as [`master_curve`](crate::material::master_curve); for fewer than two isotherms; where a factor is
+/// uncertain by more than a decade, naming the pair of isotherms that says least.
+pub fn estimate_shift(isotherms: &[Isotherm], abscissa: Abscissa, reference: f64) -> Result<ShiftEstimate> {
+    validate(isotherms)?;
+    let mut sorted: Vec<&Isotherm> = isotherms.iter().collect();
+    sorted.sort_by(|a, b| a.temperature.total_cmp(&b.temperature));
+    if sorted.len() < 2 {
+        return Err(Error::invalid("number of isotherms", sorted.len(), "at least 2"));
+    }
+    if let Some(pair) = sorted.windows(2).find(|pair| pair[0].temperature == pair[1].temperature) {
+        let value = format!("{} K twice", pair[0].temperature);
+        return Err(Error::invalid("temperature of the isotherms", value, "each once"));
+    }
+    let temperatures: Vec<f64> = sorted.iter().map(|isotherm| isotherm.temperature).collect();
+    let Some(anchor) = temperatures.iter().position(|kelvin| *kelvin == reference) else {
+        let known: Vec<String> = temperatures.iter().map(|kelvin| format!("{kelvin} K")).collect();
+        let expected = format!("one of the isotherms: {}", known.join(", "));
+        return Err(Error::invalid("reference temperature", format!("{reference} K"), expected));
+    };
+    let measured: Vec<Distance> = sorted.windows(2).map(|pair| between(pair[0], pair[1], abscissa)).collect();
+    let found = with_law(&temperatures, &measured);
+    let sums = |of: &dyn Fn(&Distance) -> f64| -> Vec<f64> {
+        std::iter::once(0.0)
+            .chain(found.iter().scan(0.0, |sum, distance| {
+                *sum += of(distance);
+                Some(*sum)
+            }))
+            .collect()
+    };
+    // Warmer is faster: ln a_T falls by the distance from pair to pair.
+    let (moved, variance) = (sums(&|d| d.value), sums(&|d| d.deviation * d.deviation));
+    let points = (0..sorted.len()).map(|k| (temperatures[k], moved[anchor] - moved[k])).collect();
+    let uncertainty: Vec<f64> =
+        variance.iter().map(|sum| (sum - variance[anchor]).abs().sqrt() / LN_10).collect();
+    if uncertainty.iter().any(|decades| decades.is_nan() || *decades > MOST_UNCERTAIN) {
+        return Err(uncertain(&sorted, &measured, &uncertainty));
+    }
+    Ok(ShiftEstimate { shift: Shift::Table { points }, uncertainty })
+}
+
+/// The distance in ln t by which the colder isotherm is behind the warmer one.
+fn between(cold: &Isotherm, warm: &Isotherm, abscissa: Abscissa) -> Distance {
+    let of = |curve: usize| {
+        let [first, second] = [cold, warm].map(|isotherm| logs(isotherm, abscissa, curve));
+        let change = (warm.temperature / cold.temperature).ln() * share_of_temperature(&first, &second);
+        align::distance(&first, &second, change)
+    };
+    let first = of(0);
+    if first.deviation <= FLAT * LN_10 {
+        return first;
+    }
+    (1..cold.curves.len()).map(of).fold(first, mean)
+}
+
+/// How the modulus itself changes with the absolute temperature, as a power: a rubber's grows in proportion (elasticity of
+/// entropy), that of a glass changes some seven times less.
+fn share_of_temperature(first: &Logs, second: &Logs) -> f64 {
+    let count = (first.len() + second.len()) as f64;
+    let mean = first.iter().chain(second).map(|point| point.1).sum::<f64>() / count;
+    // The logarithm of a compliance is negative; its absolute value is that of a modulus.
+    if mean.abs() < RUBBER.ln() { 1.0 } else { 0.15 }
+}
+
+/// ln t or -ln omega, rising, and the logarithm of the values.
+fn logs(isotherm: &Isotherm, abscissa: Abscissa, curve: usize) -> Logs {
+    let points = isotherm.x.iter().zip(&isotherm.curves[curve]).map(|(x, value)| (x.ln(), value.ln()));
+    let points: Logs = match abscissa {
+        Abscissa::Time => points.collect(),
+        Abscissa::Frequency => points.rev().map(|(x, y)| (-x, y)).collect(),
+    };
+    match points.len() > MOST_POINTS {
+        true => points.chunk_by(|a, b| bin(a.0) == bin(b.0)).map(average).collect(),
+        false => points,
+    }
+}
+
+/// Tenths of ln x.
+fn bin(x: f64) -> i64 {
+    (10.0 * x).floor() as i64
+}
+
+fn average(points: &[(f64, f64)]) -> (f64, f64) {
+    let count = points.len() as f64;
+    let sum = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / count;
+    (sum(|point| point.0), sum(|point| point.1))
+}
+
+/// The mean of two independent values, weighted by one over their variances.
+fn mean(a: Distance, b: Distance) -> Distance {
+    let weight = |d: Distance| 1.0 / (d.deviation * d.deviation).max(1e-12);
+    let (wa, wb) = (weight(a), weight(b));
+    if wa + wb == 0.0 {
+        return a;
+    }
+    Distance { value: (wa * a.value + wb * b.value) / (wa + wb), deviation: (wa + wb).sqrt().recip() }
+}
+
+/// The measured distances, each averaged with that of a law through all of them, and not negative.
+fn with_law(temperatures: &[f64], measured: &[Distance]) -> Vec<Distance> {
+    let law = law(temperatures, measured);
+    let averaged = measured.iter().enumerate().map(|(k, distance)| match &law {
+        Some(law) => mean(*distance, Distance { value: law[k], deviation: doubt(law[k]) }),
+        None => *distance,
+    });
+    averaged.map(|distance| Distance { value: distance.value.max(0.0), ..distance }).collect()
+}
+
+/// Standard deviation of a distance by a law \[ln\].
+fn doubt(distance: f64) -> f64 {
+    LAW[0] * LN_10 + LAW[1] * distance
+}
+
+/// The distances of the pairs by the law through the measured ones; `None` where fewer than two of them are known or warmer
+/// is not faster.
+fn law(temperatures: &[f64], measured: &[Distance]) -> Option<Vec<f64>> {
+    let known = measured.iter().filter(|distance| distance.deviation < FLAT * LN_10).count();
+    if known < 2 {
+        return None;
+    }
+    let coldest = temperatures[0];
+    // ln a_T about the coldest temperature: WLF for a given c2, then Arrhenius.
+    let wlf = |u: f64| move |t: f64| (t - coldest) / (u.exp() + t - coldest);
+    let arrhenius = |t: f64| 1.0 / coldest - 1.0 / t;
+    let squares_of_wlf = |u: f64| scaled(temperatures, measured, &wlf(u)).1;
+    let best = minimise(0.0, 1e4f64.ln(), 300, squares_of_wlf);
+    let [wlf, arrhenius] =
+        [scaled(temperatures, measured, &wlf(best)), scaled(temperatures, measured, &arrhenius)];
+    // Two distances do not tell three constants.
+    let (law, _) = if known > 2 && wlf.1 < arrhenius.1 { wlf } else { arrhenius };
+    law.iter().all(|distance| *distance >= 0.0 && distance.is_finite()).then_some(law)
+}
+
+/// The differences of `form` between neighbours, times the factor that brings them closest to the measured distances, and
+/// the weighted sum of squares.
+fn scaled(temperatures: &[f64], measured: &[Distance], form: &dyn Fn(f64) -> f64) -> (Vec<f64>, f64) {
+    let steps: Vec<f64> = temperatures.windows(2).map(|pair| form(pair[1]) - form(pair[0])).collect();
+    let weight = |d: &Distance| 1.0 / (d.deviation * d.deviation + doubt(d.value.max(0.0)).powi(2));
+    let (mut above, mut below) = (0.0, 0.0);
+    for (step, distance) in steps.iter().zip(measured).filter(|(_, d)| d.deviation.is_finite()) {
+        above += weight(distance) * step * distance.value;
+        below += weight(distance) * step * step;
+    }
+    let factor = above / below;
+    let squares = steps.iter().zip(measured).filter(|(_, d)| d.deviation.is_finite());
+    let squares = squares.map(|(step, d)| weight(d) * (factor * step - d.value).powi(2)).sum();
+    (steps.iter().map(|step| factor * step).collect(), squares)
+}
+
+/// Names the pair that says least.
+fn uncertain(sorted: &[&Isotherm], measured: &[Distance], uncertainty: &[f64]) -> Error {
+    let worst = (0..measured.len()).max_by(|a, b| measured[*a].deviation.total_cmp(&measured[*b].deviation));
+    let worst = worst.unwrap_or(0);
+    let largest = uncertainty.iter().copied().fold(0.0, f64::max);
+    let decades = measured[worst].deviation / LN_10;
+    let shown = |decades: f64| match decades < 10.0 {
+        true => format!("{decades:.1} decades"),
+        false => "more than 10 decades".to_owned(),
+    };
+    Error::invalid(
+        format!("isotherms at {} K and {} K", sorted[worst].temperature, sorted[worst + 1].temperature),
+        format!(
+            "uncertain in their distance along the logarithm of time by {}, and shift factors by {}",
+            shown(decades),
+            shown(largest)
+        ),
+        format!(
+            "known to {MOST_UNCERTAIN} decade: curves with a slope, at temperatures close enough to overlap; leave an \
+             isotherm out, measure between them, or give the shift"
+        ),
+    )
+}
+
+#[cfg(test)]
+mod tests;

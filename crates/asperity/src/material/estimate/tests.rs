@@ -1,0 +1,151 @@
+//! Factors of synthetic isotherms, and what is refused.
+
+use super::*;
+use crate::material::series::tests::random;
+use crate::material::{FitOptions, Relaxation, fit_dma, fit_relaxation, fit_wlf, master_curve};
+
+/// A transition over six decades.
+fn polymer() -> Relaxation {
+    let weights = [2e8, 5e8, 9e8, 7e8, 4e8, 1e8, 3e7, 6e6, 1e6];
+    let terms: Vec<_> =
+        weights.iter().enumerate().map(|(k, w)| (*w, 4.0 * 10f64.powi(k as i32 - 4))).collect();
+    Relaxation::absolute(1e6, &terms).unwrap()
+}
+
+fn law() -> Shift {
+    Shift::Wlf { c1: 9.0, c2: 80.0, reference: 310.0 }
+}
+
+const TEMPERATURES: [f64; 8] = [295.0, 300.0, 305.0, 310.0, 315.0, 320.0, 330.0, 340.0];
+
+/// DMA sweeps from 0.1 to 100 Hz with 1 % scatter.
+fn sweeps() -> Vec<Isotherm> {
+    let mut random = random(8);
+    let mut scatter = move || 1.0 + 0.01 * (random() + random() + random() + random() - 2.0) * 3f64.sqrt();
+    let sweep = |temperature: f64| {
+        let a = law().factor(temperature).unwrap();
+        let x: Vec<f64> = (0..19).map(|k| 0.628 * 10f64.powf(f64::from(k) / 6.0)).collect();
+        let (storage, loss): (Vec<_>, Vec<_>) =
+            x.iter().map(|w| polymer().complex(w * a)).map(|(s, l)| (s * scatter(), l * scatter())).unzip();
+        Isotherm { temperature, x, curves: vec![storage, loss] }
+    };
+    TEMPERATURES.map(sweep).to_vec()
+}
+
+#[test]
+fn sweeps_at_eight_temperatures_give_the_law_and_the_material() {
+    let found = estimate_shift(&sweeps(), Abscissa::Frequency, 310.0).unwrap();
+    let table = found.shift;
+    for t in TEMPERATURES {
+        let error = (table.ln_factor(t).unwrap() - law().ln_factor(t).unwrap()) / LN_10;
+        // 1 % of scatter on slopes of 1/4 and more, averaged over some 20 points and summed over
+        // at most four pairs.
+        assert!(error.abs() < 0.03, "{t} K: {error} decades");
+    }
+    let Shift::Table { points } = &table else { panic!("{table:?}") };
+    let fit = fit_wlf(points, 310.0).unwrap();
+    assert!(fit.rms < 0.02, "{fit:?}");
+    let master = master_curve(&sweeps(), Abscissa::Frequency, &fit.shift).unwrap();
+    assert!(master.x.windows(2).all(|p| p[0] < p[1]) && master.x.len() == 8 * 19);
+    let options = FitOptions::default();
+    let fit = fit_dma(&master.x, &master.curves[0], &master.curves[1], &options).unwrap();
+    for t in [3e-4, 1e-2, 1.0, 1e2, 3e2] {
+        let error = fit.function.value(t) / polymer().value(t) - 1.0;
+        // 0.02 decades along slopes up to 1 are 5 %.
+        assert!(error.abs() < 0.05, "{t} {error}");
+    }
+}
+
+#[test]
+fn relaxation_in_time_shifts_the_other_way() {
+    let isotherms: Vec<Isotherm> = [300.0, 305.0, 310.0]
+        .iter()
+        .map(|temperature| {
+            let a = law().factor(*temperature).unwrap();
+            let x: Vec<f64> = (0..21).map(|k| 10f64.powf(-1.0 + 0.15 * f64::from(k))).collect();
+            let curve = x.iter().map(|t| polymer().value(t / a)).collect();
+            Isotherm { temperature: *temperature, x, curves: vec![curve] }
+        })
+        .collect();
+    let table = estimate_shift(&isotherms, Abscissa::Time, 310.0).unwrap().shift;
+    let error = table.ln_factor(300.0).unwrap() / law().ln_factor(300.0).unwrap() - 1.0;
+    // No scatter; chords over 0.15 decades.
+    assert!(error.abs() < 2e-3, "{error}");
+    let master = master_curve(&isotherms, Abscissa::Time, &law()).unwrap();
+    let fit = fit_relaxation(&master.x, &master.curves[0], &FitOptions::default()).unwrap();
+    assert!(fit.misfit.max < 1e-3, "{:?}", fit.misfit);
+}
+
+#[test]
+fn what_cannot_be_shifted_is_told() {
+    let isotherm = |temperature: f64, x: &[f64], curve: &[f64]| Isotherm {
+        temperature,
+        x: x.to_vec(),
+        curves: vec![curve.to_vec()],
+    };
+    let says = |isotherms: &[Isotherm], reference: f64, words: &str| {
+        let error = estimate_shift(isotherms, Abscissa::Time, reference).unwrap_err().to_string();
+        assert!(error.contains(words), "{error}");
+    };
+    let x = [1.0, 2.0, 4.0, 8.0];
+    let high = isotherm(300.0, &x, &[9e9, 8e9, 7e9, 6e9]);
+    let low = isotherm(400.0, &x, &[4e6, 3e6, 2e6, 1e6]);
+    says(&[high.clone(), low.clone()], 300.0, "isotherms at 300 K and 400 K");
+    let flat = |t: f64| isotherm(t, &x, &[1e9; 4]);
+    says(&[flat(300.0), flat(310.0)], 300.0, "slope");
+    let next = isotherm(310.0, &x, &[7e9, 6e9, 5e9, 4e9]);
+    says(&[high.clone(), next.clone()], 305.0, "one of the isotherms: 300 K, 310 K");
+    says(&[high.clone(), high.clone()], 300.0, "300 K twice");
+    says(std::slice::from_ref(&high), 300.0, "number of isotherms is 1");
+    says(&[isotherm(300.0, &[1.0, 1.0], &[1.0, 1.0])], 300.0, "abscissa of point 2");
+    says(&[isotherm(300.0, &[1.0, 2.0], &[1.0, -1.0])], 300.0, "point 2 of the isotherm at 300 K");
+    says(&[isotherm(300.0, &x, &[1.0])], 300.0, "number of values");
+    says(&[], 300.0, "number of isotherms is 0");
+    assert!(estimate_shift(&[high, next], Abscissa::Time, 310.0).is_ok());
+}
+
+/// Relaxation of the polymer over three decades from 0.1 s at the given temperatures.
+fn relaxing(temperatures: &[f64]) -> Vec<Isotherm> {
+    let isotherm = |temperature: &f64| {
+        let a = law().factor(*temperature).unwrap();
+        let x: Vec<f64> = (0..21).map(|k| 10f64.powf(-1.0 + 0.15 * f64::from(k))).collect();
+        let curve = x.iter().map(|t| polymer().value(t / a)).collect();
+        Isotherm { temperature: *temperature, x, curves: vec![curve] }
+    };
+    temperatures.iter().map(isotherm).collect()
+}
+
+#[test]
+fn the_uncertainty_grows_from_the_reference_and_holds_the_error() {
+    let temperatures = [295.0, 302.0, 310.0, 320.0, 332.0];
+    let found = estimate_shift(&relaxing(&temperatures), Abscissa::Time, 310.0).unwrap();
+    assert_eq!(found.uncertainty[2], 0.0);
+    assert!(found.uncertainty[0] > found.uncertainty[1] && found.uncertainty[4] > found.uncertainty[3]);
+    for (t, uncertainty) in temperatures.iter().zip(&found.uncertainty) {
+        let error = (found.shift.ln_factor(*t).unwrap() - law().ln_factor(*t).unwrap()) / LN_10;
+        // Three standard deviations, and the digits at the reference.
+        assert!(error.abs() <= 3.0 * uncertainty + 1e-9, "{t} K: {error}, {uncertainty}");
+    }
+}
+
+#[test]
+fn isotherms_far_apart_are_continued_with_their_uncertainty() {
+    // Twenty kelvin and more apart: three decades of time each, three decades of shift and more.
+    let temperatures = [293.0, 313.0, 340.0, 377.0];
+    let found = estimate_shift(&relaxing(&temperatures), Abscissa::Time, 313.0).unwrap();
+    for (t, uncertainty) in temperatures.iter().zip(&found.uncertainty) {
+        let error = (found.shift.ln_factor(*t).unwrap() - law().ln_factor(*t).unwrap()) / LN_10;
+        // The estimate says how far off it may be, and that is less than a decade.
+        assert!(error.abs() < 1.0 && *uncertainty <= 1.0, "{t} K: {error}, {uncertainty}");
+    }
+}
+
+#[test]
+fn a_flat_pair_follows_the_law_of_the_others() {
+    // Rubbery at the two warmest temperatures: the modulus changes by less than its own change with temperature.
+    let temperatures = [295.0, 300.0, 305.0, 310.0, 318.0, 326.0, 380.0, 390.0];
+    let found = estimate_shift(&relaxing(&temperatures), Abscissa::Time, 310.0).unwrap();
+    let step = |shift: &Shift| (shift.ln_factor(380.0).unwrap() - shift.ln_factor(390.0).unwrap()) / LN_10;
+    // Half of what the law itself is trusted to.
+    assert!((step(&found.shift) - step(&law())).abs() < 0.3, "{found:?}");
+}

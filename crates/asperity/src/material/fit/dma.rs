@@ -1,0 +1,144 @@
+//! Storage and loss modulus of a dynamic mechanical analysis.
+//!
+//! One relaxation spectrum gives both moduli (J. D. Ferry, Viscoelastic Properties of Polymers, 3rd ed., 1980,
+//! chapter 3). Measured ones often contradict each other, because a master curve was shifted by the storage modulus
+//! alone or the instrument's compliance is in one of them. So either modulus may be fitted alone, and data whose moduli
+//! cannot be fitted together are refused with the misfit that each reaches alone.
+
+use super::{Curve, Fit, FitOptions, LongTime, Misfit, Moduli, Solved, relaxation, together};
+use crate::error::{Error, Result};
+use crate::material::Relaxation;
+use crate::material::data::{self, Trend, Words};
+use crate::material::spectrum::{Kernel, Problem, Spectrum};
+
+/// Fits storage and loss modulus E', E'' \[Pa\] at increasing angular frequencies \[rad/s\] (2 pi f) of a
+/// dynamic mechanical analysis by one relaxation function: both, or the one that [`FitOptions::moduli`] names.
+///
+/// ```
+/// use asperity::material::{FitOptions, Moduli, Relaxation, fit_dma};
+/// let rubber = Relaxation::absolute(1e6, &[(5e8, 1e-4), (8e7, 1e-2), (3e6, 2.0)])?;
+/// let omega: Vec<f64> = (0..40).map(|k| 10f64.powf(-2.0 + 0.2 * k as f64)).collect();
+/// let (storage, mut loss): (Vec<_>, Vec<_>) = omega.iter().map(|w| rubber.complex(*w)).unzip();
+/// let fit = fit_dma(&omega, &storage, &loss, &FitOptions::default())?;
+/// assert!(fit.misfit.max < 1e-4);
+/// assert!((fit.function.value(0.1) / rubber.value(0.1) - 1.0).abs() < 1e-4);
+/// // A loss modulus that is 40 % too high belongs to no passive material with this storage modulus.
+/// loss.iter_mut().for_each(|value| *value *= 1.4);
+/// let refused = fit_dma(&omega, &storage, &loss, &FitOptions::default()).unwrap_err();
+/// assert!(refused.to_string().contains("the storage modulus alone"));
+/// let options = FitOptions { moduli: Moduli::Storage, ..FitOptions::default() };
+/// let fit = fit_dma(&omega, &storage, &loss, &options)?;
+/// assert!(fit.columns[0].rms < 1e-4 && (fit.columns[1].rms - 0.4 / 1.4).abs() < 1e-3);
+/// # Ok::<(), asperity::Error>(())
+/// ```
+///
+/// # Errors
+/// As [`fit_relaxation`](crate::material::fit_relaxation): frequencies out of order, negative moduli, a storage modulus
+/// that falls with frequency, and pairs E', E'' that belong to no passive material (Kramers & Kronig).
+pub fn fit_dma(
+    omega: &[f64],
+    storage: &[f64],
+    loss: &[f64],
+    options: &FitOptions,
+) -> Result<Fit<Relaxation>> {
+    let words = Words {
+        abscissa: "angular frequency",
+        abscissa_unit: "rad/s",
+        ordinate: "storage modulus",
+        ordinate_unit: "Pa",
+    };
+    let loss_words = Words { ordinate: "loss modulus", ..words };
+    options.validate()?;
+    data::check_abscissae(words, omega, false)?;
+    data::check_values(words, omega, storage, false)?;
+    data::check_values(loss_words, omega, loss, true)?;
+    data::check_trend(words, Trend::Rises, omega, storage, options.limit)?;
+    // A loss below a thousandth of the stored energy is below what instruments tell.
+    let floor = 1e-3 * storage.iter().copied().fold(f64::INFINITY, f64::min);
+    let weight = options.loss_weight;
+    let curves = [
+        Curve { words, kernel: Kernel::Storage, xs: omega, values: storage, floor: 0.0, weight: 1.0 },
+        Curve { words: loss_words, kernel: Kernel::Loss, xs: omega, values: loss, floor, weight },
+    ];
+    let window = [1.0 / omega[omega.len() - 1], 1.0 / omega[0]];
+    let noise = data::noise(omega, storage).max(data::noise(omega, loss));
+    let solved = solve(&curves, window, options).map_err(|refusal| match options {
+        FitOptions { moduli: Moduli::Both, misfit: None, .. } => {
+            alone(&curves, window, options).unwrap_or(refusal)
+        }
+        _ => refusal,
+    });
+    let Solved { spectrum, misfit, columns, uncertainty } = solved?;
+    Ok(Fit { function: relaxation(spectrum)?, misfit, columns, window, noise, uncertainty })
+}
+
+/// Fits the moduli that are asked for, and measures the misfit of both.
+fn solve(curves: &[Curve; 2], window: [f64; 2], options: &FitOptions) -> Result<Solved> {
+    let fitted = of(curves, options.moduli);
+    let margin = 10f64.powf(options.margin);
+    let problem = Problem {
+        rows: fitted.iter().flat_map(Curve::rows).collect(),
+        // The loss modulus does not show the equilibrium modulus.
+        constant: options.long_time != LongTime::Fluid && options.moduli != Moduli::Loss,
+        flow: false,
+        range: [window[0] / margin, window[1] * margin],
+    };
+    let mut solved = options.solve(&problem, fitted)?;
+    if options.moduli == Moduli::Loss && options.long_time != LongTime::Fluid {
+        solved.spectrum.constant = equilibrium(&curves[0], &solved.spectrum);
+    }
+    solved.columns = curves.iter().map(|curve| curve.misfit(&solved.spectrum)).collect();
+    Ok(solved)
+}
+
+fn of<'a, 'c>(curves: &'a [Curve<'c>; 2], moduli: Moduli) -> &'a [Curve<'c>] {
+    match moduli {
+        Moduli::Both => curves,
+        Moduli::Storage => &curves[..1],
+        Moduli::Loss => &curves[1..],
+    }
+}
+
+/// The constant that brings the storage modulus of a spectrum closest to the measured one, relative residuals squared.
+fn equilibrium(storage: &Curve<'_>, spectrum: &Spectrum) -> f64 {
+    let (mut above, mut below) = (0.0, 0.0);
+    for (x, value) in storage.xs.iter().zip(storage.values) {
+        above += (value - spectrum.value(Kernel::Storage, *x)) / (value * value);
+        below += 1.0 / (value * value);
+    }
+    (above / below).max(0.0)
+}
+
+/// The refusal of both moduli together, with the misfit that each reaches alone; `None` where neither does.
+fn alone(curves: &[Curve; 2], window: [f64; 2], options: &FitOptions) -> Option<Error> {
+    let any = FitOptions { limit: f64::MAX, ..*options };
+    let both = solve(curves, window, &any).ok()?;
+    let single = |moduli: Moduli| solve(curves, window, &FitOptions { moduli, ..*options }).ok();
+    let shares = |misfit: &Misfit| format!("{:.1} %", 100.0 * misfit.rms);
+    let reached: Vec<String> = [(Moduli::Storage, 0, "storage"), (Moduli::Loss, 1, "loss")]
+        .into_iter()
+        .filter_map(|(moduli, column, name)| {
+            let solved = single(moduli)?;
+            let other = shares(&solved.columns[1 - column]);
+            let rest = if column == 0 { "loss" } else { "storage" };
+            Some(format!(
+                "the {name} modulus alone is fitted to {} (and then misses the {rest} modulus by {other})",
+                shares(&together(of(curves, moduli), &[solved.columns[column]]))
+            ))
+        })
+        .collect();
+    if reached.is_empty() {
+        return None;
+    }
+    let [storage, loss] = [0, 1].map(|column| shares(&both.columns[column]));
+    Some(Error::invalid(
+        "rms misfit of storage and loss modulus together",
+        format!("{storage} and {loss}"),
+        format!(
+            "at most {:.0} %; {}; they contradict each other, no passive material has both (Kramers-Kronig): fit one and look at \
+             the other",
+            100.0 * options.limit,
+            reached.join(", ")
+        ),
+    ))
+}

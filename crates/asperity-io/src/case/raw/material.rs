@@ -42,7 +42,7 @@ pub enum Material {
     CreepTable(CreepTable),
     /// Storage and loss modulus over frequency (dynamic mechanical analysis) from a text table, at one temperature
     /// or several, fitted by a Prony series.
-    Dma(Dma),
+    Dma(Box<Dma>),
 }
 
 impl Material {

@@ -471,6 +471,9 @@ def elastic(
     modulus = 1.0 if contact_modulus is None else number("contact_modulus", contact_modulus)
     limit = _hardness(hardness, shape.heights.ndim)
     table = None if kernel is None else _table(kernel, shape, boundary)
+    if table is not None:
+        factor = _scale(table, shape, boundary)
+        table, modulus = table * factor, modulus * factor
     keys = {"boundary": boundary, "method": method, "tolerance": number("tolerance", tolerance)}
     keys["max_iterations"] = count("max_iterations", max_iterations)
     held = start._planned if isinstance(start, ElasticContact) else None
@@ -523,6 +526,19 @@ def _receivers(out: Any, shape: Surface) -> dict[str, Floats]:
         if not isinstance(held, np.ndarray) or held.dtype != np.float64 or held.shape != shape.heights.shape or not held.flags.writeable:
             raise CaseError(f"out must be a writable float64 array of shape {shape.heights.shape}")
     return given
+
+
+def _scale(table: Floats, shape: Surface, boundary: str) -> float:
+    """The power of two that brings a kernel near to that of the half-space, which tolerances are made for: its mean symbol, or the
+    displacement of the loaded cell."""
+    lengths, cells = shape.size, shape.cells
+    if boundary == "periodic":
+        waves = np.meshgrid(*(2.0 * np.pi / length * np.arange(n // 2 + 1) for n, length in zip(cells, lengths)), indexing="ij")
+        usual = np.mean(2.0 / np.sqrt(sum(q**2 for q in waves)).ravel()[1:])
+        found = np.mean(table.ravel()[1:])
+    else:
+        usual, found = lengths[0] / cells[0], table.ravel()[0]
+    return float(2.0 ** np.round(np.log2(usual / found))) if np.isfinite(found) and found > 0.0 else 1.0
 
 
 def _table(kernel: Any, shape: Surface, boundary: str) -> Floats:

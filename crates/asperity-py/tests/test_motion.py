@@ -103,3 +103,33 @@ def test_what_cannot_be_is_refused() -> None:
                 asp.slide(rough, zener(4), load=0.1, times=[1.0], **options)
     with pytest.raises(asp.CaseError, match="track"):
         asp.slide(rough, zener(4), load=0.1, times=[10.0], velocity=1.0)
+
+
+def test_a_study_of_sweeps_is_a_master_curve():
+    surface = asp.Surface.self_affine(
+        cells=(24, 24), size=(1e-3, 1e-3), hurst=0.8, rms_gradient=0.05, longest=5e-4, roll_off=5e-4, shortest=2e-4, seed=2
+    )
+    rubber = asp.Zener(shear=10e6, shear_kelvin=1e6, retardation_time=0.01, poisson=0.5, shift=asp.wlf(c1=8.86, c2=101.6, reference=293.15))
+    given = dict(surface=surface, material=rubber, pressure=20e3, velocities=[1e-3, 1e-2, 1e-1], boundary="periodic")
+    kelvin = [283.15, 293.15]
+    data = asp.study(given, over={"temperature": kelvin}, workers=1)
+    assert (data.status == "complete").all(), data.error.values
+    assert data.velocity.dims == ("step",) and list(data.velocity.values) == [1e-3, 1e-2, 1e-1]
+    assert data.velocity.attrs["units"] == "m/s" and "time" not in data.coords
+    # A sweep at another temperature is the same sweep at velocities a_T times as high.
+    factor = float(asp.wlf(c1=8.86, c2=101.6, reference=293.15).factor(283.15))
+    shifted = asp.steady(**{**given, "velocities": [v * factor for v in given["velocities"]]}, temperature=293.15, progress=False)
+    found = data.friction_coefficient.sel(temperature=283.15).values
+    # The tolerance of the solver.
+    assert np.allclose(found, shifted.friction_coefficient, rtol=1e-4)
+
+
+def test_a_study_of_slides_runs_in_time():
+    wave = asp.Surface.wave(cells=(32, 4), size=(1e-3, 125e-6), amplitude=1e-6, wavelength=(1e-3, float("inf")))
+    rubber = asp.Zener(shear=1e6, shear_kelvin=0.2e6, retardation_time=0.01, poisson=0.5)
+    given = dict(surface=wave, material=rubber, pressure=20e3, times=[0.01], boundary="periodic")
+    data = asp.study(given, over={"velocity": [0.01, 0.05]}, workers=1)
+    assert (data.status == "complete").all(), data.error.values
+    travelled = data.sliding_distance.values[:, -1]
+    last = [row[np.isfinite(row)][-1] for row in data.sliding_distance.values]
+    assert np.allclose(last, [1e-4, 5e-4], rtol=1e-12), travelled

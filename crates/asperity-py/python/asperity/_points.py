@@ -25,6 +25,7 @@ from . import _core
 from ._core import CaseError
 from ._materials import Material
 from ._result import Result, open as open_result
+from ._motion import slide, steady
 from ._solve import solve
 from ._surface import Surface
 
@@ -169,7 +170,7 @@ def _solved(point: Point, folder: str) -> Result:
         return open_result(path)
     call = solve if point.function is None else point.function
     given = {**point.fixed, **point.settings}
-    if call is solve:
+    if call in (solve, slide, steady):
         given = {"progress": False, "fields": point.fields, **given}
     found = call(**given)
     if not isinstance(found, Result):

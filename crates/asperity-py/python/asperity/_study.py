@@ -55,7 +55,8 @@ def study(
 
     Parameters
     ----------
-    case : path, text or dictionary of a case as in :func:`run`; or a dictionary of the parameters of :func:`solve`; or
+    case : path, text or dictionary of a case as in :func:`run`; or a dictionary of the parameters of :func:`solve`, with `velocities`
+        of :func:`steady`, with `velocity` or `path` of :func:`slide`; or
         a function that takes the parameters of a point and returns a :class:`Result`
     over : values by parameter; the study solves every combination. Parameters of a case are dotted keys,
         ``{"load.history.value": ["0.1 N", "0.5 N"]}``. Give values that are neither numbers nor text (materials,
@@ -208,7 +209,8 @@ def _common(case: Any, names: list[str]) -> dict[str, Any]:
     """What all points share."""
     if isinstance(case, Mapping) and ("material" in case or "material" in names):
         given = {str(key): value for key, value in case.items()}
-        return {"fixed": given, "base": base_of(None, "", None, given)}
+        function = _solver({*given, *names})
+        return {"fixed": given, "function": function, "base": base_of(None, "", function, given)}
     if callable(case) and not isinstance(case, (str, os.PathLike)):
         from ._solve import solve
 
@@ -224,6 +226,15 @@ def _common(case: Any, names: list[str]) -> dict[str, Any]:
         directory = os.path.dirname(path)
     directory = os.path.abspath(directory)
     return {"case": text, "directory": directory, "base": base_of(text, directory, None, {})}
+
+
+def _solver(names: set[str]) -> Callable[..., Result] | None:
+    """What solves parameters of these names: None is :func:`asperity.solve`."""
+    from ._motion import slide, steady
+
+    if "velocities" in names:
+        return steady
+    return slide if names & {"velocity", "path"} else None
 
 
 def _check_names(common: dict[str, Any], plan: _Plan) -> None:
@@ -357,10 +368,13 @@ def _dataset(
         attributes = {"units": " or ".join(sorted(units)) or unit, "long_name": words}
         if name == "time":
             whole = table[steps == most] if most else table
+            sweeps = any(result is not None and result.is_sweep for result in results)
+            along = "velocity" if sweeps else "time"
+            attributes["long_name"] = along
             if len(whole) and bool(np.all(whole == whole[0])) and bool(np.all((steps == most) | (steps == 0))):
-                coordinates["time"] = ("step", whole[0], attributes)
+                coordinates[along] = ("step", whole[0], attributes)
             else:
-                coordinates["time"] = ((*dims, "step"), table.reshape(*plan.shape, most), attributes)
+                coordinates[along] = ((*dims, "step"), table.reshape(*plan.shape, most), attributes)
             continue
         columns[name] = ((*dims, "step"), table.reshape(*plan.shape, most), attributes)
     columns["steps"] = (dims, steps.reshape(plan.shape), {"units": "1", "long_name": "number of rows"})

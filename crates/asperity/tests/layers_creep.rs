@@ -80,7 +80,8 @@ const TRANSFER: [(f64, f64, f64); 12] = [
 fn each_wave_creeps_as_the_inverted_transform_says() {
     let waves = coated(0.2).waves.unwrap();
     assert!(waves.misfit() < 1e-4, "{}", waves.misfit());
-    assert_eq!(waves.times(), [1.0, 5.0]);
+    let [shortest, longest] = waves.times();
+    assert!((shortest - 1.0).abs() < 1e-14 && (longest / 5.0 - 1.0).abs() < 1e-14);
     for (q, t, exact) in TRANSFER {
         let found = waves.creep(q).unwrap().value(t);
         // The misfit, and 1e-7 of the digits of one of the numbers.
@@ -230,12 +231,14 @@ fn bodies_recover_when_they_come_apart() {
     let loads: Vec<f64> = [0.5, 3.0, 50.0]
         .iter()
         .map(|apart| {
-            let points = vec![(0.0, 0.2), (2.0, 0.2), (2.0, -1.0), (2.0 + apart, -1.0), (2.0 + apart, 0.2)];
+            let again = 2.0 + apart;
+            let points = vec![(0.0, 0.2), (2.0, 0.2), (2.0, -1.0), (again, -1.0), (again, 0.2), (again + 1.0, 0.2)];
             let history = History::Table { points };
-            let times = TimeGrid::Uniform { end: 2.0 + apart, steps: 4 };
+            let times = TimeGrid::Uniform { end: again + 1.0, steps: 3 };
             let rows = run(sphere(33, 3.0, &of, Control::Approach, history, times));
-            assert!(rows.iter().any(|row| row[1] == 0.0));
-            rows[rows.len() - 1][1] / rows[0][1]
+            let open = rows.iter().position(|row| row[1] == 0.0).unwrap();
+            let second = rows[open..].iter().find(|row| row[1] > 0.0).unwrap();
+            second[1] / rows[0][1]
         })
         .collect();
     assert!(loads[0] < loads[1] && loads[1] < loads[2], "{loads:?}");

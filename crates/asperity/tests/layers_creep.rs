@@ -43,7 +43,14 @@ fn simulation(grid: Grid, part: Part, of: &Response) -> Simulation {
     }
 }
 
-fn sphere(n: usize, side: f64, of: &Response, control: Control, history: History, times: TimeGrid) -> Simulation {
+fn sphere(
+    n: usize,
+    side: f64,
+    of: &Response,
+    control: Control,
+    history: History,
+    times: TimeGrid,
+) -> Simulation {
     let grid = Grid::new([n, n], [side, side]).unwrap();
     let part = Part::Shape { shape: Shape::Sphere { radius: 1.0 }, center: [0.0, 0.0] };
     Simulation { loading: Loading { control, history }.into(), times, ..simulation(grid, part, of) }
@@ -130,9 +137,8 @@ fn full_contact_relaxes_as_each_wave_does_at_any_length_of_the_steps() {
                 ..simulation(grid, wave, &of)
             };
             let shape: Vec<f64> = (0..n).map(|i| (q * grid.x(i)).cos()).collect();
-            let amplitude_of = |field: Vec<f64>| {
-                2.0 / n as f64 * field.iter().zip(&shape).map(|(p, c)| p * c).sum::<f64>()
-            };
+            let amplitude_of =
+                |field: Vec<f64>| 2.0 / n as f64 * field.iter().zip(&shape).map(|(p, c)| p * c).sum::<f64>();
             let given = amplitude_of(simulation.gap.column(0).to_vec());
             let mut march = March::new(simulation).unwrap();
             while let Some(step) = march.advance().unwrap() {
@@ -180,7 +186,8 @@ fn long_steps_are_as_good_as_short_ones() {
     for (control, value, column) in [(Control::Load, 0.6, 0), (Control::Approach, 0.2, 1)] {
         let fine = at((1..=160).map(|k| 0.025 * f64::from(k)).collect(), control, value);
         for (steps, tolerance) in [(1, 2e-2), (4, 4e-3), (16, 1e-3)] {
-            let coarse = at((1..=steps).map(|k| 4.0 * f64::from(k) / f64::from(steps)).collect(), control, value);
+            let coarse =
+                at((1..=steps).map(|k| 4.0 * f64::from(k) / f64::from(steps)).collect(), control, value);
             let (found, exact) = (coarse[steps as usize][column], fine[160][column]);
             assert!((found / exact - 1.0).abs() < tolerance, "{control:?} {steps}: {found} {exact}");
         }
@@ -232,7 +239,8 @@ fn bodies_recover_when_they_come_apart() {
         .iter()
         .map(|apart| {
             let again = 2.0 + apart;
-            let points = vec![(0.0, 0.2), (2.0, 0.2), (2.0, -1.0), (again, -1.0), (again, 0.2), (again + 1.0, 0.2)];
+            let points =
+                vec![(0.0, 0.2), (2.0, 0.2), (2.0, -1.0), (again, -1.0), (again, 0.2), (again + 1.0, 0.2)];
             let history = History::Table { points };
             let times = TimeGrid::Uniform { end: again + 1.0, steps: 3 };
             let rows = run(sphere(33, 3.0, &of, Control::Approach, history, times));

@@ -54,7 +54,8 @@ fn the_modulus_of_a_thin_sample_comes_back() {
         // E* = 2 G/(1 - ν).
         let unit = 2.0 / (1.0 - poisson);
         // Unloading is part of the record; the contact is 20 to 30 cells wide.
-        let found = [fit.instantaneous.value / unit, fit.equilibrium.value / unit / 0.4, fit.terms[0][1].value / 2.0];
+        let found =
+            [fit.instantaneous.value / unit, fit.equilibrium.value / unit / 0.4, fit.terms[0][1].value / 2.0];
         assert!(found.iter().all(|ratio| (ratio - 1.0).abs() < 1e-2), "{thickness} {poisson}: {found:?}");
         assert!(fit.relative_rms < 5e-3, "{thickness}: {}", fit.relative_rms);
         // The half-space is far off.

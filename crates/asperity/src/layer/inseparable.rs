@@ -133,9 +133,8 @@ impl Inseparable {
         let wanted: Vec<f64> = rows.iter().map(|(_, value, weight)| weight * value).collect();
         let weights = least_squares(&columns, &wanted);
         let terms = self.nodes.iter().zip(&weights).filter(|(_, weight)| **weight > NONE * relaxed);
-        let terms: Vec<CreepTerm> = terms
-            .map(|(time, weight)| CreepTerm { compliance: *weight, retardation_time: *time })
-            .collect();
+        let terms: Vec<CreepTerm> =
+            terms.map(|(time, weight)| CreepTerm { compliance: *weight, retardation_time: *time }).collect();
         let fitted = |s: f64| -> f64 {
             terms.iter().map(|term| term.compliance / (1.0 + s * term.retardation_time)).sum()
         };
@@ -159,7 +158,8 @@ impl Inseparable {
             let creep = self.creep(q)?;
             for (s, (kernel, c)) in frequencies.iter().zip(&checks) {
                 let exact = c * kernel.wave(q);
-                let terms = creep.terms.iter().map(|term| term.compliance / (1.0 + s * term.retardation_time));
+                let terms =
+                    creep.terms.iter().map(|term| term.compliance / (1.0 + s * term.retardation_time));
                 worst = worst.max(((creep.instantaneous + terms.sum::<f64>()) / exact - 1.0).abs());
             }
         }
@@ -219,7 +219,9 @@ fn intervals(bodies: &[LayeredBody]) -> Result<Vec<[f64; 2]>> {
         match e.len() == c.len() {
             true => all.extend(e.iter().zip(c).map(|(e, c)| [e.relaxation_time, c.retardation_time])),
             // A term that is rounding has no partner.
-            false => all.extend(e.first().zip(c.last()).map(|(e, c)| [e.relaxation_time, c.retardation_time])),
+            false => {
+                all.extend(e.first().zip(c.last()).map(|(e, c)| [e.relaxation_time, c.retardation_time]))
+            }
         }
     }
     all.sort_by(|a, b| a[0].total_cmp(&b[0]));
@@ -250,5 +252,10 @@ fn nodes(intervals: &[[f64; 2]], spacing: f64) -> Vec<f64> {
 }
 
 fn name(bodies: &[LayeredBody]) -> String {
-    bodies.iter().flat_map(LayeredBody::materials).map(|material| material.name.clone()).next().unwrap_or_default()
+    bodies
+        .iter()
+        .flat_map(LayeredBody::materials)
+        .map(|material| material.name.clone())
+        .next()
+        .unwrap_or_default()
 }

@@ -191,7 +191,9 @@ impl March {
             (Scheme::Direct, _) => Past::Direct(Direct::new(&simulation.creep, &simulation.thermal)),
             (Scheme::Constant, _) => Past::Constant(Constant::new(&simulation)),
             (Scheme::Linear, Some(layers)) => Past::Waves(Box::new(Spectral::new(&simulation, layers)?)),
-            (Scheme::Linear, None) => Past::Memory(Box::new(Memory::new(&simulation, simulation.is_adaptive())?)),
+            (Scheme::Linear, None) => {
+                Past::Memory(Box::new(Memory::new(&simulation, simulation.is_adaptive())?))
+            }
         };
         let meter = Meter::new(simulation.columns()?, &*operator, &past);
         let dents = Dents::new(&simulation);

@@ -17,8 +17,8 @@ pub use periodic::Periodic;
 
 use std::sync::Arc;
 
-use ndarray::{Array2, ArrayView1, ArrayView2};
 use ndarray::parallel::prelude::*;
+use ndarray::{Array2, ArrayView1, ArrayView2};
 
 use crate::error::Result;
 use crate::grid::{Boundary, Grid};

@@ -224,7 +224,9 @@ fn solve(stack: &Stack, profile: MdrProfile, x: f64) -> [f64; 3] {
     let inner = gauss(PANEL);
     let unit = stack.short_waves();
     let waves: Vec<(f64, f64)> = (0..panels as usize)
-        .flat_map(|n| inner.iter().map(move |(t, w)| (length * (n as f64 + 0.5 * (1.0 + t)), 0.5 * length * w)))
+        .flat_map(|n| {
+            inner.iter().map(move |(t, w)| (length * (n as f64 + 0.5 * (1.0 + t)), 0.5 * length * w))
+        })
         .map(|(q, w)| (q, w * (q * stack.compliance(q) / unit - 1.0)))
         .collect();
     let row = |t: f64| -> Vec<f64> { waves.iter().map(|(q, _)| libm::cos(q * t)).collect() };
@@ -319,33 +321,51 @@ mod tests {
 
     use super::*;
 
-    /// (a/d, R δ/a², W c/(R⁻¹ a³)) of the same equation to 12 digits, bonded, ν = 0.3 and 0.5, and slipping.
-    const ROWS: [(f64, Interface, [(f64, f64, f64); 4]); 3] = [
-        (
+    /// Poisson's ratio, interface, and (a/d, R δ/a², W c R/a³) of the same equation to 12 digits.
+    struct Family(f64, Interface, [[f64; 3]; 4]);
+
+    const FAMILIES: [Family; 3] = [
+        Family(
             0.3,
             Interface::Bonded,
-            [(0.3, 0.838359, 2.701232), (1.0, 0.647622, 3.357249), (3.0, 0.547169, 6.843446), (10.0, 0.512937, 20.206795)],
+            [
+                [0.3, 0.838359, 2.701232],
+                [1.0, 0.647622, 3.357249],
+                [3.0, 0.547169, 6.843446],
+                [10.0, 0.512937, 20.206795],
+            ],
         ),
-        (
+        Family(
             0.5,
             Interface::Bonded,
-            [(0.3, 0.794467, 2.719267), (1.0, 0.559415, 3.761334), (3.0, 0.407478, 11.626395), (10.0, 0.312260, 109.62703)],
+            [
+                [0.3, 0.794467, 2.719267],
+                [1.0, 0.559415, 3.761334],
+                [3.0, 0.407478, 11.626395],
+                [10.0, 0.312260, 109.62703],
+            ],
         ),
-        (
+        Family(
             0.2,
             Interface::Slip,
-            [(0.3, 0.860304, 2.688922), (1.0, 0.673981, 3.156245), (3.0, 0.560116, 5.950058), (10.0, 0.517851, 16.852836)],
+            [
+                [0.3, 0.860304, 2.688922],
+                [1.0, 0.673981, 3.156245],
+                [3.0, 0.560116, 5.950058],
+                [10.0, 0.517851, 16.852836],
+            ],
         ),
     ];
 
     #[test]
     fn depth_and_load_of_a_sphere_are_those_of_the_tables() {
-        for (poisson, interface, rows) in ROWS {
-            for (x, depth, load) in rows {
+        for Family(poisson, interface, rows) in FAMILIES {
+            for [x, depth, load] in rows {
                 let profile = MdrProfile::Sphere { radius: 1.0 };
                 let thickness = 1e-2;
                 let a = x * thickness;
-                let layer = LayerContact::new(profile, thickness, poisson, interface, 1.1 * depth * a * a).unwrap();
+                let layer =
+                    LayerContact::new(profile, thickness, poisson, interface, 1.1 * depth * a * a).unwrap();
                 let [found, w] = [layer.depth(a) / (a * a), 2.0 * layer.load(layer.depth(a)) / a.powi(3)];
                 // The digits of the table, and interpolation between 48 radii.
                 assert!((found / depth - 1.0).abs() < 3e-6, "{poisson} {x}: {found} {depth}");

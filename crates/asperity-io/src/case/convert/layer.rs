@@ -139,7 +139,8 @@ pub fn respond(
     if let Ok(Response { waves: Some(_), .. }) = &found
         && made.iter().any(|one| one.clock.is_some())
     {
-        let message = "the temperature changes, and the layers creep differently: this is not solved".to_owned();
+        let message =
+            "the temperature changes, and the layers creep differently: this is not solved".to_owned();
         let help = "hold the temperature constant, or give all layers the same relative creep";
         checks.fault(&layered.span, message, "layers of one relative creep", Some(help));
         return None;

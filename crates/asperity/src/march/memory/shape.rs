@@ -81,7 +81,14 @@ impl Shape {
     }
 
     /// The same of a state with the relaxation time `tau`; `gap`(j) = (λ_j - τ)/τ.
-    pub(super) fn share_of(&self, dual: &Dual, tau: f64, gap: impl Fn(usize) -> f64, x: f64, change: f64) -> Share {
+    pub(super) fn share_of(
+        &self,
+        dual: &Dual,
+        tau: f64,
+        gap: impl Fn(usize) -> f64,
+        x: f64,
+        change: f64,
+    ) -> Share {
         let y = x / tau;
         let moments: [f64; 7] = std::array::from_fn(|k| moment(k as u32, y));
         let (linear, square) = (self.linear * x, self.square * x * x);
@@ -112,7 +119,10 @@ pub(super) fn fading_share(terms: &[(f64, f64)], tau: f64, x: f64) -> Share {
         left += a * (moment(0, z) - part);
         change += a * moment(0, z);
     }
-    Share { taken: (taken / change).clamp(0.0, moments[0]), left: (left / change).clamp(1.0 - moments[0], 1.0) }
+    Share {
+        taken: (taken / change).clamp(0.0, moments[0]),
+        left: (left / change).clamp(1.0 - moments[0], 1.0),
+    }
 }
 
 /// y ∫_0^1 exp(-y (1 - s)) s^k ds.

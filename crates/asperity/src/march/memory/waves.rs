@@ -245,7 +245,8 @@ impl Waves {
             return recalled.fill(Complex64::ZERO);
         }
         let mx = self.lengths[0];
-        let columns = recalled.par_chunks_mut(mx).zip(u.par_chunks(mx)).zip(states.par_chunks(mx * self.terms));
+        let columns =
+            recalled.par_chunks_mut(mx).zip(u.par_chunks(mx)).zip(states.par_chunks(mx * self.terms));
         columns.enumerate().for_each(|(ky, ((recalled, u), states))| {
             let mut q = vec![Complex64::ZERO; self.terms];
             for (kx, ((recalled, u), states)) in

@@ -40,6 +40,7 @@ pub fn fit_indentation<'py>(
         fit_touch,
         springs,
         limit,
+        ..IndentationOptions::default()
     };
     let profile = choose_among("profile", profile, &profiles)?;
     let record = IndentationRecord { times: &times, loads: &loads, depths: &depths };

@@ -305,7 +305,7 @@ impl March {
                  make the body that slides elastic with its relaxed modulus (its memory stands still in the frame of the contact)",
             ));
         }
-        let Pair { kernel, creep, thermal } =
+        let Pair { kernel, waves, creep, thermal } =
             crate::material::pair(&bodies, &stacks, &temperatures)?.map_err(|error| raised(py, error))?;
         let bodies: Vec<material::Body> = bodies.iter().map(|body| body.inner.clone()).collect();
         let grid = grid_of(py, gap.dim(), &size)?;
@@ -315,6 +315,7 @@ impl March {
         let simulation = Simulation {
             boundary: choose("boundary", boundary)?,
             kernel,
+            layers: waves,
             creep,
             thermal,
             hardness: material::pair_hardness(&bodies),
@@ -393,6 +394,11 @@ impl March {
             creep.terms.iter().map(|term| (term.compliance, term.retardation_time)).collect()
         };
         parts.map(|creep| (creep.instantaneous, terms(creep), creep.fluidity)).collect()
+    }
+
+    /// Largest relative error of the creep of the waves of layers, where they creep differently.
+    fn layer_misfit(&self) -> Option<f64> {
+        self.locked().simulation().layers.as_ref().map(|layers| layers.misfit())
     }
 
     /// The quantities of each row: name and ends of its bins, none for a single number.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use asperity::kernel::{HalfSpace, Kernel};
-use asperity::layer::{BodyLayer, Interface, LayeredBody, Separated, separate};
+use asperity::layer::{BodyLayer, Inseparable, Interface, LayeredBody, Response, response};
 use asperity::material::{
     self, Creep, CreepTerm, Fractional, Lateral, Material, Modulus, ReducedTime, Relaxation, Shift,
     ThermalCreep,
@@ -79,6 +79,8 @@ pub type StackParts = (Vec<(f64, String)>, bool);
 pub struct Pair {
     /// How they yield in space.
     pub kernel: Arc<dyn Kernel>,
+    /// How their waves creep, where they creep differently.
+    pub waves: Option<Arc<Inseparable>>,
     /// The creep function of those of constant temperature.
     pub creep: Creep,
     /// The others, on their clocks.
@@ -116,7 +118,8 @@ pub fn pair(
 }
 
 fn half_spaces(made: Vec<(material::Body, Option<ReducedTime>)>) -> asperity::Result<Pair> {
-    let mut pair = Pair { kernel: Arc::new(HalfSpace), creep: Creep::default(), thermal: Vec::new() };
+    let mut pair =
+        Pair { kernel: Arc::new(HalfSpace), waves: None, creep: Creep::default(), thermal: Vec::new() };
     for (body, clock) in made {
         let creep = body.contact_creep()?;
         match clock {
@@ -136,14 +139,14 @@ fn layered(bodies: &[LayeredBody], clocks: &[Option<ReducedTime>]) -> asperity::
              differently, which is not solved yet. Give all of them the same shift, or hold the temperature constant",
         ));
     }
-    let Separated { kernel, creep } = separate(bodies)?;
+    let Response { kernel, creep, waves } = response(bodies)?;
     let kernel: Arc<dyn Kernel> = Arc::new(kernel);
     Ok(match &clocks[0] {
         Some(clock) => {
             let thermal = vec![ThermalCreep { creep, clock: clock.clone() }];
-            Pair { kernel, creep: Creep::default(), thermal }
+            Pair { kernel, waves, creep: Creep::default(), thermal }
         }
-        None => Pair { kernel, creep, thermal: vec![] },
+        None => Pair { kernel, waves, creep, thermal: vec![] },
     })
 }
 
@@ -170,8 +173,12 @@ pub fn layer_compliance<'py>(
 ) -> PyResult<Curve<'py>> {
     let pair = pair(&bodies, &[stack], &[])?.map_err(|error| raised(py, error))?;
     let creep = pair.creep.value(time);
-    let values: Vec<f64> = waves.as_array().iter().map(|q| creep * pair.kernel.symbol(*q, 0.0)).collect();
-    Ok(values.into_pyarray(py))
+    let of_wave = |q: &f64| match &pair.waves {
+        Some(waves) => waves.creep(*q).map(|creep| creep.value(time)),
+        None => Ok(creep * pair.kernel.symbol(*q, 0.0)),
+    };
+    let values: asperity::Result<Vec<f64>> = waves.as_array().iter().map(of_wave).collect();
+    Ok(values.map_err(|error| raised(py, error))?.into_pyarray(py))
 }
 
 impl Body {

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use asperity::indentation::Given;
+use asperity::layer::Interface;
 use asperity::material::{LongTime, Moduli, Modulus};
 use asperity_io::curve::Kind;
 use clap::{Subcommand, ValueEnum};
@@ -187,6 +188,12 @@ pub struct FitIndentation {
     /// Poisson's ratio of the body
     #[arg(long, value_name = "NU", default_value = "0.5")]
     pub poisson: String,
+    /// Thickness of a thin sample on a rigid base, e.g. '5 um' [default: much thicker than the contact is wide]
+    #[arg(long, value_name = "LENGTH")]
+    pub thickness: Option<String>,
+    /// Contact of the thin sample with its base
+    #[arg(long, value_parser = choice::<Interface>(), default_value = "bonded", requires = "thickness")]
+    pub interface: Interface,
     /// Kind of moduli to report
     #[arg(long, value_parser = choice::<Modulus>(), default_value = "young")]
     pub modulus: Modulus,

@@ -286,6 +286,12 @@ fn tell(case: &Case, examined: &Examination, estimate: Option<f64>) -> String {
         for body in &layers.bodies {
             line("layers", body.clone());
         }
+        if let (Some(nodes), Some(misfit)) = (layers.nodes, layers.misfit) {
+            let text = format!(
+                "waves of different lengths creep differently: {nodes} retardation times, largest error {misfit:.1e}"
+            );
+            line("", text);
+        }
         line("", "equivalent half-space (contact modulus that yields as much):".into());
         for (name, wave) in ["longest", "shortest"].iter().zip(&layers.waves) {
             let relaxed = quantity(wave.relaxed_modulus, "Pa");

@@ -3,8 +3,9 @@
 use std::fmt::Write as _;
 
 use asperity::indentation::{
-    Given, IndentationFit, IndentationOptions, IndentationRecord, Interval, fit_indentation,
+    Given, IndentationFit, IndentationOptions, IndentationRecord, Interval, SampleLayer, fit_indentation,
 };
+use asperity::layer::Interface;
 use asperity::material::Modulus;
 use asperity::reference::MdrProfile;
 use asperity_io::case::quantity::{Length, Number, range};
@@ -33,6 +34,13 @@ pub fn run(args: &FitIndentation) -> Result<(), Failure> {
         let message = format!("--poisson is {poisson}, but must be greater than -1 and not greater than 0.5");
         return Err(Failure::input(message));
     }
+    let layer = match &args.thickness {
+        None => None,
+        Some(thickness) => {
+            let thickness = parsed::<Length<range::Positive>>("--thickness", thickness)?.get();
+            Some(SampleLayer { thickness, poisson, interface: args.interface })
+        }
+    };
     let of = MaterialOf { modulus: args.modulus, poisson };
     let columns = columns(&args.column, &args.unit)?;
     let options = IndentationOptions {
@@ -40,6 +48,7 @@ pub fn run(args: &FitIndentation) -> Result<(), Failure> {
         terms: args.terms,
         long_time: args.long_time,
         fit_touch: args.fit_touch,
+        layer,
         ..IndentationOptions::default()
     };
     // What cannot be written is said before the work.
@@ -91,6 +100,10 @@ fn report(args: &FitIndentation, record: &Indentation, fit: &IndentationFit, of:
     let every = if fit.rows.len() < rows { format!(" of {rows}") } else { String::new() };
     line("rows", format!("{}{every}", fit.rows.len()));
     line("given", format!("{taken}; the {fitted} is fitted"));
+    if let Some(thickness) = &args.thickness {
+        let interface = if args.interface == Interface::Bonded { "bonded to" } else { "slipping on" };
+        line("sample", format!("{thickness} thick, {interface} a rigid base"));
+    }
     let [step, length] = fit.window;
     line("times", format!("steps from {}, {} in all", quantity(step, "s"), quantity(length, "s")));
     line("terms", format!("{} (probability {:.2})", fit.terms.len(), fit.numbers[fit.terms.len()]));

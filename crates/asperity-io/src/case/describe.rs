@@ -137,6 +137,12 @@ pub struct LayerReport {
     pub bodies: Vec<String>,
     /// Whether the response is a function of space times one of time.
     pub separable: bool,
+    /// Largest relative error of the creep of the waves, where they creep differently.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub misfit: Option<f64>,
+    /// Number of retardation times that all waves have in common, where they creep differently.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nodes: Option<usize>,
     /// The longest and the shortest wave of the domain.
     pub waves: [WaveReport; 2],
 }
@@ -231,17 +237,32 @@ impl Case {
     fn layer_report(&self, layers: &Layered, creep: &Creep) -> LayerReport {
         let longest = self.grid.longest_side();
         let shortest = 2.0 * self.grid.cell_sides().fold(0.0, f64::max);
-        let wave = |length| wave_report(layers, creep, length);
+        let wave = |length| self.wave_report(layers, creep, length);
         LayerReport {
             bodies: layers.stacks().iter().map(words_of).collect(),
-            separable: true,
+            separable: self.waves.is_none(),
+            misfit: self.waves.as_ref().map(|waves| waves.misfit()),
+            nodes: self.waves.as_ref().map(|waves| waves.nodes()),
             waves: [longest, shortest].map(wave),
         }
     }
 
     /// The half-space that yields as much as the layers under a wave of this length \[m\]; `None` without layers.
     pub fn wave(&self, length: f64) -> Option<WaveReport> {
-        Some(wave_report(self.layers.as_ref()?, &self.reference_creep(), length))
+        Some(self.wave_report(self.layers.as_ref()?, &self.reference_creep(), length))
+    }
+
+    fn wave_report(&self, layers: &Layered, creep: &Creep, length: f64) -> WaveReport {
+        let q = std::f64::consts::TAU / length;
+        let own = self.waves.as_ref().and_then(|waves| waves.creep(q).ok());
+        // C(q) of a half-space of unit contact modulus is 2/q.
+        let of_wave = own.map(|own| own.scaled(0.5 * q));
+        let of_wave = of_wave.unwrap_or_else(|| creep.scaled(0.5 * q * layers.symbol(q, 0.0)));
+        WaveReport {
+            length,
+            instantaneous_modulus: (of_wave.instantaneous > 0.0).then(|| 1.0 / of_wave.instantaneous),
+            relaxed_modulus: 1.0 / of_wave.long_time(),
+        }
     }
 
     /// C of the pair, of bodies whose temperature changes at their reference temperature.
@@ -272,16 +293,6 @@ impl Case {
                 Some(rows.map_or(inner + 2, |rows| rows.min(inner + 2)))
             }
         }
-    }
-}
-
-fn wave_report(layers: &Layered, creep: &Creep, length: f64) -> WaveReport {
-    let q = std::f64::consts::TAU / length;
-    let unit = 0.5 * q * layers.symbol(q, 0.0);
-    WaveReport {
-        length,
-        instantaneous_modulus: (creep.instantaneous > 0.0).then(|| 1.0 / (unit * creep.instantaneous)),
-        relaxed_modulus: 1.0 / (unit * creep.long_time()),
     }
 }
 

@@ -63,7 +63,7 @@ use std::sync::Arc;
 
 use asperity::finding::Finding;
 use asperity::kernel::{HalfSpace, Kernel};
-use asperity::layer::Layered;
+use asperity::layer::{Inseparable, Layered};
 use asperity::material::{Body, Creep, ThermalCreep};
 use asperity::quantities::{Quantities, Quantity};
 use asperity::sliding::{MovingGap, SteadyMotion};
@@ -107,6 +107,8 @@ pub struct Case {
     pub bodies: Vec<Body>,
     /// How the bodies yield in space, where they have layers; half-spaces otherwise.
     pub layers: Option<Arc<Layered>>,
+    /// How waves on the layers creep, where waves of different lengths creep differently.
+    pub waves: Option<Arc<Inseparable>>,
     /// Thickness of the thinnest body that is taken as a half-space \[m\], where it is known.
     pub thickness: Option<f64>,
     /// Contact creep compliance C(t) of the pair \[1/Pa\]; without the bodies of `thermal`.
@@ -327,6 +329,7 @@ impl Case {
         Simulation {
             boundary: self.boundary,
             kernel: self.kernel(),
+            layers: self.waves.clone(),
             creep: self.creep.clone(),
             thermal: self.thermal.clone(),
             hardness: self.hardness,
@@ -352,7 +355,7 @@ impl Case {
                 let free_line = self.grid.is_line() && self.boundary == Boundary::Free;
                 let by_displacement = quantity.is_energy() || *quantity == Quantity::ContactStiffness;
                 let known = !(quantity.is_energy() && simulation.scheme == Scheme::Direct)
-                    && !((free_line || swept) && by_displacement);
+                    && !((free_line || swept || self.waves.is_some()) && by_displacement);
                 known && simulation.columns_of(&alone).is_ok()
             };
             wanted.list = Quantity::at_rest().filter(possible).collect();

@@ -535,9 +535,9 @@ fn setup(case: &Case) -> Map<String, Value> {
         setup.insert("md5_of_files".into(), json!(files));
     }
     if case.layers.is_some() {
-        // Stacks that do not separate are refused, and nothing is fitted.
-        setup.insert("layer_separable".into(), json!(true));
-        setup.insert("layer_misfit".into(), json!(0.0));
+        let misfit = case.waves.as_ref().map(|waves| waves.misfit());
+        setup.insert("layer_separable".into(), json!(misfit.is_none()));
+        setup.insert("layer_misfit".into(), json!(misfit.unwrap_or(0.0)));
     }
     if let Some(motion) = &case.motion {
         let steady = matches!(motion.travel, Travel::Steady(_));

@@ -99,24 +99,38 @@ fn what_is_wrong_with_layers_is_named() {
     says("base = \"rigid\"", "base = \"hard\"", "body[0].base", &["half-space", "rigid"]);
     says("base = \"rigid\"\n", "", "body[0].material", &["is missing"]);
     says("base = \"rigid\"", "base = \"rigid\"\npoisson = 0.3", "body[0]", &["no `poisson`"]);
-    // Layers that creep differently do not separate.
-    says(
-        "\"10 s\" }\n[[body.layer]]",
-        "\"11 s\" }\n[[body.layer]]",
-        "body[0].layer[1]",
-        &["tread, layer 2", "not a multiple"],
-    );
-    says(
-        "poisson = 0.49",
-        "bulk_modulus = \"2 GPa\"",
-        "body[0].layer[0]",
-        &["bulk modulus of tread, layer 1", "Poisson"],
-    );
     says("[load]", "[stress]\n[load]", "stress", &["not computed for bodies of layers"]);
     // A cell of 1.25 mm.
     let errors =
         parse(&TREAD.replace("\"10 mm\"", "\"0.3 mm\"")).unwrap().simulation().expect_err("too coarse");
     assert!(errors.to_string().contains("4 times the thickness of the top layer"), "{errors}");
+}
+
+#[test]
+fn layers_that_creep_differently_are_described_by_their_waves() {
+    let slower = TREAD.replacen("\"10 s\" }\n[[body.layer]]", "\"11 s\" }\n[[body.layer]]", 1);
+    for text in [slower.clone(), TREAD.replacen("poisson = 0.49", "bulk_modulus = \"2 GPa\"", 1)] {
+        let case = parse(&text).unwrap_or_else(|errors| panic!("{errors}"));
+        let report = case.describe().layers.unwrap();
+        assert!(!report.separable && report.misfit.unwrap() < 1e-3 && report.nodes.unwrap() > 1);
+        let [longest, shortest] = report.waves;
+        // The relaxed modulus is 2/7 of the instantaneous one; with a bulk modulus Poisson's ratio goes towards 1/2.
+        let rise = shortest.instantaneous_modulus.unwrap() / shortest.relaxed_modulus;
+        assert!(rise > 3.3 && rise < 3.6, "{rise}");
+        assert!(longest.relaxed_modulus > shortest.relaxed_modulus);
+        assert!(case.simulation().unwrap_or_else(|errors| panic!("{errors}")).layers.is_some());
+    }
+    let adaptive = slower.replace("steps = 1", "spacing = \"adaptive\"\ntolerance = 1e-2");
+    let errors = parse(&adaptive).expect_err("not solved").errors;
+    assert!(errors[0].to_string().contains("layers that creep differently"), "{}", errors[0]);
+    let fluid = TREAD.replacen(
+        "{ model = \"zener\", shear = \"10 MPa\", shear_kelvin = \"4 MPa\", retardation_time = \"10 s\" }",
+        "{ model = \"maxwell\", shear = \"10 MPa\", relaxation_time = \"10 s\" }",
+        1,
+    );
+    let errors = parse(&fluid).expect_err("it flows").errors;
+    assert_eq!(errors[0].key, "body[0].layer[1]", "{}", errors[0]);
+    assert!(errors[0].to_string().contains("flows without end"), "{}", errors[0]);
 }
 
 #[test]

@@ -320,7 +320,8 @@ def march(
     if temperature is not None:
         setup["temperature"] = temperatures(temperature)
     if any(isinstance(body, Body) for body in bodies):
-        setup["layer_separable"], setup["layer_misfit"] = True, 0.0
+        misfit = core.layer_misfit()
+        setup["layer_separable"], setup["layer_misfit"] = misfit is None, misfit or 0.0
     limits = [limit for limit in map(hardness_of, bodies) if limit is not None]
     if limits:
         setup["hardness"] = float(min(limits))

@@ -14,6 +14,7 @@ use super::contact::Counted;
 use super::words::{digits, rows, si};
 use super::{Finding, LARGE_STRAIN, UNLIKELY_UNIT};
 use crate::kernel::Kernel;
+use crate::layer::Inseparable;
 use crate::march::{Row, Simulation};
 use crate::material::{Creep, ReducedTime};
 use crate::sliding::Streaming;
@@ -56,6 +57,8 @@ pub(super) struct Strain {
     /// In steady states of motion: the compliance at the frequency at which spots pass; and the side of a cell \[m\].
     sweep: Option<(Streaming, f64)>,
     kernel: Arc<dyn Kernel>,
+    /// Layers whose waves creep differently.
+    waves: Option<Arc<Inseparable>>,
     time: f64,
     /// Radius of the shapes \[m\], where they are known.
     radius: Option<f64>,
@@ -70,6 +73,7 @@ impl Strain {
             bodies: std::iter::once(Branches::new(&simulation.creep, None)).chain(thermal).collect(),
             sweep: None,
             kernel: simulation.kernel.clone(),
+            waves: simulation.layers.clone(),
             time: 0.0,
             radius,
             width: Peak::new(WIDEST),
@@ -88,12 +92,19 @@ impl Strain {
         let hertz = if contact.line { 4.0 / std::f64::consts::PI } else { 1.5 };
         let of_hertz = if row.contact_area > 0.0 { hertz * row.load / row.contact_area } else { 0.0 };
         let pressure = row.max_pressure.min(of_hertz) * self.share(row, contact);
+        let of_wave = self.waves.as_ref().filter(|_| contact.is_compact() && row.contact_area > 0.0);
+        let creep = of_wave.and_then(|waves| waves.creep(wave_of(row, contact)).ok());
         let strain: f64 = match &self.sweep {
             Some((streaming, cell)) if row.contact_area > 0.0 => {
                 let width = contact.width().min(contact.cells) * cell;
                 pressure * streaming.at(row.time * std::f64::consts::PI / width).norm()
             }
             Some(_) => 0.0,
+            None if creep.is_some() => {
+                // As if the pressure had been there from t = 0 on.
+                let creep = creep.map_or(0.0, |creep| creep.value(row.time));
+                row.max_pressure.min(of_hertz) * 0.5 * wave_of(row, contact) * creep
+            }
             None => self.bodies.iter_mut().map(|body| body.strain([start, row.time], pressure)).sum(),
         };
         self.pressure.see(index, strain);
@@ -116,10 +127,7 @@ impl Strain {
         if self.kernel.is_half_space() || !contact.is_compact() {
             return 1.0;
         }
-        let q = match contact.line {
-            true => 2.0 / row.contact_area,
-            false => (std::f64::consts::PI / row.contact_area).sqrt(),
-        };
+        let q = wave_of(row, contact);
         0.5 * q * self.kernel.symbol(q, 0.0)
     }
 
@@ -134,6 +142,14 @@ impl Strain {
         let deep =
             self.width.rows.filter(|_| self.width.value > 1.0).map(|at| too_deep(self.width.value).at(at));
         worst.into_iter().chain(deep).collect()
+    }
+}
+
+/// Wave number of a compact contact \[rad/m\]: one over its radius.
+fn wave_of(row: &Row, contact: Counted) -> f64 {
+    match contact.line {
+        true => 2.0 / row.contact_area,
+        false => (std::f64::consts::PI / row.contact_area).sqrt(),
     }
 }
 

@@ -39,6 +39,7 @@ mod start;
 mod tests;
 
 use crate::error::{Error, Result};
+use crate::layer::Interface;
 use crate::material::{LongTime, Relaxation, RelaxationTerm};
 use crate::reference::MdrProfile;
 
@@ -84,6 +85,8 @@ pub struct IndentationOptions {
     /// Springs of the one-dimensional model out to the largest contact; default 150, at least 20. The load is then known
     /// to some 1/springs².
     pub springs: usize,
+    /// The thin sample, where it is none as deep as a half-space.
+    pub layer: Option<SampleLayer>,
     /// Largest misfit (rms, over the largest value) before a record is refused, default 0.1.
     pub limit: f64,
 }
@@ -96,9 +99,25 @@ impl Default for IndentationOptions {
             long_time: LongTime::Free,
             fit_touch: false,
             springs: 150,
+            layer: None,
             limit: 0.1,
         }
     }
+}
+
+/// A thin sample: a layer of one material on a rigid base, such as a gel or a cell on glass.
+///
+/// The record is then described by the load of the indenter on the elastic layer ([`crate::reference::LayerContact`]) and the same
+/// hereditary relation: layer and half-space differ in the weight and the profile of the springs of the one-dimensional model.
+/// So unloading and loading again are exact here too, as long as Poisson's ratio does not change with time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SampleLayer {
+    /// Thickness \[m\].
+    pub thickness: f64,
+    /// Poisson's ratio, at most 0.5.
+    pub poisson: f64,
+    /// To the rigid base.
+    pub interface: Interface,
 }
 
 /// A value with its 95 % interval.
@@ -265,7 +284,7 @@ fn require_fit(relative_rms: f64, limit: f64) -> Result<()> {
         "misfit of the record",
         format!("{:.1} % of the largest value (rms)", 100.0 * relative_rms),
         format!(
-            "at most {:.1} %: check radius, units and the depth of first touch, and whether the body is a half-space",
+            "at most {:.1} %: check radius, units and the depth of first touch, and whether the body is as thick as assumed",
             100.0 * limit
         ),
     ))

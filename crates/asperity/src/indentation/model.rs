@@ -13,10 +13,10 @@
 use super::check::LARGEST;
 use super::noise;
 use super::parameters::Parameters;
-use super::{Given, IndentationOptions};
+use super::{Given, IndentationOptions, SampleLayer};
 use crate::error::{Error, Result, positive};
 use crate::material::Relaxation;
-use crate::reference::{Mdr, MdrProfile, MdrTarget};
+use crate::reference::{LayerContact, Mdr, MdrProfile, MdrTarget, SpringProfile};
 
 /// Steps between two rows where the load is given: its response is of second order in them (under a given depth one
 /// step is exact).
@@ -33,6 +33,8 @@ const LEAST_SHARE: f64 = 0.01;
 /// A record, and the rule that predicts one of its channels from the other.
 pub(super) struct Model {
     profile: MdrProfile,
+    /// The body, where it is a layer.
+    layer: Option<(LayerContact, SpringProfile)>,
     /// From the first row on \[s\].
     pub(super) times: Vec<f64>,
     pub(super) loads: Vec<f64>,
@@ -82,7 +84,21 @@ impl Model {
         let start = times[0];
         times.iter_mut().for_each(|time| *time -= start);
         let largest = |column: &[f64]| column.iter().copied().fold(0.0, f64::max);
-        let reach = 1.05 * profile.reach(largest(&depths));
+        let layer = match options.layer {
+            None => None,
+            Some(SampleLayer { thickness, poisson, interface }) => {
+                // The fit may move the depth of first touch.
+                let deepest = 1.2 * largest(&depths);
+                let layer = LayerContact::new(profile, thickness, poisson, interface, deepest)?;
+                let springs = layer.springs();
+                Some((layer, springs))
+            }
+        };
+        let reach = 1.05
+            * match &layer {
+                None => profile.reach(largest(&depths)),
+                Some((_, springs)) => springs.reach(largest(&depths)),
+            };
         if !(1.0 / LARGEST..=LARGEST).contains(&reach) {
             return Err(Error::invalid(
                 "radius of the largest contact",
@@ -109,6 +125,7 @@ impl Model {
         let (fit_touch, springs) = (options.fit_touch, options.springs);
         Ok(Model {
             profile,
+            layer,
             times,
             loads,
             depths,
@@ -168,6 +185,9 @@ impl Model {
         if depth <= 0.0 {
             return (0.0, 0.0);
         }
+        if let Some((layer, _)) = &self.layer {
+            return (layer.load(depth), 2.0 * layer.stiffness(layer.radius(depth)));
+        }
         let a = self.profile.reach(depth);
         match self.profile {
             MdrProfile::Sphere { .. } => (4.0 / 3.0 * depth * a, 2.0 * a),
@@ -218,7 +238,10 @@ impl Model {
         history: &[f64],
         springs: usize,
     ) -> Result<Prediction> {
-        let mut row = Mdr::new(self.profile, relaxation, self.reach, springs)?;
+        let mut row = match &self.layer {
+            None => Mdr::new(self.profile, relaxation, self.reach, springs)?,
+            Some((_, layer)) => Mdr::on_layer(layer.clone(), relaxation, self.reach, springs)?,
+        };
         let mut prediction = Prediction { values: vec![], slopes: vec![] };
         for n in 0..self.times.len() {
             let dt = if n == 0 { 0.0 } else { self.times[n] - self.times[n - 1] };

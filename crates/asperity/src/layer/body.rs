@@ -9,12 +9,14 @@
 //! ```
 //!
 //! K is the [`Layered`] kernel of the elastic stacks with moduli 1/s_i. So a march on K with the contact creep function C(t)
-//! is exact. Elastic stacks are the case of a constant J. Other stacks do not separate: waves of different lengths creep
-//! differently.
+//! is exact. Elastic stacks are the case of a constant J. In other stacks waves of different lengths creep differently:
+//! see [`Inseparable`].
 
-use super::{Base, Interface, Layer, Layered, Stack};
+use std::sync::Arc;
+
+use super::{Base, Inseparable, Interface, Layer, Layered, Stack};
 use crate::error::{Error, Result};
-use crate::material::{Body, Creep, Lateral, Modulus};
+use crate::material::{Body, Creep};
 
 /// Relative difference of two creep functions that counts as rounding.
 const SAME: f64 = 1e-9;
@@ -52,19 +54,21 @@ impl LayeredBody {
     }
 }
 
-/// Bodies whose response is a function of space times one of time.
+/// How bodies yield in space and time.
 #[derive(Clone, Debug)]
-pub struct Separated {
-    /// K(q), of unit contact modulus for short waves.
+pub struct Response {
+    /// K(q), of unit contact modulus for short waves: of all times where `waves` is `None`, else of the instant t = 0.
     pub kernel: Layered,
-    /// Contact creep compliance C(t) that multiplies it \[1/Pa\].
+    /// Contact creep compliance C(t) that multiplies it \[1/Pa\]: that of the materials at the surface.
     pub creep: Creep,
+    /// Where waves of different lengths creep differently: how each of them does.
+    pub waves: Option<Arc<Inseparable>>,
 }
 
-/// The kernel and the contact creep compliance of a body against a rigid one, or of two bodies.
+/// The response of a body against a rigid one, or of two bodies.
 ///
 /// ```
-/// use asperity::layer::{BodyLayer, Interface, LayeredBody, separate};
+/// use asperity::layer::{BodyLayer, Interface, LayeredBody, response};
 /// use asperity::kernel::Kernel;
 /// use asperity::material::{Body, Lateral, Material, Modulus};
 /// let rubber = Body {
@@ -74,41 +78,58 @@ pub struct Separated {
 ///     hardness: None,
 /// };
 /// let layer = BodyLayer { thickness: 10e-3, interface: Interface::Bonded, material: rubber.clone() };
-/// let tread = separate(&[LayeredBody { layers: vec![layer], base: None }])?;
+/// let tread = response(&[LayeredBody { layers: vec![layer.clone()], base: None }])?;
 /// assert_eq!(tread.creep, rubber.contact_creep()?);
 /// // A uniform pressure squeezes it by d (1 - 2 nu)/(2 G (1 - nu)).
 /// let squeezed = tread.kernel.uniform().unwrap_or_default() * tread.creep.value(0.0);
 /// assert!((squeezed / (10e-3 * 0.02 / (2.0 * 5e6 * 0.51)) - 1.0).abs() < 1e-14);
+/// // On steel its waves creep differently: short ones as rubber, long ones not at all.
+/// let material = Material::elastic(Modulus::Young, 210e9)?;
+/// let steel = Body { name: "steel".into(), material, lateral: Lateral::Poisson(0.3), hardness: None };
+/// let coated = response(&[LayeredBody { layers: vec![layer], base: Some(steel) }])?.waves.ok_or("separable").unwrap();
+/// let rise = |q: f64| coated.creep(q).map(|c| c.long_time() / c.instantaneous);
+/// assert!((rise(1e4)? - 3.5).abs() < 1e-9 && rise(0.01)? < 1.1);
 /// # Ok::<(), asperity::Error>(())
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] where the response does not separate, naming the layer; as [`Stack::new`] and
+/// [`Error::Invalid`] where layers creep differently in a way that is not solved, naming the layer; as [`Stack::new`] and
 /// [`Body::contact_creep`].
-pub fn separate(bodies: &[LayeredBody]) -> Result<Separated> {
-    let mut common: Option<(&Body, Creep)> = None;
+pub fn response(bodies: &[LayeredBody]) -> Result<Response> {
+    let mut common: Option<Creep> = None;
+    let mut separable = true;
     let mut creep = Creep::default();
     let mut stacks = Vec::new();
     for body in bodies {
         let mut moduli = Vec::new();
         for material in body.materials() {
             material.contact_creep()?;
-            let (shear, poisson) = shear_creep(material)?;
-            let (first, of_first) = common.get_or_insert_with(|| (material, shear.clone()));
-            let ratio = ratio(&shear, of_first).ok_or_else(|| different(material, first))?;
-            moduli.push((1.0 / (ratio * size(of_first)), poisson));
+            let shear = material.shear()?;
+            let of_first = common.get_or_insert_with(|| shear.clone());
+            match (ratio(&shear, of_first), material.poisson()) {
+                (Some(ratio), Some(poisson)) => moduli.push((1.0 / (ratio * size(of_first)), poisson)),
+                _ => {
+                    separable = false;
+                    // Checked like any other; its numbers do not count.
+                    moduli.push((1.0 / size(&shear), 0.0));
+                }
+            }
         }
         if let Some(surface) = body.materials().next() {
-            let (shear, poisson) = shear_creep(surface)?;
-            creep = creep.sum(&shear.scaled(0.5 * (1.0 - poisson)));
+            creep = creep.sum(&surface.contact_creep()?);
         }
         stacks.push(stack(body, &moduli)?);
     }
-    Ok(Separated { kernel: Layered::new(stacks)?, creep })
+    let kernel = Layered::new(stacks)?;
+    if separable {
+        return Ok(Response { kernel, creep, waves: None });
+    }
+    let waves = Inseparable::new(bodies)?;
+    Ok(Response { kernel: waves.glassy().clone(), creep, waves: Some(Arc::new(waves)) })
 }
 
 /// The elastic stack with these shear moduli and Poisson's ratios.
-fn stack(body: &LayeredBody, moduli: &[(f64, f64)]) -> Result<Stack> {
+pub(super) fn stack(body: &LayeredBody, moduli: &[(f64, f64)]) -> Result<Stack> {
     let layer = |(layer, &(shear, poisson)): (&BodyLayer, &(f64, f64))| -> Result<Layer> {
         let (thickness, name) = (layer.thickness, &layer.material.name);
         match thickness.is_finite() && thickness > 0.0 {
@@ -126,28 +147,6 @@ fn stack(body: &LayeredBody, moduli: &[(f64, f64)]) -> Result<Stack> {
         _ => Base::Rigid,
     };
     Stack::new(layers, base)
-}
-
-/// The shear creep function, and Poisson's ratio.
-fn shear_creep(body: &Body) -> Result<(Creep, f64)> {
-    let creep = body.material.creep();
-    let elastic = creep.terms.is_empty() && creep.fluidity == 0.0;
-    let young = body.material.measure() == Modulus::Young;
-    match body.lateral {
-        Lateral::Poisson(nu) => Ok((creep.scaled(if young { 2.0 * (1.0 + nu) } else { 1.0 }), nu)),
-        Lateral::BulkModulus(bulk) if elastic => {
-            let modulus = 1.0 / creep.instantaneous;
-            let shear = if young { 3.0 * bulk * modulus / (9.0 * bulk - modulus) } else { modulus };
-            let nu = (3.0 * bulk - 2.0 * shear) / (2.0 * (3.0 * bulk + shear));
-            Ok((Creep::elastic(1.0 / shear), nu))
-        }
-        Lateral::BulkModulus(bulk) => Err(Error::invalid(
-            format!("bulk modulus of {}", body.name),
-            format!("{bulk:e} Pa"),
-            "left out where viscoelastic bodies have layers: a constant bulk modulus makes waves of different lengths creep \
-             differently, which is not solved; give Poisson's ratio instead",
-        )),
-    }
 }
 
 /// The largest part of a creep function.
@@ -176,21 +175,11 @@ fn ratio(a: &Creep, b: &Creep) -> Option<f64> {
     same.then_some(s).filter(|s| s.is_finite() && *s > 0.0)
 }
 
-fn different(material: &Body, first: &Body) -> Error {
-    Error::invalid(
-        format!("shear creep function of {}", material.name),
-        format!("not a multiple of that of {}", first.name),
-        "one: where layers creep differently, waves of different lengths creep differently too, which is not solved yet. All \
-         layers and bodies must be elastic, or have the same relative creep (the same model with moduli in the same ratio and \
-         the same times); a base or a second body that is much stiffer than the rest can be left out as rigid",
-    )
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::kernel::Kernel;
-    use crate::material::Material;
+    use crate::material::{Lateral, Material, Modulus};
 
     fn body(name: &str, material: Material, nu: f64) -> Body {
         Body { name: name.into(), material, lateral: Lateral::Poisson(nu), hardness: None }
@@ -215,7 +204,7 @@ mod tests {
         let young = Material::zener(Modulus::Young, 2.6e6, 1.3e6, 3.0).unwrap();
         let stack =
             LayeredBody { layers: vec![layer(1e-3, top.clone())], base: Some(body("base", young, 0.3)) };
-        let separated = separate(&[stack]).unwrap();
+        let separated = response(&[stack]).unwrap();
         assert_eq!(separated.creep, top.contact_creep().unwrap());
         let elastic = Layer { thickness: 1e-3, shear: 2.0, poisson: 0.5, interface: Interface::Bonded };
         let exact = Stack::new(vec![elastic], Base::HalfSpace { shear: 1.0, poisson: 0.3 }).unwrap();
@@ -233,8 +222,8 @@ mod tests {
             base: Some(body("shaft", elastic(8e10), 0.3)),
         };
         let plain = body("glass", elastic(3e10), 0.22);
-        let pair = separate(&[coated.clone(), plain.clone().into()]).unwrap();
-        let own = separate(&[coated]).unwrap();
+        let pair = response(&[coated.clone(), plain.clone().into()]).unwrap();
+        let own = response(&[coated]).unwrap();
         let glass = plain.contact_creep().unwrap().value(0.0);
         for q in [1e2, 1e5, 1e7] {
             let both = pair.creep.value(0.0) * pair.kernel.symbol(q, 0.0);
@@ -245,23 +234,24 @@ mod tests {
     }
 
     #[test]
-    fn stacks_that_do_not_separate_are_refused_by_name() {
+    fn stacks_that_creep_differently_are_told_and_bad_ones_refused_by_name() {
         let refused = |layers: Vec<BodyLayer>, base: Option<Body>, words: &str| {
-            let error = separate(&[LayeredBody { layers, base }]).unwrap_err().to_string();
+            let error = response(&[LayeredBody { layers, base }]).unwrap_err().to_string();
             assert!(error.contains(words), "{error}");
+        };
+        let separable = |layers: Vec<BodyLayer>, base: Option<Body>| {
+            response(&[LayeredBody { layers, base }]).unwrap().waves.is_none()
         };
         let rubber = body("rubber", zener(1e6, 1.0), 0.5);
         let steel = body("steel", elastic(8e10), 0.3);
-        refused(
-            vec![layer(1e-3, rubber.clone())],
-            Some(steel.clone()),
-            "creep function of steel is not a multiple",
-        );
-        refused(vec![layer(1e-3, steel)], Some(rubber.clone()), "creep function of rubber");
+        assert!(!separable(vec![layer(1e-3, rubber.clone())], Some(steel.clone())));
+        assert!(!separable(vec![layer(1e-3, steel)], Some(rubber.clone())));
         let slower = body("slower", zener(1e6, 1.1), 0.5);
-        refused(vec![layer(1e-3, rubber.clone()), layer(1e-3, slower)], None, "slower");
+        assert!(!separable(vec![layer(1e-3, rubber.clone()), layer(1e-3, slower)], None));
         let bulk = Body { lateral: Lateral::BulkModulus(1e9), ..rubber.clone() };
-        refused(vec![layer(1e-3, bulk)], None, "bulk modulus of rubber");
+        assert!(!separable(vec![layer(1e-3, bulk)], None));
+        let fluid = body("fluid", Material::maxwell(Modulus::Shear, 1e6, 1.0).unwrap(), 0.5);
+        refused(vec![layer(1e-3, rubber.clone())], Some(fluid), "creep function of fluid");
         for thickness in [0.0, -1e-3, f64::NAN, f64::INFINITY] {
             refused(vec![layer(thickness, rubber.clone())], None, "thickness of rubber");
         }
@@ -277,7 +267,7 @@ mod tests {
         {
             let by_bulk = Body { lateral: Lateral::BulkModulus(bulk), ..body("a", material, 0.0) };
             let of = |body: Body| {
-                separate(&[LayeredBody { layers: vec![layer(1e-3, body)], base: None }]).unwrap()
+                response(&[LayeredBody { layers: vec![layer(1e-3, body)], base: None }]).unwrap()
             };
             let [a, b] = [of(by_bulk), of(body("a", elastic(shear), nu))];
             let ratio = a.kernel.symbol(100.0, 0.0) / b.kernel.symbol(100.0, 0.0);

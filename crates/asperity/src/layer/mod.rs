@@ -13,6 +13,7 @@
 //! |---|---|
 //! | `compliance` | C(q) of any stack of layers |
 //! | `body` | bodies of viscoelastic layers, and whether space and time separate |
+//! | `inseparable` | how each wave creeps where they do not |
 //! | `kernel` | the [`Kernel`](crate::kernel::Kernel) of one or two such bodies |
 //! | `hankel` | from C(q) to the displacement around a point load |
 //!
@@ -21,9 +22,12 @@
 mod body;
 mod compliance;
 mod hankel;
+mod inseparable;
 mod kernel;
 
-pub use body::{BodyLayer, LayeredBody, Separated, separate};
+pub use body::{BodyLayer, LayeredBody, Response, response};
+pub use inseparable::Inseparable;
+pub(crate) use inseparable::TOLERANCE;
 pub use kernel::Layered;
 
 use crate::error::{Error, Result, positive};

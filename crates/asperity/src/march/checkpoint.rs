@@ -41,6 +41,7 @@ impl March {
         }
         let (memory_scalars, memory) = match &self.past {
             Past::Memory(m) => m.save(),
+            Past::Waves(w) => w.save(),
             Past::Constant(c) => c.save(),
             Past::Direct(d) => d.save(),
         };
@@ -120,6 +121,7 @@ impl March {
         };
         let restored = match &mut march.past {
             Past::Memory(m) => m.restore(scalars, &memory),
+            Past::Waves(w) => w.restore(scalars, &memory),
             Past::Constant(c) => c.restore(scalars, &memory),
             Past::Direct(d) => d.load(scalars, memory),
         };

@@ -64,7 +64,7 @@ impl Energy {
         let bodies = match past {
             Past::Memory(memory) => Bodies::Relaxing(memory.products_at_rest()),
             Past::Constant(constant) => Bodies::Springs(vec![0.0; constant.count()]),
-            Past::Direct(_) => return None,
+            Past::Waves(_) | Past::Direct(_) => return None,
         };
         let [elastic, dissipated, flattening, work, load, approach] = [0.0; 6];
         Some(Energy { bodies, elastic, dissipated, flattening, work, load, approach })

@@ -47,7 +47,7 @@ use dents::Dents;
 use direct::Direct;
 use event::{Enclosure, MET};
 pub(crate) use measure::Meter;
-use memory::{Drive, Ends, Interval, Memory};
+use memory::{Drive, Ends, Interval, Memory, Spectral};
 use motion::{Moving, Slid};
 use record::Remembered;
 use timeline::{Accepted, Timeline};
@@ -153,6 +153,7 @@ struct Reached {
 /// What the bodies remember.
 enum Past {
     Memory(Box<Memory>),
+    Waves(Box<Spectral>),
     Constant(Constant),
     Direct(Direct),
 }
@@ -162,6 +163,7 @@ impl Past {
     fn remembered(&self, g: &mut [f64]) {
         match self {
             Past::Memory(m) => m.remembered(g),
+            Past::Waves(w) => w.remembered(g),
             Past::Constant(c) => c.remembered(g),
             Past::Direct(d) => d.remembered(g),
         }
@@ -185,10 +187,13 @@ impl March {
         let operator = plan(simulation.grid, simulation.boundary, simulation.kernel.clone())?;
         let solver = Solver::new(options.method, &*operator);
         let n = simulation.grid.len();
-        let past = match simulation.scheme {
-            Scheme::Direct => Past::Direct(Direct::new(&simulation.creep, &simulation.thermal)),
-            Scheme::Constant => Past::Constant(Constant::new(&simulation)),
-            Scheme::Linear => Past::Memory(Box::new(Memory::new(&simulation, simulation.is_adaptive())?)),
+        let past = match (simulation.scheme, &simulation.layers) {
+            (Scheme::Direct, _) => Past::Direct(Direct::new(&simulation.creep, &simulation.thermal)),
+            (Scheme::Constant, _) => Past::Constant(Constant::new(&simulation)),
+            (Scheme::Linear, Some(layers)) => Past::Waves(Box::new(Spectral::new(&simulation, layers)?)),
+            (Scheme::Linear, None) => {
+                Past::Memory(Box::new(Memory::new(&simulation, simulation.is_adaptive())?))
+            }
         };
         let meter = Meter::new(simulation.columns()?, &*operator, &past);
         let dents = Dents::new(&simulation);
@@ -263,7 +268,7 @@ impl March {
         if event && error.is_some() {
             error = self.local_error(instant);
         }
-        self.settle(instant);
+        self.settle(instant)?;
         self.find_friction(instant);
         self.measure(instant.dt == 0.0)?;
         self.dent();
@@ -317,6 +322,11 @@ impl March {
         let lengths = &self.lengths;
         self.compliance = match &mut self.past {
             Past::Memory(m) => m.begin(Interval { lengths, drive }, unit, rigid, &mut self.gap)?,
+            Past::Waves(w) => {
+                let scale = w.begin(Interval { lengths, drive }, &self.state.pressure, rigid, &mut self.gap);
+                self.operator = w.operator();
+                scale
+            }
             Past::Constant(c) => c.begin(lengths, unit, rigid, &mut self.gap),
             Past::Direct(d) => d.history(instant.time, instant.dt, unit, rigid, &mut self.gap),
         };
@@ -332,6 +342,11 @@ impl March {
         let lengths = &self.lengths;
         self.compliance = match &mut self.past {
             Past::Memory(m) => m.retry(Interval { lengths, drive }, rigid, &mut self.gap)?,
+            Past::Waves(w) => {
+                let scale = w.retry(Interval { lengths, drive }, rigid, &mut self.gap);
+                self.operator = w.operator();
+                scale
+            }
             Past::Constant(c) => c.retry(lengths, rigid, &mut self.gap),
             Past::Direct(d) => d.retry(instant.dt, rigid, &mut self.gap),
         };
@@ -352,13 +367,18 @@ impl March {
 
     /// What is known of the step to `instant` before it is solved.
     fn drive(&self, instant: Instant) -> Drive {
-        let apart = matches!(&self.past, Past::Memory(m) if m.load() == 0.0);
+        let apart = match &self.past {
+            Past::Memory(memory) => memory.load() == 0.0,
+            Past::Waves(waves) => waves.load() == 0.0,
+            Past::Constant(_) | Past::Direct(_) => false,
+        };
         match self.prescribed(instant) {
             Prescribed::Load(load) if apart && load == 0.0 => Drive::Apart,
             // Where the gap moves, displacements run with it, in time, whatever the load does.
             Prescribed::Load(_) if self.moves(instant) => Drive::Approach,
             Prescribed::Load(load) => Drive::Load(load),
             Prescribed::Approach(_) if apart => Drive::Apart,
+            Prescribed::Approach(w) if w == self.reached.approach => Drive::Held,
             Prescribed::Approach(_) => Drive::Approach,
         }
     }
@@ -374,14 +394,17 @@ impl March {
     }
 
     /// Tells the memory the load of the row.
-    fn settle(&mut self, instant: Instant) {
+    fn settle(&mut self, instant: Instant) -> Result<()> {
         let load = match self.prescribed(instant) {
             Prescribed::Load(load) => load,
             Prescribed::Approach(_) => sum(&self.state.pressure) * self.simulation.grid.cell_area(),
         };
-        if let Past::Memory(memory) = &mut self.past {
-            memory.settle(load);
+        match &mut self.past {
+            Past::Memory(memory) => memory.settle(load),
+            Past::Waves(waves) => waves.settle(load, &self.state.pressure)?,
+            Past::Constant(_) | Past::Direct(_) => {}
         }
+        Ok(())
     }
 
     /// What the solver is to meet. A load that is rounding of the largest one is none.
@@ -452,7 +475,11 @@ impl March {
 
     /// Whether the step under way has no pressure at either end.
     fn is_apart(&self) -> bool {
-        matches!(&self.past, Past::Memory(memory) if memory.is_apart())
+        match &self.past {
+            Past::Memory(memory) => memory.is_apart(),
+            Past::Waves(waves) => waves.is_apart(),
+            Past::Constant(_) | Past::Direct(_) => false,
+        }
     }
 
     /// How long the first step of a smooth piece is: a twentieth of it at most, or as the material and the load say.

@@ -8,6 +8,7 @@ use crate::contact::{Solver, SolverOptions};
 use crate::error::{Error, Result};
 use crate::grid::{Boundary, Grid};
 use crate::kernel::{HalfSpace, Kernel};
+use crate::layer::Inseparable;
 use crate::load::{Control, Course, Event, History, Loading, Programme, of_stage};
 use crate::march::Motion;
 use crate::material::{Creep, ThermalCreep};
@@ -56,8 +57,10 @@ pub struct Simulation {
     pub grid: Grid,
     /// Free or periodic.
     pub boundary: Boundary,
-    /// How the surface yields in space, for unit compliance: half-spaces, or [layers](crate::layer::separate).
+    /// How the surface yields in space, for unit compliance: half-spaces, or [layers](crate::layer::response).
     pub kernel: Arc<dyn Kernel>,
+    /// Layers whose waves creep differently; `kernel` and `creep` are then those of short times and short waves.
+    pub layers: Option<Arc<Inseparable>>,
     /// Undeformed gap h0 \[m\], shape (nx, ny), least value 0; infinite where a cell cannot touch.
     pub gap: Array2<f64>,
     /// Contact creep compliance C(t) of the pair \[1/Pa\]; without the bodies of `thermal`.
@@ -98,6 +101,7 @@ impl Simulation {
             grid,
             boundary: Boundary::Free,
             kernel: Arc::new(HalfSpace),
+            layers: None,
             gap,
             creep: Creep::elastic(1.0),
             thermal: vec![],
@@ -164,7 +168,13 @@ impl Simulation {
             _ if terms == 0 => 0,
             _ => terms + 1 + usize::from(self.is_adaptive()),
         };
+        let waves = self.layers.as_ref().map_or(0, |layers| {
+            let [mx, my] = operator::torus(grid, self.boundary);
+            // Four terms to a wave are usual: their states and moduli, u, g, and one eigenvalue for each node while they are planned.
+            mx * (my / 2 + 1) * (16 * (4 + 2) + 8 * 4 + 4 * (layers.nodes() + 2))
+        });
         operator::bytes(grid, self.boundary)
+            + waves
             + Solver::bytes(self.solver.method, grid, self.boundary)
             // pressure and U of two rows, undeformed and remembered gap
             + 6 * 8 * n
@@ -277,6 +287,7 @@ impl Simulation {
                 ),
             ));
         }
+        self.validate_layers()?;
         self.loading.validate()?;
         self.times.validate()?;
         if self.is_adaptive() && self.scheme != Scheme::Linear {
@@ -293,6 +304,33 @@ impl Simulation {
         self.validate_steps()?;
         self.validate_load()?;
         self.validate_jumps()
+    }
+
+    /// What goes with layers that creep differently.
+    fn validate_layers(&self) -> Result<()> {
+        if self.layers.is_none() {
+            return Ok(());
+        }
+        let refused = |what: &str, value: String, expected: &str| {
+            Err(Error::invalid(format!("{what} of layers that creep differently"), value, expected))
+        };
+        if self.scheme != Scheme::Linear {
+            return refused("scheme", format!("{:?}", self.scheme).to_lowercase(), "linear");
+        }
+        if self.is_adaptive() {
+            return refused("time steps", "adaptive".into(), "uniform ones, or spacing = \"log\"");
+        }
+        if !self.thermal.is_empty() {
+            return refused("temperature", "not constant".into(), "a constant one");
+        }
+        if self.motion.is_some() {
+            return refused("motion", "given".into(), "none: the contact stays in its place");
+        }
+        let unknown = |q: &&Quantity| q.is_energy() || **q == Quantity::ContactStiffness;
+        match self.quantities.list.iter().find(unknown) {
+            Some(quantity) => refused("quantity", quantity.name().to_string(), "another one"),
+            None => Ok(()),
+        }
     }
 
     /// Displacements of a free line contact are known up to a constant.

@@ -8,7 +8,7 @@
 
 use asperity_sweep::eights::{Eight, Mask, Work};
 
-use super::{March, cap};
+use super::{March, Past, cap};
 use crate::contact::{Hardness, Prescribed, SAME_LOAD, Start};
 use crate::time::Instant;
 use asperity_sweep::{Merge, kernel, run};
@@ -150,6 +150,11 @@ impl March {
 
     /// `linear` is the f of extrapolation in time.
     fn combine(&mut self, instant: Instant, linear: f64) -> Start {
+        if let Past::Waves(_) = &self.past {
+            // The U of the rows before are those of other operators.
+            self.state.pressure.copy_from_slice(&self.previous.pressure);
+            return Start::Pressure;
+        }
         let prescribed = self.prescribed(instant);
         let cell_area = self.simulation.grid.cell_area();
         let hardness = cap(&self.simulation, &self.hardness);

@@ -170,6 +170,15 @@ impl Body {
         }
     }
 
+    /// J(t), the shear creep function.
+    pub(crate) fn shear(&self) -> Result<Creep> {
+        match (self.lateral, self.material.measure()) {
+            (Lateral::BulkModulus(bulk), _) => self.shear_creep(bulk),
+            (Lateral::Poisson(_), Modulus::Shear) => Ok(self.material.creep().clone()),
+            (Lateral::Poisson(nu), Modulus::Young) => Ok(self.material.creep().scaled(2.0 * (1.0 + nu))),
+        }
+    }
+
     /// J(t) of a body of bulk modulus B: from D(t), J = 3 D - 1/(3 B), which is 1/G = 3/E - 1/(3 B).
     fn shear_creep(&self, bulk: f64) -> Result<Creep> {
         let creep = self.material.creep();

@@ -5,7 +5,7 @@
 //! scalar products and makes the later small solves independent of the number of data.
 
 /// The x >= 0 that minimises |sum_k x_k columns_k - b|. Columns that are zero or depend on others get 0.
-pub(super) fn solve(columns: &[Vec<f64>], b: &[f64]) -> Vec<f64> {
+pub(crate) fn solve(columns: &[Vec<f64>], b: &[f64]) -> Vec<f64> {
     let norms: Vec<f64> = columns.iter().map(|c| dot(c, c).sqrt()).collect();
     let scaled: Vec<Vec<f64>> = columns
         .iter()

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use ndarray::{Array1, Array2};
 
-use super::{ApproximateInverse, Operator};
+use super::{ApproximateInverse, Operator, mean};
 use crate::convolution::{Convolution, even_spectrum};
 use crate::error::{Error, Result};
 use crate::grid::{Boundary, Grid};
@@ -25,14 +25,17 @@ impl Free {
     /// # Errors
     /// [`Error::Invalid`] where the kernel cannot be computed on the grid, or is not positive definite there.
     pub fn new(grid: Grid, kernel: Arc<dyn Kernel>) -> Result<Self> {
-        kernel.check(grid.spacing())?;
-        let influence = match grid.is_line() {
-            true => of_strips(kernel.strip(grid.spacing()[0], computed(&grid)[0])?, &grid),
-            false => kernel.influence(grid.spacing(), computed(&grid))?,
-        };
-        plausible(&influence)?;
+        let influence = influence(&grid, &*kernel)?;
         let spectrum = even_spectrum(&influence, padded(&grid));
         Ok(Free::planned(grid, kernel, influence[(0, 0)], &spectrum))
+    }
+
+    pub(super) fn eigenvalues(grid: &Grid, kernel: &dyn Kernel) -> Result<Array2<f64>> {
+        Ok(even_spectrum(&influence(grid, kernel)?, padded(grid)))
+    }
+
+    pub(super) fn of_eigenvalues(grid: Grid, kernel: Arc<dyn Kernel>, eigenvalues: &Array2<f64>) -> Self {
+        Free::planned(grid, kernel, mean(padded(&grid), eigenvalues.view()), eigenvalues)
     }
 
     /// The operator of the elastic half-space.
@@ -57,6 +60,17 @@ impl Free {
     }
 }
 
+/// The influence coefficients on the quadrant of the padded torus.
+fn influence(grid: &Grid, kernel: &dyn Kernel) -> Result<Array2<f64>> {
+    kernel.check(grid.spacing())?;
+    let influence = match grid.is_line() {
+        true => of_strips(kernel.strip(grid.spacing()[0], computed(grid)[0])?, grid),
+        false => kernel.influence(grid.spacing(), computed(grid))?,
+    };
+    plausible(&influence)?;
+    Ok(influence)
+}
+
 /// The coefficients of a line as those of a grid with one cell along y.
 fn of_strips(strips: Vec<f64>, grid: &Grid) -> Array2<f64> {
     let [nx, ny] = computed(grid);
@@ -66,7 +80,7 @@ fn of_strips(strips: Vec<f64>, grid: &Grid) -> Array2<f64> {
 }
 
 /// Lengths of the transforms.
-fn padded(grid: &Grid) -> [usize; 2] {
+pub(super) fn padded(grid: &Grid) -> [usize; 2] {
     grid.cells().map(|n| Convolution::good_length(2 * n - 1))
 }
 

@@ -17,8 +17,8 @@ pub use periodic::Periodic;
 
 use std::sync::Arc;
 
-use ndarray::Array2;
 use ndarray::parallel::prelude::*;
+use ndarray::{Array2, ArrayView1, ArrayView2};
 
 use crate::error::Result;
 use crate::grid::{Boundary, Grid};
@@ -80,6 +80,46 @@ pub fn half_space(grid: Grid, boundary: Boundary) -> Box<dyn Operator> {
         Boundary::Free => Box::new(Free::half_space(grid)),
         Boundary::Periodic => Box::new(Periodic::new(grid, Arc::new(HalfSpace))),
     }
+}
+
+/// The eigenvalues of K on the torus that its convolution works on, those of a quarter of the waves, \[kx\]\[ky\] \[m\].
+///
+/// # Errors
+/// As [`plan`].
+pub(crate) fn eigenvalues(grid: &Grid, boundary: Boundary, kernel: &dyn Kernel) -> Result<Array2<f64>> {
+    match boundary {
+        Boundary::Free => Free::eigenvalues(grid, kernel),
+        Boundary::Periodic => Ok(Periodic::eigenvalues(grid, kernel)),
+    }
+}
+
+/// Lengths of the torus of [`eigenvalues`].
+pub(crate) fn torus(grid: &Grid, boundary: Boundary) -> [usize; 2] {
+    match boundary {
+        Boundary::Free => free::padded(grid),
+        Boundary::Periodic => grid.cells(),
+    }
+}
+
+/// The operator with these [`eigenvalues`]; `kernel` stands for it where an approximate inverse is asked for.
+pub(crate) fn of_eigenvalues(
+    grid: Grid,
+    boundary: Boundary,
+    kernel: Arc<dyn Kernel>,
+    eigenvalues: &Array2<f64>,
+) -> Box<dyn Operator> {
+    match boundary {
+        Boundary::Free => Box::new(Free::of_eigenvalues(grid, kernel, eigenvalues)),
+        Boundary::Periodic => Box::new(Periodic::of_eigenvalues(grid, kernel, eigenvalues)),
+    }
+}
+
+/// The mean of an even spectrum over all waves, of which the array has those of a quarter: the response to a unit where it is.
+pub(crate) fn mean([nx, ny]: [usize; 2], spectrum: ArrayView2<f64>) -> f64 {
+    let times = |k: usize, n: usize| if k == 0 || 2 * k == n { 1.0 } else { 2.0 };
+    let row = |row: ArrayView1<f64>| -> f64 { row.iter().enumerate().map(|(ky, s)| times(ky, ny) * s).sum() };
+    let sum: f64 = spectrum.outer_iter().enumerate().map(|(kx, s)| times(kx, nx) * row(s)).sum();
+    sum / (nx as f64 * ny as f64)
 }
 
 /// Bytes that the operator of a grid takes.

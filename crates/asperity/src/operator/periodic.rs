@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use ndarray::{ArrayView1, ArrayView2};
+use ndarray::Array2;
 
-use super::{ApproximateInverse, Operator, wave_spectrum};
+use super::{ApproximateInverse, Operator, mean, wave_spectrum};
 use crate::convolution::Convolution;
 use crate::grid::{Boundary, Grid};
 use crate::kernel::Kernel;
@@ -20,12 +20,19 @@ pub struct Periodic {
 impl Periodic {
     /// Plans the operator.
     pub fn new(grid: Grid, kernel: Arc<dyn Kernel>) -> Self {
+        let eigenvalues = Periodic::eigenvalues(&grid, &*kernel);
+        Periodic::of_eigenvalues(grid, kernel, &eigenvalues)
+    }
+
+    pub(super) fn eigenvalues(grid: &Grid, kernel: &dyn Kernel) -> Array2<f64> {
+        let symbol = |qx, qy| kernel.symbol(qx, qy);
+        wave_spectrum(grid.cells(), grid.size(), kernel.uniform().unwrap_or(0.0), symbol)
+    }
+
+    pub(super) fn of_eigenvalues(grid: Grid, kernel: Arc<dyn Kernel>, eigenvalues: &Array2<f64>) -> Self {
         let cells = grid.cells();
-        let spectrum = wave_spectrum(cells, grid.size(), kernel.uniform().unwrap_or(0.0), |qx, qy| {
-            kernel.symbol(qx, qy)
-        });
-        let convolution = Convolution::new(cells, cells, spectrum.view());
-        let self_influence = mean(cells, spectrum.view());
+        let convolution = Convolution::new(cells, cells, eigenvalues.view());
+        let self_influence = mean(cells, eigenvalues.view());
         Periodic { grid, kernel, convolution, self_influence }
     }
 
@@ -33,14 +40,6 @@ impl Periodic {
     pub(super) fn bytes(grid: &Grid) -> usize {
         Convolution::bytes(grid.cells(), grid.cells())
     }
-}
-
-/// The mean of an even spectrum over all waves, of which the array has those of a quarter: the response to a unit where it is.
-fn mean([nx, ny]: [usize; 2], spectrum: ArrayView2<f64>) -> f64 {
-    let times = |k: usize, n: usize| if k == 0 || 2 * k == n { 1.0 } else { 2.0 };
-    let row = |row: ArrayView1<f64>| -> f64 { row.iter().enumerate().map(|(ky, s)| times(ky, ny) * s).sum() };
-    let sum: f64 = spectrum.outer_iter().enumerate().map(|(kx, s)| times(kx, nx) * row(s)).sum();
-    sum / (nx as f64 * ny as f64)
 }
 
 impl Operator for Periodic {

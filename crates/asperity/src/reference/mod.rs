@@ -11,6 +11,7 @@
 //! | elastic waves; wave on a viscoelastic body | [`Westergaard`], [`JohnsonWave`], [`WestergaardStep`] | Westergaard 1939, Johnson et al. 1985 |
 //! | sphere on a viscoelastic body, contact growing then shrinking | [`Ting`] | Ting 1966 |
 //! | sphere, cone on a viscoelastic body, any history | [`Mdr`] | Popov & Hess 2015 |
+//! | sphere, cone on an elastic layer on a rigid base | [`LayerContact`] | Lebedev & Ufliand 1958 |
 //! | cylinder that rolls or slides on a viscoelastic body | [`HunterCylinder`] | Hunter 1961 |
 //! | sphere that slides slowly or fast on a viscoelastic body | [`SlidingSphere`] | Hertz 1881, first order in the speed |
 //! | waves that slide on a viscoelastic body in full contact | [`FullContactWave`], [`full_contact_friction`] | Persson 2001 |
@@ -21,6 +22,7 @@ mod elliptic;
 mod hereditary;
 mod hertz;
 mod hunter;
+mod layer_contact;
 mod line_hertz;
 mod mdr;
 mod quadrature;
@@ -34,6 +36,8 @@ pub use capped_hertz::CappedHertz;
 pub use elliptic::{Elliptic, elliptic};
 pub use hertz::{HertzEllipse, HertzSphere};
 pub use hunter::HunterCylinder;
+pub use layer_contact::LayerContact;
+pub(crate) use layer_contact::SpringProfile;
 pub use line_hertz::HertzLine;
 pub use mdr::{Mdr, MdrOptions, MdrProfile, MdrState, MdrTarget};
 pub use sliding::{FullContactWave, SlidingSphere, full_contact_friction};

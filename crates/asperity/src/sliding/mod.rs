@@ -21,7 +21,7 @@ mod shells;
 mod slopes;
 mod steady;
 mod streaming;
-mod torus;
+pub(crate) mod torus;
 
 pub use friction::{Direction, Friction};
 pub(crate) use friction::{Forces, gap_force};

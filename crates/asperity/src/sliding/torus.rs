@@ -12,10 +12,10 @@ use rustfft::{Fft, FftPlanner};
 
 /// The multipliers of a torus of mx x my cells, in columns of constant ky: S(kx, ky) at `ky * mx + kx`, 0 <= ky <= my/2, all kx.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Spectrum(pub(super) Vec<Complex64>);
+pub(crate) struct Spectrum(pub(crate) Vec<Complex64>);
 
 /// The transforms of a domain on a torus.
-pub(super) struct Torus {
+pub(crate) struct Torus {
     /// nx, ny.
     cells: [usize; 2],
     /// mx, my.
@@ -31,7 +31,7 @@ pub(super) struct Torus {
 }
 
 impl Torus {
-    pub(super) fn new(cells: [usize; 2], lengths: [usize; 2]) -> Self {
+    pub(crate) fn new(cells: [usize; 2], lengths: [usize; 2]) -> Self {
         let (mut real, mut complex) = (RealFftPlanner::new(), FftPlanner::new());
         let half = lengths[1] / 2 + 1;
         Torus {
@@ -47,17 +47,17 @@ impl Torus {
     }
 
     /// mx, my.
-    pub(super) fn lengths(&self) -> [usize; 2] {
+    pub(crate) fn lengths(&self) -> [usize; 2] {
         self.lengths
     }
 
     /// Numbers of a [`Spectrum`].
-    pub(super) fn spectrum_len(&self) -> usize {
+    pub(crate) fn spectrum_len(&self) -> usize {
         self.lengths[0] * (self.lengths[1] / 2 + 1)
     }
 
     /// The spectrum with these numbers S(kx, ky), -mx/2 < kx <= mx/2. Where a wave is its own opposite, only the real part counts.
-    pub(super) fn spectrum(&self, of: impl Fn(i64, i64) -> Complex64 + Sync) -> Spectrum {
+    pub(crate) fn spectrum(&self, of: impl Fn(i64, i64) -> Complex64 + Sync) -> Spectrum {
         let [mx, my] = self.lengths;
         let own = |k: usize, m: usize| k == 0 || 2 * k == m;
         let number = |n: usize| {
@@ -70,14 +70,14 @@ impl Torus {
     }
 
     /// u = F⁻¹[ S F p ]; both fields have nx ny cells.
-    pub(super) fn apply_into(&mut self, spectrum: &Spectrum, p: &[f64], u: &mut [f64]) {
+    pub(crate) fn apply_into(&mut self, spectrum: &Spectrum, p: &[f64], u: &mut [f64]) {
         self.forward(p);
         self.multiply(|n, x| x * spectrum.0[n]);
         self.back(u);
     }
 
     /// F p, p of nx ny cells.
-    pub(super) fn transform(&mut self, p: &[f64]) -> Spectrum {
+    pub(crate) fn transform(&mut self, p: &[f64]) -> Spectrum {
         let (mx, nx) = (self.lengths[0], self.cells[0]);
         self.forward(p);
         let mut all = vec![Complex64::ZERO; self.spectrum_len()];
@@ -90,7 +90,7 @@ impl Torus {
     }
 
     /// Σ weight(kx, ky) |p^|² over all waves of the torus, over mx my: by Parseval's theorem a sum over its cells.
-    pub(super) fn energy(
+    pub(crate) fn energy(
         &mut self,
         spectrum: &Spectrum,
         weight: impl Fn(Complex64, i64) -> f64 + Sync,
@@ -120,7 +120,7 @@ impl Torus {
     }
 
     /// u = F⁻¹[ S T ] of a transform T and a spectrum S.
-    pub(super) fn back_from(&mut self, transform: &Spectrum, spectrum: &Spectrum, u: &mut [f64]) {
+    pub(crate) fn back_from(&mut self, transform: &Spectrum, spectrum: &Spectrum, u: &mut [f64]) {
         let (mx, nx) = (self.lengths[0], self.cells[0]);
         let scale = 1.0 / (mx as f64 * self.lengths[1] as f64);
         let fft = &self.columns_back;
@@ -130,6 +130,19 @@ impl Torus {
             let mut wave: Vec<Complex64> = pairs.map(|(a, b)| a * b * scale).collect();
             fft.process(&mut wave);
             column.copy_from_slice(&wave[..nx]);
+        });
+        self.back(u);
+    }
+
+    /// u = F⁻¹ T of a transform T.
+    pub(crate) fn back_of(&mut self, transform: &[Complex64], u: &mut [f64]) {
+        let (mx, nx) = (self.lengths[0], self.cells[0]);
+        let scale = 1.0 / (mx as f64 * self.lengths[1] as f64);
+        let fft = &self.columns_back;
+        self.columns.par_chunks_mut(nx).zip(transform.par_chunks(mx)).for_each(|(column, waves)| {
+            let mut waves: Vec<Complex64> = waves.iter().map(|wave| wave * scale).collect();
+            fft.process(&mut waves);
+            column.copy_from_slice(&waves[..nx]);
         });
         self.back(u);
     }

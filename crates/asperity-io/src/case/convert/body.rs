@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use asperity::finding::{self, Finding};
-use asperity::layer::Layered;
+use asperity::layer::{Inseparable, Layered};
 use asperity::material::{Body, Creep, Lateral, Material, ReducedTime, Shift, ThermalCreep, pair_hardness};
 use asperity::time::Plan;
 
@@ -19,6 +19,8 @@ pub struct Pair {
     pub bodies: Vec<Body>,
     /// How the bodies yield in space, where they have layers.
     pub layers: Option<Arc<Layered>>,
+    /// How their waves creep, where they creep differently.
+    pub waves: Option<Arc<Inseparable>>,
     /// Contact creep compliance [1/Pa] of each body without layers, and its clock where its temperature changes.
     pub creeps: Vec<(Creep, Option<ReducedTime>)>,
     /// Contact creep compliance of the bodies of constant temperature [1/Pa].
@@ -101,6 +103,7 @@ pub fn pair(
     let mut pair = Pair {
         bodies: Vec::new(),
         layers: None,
+        waves: None,
         creeps: Vec::new(),
         creep: Creep::default(),
         thermal: Vec::new(),
@@ -111,11 +114,12 @@ pub fn pair(
     };
     let layered = raw.iter().any(|at| !at.value.layer.is_empty());
     if layered {
-        let separated = layer::separated(checks, raw, parts, &made)?;
-        pair.layers = Some(Arc::new(separated.kernel));
+        let response = layer::respond(checks, raw, parts, &made)?;
+        pair.layers = Some(Arc::new(response.kernel));
+        pair.waves = response.waves;
         match made.first().and_then(|made| made.clock.clone()) {
-            Some(clock) => pair.thermal.push(ThermalCreep { creep: separated.creep, clock }),
-            None => pair.creep = separated.creep,
+            Some(clock) => pair.thermal.push(ThermalCreep { creep: response.creep, clock }),
+            None => pair.creep = response.creep,
         }
     }
     for made in made {

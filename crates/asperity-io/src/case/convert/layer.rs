@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
-use asperity::layer::{BodyLayer, Layered, LayeredBody, Separated, separate};
-use asperity::{Boundary, Error, Grid};
+use asperity::layer::{BodyLayer, Layered, LayeredBody, Response, response};
+use asperity::quantities::Quantity;
+use asperity::{Boundary, Error, Grid, Scheme};
 
 use super::Checks;
 use super::body::Made;
@@ -105,13 +106,13 @@ fn rigid(checks: &mut Checks<'_, '_>, at: &At<raw::Body>) {
     }
 }
 
-/// What the bodies are to the contact, where space and time separate. `made` are the `parts`, in their order.
-pub fn separated(
+/// What the bodies are to the contact. `made` are the `parts`, in their order.
+pub fn respond(
     checks: &mut Checks<'_, '_>,
     raw: &[At<raw::Body>],
     parts: &[Part<'_>],
     made: &[Made],
-) -> Option<Separated> {
+) -> Option<Response> {
     let all = raw.iter().enumerate().map(|(n, at)| {
         let of_body =
             parts.iter().zip(made).filter(|(part, _)| part.body == n).map(|(_, made)| made.body.clone());
@@ -126,8 +127,8 @@ pub fn separated(
     let all: Vec<LayeredBody> = all.collect();
     let layered = raw.iter().find(|at| !at.value.layer.is_empty())?;
     let other_clock = made.iter().position(|one| one.clock != made[0].clock);
-    let separated = match other_clock {
-        None => separate(&all),
+    let found = match other_clock {
+        None => response(&all),
         Some(n) => Err(Error::invalid(
             format!("temperature shift of {}", parts[n].name),
             format!("not that of {}", parts[0].name),
@@ -135,6 +136,15 @@ pub fn separated(
              differently, which is not solved yet. Give all of them the same `shift`, or hold the temperature constant",
         )),
     };
+    if let Ok(Response { waves: Some(_), .. }) = &found
+        && made.iter().any(|one| one.clock.is_some())
+    {
+        let message =
+            "the temperature changes, and the layers creep differently: this is not solved".to_owned();
+        let help = "hold the temperature constant, or give all layers the same relative creep";
+        checks.fault(&layered.span, message, "layers of one relative creep", Some(help));
+        return None;
+    }
     // The part that the error names, by the end of its subject.
     let named = |error: &Error| match error {
         Error::Invalid { what, .. } => {
@@ -142,8 +152,33 @@ pub fn separated(
         }
         _ => None,
     };
-    let span = separated.as_ref().err().and_then(named).map_or(&layered.span, |part| part.span);
-    checks.core(span, separated)
+    let span = found.as_ref().err().and_then(named).map_or(&layered.span, |part| part.span);
+    checks.core(span, found)
+}
+
+/// Faults of what is not solved where layers creep differently.
+pub fn unsolved(checks: &mut Checks<'_, '_>, document: &raw::Document, adaptive: bool, scheme: Scheme) {
+    let help = "omit it, or give all layers and bodies the same relative creep";
+    let mut fault = |span: &Range<usize>, what: &str, expected: &str| {
+        let message = format!("{what}: this is not solved for layers that creep differently");
+        checks.fault(span, message, expected, Some(help));
+    };
+    let time = &document.time.span;
+    if adaptive {
+        fault(time, "the time steps are adaptive", "uniform steps, or spacing = \"log\"");
+    }
+    if scheme != Scheme::Linear {
+        fault(time, "the scheme is not \"linear\"", "scheme = \"linear\"");
+    }
+    if let Some(at) = &document.motion {
+        fault(&at.span, "the contact moves", "a contact that stays in its place");
+    }
+    for at in document.output.quantities.iter().flatten() {
+        let raw::Quantities::One(quantity) = at.value else { continue };
+        if quantity.is_energy() || quantity == Quantity::ContactStiffness {
+            fault(&at.span, &format!("{quantity} is asked for"), "another quantity");
+        }
+    }
 }
 
 /// Whether the cells of a free domain resolve the top layers; a periodic domain takes layers of any thickness.

@@ -178,6 +178,9 @@ pub fn case(
         let help = "omit `scheme`, or use spacing = \"log\" with `steps`";
         checks.fault(&document.time.span, message, "scheme = \"linear\"", Some(help));
     }
+    if pair.as_ref().is_some_and(|pair| pair.waves.is_some()) {
+        layer::unsolved(&mut checks, document, adaptive, scheme);
+    }
     let fields = match (scheme, &pair) {
         (_, None) => 0,
         (Scheme::Direct, Some(pair)) => pair.plan.instants.len(),
@@ -237,6 +240,7 @@ pub fn case(
             surfaces,
             bodies: pair.bodies,
             layers: pair.layers,
+            waves: pair.waves,
             thickness: layer::thickness(&document.body),
             creep: pair.creep,
             thermal: pair.thermal,

@@ -20,8 +20,11 @@ mod checkpoint;
 mod clocks;
 mod energy;
 mod estimate;
+mod mean;
 mod rules;
 mod shape;
+mod spectral;
+mod waves;
 mod within;
 
 use branches::Branches;
@@ -30,6 +33,7 @@ use energy::transition;
 pub(in crate::march) use energy::{Exchange, Products};
 use rules::{Course, Rules};
 use shape::Shape;
+pub(in crate::march) use spectral::Spectral;
 
 use crate::error::Result;
 use crate::march::Simulation;
@@ -104,6 +108,8 @@ pub(in crate::march) enum Drive {
     Apart,
     /// The approach is prescribed.
     Approach,
+    /// It is that of the row before.
+    Held,
     /// The load at the end.
     Load(f64),
 }

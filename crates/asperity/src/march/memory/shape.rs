@@ -77,6 +77,18 @@ impl Shape {
     /// γ of the state `i` over a step of length `x`, in which L changes by `change`, and 1 - γ.
     pub(super) fn share(&self, dual: &Dual, i: usize, x: f64, change: f64) -> Share {
         let tau = dual.relaxation.terms[i].relaxation_time;
+        self.share_of(dual, tau, |j| dual.gaps(j)[i] / tau, x, change)
+    }
+
+    /// The same of a state with the relaxation time `tau`; `gap`(j) = (λ_j - τ)/τ.
+    pub(super) fn share_of(
+        &self,
+        dual: &Dual,
+        tau: f64,
+        gap: impl Fn(usize) -> f64,
+        x: f64,
+        change: f64,
+    ) -> Share {
         let y = x / tau;
         let moments: [f64; 7] = std::array::from_fn(|k| moment(k as u32, y));
         let (linear, square) = (self.linear * x, self.square * x * x);
@@ -84,13 +96,32 @@ impl Shape {
         let mut left = linear * (moments[0] / y) + square * (1.0 - moments[2]);
         for (j, (a, term)) in self.fading.iter().zip(&dual.creep.terms).enumerate() {
             let z = x / term.retardation_time;
-            let part = retarded(z, y, dual.gaps(j)[i] / tau, &moments);
+            let part = retarded(z, y, gap(j), &moments);
             taken += a * part;
             left += a * (moment(0, z) - part);
         }
         // Rounding leads out of the range that a course in one direction has.
         let taken = (taken / change).clamp(0.0, moments[0]);
         Share { taken, left: (left / change).clamp(1.0 - moments[0], 1.0) }
+    }
+}
+
+/// γ and 1 - γ of a state with the relaxation time `tau` over a step of length x > 0 in which u runs as Σ A (1 - exp(-s/t)), all A
+/// of one sign; `terms` are the (A, t).
+pub(super) fn fading_share(terms: &[(f64, f64)], tau: f64, x: f64) -> Share {
+    let y = x / tau;
+    let moments: [f64; 7] = std::array::from_fn(|k| moment(k as u32, y));
+    let (mut taken, mut left, mut change) = (0.0, 0.0, 0.0);
+    for (a, time) in terms {
+        let z = x / time;
+        let part = retarded(z, y, time / tau - 1.0, &moments);
+        taken += a * part;
+        left += a * (moment(0, z) - part);
+        change += a * moment(0, z);
+    }
+    Share {
+        taken: (taken / change).clamp(0.0, moments[0]),
+        left: (left / change).clamp(1.0 - moments[0], 1.0),
     }
 }
 

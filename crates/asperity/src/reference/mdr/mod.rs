@@ -23,6 +23,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use super::layer_contact::SpringProfile;
 use super::quadrature::root;
 use crate::error::{Error, Result, non_negative, positive};
 use crate::material::Relaxation;
@@ -74,6 +75,8 @@ pub enum MdrTarget {
 #[derive(Clone, Debug)]
 pub struct Mdr {
     profile: MdrProfile,
+    /// What stands for the profile where the body is a layer.
+    layer: Option<SpringProfile>,
     relaxation: Relaxation,
     spacing: f64,
     most_springs: usize,
@@ -111,6 +114,7 @@ impl Mdr {
         }
         let mut row = Mdr {
             profile,
+            layer: None,
             relaxation: relaxation.clone(),
             spacing: largest_radius / springs as f64,
             most_springs: GROWTH * springs + 1,
@@ -122,6 +126,20 @@ impl Mdr {
         };
         row.lengthen(springs + 1)?;
         Ok(row)
+    }
+
+    /// A row that stands for a layer: its radii are ρ, half of the stiffness for E* = 1, and it has no pressure.
+    ///
+    /// # Errors
+    /// As [`Mdr::new`].
+    pub(crate) fn on_layer(
+        layer: SpringProfile,
+        relaxation: &Relaxation,
+        largest_radius: f64,
+        springs: usize,
+    ) -> Result<Self> {
+        let row = Mdr::new(MdrProfile::Sphere { radius: 1.0 }, relaxation, largest_radius, springs)?;
+        Ok(Mdr { layer: Some(layer), ..row })
     }
 
     /// Goes on by `dt` >= 0 \[s\] (0: a jump) to the target.
@@ -179,7 +197,15 @@ impl Mdr {
     }
 
     fn height(&self, k: usize) -> f64 {
-        self.profile.height(self.x(k))
+        self.layer.as_ref().map_or_else(|| self.profile.height(self.x(k)), |layer| layer.height(self.x(k)))
+    }
+
+    fn reach(&self, height: f64) -> f64 {
+        self.layer.as_ref().map_or_else(|| self.profile.reach(height), |layer| layer.reach(height))
+    }
+
+    fn lean(&self, x0: f64, x1: f64) -> f64 {
+        self.layer.as_ref().map_or_else(|| self.profile.lean(x0, x1), |layer| layer.lean(x0, x1))
     }
 
     fn lengthen(&mut self, springs: usize) -> Result<()> {
@@ -228,7 +254,7 @@ impl Mdr {
     fn edge_in(&self, touch: &[f64], k: usize, approach: f64) -> f64 {
         let share = ((approach - touch[k]) / (touch[k + 1] - touch[k])).clamp(0.0, 1.0);
         let height = self.height(k) + share * (self.height(k + 1) - self.height(k));
-        self.profile.reach(height).clamp(self.x(k), self.x(k + 1))
+        self.reach(height).clamp(self.x(k), self.x(k + 1))
     }
 
     /// The approach and edge at which the springs carry the load; `None` beyond the row.
@@ -241,7 +267,7 @@ impl Mdr {
         let mut below = 0.0; // int_0^(x_k) b dx
         for k in 0..touch.len() - 1 {
             let (x0, x1) = (self.x(k), self.x(k + 1));
-            let lean = self.profile.lean(x0, x1);
+            let lean = self.lean(x0, x1);
             let cell = (x1 - x0) * ((1.0 - lean) * touch[k] + lean * touch[k + 1]);
             if touch[k + 1] * x1 - below - cell < wanted {
                 below += cell;
@@ -249,7 +275,7 @@ impl Mdr {
             }
             let carried = |approach: f64| {
                 let edge = self.edge_in(touch, k, approach);
-                let lean = self.profile.lean(x0, edge);
+                let lean = self.lean(x0, edge);
                 let part = (edge - x0) * ((1.0 - lean) * touch[k] + lean * approach);
                 approach * edge - below - if edge > x0 { part } else { 0.0 }
             };
@@ -309,7 +335,7 @@ impl Mdr {
     /// Load W = 2 int_0^a q dx \[N\].
     pub fn load(&self) -> f64 {
         let cell = |(x0, x1, q0, q1): (f64, f64, f64, f64)| {
-            let lean = self.profile.lean(x0, x1);
+            let lean = self.lean(x0, x1);
             (x1 - x0) * ((1.0 - lean) * q0 + lean * q1)
         };
         // A sum of no cells is -0.

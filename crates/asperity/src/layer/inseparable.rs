@@ -1,0 +1,261 @@
+//! Layers that creep differently: C(q, t) is not a function of q times one of t.
+//!
+//! By the correspondence principle the transform of the creep compliance at s > 0 is that of the elastic stack with the moduli
+//! μ~_i(s). It is a Stieltjes function of s: with K_i the positive stiffness of part i and f the load, C~ = f' (Σ μ~_i(s) K_i)^-1 f
+//! is real and finite wherever all μ~_i(s) are positive, and Im C~ has one sign in the half plane. So
+//!
+//! ```text
+//! C(q, t) = S_0(q) + Σ S_j(q) (1 - exp(-t/λ_j)),   S_j >= 0
+//! ```
+//!
+//! and all times λ_j lie between a relaxation time of a material and the retardation time that follows it, because outside
+//! of these intervals all μ~_i are positive on the negative axis. (A constant bulk modulus is one more positive K_i.) Here the
+//! intervals are covered by nodes λ_j, equally spaced in ln λ, and the weights of each wave follow from C~(q, s) at s = 1/λ_j by
+//! least squares with S_j >= 0. The values at t = 0 and for long times are exact.
+
+use std::sync::Arc;
+
+use super::body::{LayeredBody, stack};
+use super::{Layered, Stack};
+use crate::error::{Error, Result};
+use crate::material::{Body, Creep, CreepTerm, Lateral, least_squares};
+
+/// Largest relative error of C~(q, s) that is accepted.
+pub(crate) const TOLERANCE: f64 = 1e-3;
+/// Error at which the spacing of the nodes is not refined any more.
+const WANTED: f64 = 3e-5;
+/// Spacings of ln λ that are tried.
+const SPACINGS: [f64; 3] = [0.4, 0.3, 0.2];
+/// Most nodes: more of them take a wider spacing.
+const MOST: usize = 48;
+/// Weight of the row that sets the relaxed compliance, over the other rows.
+const EXACT: f64 = 1e3;
+/// Weights below this share of the relaxed compliance are left out.
+const NONE: f64 = 1e-10;
+/// Waves on which the fit is judged.
+const JUDGED: usize = 64;
+
+/// Creep compliance of bodies whose waves creep differently.
+#[derive(Clone, Debug)]
+pub struct Inseparable {
+    /// λ_j \[s\], ascending.
+    nodes: Vec<f64>,
+    /// The elastic bodies at s = ∞, 0 and 1/λ_j: a kernel, and the compliance \[1/Pa\] that multiplies it.
+    stages: Vec<(Arc<Layered>, f64)>,
+    misfit: f64,
+}
+
+impl Inseparable {
+    /// Of one body against a rigid one, or of two bodies.
+    pub(super) fn new(bodies: &[LayeredBody]) -> Result<Self> {
+        let intervals = intervals(bodies)?;
+        let mut best: Option<Inseparable> = None;
+        for spacing in SPACINGS {
+            let nodes = nodes(&intervals, spacing);
+            let frequencies = [f64::INFINITY, 0.0].into_iter().chain(nodes.iter().map(|time| 1.0 / time));
+            let stages = frequencies.map(|s| elastic(bodies, s)).collect::<Result<Vec<_>>>()?;
+            let mut tried = Inseparable { nodes, stages, misfit: 0.0 };
+            tried.misfit = tried.judge(bodies)?;
+            if best.as_ref().is_none_or(|best| tried.misfit < best.misfit) {
+                best = Some(tried);
+            }
+            if best.as_ref().is_some_and(|best| best.misfit < WANTED) {
+                break;
+            }
+        }
+        best.filter(|best| best.misfit <= TOLERANCE).ok_or_else(|| {
+            Error::invalid(
+                format!("creep of the layers of {}", name(bodies)),
+                "not described by a sum of exponentials",
+                format!("a sum that is exact to {TOLERANCE:e}: use materials with fewer or closer relaxation times"),
+            )
+        })
+    }
+
+    /// The elastic bodies of short times: the kernel of the instantaneous response.
+    pub(super) fn glassy(&self) -> &Layered {
+        &self.stages[0].0
+    }
+
+    /// The elastic bodies at the s at which C~ is fitted: s = ∞, 0, and those between; with the compliance \[1/Pa\] of each.
+    pub(crate) fn stages(&self) -> impl Iterator<Item = (Arc<Layered>, f64)> + '_ {
+        self.stages.iter().cloned()
+    }
+
+    /// The s of [`stages`](Self::stages) that are neither 0 nor ∞ \[1/s\].
+    pub(crate) fn frequencies(&self) -> impl Iterator<Item = f64> + '_ {
+        self.nodes.iter().map(|time| 1.0 / time)
+    }
+
+    /// The shortest and the longest retardation time \[s\].
+    pub fn times(&self) -> [f64; 2] {
+        [self.nodes[0], self.nodes[self.nodes.len() - 1]]
+    }
+
+    /// Number of nodes.
+    pub fn nodes(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// Largest relative error of the fitted compliance over all waves and frequencies.
+    pub fn misfit(&self) -> f64 {
+        self.misfit
+    }
+
+    /// C(q, t) \[m/Pa\] of waves of wave number q > 0 \[rad/m\].
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where q is so extreme that the compliance leaves the range of numbers.
+    pub fn creep(&self, q: f64) -> Result<Creep> {
+        let values: Vec<f64> = self.stages.iter().map(|(kernel, c)| c * kernel.wave(q)).collect();
+        self.fit(&values).map(|(creep, _)| creep).ok_or_else(|| {
+            Error::invalid("wave number", format!("{q:e} rad/m"), "one whose compliance is positive")
+        })
+    }
+
+    /// The creep function with these values of C~ at the [`stages`](Self::stages), and its largest relative error there; `None`
+    /// where it is not one of a body.
+    pub(crate) fn fit(&self, values: &[f64]) -> Option<(Creep, f64)> {
+        let [glassy, relaxed, between @ ..] = values else { return None };
+        let rise = relaxed - glassy;
+        if !(*glassy > 0.0 && relaxed.is_finite() && rise >= -TOLERANCE * relaxed) {
+            return None;
+        }
+        if rise <= NONE * relaxed {
+            return Some((Creep::elastic(*glassy), rise.abs() / relaxed));
+        }
+        // Rows of C~ - S_0 over C~.
+        let rows: Vec<(f64, f64, f64)> = std::iter::once((0.0, rise, EXACT / relaxed))
+            .chain(between.iter().zip(self.frequencies()).map(|(c, s)| (s, c - glassy, 1.0 / c.abs())))
+            .collect();
+        let column = |time: &f64| rows.iter().map(|(s, _, weight)| weight / (1.0 + s * time)).collect();
+        let columns: Vec<Vec<f64>> = self.nodes.iter().map(column).collect();
+        let wanted: Vec<f64> = rows.iter().map(|(_, value, weight)| weight * value).collect();
+        let weights = least_squares(&columns, &wanted);
+        let terms = self.nodes.iter().zip(&weights).filter(|(_, weight)| **weight > NONE * relaxed);
+        let terms: Vec<CreepTerm> =
+            terms.map(|(time, weight)| CreepTerm { compliance: *weight, retardation_time: *time }).collect();
+        let fitted = |s: f64| -> f64 {
+            terms.iter().map(|term| term.compliance / (1.0 + s * term.retardation_time)).sum()
+        };
+        let misfit = |(s, value, weight): &(f64, f64, f64)| weight * (fitted(*s) - value).abs();
+        let worst = rows[1..].iter().map(misfit).fold((fitted(0.0) - rise).abs() / relaxed, f64::max);
+        Some((Creep { instantaneous: *glassy, terms, fluidity: 0.0 }, worst))
+    }
+
+    /// Largest relative error of C~ over the waves, at frequencies beside those of the fit.
+    fn judge(&self, bodies: &[LayeredBody]) -> Result<f64> {
+        let [shortest, longest] = self.times();
+        let between = self.nodes.windows(2).map(|pair| 1.0 / (pair[0] * pair[1]).sqrt());
+        let frequencies: Vec<f64> = between.chain([0.2 / longest, 5.0 / shortest]).collect();
+        let checks = frequencies.iter().map(|s| elastic(bodies, *s)).collect::<Result<Vec<_>>>()?;
+        let layers = || bodies.iter().flat_map(|body| &body.layers).map(|layer| layer.thickness);
+        let (thinnest, total) = (layers().fold(f64::INFINITY, f64::min), layers().sum::<f64>());
+        let (first, last) = (libm::log(1e-3 / total), libm::log(30.0 / thinnest));
+        let mut worst = 0.0_f64;
+        for n in 0..JUDGED {
+            let q = libm::exp(first + (last - first) * n as f64 / (JUDGED - 1) as f64);
+            let creep = self.creep(q)?;
+            for (s, (kernel, c)) in frequencies.iter().zip(&checks) {
+                let exact = c * kernel.wave(q);
+                let terms =
+                    creep.terms.iter().map(|term| term.compliance / (1.0 + s * term.retardation_time));
+                worst = worst.max(((creep.instantaneous + terms.sum::<f64>()) / exact - 1.0).abs());
+            }
+        }
+        Ok(worst)
+    }
+}
+
+impl Layered {
+    /// The symbol at a wave number.
+    fn wave(&self, q: f64) -> f64 {
+        crate::kernel::Kernel::symbol(self, q, 0.0)
+    }
+}
+
+/// The elastic bodies with the moduli at s, 0 <= s <= ∞, as a kernel and its compliance.
+fn elastic(bodies: &[LayeredBody], s: f64) -> Result<(Arc<Layered>, f64)> {
+    let stacks = bodies.iter().map(|body| {
+        let moduli = body.materials().map(|material| moduli(material, s)).collect::<Result<Vec<_>>>()?;
+        stack(body, &moduli)
+    });
+    let stacks = stacks.collect::<Result<Vec<Stack>>>()?;
+    let compliance = 0.5 * stacks.iter().map(Stack::short_waves).sum::<f64>();
+    Ok((Arc::new(Layered::new(stacks)?), compliance))
+}
+
+/// Shear modulus and Poisson's ratio at s.
+fn moduli(material: &Body, s: f64) -> Result<(f64, f64)> {
+    let creep = material.shear()?;
+    let terms = creep.terms.iter().map(|term| match s.is_infinite() {
+        true => 0.0,
+        false => term.compliance / (1.0 + s * term.retardation_time),
+    });
+    let shear = 1.0 / (creep.instantaneous + terms.sum::<f64>());
+    Ok(match material.lateral {
+        Lateral::Poisson(nu) => (shear, nu),
+        Lateral::BulkModulus(bulk) => (shear, (3.0 * bulk - 2.0 * shear) / (2.0 * (3.0 * bulk + shear))),
+    })
+}
+
+/// Where the retardation times of all waves lie \[s\]: disjoint intervals, ascending.
+fn intervals(bodies: &[LayeredBody]) -> Result<Vec<[f64; 2]>> {
+    let mut all = vec![];
+    for material in bodies.iter().flat_map(LayeredBody::materials) {
+        let creep = material.shear()?.tidy();
+        let flows = creep.fluidity > 0.0;
+        if flows || creep.instantaneous <= 0.0 {
+            let what = if flows { "flows without end" } else { "has no instantaneous compliance" };
+            return Err(Error::invalid(
+                format!("creep function of {}", material.name),
+                what,
+                "an instantaneous compliance and a limit for long times, where layers creep differently: add an equilibrium \
+                 modulus, or a spring in series",
+            ));
+        }
+        let relaxation = creep.to_relaxation()?;
+        let (e, c) = (&relaxation.terms, &creep.terms);
+        match e.len() == c.len() {
+            true => all.extend(e.iter().zip(c).map(|(e, c)| [e.relaxation_time, c.retardation_time])),
+            // A term that is rounding has no partner.
+            false => {
+                all.extend(e.first().zip(c.last()).map(|(e, c)| [e.relaxation_time, c.retardation_time]))
+            }
+        }
+    }
+    all.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut merged: Vec<[f64; 2]> = vec![];
+    for [start, end] in all {
+        match merged.last_mut() {
+            Some(last) if start <= last[1] => last[1] = last[1].max(end),
+            _ => merged.push([start, end]),
+        }
+    }
+    Ok(merged)
+}
+
+/// Nodes on the intervals, ends included.
+fn nodes(intervals: &[[f64; 2]], spacing: f64) -> Vec<f64> {
+    let length = |[a, b]: &[f64; 2]| libm::log(b / a);
+    let total: f64 = intervals.iter().map(length).sum();
+    let spare = MOST.saturating_sub(2 * intervals.len()).max(1);
+    let spacing = spacing.max(total / spare as f64);
+    let of_one = |interval: &[f64; 2]| {
+        let ([start, _], whole) = (*interval, length(interval));
+        // The ends of a narrow interval are as good as its middle.
+        let parts = if whole < 1e-6 { 0 } else { (whole / spacing).ceil().max(1.0) as usize };
+        let node = move |n: usize| start * libm::exp(whole * n as f64 / parts.max(1) as f64);
+        (0..=parts).map(node).collect::<Vec<f64>>()
+    };
+    intervals.iter().flat_map(of_one).collect()
+}
+
+fn name(bodies: &[LayeredBody]) -> String {
+    bodies
+        .iter()
+        .flat_map(LayeredBody::materials)
+        .map(|material| material.name.clone())
+        .next()
+        .unwrap_or_default()
+}

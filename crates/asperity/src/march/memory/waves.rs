@@ -1,0 +1,316 @@
+//! Waves that relax differently: each wave of the displacement is a viscoelastic body of its own.
+//!
+//! On the torus of the convolution every wave k has a creep function C_k(t), and the relaxation function that belongs to it,
+//! E_k(t) = E_inf + Σ E_i exp(-t/τ_i), with times of its own. Over a step in which u runs from its value at the start (0) to that
+//! at the end (1) as r(s), the rules of [`super::rules`] hold for each wave:
+//!
+//! ```text
+//! q_i' = E q_i + (1 - E - γ_i) u_n + γ_i u_(n+1),    E = exp(-x/τ_i)
+//! u_(n+1) = (p_(n+1) + h)/e,    e = E_inf + Σ E_i (1 - γ_i),    h = Σ E_i [E q_i + (1 - E - γ_i) u_n]
+//! ```
+//!
+//! E, γ_i and 1 - γ_i are functions of τ_i alone. They are tabulated over ln τ once for each step.
+
+use ndarray::Array2;
+use rayon::prelude::*;
+use rustfft::num_complex::Complex64;
+
+use super::rules::Share;
+use crate::error::{Error, Result};
+use crate::grid::{Boundary, Grid};
+use crate::layer::{Inseparable, TOLERANCE};
+use crate::operator::{eigenvalues, torus};
+
+/// Spacing of ln τ in the tables: six points interpolate to 1e-9.
+const SPACING: f64 = 0.04;
+/// Nodes of the table before the shortest time.
+const BEFORE: f64 = 2.0;
+
+/// A term E_i exp(-t/τ_i) of a wave.
+#[derive(Clone, Copy, Debug)]
+struct Term {
+    modulus: f64,
+    /// Of ln τ in the tables.
+    place: f64,
+}
+
+/// The relaxation functions of the waves of a torus.
+pub(super) struct Waves {
+    /// mx, my.
+    lengths: [usize; 2],
+    /// ln τ of the first node of the tables, and their nodes.
+    first: f64,
+    nodes: usize,
+    /// Terms of each wave; those that a wave does not have are 0.
+    pub(super) terms: usize,
+    /// E_inf \[Pa/m\] of a quarter of the waves, \[kx\]\[ky\]; infinite for a wave that yields to nothing.
+    equilibrium: Vec<f64>,
+    /// \[kx\]\[ky\]\[term\].
+    relaxing: Vec<Term>,
+}
+
+/// What a step does to a state, by its relaxation time.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Table(pub(super) Vec<[f64; 3]>);
+
+/// E, γ and 1 - γ of a state.
+#[derive(Clone, Copy)]
+struct Rule {
+    keep: f64,
+    new: f64,
+    left: f64,
+}
+
+impl Table {
+    fn at(&self, place: f64) -> Rule {
+        if self.0.is_empty() {
+            // No time passes.
+            return Rule { keep: 1.0, new: 0.0, left: 1.0 };
+        }
+        let n = (place as usize).clamp(BEFORE as usize, self.0.len() - 4) - BEFORE as usize;
+        let t = place - n as f64 - BEFORE;
+        let [a, b, c, d, e, f] = [t + 2.0, t + 1.0, t, t - 1.0, t - 2.0, t - 3.0];
+        let (ab, ef) = (a * b, e * f);
+        let (left, right) = (ab * c, d * ef);
+        let weights = [
+            -b * c * right / 120.0,
+            a * c * right / 24.0,
+            -ab * right / 12.0,
+            left * ef / 12.0,
+            -left * d * f / 24.0,
+            left * d * e / 120.0,
+        ];
+        let sum = |column: usize| weights.iter().zip(&self.0[n..n + 6]).map(|(w, row)| w * row[column]).sum();
+        Rule { keep: sum(0), new: sum(1), left: sum(2) }
+    }
+}
+
+impl Waves {
+    /// Of a domain, and the displacement \[m\] of a cell under its own unit pressure at t = 0, times the modulus at the surface.
+    pub(super) fn new(grid: &Grid, boundary: Boundary, layers: &Inseparable) -> Result<(Self, f64)> {
+        let mut stages: Vec<Array2<f64>> = vec![];
+        let mut own = 0.0;
+        for (kernel, compliance) in layers.stages() {
+            let unit = eigenvalues(grid, boundary, &*kernel)?;
+            if stages.is_empty() {
+                own = crate::operator::mean(torus(grid, boundary), unit.view());
+            }
+            stages.push(unit * compliance);
+        }
+        let (rows, columns) = stages[0].dim();
+        let of_row = |kx: usize| {
+            let wave = |ky: usize| {
+                let values: Vec<f64> = stages.iter().map(|stage| stage[(kx, ky)]).collect();
+                let uniform = kx == 0 && ky == 0;
+                match values.iter().all(|value| *value == 0.0) && uniform {
+                    true => Ok((f64::INFINITY, vec![])),
+                    false => relaxation(layers, &values, grid, boundary),
+                }
+            };
+            (0..columns).map(wave).collect::<Result<Vec<_>>>()
+        };
+        let all = (0..rows).into_par_iter().map(of_row).collect::<Result<Vec<_>>>()?;
+        let terms = all.iter().flatten().map(|(_, terms)| terms.len()).max().unwrap_or(0);
+        let times = || all.iter().flatten().flat_map(|(_, terms)| terms.iter().map(|term| libm::log(term.1)));
+        let shortest = times().fold(f64::INFINITY, f64::min);
+        let longest = times().fold(f64::NEG_INFINITY, f64::max).max(shortest);
+        let (shortest, longest) = if terms > 0 { (shortest, longest) } else { (0.0, 0.0) };
+        let mut relaxing = Vec::with_capacity(rows * columns * terms);
+        let mut equilibrium = Vec::with_capacity(rows * columns);
+        for (relaxed, own) in all.into_iter().flatten() {
+            equilibrium.push(relaxed);
+            let place = |time: f64| (libm::log(time) - shortest) / SPACING + BEFORE;
+            let own = own.iter().map(|(modulus, time)| Term { modulus: *modulus, place: place(*time) });
+            let none = Term { modulus: 0.0, place: BEFORE };
+            relaxing.extend(own.chain(std::iter::repeat(none)).take(terms));
+        }
+        let nodes = ((longest - shortest) / SPACING) as usize + 6;
+        let waves = Waves {
+            lengths: torus(grid, boundary),
+            first: shortest - BEFORE * SPACING,
+            nodes,
+            terms,
+            equilibrium,
+            relaxing,
+        };
+        Ok((waves, own))
+    }
+
+    /// mx, my.
+    pub(super) fn lengths(&self) -> [usize; 2] {
+        self.lengths
+    }
+
+    /// Waves of a transform of the torus.
+    pub(super) fn count(&self) -> usize {
+        self.lengths[0] * (self.lengths[1] / 2 + 1)
+    }
+
+    /// Waves of a quarter.
+    fn quarter(&self) -> (usize, usize) {
+        (self.lengths[0] / 2 + 1, self.lengths[1] / 2 + 1)
+    }
+
+    /// The table of a step of length x > 0 in which the states take these shares.
+    pub(super) fn table(&self, x: f64, share: impl Fn(f64) -> Share + Sync) -> Table {
+        let row = |n: usize| {
+            let time = libm::exp(self.first + n as f64 * SPACING);
+            let Share { taken, left } = share(time);
+            [libm::exp(-x / time), taken, left]
+        };
+        Table((0..self.nodes).into_par_iter().map(row).collect())
+    }
+
+    /// 1/e of each wave.
+    pub(super) fn compliance(&self, step: &Table) -> Array2<f64> {
+        let (rows, columns) = self.quarter();
+        let of = |n: usize| {
+            let relaxing = self.relaxing[n * self.terms..(n + 1) * self.terms].iter();
+            1.0 / (self.equilibrium[n] + relaxing.map(|e| e.modulus * step.at(e.place).left).sum::<f64>())
+        };
+        let values: Vec<f64> = (0..rows * columns).into_par_iter().map(of).collect();
+        Array2::from_shape_fn((rows, columns), |(kx, ky)| values[kx * columns + ky])
+    }
+
+    /// The number of a wave of the transform in the quarter.
+    fn place(&self, kx: usize, ky: usize) -> usize {
+        kx.min(self.lengths[0] - kx) * self.quarter().1 + ky
+    }
+
+    /// One step of a wave: its displacement under the pressure `p` at the end, which its states take in.
+    fn step(&self, wave: usize, step: &Table, p: Complex64, u: Complex64, q: &mut [Complex64]) -> Complex64 {
+        let mut modulus = self.equilibrium[wave];
+        if modulus.is_infinite() {
+            return Complex64::ZERO;
+        }
+        let terms = &self.relaxing[wave * self.terms..(wave + 1) * self.terms];
+        let mut held = p;
+        for (e, q) in terms.iter().zip(&mut *q) {
+            let Rule { keep, new, left } = step.at(e.place);
+            modulus += e.modulus * left;
+            // What the state is without the change of u.
+            *q = keep * *q + (1.0 - keep - new).max(0.0) * u;
+            held += e.modulus * *q;
+        }
+        let fresh = held / modulus;
+        for (e, q) in terms.iter().zip(q) {
+            *q += step.at(e.place).new * fresh;
+        }
+        fresh
+    }
+
+    /// The displacement after these steps under the pressure `p` (none where it is `None`), and the states; `states` are those of
+    /// all waves, \[wave\]\[term\].
+    pub(super) fn end(
+        &self,
+        steps: &[Table],
+        p: Option<&[Complex64]>,
+        u: &mut [Complex64],
+        states: &mut [Complex64],
+    ) {
+        let mx = self.lengths[0];
+        // Without terms there are no states.
+        if self.terms == 0 {
+            return self.end_of_springs(p, u);
+        }
+        let chunks = states.par_chunks_mut(mx * self.terms);
+        u.par_chunks_mut(mx).zip(chunks).enumerate().for_each(|(ky, (u, q))| {
+            for (kx, (u, q)) in u.iter_mut().zip(q.chunks_mut(self.terms)).enumerate() {
+                let p = p.map_or(Complex64::ZERO, |p| p[ky * mx + kx]);
+                for step in steps {
+                    *u = self.step(self.place(kx, ky), step, p, *u, q);
+                }
+            }
+        });
+    }
+
+    fn end_of_springs(&self, p: Option<&[Complex64]>, u: &mut [Complex64]) {
+        let mx = self.lengths[0];
+        u.par_chunks_mut(mx).enumerate().for_each(|(ky, u)| {
+            for (kx, u) in u.iter_mut().enumerate() {
+                *u = p.map_or(Complex64::ZERO, |p| p[ky * mx + kx]) / self.equilibrium[self.place(kx, ky)];
+            }
+        });
+    }
+
+    /// What the displacement after these steps is without pressure.
+    pub(super) fn recall(
+        &self,
+        steps: &[Table],
+        u: &[Complex64],
+        states: &[Complex64],
+        recalled: &mut [Complex64],
+    ) {
+        if self.terms == 0 {
+            return recalled.fill(Complex64::ZERO);
+        }
+        let mx = self.lengths[0];
+        let columns =
+            recalled.par_chunks_mut(mx).zip(u.par_chunks(mx)).zip(states.par_chunks(mx * self.terms));
+        columns.enumerate().for_each(|(ky, ((recalled, u), states))| {
+            let mut q = vec![Complex64::ZERO; self.terms];
+            for (kx, ((recalled, u), states)) in
+                recalled.iter_mut().zip(u).zip(states.chunks(self.terms)).enumerate()
+            {
+                q.copy_from_slice(states);
+                *recalled = *u;
+                for step in steps {
+                    *recalled = self.step(self.place(kx, ky), step, Complex64::ZERO, *recalled, &mut q);
+                }
+            }
+        });
+    }
+
+    /// Mean of 1/E~(s) over the waves, each with the weight |p|²; at s = ∞, 0 and `frequencies`.
+    pub(super) fn mean(&self, p: &[Complex64], frequencies: impl Iterator<Item = f64>) -> Vec<f64> {
+        let [mx, my] = self.lengths;
+        let time = |place: f64| libm::exp(self.first + place * SPACING);
+        let at = |s: f64| {
+            let column = |ky: usize| {
+                let twice = if ky == 0 || 2 * ky == my { 1.0 } else { 2.0 };
+                let wave = |kx: usize| {
+                    let n = self.place(kx, ky);
+                    let terms = self.relaxing[n * self.terms..(n + 1) * self.terms].iter();
+                    let share = |e: &Term| {
+                        let y = s * time(e.place);
+                        if y.is_infinite() { e.modulus } else { e.modulus * y / (1.0 + y) }
+                    };
+                    let modulus = self.equilibrium[n] + terms.map(share).sum::<f64>();
+                    twice * p[ky * mx + kx].norm_sqr() / modulus
+                };
+                (0..mx).map(wave).sum::<f64>()
+            };
+            (0..my / 2 + 1).into_par_iter().map(column).collect::<Vec<f64>>().iter().sum::<f64>()
+        };
+        [f64::INFINITY, 0.0].into_iter().chain(frequencies).map(at).collect()
+    }
+}
+
+/// E_inf and the terms (E_i, τ_i) of a wave with these values of C~.
+fn relaxation(
+    layers: &Inseparable,
+    values: &[f64],
+    grid: &Grid,
+    boundary: Boundary,
+) -> Result<(f64, Vec<(f64, f64)>)> {
+    let fitted = layers.fit(values).filter(|(_, misfit)| *misfit <= TOLERANCE);
+    let Some((creep, _)) = fitted else {
+        let side = grid.longest_side();
+        return Err(match boundary {
+            Boundary::Free => Error::invalid(
+                "free domain over layers that creep differently",
+                format!("{side:e} m wide"),
+                "a domain on which each wave of the response creeps like a body. Stiff layers on a soft one that creeps have \
+                 none: take boundary = \"periodic\" and a domain several times as wide as the contact and the layers",
+            ),
+            Boundary::Periodic => Error::invalid(
+                "misfit of the creep of a wave",
+                format!("more than {TOLERANCE:e}"),
+                "less: use materials with fewer or closer relaxation times",
+            ),
+        });
+    };
+    let relaxation = creep.to_relaxation()?;
+    let terms = relaxation.terms.iter().map(|term| (term.modulus, term.relaxation_time));
+    Ok((relaxation.equilibrium, terms.collect()))
+}

@@ -618,14 +618,12 @@ fn shift_factors_stand_in_a_file_and_one_modulus_is_fitted() {
     // A loss modulus that is half as large again.
     let contradicting: String = sweeps(&temperatures)
         .lines()
-        .map(|line| {
-            let mut cells: Vec<String> = line.split(',').map(|cell| cell.trim().to_owned()).collect();
-            if let Some((last, value)) =
-                cells.last().cloned().and_then(|c| Some((cells.len() - 1, c.parse::<f64>().ok()?)))
-            {
-                cells[last] = format!("{:?}", 1.5 * value);
-            }
-            cells.join(",") + "\n"
+        .map(|line| match line.rsplit_once('\t') {
+            Some((before, loss)) => match loss.replace(',', ".").parse::<f64>() {
+                Ok(value) => format!("{before}\t{}\n", format!("{:.9e}", 1.5 * value).replace('.', ",")),
+                Err(_) => format!("{line}\n"),
+            },
+            None => format!("{line}\n"),
         })
         .collect();
     let dir = files(&[

@@ -610,6 +610,54 @@ fn faults_of_measured_curves_are_named_with_their_line() {
 }
 
 #[test]
+fn shift_factors_stand_in_a_file_and_one_modulus_is_fitted() {
+    let temperatures = [0.0, 10.0, 20.0, 30.0, 40.0];
+    // log10 a_T = -8.86 (T - 20)/(101.6 + T - 20), to the last digit.
+    let factor = |t: f64| format!("{t},{:?}\n", -8.86 * (t - 20.0) / (101.6 + t - 20.0));
+    let factors: String = temperatures.iter().rev().map(|t| factor(*t)).collect();
+    // A loss modulus that is half as large again.
+    let contradicting: String = sweeps(&temperatures)
+        .lines()
+        .map(|line| match line.rsplit_once('\t') {
+            Some((before, loss)) => match loss.replace(',', ".").parse::<f64>() {
+                Ok(value) => format!("{before}\t{}\n", format!("{:.9e}", 1.5 * value).replace('.', ",")),
+                Err(_) => format!("{line}\n"),
+            },
+            None => format!("{line}\n"),
+        })
+        .collect();
+    let dir = files(&[
+        ("five.csv", &sweeps(&temperatures)),
+        ("half.csv", &contradicting),
+        ("shift.csv", &format!("T,log_aT\nC,-\n{factors}")),
+    ]);
+    let shift = "shift = { model = \"table\", path = \"shift.csv\" }";
+    let five = format!(r#"{{ model = "dma", path = "five.csv", modulus = "young", {shift} }}"#);
+    let half = format!(
+        r#"{{ model = "dma", path = "half.csv", modulus = "young", fit = {{ moduli = "storage" }}, {shift} }}"#
+    );
+    let creep = solid().to_creep().unwrap();
+    for (material, findings) in [(&five, 0), (&half, 1)] {
+        let case = case_in(dir.path(), &body(material), "");
+        for t in [0.1, 3.0, 80.0] {
+            // Nine digits in the file, as with the law itself.
+            assert!((case.creep.value(t) / (0.75 * creep.value(t)) - 1.0).abs() < 1e-5, "{material} {t}");
+        }
+        let contradictions = case.findings.iter().filter(|finding| finding.text.contains("Kramers-Kronig"));
+        assert_eq!(contradictions.count(), findings, "{material}");
+    }
+    says(
+        dir.path(),
+        &half.replace("\"storage\"", "\"both\""),
+        "body[0].material.path",
+        &["moduli = \"storage\""],
+    );
+    let both = five
+        .replace("path = \"shift.csv\"", "path = \"shift.csv\", points = [[\"0 °C\", 1], [\"20 °C\", 0]]");
+    says(dir.path(), &both, "body[0].material.shift", &["only one"]);
+}
+
+#[test]
 fn a_body_without_instantaneous_compliance_refuses_a_jump() {
     let springpot = r#"{ model = "springpot", shear = "1 MPa", time = "2 s", order = 1 }"#;
     let jump = text(&body(springpot), "")

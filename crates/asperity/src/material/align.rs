@@ -27,7 +27,7 @@ pub(super) struct Distance {
 }
 
 /// Highest degree of the polynomial.
-const MOST_DEGREE: usize = 8;
+const MOST_DEGREE: usize = 14;
 /// Relative scatter below which values do not differ: the digits of a file.
 const DIGITS: f64 = 1e-5;
 /// Farthest gap between the curves that is tried \[ln x\]: two decades.
@@ -75,9 +75,9 @@ pub(super) fn distance(first: &Logs, second: &Logs, change: f64) -> Distance {
 }
 
 /// Highest degree of a polynomial through two curves that overlap by this much of ln x: a parabola where they do not, one more
-/// for each half decade. A polynomial that bends more often would describe two separate curves by itself.
+/// for each third of a decade. A polynomial that bends more often would describe two separate curves by itself.
 fn most_degree(overlap: f64) -> usize {
-    2 + (overlap.max(0.0) / 1.15) as usize
+    2 + (overlap.max(0.0) / 0.77) as usize
 }
 
 fn ends(curve: &Logs) -> Option<[f64; 2]> {

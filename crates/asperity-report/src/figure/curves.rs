@@ -2,7 +2,7 @@
 
 use super::axis::{Axis, Ruler, Scale};
 use super::legend::Legend;
-use super::svg::{Anchor, Drawing, GRID, INK};
+use super::drawing::{Anchor, Drawing, GRID, INK, Paint, Pen};
 use super::{Margins, Place, SMALL, TEXT};
 
 /// Colours that people with any kind of colour vision tell apart (Okabe & Ito 2008), dark ones first.
@@ -119,7 +119,7 @@ impl Curves {
         let [x0, y0] = place.corner;
         frame(drawing, &layout.x, &layout.y, layout.area, [x0 + TEXT, y0 + place.size[1] - 5.0]);
         if !self.title.is_empty() {
-            drawing.text([left, y0 + TEXT + 1.0], TEXT, Anchor::Start, "", &self.title);
+            drawing.text([left, y0 + TEXT + 1.0], TEXT, Anchor::Start, &self.title);
         }
         let at = |point| layout.at(point);
         drawing.clipped([left, top], [right - left, bottom - top], |drawing| {
@@ -192,27 +192,26 @@ pub(super) fn frame(drawing: &mut Drawing, x: &Ruler, y: &Ruler, area: [f64; 4],
     let [left, top, right, bottom] = area;
     for (value, text) in &x.ticks {
         if let Some(at) = x.place(*value) {
-            drawing.line([at, top], [at, bottom], GRID, 0.5, "");
-            drawing.line([at, bottom], [at, bottom + 3.5], INK, 0.7, "");
-            drawing.text([at, bottom + 5.0 + SMALL], SMALL, Anchor::Middle, "", text);
+            drawing.line([at, top], [at, bottom], Pen::new(GRID, 0.5));
+            drawing.line([at, bottom], [at, bottom + 3.5], Pen::new(INK, 0.7));
+            drawing.text([at, bottom + 5.0 + SMALL], SMALL, Anchor::Middle, text);
         }
     }
     for (value, text) in &y.ticks {
         if let Some(at) = y.place(*value) {
-            drawing.line([left, at], [right, at], GRID, 0.5, "");
-            drawing.line([left - 3.5, at], [left, at], INK, 0.7, "");
-            drawing.text([left - 5.5, at + 0.36 * SMALL], SMALL, Anchor::End, "", text);
+            drawing.line([left, at], [right, at], Pen::new(GRID, 0.5));
+            drawing.line([left - 3.5, at], [left, at], Pen::new(INK, 0.7));
+            drawing.text([left - 5.5, at + 0.36 * SMALL], SMALL, Anchor::End, text);
         }
     }
     for at in x.minor.iter().filter_map(|value| x.place(*value)) {
-        drawing.line([at, bottom], [at, bottom + 2.0], INK, 0.5, "");
+        drawing.line([at, bottom], [at, bottom + 2.0], Pen::new(INK, 0.5));
     }
     for at in y.minor.iter().filter_map(|value| y.place(*value)) {
-        drawing.line([left - 2.0, at], [left, at], INK, 0.5, "");
+        drawing.line([left - 2.0, at], [left, at], Pen::new(INK, 0.5));
     }
-    let style = format!("fill=\"none\" stroke=\"{INK}\" stroke-width=\"0.8\"");
-    drawing.rect([left, top], [right - left, bottom - top], &style);
-    drawing.text([0.5 * (left + right), titles[1]], TEXT, Anchor::Middle, "", &x.title);
+    drawing.rect([left, top], [right - left, bottom - top], Paint::outline(Pen::new(INK, 0.8)));
+    drawing.text([0.5 * (left + right), titles[1]], TEXT, Anchor::Middle, &x.title);
     drawing.upward_text([titles[0], 0.5 * (top + bottom)], TEXT, &y.title);
 }
 
@@ -229,38 +228,32 @@ fn draw_series(
         Style::Bars => {
             let half = 0.5 * spacing(&series.x);
             let foot = zero.unwrap_or(bottom).min(bottom);
-            let style = format!("fill=\"{colour}\" fill-opacity=\"0.55\"");
+            let paint = Paint::fill(colour, 0.55);
             for [x, y] in series.points() {
                 if let (Some([a, top]), Some([b, _])) = (at([x - half, y]), at([x + half, y]))
                     && top != foot
                 {
-                    drawing.rect([a, top.min(foot)], [b - a, (foot - top).abs()], &style);
+                    drawing.rect([a, top.min(foot)], [b - a, (foot - top).abs()], paint);
                 }
             }
         }
         Style::Points => {
-            let style = format!("fill=\"none\" stroke=\"{colour}\" stroke-width=\"0.9\"");
-            points().flatten().for_each(|point| drawing.circle(point, 2.0, &style));
+            let paint = Paint::outline(Pen::new(colour, 0.9));
+            points().flatten().for_each(|point| drawing.circle(point, 2.0, paint));
         }
-        style => {
-            let pen = format!(
-                "stroke=\"{colour}\" stroke-width=\"{}\" stroke-linejoin=\"round\" {}",
-                weight(style, length(points())),
-                dashes(style)
-            );
-            drawing.path(points(), &pen);
-        }
+        style => drawing.path(points(), pen(style, colour, length(points()))),
     }
 }
 
-/// Thinner where a line runs to and fro so often that it would cover itself.
-pub(super) fn weight(style: Style, length: f64) -> f64 {
+/// The pen of a line of this length \[points\]: thinner where it runs to and fro so often that it would cover itself.
+pub(super) fn pen(style: Style, colour: &str, length: f64) -> Pen {
     /// Some five times across a panel.
     const LONG: f64 = 2000.0;
+    let width = if length > LONG { 0.7 } else { 1.5 };
     match style {
-        Style::Reference => 1.0,
-        _ if length > LONG => 0.7,
-        _ => 1.5,
+        Style::Reference => Pen::new(colour, 1.0).dashed(&[1.5, 1.8]),
+        Style::Dashed => Pen::new(colour, width).dashed(&[5.0, 2.5]),
+        _ => Pen::new(colour, width),
     }
 }
 
@@ -273,14 +266,6 @@ fn length(points: impl Iterator<Item = Option<[f64; 2]>>) -> f64 {
             from.zip(now).map_or(0.0, |([a, b], [c, d])| f64::hypot(c - a, d - b))
         })
         .sum()
-}
-
-pub(super) fn dashes(style: Style) -> &'static str {
-    match style {
-        Style::Dashed => "stroke-dasharray=\"5 2.5\"",
-        Style::Reference => "stroke-dasharray=\"1.5 1.8\"",
-        _ => "",
-    }
 }
 
 /// The least distance of neighbouring places.

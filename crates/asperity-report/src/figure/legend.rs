@@ -1,9 +1,9 @@
 //! The names of curves: in a corner of the frame that no curve crosses, else above the frame.
 
 use super::SMALL;
-use super::curves::{Curves, Layout, Series, Style, dashes, weight};
+use super::curves::{Curves, Layout, Series, Style, pen};
 use super::font;
-use super::svg::{Anchor, Drawing};
+use super::drawing::{Anchor, Drawing, Paint, Pen};
 
 /// Room of the sign before a name \[points\].
 const SIGN: f64 = 26.0;
@@ -69,7 +69,7 @@ impl<'a> Legend<'a> {
     }
 
     pub(super) fn draw_inside(&self, drawing: &mut Drawing, [x, y]: [f64; 2]) {
-        drawing.rect([x, y], self.size(), "fill=\"#fff\" fill-opacity=\"0.85\" rx=\"2\"");
+        drawing.rounded([x, y], self.size(), 2.0, Paint::fill("#fff", 0.85));
         for (n, entry) in self.named.iter().enumerate() {
             draw(drawing, *entry, [x, y + Self::ROW * (n as f64 + 0.5) + 2.5]);
         }
@@ -106,15 +106,12 @@ fn covers(series: &Series, layout: &Layout, under: &impl Fn([f64; 2]) -> bool) -
 fn draw(drawing: &mut Drawing, (series, colour): (&Series, &str), [x, middle]: [f64; 2]) {
     match series.style {
         Style::Bars => {
-            let style = format!("fill=\"{colour}\" fill-opacity=\"0.55\"");
-            drawing.rect([x + 7.0, middle - 3.5], [12.0, 7.0], &style);
+            drawing.rect([x + 7.0, middle - 3.5], [12.0, 7.0], Paint::fill(colour, 0.55));
         }
         Style::Points => {
-            drawing.circle([x + 13.0, middle], 2.4, &format!("fill=\"none\" stroke=\"{colour}\""));
+            drawing.circle([x + 13.0, middle], 2.4, Paint::outline(Pen::new(colour, 1.0)));
         }
-        style => {
-            drawing.line([x + 5.0, middle], [x + 21.0, middle], colour, weight(style, 0.0), dashes(style))
-        }
+        style => drawing.line([x + 5.0, middle], [x + 21.0, middle], pen(style, colour, 0.0)),
     }
-    drawing.text([x + SIGN, middle + 0.36 * SMALL], SMALL, Anchor::Start, "", &series.name);
+    drawing.text([x + SIGN, middle + 0.36 * SMALL], SMALL, Anchor::Start, &series.name);
 }

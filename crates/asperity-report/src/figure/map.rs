@@ -8,7 +8,7 @@ use super::colours::Colours;
 use super::curves::frame;
 use super::font;
 use super::raster::{self, BLANK};
-use super::svg::{Anchor, Drawing, INK};
+use super::drawing::{Anchor, Drawing, INK, Paint, Pen, Pixels};
 use super::{Place, SMALL, TEXT};
 
 /// What the values of a map are.
@@ -186,7 +186,7 @@ impl Map {
         let y = if down { y.placed(top, bottom) } else { y.placed(bottom, top) };
 
         if !self.title.is_empty() {
-            drawing.text([left, top - 6.0], TEXT, Anchor::Start, "", &self.title);
+            drawing.text([left, top - 6.0], TEXT, Anchor::Start, &self.title);
         }
         frame(drawing, &x, &y, [left, top, right, bottom], [left - labels - 10.0, bottom + foot - 5.0]);
         let picture = match (&self.meaning, &bar) {
@@ -195,17 +195,16 @@ impl Map {
                 raster::quantity(&self.values.slice(ndarray::s![.., ..;-1]).to_owned(), *ends, *colours)
             }
             (_, Some((_, ends, colours, _))) => raster::quantity(&self.values, *ends, *colours),
-            (_, None) => Vec::new(),
+            (_, None) => Pixels { size: [0, 0], rgb: vec![] },
         };
         // The slabs of a section are thicker than its cells.
         let smooth = down || self.values.dim().0 > w as usize;
-        drawing.image([left, top], [w, h], &picture, smooth);
-        let style = format!("fill=\"none\" stroke=\"{INK}\" stroke-width=\"0.8\"");
-        drawing.rect([left, top], [w, h], &style);
+        drawing.image([left, top], [w, h], picture, smooth);
+        drawing.rect([left, top], [w, h], Paint::outline(Pen::new(INK, 0.8)));
         for [x, y] in &self.marks {
             let at = [left + w * x / self.size[0], bottom - h * y / self.size[1]];
-            drawing.circle(at, 5.0, "fill=\"none\" stroke=\"#fff\" stroke-width=\"3\"");
-            drawing.circle(at, 5.0, "fill=\"none\" stroke=\"#d62728\" stroke-width=\"1.5\"");
+            drawing.circle(at, 5.0, Paint::outline(Pen::new("#fff", 3.0)));
+            drawing.circle(at, 5.0, Paint::outline(Pen::new("#d62728", 1.5)));
         }
         if h > 50.0 && !of_times {
             scale_bar(drawing, [left, bottom], w, self.size[0]);
@@ -226,7 +225,7 @@ impl Map {
             let places = [bottom + SMALL + 2.0, top - 4.0];
             for ((value, y), arrow) in beyond.into_iter().zip(places).zip(["↓", "↑"]) {
                 if let Some(value) = value {
-                    drawing.text([right + 6.0, y], SMALL, Anchor::Start, "", &format!("{arrow} {value}"));
+                    drawing.text([right + 6.0, y], SMALL, Anchor::Start, &format!("{arrow} {value}"));
                 }
             }
         }
@@ -240,11 +239,10 @@ impl Map {
         let mut right = left + width;
         for (name, colour) in states.iter().rev() {
             right -= font::width(name, SMALL);
-            drawing.text([right, top - 5.5], SMALL, Anchor::Start, "", name);
+            drawing.text([right, top - 5.5], SMALL, Anchor::Start, name);
             right -= 11.0;
-            let [r, g, b] = colour;
-            let style = format!("fill=\"rgb({r},{g},{b})\" stroke=\"{INK}\" stroke-width=\"0.4\"");
-            drawing.rect([right, top - 12.0], [7.5, 7.5], &style);
+            let paint = Paint { fill: Some((*colour, 1.0)), pen: Some(Pen::new(INK, 0.4)) };
+            drawing.rect([right, top - 12.0], [7.5, 7.5], paint);
             right -= 8.0;
         }
     }
@@ -261,9 +259,9 @@ fn scale_bar(drawing: &mut Drawing, [left, bottom]: [f64; 2], width: f64, length
     let bar = width * round / length;
     let wide = bar.max(font::width(&text, SMALL)) + 10.0;
     let (x, y) = (left + 5.0, bottom - 5.0);
-    drawing.rect([x, y - SMALL - 12.0], [wide, SMALL + 12.0], "fill=\"#fff\" fill-opacity=\"0.8\" rx=\"2\"");
-    drawing.rect([x + 0.5 * (wide - bar), y - 7.0], [bar, 3.0], &format!("fill=\"{INK}\""));
-    drawing.text([x + 0.5 * wide, y - 10.0], SMALL, Anchor::Middle, "", &text);
+    drawing.rounded([x, y - SMALL - 12.0], [wide, SMALL + 12.0], 2.0, Paint::fill("#fff", 0.8));
+    drawing.rect([x + 0.5 * (wide - bar), y - 7.0], [bar, 3.0], Paint::fill(INK, 1.0));
+    drawing.text([x + 0.5 * wide, y - 10.0], SMALL, Anchor::Middle, &text);
 }
 
 fn colour_bar(
@@ -276,16 +274,12 @@ fn colour_bar(
 ) {
     let right = left + 10.0;
     let column = Array2::from_shape_fn((1, 256), |(_, j)| ends[0] + (ends[1] - ends[0]) * j as f64 / 255.0);
-    drawing.image([left, top], [10.0, bottom - top], &raster::quantity(&column, ends, colours), true);
-    drawing.rect(
-        [left, top],
-        [10.0, bottom - top],
-        &format!("fill=\"none\" stroke=\"{INK}\" stroke-width=\"0.6\""),
-    );
+    drawing.image([left, top], [10.0, bottom - top], raster::quantity(&column, ends, colours), true);
+    drawing.rect([left, top], [10.0, bottom - top], Paint::outline(Pen::new(INK, 0.6)));
     for (value, text) in &ruler.ticks {
         if let Some(at) = ruler.place(*value) {
-            drawing.line([right, at], [right + 3.0, at], INK, 0.7, "");
-            drawing.text([right + 5.0, at + 0.36 * SMALL], SMALL, Anchor::Start, "", text);
+            drawing.line([right, at], [right + 3.0, at], Pen::new(INK, 0.7));
+            drawing.text([right + 5.0, at + 0.36 * SMALL], SMALL, Anchor::Start, text);
         }
     }
     drawing.upward_text([right + 5.0 + labels + TEXT + 1.0, 0.5 * (top + bottom)], TEXT, &ruler.title);

@@ -14,9 +14,12 @@
 mod axis;
 mod colours;
 mod curves;
+mod dots;
+mod drawing;
 mod font;
 mod legend;
 mod map;
+mod pdf;
 mod raster;
 mod svg;
 mod write;
@@ -29,7 +32,7 @@ pub use map::{Axes, Map, UNDEFINED, Values};
 pub(crate) use raster::{means, states};
 pub use write::{FigureError, Form};
 
-use svg::{Anchor, Drawing};
+use drawing::{Anchor, Drawing};
 
 /// Sizes of text \[points\].
 const TEXT: f64 = 9.0;
@@ -121,12 +124,18 @@ impl Figure {
 
     /// The figure as SVG.
     pub fn to_svg(&self) -> String {
+        let title = if self.title.is_empty() { "Figure" } else { &self.title };
+        svg::write(&self.drawing(), self.paper(), title)
+    }
+
+    /// What the figure consists of.
+    fn drawing(&self) -> Drawing {
         let mut drawing = Drawing::default();
         let heights = self.heights();
-        let [width, height] = self.paper();
+        let [_, height] = self.paper();
         let top = self.top();
         if !self.title.is_empty() {
-            drawing.text([EDGE + 4.0, EDGE + LARGE], LARGE, Anchor::Start, "", &self.title);
+            drawing.text([EDGE + 4.0, EDGE + LARGE], LARGE, Anchor::Start, &self.title);
         }
         for (n, panel) in self.panels.iter().enumerate() {
             let (row, column) = (n / self.columns, n % self.columns);
@@ -143,10 +152,9 @@ impl Figure {
         let first = height - EDGE - (SMALL + 3.0) * caption.len() as f64 + SMALL;
         for (n, line) in caption.iter().enumerate() {
             let at = [EDGE + 4.0, first + (SMALL + 3.0) * n as f64];
-            drawing.text(at, SMALL, Anchor::Start, "", line);
+            drawing.text(at, SMALL, Anchor::Start, line);
         }
-        let title = if self.title.is_empty() { "Figure" } else { &self.title };
-        drawing.finish(width, height, title, font::FAMILY)
+        drawing
     }
 
     /// The height of each row \[points\]: a legend above the frames adds to it.

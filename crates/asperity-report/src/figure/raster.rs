@@ -3,6 +3,7 @@
 use ndarray::{Array2, ArrayView2, s};
 
 use super::colours::Colours;
+use super::drawing::Pixels;
 
 /// Most cells of a side that a figure holds: a hand's breadth at 300 dots per inch.
 const FINEST: usize = 1024;
@@ -46,38 +47,34 @@ fn blocks(values: ArrayView2<f64>, block: usize, one: impl Fn(ArrayView2<f64>) -
 }
 
 /// A quantity from `ends[0]` to `ends[1]` in colours.
-pub(super) fn quantity(values: &Array2<f64>, ends: [f64; 2], colours: Colours) -> Vec<u8> {
+pub(super) fn quantity(values: &Array2<f64>, ends: [f64; 2], colours: Colours) -> Pixels {
     let share = |v: f64| (v - ends[0]) / (ends[1] - ends[0]);
-    png(values, |v| if v.is_finite() { colours.at(share(v)) } else { BLANK })
+    coloured(values, |v| if v.is_finite() { colours.at(share(v)) } else { BLANK })
 }
 
 /// States in the colours of their numbers.
-pub(super) fn state_picture(values: &Array2<f64>, states: &[(String, [u8; 3])]) -> Vec<u8> {
+pub(super) fn state_picture(values: &Array2<f64>, states: &[(String, [u8; 3])]) -> Pixels {
     let colour =
         |v: f64| states.get(v as usize).filter(|_| v.is_finite()).map_or(BLANK, |(_, colour)| *colour);
-    png(values, colour)
+    coloured(values, colour)
 }
 
 /// Axis 0 to the right, axis 1 upwards.
-fn png(values: &Array2<f64>, colour: impl Fn(f64) -> [u8; 3]) -> Vec<u8> {
+fn coloured(values: &Array2<f64>, colour: impl Fn(f64) -> [u8; 3]) -> Pixels {
     let (nx, ny) = values.dim();
-    let pixels: Vec<u8> = (0..ny)
-        .rev()
-        .flat_map(|j| (0..nx).map(move |i| [i, j]))
-        .flat_map(|cell| colour(values[cell]))
-        .collect();
-    encode(&pixels, [nx, ny]).unwrap_or_default()
+    let cells = (0..ny).rev().flat_map(|j| (0..nx).map(move |i| [i, j]));
+    Pixels { size: [nx, ny], rgb: cells.flat_map(|cell| colour(values[cell])).collect() }
 }
 
-/// Fails only where a side is 0 or beyond 2^31: no figure has these.
-fn encode(pixels: &[u8], [width, height]: [usize; 2]) -> Result<Vec<u8>, png::EncodingError> {
+/// The pixels as a PNG. Fails only where a side is 0 or beyond 2^31: no figure has these.
+pub(super) fn png(pixels: &Pixels) -> Result<Vec<u8>, png::EncodingError> {
     let mut out = Vec::new();
-    let side = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
-    let mut encoder = png::Encoder::new(&mut out, side(width), side(height));
+    let [width, height] = pixels.size.map(|n| u32::try_from(n).unwrap_or(u32::MAX));
+    let mut encoder = png::Encoder::new(&mut out, width, height);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_compression(png::Compression::Balanced);
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(pixels)?;
+    writer.write_image_data(&pixels.rgb)?;
     writer.finish()?;
     Ok(out)
 }
@@ -86,20 +83,22 @@ fn encode(pixels: &[u8], [width, height]: [usize; 2]) -> Result<Vec<u8>, png::En
 mod tests {
     use super::*;
 
-    fn decoded(data: &[u8]) -> (usize, Vec<[u8; 3]>) {
-        let mut reader = png::Decoder::new(std::io::Cursor::new(data)).read_info().unwrap();
-        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
-        let info = reader.next_frame(&mut pixels).unwrap();
-        (info.width as usize, pixels.chunks(3).map(|p| [p[0], p[1], p[2]]).collect())
+    #[test]
+    fn a_png_holds_the_pixels() {
+        let pixels = Pixels { size: [2, 1], rgb: vec![1, 2, 3, 250, 251, 252] };
+        let mut reader = png::Decoder::new(std::io::Cursor::new(png(&pixels).unwrap())).read_info().unwrap();
+        let mut rgb = vec![0; reader.output_buffer_size().unwrap()];
+        let info = reader.next_frame(&mut rgb).unwrap();
+        assert_eq!((info.width, info.height, rgb), (2, 1, pixels.rgb));
     }
 
     #[test]
     fn x_goes_right_and_y_goes_up() {
         let names = [[1, 1, 1], [2, 2, 2], [3, 3, 3]].map(|c| (String::new(), c));
         let values = ndarray::array![[0.0, 1.0], [2.0, f64::NAN], [7.0, 0.0]];
-        let (width, pixels) = decoded(&state_picture(&values, &names));
-        assert_eq!(width, 3);
-        assert_eq!(pixels, [[2, 2, 2], BLANK, [1, 1, 1], [1, 1, 1], [3, 3, 3], BLANK]);
+        let pixels = state_picture(&values, &names);
+        assert_eq!(pixels.size, [3, 2]);
+        assert_eq!(pixels.rgb, [[2, 2, 2], BLANK, [1, 1, 1], [1, 1, 1], [3, 3, 3], BLANK].concat());
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Facts of whole figures.
 
 use ndarray::Array2;
-use resvg::usvg::roxmltree::Document;
+use roxmltree::Document;
 
 use super::*;
 

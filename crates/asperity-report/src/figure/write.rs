@@ -3,14 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use krilla::geom::Size;
-use krilla::metadata::Metadata;
-use krilla::page::PageSettings;
-use krilla_svg::{SurfaceExt, SvgSettings};
-use resvg::tiny_skia::{Pixmap, Transform};
-use resvg::usvg::{Options, Tree};
-
-use super::{Figure, font};
+use super::{Figure, dots, pdf, raster};
 
 /// Points of paper per inch.
 const POINTS: f64 = 72.0;
@@ -22,7 +15,7 @@ pub enum Form {
     Svg,
     /// Dots, 300 to an inch.
     Png,
-    /// Portable document, one page of the figure's size, with its typeface.
+    /// Portable document (PDF), one page of the figure's size, with its typeface.
     Pdf,
 }
 
@@ -96,43 +89,19 @@ impl Figure {
         if !(20.0..=2400.0).contains(&dots) {
             return Err(FigureError::Drawing(format!("{dots} dots per inch; expected 20 to 2400")));
         }
-        let tree = self.tree()?;
-        let paper = self.paper();
         let scale = dots / POINTS;
-        let [width, height] = paper.map(|length| (length * scale).round() as u32);
-        let mut dots = Pixmap::new(width, height).ok_or_else(|| undrawn("it has no area"))?;
-        // The tree measures in its own pixels; the paper in points.
-        let size = tree.size();
-        let transform = Transform::from_scale(width as f32 / size.width(), height as f32 / size.height());
-        resvg::render(&tree, transform, &mut dots.as_mut());
-        dots.encode_png().map_err(undrawn)
+        let size = self.paper().map(|length| (length * scale).round() as u32);
+        let pixels =
+            dots::draw(&self.drawing(), size, scale).ok_or_else(|| undrawn("its paper has no area"))?;
+        raster::png(&pixels).map_err(undrawn)
     }
 
     /// The figure as a PDF of one page.
     ///
     /// # Errors
-    /// [`FigureError::Drawing`] where a text of the figure holds signs that cannot be drawn.
+    /// [`FigureError::Drawing`] where its data cannot be compressed.
     pub fn to_pdf(&self) -> Result<Vec<u8>, FigureError> {
-        let tree = self.tree()?;
-        let [width, height] = self.paper().map(|length| length as f32);
-        let size = Size::from_wh(width, height).ok_or_else(|| undrawn("it has no area"))?;
-        let mut document = krilla::Document::new();
-        document.set_metadata(Metadata::new().title(self.title.clone()).creator("asperity".into()));
-        let mut page = document.start_page_with(PageSettings::new(size));
-        let mut surface = page.surface();
-        surface
-            .draw_svg(&tree, size, SvgSettings::default())
-            .ok_or_else(|| undrawn("it cannot become a page"))?;
-        surface.finish();
-        page.finish();
-        document.finish().map_err(|error| undrawn(format!("{error:?}")))
-    }
-
-    /// The drawing as renderers take it.
-    fn tree(&self) -> Result<Tree, FigureError> {
-        let options =
-            Options { fontdb: font::database(), font_family: "DejaVu Sans".into(), ..Options::default() };
-        Tree::from_str(&self.to_svg(), &options).map_err(undrawn)
+        pdf::write(&self.drawing(), self.paper(), &self.title).map_err(undrawn)
     }
 }
 

@@ -1,0 +1,173 @@
+//! A drawing as dots.
+
+use tiny_skia::{
+    Color, FillRule, FilterQuality, LineJoin, Mask, Paint as Brush, Path, PathBuilder, Pixmap, PixmapPaint,
+    Rect, Stroke, StrokeDash, Transform,
+};
+
+use super::drawing::{Colour, Drawing, INK, Mark, Paint, Pen, Pixels, Shape};
+use super::font::{self, Step};
+
+/// White paper of so many dots, of `scale` dots to a point, with the drawing; `None` where the paper has no area.
+pub(super) fn draw(drawing: &Drawing, [width, height]: [u32; 2], scale: f64) -> Option<Pixels> {
+    let mut paper = Pixmap::new(width, height)?;
+    paper.fill(Color::WHITE);
+    marks(&mut paper, &drawing.marks, Transform::from_scale(scale as f32, scale as f32), None);
+    // Nothing is transparent: the paper is white.
+    let rgb = paper.data().chunks_exact(4).flat_map(|dot| [dot[0], dot[1], dot[2]]).collect();
+    Some(Pixels { size: [width as usize, height as usize], rgb })
+}
+
+fn marks(paper: &mut Pixmap, list: &[Mark], scale: Transform, mask: Option<&Mask>) {
+    for mark in list {
+        match mark {
+            Mark::Shape(shape, paint) => {
+                if let Some(path) = path_of(shape) {
+                    draw_shape(paper, &path, paint, scale, mask);
+                }
+            }
+            Mark::Text { at, size, anchor, upward, text } => {
+                draw_text(paper, text, [*size, anchor.start(text, *size)], *at, *upward, scale, mask);
+            }
+            Mark::Image { corner, size, pixels, smooth } => {
+                draw_image(paper, pixels, [*corner, *size], *smooth, scale, mask);
+            }
+            Mark::Clipped { corner, size, marks: inside } => {
+                let frame = path_of(&Shape::Rect { corner: *corner, size: *size, round: 0.0 });
+                let mask = frame.zip(Mask::new(paper.width(), paper.height())).map(|(frame, mut mask)| {
+                    mask.fill_path(&frame, FillRule::Winding, true, scale);
+                    mask
+                });
+                if mask.is_some() {
+                    marks(paper, inside, scale, mask.as_ref());
+                }
+            }
+        }
+    }
+}
+
+fn path_of(shape: &Shape) -> Option<Path> {
+    let mut path = PathBuilder::new();
+    match shape {
+        Shape::Rect { corner: [x, y], size: [w, h], round } => {
+            let [x, y, w, h] = [x, y, w, h].map(|v| *v as f32);
+            let r = (*round as f32).min(0.5 * w).min(0.5 * h);
+            if r <= 0.0 {
+                path.push_rect(Rect::from_xywh(x, y, w, h)?);
+            } else {
+                path.move_to(x + r, y);
+                path.line_to(x + w - r, y);
+                path.quad_to(x + w, y, x + w, y + r);
+                path.line_to(x + w, y + h - r);
+                path.quad_to(x + w, y + h, x + w - r, y + h);
+                path.line_to(x + r, y + h);
+                path.quad_to(x, y + h, x, y + h - r);
+                path.line_to(x, y + r);
+                path.quad_to(x, y, x + r, y);
+                path.close();
+            }
+        }
+        Shape::Circle { at: [x, y], radius } => path.push_circle(*x as f32, *y as f32, *radius as f32),
+        Shape::Lines(lines) => {
+            for line in lines {
+                for (n, [x, y]) in line.iter().enumerate() {
+                    match n {
+                        0 => path.move_to(*x as f32, *y as f32),
+                        _ => path.line_to(*x as f32, *y as f32),
+                    }
+                }
+            }
+        }
+    }
+    path.finish()
+}
+
+fn brush(colour: Colour, opacity: f64) -> Brush<'static> {
+    let [r, g, b] = colour;
+    let mut brush = Brush { anti_alias: true, ..Brush::default() };
+    brush.set_color_rgba8(r, g, b, (255.0 * opacity).round() as u8);
+    brush
+}
+
+fn draw_shape(paper: &mut Pixmap, path: &Path, paint: &Paint, scale: Transform, mask: Option<&Mask>) {
+    if let Some((colour, opacity)) = paint.fill {
+        paper.fill_path(path, &brush(colour, opacity), FillRule::Winding, scale, mask);
+    }
+    if let Some(Pen { colour, width, dashes }) = paint.pen {
+        let dash = StrokeDash::new(dashes.iter().map(|length| *length as f32).collect(), 0.0);
+        let stroke = Stroke { width: width as f32, line_join: LineJoin::Round, dash, ..Stroke::default() };
+        paper.stroke_path(path, &brush(colour, 1.0), &stroke, scale, mask);
+    }
+}
+
+/// A text of a `size` that starts `start` points beyond its point.
+fn draw_text(
+    paper: &mut Pixmap,
+    text: &str,
+    [size, start]: [f64; 2],
+    [x, y]: [f64; 2],
+    upward: bool,
+    scale: Transform,
+    mask: Option<&Mask>,
+) {
+    let mut path = PathBuilder::new();
+    let unit = size / font::EM;
+    let mut right = start;
+    for (glyph, advance) in font::letters(text) {
+        // Letters stand on their line, y upwards; a text that reads upwards is turned about its point.
+        let to = |[u, v]: [f64; 2]| {
+            let (along, up) = (right + unit * u, unit * v);
+            let [x, y] = if upward { [x - up, y - along] } else { [x + along, y - up] };
+            [x as f32, y as f32]
+        };
+        let mut open = false;
+        for step in glyph.map_or_else(Vec::new, font::outline) {
+            match step {
+                Step::Move(at) => {
+                    if open {
+                        path.close();
+                    }
+                    open = true;
+                    let [x, y] = to(at);
+                    path.move_to(x, y);
+                }
+                Step::Line(at) => {
+                    let [x, y] = to(at);
+                    path.line_to(x, y);
+                }
+                Step::Curve(control, at) => {
+                    let ([x1, y1], [x, y]) = (to(control), to(at));
+                    path.quad_to(x1, y1, x, y);
+                }
+            }
+        }
+        if open {
+            path.close();
+        }
+        right += size * advance;
+    }
+    if let Some(path) = path.finish() {
+        draw_shape(paper, &path, &Paint::fill(INK, 1.0), scale, mask);
+    }
+}
+
+fn draw_image(
+    paper: &mut Pixmap,
+    pixels: &Pixels,
+    [corner, size]: [[f64; 2]; 2],
+    smooth: bool,
+    scale: Transform,
+    mask: Option<&Mask>,
+) {
+    let [columns, rows] = pixels.size;
+    let side = |n: usize| u32::try_from(n).unwrap_or(0);
+    let Some(mut picture) = Pixmap::new(side(columns), side(rows)) else { return };
+    for (to, from) in picture.data_mut().chunks_exact_mut(4).zip(pixels.rgb.chunks_exact(3)) {
+        to.copy_from_slice(&[from[0], from[1], from[2], 255]);
+    }
+    let quality = if smooth { FilterQuality::Bicubic } else { FilterQuality::Nearest };
+    let paint = PixmapPaint { quality, ..PixmapPaint::default() };
+    let [w, h] = [size[0] / columns as f64, size[1] / rows as f64].map(|v| v as f32);
+    let place = Transform::from_translate(corner[0] as f32, corner[1] as f32).pre_scale(w, h);
+    paper.draw_pixmap(0, 0, picture.as_ref(), &paint, place.post_concat(scale), mask);
+}

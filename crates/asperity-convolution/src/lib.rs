@@ -8,6 +8,7 @@
 //!
 //! Normalisation: forward and inverse transforms together are the identity.
 
+pub mod fft;
 pub mod lanes;
 mod pruned;
 mod spectrum;

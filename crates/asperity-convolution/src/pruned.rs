@@ -10,11 +10,11 @@ use std::sync::Arc;
 use ndarray::parallel::prelude::*;
 use ndarray::{Array2, ArrayView2, Axis};
 use rayon::slice::{ParallelSlice, ParallelSliceMut};
-use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
+use realfft::{ComplexToReal, RealToComplex};
+use rustfft::Fft;
 use rustfft::num_complex::Complex;
-use rustfft::{Fft, FftPlanner};
 
-use super::Engine;
+use super::{Engine, fft};
 
 /// Columns that are gathered together: their row segments fill whole cache lines.
 const COLUMNS: usize = 8;
@@ -41,12 +41,8 @@ struct Scratch {
 
 impl Pruned {
     pub(super) fn new(cells: [usize; 2], lengths: [usize; 2], spectrum: ArrayView2<f64>) -> Self {
-        let mut real = RealFftPlanner::new();
-        let mut complex = FftPlanner::new();
-        let rows_forward = real.plan_fft_forward(lengths[1]);
-        let rows_inverse = real.plan_fft_inverse(lengths[1]);
-        let columns_forward = complex.plan_fft_forward(lengths[0]);
-        let columns_inverse = complex.plan_fft_inverse(lengths[0]);
+        let (rows_forward, rows_inverse) = (fft::real_forward(lengths[1]), fft::real_inverse(lengths[1]));
+        let (columns_forward, columns_inverse) = (fft::forward(lengths[0]), fft::inverse(lengths[0]));
         let fft = rows_forward
             .get_scratch_len()
             .max(rows_inverse.get_scratch_len())

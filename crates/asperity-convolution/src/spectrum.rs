@@ -1,8 +1,8 @@
 //! From a kernel in space to its real, even spectrum.
 
+use crate::fft;
 use ndarray::parallel::prelude::*;
 use ndarray::{Array2, Axis, Zip};
-use realfft::RealFftPlanner;
 
 /// S(kx, ky) = sum over all i, j of K(i, j) cos(2 pi (kx i/mx + ky j/my)).
 ///
@@ -22,7 +22,7 @@ fn transposed(rows: &Array2<f64>) -> Array2<f64> {
 /// The real spectrum of the even extension of every row to `length`.
 fn transform_rows(rows: &Array2<f64>, length: usize) -> Array2<f64> {
     let half = length / 2 + 1;
-    let fft = RealFftPlanner::<f64>::new().plan_fft_forward(length);
+    let fft = fft::real_forward(length);
     let mut spectrum = Array2::zeros((rows.nrows(), half));
     spectrum
         .axis_iter_mut(Axis(0))

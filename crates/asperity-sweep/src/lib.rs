@@ -180,8 +180,32 @@ pub fn sweep<C: Cells, M: Merge>(cells: C, block: &(impl Fn(C) -> M + Sync)) -> 
         return block(cells);
     }
     let (first, second) = cells.split((n / 2).next_multiple_of(BLOCK));
-    let (a, b) = rayon::join(|| sweep(first, block), || sweep(second, block));
-    a.merge(b)
+    let (mut first, mut second) = (Half::Cells(first), Half::Cells(second));
+    both(&mut || first.sweep(block), &mut || second.sweep(block));
+    match (first, second) {
+        (Half::Yield(a), Half::Yield(b)) => a.merge(b),
+        _ => unreachable!("both halves have run"),
+    }
+}
+
+/// Half of a field, before and after it is swept.
+enum Half<C, M> {
+    Cells(C),
+    Swept,
+    Yield(M),
+}
+
+impl<C: Cells, M: Merge> Half<C, M> {
+    fn sweep(&mut self, block: &(impl Fn(C) -> M + Sync)) {
+        if let Half::Cells(cells) = std::mem::replace(self, Half::Swept) {
+            *self = Half::Yield(sweep(cells, block));
+        }
+    }
+}
+
+/// Runs both, on two threads where there are. Not generic, so that the machinery of threads is compiled once.
+fn both(first: &mut (dyn FnMut() + Send), second: &mut (dyn FnMut() + Send)) {
+    rayon::join(first, second);
 }
 
 /// Declares a sweep kernel: fields of one number of cells, which are walked together, and numbers that are the same for all

@@ -2,6 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
+use asperity_sweep::Instructions;
 use ndarray::ArrayView2;
 use rayon::prelude::*;
 
@@ -238,6 +239,23 @@ impl<V: Lane> Convolve<V::Scalar> for Engine<V> {
             let kept = kept.par_chunks_mut(self.group_cells());
             self.modify_rows(kept, modify, forward);
         }
+    }
+}
+
+/// The engine in the lanes of an instruction set that is available.
+pub fn plan<T: Real>(
+    instructions: Instructions,
+    cells: [usize; 2],
+    lengths: [usize; 2],
+    factors: [&Factors; 2],
+    spectra: &[ArrayView2<f64>],
+) -> Box<dyn Convolve<T>> {
+    match instructions {
+        #[cfg(target_arch = "x86_64")]
+        Instructions::Avx512 => Box::new(Engine::<T::Avx512>::new(cells, lengths, factors, spectra)),
+        #[cfg(target_arch = "x86_64")]
+        Instructions::Avx2 => Box::new(Engine::<T::Avx2>::new(cells, lengths, factors, spectra)),
+        _ => Box::new(Engine::<T::Portable>::new(cells, lengths, factors, spectra)),
     }
 }
 

@@ -29,9 +29,42 @@ pub trait Real: sealed::Sealed + Copy + Debug + Default + PartialEq + Send + Syn
 }
 
 mod sealed {
-    pub trait Sealed {}
-    impl Sealed for f64 {}
-    impl Sealed for f32 {}
+    use asperity_sweep::Instructions;
+    use ndarray::ArrayView2;
+
+    use super::super::engine::{Convolve, plan};
+    use super::super::factors::Factors;
+
+    /// The scalars, and the engine of each. The engine is compiled here, and not with every crate that plans one.
+    pub trait Sealed: Sized {
+        /// The engine in the lanes of an instruction set that is available.
+        fn plan(
+            instructions: Instructions,
+            cells: [usize; 2],
+            lengths: [usize; 2],
+            factors: [&Factors; 2],
+            spectra: &[ArrayView2<f64>],
+        ) -> Box<dyn Convolve<Self>>;
+    }
+
+    macro_rules! compiled {
+        ($scalar:ty) => {
+            impl Sealed for $scalar {
+                #[inline(never)]
+                fn plan(
+                    instructions: Instructions,
+                    cells: [usize; 2],
+                    lengths: [usize; 2],
+                    factors: [&Factors; 2],
+                    spectra: &[ArrayView2<f64>],
+                ) -> Box<dyn Convolve<Self>> {
+                    plan::<$scalar>(instructions, cells, lengths, factors, spectra)
+                }
+            }
+        };
+    }
+    compiled!(f64);
+    compiled!(f32);
 }
 
 impl Real for f64 {

@@ -56,9 +56,9 @@ mod wrap;
 use asperity_sweep::Instructions;
 use ndarray::{Array2, ArrayView2};
 
+use engine::Convolve;
 pub use engine::Modify;
-use engine::{Convolve, Engine};
-use factors::{Factors, factors};
+use factors::factors;
 pub use lane::Real;
 use wrap::wrapped_spectrum;
 
@@ -125,7 +125,7 @@ impl<T: Real> Lanes<T> {
         }
         let along_y = if lengths[1].is_multiple_of(2) { factors(lengths[1] / 2) } else { None };
         if let (Some(x), Some(y)) = (factors(lengths[0]), along_y) {
-            return Lanes { engine: plan(instructions, cells, lengths, [&x, &y], spectra) };
+            return Lanes { engine: T::plan(instructions, cells, lengths, [&x, &y], spectra) };
         }
         let longer = cells.map(|n| Self::good_length(2 * n - 1));
         let wrap = |spectrum: &ArrayView2<f64>| wrapped_spectrum(cells, lengths, longer, spectrum.view());
@@ -212,22 +212,5 @@ impl<T: Real> Chain<'_, T> {
     /// Where `kept` has another length.
     pub fn finish(self, kept: &mut [T], modify: &Modify<T>) {
         self.engine.modify(kept, modify, false);
-    }
-}
-
-/// The engine in the lanes of an instruction set that is available.
-fn plan<T: Real>(
-    instructions: Instructions,
-    cells: [usize; 2],
-    lengths: [usize; 2],
-    factors: [&Factors; 2],
-    spectra: &[ArrayView2<f64>],
-) -> Box<dyn Convolve<T>> {
-    match instructions {
-        #[cfg(target_arch = "x86_64")]
-        Instructions::Avx512 => Box::new(Engine::<T::Avx512>::new(cells, lengths, factors, spectra)),
-        #[cfg(target_arch = "x86_64")]
-        Instructions::Avx2 => Box::new(Engine::<T::Avx2>::new(cells, lengths, factors, spectra)),
-        _ => Box::new(Engine::<T::Portable>::new(cells, lengths, factors, spectra)),
     }
 }

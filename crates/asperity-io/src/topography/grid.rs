@@ -4,7 +4,7 @@ use ndarray::Array2;
 use rayon::prelude::*;
 
 use super::Problem;
-use super::sample::{Kind, Order, with_decoder};
+use super::sample::{Kind, Order, decode_into};
 
 /// Most points of a topography, as of a grid.
 pub(super) const MOST_POINTS: usize = 1 << 31;
@@ -56,7 +56,7 @@ impl Layout {
         what: &str,
         value: impl Fn(f64) -> f64 + Sync,
     ) -> Result<Array2<f64>, Problem> {
-        self.read(bytes, what, false, value)
+        self.read(bytes, what, false, &|line| line.iter_mut().for_each(|v| *v = value(*v)))
     }
 
     /// The map of a file whose lines are in the order of falling y; otherwise as [`map`](Self::map).
@@ -66,15 +66,16 @@ impl Layout {
         what: &str,
         value: impl Fn(f64) -> f64 + Sync,
     ) -> Result<Array2<f64>, Problem> {
-        self.read(bytes, what, true, value)
+        self.read(bytes, what, true, &|line| line.iter_mut().for_each(|v| *v = value(*v)))
     }
 
+    /// `values` replaces the numbers of a part of a line.
     fn read(
         self,
         bytes: &[u8],
         what: &str,
         from_bottom: bool,
-        value: impl Fn(f64) -> f64 + Sync,
+        values: &(dyn Fn(&mut [f64]) + Sync),
     ) -> Result<Array2<f64>, Problem> {
         let [nx, ny] = self.points;
         points(nx, ny)?;
@@ -85,21 +86,19 @@ impl Layout {
         }
         // In range: checked against the length of `bytes`.
         let (nx, ny, stride) = (nx as usize, ny as usize, self.stride as usize);
-        Ok(with_decoder!(self.kind, self.order, |WIDTH, decode| {
-            transposed(nx, ny, |y, columns, out| {
-                let y = if from_bottom { ny - 1 - y } else { y };
-                let line = &bytes[y * stride..][columns.start * WIDTH..columns.end * WIDTH];
-                for (number, out) in line.as_chunks::<WIDTH>().0.iter().zip(out) {
-                    *out = value(decode(*number));
-                }
-            })
+        let width = self.kind.width();
+        Ok(transposed(nx, ny, &|y, columns, out| {
+            let y = if from_bottom { ny - 1 - y } else { y };
+            let line = &bytes[y * stride..][columns.start * width..columns.end * width];
+            decode_into(out, line, self.kind, self.order);
+            values(out);
         }))
     }
 }
 
 /// Values given line by line (x runs fastest) as an array with axis 0 = x, each replaced by `value` of it.
 pub(super) fn from_lines(nx: usize, lines: &[&[f64]], value: impl Fn(f64) -> f64 + Sync) -> Array2<f64> {
-    transposed(nx, lines.len(), |y, columns, out| {
+    transposed(nx, lines.len(), &|y, columns, out| {
         for (number, out) in lines[y][columns].iter().zip(out) {
             *out = value(*number);
         }
@@ -115,7 +114,7 @@ pub(super) fn replace(map: &mut Array2<f64>, value: impl Fn(f64) -> f64 + Sync +
 fn transposed(
     nx: usize,
     ny: usize,
-    line: impl Fn(usize, std::ops::Range<usize>, &mut [f64]) + Sync,
+    line: &(dyn Fn(usize, std::ops::Range<usize>, &mut [f64]) + Sync),
 ) -> Array2<f64> {
     let mut map = vec![0.0; nx * ny];
     let fill = |(band, out): (usize, &mut [f64])| {

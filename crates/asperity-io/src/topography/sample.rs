@@ -44,7 +44,6 @@ impl Kind {
 /// bytes to f64 as `$decode`.
 macro_rules! with_decoder {
     ($kind:expr, $order:expr, |$width:ident, $decode:ident| $body:expr) => {{
-        use $crate::topography::sample::{Kind, Order, half};
         macro_rules! arm {
             ($bytes:literal, $number:expr) => {{
                 const $width: usize = $bytes;
@@ -76,7 +75,6 @@ macro_rules! with_decoder {
         }
     }};
 }
-pub(super) use with_decoder;
 
 /// The first `count` numbers of `bytes`.
 ///
@@ -94,15 +92,23 @@ pub(super) fn decode(
     if available < needed {
         return Err(Problem::truncated(what, needed, available));
     }
-    let bytes = &bytes[..needed as usize];
-    Ok(with_decoder!(kind, order, |WIDTH, number| {
-        let numbers = bytes.as_chunks::<WIDTH>().0;
-        if count < FEW {
-            numbers.iter().map(|b| number(*b)).collect()
-        } else {
-            numbers.par_iter().with_min_len(FEW).map(|b| number(*b)).collect()
-        }
-    }))
+    let mut numbers = vec![0.0; count];
+    let parts = bytes[..needed as usize].par_chunks(FEW * kind.width());
+    numbers
+        .par_chunks_mut(FEW)
+        .zip(parts)
+        .for_each(|(numbers, bytes)| decode_into(numbers, bytes, kind, order));
+    Ok(numbers)
+}
+
+/// The numbers of `bytes`, as many as there is room for.
+pub(super) fn decode_into(numbers: &mut [f64], bytes: &[u8], kind: Kind, order: Order) {
+    with_decoder!(kind, order, |WIDTH, decode| {
+        numbers
+            .iter_mut()
+            .zip(bytes.as_chunks::<WIDTH>().0)
+            .for_each(|(number, bytes)| *number = decode(*bytes));
+    });
 }
 
 /// IEEE 754 binary16: sign, 5 bits of exponent (bias 15), 10 bits of fraction.

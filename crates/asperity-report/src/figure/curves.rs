@@ -1,8 +1,8 @@
 //! A panel of curves over two axes.
 
 use super::axis::{Axis, Ruler, Scale};
-use super::legend::Legend;
 use super::drawing::{Anchor, Drawing, GRID, INK, Paint, Pen};
+use super::legend::Legend;
 use super::{Margins, Place, SMALL, TEXT};
 
 /// Colours that people with any kind of colour vision tell apart (Okabe & Ito 2008), dark ones first.

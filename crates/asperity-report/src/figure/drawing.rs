@@ -184,8 +184,7 @@ impl Drawing {
 
 /// The colour that "#rgb" or "#rrggbb" means; black for anything else.
 pub(super) fn rgb(text: &str) -> Colour {
-    let digits: Vec<u8> =
-        text.chars().filter_map(|c| c.to_digit(16)).map(|digit| digit as u8).collect();
+    let digits: Vec<u8> = text.chars().filter_map(|c| c.to_digit(16)).map(|digit| digit as u8).collect();
     match digits[..] {
         [r, g, b] => [17 * r, 17 * g, 17 * b],
         [r1, r0, g1, g0, b1, b0] => [16 * r1 + r0, 16 * g1 + g0, 16 * b1 + b0],
@@ -205,7 +204,8 @@ mod tests {
     #[test]
     fn a_gap_in_a_line_breaks_it() {
         let mut drawing = Drawing::default();
-        let points = [Some([0.0, f64::NAN]), Some([1.0, 2.0]), None, None, Some([3.0, 4.0]), Some([5.0, 6.0])];
+        let points =
+            [Some([0.0, f64::NAN]), Some([1.0, 2.0]), None, None, Some([3.0, 4.0]), Some([5.0, 6.0])];
         drawing.path(points.into_iter(), Pen::new(INK, 1.0));
         let lines = vec![vec![[0.0, 0.0], [1.0, 2.0]], vec![[3.0, 4.0], [5.0, 6.0]]];
         assert!(matches!(&drawing.marks[..], [Mark::Shape(Shape::Lines(found), _)] if *found == lines));

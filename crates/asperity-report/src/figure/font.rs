@@ -104,7 +104,8 @@ fn add(steps: &mut Vec<Step>, glyph: u16, at: [f64; 2], depth: usize) -> Option<
 
 /// Contours of points on and off the curve: last points, instructions, flags with repeats, then x and y as differences.
 fn simple(steps: &mut Vec<Step>, data: &[u8], contours: usize, at: [f64; 2]) -> Option<()> {
-    let lasts = (0..contours).map(|n| u16_at(data, 10 + 2 * n).map(usize::from)).collect::<Option<Vec<_>>>()?;
+    let lasts =
+        (0..contours).map(|n| u16_at(data, 10 + 2 * n).map(usize::from)).collect::<Option<Vec<_>>>()?;
     let count = lasts.last()? + 1;
     let mut place = 10 + 2 * contours;
     place += 2 + usize::from(u16_at(data, place)?);
@@ -216,7 +217,8 @@ mod tests {
 
     #[test]
     fn the_typeface_has_every_sign_that_figures_use() {
-        for c in "AZaz09 αβδεηλμνρστφωΔΓΩµ°²³⁴⁻⁰¹⁹×·−±≤≥≈∞√∂∫→–—'”/%[]()éüñčß".chars() {
+        for c in "AZaz09 αβδεηλμνρστφωΔΓΩµ°²³⁴⁻⁰¹⁹×·−±≤≥≈∞√∂∫→–—'”/%[]()éüñčß".chars()
+        {
             assert!(glyph(c).is_some(), "{c}");
         }
         assert_eq!(glyph('漢'), None);

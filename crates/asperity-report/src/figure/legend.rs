@@ -2,8 +2,8 @@
 
 use super::SMALL;
 use super::curves::{Curves, Layout, Series, Style, pen};
-use super::font;
 use super::drawing::{Anchor, Drawing, Paint, Pen};
+use super::font;
 
 /// Room of the sign before a name \[points\].
 const SIGN: f64 = 26.0;

@@ -6,9 +6,9 @@ use ndarray::{Array2, ArrayView2};
 use super::axis::{Axis, Ruler};
 use super::colours::Colours;
 use super::curves::frame;
+use super::drawing::{Anchor, Drawing, INK, Paint, Pen, Pixels};
 use super::font;
 use super::raster::{self, BLANK};
-use super::drawing::{Anchor, Drawing, INK, Paint, Pen, Pixels};
 use super::{Place, SMALL, TEXT};
 
 /// What the values of a map are.

@@ -14,8 +14,7 @@ use super::font;
 /// The typeface's name in the file and in its resources.
 const TYPEFACE: Name = Name(b"DejaVuSans");
 const FACE: Name = Name(b"F");
-const GLYPHS: SystemInfo =
-    SystemInfo { registry: Str(b"Adobe"), ordering: Str(b"Identity"), supplement: 0 };
+const GLYPHS: SystemInfo = SystemInfo { registry: Str(b"Adobe"), ordering: Str(b"Identity"), supplement: 0 };
 
 /// Distance of a control point of a quarter of a circle from its end, per radius.
 const QUARTER: f32 = 0.552_284_8;
@@ -49,8 +48,7 @@ impl<'a> Page<'a> {
                     self.text(text, *at, *size, *anchor, *upward);
                 }
                 Mark::Image { corner, size, pixels, smooth } => {
-                    let [x, y, w, h] =
-                        [corner[0], corner[1] + size[1], size[0], size[1]].map(|v| v as f32);
+                    let [x, y, w, h] = [corner[0], corner[1] + size[1], size[0], size[1]].map(|v| v as f32);
                     self.content.save_state().transform([w, 0.0, 0.0, -h, x, y]);
                     self.content.x_object(Name(format!("I{}", self.images.len()).as_bytes()));
                     self.content.restore_state();

@@ -35,7 +35,8 @@ fn marks(out: &mut String, list: &[Mark], clips: &mut usize) -> std::fmt::Result
                     Anchor::Middle => "middle",
                     Anchor::End => "end",
                 };
-                let turn = if *upward { format!(" transform=\"rotate(-90 {x} {y})\"") } else { String::new() };
+                let turn =
+                    if *upward { format!(" transform=\"rotate(-90 {x} {y})\"") } else { String::new() };
                 writeln!(
                     out,
                     "<text x=\"{x}\" y=\"{y}\" font-size=\"{}\" text-anchor=\"{anchor}\"{turn}>{}</text>",

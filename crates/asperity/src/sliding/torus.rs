@@ -5,10 +5,11 @@
 
 use std::sync::Arc;
 
+use asperity_convolution::fft;
 use rayon::prelude::*;
-use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
+use realfft::{ComplexToReal, RealToComplex};
+use rustfft::Fft;
 use rustfft::num_complex::Complex64;
-use rustfft::{Fft, FftPlanner};
 
 /// The multipliers of a torus of mx x my cells, in columns of constant ky: S(kx, ky) at `ky * mx + kx`, 0 <= ky <= my/2, all kx.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,15 +33,14 @@ pub(crate) struct Torus {
 
 impl Torus {
     pub(crate) fn new(cells: [usize; 2], lengths: [usize; 2]) -> Self {
-        let (mut real, mut complex) = (RealFftPlanner::new(), FftPlanner::new());
         let half = lengths[1] / 2 + 1;
         Torus {
             cells,
             lengths,
-            rows_forward: real.plan_fft_forward(lengths[1]),
-            rows_back: real.plan_fft_inverse(lengths[1]),
-            columns_forward: complex.plan_fft_forward(lengths[0]),
-            columns_back: complex.plan_fft_inverse(lengths[0]),
+            rows_forward: fft::real_forward(lengths[1]),
+            rows_back: fft::real_inverse(lengths[1]),
+            columns_forward: fft::forward(lengths[0]),
+            columns_back: fft::inverse(lengths[0]),
             rows: vec![Complex64::ZERO; cells[0] * half],
             columns: vec![Complex64::ZERO; cells[0] * half],
         }

@@ -7,11 +7,12 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use asperity_convolution::fft;
 use ndarray::{Array1, Array2, ArrayViewMut1, Axis};
 use rayon::prelude::*;
-use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
+use realfft::{ComplexToReal, RealToComplex};
+use rustfft::Fft;
 use rustfft::num_complex::Complex64;
-use rustfft::{Fft, FftPlanner};
 
 use super::Component;
 use super::coefficients::{corner, strip, wave};
@@ -77,14 +78,13 @@ impl SubsurfaceStress {
             Boundary::Free => grid.cells().map(|n| Convolution::good_length(2 * n - 1)),
             Boundary::Periodic => grid.cells(),
         };
-        let (mut real, mut complex) = (RealFftPlanner::new(), FftPlanner::new());
         let columns = (lengths[1] / 2 + 1, grid.cells()[0]);
         Ok(SubsurfaceStress {
-            rows_forward: real.plan_fft_forward(lengths[1]),
-            rows_inverse: real.plan_fft_inverse(lengths[1]),
-            columns_forward: complex.plan_fft_forward(lengths[0]),
-            columns_inverse: complex.plan_fft_inverse(lengths[0]),
-            coefficient_columns: real.plan_fft_forward(lengths[0]),
+            rows_forward: fft::real_forward(lengths[1]),
+            rows_inverse: fft::real_inverse(lengths[1]),
+            columns_forward: fft::forward(lengths[0]),
+            columns_inverse: fft::inverse(lengths[0]),
+            coefficient_columns: fft::real_forward(lengths[0]),
             sources: vec![],
             lateral: 0.0,
             work: Array2::zeros(columns),

@@ -10,10 +10,9 @@
 
 use std::f64::consts::TAU;
 
+use asperity_convolution::fft;
 use ndarray::parallel::prelude::*;
 use ndarray::{Array2, ArrayView2, Axis};
-use realfft::RealFftPlanner;
-use rustfft::FftPlanner;
 use rustfft::num_complex::Complex64;
 
 use crate::error::{Error, Result};
@@ -24,7 +23,7 @@ pub(super) fn transform(grid: &Grid, heights: ArrayView2<f64>) -> Result<Array2<
     check_shape(grid, heights)?;
     check_defined(heights)?;
     let [nx, ny] = grid.cells();
-    let along_y = RealFftPlanner::<f64>::new().plan_fft_forward(ny);
+    let along_y = fft::real_forward(ny);
     let mut amplitudes = Array2::<Complex64>::zeros((nx, ny / 2 + 1));
     let scale = 1.0 / grid.len() as f64;
     amplitudes.outer_iter_mut().into_par_iter().zip(heights.outer_iter()).for_each_init(
@@ -36,7 +35,7 @@ pub(super) fn transform(grid: &Grid, heights: ArrayView2<f64>) -> Result<Array2<
             row.iter_mut().zip(output.iter()).for_each(|(a, b)| *a = *b);
         },
     );
-    let along_x = FftPlanner::<f64>::new().plan_fft_forward(nx);
+    let along_x = fft::forward(nx);
     transform_columns(&mut amplitudes, along_x.as_ref());
     Ok(amplitudes)
 }
@@ -44,9 +43,9 @@ pub(super) fn transform(grid: &Grid, heights: ArrayView2<f64>) -> Result<Array2<
 /// The heights of given amplitudes.
 pub(super) fn inverse(grid: &Grid, mut amplitudes: Array2<Complex64>) -> Array2<f64> {
     let [nx, ny] = grid.cells();
-    let along_x = FftPlanner::<f64>::new().plan_fft_inverse(nx);
+    let along_x = fft::inverse(nx);
     transform_columns(&mut amplitudes, along_x.as_ref());
-    let along_y = RealFftPlanner::<f64>::new().plan_fft_inverse(ny);
+    let along_y = fft::real_inverse(ny);
     let mut heights = Array2::zeros((nx, ny));
     heights.outer_iter_mut().into_par_iter().zip(amplitudes.outer_iter()).for_each_init(
         || (along_y.make_input_vec(), vec![0.0; ny], along_y.make_scratch_vec()),

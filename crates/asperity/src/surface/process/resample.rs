@@ -8,9 +8,10 @@
 
 use std::f64::consts::PI;
 
+use asperity_convolution::fft;
 use ndarray::parallel::prelude::*;
 use ndarray::{Array2, ArrayView2, Axis};
-use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
+use realfft::{ComplexToReal, RealToComplex};
 use rustfft::num_complex::Complex64;
 use std::sync::Arc;
 
@@ -81,8 +82,7 @@ fn rows_by_waves(heights: ArrayView2<f64>, n: usize) -> Array2<f64> {
     if old == n {
         return heights.to_owned();
     }
-    let mut planner = RealFftPlanner::<f64>::new();
-    let (forward, inverse) = (planner.plan_fft_forward(old), planner.plan_fft_inverse(n));
+    let (forward, inverse) = (fft::real_forward(old), fft::real_inverse(n));
     let row = Row { old, new: n, forward, inverse };
     let mut resampled = Array2::zeros((heights.nrows(), n));
     resampled.axis_iter_mut(Axis(0)).into_par_iter().zip(heights.outer_iter()).for_each_init(

@@ -12,8 +12,8 @@
 
 use std::f64::consts::{PI, TAU};
 
+use asperity_convolution::fft;
 use ndarray::Array2;
-use realfft::RealFftPlanner;
 
 use super::super::waves::Waves;
 use super::parameters::check;
@@ -44,7 +44,7 @@ impl ProfileSpectrum {
         check(heights, 8)?;
         let n = heights.len();
         let mut z = if periodic { heights.to_vec() } else { faded(heights) };
-        let plan = RealFftPlanner::<f64>::new().plan_fft_forward(n);
+        let plan = fft::real_forward(n);
         let mut amplitudes = plan.make_output_vec();
         // The lengths come from the plan itself, so the call cannot fail.
         let _ = plan.process(&mut z, &mut amplitudes);

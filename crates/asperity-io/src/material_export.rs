@@ -197,10 +197,15 @@ fn comsol(exported: &Exported<'_>, relaxation: &Relaxation, isotropic: &Isotropi
     };
     let mut text = format!(
         "% {}: branches of a generalised Maxwell model, to be loaded from file: branch, shear modulus G_i [Pa], relaxation \
-         time tau_i [s].\n% The parent material has the long-term stiffness: shear modulus {:e} Pa; Poisson's ratio at once {:?}.\n",
+         time tau_i [s].\n% The parent material has the long-term stiffness: shear modulus {:e} Pa; {}.\n",
         plain(exported.name),
         to_shear * relaxation.equilibrium,
-        isotropic.poisson
+        match exported.lateral {
+            Some(Lateral::BulkModulus(bulk)) => format!(
+                "bulk modulus {bulk:e} Pa at all times (choose shear and bulk modulus as the elastic constants)"
+            ),
+            _ => format!("Poisson's ratio {:?}", isotropic.poisson),
+        }
     );
     if isotropic.bulk_relaxes {
         text.push_str("% At a constant Poisson's ratio the bulk modulus relaxes too: apply the branches to the whole stress.\n");
@@ -337,6 +342,12 @@ mod tests {
         let terms: Vec<(f64, f64)> =
             numbers(&written, '%').iter().map(|row| (2.5 * row[1], row[2])).collect();
         same(&Relaxation::absolute(2.5 * equilibrium, &terms).unwrap(), &material);
+        let shear = rubber(Modulus::Shear);
+        let constant = text(&exported(&shear, Lateral::BulkModulus(2e9)), Program::Comsol).unwrap();
+        assert!(
+            constant.contains("bulk modulus 2e9 Pa at all times") && !constant.contains("Poisson"),
+            "{constant}"
+        );
         let written = text(&Exported { lateral: None, ..one }, Program::Csv).unwrap();
         let terms: Vec<(f64, f64)> = numbers(&written, '#').iter().map(|row| (row[1], row[0])).collect();
         let equilibrium: f64 =

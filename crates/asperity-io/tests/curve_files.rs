@@ -43,6 +43,17 @@ fn what_instruments_give_in_place_of_the_moduli_becomes_them() {
             table("f,E_stor,E_loss\nHz,MPa,MPa", |f, s, l| format!("{f},{},{}", mega(s), mega(l))),
             Some(Modulus::Young),
         ),
+        // The mark of inches for the double prime, not in the last column; and quotes around a name.
+        (
+            table("f (Hz);E' (MPa);E\" (MPa);\"T; in °C\"", |f, s, l| {
+                format!("{f};{};{};20", mega(s), mega(l))
+            }),
+            Some(Modulus::Young),
+        ),
+        (
+            table("f\tG\"\tG'\nHz\tMPa\tMPa", |f, s, l| format!("{f}\t{}\t{}", mega(l), mega(s))),
+            Some(Modulus::Shear),
+        ),
         (
             table("Frequenz [Hz];Speichermodul G' [Pa];Verlustfaktor", |f, s, l| {
                 format!("{f};{s};{}", l / s)

@@ -115,6 +115,9 @@ impl Fitted {
     }
 }
 
+/// What the contradiction of both moduli may also come from.
+const UNSURE: &str = "; wrong shift factors do the same: they were estimated from these sweeps, so give the shift where it is known";
+
 /// A law replaces estimated shift factors where it meets them within this \[decades\].
 const LAW: f64 = 0.1;
 
@@ -157,7 +160,8 @@ impl Request {
         let located = |error: asperity::Error| {
             let message = error.to_string();
             if message.contains("Kramers-Kronig") {
-                return fault(message).remedy(Remedy::Moduli);
+                let wrong_shift = if factors.is_empty() { "" } else { UNSURE };
+                return fault(format!("{message}{wrong_shift}")).remedy(Remedy::Moduli);
             }
             match point(&message).and_then(|n| lines.get(n.checked_sub(1)?)) {
                 Some(line) => fault(message).at(*line),
@@ -187,7 +191,8 @@ impl Request {
         };
         let material = material.map_err(|error| fault(error.to_string()))?;
         let columns: Vec<(&str, Misfit)> = curves.kind.columns().iter().copied().zip(columns).collect();
-        notes.extend(left_out(self.options.moduli, &columns));
+        let unsure = if factors.is_empty() { "" } else { UNSURE };
+        notes.extend(left_out(self.options.moduli, &columns).map(|note| format!("{note}{unsure}")));
         Ok(Fitted {
             material,
             series,

@@ -128,11 +128,13 @@ impl Table {
             let cell = cells(line, self.separator).get(column).copied().unwrap_or_default();
             parse_number(cell, self.decimal_comma).ok_or_else(|| {
                 let shown: String = cell.chars().take(40).collect();
-                let why = match cell {
-                    "" => "the cell is empty".to_owned(),
-                    _ => format!("the cell {shown:?} is not a finite number"),
+                let (why, help) = match cell {
+                    "" => ("the cell is empty".to_owned(), "fill it, or take the line out"),
+                    _ => (
+                        format!("the cell {shown:?} is not a finite number"),
+                        "take the line out, or write the number alone; its unit belongs into the header, as in \"modulus [MPa]\"",
+                    ),
                 };
-                let help = "a unit belongs to the column: in the header, as in \"modulus [MPa]\", or said";
                 fault(format!("{why} (column {}{}); {help}", column + 1, self.quoted(column))).at(row.line)
             })
         };
@@ -280,7 +282,7 @@ fn header_cells(line: &str, separator: Option<char>, columns: usize) -> Option<V
     let line = line.trim_start_matches(['#', '%', '/']);
     let line = if line.contains('\t') { line.trim_end() } else { line.trim() };
     let clean = |cells: Vec<&str>| -> Vec<String> {
-        cells.iter().map(|cell| cell.trim().trim_matches('"').trim().to_owned()).collect()
+        cells.iter().map(|cell| unquoted(cell.trim()).trim().to_owned()).collect()
     };
     let mut plain = clean(quoted_cells(line, separator));
     if plain.len() == columns + 1 && plain.last().is_some_and(String::is_empty) {
@@ -300,15 +302,24 @@ fn header_cells(line: &str, separator: Option<char>, columns: usize) -> Option<V
     (separator.is_none() && spaced.len() == columns).then_some(spaced)
 }
 
-/// The cells of a header line, where a separator between quotes is none.
+/// The cells of a header line, where a separator between quotes is none. Quotes begin with the cell: that of E" is a double prime.
 fn quoted_cells(line: &str, separator: Option<char>) -> Vec<&str> {
     let Some(separator) = separator.filter(|_| line.contains('"')) else { return cells(line, separator) };
-    let mut quoted = false;
+    let (mut quoted, mut begins) = (false, true);
     let outside = |c: char| {
-        quoted ^= c == '"';
-        c == separator && !quoted
+        let ends = c == separator && !quoted;
+        if c == '"' {
+            quoted = !quoted && begins;
+        }
+        begins = ends || (begins && c.is_whitespace());
+        ends
     };
     line.split(outside).map(str::trim).collect()
+}
+
+/// A cell without the quotes around it.
+fn unquoted(cell: &str) -> &str {
+    cell.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')).unwrap_or(cell)
 }
 
 /// Cells that are nothing but a unit join the name before them: "E, MPa" in a file of commas.
@@ -469,7 +480,7 @@ mod tests {
         says("t [s], E [MPa]\n", None, "no line with two numbers");
         says("t,E\n1,2\n2,3,4\n", Some(3), "3 cells, but 2");
         says("t,E\n1,2\n\n2,x\n", Some(4), "\"x\" is not a finite number (column 2, \"E\")");
-        says("t,E\n1,2\n2,10 kPa\n", Some(3), "a unit belongs to the column");
+        says("t,E\n1,2\n2,10 kPa\n", Some(3), "its unit belongs into the header");
         says("t;E\n1;2\n2;\n", Some(3), "empty");
         says("t,E\n1,2\n2,nan\n", Some(3), "not a finite number");
         says("\0\0\x01PNG", None, "binary");

@@ -99,20 +99,28 @@ pub(super) fn check_values(words: Words, xs: &[f64], values: &[f64], zero: bool)
     Ok(())
 }
 
-/// Relative scatter of a curve (standard deviation), from the distances between each point and the line
-/// through its neighbours; the median makes it blind to single outliers. 0 for fewer than 5 points.
+/// Relative scatter of a curve (standard deviation), from the distances between each point and the power law
+/// through its neighbours (the line, where one is not positive): a curve over decades bends in other scales. The median makes it
+/// blind to single outliers. 0 for fewer than 5 points.
 pub(super) fn noise(xs: &[f64], values: &[f64]) -> f64 {
     if xs.len() < 5 {
         return 0.0;
     }
     let mut distances: Vec<f64> = (1..xs.len() - 1)
         .map(|k| {
+            // Standard deviation of value - (1 - share) before - share after.
+            let spread = |share: f64| (1.0 + share * share + (1.0 - share) * (1.0 - share)).sqrt();
+            let places = [xs[k - 1], xs[k], xs[k + 1]];
+            let heights = [values[k - 1], values[k], values[k + 1]];
+            if places.iter().chain(&heights).all(|value| *value > 0.0) {
+                let ([a, x, b], [v, here, w]) = (places.map(f64::ln), heights.map(f64::ln));
+                let share = (x - a) / (b - a);
+                return (here - v - share * (w - v)).abs() / spread(share);
+            }
             let share = (xs[k] - xs[k - 1]) / (xs[k + 1] - xs[k - 1]);
             let line = values[k - 1] + share * (values[k + 1] - values[k - 1]);
-            // Variance of value - (1 - share) before - share after.
-            let spread = (1.0 + share * share + (1.0 - share) * (1.0 - share)).sqrt();
             let scale = values[k].max(line);
-            if scale > 0.0 { (values[k] - line).abs() / (spread * scale) } else { 0.0 }
+            if scale > 0.0 { (values[k] - line).abs() / (spread(share) * scale) } else { 0.0 }
         })
         .collect();
     let middle = distances.len() / 2;
@@ -233,10 +241,17 @@ mod tests {
     #[test]
     fn scatter_is_measured_and_an_outlier_is_not_scatter() {
         let xs: Vec<f64> = (1..200).map(f64::from).collect();
-        let mut values: Vec<f64> = xs.iter().map(|x| 5.0 - 0.01 * x).collect();
+        let mut values: Vec<f64> = xs.iter().map(|x| 5.0 * x.powf(-0.3)).collect();
         values[50] *= 2.0;
-        // A straight line has none but rounding.
-        assert!(noise(&xs, &values) < 1e-15);
+        // A power law has none but rounding.
+        assert!(noise(&xs, &values) < 1e-14);
+        // Six points per decade of a curve that falls by a decade, without and with 1 % of scatter.
+        let xs: Vec<f64> = (0..60).map(|k| 10f64.powf(f64::from(k) / 6.0)).collect();
+        let smooth: Vec<f64> = xs.iter().map(|x| 1.0 + 9.0 / (1.0 + (x / 1e5).sqrt())).collect();
+        assert!(noise(&xs, &smooth) < 5e-3, "{}", noise(&xs, &smooth));
+        let sign = |k: usize| if (k * 7919) % 13 < 6 { 1.0 } else { -1.0 };
+        let rough: Vec<f64> = smooth.iter().enumerate().map(|(k, v)| v * (1.0 + 0.01 * sign(k))).collect();
+        assert!((5e-3..0.02).contains(&noise(&xs, &rough)), "{}", noise(&xs, &rough));
     }
 
     #[test]

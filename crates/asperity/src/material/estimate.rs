@@ -214,13 +214,14 @@ fn uncertain(sorted: &[&Isotherm], measured: &[Distance], uncertainty: &[f64]) -
         true => format!("{decades:.1} decades"),
         false => "more than 10 decades".to_owned(),
     };
+    let at = |k: usize| format!("{:.2} K ({:.2} °C)", sorted[k].temperature, sorted[k].temperature - 273.15);
     Error::invalid(
-        format!("isotherms at {} K and {} K", sorted[worst].temperature, sorted[worst + 1].temperature),
         format!(
-            "uncertain in their distance along the logarithm of time by {}, and shift factors by {}",
-            shown(decades),
-            shown(largest)
+            "distance along the logarithm of time of the isotherms at {} and {}",
+            at(worst),
+            at(worst + 1)
         ),
+        format!("uncertain by {}, and shift factors by {}", shown(decades), shown(largest)),
         format!(
             "known to {MOST_UNCERTAIN} decade: curves with a slope, at temperatures close enough to overlap; leave an \
              isotherm out, measure between them, or give the shift"

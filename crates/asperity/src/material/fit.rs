@@ -248,6 +248,13 @@ impl FitOptions {
         }
         if let Some(misfit) = self.misfit {
             positive("misfit to be held by the fit", misfit, "")?;
+            if misfit >= 0.5 {
+                return Err(Error::invalid(
+                    "misfit to be held by the fit",
+                    misfit,
+                    "a share below 0.5, such as 0.02 for 2 %",
+                ));
+            }
         }
         positive("weight of the loss modulus", self.loss_weight, "")?;
         positive("largest misfit of the fit", self.limit, "").map(|_| ())

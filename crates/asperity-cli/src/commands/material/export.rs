@@ -55,6 +55,9 @@ fn chosen<'a>(specimens: &'a [Specimen], args: &MaterialExport) -> Result<&'a Sp
             let mut several = specimens.iter().filter(viscoelastic);
             match (several.next(), several.next()) {
                 (Some(only), None) => Ok(only),
+                (None, _) => {
+                    Err(Failure::input(format!("{}: no body is viscoelastic ({names})", args.file.display())))
+                }
                 _ => Err(Failure::input(format!(
                     "{}: one body must be chosen with --body: {names}",
                     args.file.display()

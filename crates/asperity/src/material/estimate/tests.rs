@@ -90,7 +90,7 @@ fn what_cannot_be_shifted_is_told() {
     let x = [1.0, 2.0, 4.0, 8.0];
     let high = isotherm(300.0, &x, &[9e9, 8e9, 7e9, 6e9]);
     let low = isotherm(400.0, &x, &[4e6, 3e6, 2e6, 1e6]);
-    says(&[high.clone(), low.clone()], 300.0, "isotherms at 300 K and 400 K");
+    says(&[high.clone(), low.clone()], 300.0, "isotherms at 300.00 K (26.85 °C) and 400.00 K");
     let flat = |t: f64| isotherm(t, &x, &[1e9; 4]);
     says(&[flat(300.0), flat(310.0)], 300.0, "slope");
     let next = isotherm(310.0, &x, &[7e9, 6e9, 5e9, 4e9]);

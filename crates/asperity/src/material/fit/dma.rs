@@ -109,10 +109,15 @@ fn equilibrium(storage: &Curve<'_>, spectrum: &Spectrum) -> f64 {
     (above / below).max(0.0)
 }
 
-/// The refusal of both moduli together, with the misfit that each reaches alone; `None` where neither does.
+/// The refusal of both moduli together, with the misfit that each reaches alone; `None` where neither does, or where both are met
+/// together but for a few points.
 fn alone(curves: &[Curve; 2], window: [f64; 2], options: &FitOptions) -> Option<Error> {
     let any = FitOptions { limit: f64::MAX, ..*options };
     let both = solve(curves, window, &any).ok()?;
+    // Both are met but at a few points: the refusal that names these says more.
+    if both.misfit.rms <= options.limit {
+        return None;
+    }
     let single = |moduli: Moduli| solve(curves, window, &FitOptions { moduli, ..*options }).ok();
     let shares = |misfit: &Misfit| format!("{:.1} %", 100.0 * misfit.rms);
     let reached: Vec<String> = [(Moduli::Storage, 0, "storage"), (Moduli::Loss, 1, "loss")]

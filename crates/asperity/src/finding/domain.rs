@@ -5,7 +5,7 @@
 use ndarray::Array2;
 
 use super::words::{digits, si};
-use super::{CONTACT_AT_BORDER, Finding, GAP_NOT_PERIODIC, ROUGH_ON_FREE_DOMAIN};
+use super::{CONTACT_AT_BORDER, Finding, GAP_NOT_PERIODIC, ROUGH_ON_FREE_DOMAIN, UNLIKELY_UNIT};
 use crate::grid::Grid;
 
 /// A gap whose second difference across the border is so many times the largest inside does not repeat.
@@ -15,6 +15,23 @@ const ROUNDING: f64 = 1e-9;
 /// How much wider the gap must be at the border than in the mean, over its standard deviation. A sphere has 1.6, a
 /// cone 1.3, a cylinder 1.1; a rough plane, a wave or a tilted plane 0.
 const CONFINED: f64 = 0.5;
+
+/// Sides of domains: from atoms to beyond any machine \[m\].
+const SIDES: [f64; 2] = [1e-9, 10.0];
+
+/// A domain of a size that no measurement has.
+pub(super) fn unlikely_size(grid: &Grid) -> Option<Finding> {
+    let [least, most] = SIDES;
+    let side = grid.extents().iter().copied().find(|side| !(least..most).contains(side))?;
+    let limit = if side < least { least } else { most };
+    let text = format!(
+        "A side of the domain is {}; domains of contacts have {} to {}. Check the unit of its size and of the heights.",
+        si(side, "m"),
+        si(least, "m"),
+        si(most, "m")
+    );
+    Some(Finding::warning(UNLIKELY_UNIT, side, limit, text))
+}
 
 /// Whether any cell of the border of a field is positive.
 pub(super) fn touches_border(grid: &Grid, pressure: ndarray::ArrayView2<'_, f64>) -> bool {

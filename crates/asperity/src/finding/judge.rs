@@ -247,6 +247,7 @@ fn before(simulation: &Simulation, known: Known<'_>) -> Vec<Finding> {
     if *boundary == Boundary::Periodic {
         found.extend(known.thickness.and_then(|thickness| thin::long_waves(grid, thickness)));
     }
+    found.extend(domain::unlikely_size(grid));
     for part in known.parts {
         found.extend(surface::of_part(grid, part));
     }

@@ -5,7 +5,7 @@ use super::{BEYOND_MATERIAL_DATA, Finding, MATERIAL_MISFIT, UNLIKELY_UNIT};
 use crate::march::Simulation;
 
 /// Moduli of solids: from the softest gels to beyond diamond \[Pa\].
-const MODULI: [f64; 2] = [10.0, 3e12];
+const MODULI: [f64; 2] = [150.0, 3e12];
 /// Rms misfit of a fit, and how many times the scatter of the data it may be.
 const MISFIT: f64 = 0.05;
 const SCATTER: f64 = 2.0;

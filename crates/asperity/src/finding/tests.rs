@@ -365,6 +365,8 @@ fn moduli_radii_and_heights_of_unlikely_units_are_found() {
         codes(&before(&simulation(std::slice::from_ref(&steel)), std::slice::from_ref(&steel))),
         [UNLIKELY_UNIT]
     );
+    let huge = Simulation { grid: grid(64, 1000.0), gap: Array2::zeros((64, 64)), ..simulation(&[]) };
+    assert_eq!(codes(&before(&huge, &[]))[0], UNLIKELY_UNIT);
     let soft = |shear: f64| Body {
         name: "rubber".into(),
         material: Material::elastic(Modulus::Shear, shear).unwrap(),
@@ -377,6 +379,9 @@ fn moduli_radii_and_heights_of_unlikely_units_are_found() {
         codes(judge.known()).join(" ")
     };
     assert_eq!(judged(&[soft(2e-3)]), UNLIKELY_UNIT);
+    // 100 Pa for 100 MPa, and the gel of a brain.
+    assert_eq!(judged(&[soft(100.0)]), UNLIKELY_UNIT);
+    assert_eq!(judged(&[soft(300.0)]), "");
     assert_eq!(judged(&[soft(2e6), soft(210e9)]), "");
     let grid = grid(64, 1e-3);
     let Part::SelfAffine(surface) = rough(1e-4, 0.1) else { unreachable!() };

@@ -99,33 +99,38 @@ pub(super) fn check_values(words: Words, xs: &[f64], values: &[f64], zero: bool)
     Ok(())
 }
 
-/// Relative scatter of a curve (standard deviation), from the distances between each point and the power law
-/// through its neighbours (the line, where one is not positive): a curve over decades bends in other scales. The median makes it
-/// blind to single outliers. 0 for fewer than 5 points.
+/// Relative scatter of a curve (standard deviation), from the distances between each point and the cubic through its four
+/// neighbours, in logarithms where all are positive: curves over decades are smooth in these. The median makes it blind to single
+/// outliers. 0 for fewer than 5 points.
 pub(super) fn noise(xs: &[f64], values: &[f64]) -> f64 {
     if xs.len() < 5 {
         return 0.0;
     }
-    let mut distances: Vec<f64> = (1..xs.len() - 1)
-        .map(|k| {
-            // Standard deviation of value - (1 - share) before - share after.
-            let spread = |share: f64| (1.0 + share * share + (1.0 - share) * (1.0 - share)).sqrt();
-            let places = [xs[k - 1], xs[k], xs[k + 1]];
-            let heights = [values[k - 1], values[k], values[k + 1]];
-            if places.iter().chain(&heights).all(|value| *value > 0.0) {
-                let ([a, x, b], [v, here, w]) = (places.map(f64::ln), heights.map(f64::ln));
-                let share = (x - a) / (b - a);
-                return (here - v - share * (w - v)).abs() / spread(share);
-            }
-            let share = (xs[k] - xs[k - 1]) / (xs[k + 1] - xs[k - 1]);
-            let line = values[k - 1] + share * (values[k + 1] - values[k - 1]);
-            let scale = values[k].max(line);
-            if scale > 0.0 { (values[k] - line).abs() / (spread(share) * scale) } else { 0.0 }
-        })
-        .collect();
+    let distance = |(x, v): (&[f64], &[f64])| {
+        let positive = x.iter().chain(v).all(|number| *number > 0.0);
+        let logarithms = |numbers: &[f64]| -> Vec<f64> { numbers.iter().map(|n| n.ln()).collect() };
+        match positive {
+            true => from_cubic(&logarithms(x), &logarithms(v)),
+            // Relative to the largest of the five.
+            false => from_cubic(x, v) / v.iter().copied().fold(f64::MIN_POSITIVE, f64::max),
+        }
+    };
+    let mut distances: Vec<f64> = xs.windows(5).zip(values.windows(5)).map(distance).collect();
     let middle = distances.len() / 2;
     // The median of the absolute value of a normal variable is 0.6745 of its standard deviation.
     *distances.select_nth_unstable_by(middle, f64::total_cmp).1 / 0.6745
+}
+
+/// Distance of the third of five points from the cubic through the others (Lagrange), over its standard deviation where each
+/// value has the standard deviation 1.
+fn from_cubic(x: &[f64], v: &[f64]) -> f64 {
+    let others = [0, 1, 3, 4];
+    let weight = |i: usize| -> f64 {
+        others.iter().filter(|j| **j != i).map(|j| (x[2] - x[*j]) / (x[i] - x[*j])).product()
+    };
+    let weights = others.map(weight);
+    let cubic: f64 = others.iter().zip(weights).map(|(i, w)| w * v[*i]).sum();
+    (v[2] - cubic).abs() / (1.0 + weights.iter().map(|w| w * w).sum::<f64>()).sqrt()
 }
 
 /// Means over a hundredth of a decade, as (abscissa, value, count), where there are more than 1000 points
@@ -248,7 +253,11 @@ mod tests {
         // Six points per decade of a curve that falls by a decade, without and with 1 % of scatter.
         let xs: Vec<f64> = (0..60).map(|k| 10f64.powf(f64::from(k) / 6.0)).collect();
         let smooth: Vec<f64> = xs.iter().map(|x| 1.0 + 9.0 / (1.0 + (x / 1e5).sqrt())).collect();
-        assert!(noise(&xs, &smooth) < 5e-3, "{}", noise(&xs, &smooth));
+        assert!(noise(&xs, &smooth) < 1e-3, "{}", noise(&xs, &smooth));
+        // A peak, four points per decade.
+        let coarse: Vec<f64> = (0..16).map(|k| 10f64.powf(f64::from(k) / 4.0)).collect();
+        let peak: Vec<f64> = coarse.iter().map(|x| x / 100.0 / (1.0 + (x / 100.0).powi(2))).collect();
+        assert!(noise(&coarse, &peak) < 0.01, "{}", noise(&coarse, &peak));
         let sign = |k: usize| if (k * 7919) % 13 < 6 { 1.0 } else { -1.0 };
         let rough: Vec<f64> = smooth.iter().enumerate().map(|(k, v)| v * (1.0 + 0.01 * sign(k))).collect();
         assert!((5e-3..0.02).contains(&noise(&xs, &rough)), "{}", noise(&xs, &rough));

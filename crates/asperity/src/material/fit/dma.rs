@@ -61,7 +61,8 @@ pub fn fit_dma(
         Curve { words: loss_words, kernel: Kernel::Loss, xs: omega, values: loss, floor, weight },
     ];
     let window = [1.0 / omega[omega.len() - 1], 1.0 / omega[0]];
-    let noise = data::noise(omega, storage).max(data::noise(omega, loss));
+    let scatter = of(&curves, options.moduli).iter().map(|curve| data::noise(omega, curve.values));
+    let noise = scatter.fold(0.0, f64::max);
     let solved = solve(&curves, window, options).map_err(|refusal| match options {
         FitOptions { moduli: Moduli::Both, misfit: None, .. } => {
             alone(&curves, window, options).unwrap_or(refusal)

@@ -1,32 +1,8 @@
 // Curves over two axes, drawn by uPlot: a drag zooms, a double click shows all again, the legend has the values at the
 // cursor and switches curves off and on.
 
-const $ = (id) => document.getElementById(id);
-const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const charts = [];
 const FONT = "12px system-ui, sans-serif";
-
-/** An element with attributes and children. */
-function make(name, attributes = {}, ...children) {
-  const node = document.createElement(name);
-  for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
-  node.append(...children);
-  return node;
-}
-
-/** Names with their values, for a list of terms. */
-const terms = (lines) => lines.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]);
-const press = (buttons, chosen) => buttons.forEach((button) => button.setAttribute("aria-pressed", String(button === chosen)));
-
-/** Calls `draw` after the width of an element has changed. */
-function onWidth(element, draw) {
-  let width = 0;
-  new ResizeObserver(() => requestAnimationFrame(() => {
-    if (element.clientWidth === width) return;
-    width = element.clientWidth;
-    draw();
-  })).observe(element);
-}
 
 /** Ends of an axis for values from `low` to `high`: `room` on both sides, but none below or above zero. */
 function ends(low, high, log, room) {
@@ -88,14 +64,12 @@ class Chart {
 
   /** Draws these curves; the zoom and the curves that are switched off stay. */
   set(spec) {
-    const before = this.spec;
     this.spec = spec;
     this.heading.textContent = spec.title || "";
     this.note.textContent = spec.note || "";
     this.note.hidden = !spec.note;
     this.plot.setAttribute("aria-label", `${spec.title || spec.y.label} over ${spec.x.label}; arrow keys read values`);
-    const names = (one) => one.series.map((series) => series.name).join("|");
-    if (!this.uplot || names(before) !== names(spec) || this.words() || this.drawn !== this.axesKey()) return this.build();
+    if (!this.uplot || this.words() || this.drawn !== this.form()) return this.build();
     const zoomed = this.zoomed();
     this.uplot.setData(this.data(), !zoomed);
     if (zoomed) this.uplot.redraw();
@@ -128,8 +102,14 @@ class Chart {
     return !this.spec[key].linear && this.spec.series.some((series) => series[key].some((value) => value > 0));
   }
 
-  axesKey() {
-    return `${this.isLog("x")} ${this.isLog("y")}`;
+  /** What the axes are; a zoom means the same as long as this is the same. */
+  axes() {
+    return ["x", "y"].map((key) => [this.spec[key].label, this.spec[key].unit, this.isLog(key), this.canLog(key)].join()).join();
+  }
+
+  /** All that decides how the chart is built, besides its numbers. */
+  form() {
+    return [this.axes(), ...this.spec.series.map((series) => series.name)].join();
   }
 
   /** What stands in place of the curves: null where there is something to draw. */
@@ -240,10 +220,10 @@ class Chart {
   }
 
   build() {
-    const zoom = this.uplot && this.drawn === this.axesKey() && this.zoomed() ? { ...this.uplot.scales } : null;
+    const zoom = this.uplot && this.drawnAxes === this.axes() && this.zoomed() ? { ...this.uplot.scales } : null;
     this.uplot?.destroy();
     this.uplot = null;
-    this.drawn = this.axesKey();
+    [this.drawn, this.drawnAxes] = [this.form(), this.axes()];
     const words = this.words();
     this.buttons(words ? [] : ["x", "y"]);
     this.plot.replaceChildren(...(words ? [make("p", { class: "empty" }, words)] : []));

@@ -9,39 +9,47 @@ const DECADES = 6;
 /** Share of the finite values of a map that may lie outside of its colours at each end. */
 const OUTLIERS = 1e-3;
 
-/** Finite values of a map in rising order, of the largest maps a sample. */
-function sorted(map) {
+/** Finite values of a map in rising order, without those of contact where its states are given; of the largest maps a sample. */
+function sorted(map, contact) {
   if (map.sorted) return map.sorted;
   const every = Math.max(1, Math.floor(map.values.length / 250000));
-  map.sorted = map.values.filter((value, n) => n % every === 0 && isFinite(value)).sort();
+  map.sorted = map.values.filter((value, n) => n % every === 0 && isFinite(value) && !(contact && contact.values[n] > 0)).sort();
   return map.sorted;
 }
 
 /** Ends of the colours: all values, or without the few that would leave the others one colour. */
-function robust(map) {
-  const values = sorted(map), last = values.length - 1, few = Math.ceil(OUTLIERS * last);
-  if (last < 1000) return [map.min, map.max];
+function robust(map, contact) {
+  const values = sorted(map, contact), last = values.length - 1, few = Math.ceil(OUTLIERS * last);
+  if (last < 0) return [0, 1];
+  const [least, most] = extent(map, contact);
+  if (last < 1000) return [least, most];
   const [low, high] = [values[few], values[last - few]];
-  return high > low && map.max - map.min > 1.5 * (high - low) ? [low, high] : [map.min, map.max];
+  return high > low && most - least > 1.5 * (high - low) ? [low, high] : [least, most];
 }
 
 /** Ends for logarithmic colours: of the values above zero. */
-function robustLog(map) {
-  const values = sorted(map).filter((value) => value > 0);
-  if (!values.length) return [map.max / 10, map.max];
-  return [Math.max(values[Math.ceil(OUTLIERS * (values.length - 1))], map.max * Math.pow(10, -DECADES)), map.max];
+function robustLog(map, contact) {
+  const values = sorted(map, contact).filter((value) => value > 0), most = values[values.length - 1];
+  if (!values.length) return [0.1, 1];
+  return [Math.max(values[Math.ceil(OUTLIERS * (values.length - 1))], most * Math.pow(10, -DECADES)), most];
 }
 
 /** The ends of one map of a field. */
-function endsOf(map, kind, log) {
+function endsOf(map, kind, log, contact) {
   if (kind.colours === "states") return [0, 2];
-  if (log) return robustLog(map);
-  return kind.colours === "pressure" ? [0, map.max] : robust(map);
+  if (log) return robustLog(map, contact);
+  return kind.colours === "pressure" ? [0, map.max] : robust(map, contact);
+}
+
+/** Least and greatest value of a map, without contact where its states are given; null where none is left. */
+function extent(map, contact) {
+  const values = contact ? sorted(map, contact) : null;
+  return !values ? [map.min, map.max] : values.length ? [values[0], values[values.length - 1]] : null;
 }
 
 /** What lies beyond the colours, in words. */
-function outside(map, low, high, unit) {
-  const parts = [map.min < low ? `down to ${words(map.min, unit)}` : "", map.max > high ? `up to ${words(map.max, unit)}` : ""].filter(Boolean);
+function outside([least, most], low, high, unit) {
+  const parts = [least < low ? `down to ${words(least, unit)}` : "", most > high ? `up to ${words(most, unit)}` : ""].filter(Boolean);
   return parts.length ? ` Values outside of the colours: ${parts.join(" and ")}.` : "";
 }
 
@@ -98,6 +106,7 @@ function colourBar(canvas, tall, what) {
   const height = Math.max(tall, 120), [context] = sharp(canvas, height);
   context.clearRect(0, 0, canvas.width, canvas.height);
   if (colours === "states") return void STATES.reduce((y, [name, fill]) => swatch(context, y + 4, fill, name), 2);
+  if (what.closed) return void swatches.reduce((y, [fill, name]) => swatch(context, y, fill, name), 4);
   const lut = LUT[colours], foot = swatches.reduce((sum, [, name]) => sum + (context.measureText(name).width > 58 ? 32 : 19), 0);
   const top = beyond[1] ? 34 : 24, bottom = height - 8 - foot - (beyond[0] ? 8 : 0);
   for (let y = top; y < bottom; y++) {

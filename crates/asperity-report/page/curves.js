@@ -23,6 +23,7 @@ class Panels {
 const overRows = { shared: "rows", pick: (at) => showNearest(at) };
 const evolution = new Panels("evolution", overRows);
 const loading = new Panels("evolution", {});
+const cyclesOf = new Panels("evolution", { shared: "cycle number" });
 const solver = new Panels("solver", { shared: "row number" });
 const leaks = new Panels("leaks", overRows);
 const stresses = new Panels("stress-curves", overRows);
@@ -71,6 +72,19 @@ function evolutionPart() {
   const cycle = state.last_cycle;
   loading.set([over("Load over approach"), ...(cycle ? [over("Load over approach, last cycle", cycle[0], cycle[1] + 1)] : [])]);
   $("last-cycle").hidden = !cycle;
+  cyclesOf.set(state.cycles.filter((part) => part.loss_angle.length > 1).flatMap(cyclePanels));
+}
+
+/** What each cycle of a sine loses, over its number. */
+function cyclePanels(part) {
+  const panel = (title, label, unit, values) => ({
+    title: `${title}, cycles at ${words(part.frequency, "Hz")}`,
+    x: { label: "cycle", unit: "", linear: true }, y: { label, unit },
+    series: [{ name: "", x: values.map((_, n) => n + 1), y: values.map((value) => value ?? NaN) }],
+  });
+  const line = state.grid.line ? "/m" : "";
+  return [panel("Loss angle", "loss angle", "°", part.loss_angle), panel("Energy lost in a cycle", "energy", `J${line}`, part.dissipated_energy),
+    panel("Dynamic stiffness", "stiffness", `N/m${line ? "2" : ""}`, part.stiffness)];
 }
 
 function solverPart() {
@@ -156,7 +170,7 @@ async function surfacePart() {
   if (map) {
     const [low, high] = robust(map);
     heights.show({ map, colours: "sequential", low, high, unit: "m", label: "height" });
-    $("height-note").textContent = `${s.note}${outside(map, low, high, "m")}`;
+    $("height-note").textContent = `${s.note}${outside(extent(map), low, high, "m")}`;
   }
   $("statistics").replaceChildren(...terms(s.statistics));
   if (s.wave_number) spectra.set([{ title: "Radially averaged power spectrum", x: { label: "wavenumber", unit: "1/m", log: true }, y: { label: "C(q)", unit: "m4", log: true }, series: [{ name: "", x: s.wave_number, y: s.power }] }]);

@@ -14,36 +14,46 @@ const moment = (instant) => `${state.rows.symbol} = ${words(instant.time, state.
 const limits = {};
 const limitsOf = (kind) => (limits[kind.name] ??= { ends: "each", log: false });
 
-/** Ends that are common to all instants, or null where these are too many maps to read. */
+/** Ends of single maps, by name; those of the pressure of a run that is served come from its rows. */
+const single = new Map();
+/** So many values are fetched from a server to find the ends of all. */
 const CELLS = 3e7;
-const common = new Map();
-const canShare = (kind) => (state.live && kind.colours === "pressure") || state.instants.length * state.grid.cells.reduce((a, b) => a * b) <= CELLS;
+const fromRows = (kind) => state.live && kind.colours === "pressure" && !limitsOf(kind).log;
+const canShare = (kind) => !state.live || fromRows(kind) || state.instants.length * state.grid.cells.reduce((a, b) => a * b) <= CELLS;
+
+/** Ends that are common to all instants. */
 async function commonEnds(kind, log) {
-  // The rows tell the largest pressure; a run that goes on has more of them later.
-  if (state.live && kind.colours === "pressure" && !log) return [0, Math.max(...state.instants.map(({ row }) => state.series.max_pressure[row] ?? 0))];
-  const key = `${kind.name} ${log} ${state.instants.length}`;
-  if (common.has(key)) return common.get(key);
+  if (fromRows(kind)) return [0, Math.max(...state.instants.map(({ row }) => state.series.max_pressure[row] ?? 0))];
   let low = Infinity, high = -Infinity;
   for (let n = 0; n < state.instants.length; n++) {
-    const map = await load(`${kind.name}-${n}`);
-    if (!map || !(map.max > 0 || !log)) continue;
-    const [a, b] = endsOf(map, kind, log);
+    const key = `${kind.name} ${log} ${n}`;
+    if (!single.has(key)) {
+      const map = await load(`${kind.name}-${n}`);
+      single.set(key, map && (map.max > 0 || !log) ? endsOf(map, kind, log, await contactOf(kind, n)) : [Infinity, -Infinity]);
+    }
+    const [a, b] = single.get(key);
     [low, high] = [Math.min(low, a), Math.max(high, b)];
   }
-  const ends = low > high ? [0, 1] : [log ? Math.max(low, high * Math.pow(10, -DECADES)) : low, high];
-  common.set(key, ends);
-  return ends;
+  if (low > high) return [0, 1];
+  return [log ? Math.max(low, high * Math.pow(10, -DECADES)) : low, high];
 }
+
+/** The states of contact where they have a colour of their own in a map: in that of the gap, which is zero there but for rounding. */
+const contactOf = async (kind, n) => (kind.name === "gap" && has("contact") ? load(`contact-${n}`) : null);
 
 /** The map of an instant with its colours. */
 async function coloured(kind, map, contact) {
   const chosenLimits = limitsOf(kind), { log } = chosenLimits;
+  if (chosenLimits.ends === "all" && !canShare(kind)) chosenLimits.ends = "each";
   let [low, high] = chosenLimits.ends === "own" ? [chosenLimits.low, chosenLimits.high]
-    : chosenLimits.ends === "all" && canShare(kind) ? await commonEnds(kind, log) : endsOf(map, kind, log);
+    : chosenLimits.ends === "all" ? await commonEnds(kind, log) : endsOf(map, kind, log, contact);
   if (low === high) high = low === 0 ? 1 : low + Math.abs(low);
   const swatches = kind.colours === "pressure" ? [[OPEN, "no contact"]] : contact ? [[TOUCHING, "contact"]] : [];
-  const beyond = [kind.colours !== "states" && kind.colours !== "pressure" && map.min < low && !(log && map.min <= 0), kind.colours !== "states" && map.max > high];
-  return { map, contact, colours: kind.colours, low, high, log, unit: kind.unit, label: kind.label, swatches, beyond };
+  if (map.holes) swatches.push([UNDEFINED, "undefined"]);
+  const inside = extent(map, contact), [least, most] = inside ?? [low, high], states = kind.colours === "states";
+  const beyond = [!states && kind.colours !== "pressure" && least < low && !(log && least <= 0), !states && most > high];
+  const note = inside ? outside([beyond[0] ? least : low, beyond[1] ? most : high], low, high, kind.unit) : " All cells that can touch do.";
+  return { map, contact, colours: kind.colours, low, high, log, unit: kind.unit, label: kind.label, swatches, beyond, note, closed: !inside };
 }
 
 async function showMap() {
@@ -56,9 +66,7 @@ async function showMap() {
   $("map-title").textContent = `${kind.title} at ${moment(instant)}`;
   if (state.grid.line) await showOverTime(kind, instant, stale);
   else {
-    // The gap of contact has a colour of its own.
-    const contact = kind.name === "gap" && has("contact") ? await load(`contact-${index}`) : null;
-    const what = await coloured(kind, map, contact);
+    const what = await coloured(kind, map, await contactOf(kind, index));
     if (stale()) return;
     view.show(what, { along: chosen.along, share: chosen.share });
     showLimits(kind, what);
@@ -83,7 +91,7 @@ function showNearest(at) {
 }
 
 /** The ends of the colours as the controls tell them, and what lies beyond. */
-function showLimits(kind, { map, low, high, log, beyond, unit }) {
+function showLimits(kind, { low, high, log, note }) {
   $("limits-part").hidden = kind.colours === "states";
   if (kind.colours === "states") return ($("map-range").textContent = "");
   const shownUnit = shown(kind.unit, Math.max(Math.abs(low), Math.abs(high)));
@@ -96,7 +104,7 @@ function showLimits(kind, { map, low, high, log, beyond, unit }) {
   $("limits-unit").textContent = shownUnit.text;
   $("limits-unit").dataset.factor = shownUnit.factor;
   $("log-colours").checked = log;
-  $("map-range").textContent = outside(map, beyond[0] ? low : -Infinity, beyond[1] ? high : Infinity, unit);
+  $("map-range").textContent = note;
 }
 
 /** Limits that were typed: numbers in the unit shown. */

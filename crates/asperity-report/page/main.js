@@ -53,8 +53,11 @@ async function follow() {
     return;
   }
   const atEnd = chosen.instant >= state.instants.length - 1, hadMaps = state.instants.length > 0;
-  if (next.instants.length < state.instants.length) cache.clear();
-  for (const key of ["series", "status", "headline", "facts", "findings", "instants", "fields", "running", "stress", "leak", "last_cycle"]) state[key] = next[key];
+  if (next.instants.length < state.instants.length) {
+    cache.clear();
+    single.clear();
+  }
+  for (const key of ["series", "status", "headline", "facts", "findings", "instants", "fields", "running", "stress", "leak", "last_cycle", "cycles"]) state[key] = next[key];
   summary();
   stressPart();
   evolutionPart();

@@ -4,7 +4,7 @@ const state = JSON.parse(document.getElementById("state").textContent);
 const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
 const cache = new Map();
 
-/** The map of a name: {nx, ny, min, max, values}; NaN where undefined. Values are kept as 16 bits between min and max. */
+/** The map of a name: {nx, ny, min, max, values, holes}; NaN where undefined, which `holes` says. Values are kept as 16 bits between min and max. */
 async function load(name) {
   if (cache.has(name)) return cache.get(name);
   let packed;
@@ -17,14 +17,16 @@ async function load(name) {
   const stream = new Blob([packed.subarray(24)]).stream().pipeThrough(new DecompressionStream("deflate"));
   const planes = new Uint8Array(await new Response(stream).arrayBuffer());
   const count = nx * ny, values = new Float32Array(count), step = (max - min) / 65534;
+  let holes = false;
   for (let i = 0, n = 0; i < nx; i++) {
     let level = 0; // each number is the difference from its neighbour along y
     for (let j = 0; j < ny; j++, n++) {
       level = (level + (planes[n] << 8) + planes[count + n]) & 0xffff;
       values[n] = level === 0xffff ? NaN : min + level * step;
+      holes ||= level === 0xffff;
     }
   }
-  const map = { nx, ny, min, max, values };
+  const map = { nx, ny, min, max, values, holes };
   if (cache.size > 48) cache.delete(cache.keys().next().value);
   cache.set(name, map);
   return map;

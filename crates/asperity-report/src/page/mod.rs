@@ -24,8 +24,9 @@ use base64::engine::general_purpose::STANDARD;
 const PAGE: &str = include_str!("../../page/page.html");
 const STYLE: &str = include_str!("../../page/style.css");
 /// In the order in which they use one another; all are one script.
-const SCRIPT: [&str; 9] = [
+const SCRIPT: [&str; 10] = [
     include_str!("../../page/units.js"),
+    include_str!("../../page/dom.js"),
     include_str!("../../page/chart.js"),
     include_str!("../../page/maps.js"),
     include_str!("../../page/colours.js"),

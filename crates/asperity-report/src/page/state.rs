@@ -1,5 +1,7 @@
 //! What a page knows besides its maps.
 
+use asperity::cycles::Cycle;
+use asperity_io::cycles;
 use asperity_io::leakage::LeakHistory;
 use asperity_io::readable::quantity;
 use asperity_io::store::{FieldKind, Reader, Status, StoreError};
@@ -76,6 +78,7 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
         "units": units,
         "rows": {"label": rows.label, "unit": rows.unit, "symbol": rows.symbol, "log": rows.log},
         "last_cycle": last_cycle(reader)?,
+        "cycles": each_cycle(reader)?,
         "quantities": quantities(reader, theory.is_some()),
         "fields": maps.fields.iter().map(field).collect::<Vec<_>>(),
         "instants": instants.collect::<Vec<_>>(),
@@ -102,6 +105,20 @@ fn last_cycle(reader: &Reader) -> Result<Value, StoreError> {
         None => crate::result::last_cycle(&reader.series("approach")?),
     };
     Ok(rows.map_or(Value::Null, |rows| json!([rows.start(), rows.end()])))
+}
+
+/// Loss angle \[°\], lost energy and stiffness of each full cycle, for each stage with a sine.
+fn each_cycle(reader: &Reader) -> Result<Value, StoreError> {
+    let of_stage = |part: &cycles::Cyclic| {
+        let column = |value: fn(&Cycle) -> f64| part.cycles.iter().map(value).collect::<Vec<f64>>();
+        json!({
+            "frequency": part.frequency,
+            "loss_angle": column(|cycle| cycle.loss_angle.to_degrees()),
+            "dissipated_energy": column(|cycle| cycle.dissipated_energy),
+            "stiffness": column(|cycle| cycle.stiffness),
+        })
+    };
+    Ok(cycles::of_result(reader)?.iter().map(of_stage).collect())
 }
 
 /// The leaks over time, what was asked for and what was found in words; null where there are none.

@@ -5,9 +5,11 @@ use ndarray::{Array2, ArrayView2};
 
 const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
-/// Numbers over time, or over the velocity of a `sweep`, as a row of `width` bars from the least to the greatest: in each the mean of
-/// the numbers that fall into it, or where none does the one on the straight line between its neighbours. The axis is
-/// logarithmic where it is in figures. Numbers that differ by rounding only are half high.
+/// Numbers over time, or over the velocity of a `sweep`, as a row of `width` bars from the least to the greatest.
+///
+/// A bar is the mean of the numbers in its part of the axis; where there are none, the value on the straight line
+/// between the neighbours. The axis is logarithmic where it is in figures. Numbers that differ by rounding only are
+/// half high.
 pub fn sparkline(rows: &[f64], values: &[f64], sweep: bool, width: usize) -> String {
     let log = is_logarithmic(rows, sweep);
     let points: Vec<[f64; 2]> = rows

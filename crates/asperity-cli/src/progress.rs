@@ -16,8 +16,8 @@ const SPARKS: usize = 16;
 
 /// Who tells the progress.
 pub enum Teller {
-    /// A live line, and the contact area of the rows so far.
-    Bar(ProgressBar, Vec<f64>),
+    /// A live line, and times and contact areas of the rows so far.
+    Bar(ProgressBar, [Vec<f64>; 2]),
     /// Plain lines.
     Lines {
         /// Start of the run, and the last line told.
@@ -69,7 +69,7 @@ impl Teller {
         if std::thread::Builder::new().spawn(|| ()).is_ok() {
             bar.enable_steady_tick(Duration::from_millis(250));
         }
-        Teller::Bar(bar, Vec::new())
+        Teller::Bar(bar, [vec![], vec![]])
     }
 
     /// One row more.
@@ -90,7 +90,8 @@ impl Teller {
             row.iterations
         );
         match self {
-            Teller::Bar(bar, areas) => {
+            Teller::Bar(bar, [times, areas]) => {
+                times.push(row.time);
                 areas.push(row.contact_fraction);
                 let [from, done, all] = course(progress);
                 if bar.position() == 0 {
@@ -100,7 +101,8 @@ impl Teller {
                 }
                 bar.set_position(done);
                 bar.set_prefix(rows(progress));
-                bar.set_message(format!("area {}  {state}", terminal::sparkline(areas, SPARKS)));
+                let bars = terminal::sparkline(times, areas, progress.sweep, SPARKS);
+                bar.set_message(format!("area {bars}  {state}"));
             }
             Teller::Lines { started, told, pause } => {
                 let due = told.is_none_or(|told| told.elapsed() >= *pause);

@@ -1,20 +1,50 @@
 //! Pictures out of letters.
 
+use asperity_report::result::is_logarithmic;
 use ndarray::{Array2, ArrayView2};
 
-/// Numbers as a row of bars from the least to the greatest, the mean of neighbours where there are more than
-/// `width`; numbers that differ by rounding only are half high.
-pub fn sparkline(values: &[f64], width: usize) -> String {
-    const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+
+/// Numbers over time, or over the velocity of a `sweep`, as a row of `width` bars from the least to the greatest.
+///
+/// A bar is the mean of the numbers in its part of the axis; where there are none, the value on the straight line
+/// between the neighbours. The axis is logarithmic where it is in figures. Numbers that differ by rounding only are
+/// half high.
+pub fn sparkline(rows: &[f64], values: &[f64], sweep: bool, width: usize) -> String {
+    let log = is_logarithmic(rows, sweep);
+    let points: Vec<[f64; 2]> = rows
+        .iter()
+        .zip(values)
+        .filter(|(row, value)| value.is_finite() && (!log || **row > 0.0))
+        .map(|(row, value)| [if log { row.log10() } else { *row }, *value])
+        .collect();
+    let [Some(first), Some(last)] = [points.first(), points.last()] else { return String::new() };
     let [low, high] =
-        values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(*v), b.max(*v)]);
-    let letters = values.len().min(width);
-    let part = |k: usize| &values[k * values.len() / letters..(k + 1) * values.len() / letters];
-    let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
+        points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], [_, v]| [a.min(*v), b.max(*v)]);
     let flat = high - low <= 1e-9 * high.abs();
-    let bar =
-        |v: f64| if flat { 3 } else { ((v - low) / (high - low) * 7.0).round().clamp(0.0, 7.0) as usize };
-    (0..letters).map(|k| BARS[bar(mean(part(k)))]).collect()
+    let bar = |v: f64| match flat {
+        true => BARS[3],
+        false => BARS[((v - low) / (high - low) * 7.0).round().clamp(0.0, 7.0) as usize],
+    };
+    let step = (last[0] - first[0]) / width as f64;
+    if step <= 0.0 {
+        return bar(last[1]).into();
+    }
+    let part = |k: usize| {
+        let from = first[0] + k as f64 * step;
+        let inside = |[at, _]: &&[f64; 2]| *at >= from && (*at < from + step || k + 1 == width);
+        let (sum, count) =
+            points.iter().filter(inside).fold((0.0, 0.0), |(sum, count), [_, v]| (sum + v, count + 1.0));
+        if count > 0.0 { sum / count } else { between(&points, from + 0.5 * step) }
+    };
+    (0..width).map(|k| bar(part(k))).collect()
+}
+
+/// The value at a place on the straight lines between points.
+fn between(points: &[[f64; 2]], at: f64) -> f64 {
+    let n = points.partition_point(|[place, _]| *place <= at).clamp(1, points.len() - 1);
+    let [[x0, y0], [x1, y1]] = [points[n - 1], points[n]];
+    if x1 > x0 { y0 + (y1 - y0) * (at - x0) / (x1 - x0) } else { y1 }
 }
 
 /// How much of each block of a map is true, `columns` blocks wide, as letters; x to the right, y upwards. A letter
@@ -49,12 +79,28 @@ mod tests {
 
     #[test]
     fn a_sparkline_goes_from_the_least_to_the_greatest() {
-        assert_eq!(sparkline(&[], 8), "");
-        assert_eq!(sparkline(&[0.0, 0.0], 8), "▄▄");
-        assert_eq!(sparkline(&[1.0, 2.0, 3.0, 8.0], 8), "▁▂▃█");
-        assert_eq!(sparkline(&[5.0, 5.0 + 1e-12, 5.0], 16), "▄▄▄");
-        let long: Vec<f64> = (0..1000).map(f64::from).collect();
-        assert_eq!(sparkline(&long, 8), "▁▂▃▄▅▆▇█");
+        let even: Vec<f64> = (0..1000).map(f64::from).collect();
+        let over = |values: &[f64], width| sparkline(&even[..values.len()], values, false, width);
+        assert_eq!(over(&[], 8), "");
+        assert_eq!(over(&[2.0], 8), "▄");
+        assert_eq!(over(&[0.0, 0.0], 2), "▄▄");
+        assert_eq!(over(&[1.0, 2.0, 3.0, 8.0], 4), "▁▂▃█");
+        assert_eq!(over(&[5.0, 5.0 + 1e-12, 5.0], 3), "▄▄▄");
+        assert_eq!(over(&even, 8), "▁▂▃▄▅▆▇█");
+    }
+
+    #[test]
+    fn a_sparkline_goes_by_time_and_not_by_row() {
+        // Most rows lie in the first of four seconds, where nothing changes.
+        let times = [0.0, 0.2, 0.4, 0.6, 0.8, 2.0, 3.0, 4.0];
+        let values = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 7.0, 7.0];
+        assert_eq!(sparkline(&times, &values, false, 4), "▁▁▁█");
+        // Rows per decade: the axis is logarithmic, and t = 0 has no place on it.
+        let times: Vec<f64> = std::iter::once(0.0).chain((0..8).map(|n| 10f64.powi(n))).collect();
+        let values: Vec<f64> = std::iter::once(-50.0).chain((0..8).map(f64::from)).collect();
+        assert_eq!(sparkline(&times, &values, false, 8), "▁▂▃▄▅▆▇█");
+        // Between rows that are far apart it goes straight.
+        assert_eq!(sparkline(&[0.0, 7.0], &[0.0, 7.0], false, 7), "▁▃▄▅▆▇█");
     }
 
     #[test]

@@ -1,177 +1,307 @@
-// Curves over two axes: hover or arrow keys give values.
+// Curves over two axes, drawn by uPlot: a drag zooms, a double click shows all again, the legend has the values at the
+// cursor and switches curves off and on.
 
-const SVG = "http://www.w3.org/2000/svg";
-const css = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const charts = [];
+const FONT = "12px system-ui, sans-serif";
 
-/** An element with attributes and children. */
-function make(name, attributes = {}, ...children) {
-  const node = document.createElement(name);
-  for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
-  node.append(...children);
-  return node;
+/** Ends of an axis for values from `low` to `high`: `room` on both sides, but none below or above zero. */
+function ends(low, high, log, room) {
+  // What differs by rounding only is one value.
+  if (high - low <= 1e-9 * Math.max(Math.abs(low), Math.abs(high))) {
+    if (log) return [low / 2, high * 2];
+    return low === 0 ? [0, 1] : [low - 0.1 * Math.abs(low), high + 0.1 * Math.abs(high)];
+  }
+  if (log) return [low * Math.pow(low / high, room), high * Math.pow(high / low, room)];
+  return [low === 0 ? 0 : low - room * (high - low), high === 0 ? 0 : high + room * (high - low)];
 }
 
-/** Calls `draw` after the width of an element has changed. */
-function onWidth(element, draw) {
-  let width = 0;
-  new ResizeObserver(() => requestAnimationFrame(() => {
-    if (element.clientWidth === width) return;
-    width = element.clientWidth;
-    draw();
-  })).observe(element);
+/** A curve whose x goes back and forth. */
+function track(u, k) {
+  const path = new Path2D();
+  let pen = false;
+  uPlot.orient(u, k, (series, xs, ys, scaleX, scaleY, toX, toY, left, top, width, height) => {
+    for (let n = 0; n < xs.length; n++) {
+      const at = xs[n] === null || ys[n] === null ? null : [toX(xs[n], scaleX, width, left), toY(ys[n], scaleY, height, top)];
+      if (at) path[pen ? "lineTo" : "moveTo"](...at);
+      pen = at !== null;
+    }
+  });
+  return { stroke: path, fill: null, clip: null, band: null, gaps: null, flags: 1 };
 }
 
-function draw(parent, name, attributes, text) {
-  const node = document.createElementNS(SVG, name);
-  for (const [key, value] of Object.entries(attributes)) node.setAttribute(key, value);
-  if (text !== undefined) node.textContent = text;
-  parent.append(node);
-  return node;
-}
-
-/** One chart in `host`: {title, x: {label, unit, log}, y: {label, unit, log}, series: [{name, x, y, points}]}. */
+/**
+ * One chart in `host`, of {title, note, x: {label, unit, log}, y: {label, unit, log}, series: [{name, x, y, points, dashed}],
+ * free, events: [{at, text}], zero, none}. All series have the same x. `free`: x is not sorted. `zero` and `none` are the
+ * words in place of curves that are zero throughout, or that have no value.
+ * Charts with the same `shared` have one cursor and one zoom along x; `pick` is called with the x of a click.
+ */
 class Chart {
-  constructor(host, spec) {
-    this.spec = spec;
-    this.at = null;
+  constructor(host, spec, { shared = null, pick = null } = {}) {
+    this.shared = shared;
+    this.pick = pick;
+    this.chosen = {};
+    this.hidden = new Set();
+    this.heading = make("h3");
+    this.switches = make("span", { class: "switches", role: "group", "aria-label": "Axes" });
     this.legend = make("div", { class: "legend", "aria-live": "polite" });
-    this.svg = document.createElementNS(SVG, "svg");
-    this.svg.setAttribute("tabindex", "0");
-    this.svg.setAttribute("role", "img");
-    this.svg.setAttribute("aria-label", `${spec.title || spec.y.label} over ${spec.x.label}; arrow keys read values`);
-    this.box = make("div", { class: "chart" }, make("h3", {}, spec.title || ""), this.legend, this.svg);
+    this.plot = make("div", { class: "plot", tabindex: "0", role: "img" });
+    this.note = make("p", { class: "note" });
+    this.box = make("div", { class: "chart" }, make("div", { class: "head" }, this.heading, this.switches), this.legend, this.plot, this.note);
     host.append(this.box);
-    this.svg.addEventListener("pointermove", (event) => this.point(event));
-    this.svg.addEventListener("pointerleave", () => this.read(null));
-    this.svg.addEventListener("keydown", (event) => {
+    this.plot.addEventListener("keydown", (event) => {
       const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
-      if (!step) return;
+      if (!step || !this.uplot) return;
       event.preventDefault();
-      const last = this.spec.series[0].x.length - 1;
-      this.read(this.at === null ? (step > 0 ? 0 : last) : Math.min(Math.max(this.at + step, 0), last));
+      this.step(step);
     });
-    this.render();
-    onWidth(this.box, () => this.render());
+    this.set(spec);
+    onWidth(this.box, () => {
+      this.uplot?.setSize(this.size());
+      this.reserve();
+    });
     charts.push(this);
   }
 
+  /** Draws these curves; the zoom and the curves that are switched off stay. */
   set(spec) {
     this.spec = spec;
-    this.at = null;
-    this.render();
+    this.heading.textContent = spec.title || "";
+    this.note.textContent = spec.note || "";
+    this.note.hidden = !spec.note;
+    this.plot.setAttribute("aria-label", `${spec.title || spec.y.label} over ${spec.x.label}; arrow keys read values`);
+    if (!this.uplot || this.words() || this.drawn !== this.form()) return this.build();
+    const zoomed = this.zoomed();
+    this.uplot.setData(this.data(), !zoomed);
+    if (zoomed) this.uplot.redraw();
   }
 
-  /** A mark at a place along x, or null. */
+  /** A logarithmic or linear axis. */
+  use(key, log) {
+    this.chosen[key] = log;
+    this.build();
+  }
+
+  /** A dashed line at a place along x; null for none. */
   mark(x) {
     this.marked = x;
-    this.render();
+    this.lines();
   }
 
-  axis(axis, key, length) {
-    let low = Infinity, high = -Infinity;
-    for (const series of this.spec.series) {
-      for (let n = 0; n < series.x.length; n++) {
-        const [x, y] = [series.x[n], series.y[n]];
-        if (!isFinite(x) || !isFinite(y) || (this.spec.x.log && x <= 0) || (this.spec.y.log && y <= 0)) continue;
-        const value = key === "x" ? x : y;
-        low = Math.min(low, value);
-        high = Math.max(high, value);
-      }
-    }
-    if (low > high) [low, high] = axis.log ? [1, 10] : [0, 1];
-    // What differs by rounding only is one value.
-    if (high - low <= 1e-9 * Math.max(Math.abs(low), Math.abs(high))) [low, high] = axis.log ? [low / 2, high * 2] : low === 0 ? [0, 1] : [low - 0.1 * Math.abs(low), high + 0.1 * Math.abs(high)];
-    const unit = shown(axis.unit || "", Math.max(Math.abs(low), Math.abs(high)));
-    [low, high] = [low * unit.factor, high * unit.factor];
-    const forward = axis.log ? Math.log10 : (v) => v;
-    if (key === "y") {
-      const room = 0.05 * (forward(high) - forward(low));
-      const backward = axis.log ? (v) => Math.pow(10, v) : (v) => v;
-      low = !axis.log && low === 0 ? 0 : backward(forward(low) - room);
-      high = !axis.log && high === 0 ? 0 : backward(forward(high) + room);
-    }
-    const [a, b] = [forward(low), forward(high)];
-    const place = (v) => ((!axis.log || v > 0) ? ((forward(v * unit.factor) - a) / (b - a)) * length : NaN);
-    return { unit, place, ticks: ticks(low, high, length / (key === "x" ? 70 : 38), axis.log), title: axis.label + (unit.text ? ` [${unit.text}]` : "") };
+  /** Shows x from `low` to `high`; all of it without ends. */
+  window(low, high) {
+    if (!this.uplot) return;
+    const [from, to] = low === undefined ? this.whole : [low, high];
+    this.uplot.setScale("x", { min: from, max: to });
   }
 
-  render() {
-    const width = Math.max(this.box.clientWidth, 200), height = Math.round(Math.min(Math.max(width * 0.52, 180), 300));
-    const [left, right, top, bottom] = [64, 10, 8, 42];
-    const [w, h] = [width - left - right, height - top - bottom];
-    const svg = this.svg;
-    svg.replaceChildren();
-    svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    svg.style.height = height + "px";
-    const x = this.axis(this.spec.x, "x", w), y = this.axis(this.spec.y, "y", h);
-    const rule = css("--rule"), soft = css("--soft");
-    for (const { value, text } of x.ticks) {
-      const at = left + x.place(value / x.unit.factor);
-      draw(svg, "line", { x1: at, x2: at, y1: top, y2: top + h, stroke: rule });
-      draw(svg, "text", { x: at, y: top + h + 16, "text-anchor": "middle" }, text);
+  isLog(key) {
+    return (this.chosen[key] ?? this.spec[key].log ?? false) && this.canLog(key);
+  }
+
+  canLog(key) {
+    return !this.spec[key].linear && this.spec.series.some((series) => series[key].some((value) => value > 0));
+  }
+
+  /** What the axes are; a zoom means the same as long as this is the same. */
+  axes() {
+    return ["x", "y"].map((key) => [this.spec[key].label, this.spec[key].unit, this.isLog(key), this.canLog(key)].join()).join();
+  }
+
+  /** All that decides how the chart is built, besides its numbers. */
+  form() {
+    return [this.axes(), ...this.spec.series.map((series) => series.name)].join();
+  }
+
+  /** What stands in place of the curves: null where there is something to draw. */
+  words() {
+    const { series, zero, none, x } = this.spec;
+    const values = series.flatMap((one) => Array.from(one.y).filter((value, n) => isFinite(value) && isFinite(one.x[n])));
+    if (!values.length) return none ?? "There is no value to draw.";
+    if (zero && values.every((value) => value === 0)) return zero;
+    if (this.isLog("x") && !series[0].x.some((value) => value > 0)) return `No ${x.label} above zero.`;
+    return null;
+  }
+
+  /** The columns of uPlot; null where an axis has no place for a value. */
+  data() {
+    const { series, free } = this.spec, [logX, logY] = [this.isLog("x"), this.isLog("y")];
+    const place = (value, log) => (isFinite(value) && (!log || value > 0) ? value : null);
+    const x = Array.from(series[0].x, (value) => place(value, logX));
+    const y = series.map((one) => Array.from(one.y, (value) => place(value, logY)));
+    const shown = x.filter((value) => value !== null);
+    this.whole = ends(shown.reduce((a, b) => Math.min(a, b), Infinity), shown.reduce((a, b) => Math.max(a, b), -Infinity), logX, 0);
+    if (free) return [null, ...y.map((values) => [x, values])];
+    return [x, ...y].map((values) => values.filter((_, n) => x[n] !== null));
+  }
+
+  size() {
+    const width = Math.max(this.box.clientWidth, 200);
+    return { width, height: Math.round(Math.min(Math.max(width * 0.52, 190), 300)) };
+  }
+
+  /** Ticks of an axis as it is shown now: values in SI and texts in the unit shown. */
+  ticks(u, key) {
+    const { min, max } = u.scales[key];
+    const unit = this.unit(u, key);
+    const length = (key === "x" ? u.bbox.width : u.bbox.height) / (window.devicePixelRatio || 1);
+    return ticks(min * unit.factor, max * unit.factor, length / (key === "x" ? 70 : 38), this.isLog(key))
+      .map(({ value, text }) => ({ value: value / unit.factor, text }));
+  }
+
+  unit(u, key) {
+    const { min, max } = u.scales[key], largest = Math.max(Math.abs(min), Math.abs(max));
+    return shownOnAxis(this.spec[key].unit || "", largest, this.isLog(key));
+  }
+
+  axis(key) {
+    const rule = () => css("--rule");
+    return {
+      scale: key, side: key === "x" ? 2 : 3, font: FONT, labelFont: FONT, stroke: () => css("--ink"),
+      size: key === "x" ? 24 : 50, gap: 5, labelSize: 20, labelGap: 0,
+      grid: { stroke: rule, width: 1 }, ticks: { show: false }, border: { show: true, stroke: rule, width: 1 },
+      label: (u) => { const { text } = this.unit(u, key); return this.spec[key].label + (text ? ` [${text}]` : ""); },
+      splits: (u) => this.ticks(u, key).map((tick) => tick.value),
+      values: (u) => this.ticks(u, key).map((tick) => tick.text),
+      filter: (u, splits) => splits,
+    };
+  }
+
+  options() {
+    const { spec } = this, { x, y, free } = spec;
+    const facets = [{ scale: "x", auto: true, sorted: 0 }, { scale: "y", auto: true, sorted: 0 }];
+    const value = (u, v, k, n) => {
+      if (n === null || n === undefined) return "";
+      const [at, is] = free ? [u.data[k][0][n], u.data[k][1][n]] : [null, v];
+      const text = is === null || is === undefined ? "–" : words(is, y.unit || "");
+      return free ? `${text} at ${words(at, x.unit || "")}` : text;
+    };
+    const series = spec.series.map((one, k) => ({
+      label: one.name || y.label, show: !this.hidden.has(one.name), scale: "y", width: 1.8, value,
+      stroke: () => css(`--c${k % 4}`), dash: one.dashed ? [6, 4] : undefined,
+      ...(free ? { facets, paths: track } : {}), ...(one.points ? { paths: () => null } : {}),
+      points: one.points ? { show: true, size: 5, width: 1.2, fill: () => css("--paper") } : free ? { show: false } : { size: 4, space: 14, fill: () => css(`--c${k % 4}`) },
+    }));
+    return {
+      ...this.size(), mode: free ? 2 : 1, padding: [8, 14, 0, 0], pxAlign: 0,
+      scales: {
+        x: { time: false, distr: this.isLog("x") ? 3 : 1, range: (u, low, high) => this.across(u, low, high) },
+        y: { distr: this.isLog("y") ? 3 : 1, range: (u, low, high) => (this.up = low === null ? [1, 10] : ends(low, high, this.isLog("y"), 0.05)) },
+      },
+      axes: [this.axis("x"), this.axis("y")],
+      series: [free ? {} : { label: x.label, value: (u, v) => (v === null || v === undefined ? "" : words(v, x.unit || "")) }, ...series],
+      legend: {
+        mount: (u, table) => this.legend.replaceChildren(table),
+        markers: { width: 3, stroke: (u, k) => `var(--c${(k - 1) % 4})`, fill: () => "none", dash: (u, k) => (spec.series[k - 1].dashed ? "dashed" : spec.series[k - 1].points ? "dotted" : "solid") },
+      },
+      cursor: {
+        y: false, points: { size: 8, width: 0, stroke: (u, k) => css(`--c${(k - 1) % 4}`), fill: (u, k) => css(`--c${(k - 1) % 4}`) },
+        drag: { x: true, y: true, uni: 24, dist: 4 },
+        ...(free ? { dataIdx: (u, k) => this.nearest(u, k) } : {}),
+        ...(this.shared ? { sync: { key: this.shared, scales: ["x", null] } } : {}),
+      },
+      hooks: {
+        setSeries: [(u, k) => { if (k === null) return; const { name } = spec.series[k - 1]; u.series[k].show ? this.hidden.delete(name) : this.hidden.add(name); }],
+        draw: [() => { this.lines(); this.back && (this.back.hidden = !this.zoomed()); }],
+      },
+    };
+  }
+
+  /** The ends of x: those of a zoom, or all of it where uPlot asks for the first and the last point. */
+  across(u, low, high) {
+    if (this.spec.free) return this.whole;
+    const first = u.data[0][0], last = u.data[0].at(-1);
+    return first === last || (low === first && high === last) || !(low < high) ? this.whole : [low, high];
+  }
+
+  zoomed() {
+    if (!this.uplot) return false;
+    const { x, y } = this.uplot.scales;
+    return x.min !== this.whole[0] || x.max !== this.whole[1] || y.min !== this.up[0] || y.max !== this.up[1];
+  }
+
+  build() {
+    const zoom = this.uplot && this.drawnAxes === this.axes() && this.zoomed() ? { ...this.uplot.scales } : null;
+    this.uplot?.destroy();
+    this.uplot = null;
+    [this.drawn, this.drawnAxes] = [this.form(), this.axes()];
+    const words = this.words();
+    this.buttons(words ? [] : ["x", "y"]);
+    this.plot.replaceChildren(...(words ? [make("p", { class: "empty" }, words)] : []));
+    if (words) return this.legend.replaceChildren();
+    this.uplot = new uPlot(this.options(), this.data(), this.plot);
+    this.reserve();
+    if (zoom) for (const key of ["x", "y"]) this.uplot.setScale(key, { min: zoom[key].min, max: zoom[key].max });
+    this.uplot.over.addEventListener("click", () => this.pick?.(this.uplot.posToVal(this.uplot.cursor.left, "x")));
+    for (const name of this.legend.querySelectorAll("tr:not(:first-child) th, .u-series:only-child th")) {
+      name.tabIndex = 0;
+      name.title = "Hide or show this curve";
+      name.addEventListener("keydown", (event) => (event.key === "Enter" || event.key === " ") && (event.preventDefault(), name.click()));
     }
-    for (const { value, text } of y.ticks) {
-      const at = top + h - y.place(value / y.unit.factor);
-      draw(svg, "line", { x1: left, x2: left + w, y1: at, y2: at, stroke: rule });
-      draw(svg, "text", { x: left - 6, y: at + 4, "text-anchor": "end" }, text);
-    }
-    draw(svg, "rect", { x: left, y: top, width: w, height: h, fill: "none", stroke: soft });
-    draw(svg, "text", { x: left + w / 2, y: height - 6, "text-anchor": "middle" }, x.title);
-    draw(svg, "text", { x: 13, y: top + h / 2, "text-anchor": "middle", transform: `rotate(-90 13 ${top + h / 2})` }, y.title);
-    this.where = (n, series) => [left + x.place(series.x[n]), top + h - y.place(series.y[n])];
-    if (this.marked !== undefined && this.marked !== null) {
-      const at = left + x.place(this.marked);
-      if (isFinite(at)) draw(svg, "line", { x1: at, x2: at, y1: top, y2: top + h, stroke: css("--mark"), "stroke-dasharray": "4 3", class: "mark" });
-    }
-    this.spec.series.forEach((series, k) => {
-      const colour = css(`--c${k % 4}`);
-      let path = "", pen = "M";
-      for (let n = 0; n < series.x.length; n++) {
-        const [a, b] = this.where(n, series);
-        if (!isFinite(a) || !isFinite(b)) { pen = "M"; continue; }
-        if (series.points) draw(svg, "circle", { cx: a.toFixed(1), cy: b.toFixed(1), r: 2.2, fill: "none", stroke: colour });
-        else { path += `${pen}${a.toFixed(1)} ${b.toFixed(1)}`; pen = "L"; }
-      }
-      if (path) draw(svg, "path", { d: path, fill: "none", stroke: colour, "stroke-width": 1.8, "stroke-linejoin": "round", "stroke-dasharray": series.dashed ? "6 4" : "none" });
+  }
+
+  /** Room for the legend with values, so that the chart stays where it is when they appear. */
+  reserve() {
+    if (!this.uplot) return;
+    this.legend.style.minHeight = "";
+    const { data, legend } = this.uplot, idxs = [...legend.idxs];
+    this.uplot.setLegend({ idx: (this.spec.free ? data[1][0] : data[0]).length - 1 });
+    this.legend.style.minHeight = `${this.legend.offsetHeight}px`;
+    this.uplot.setLegend({ idxs });
+  }
+
+  /** Switches of the axes, and the way back from a zoom. */
+  buttons(keys) {
+    const one = (key) => {
+      const button = make("button", { type: "button", class: "small", "aria-pressed": String(this.isLog(key)), "data-log": key, title: `Logarithmic ${this.spec[key].label}` }, `log ${key}`);
+      button.addEventListener("click", () => this.use(key, !this.isLog(key)));
+      return button;
+    };
+    this.back = make("button", { type: "button", class: "small back" }, "show all");
+    this.back.hidden = true;
+    this.back.addEventListener("click", () => {
+      const group = this.shared ? charts.filter((chart) => chart.shared === this.shared) : [this];
+      group.forEach((chart) => chart.window());
     });
-    this.cursor = draw(svg, "g", {});
-    this.read(this.at);
+    this.switches.replaceChildren(this.back, ...keys.filter((key) => this.canLog(key)).map(one));
   }
 
-  point(event) {
-    const box = this.svg.getBoundingClientRect();
-    const scale = this.svg.viewBox.baseVal.width / box.width;
-    const [px, py] = [(event.clientX - box.left) * scale, (event.clientY - box.top) * scale];
-    const series = this.spec.series[0];
+  /** The point of a free curve that is nearest to the cursor. */
+  nearest(u, k) {
+    const [xs, ys] = u.data[k], { left, top } = u.cursor;
     let best = null, least = Infinity;
-    for (let n = 0; n < series.x.length; n++) {
-      const [a, b] = this.where(n, series);
-      const distance = Math.abs(a - px) + (this.spec.free ? Math.abs(b - py) : 0);
-      if (distance < least) [best, least] = [n, distance];
+    for (let n = 0; n < xs.length; n++) {
+      if (xs[n] === null || ys[n] === null) continue;
+      const far = Math.hypot(u.valToPos(xs[n], "x") - left, u.valToPos(ys[n], "y") - top);
+      if (far < least) [best, least] = [n, far];
     }
-    this.read(best);
+    return best;
   }
 
-  /** Shows the values of point `n`, or the names only. */
-  read(n) {
-    this.at = n;
-    if (!this.cursor) return;
-    this.cursor.replaceChildren();
-    this.legend.replaceChildren();
-    const { x, y, series } = this.spec;
-    if (n !== null && series[0] && n < series[0].x.length) this.legend.append(make("span", {}, `${x.label} ${words(series[0].x[n], x.unit || "")}`));
-    series.forEach((one, k) => {
-      const colour = `var(--c${k % 4})`;
-      const fill = one.dashed ? `repeating-linear-gradient(90deg, ${colour} 0 4px, transparent 4px 7px)` : colour;
-      const swatch = make("i", { style: `background: ${fill}` });
-      let text = one.name || "";
-      if (n !== null && n < one.x.length) {
-        text += (text ? " " : "") + words(one.y[n], y.unit || "");
-        const [a, b] = this.where(n, one);
-        if (isFinite(a) && isFinite(b)) draw(this.cursor, "circle", { cx: a, cy: b, r: 4, fill: css(`--c${k % 4}`) });
-      }
-      if (text) this.legend.append(make("span", {}, swatch, text));
-    });
+  /** The cursor at the next point, or the first or last one. */
+  step(by) {
+    const u = this.uplot, [xs, ys] = this.spec.free ? u.data[1] : [u.data[0], u.data[1]];
+    const last = xs.length - 1, now = u.cursor.left >= 0 ? u.legend.idxs.find((n) => n !== null && n !== undefined) : undefined;
+    const at = now === undefined ? (by > 0 ? 0 : last) : Math.min(Math.max(now + by, 0), last);
+    u.setCursor({ left: u.valToPos(xs[at], "x"), top: Math.max(u.valToPos(ys[at] ?? u.scales.y.min, "y"), 0) }, true, true);
+  }
+
+  /** The events and the mark, as lines behind the curves. */
+  lines() {
+    const u = this.uplot;
+    if (!u) return;
+    u.under.replaceChildren();
+    const line = (at, name, text) => {
+      if (this.isLog("x") && !(at > 0)) return null;
+      const left = u.valToPos(at, "x");
+      if (isFinite(left)) u.under.append(make("i", { class: name, style: `left: ${left.toFixed(1)}px` }, ...(text ? [make("span", {}, text)] : [])));
+      return left;
+    };
+    let free = -Infinity;
+    for (const { at, text } of this.spec.events ?? []) {
+      const room = u.valToPos(at, "x") >= free;
+      const left = line(at, "event", room ? text : "");
+      if (room && left !== null && left >= 0) free = left + 7 * text.length + 10;
+    }
+    if (this.marked !== undefined && this.marked !== null) line(this.marked, "mark");
   }
 }

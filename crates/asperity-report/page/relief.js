@@ -1,8 +1,9 @@
-// The deformed surface in three dimensions: quadrilaterals, the farthest first.
+// The deformed surface in three dimensions: quadrilaterals, the farthest first, above a frame with the sizes.
 
 class Relief {
-  constructor(canvas) {
+  constructor(canvas, bar) {
     this.canvas = canvas;
+    this.bar = bar;
     this.turn = 0.7;
     this.tilt = 0.55;
     canvas.addEventListener("pointerdown", (event) => {
@@ -29,57 +30,68 @@ class Relief {
     requestAnimationFrame(() => this.render());
   }
 
-  /** Heights and colours (values 0 to 1) of nx by ny cells; thinned to what a screen shows in good time. */
-  show({ nx, ny, z, shade, colours }) {
+  /** Heights z and the values that colour them, of nx by ny cells, with the colours of a map; thinned to what a screen shows in good time. */
+  show(nx, ny, z, values, what) {
     const thin = Math.max(1, Math.ceil(Math.max(nx, ny) / 128));
     this.nx = Math.floor((nx - 1) / thin) + 1;
     this.ny = Math.floor((ny - 1) / thin) + 1;
     this.z = new Float32Array(this.nx * this.ny);
-    this.shade = new Float32Array(this.nx * this.ny);
+    this.entries = new Uint16Array(this.nx * this.ny);
     for (let i = 0; i < this.nx; i++) {
       for (let j = 0; j < this.ny; j++) {
         const from = i * thin * ny + j * thin;
         this.z[i * this.ny + j] = z[from];
-        this.shade[i * this.ny + j] = shade[from];
+        this.entries[i * this.ny + j] = entry(what, values[from], false);
       }
     }
-    this.colours = colours;
+    const finite = this.z.filter((value) => !isNaN(value));
+    this.low = finite.reduce((a, b) => Math.min(a, b), Infinity);
+    this.high = finite.reduce((a, b) => Math.max(a, b), -Infinity);
+    this.what = what;
+    this.fills = palette(what.colours);
+    // Without contact the surface is grey in place of almost white.
+    [150, 158, 166].forEach((part, k) => (this.fills[3 * NO_CONTACT + k] = part));
     this.render();
   }
 
-  render() {
-    const [context, width, height] = sharp(this.canvas, 0.55);
-    context.clearRect(0, 0, width, height);
-    const { nx, ny, z, shade } = this;
-    const [lx, ly] = state.grid.size, long = Math.max(lx, ly);
-    let low = Infinity, high = -Infinity;
-    for (const value of z) if (!isNaN(value)) [low, high] = [Math.min(low, value), Math.max(high, value)];
-    const lift = high > low ? 0.3 / (high - low) : 0;
+  /** Heights of the picture as a share of the longer side; how much they are stretched. */
+  static height = 0.3;
+  stretch() {
+    return (Relief.height * Math.max(...state.grid.size)) / (this.high - this.low);
+  }
+
+  /** Turns a place, in shares of the longer side from the middle, into pixels and the distance from the viewer. */
+  camera(width, height) {
     const [c, s, ct, st] = [Math.cos(this.turn), Math.sin(this.turn), Math.cos(this.tilt), Math.sin(this.tilt)];
-    const size = Math.min(width / 1.45, height / (1.42 * st + 0.3 * ct));
-    const px = new Float32Array(nx * ny), py = new Float32Array(nx * ny), depth = new Float32Array(nx * ny);
+    const size = Math.min(width / 1.6, (height - 30) / (1.42 * st + 0.3 * ct));
+    return (x, y, up) => {
+      const [a, b] = [x * c - y * s, x * s + y * c];
+      return [width / 2 + size * a, height / 2 - 6 - size * (b * st + up * ct), b];
+    };
+  }
+
+  render() {
+    const height = Math.round(Math.max((this.canvas.clientWidth || 300) * 0.55, 230)), [context, width] = sharp(this.canvas, height);
+    context.clearRect(0, 0, width, height);
+    const { nx, ny, z, low, high } = this, [lx, ly] = state.grid.size, long = Math.max(lx, ly);
+    const place = this.camera(width, height), lift = high > low ? Relief.height / (high - low) : 0;
+    const [halfX, halfY] = [0.5 * lx / long, 0.5 * ly / long];
+    const px = new Float32Array(nx * ny), py = new Float32Array(nx * ny);
     for (let i = 0, n = 0; i < nx; i++) {
       for (let j = 0; j < ny; j++, n++) {
-        const x = ((i / Math.max(nx - 1, 1) - 0.5) * lx) / long, y = ((j / Math.max(ny - 1, 1) - 0.5) * ly) / long;
-        const [a, b] = [x * c - y * s, x * s + y * c];
-        const up = (z[n] - 0.5 * (low + high)) * lift;
-        px[n] = width / 2 + size * a;
-        py[n] = height / 2 - size * (b * st + up * ct);
-        depth[n] = b;
+        const [x, y] = [(i / Math.max(nx - 1, 1) - 0.5) * 2 * halfX, (j / Math.max(ny - 1, 1) - 0.5) * 2 * halfY];
+        [px[n], py[n]] = place(x, y, (z[n] - 0.5 * (low + high)) * lift);
       }
     }
-    const lut = LUT[this.colours];
     const order = (count, ascending) => Array.from({ length: count }, (_, k) => (ascending ? k : count - 1 - k));
-    // Back to front along both directions: b = x s + y c grows away from the viewer.
-    for (const i of order(nx - 1, s < 0)) {
-      for (const j of order(ny - 1, c < 0)) {
+    // Back to front along both directions: the distance x s + y c grows away from the viewer.
+    for (const i of order(nx - 1, Math.sin(this.turn) < 0)) {
+      for (const j of order(ny - 1, Math.cos(this.turn) < 0)) {
         const corners = [i * ny + j, (i + 1) * ny + j, (i + 1) * ny + j + 1, i * ny + j + 1];
         if (corners.some((n) => isNaN(z[n]))) continue;
         const slope = (z[corners[1]] - z[corners[0]]) * lift * nx - (z[corners[3]] - z[corners[0]]) * lift * ny;
         const light = Math.min(Math.max(0.86 + 0.22 * slope, 0.45), 1.1);
-        // Where nothing touches the surface is grey.
-        const value = shade[corners[0]], k = 3 * Math.min(Math.max(Math.round(40 + 215 * value), 0), 255);
-        const [r, g, b] = value > 0 ? [lut[k], lut[k + 1], lut[k + 2]] : [150, 158, 166];
+        const from = 3 * this.entries[corners[0]], [r, g, b] = this.fills.slice(from, from + 3);
         context.fillStyle = `rgb(${r * light},${g * light},${b * light})`;
         context.strokeStyle = context.fillStyle;
         context.lineWidth = 0.6;
@@ -91,6 +103,35 @@ class Relief {
         context.stroke();
       }
     }
-    this.range = [low, high];
+    this.sizes(context, width, place, halfX, halfY);
+    colourBar(this.bar, height, { ...this.what, swatches: this.what.colours === "pressure" ? [[[150, 158, 166], "no contact"]] : [] });
+  }
+
+  /** The two front edges of the area with their lengths, and the range of the heights as an upright bar. */
+  sizes(context, width, place, halfX, halfY) {
+    const [lx, ly] = state.grid.size, base = -0.5 * Relief.height;
+    const corners = [[-halfX, -halfY], [halfX, -halfY], [halfX, halfY], [-halfX, halfY]];
+    const nearest = corners.reduce((best, corner, k) => (place(...corner, base)[2] < place(...corners[best], base)[2] ? k : best), 0);
+    context.strokeStyle = context.fillStyle = css("--ink");
+    context.lineWidth = 1.2;
+    const line = (from, to) => {
+      context.beginPath();
+      context.moveTo(from[0], from[1]);
+      context.lineTo(to[0], to[1]);
+      context.stroke();
+    };
+    const front = place(...corners[nearest], base);
+    for (const step of [1, 3]) {
+      const other = corners[(nearest + step) % 4], end = place(...other, base), right = end[0] > front[0];
+      line(front, end);
+      const text = other[1] === corners[nearest][1] ? `x ${words(lx, "m")}` : `y ${words(ly, "m")}`;
+      context.textAlign = right ? "left" : "right";
+      context.fillText(text, 0.5 * (front[0] + end[0]) + (right ? 8 : -8), 0.5 * (front[1] + end[1]) + 16);
+      if (!right || this.high <= this.low) continue;
+      const top = place(...other, base + Relief.height), tall = words(this.high - this.low, "m");
+      line(end, top);
+      context.textAlign = "left";
+      context.fillText(tall, Math.min(top[0] - 12, width - context.measureText(tall).width - 2), top[1] - 6);
+    }
   }
 }

@@ -29,20 +29,22 @@ function shown(unit, largest) {
   return { factor: Math.pow(10, -3 * prefix * exponent), text };
 }
 
-/** A number with four digits. */
+/** A number with four digits, or all those before the point. */
 function digits(value) {
   if (!isFinite(value)) return "–";
   if (value === 0) return "0";
   const size = Math.abs(value);
   if (size >= 1e6 || size < 1e-4) return value.toExponential(3).replace("-", "−");
-  return String(Number(value.toPrecision(4))).replace("-", "−");
+  return String(size >= 1000 ? Math.round(value) : Number(value.toPrecision(4))).replace("-", "−");
 }
 
 /** A quantity with four digits, its prefix and its unit. */
 function words(value, unit) {
   if (!isFinite(value)) return "undefined";
   const { factor, text } = shown(unit, Math.abs(value));
-  return digits(value * factor) + (text ? " " + text : "");
+  const number = digits(value * factor) + (text ? " " + text : "");
+  if (unit !== "s" || Math.abs(value) < 7200) return number;
+  return `${number} (${Math.abs(value) < 86400 ? `${digits(value / 3600)} h` : `${digits(value / 86400)} d`})`;
 }
 
 /** Ticks [{value, text}] between two ends, already in the unit shown. */
@@ -75,4 +77,11 @@ function ticks(low, high, wanted, log) {
     list.push({ value, text: text.replace(/^-(?=0(\.0*)?$)/, "").replace("-", "−") });
   }
   return list;
+}
+
+/** The unit of an axis: long times on a linear axis in hours or days. */
+function shownOnAxis(unit, largest, log) {
+  if (unit === "s" && !log && largest >= 2 * 86400) return { factor: 1 / 86400, text: "d" };
+  if (unit === "s" && !log && largest >= 3 * 3600) return { factor: 1 / 3600, text: "h" };
+  return shown(unit, largest);
 }

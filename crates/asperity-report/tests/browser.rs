@@ -155,10 +155,13 @@ fn the_report_works_in_a_browser() {
             let tolerance = 1e-3 * field[[24, 16]] + largest / 65534.0;
             assert!((value - field[[24, 16]]).abs() <= tolerance, "{shown}: {}", field[[24, 16]]);
         }
-        assert_eq!(text("profile"), "Pressure at y = 51.56 µm");
-        assert_eq!(text("moved"), "Pressure at y = 54.69 µm");
-        assert_eq!(text("turned"), "Pressure at x = 79.69 µm");
+        assert_eq!(text("heading"), "Pressure at t = 50 s");
+        assert_eq!(text("profile"), "Pressure at y = 51.56 µm, t = 0 s");
+        assert_eq!(text("moved"), "Pressure at y = 54.69 µm, t = 0 s");
+        assert_eq!(text("turned"), "Pressure at x = 79.69 µm, t = 0 s");
         assert_eq!(text("played"), "2");
+        colours_follow_their_limits(&seen, &reader);
+        charts_zoom_and_read_values(&seen, &reader);
         let rows = reader.rows().unwrap();
         let last = rows.last().unwrap();
         assert!(text("read").starts_with("time 50 s"), "{seen}");
@@ -167,9 +170,68 @@ fn the_report_works_in_a_browser() {
         for (n, least) in [(0, 10), (1, 10), (2, 20)] {
             assert!(seen["colours"][n].as_u64() >= Some(least), "canvas {n}: {seen}");
         }
-        assert!(seen["charts"].as_u64() >= Some(9), "{seen}");
+        assert!(seen["colours"][3].as_u64() >= Some(10), "bar of the relief: {seen}");
+        // Four over time, load over approach, profile, four of the material, two of the solver, spectrum.
+        assert_eq!(seen["charts"], 13, "{seen}");
         assert_eq!(seen["wide"], true, "nothing is wider than a window of {size}");
+        assert!(text("footer").contains("Leon Sorokin"), "{seen}");
     }
+}
+
+fn number(value: &serde_json::Value) -> f64 {
+    value.as_f64().unwrap_or_else(|| panic!("{value}"))
+}
+
+/// Colours of the first instant, of all, as typed, as typed wrongly, and logarithmic.
+fn colours_follow_their_limits(seen: &serde_json::Value, reader: &Reader) {
+    let largest = |at: At| {
+        let field = reader.field(FieldKind::Pressure, at).unwrap();
+        field.iter().copied().fold(0.0, f64::max)
+    };
+    let common = (0..3).map(|n| largest(At::Index(n))).fold(0.0, f64::max);
+    for (key, high) in [("each", largest(At::Index(0))), ("all", common)] {
+        assert_eq!(seen[key][4], 0, "{seen}");
+        // The number goes through the page unchanged, but for the rounding of texts.
+        assert!((number(&seen[key][5]) - high).abs() <= 1e-12 * high, "{seen}: {high}");
+    }
+    assert_eq!(seen["own"], serde_json::json!(["own", "1", "30", "MPa", 1_000_000, 30_000_000]));
+    assert_eq!(
+        seen["wrong"],
+        serde_json::json!(["true", 30_000_000]),
+        "no number: told, and nothing changes"
+    );
+    assert_eq!([&seen["logGap"][0], &seen["logGap"][1], &seen["logGap"][3]], [true, true, true], "{seen}");
+    assert_eq!(seen["states"], true, "states have no limits");
+}
+
+/// Cursor, zoom, legend and axes of the charts over time, 0 to 50 s in steps of 5 s.
+fn charts_zoom_and_read_values(seen: &serde_json::Value, reader: &Reader) {
+    let text = |key: &str| seen[key].as_str().unwrap_or_else(|| panic!("{key}: {seen}"));
+    let range = |value: &serde_json::Value| [number(&value[0]), number(&value[1])];
+    let middle = &reader.rows().unwrap()[5];
+    let area = (middle.contact_area * 1e12).round();
+    assert!(text("cursor").starts_with(&format!("time 25 s, counted {area} µm²")), "{seen}");
+    let approach = 1e6 * middle.approach;
+    assert!(
+        text("together").starts_with(&format!("time 25 s, approach {approach:.3} µm")),
+        "one cursor: {seen}"
+    );
+    assert!(!text("idle").contains("time"), "no values without a cursor: {seen}");
+    assert_eq!(range(&seen["whole"]), [0.0, 50.0]);
+    // Dragged from a fifth to three fifths of some 450 pixels, and pixels are whole.
+    for chart in [0, 1] {
+        let [from, to] = range(&seen["zoomed"][chart]);
+        assert!((from - 10.0).abs() < 0.5 && (to - 30.0).abs() < 0.5, "{seen}");
+        assert_eq!(range(&seen["unzoomed"][chart]), [0.0, 50.0], "a double click shows all");
+    }
+    assert_eq!([&seen["zoomed"][2], &seen["unzoomed"][2]], [false, true], "the way back shows while zoomed");
+    assert_eq!(seen["hidden"], serde_json::json!([true, true, false, true]), "its name hides a curve");
+    assert_eq!(seen["shown"], serde_json::json!([true, true, true, true]));
+    assert_eq!(seen["logY"], serde_json::json!([3, 1]), "uPlot's number of logarithmic and linear");
+    // The first row after t = 0 is at 5 s.
+    assert_eq!(seen["switched"], serde_json::json!([3, 3, [5, 50]]));
+    assert_eq!(seen["ticks"], serde_json::json!(["5", "10", "20", "50"]));
+    assert_eq!(text("picked"), "0", "a click shows the maps of the nearest instant");
 }
 
 #[test]
@@ -185,8 +247,69 @@ fn the_report_of_a_sweep_over_velocities_works_in_a_browser() {
     assert_eq!(seen["faults"], serde_json::json!([]), "{seen}");
     assert!(seen["last"].as_str().unwrap().starts_with("v = 100 mm/s, load"), "{seen}");
     assert!(seen["read"].as_str().unwrap().starts_with("velocity 100 mm/s"), "{seen}");
+    // Velocities are on a logarithmic axis from the start.
+    assert_eq!(seen["logY"], serde_json::json!([3, 3]));
+    assert_eq!(seen["switched"][0], 1);
     // The theory stands beside the computed area.
     assert!(seen["read"].as_str().unwrap().contains("Persson's theory"), "{seen}");
+}
+
+#[test]
+fn a_report_without_contact_says_so_in_place_of_empty_axes() {
+    let Some(browser) = browser() else {
+        eprintln!("skipped: no Chromium or Chrome on the path");
+        return;
+    };
+    let directory = tempfile::tempdir().unwrap();
+    let apart = CASE
+        .replace("control = \"load\"", "control = \"approach\"")
+        .replace("value = \"0.2 N\"", "value = \"-1 um\"");
+    let reader = solved(&apart, directory.path());
+    let html = page(&reader, &Options::default()).unwrap();
+    let seen = seen(&browser, directory.path(), &html, "1200,900");
+    assert_eq!(seen["faults"], serde_json::json!([]), "{seen}");
+    let words: Vec<&str> =
+        seen["empty"].as_array().unwrap().iter().filter_map(|text| text.as_str()).collect();
+    assert!(words.contains(&"Nothing touches at any time."), "{words:?}");
+    assert!(words.contains(&"The load is zero at all times."), "{words:?}");
+}
+
+/// What a page knows.
+fn state(html: &str) -> serde_json::Value {
+    let (_, rest) = html.split_once("id=\"state\">").unwrap();
+    serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap()
+}
+
+#[test]
+fn a_cyclic_run_has_all_its_cycles_and_the_rows_of_the_last_one() {
+    let directory = tempfile::tempdir().unwrap();
+    let cyclic = CASE
+        .replace(
+            "kind = \"step\", value = \"0.2 N\"",
+            "kind = \"sine\", mean = \"0.2 N\", amplitude = \"0.1 N\", frequency = \"0.1 Hz\"",
+        )
+        .replace("steps = 10\n", "steps = 100\n");
+    let reader = solved(&cyclic, directory.path());
+    let state = state(&page(&reader, &Options::default()).unwrap());
+    let load = reader.series("load").unwrap();
+    let [from, to] = [0, 1].map(|end| usize::try_from(state["last_cycle"][end].as_u64().unwrap()).unwrap());
+    // Five cycles of twenty rows; a row is at each peak, where the load is 0.3 N.
+    assert_eq!(to - from, 20);
+    for row in [from, to] {
+        assert!((load[row] - 0.3).abs() < 1e-9, "{} N in row {row}", load[row]);
+    }
+    let of_stage = &asperity_io::cycles::of_result(&reader).unwrap()[0];
+    let angles: Vec<f64> = of_stage.cycles.iter().map(|cycle| cycle.loss_angle.to_degrees()).collect();
+    let shown = state["cycles"][0]["loss_angle"].as_array().unwrap();
+    assert_eq!(shown.len(), 5);
+    for (shown, angle) in shown.iter().map(number).zip(&angles) {
+        assert!((shown - angle).abs() <= 1e-12 * angle.abs(), "{shown}° for {angle}°: rounding of texts");
+    }
+    // One that is held has neither.
+    let held = directory.path().join("held");
+    std::fs::create_dir(&held).unwrap();
+    let held = self::state(&page(&solved(CASE, &held), &Options::default()).unwrap());
+    assert_eq!([&held["last_cycle"], &held["cycles"]], [&serde_json::Value::Null, &serde_json::json!([])]);
 }
 
 #[test]

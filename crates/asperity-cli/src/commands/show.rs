@@ -101,14 +101,16 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
     line("domain", domain(grid));
     let rows = reader.rows()?;
     let Some(last) = rows.last() else { return Ok(text) };
-    // A curve over the rows, with its ends.
+    // A curve over time or velocity, with its ends.
+    let times: Vec<f64> = rows.iter().map(|row| row.time).collect();
+    let bars = |values: &[f64]| sparkline(&times, values, header.is_sweep(), SPARKS);
     let curve = |value: fn(&asperity::march::Row) -> f64, words: &dyn Fn(f64) -> String| {
         let values: Vec<f64> = rows.iter().map(value).collect();
         let [low, high] =
             values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(*v), b.max(*v)]);
         let (low, high) = (words(low), words(high));
         let ends = if low == high { "unchanged".to_owned() } else { format!("{low} to {high}") };
-        format!("{}  {ends}", sparkline(&values, SPARKS))
+        format!("{}  {ends}", bars(&values))
     };
     let (force, area) = (grid.units("N"), grid.units("m2"));
     let percent = |share: f64| format!("{:.3} %", 100.0 * share);
@@ -124,7 +126,7 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
         let [low, high] =
             mu.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(*v), b.max(*v)]);
         let last = mu.last().copied().unwrap_or(f64::NAN);
-        line("friction", format!("{last:<14.4}{}  {low:.4} to {high:.4}", sparkline(&mu, SPARKS)));
+        line("friction", format!("{last:<14.4}{}  {low:.4} to {high:.4}", bars(&mu)));
     }
     line(
         "load",

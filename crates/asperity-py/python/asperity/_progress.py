@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 from collections.abc import Callable
@@ -18,7 +19,7 @@ class Progress:
         self.total = total
         self.started = time.monotonic()
         self.told = 0.0
-        self.areas: list[float] = []
+        self.rows: list[tuple[float, float]] = []  # time and contact fraction
         self.on = _wanted(on)
         self.show = line_of(on)
 
@@ -26,7 +27,7 @@ class Progress:
         """One row more."""
         if not self.on:
             return
-        self.areas.append(row["contact_fraction"])
+        self.rows.append((row["time"], row["contact_fraction"]))
         now = time.monotonic()
         if now - self.told < PAUSE and (self.total is None or done < self.total):
             return
@@ -41,14 +42,26 @@ class Progress:
 
     def end(self) -> None:
         """Clears the line."""
-        if self.areas:
+        if self.rows:
             self.show(None)
 
     def _sparks(self) -> str:
-        low, high = min(self.areas), max(self.areas)
-        every = max(1, len(self.areas) // 16)
-        width = high - low
-        return "".join(BARS[round(7 * (a - low) / width) if width > 0 else 3] for a in self.areas[::every])
+        return sparkline(self.rows)
+
+
+def sparkline(rows: list[tuple[float, float]], width: int = 16) -> str:
+    """Values over time as bars, each the last value up to its end; over log(time) where half of the rows lie in the first tenth."""
+    positive = [time for time, _ in rows if time > 0]
+    log = len(positive) > 4 and positive[len(positive) // 2] < 0.1 * positive[-1]
+    points = [(math.log(time) if log else time, value) for time, value in rows if time > 0 or not log]
+    low, high = min(value for _, value in points), max(value for _, value in points)
+    first, last = points[0][0], points[-1][0]
+    bars = []
+    for k in range(width if last > first else 1):
+        end = first + (k + 1) / width * (last - first)
+        value = [value for place, value in points if place <= end or last == first][-1] if k + 1 < width else points[-1][1]
+        bars.append(BARS[round(7 * (value - low) / (high - low)) if high > low else 3])
+    return "".join(bars)
 
 
 def _wanted(on: bool | None) -> bool:

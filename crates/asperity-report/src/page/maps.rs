@@ -4,15 +4,15 @@ use asperity_io::store::{At, FieldKind, Reader, StoreError};
 use ndarray::Array2;
 
 use super::Options;
-use super::blob::{packed, range};
+use super::blob::packed;
 use crate::figure::{means, states};
 
 /// The maps of a result, ready for the page.
 pub(super) struct Maps {
     /// Name and bytes of each.
     pub(super) blobs: Vec<(String, Vec<u8>)>,
-    /// The fields: kind and range over all instants.
-    pub(super) fields: Vec<(FieldKind, Option<[f64; 2]>)>,
+    /// The fields that are shown.
+    pub(super) fields: Vec<FieldKind>,
     /// Indices of the instants among those of the result.
     pub(super) instants: Vec<usize>,
     /// Cells of a side of the blocks that became one.
@@ -47,7 +47,7 @@ impl Maps {
         let surface = if with_surface { super::surface::surface(reader)? } else { None };
         Ok(Maps {
             blobs: Vec::new(),
-            fields: kinds(reader).into_iter().map(|kind| (kind, None)).collect(),
+            fields: kinds(reader),
             instants: (0..reader.field_times().len()).collect(),
             block: 1,
             surface: surface.map_or(serde_json::Value::Null, |(_, words)| words),
@@ -67,20 +67,13 @@ impl Maps {
             blobs.push(("surface".to_owned(), packed(means(heights.view(), block).view())));
             surface = words;
         }
-        let mut fields = Vec::new();
         for kind in kinds {
-            let mut ends: Option<[f64; 2]> = None;
             for (n, index) in instants.iter().enumerate() {
                 let map = one(reader, *kind, At::Index(*index), block)?;
-                ends = match (ends, range(map.view())) {
-                    (Some([a, b]), Some([low, high])) => Some([a.min(low), b.max(high)]),
-                    (ends, range) => ends.or(range),
-                };
                 blobs.push((format!("{}-{n}", kind.name()), packed(map.view())));
             }
-            fields.push((*kind, ends));
         }
-        Ok(Maps { blobs, fields, instants: instants.to_vec(), block, surface })
+        Ok(Maps { blobs, fields: kinds.to_vec(), instants: instants.to_vec(), block, surface })
     }
 }
 

@@ -23,13 +23,23 @@ use base64::engine::general_purpose::STANDARD;
 
 const PAGE: &str = include_str!("../../page/page.html");
 const STYLE: &str = include_str!("../../page/style.css");
-const SCRIPT: [&str; 5] = [
+/// In the order in which they use one another; all are one script.
+const SCRIPT: [&str; 10] = [
     include_str!("../../page/units.js"),
+    include_str!("../../page/dom.js"),
     include_str!("../../page/chart.js"),
     include_str!("../../page/maps.js"),
+    include_str!("../../page/colours.js"),
     include_str!("../../page/relief.js"),
+    include_str!("../../page/curves.js"),
+    include_str!("../../page/fields.js"),
+    include_str!("../../page/controls.js"),
     include_str!("../../page/main.js"),
 ];
+/// uPlot 1.6.32 as published in the npm registry, which draws the curves.
+const LIBRARY: &str = include_str!("../../page/uplot/uPlot.iife.min.js");
+const LIBRARY_STYLE: &str = include_str!("../../page/uplot/uPlot.min.css");
+const LIBRARY_LICENSE: &str = include_str!("../../page/uplot/LICENSE-uPlot");
 
 /// How a report is made.
 #[derive(Clone, Debug, PartialEq)]
@@ -113,6 +123,9 @@ fn filled_page(reader: &Reader, state: &serde_json::Value, blobs: &str) -> Strin
     filled(&[
         ("title", &escaped(&state::title(reader))),
         ("style", STYLE),
+        ("library", LIBRARY),
+        ("library-style", LIBRARY_STYLE),
+        ("library-license", &escaped(LIBRARY_LICENSE)),
         // A text inside of a script must not end it.
         ("state", &state.to_string().replace('<', "\\u003c")),
         ("blobs", blobs),

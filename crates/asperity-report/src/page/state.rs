@@ -1,5 +1,7 @@
 //! What a page knows besides its maps.
 
+use asperity::cycles::Cycle;
+use asperity_io::cycles;
 use asperity_io::leakage::LeakHistory;
 use asperity_io::readable::quantity;
 use asperity_io::store::{FieldKind, Reader, Status, StoreError};
@@ -7,7 +9,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Map, Value, json};
 
-use super::facts::facts;
+use super::facts::{facts, time};
 use super::maps::Maps;
 use super::{material, stress};
 use crate::figure::Colours;
@@ -66,7 +68,7 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
     Ok(json!({
         "title": title(reader),
         "status": status(reader),
-        "footer": format!("asperity {}; every number in SI units with prefixes.", reader.header().version),
+        "footer": format!("asperity {}; numbers in SI units with prefixes.", reader.header().version),
         "findings": asperity_io::finding::list(reader.findings()),
         "headline": headline(reader)?,
         "facts": facts(reader)?,
@@ -75,6 +77,8 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
         "series": series,
         "units": units,
         "rows": {"label": rows.label, "unit": rows.unit, "symbol": rows.symbol, "log": rows.log},
+        "last_cycle": last_cycle(reader)?,
+        "cycles": each_cycle(reader)?,
         "quantities": quantities(reader, theory.is_some()),
         "fields": maps.fields.iter().map(field).collect::<Vec<_>>(),
         "instants": instants.collect::<Vec<_>>(),
@@ -89,6 +93,32 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
         "stress": stress::curves(reader)?,
         "leak": leak(reader)?,
     }))
+}
+
+/// Rows of the last full cycle: of the load or, where this is held, of the approach; null where there are not three peaks.
+fn last_cycle(reader: &Reader) -> Result<Value, StoreError> {
+    if reader.header().is_sweep() {
+        return Ok(Value::Null);
+    }
+    let rows = match crate::result::last_cycle(&reader.series("load")?) {
+        Some(rows) => Some(rows),
+        None => crate::result::last_cycle(&reader.series("approach")?),
+    };
+    Ok(rows.map_or(Value::Null, |rows| json!([rows.start(), rows.end()])))
+}
+
+/// Loss angle \[°\], lost energy and stiffness of each full cycle, for each stage with a sine.
+fn each_cycle(reader: &Reader) -> Result<Value, StoreError> {
+    let of_stage = |part: &cycles::Cyclic| {
+        let column = |value: fn(&Cycle) -> f64| part.cycles.iter().map(value).collect::<Vec<f64>>();
+        json!({
+            "frequency": part.frequency,
+            "loss_angle": column(|cycle| cycle.loss_angle.to_degrees()),
+            "dissipated_energy": column(|cycle| cycle.dissipated_energy),
+            "stiffness": column(|cycle| cycle.stiffness),
+        })
+    };
+    Ok(cycles::of_result(reader)?.iter().map(of_stage).collect())
 }
 
 /// The leaks over time, what was asked for and what was found in words; null where there are none.
@@ -122,7 +152,7 @@ fn quantities(reader: &Reader, theory: bool) -> Vec<Value> {
         .collect()
 }
 
-fn field((kind, range): &(FieldKind, Option<[f64; 2]>)) -> Value {
+fn field(kind: &FieldKind) -> Value {
     let (title, label, colours) = match kind {
         FieldKind::Pressure => ("Pressure", "pressure", "pressure"),
         FieldKind::Gap => ("Gap", "gap", "sequential"),
@@ -131,7 +161,7 @@ fn field((kind, range): &(FieldKind, Option<[f64; 2]>)) -> Value {
         FieldKind::Contact => ("Contact", "state", "states"),
     };
     json!({
-        "name": kind.name(), "title": title, "label": label, "unit": kind.units(), "colours": colours, "range": range,
+        "name": kind.name(), "title": title, "label": label, "unit": kind.units(), "colours": colours,
     })
 }
 
@@ -166,8 +196,19 @@ fn headline(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
         true => "contact length".to_owned(),
         false => format!("contact area, {} corrected", quantity(last.contact_area_corrected, area)),
     };
+    let nominal = quantity(last.mean_pressure, "Pa");
+    let pressures = match last.contact_area > 0.0 {
+        true => {
+            let mean = quantity(last.load / last.contact_area, "Pa");
+            format!("largest pressure; mean over the contact {mean}, nominal {nominal}")
+        }
+        false => "largest pressure; nothing touches".to_owned(),
+    };
     let mut lines = vec![
-        [format!("{} (last of {} rows)", axis.label, rows.len()), quantity(last.time, axis.unit)],
+        [
+            format!("{} (last of {} rows)", axis.label, rows.len()),
+            if reader.header().is_sweep() { quantity(last.time, axis.unit) } else { time(last.time) },
+        ],
         ["load".into(), quantity(last.load, force)],
         ["approach".into(), quantity(last.approach, "m")],
         [contact, quantity(last.contact_area, area)],
@@ -176,14 +217,7 @@ fn headline(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
             format!("{:.2} %", 100.0 * last.contact_fraction),
         ],
         ["mean gap".into(), quantity(last.mean_gap, "m")],
-        [
-            format!(
-                "largest pressure; mean over the contact {}, nominal {}",
-                quantity(last.load / last.contact_area, "Pa"),
-                quantity(last.mean_pressure, "Pa")
-            ),
-            quantity(last.max_pressure, "Pa"),
-        ],
+        [pressures, quantity(last.max_pressure, "Pa")],
     ];
     if last.capped_area > 0.0 {
         lines.push(["at the hardness".into(), quantity(last.capped_area, area)]);

@@ -16,10 +16,23 @@ fn texts_of_a_case_cannot_become_markup() {
 
 #[test]
 fn the_page_asks_for_nothing_from_elsewhere() {
-    let page = filled(&[("style", STYLE), ("script", &SCRIPT.concat())]);
-    for sign in ["https://", "src=", "@import", "url("] {
+    // The library names its home in a comment; nothing else may look like an address.
+    let library = LIBRARY.replacen("https://github.com/leeoniya/uPlot (v1.6.32)", "", 1);
+    let parts = [
+        ("style", STYLE),
+        ("library-style", LIBRARY_STYLE),
+        ("library", library.as_str()),
+        ("script", &SCRIPT.concat()),
+    ];
+    let page = filled(&parts);
+    for sign in ["https://", "http://", "src=", "@import", "url("] {
         assert!(!page.contains(sign), "{sign}");
     }
-    let foreign = page.replace("http://www.w3.org/2000/svg", "");
-    assert!(!foreign.contains("http://"));
+}
+
+#[test]
+fn the_page_holds_the_licence_of_the_library_that_draws_its_curves() {
+    assert!(LIBRARY.starts_with("/*! https://github.com/leeoniya/uPlot (v1.6.32) */"));
+    let page = filled(&[("library-license", &escaped(LIBRARY_LICENSE))]);
+    assert!(page.contains("Copyright (c) 2022 Leon Sorokin") && page.contains("shall be included in"));
 }

@@ -140,7 +140,7 @@ pub(super) fn load_displacement(reader: &Reader) -> Result<Figure, StoreError> {
 
 /// Rows from the last but one to the last peak of a course that has three of them or more. A peak is higher than the lowest value
 /// on both sides, back to the next higher one, by a tenth of the range.
-fn last_cycle(course: &[f64]) -> Option<std::ops::RangeInclusive<usize>> {
+pub(crate) fn last_cycle(course: &[f64]) -> Option<std::ops::RangeInclusive<usize>> {
     let ends = course.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(*v), b.max(*v)]);
     let least = 0.1 * (ends[1] - ends[0]);
     let (mut peaks, mut top, mut bottom) = (vec![], 0, 0);
@@ -160,7 +160,8 @@ fn last_cycle(course: &[f64]) -> Option<std::ops::RangeInclusive<usize>> {
         }
     }
     match peaks[..] {
-        [.., _, from, to] if least > 0.0 => Some(from..=to),
+        // A constant course differs by rounding.
+        [.., _, from, to] if least > 1e-9 * ends[0].abs().max(ends[1].abs()) => Some(from..=to),
         _ => None,
     }
 }

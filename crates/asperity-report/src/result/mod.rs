@@ -28,9 +28,10 @@ use asperity_io::store::{At, FieldKind, Reader, StoreError};
 use asperity_io::stress::StressError;
 use serde_json::Value;
 
-pub(crate) use evolution::quantity_panels;
+pub(crate) use evolution::{last_cycle, quantity_panels};
 pub(crate) use friction::persson;
 pub(crate) use rows::Rows;
+pub use rows::is_logarithmic;
 pub use stress::stress_figure;
 pub use together::together;
 

@@ -17,9 +17,11 @@ pub(crate) struct Rows {
 impl Rows {
     pub(crate) fn of(reader: &Reader) -> Result<Rows, StoreError> {
         let values = reader.series("time")?;
-        Ok(match reader.header().is_sweep() {
-            true => Rows { label: "velocity", unit: "m/s", symbol: "v", log: spans_a_decade(&values) },
-            false => Rows { label: "time", unit: "s", symbol: "t", log: crowds_the_start(&values) },
+        let sweep = reader.header().is_sweep();
+        let log = is_logarithmic(&values, sweep);
+        Ok(match sweep {
+            true => Rows { label: "velocity", unit: "m/s", symbol: "v", log },
+            false => Rows { label: "time", unit: "s", symbol: "t", log },
         })
     }
 
@@ -30,6 +32,11 @@ impl Rows {
             false => Axis::linear(self.label, self.unit),
         }
     }
+}
+
+/// Whether a logarithmic axis shows these times \[s\], or velocities \[m/s\] of a sweep, better than a linear one.
+pub fn is_logarithmic(values: &[f64], sweep: bool) -> bool {
+    if sweep { spans_a_decade(values) } else { crowds_the_start(values) }
 }
 
 fn spans_a_decade(values: &[f64]) -> bool {

@@ -1,0 +1,198 @@
+// The charts of the page: what the rows follow, the solver, the material, the stress, the leak.
+
+const chosen = { field: null, instant: 0, along: "x", share: 0.5 };
+
+/** A series whose infinite numbers, null in JSON, are gaps. */
+const numbers = (key) => state.series[key].map((value) => value ?? NaN);
+const plain = (unit) => (unit === "1" ? "" : unit);
+
+/** Charts of one part of the page, made once and given new numbers later. */
+class Panels {
+  constructor(id, options) {
+    this.id = id;
+    this.options = options;
+    this.charts = [];
+  }
+
+  set(specs) {
+    specs.forEach((spec, k) => (this.charts[k] ? this.charts[k].set(spec) : this.charts.push(new Chart($(this.id), spec, this.options))));
+  }
+}
+
+// Charts over the rows have one cursor and one zoom; a click shows the maps of that time.
+const overRows = { shared: "rows", pick: (at) => showNearest(at) };
+const evolution = new Panels("evolution", overRows);
+const loading = new Panels("evolution", {});
+const cyclesOf = new Panels("evolution", { shared: "cycle number" });
+const solver = new Panels("solver", { shared: "row number" });
+const leaks = new Panels("leaks", overRows);
+const stresses = new Panels("stress-curves", overRows);
+const materials = new Panels("curves", {});
+const spectra = new Panels("spectrum", {});
+
+/** The panels that every result has: title, label, and the series by name. */
+const ALWAYS = [
+  state.grid.line
+    ? ["Contact length", "contact length", [["", "contact_area"], ["at the hardness", "capped_area"]]]
+    : ["Contact area", "contact area", [["counted", "contact_area"], ["corrected", "contact_area_corrected"], ["at the hardness", "capped_area"],
+        ...(state.series.persson_contact_area ? [["Persson's theory", "persson_contact_area"]] : [])]],
+  ["Approach", "approach", [["", "approach"]]],
+  ["Load", "load", [["", "load"]]],
+  ["Pressure", "pressure", [["nominal mean", "mean_pressure"], ["largest", "max_pressure"], ["mean over the contact", "contact_pressure"]]],
+];
+/** Words in place of curves that are zero at all times. */
+const ZERO = { contact_area: "Nothing touches at any time.", mean_pressure: "No pressure: nothing touches at any time.",
+  contact_spots: "No contact spots: nothing touches at any time.", largest_spot: "No contact spots: nothing touches at any time." };
+
+const rowsAxis = () => ({ label: state.rows.label, unit: state.rows.unit, log: state.rows.log });
+
+/** Where the stages of the load begin, with their number. */
+function stages() {
+  const stage = state.series.stage ?? [];
+  return stage.flatMap((now, n) => (n > 0 && now !== stage[n - 1] ? [{ at: state.series.time[n], text: `stage ${now + 1}` }] : []));
+}
+
+function evolutionPart() {
+  const time = state.series.time, events = stages();
+  evolution.set([...ALWAYS, ...state.quantities].map(([title, label, names]) => ({
+    title,
+    x: rowsAxis(),
+    y: { label, unit: plain(state.units[names[0][1]]) },
+    zero: ZERO[names[0][1]],
+    none: names[0][1] in ZERO ? ZERO[names[0][1]] : undefined,
+    events,
+    series: names.filter(([, key]) => key !== "capped_area" || state.series[key].some((value) => value > 0))
+      .map(([name, key]) => ({ name, x: time, y: numbers(key), dashed: key.startsWith("persson") })),
+  })));
+  const over = (title, from, to) => ({
+    title, free: true, x: { label: "approach", unit: "m" }, y: { label: "load", unit: state.units.load },
+    zero: "The load is zero at all times.",
+    series: [{ name: "", x: numbers("approach").slice(from, to), y: numbers("load").slice(from, to) }],
+  });
+  const cycle = state.last_cycle;
+  loading.set([over("Load over approach"), ...(cycle ? [over("Load over approach, last cycle", cycle[0], cycle[1] + 1)] : [])]);
+  $("last-cycle").hidden = !cycle;
+  cyclesOf.set(state.cycles.filter((part) => part.loss_angle.length > 1).flatMap(cyclePanels));
+}
+
+/** What each cycle of a sine loses, over its number. */
+function cyclePanels(part) {
+  const panel = (title, label, unit, values) => ({
+    title: `${title}, cycles at ${words(part.frequency, "Hz")}`,
+    x: { label: "cycle", unit: "", linear: true }, y: { label, unit },
+    series: [{ name: "", x: values.map((_, n) => n + 1), y: values.map((value) => value ?? NaN) }],
+  });
+  const line = state.grid.line ? "/m" : "";
+  return [panel("Loss angle", "loss angle", "°", part.loss_angle), panel("Energy lost in a cycle", "energy", `J${line}`, part.dissipated_energy),
+    panel("Dynamic stiffness", "stiffness", `N/m${line ? "2" : ""}`, part.stiffness)];
+}
+
+function solverPart() {
+  const row = { label: "row", unit: "", linear: true };
+  const points = (name, key) => ({ name, x: state.series.time.map((_, n) => n), y: numbers(key), points: true });
+  solver.set([
+    { title: "Work of each row", x: row, y: { label: "number", unit: "" }, series: [points("iterations", "iterations"), points("convolutions", "convolutions")] },
+    { title: "Error of each row", x: row, y: { label: "relative error", unit: "", log: true }, zero: "The error is zero in all rows.",
+      series: [points("contact conditions (residual)", "residual"), points("pressure (certificate)", "certificate")] },
+  ]);
+}
+
+function materialPart() {
+  const m = state.material;
+  $("material").hidden = !m;
+  if (!m) return;
+  const time = { label: "time", unit: "s", log: true }, frequency = { label: "frequency", unit: "Hz", log: true };
+  materials.set([
+    { title: "Contact creep compliance C(t)", x: time, y: { label: "compliance", unit: "1/Pa" }, series: [{ name: "", x: m.time, y: m.creep }] },
+    ...(m.relaxation ? [{ title: "Contact relaxation modulus E*(t)", x: time, y: { label: "modulus", unit: "Pa", log: m.decades > 1 }, series: [{ name: "", x: m.time, y: m.relaxation }] }] : []),
+    { title: "Storage and loss modulus", x: frequency, y: { label: "modulus", unit: "Pa", log: true }, series: [{ name: "storage", x: m.frequency, y: m.storage }, { name: "loss", x: m.frequency, y: m.loss, dashed: true }] },
+    { title: "Loss tangent", x: frequency, y: { label: "tan δ", unit: "" }, zero: "tan δ is zero at all frequencies: nothing is lost.", series: [{ name: "", x: m.frequency, y: m.tangent }] },
+  ]);
+}
+
+/** The stress below the surface: its picture is drawn once, as it is complete when it appears. */
+function stressPart() {
+  const s = state.stress;
+  $("stress").hidden = !s;
+  if (!s || $("stress-facts").children.length) return;
+  $("stress-facts").replaceChildren(...terms(s.facts));
+  const lines = [["von Mises", "mises"], ["shear (Tresca)", "tresca"], ["largest principal", "tension"]];
+  if (s.time.length > 1) {
+    stresses.set([{ title: "Largest stress below the surface", x: rowsAxis(), y: { label: "stress", unit: "Pa" }, zero: "No stress: nothing touches at any time.",
+      series: lines.map(([name, key]) => ({ name, x: s.time, y: s[key].map((value) => value ?? NaN) })) }]);
+  }
+  $("stress-figure").hidden = !s.svg && !state.live;
+  if (s.svg) $("stress-picture").src = "data:image/svg+xml;base64," + s.svg;
+  else if (state.live) $("stress-picture").src = "stress.svg";
+}
+
+/** Where the seal closes and opens: events, and a sentence of the first time that it closes. */
+function sealing(time, open) {
+  const events = open.flatMap((now, n) => (n > 0 && !now !== !open[n - 1] ? [{ at: time[n], text: now ? "leaks again" : "tight" }] : []));
+  const closed = events.find((event) => event.text === "tight");
+  const unit = state.rows.unit;
+  const note = closed ? `Tight at ${state.rows.symbol} = ${words(closed.at, unit)}: no open path from inlet to outlet. Zero has no place on a logarithmic axis.` : "";
+  return [events, note];
+}
+
+function leakPart() {
+  const leak = state.leak;
+  $("leakage").hidden = !leak;
+  if (!leak) return;
+  const x = leak.leak_time.values, open = leak.percolates.values, [events, note] = sealing(x, open);
+  const values = (key, factor = 1) => leak[key].values.map((value) => (value === null ? NaN : factor * value));
+  const line = (name, key, dashed, factor) => ({ name, x, y: values(key, factor), dashed });
+  const none = `The seal is tight at all ${state.rows.label === "time" ? "times" : "velocities"}: no open path from inlet to outlet.`;
+  const specs = [
+    { title: "Gaps", note, none, zero: none, events, x: rowsAxis(), y: { label: "gap", unit: "m", log: true }, series: [line("hydraulic", "hydraulic_gap"), line("critical", "critical_gap")] },
+    { title: "Open cells", events, x: rowsAxis(), y: { label: "share of the domain", unit: "" }, zero: "No cell is open.", series: [{ name: "", x, y: leak.open_fraction.values }] },
+  ];
+  if (leak.leak_rate) {
+    const gas = leak.leak_rate_standard;
+    // kg/s of a gas to mbar l/s: a factor that the gas alone decides.
+    const ratios = gas ? gas.values.map((standard, n) => (10 * standard) / leak.leak_rate.values[n]).filter(isFinite) : [];
+    const factor = ratios.length ? ratios[0] : 1;
+    specs.unshift({ title: "Leak rate", note, none, zero: none, events, x: rowsAxis(), y: { label: "leak rate", unit: gas ? "mbar l/s" : "m3/s", log: true },
+      series: [line("computed", "leak_rate", false, factor), line("one junction", "leak_estimate_junction", true, factor), line("effective medium", "leak_estimate_medium", true, factor)] });
+  }
+  leaks.set(specs);
+  $("leak-asked").textContent = leak.asked;
+  $("leak-words").textContent = leak.found;
+  if (state.leak_map) $("leak-map").innerHTML = state.leak_map;
+  else if (state.live && !$("leak-map").children.length) $("leak-map").append(make("img", { src: "leak.svg", alt: "Passages and flow" }));
+}
+
+async function surfacePart() {
+  const s = state.surface;
+  $("surface").hidden = !s;
+  if (!s) return;
+  const map = await load("surface");
+  if (map) {
+    const [low, high] = robust(map);
+    heights.show({ map, colours: "sequential", low, high, unit: "m", label: "height" });
+    $("height-note").textContent = `${s.note}${outside(extent(map), low, high, "m")}`;
+  }
+  $("statistics").replaceChildren(...terms(s.statistics));
+  if (s.wave_number) spectra.set([{ title: "Radially averaged power spectrum", x: { label: "wavenumber", unit: "1/m", log: true }, y: { label: "C(q)", unit: "m4", log: true }, series: [{ name: "", x: s.wave_number, y: s.power }] }]);
+}
+
+/** The switches of the axis that all charts over the rows share. */
+function axisSwitches() {
+  const buttons = [...document.querySelectorAll("[data-time]")];
+  const group = () => [...evolution.charts, ...leaks.charts, ...stresses.charts];
+  buttons.forEach((button) => {
+    button.textContent = `${button.dataset.time === "log" ? "logarithmic" : "linear"} ${state.rows.label}`;
+    button.addEventListener("click", () => {
+      state.rows.log = button.dataset.time === "log";
+      press(buttons, button);
+      group().forEach((chart) => chart.use("x", state.rows.log));
+      markInstant();
+    });
+  });
+  press(buttons, buttons.find((button) => (button.dataset.time === "log") === state.rows.log));
+  $("h-evolution").textContent = `Over ${state.rows.label}`;
+  $("last-cycle").addEventListener("click", () => {
+    const [from, to] = state.last_cycle.map((row) => state.series.time[row]);
+    group().forEach((chart) => chart.window(from, to));
+  });
+}

@@ -132,6 +132,20 @@ fn layers_that_creep_differently_are_described_by_their_waves() {
 }
 
 #[test]
+fn a_free_line_contact_of_layers_is_refused_at_the_layer() {
+    let line = TREAD
+        .replace("cells = [32, 32]", "cells = [32]")
+        .replace("size = [\"40 mm\", \"40 mm\"]", "size = [\"40 mm\"]")
+        .replace("\"sphere\"", "\"cylinder\"")
+        .replace("\"5 N\"", "\"5 N/mm\"");
+    let errors = parse(&line).expect_err("not computed").errors;
+    assert_eq!((errors.len(), errors[0].key.as_str()), (1, "body[0].layer[0]"), "{}", errors[0]);
+    assert!(errors[0].to_string().contains("boundary = \"periodic\""), "{}", errors[0]);
+    let periodic = line.replace("[[surface]]", "boundary = \"periodic\"\n[[surface]]");
+    parse(&periodic).unwrap_or_else(|errors| panic!("{errors}"));
+}
+
+#[test]
 fn a_rigid_base_needs_a_layer() {
     let bare = "[domain]\ncells = [8, 8]\nsize = [1, 1]\n[[surface]]\nkind = \"sphere\"\nradius = 9\n[[body]]\nbase = \"rigid\"\n\
                 [load]\ncontrol = \"load\"\nhistory = { kind = \"step\", value = 1 }\n[time]\nend = 1\nsteps = 1\n";

@@ -31,6 +31,8 @@ const SPACINGS: [f64; 3] = [0.4, 0.3, 0.2];
 const MOST: usize = 48;
 /// Weight of the row that sets the relaxed compliance, over the other rows.
 const EXACT: f64 = 1e3;
+/// A wave whose compliance rises by less than this share does not creep.
+const STILL: f64 = 1e-6;
 /// Weights below this share of the relaxed compliance are left out.
 const NONE: f64 = 1e-10;
 /// Waves on which the fit is judged.
@@ -150,7 +152,7 @@ impl Inseparable {
         if !(*glassy > 0.0 && relaxed.is_finite() && rise >= -TOLERANCE * relaxed) {
             return None;
         }
-        if rise <= NONE * relaxed {
+        if rise <= STILL * relaxed {
             return Some((Creep::elastic(*glassy), rise.abs() / relaxed));
         }
         // Rows of C~ - S_0 over C~.

@@ -309,12 +309,12 @@ impl March {
     /// The first half of a step of given length, where the error of such steps is estimated and no third state is known: the error
     /// of layers that creep differently. Returns its length.
     fn solve_half(&mut self, instant: Instant) -> Result<Option<f64>> {
-        let known = self.timeline.smooth() && self.knows_the_state_before();
         let moves = !matches!(self.drive(instant), Drive::Apart | Drive::Held);
         let Past::Waves(waves) = &mut self.past else { return Ok(None) };
         if self.timeline.pace().is_some() || instant.jump || instant.dt == 0.0 {
             return Ok(None);
         }
+        let known = self.timeline.smooth() && waves.leaves_a_third();
         if !self.timeline.smooth() {
             waves.first_step(instant.dt, None, false);
         }

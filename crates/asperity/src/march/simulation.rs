@@ -171,8 +171,9 @@ impl Simulation {
         let waves = self.layers.as_ref().map_or(0, |layers| {
             let wide = self.boundary == Boundary::Free && layers.creeps_far_away();
             let [mx, my] = if wide { wide::lengths(grid) } else { operator::torus(grid, self.boundary) };
-            // Four terms to a wave are usual: their states and moduli, u, g, and one eigenvalue for each node while they are planned.
-            mx * (my / 2 + 1) * (16 * (4 + 2) + 8 * 4 + 4 * (layers.nodes() + 2))
+            // Four terms to a wave are usual: their states and moduli, u, g, a third u and what its error takes, and one eigenvalue for
+            // each node while they are planned.
+            mx * (my / 2 + 1) * (16 * (4 + 8) + 8 * 4 + 4 * (layers.nodes() + 2))
         });
         operator::bytes(grid, self.boundary)
             + waves
@@ -236,7 +237,10 @@ impl Simulation {
             return Err(Error::invalid("gap", "infinite everywhere", "finite in one cell at least"));
         }
         if self.boundary == Boundary::Free {
-            self.kernel.check(self.grid.spacing())?;
+            match self.grid.is_line() {
+                true => _ = self.kernel.strip(self.grid.spacing()[0], 1)?,
+                false => self.kernel.check(self.grid.spacing())?,
+            }
         }
         let widest = self.grid.longest_side();
         if let Some(depth) = self.kernel.depth()

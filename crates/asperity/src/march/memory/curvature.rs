@@ -24,6 +24,11 @@ impl Spectral {
         self.reference.is_some_and(|reference| reference.length < 0.0)
     }
 
+    /// Whether the state before the last step will be the third one of the next.
+    pub(in crate::march) fn leaves_a_third(&self) -> bool {
+        self.under_way == UnderWay::Contact && self.length > 0.0
+    }
+
     /// A smooth piece of the course begins. Its first step may be so long \[s\], at most `longest`, while the load goes at the rate
     /// `load` (of a prescribed load), `after_jump` or not.
     pub(in crate::march) fn first_step(&mut self, longest: f64, load: Option<f64>, after_jump: bool) -> f64 {
@@ -58,47 +63,62 @@ impl Spectral {
         let b = |tau: f64| Share { taken: 2.0 * remembered_defect(self.length, whole, tau), left: 0.0 };
         let weights = self.waves.sum_of_new(&self.waves.table(self.length, b));
         let (Spectrum(p), u) = self.fresh(ends.now.0);
-        // ε^, E_inf u' and u' - u, and the mean of the weights over the pressure.
-        let count = u.len();
-        let [mut curved, mut relaxed, mut change] = [(); 3].map(|()| Vec::with_capacity(count));
+        // ε^, and the mean of the weights over the pressure.
+        let mut curved = Vec::with_capacity(u.len());
         let (mut weighted, mut square) = (0.0, 0.0);
         for (n, u_now) in u.iter().enumerate() {
-            let wave = self.waves.quarter_of(n);
-            let (u, weight, size) = (self.displacement[n], weights[wave], p[n].norm_sqr());
-            let second = ((self.third[n] - u) / third - (u_now - u) / step) / (third - step) * step * step;
+            let (start, weight, size) = (self.displacement[n], weights[self.waves.quarter_of(n)], p[n].norm_sqr());
+            let second =
+                ((self.third[n] - start) / third - (u_now - start) / step) / (third - step) * step * step;
             curved.push(second * weight);
-            relaxed.push(u_now * self.waves.relaxed_modulus(wave));
-            change.push(u_now - u);
             weighted += weight * size;
             square += size;
         }
         let weight = if square > 0.0 { weighted / square } else { 0.0 };
-        let fields = [curved, relaxed, change].map(|waves| {
-            let mut field = vec![0.0; rigid.len()];
-            self.torus.back_of(&waves, &mut field);
-            field
+        let curved = self.field(&curved);
+        let touched = (0..rigid.len()).filter(|k| ends.before.0[*k] > 0.0 || ends.now.0[*k] > 0.0);
+        let [now, before] = [ends.now.0, ends.before.0].map(|p| p.iter().sum::<f64>());
+        // E_inf u' counts where the pressure has fallen far below it.
+        let relaxed: f64 = match now < before {
+            true => {
+                let waves = u.iter().enumerate();
+                let relaxed = |(n, u): (usize, &Complex64)| u * self.waves.relaxed_modulus(self.waves.quarter_of(n));
+                let waves: Vec<Complex64> = waves.map(relaxed).collect();
+                let field = self.field(&waves);
+                touched.map(|k| field[k].abs()).sum()
+            }
+            false => 0.0,
+        };
+        // u' - u counts where the approach moves in time.
+        let advance = if self.course == Course::Time { ends.advance.abs() } else { 0.0 };
+        let change = (advance > 0.0).then(|| {
+            let waves: Vec<Complex64> = u.iter().zip(&self.displacement).map(|(now, start)| now - start).collect();
+            self.field(&waves)
         });
-        let [curved, relaxed, change] = &fields;
         // What rounding errors of u make of it.
         let spread = ((1.0 / third).abs() + (1.0 / step).abs()) / (third - step).abs();
         let rounding = weight * ROUNDING * ends.approach.abs() * spread * step * step;
-        let advance = if self.course == Course::Time { ends.advance.abs() } else { 0.0 };
-        let [mut error, mut now, mut before, mut floor] = [0.0; 4];
+        let mut error = 0.0;
         for (k, (p, p_now)) in ends.before.0.iter().zip(ends.now.0).enumerate() {
             let presses = *p > 0.0 || *p_now > 0.0;
             if !(presses || rigid[k] < ends.approach) {
                 continue;
             }
             let own = if curved[k].abs() > rounding { curved[k].abs() } else { 0.0 };
-            let late = if presses && *p <= 0.0 { weight * LATE * (advance - change[k].abs()) } else { 0.0 };
+            let late = match &change {
+                Some(change) if presses && *p <= 0.0 => weight * LATE * (advance - change[k].abs()),
+                _ => 0.0,
+            };
             error += own.max(late);
-            if presses {
-                now += p_now;
-                before += p;
-                floor += relaxed[k].abs();
-            }
         }
-        let scale = f64::max(now, FLOOR * before).max(FLOOR * floor);
+        let scale = f64::max(now, FLOOR * before).max(FLOOR * relaxed);
         if scale > 0.0 { error / scale } else { 0.0 }
+    }
+
+    /// The field of a transform on the domain.
+    fn field(&mut self, waves: &[Complex64]) -> Vec<f64> {
+        let mut field = vec![0.0; self.cells()];
+        self.torus.back_of(waves, &mut field);
+        field
     }
 }

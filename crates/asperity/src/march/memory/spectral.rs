@@ -184,6 +184,10 @@ impl Spectral {
         of_eigenvalues(self.grid, self.boundary, self.kernel.clone(), &unit)
     }
 
+    pub(super) fn cells(&self) -> usize {
+        self.grid.len()
+    }
+
     /// g of the step under way.
     pub(in crate::march) fn remembered(&self, g: &mut [f64]) {
         g.copy_from_slice(&self.past);

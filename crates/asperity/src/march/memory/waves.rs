@@ -104,6 +104,7 @@ impl Waves {
     /// [`Error::Invalid`] where a wave does not creep like a body, and as [`plan`](crate::operator::plan).
     pub(super) fn new(grid: &Grid, boundary: Boundary, layers: &Inseparable) -> Result<(Self, f64)> {
         let tori: &[Room] = match boundary {
+            Boundary::Free if layers.creeps_far_away() => &[Room::Wide],
             Boundary::Free => &[Room::Narrow, Room::Wide],
             Boundary::Periodic => &[Room::Narrow],
         };
@@ -139,6 +140,9 @@ impl Waves {
             stages.push(unit * compliance);
         }
         let (rows, columns) = stages[0].dim();
+        // A square of square cells is symmetric: the upper triangle tells all.
+        let [dx, dy] = grid.spacing();
+        let mirrored = rows == columns && dx == dy;
         let of_row = |kx: usize| {
             let wave = |ky: usize| {
                 let values: Vec<f64> = stages.iter().map(|stage| stage[(kx, ky)]).collect();
@@ -148,7 +152,7 @@ impl Waves {
                     false => relaxation(layers, &values),
                 }
             };
-            (0..columns).map(wave).collect::<Option<Vec<_>>>()
+            (if mirrored { kx } else { 0 }..columns).map(wave).collect::<Option<Vec<_>>>()
         };
         let all = (0..rows).into_par_iter().map(of_row).collect::<Option<Vec<_>>>();
         let Some(all) = all else { return Ok(None) };
@@ -159,11 +163,15 @@ impl Waves {
         let (shortest, longest) = if terms > 0 { (shortest, longest) } else { (0.0, 0.0) };
         let mut relaxing = Vec::with_capacity(rows * columns * terms);
         let mut equilibrium = Vec::with_capacity(rows * columns);
-        for (relaxed, own) in all.into_iter().flatten() {
-            equilibrium.push(relaxed);
-            let place = |time: f64| (libm::log(time) - shortest) / SPACING + BEFORE;
+        let place = |time: f64| (libm::log(time) - shortest) / SPACING + BEFORE;
+        let none = Term { modulus: 0.0, place: BEFORE };
+        for (kx, ky) in (0..rows).flat_map(|kx| (0..columns).map(move |ky| (kx, ky))) {
+            let (relaxed, own) = match mirrored {
+                true => &all[kx.min(ky)][kx.max(ky) - kx.min(ky)],
+                false => &all[kx][ky],
+            };
+            equilibrium.push(*relaxed);
             let own = own.iter().map(|(modulus, time)| Term { modulus: *modulus, place: place(*time) });
-            let none = Term { modulus: 0.0, place: BEFORE };
             relaxing.extend(own.chain(std::iter::repeat(none)).take(terms));
         }
         let nodes = ((longest - shortest) / SPACING) as usize + 6;

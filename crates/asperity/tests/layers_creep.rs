@@ -305,8 +305,8 @@ fn a_stiff_coating_on_rubber_sinks_in_from_the_glassy_to_the_relaxed_elastic_bod
     }
     // A domain of the same cells, twice as wide, sees the same.
     let times = || TimeGrid::List(vec![1.0, 5.0]);
-    let [small, large] = [(48, 3.0), (96, 6.0)]
-        .map(|(n, side)| run(sphere(n, side, &of, Control::Load, step(), times())));
+    let [small, large] =
+        [(48, 3.0), (96, 6.0)].map(|(n, side)| run(sphere(n, side, &of, Control::Load, step(), times())));
     for (a, b) in small.iter().zip(&large) {
         assert!((a[0] / b[0] - 1.0).abs() < 2e-4 && (a[2] / b[2] - 1.0).abs() < 1e-3, "{a:?} {b:?}");
     }

@@ -24,8 +24,8 @@ use std::f64::consts::TAU;
 
 use rayon::prelude::*;
 
-use super::compliance::is_short;
 use super::Stack;
+use super::compliance::is_short;
 use crate::error::{Error, Result};
 
 /// Spacing of ln q at first, and the finest.

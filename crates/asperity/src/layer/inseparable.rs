@@ -111,7 +111,8 @@ impl Inseparable {
     pub(crate) fn creeps_far_away(&self) -> bool {
         let long_waves = |(kernel, compliance): &(Arc<Layered>, f64)| {
             let stacks = kernel.stacks().iter();
-            let [long, short] = [Stack::long_waves, Stack::short_waves].map(|of| stacks.clone().map(of).sum::<f64>());
+            let [long, short] =
+                [Stack::long_waves, Stack::short_waves].map(|of| stacks.clone().map(of).sum::<f64>());
             compliance * long / short
         };
         let [glassy, relaxed] = [0, 1].map(|stage| long_waves(&self.stages[stage]));

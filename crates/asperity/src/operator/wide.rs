@@ -89,7 +89,12 @@ mod tests {
         for i in 0..24 {
             for j in 0..31 {
                 // Roundings of three transforms.
-                assert!((a[(i, j)] - b[(i, j)]).abs() < 1e-13 * b[(0, 0)], "{i} {j}: {} {}", a[(i, j)], b[(i, j)]);
+                assert!(
+                    (a[(i, j)] - b[(i, j)]).abs() < 1e-13 * b[(0, 0)],
+                    "{i} {j}: {} {}",
+                    a[(i, j)],
+                    b[(i, j)]
+                );
             }
         }
     }

@@ -67,7 +67,8 @@ impl Spectral {
         let mut curved = Vec::with_capacity(u.len());
         let (mut weighted, mut square) = (0.0, 0.0);
         for (n, u_now) in u.iter().enumerate() {
-            let (start, weight, size) = (self.displacement[n], weights[self.waves.quarter_of(n)], p[n].norm_sqr());
+            let (start, weight, size) =
+                (self.displacement[n], weights[self.waves.quarter_of(n)], p[n].norm_sqr());
             let second =
                 ((self.third[n] - start) / third - (u_now - start) / step) / (third - step) * step * step;
             curved.push(second * weight);
@@ -82,7 +83,8 @@ impl Spectral {
         let relaxed: f64 = match now < before {
             true => {
                 let waves = u.iter().enumerate();
-                let relaxed = |(n, u): (usize, &Complex64)| u * self.waves.relaxed_modulus(self.waves.quarter_of(n));
+                let relaxed =
+                    |(n, u): (usize, &Complex64)| u * self.waves.relaxed_modulus(self.waves.quarter_of(n));
                 let waves: Vec<Complex64> = waves.map(relaxed).collect();
                 let field = self.field(&waves);
                 touched.map(|k| field[k].abs()).sum()
@@ -92,7 +94,8 @@ impl Spectral {
         // u' - u counts where the approach moves in time.
         let advance = if self.course == Course::Time { ends.advance.abs() } else { 0.0 };
         let change = (advance > 0.0).then(|| {
-            let waves: Vec<Complex64> = u.iter().zip(&self.displacement).map(|(now, start)| now - start).collect();
+            let waves: Vec<Complex64> =
+                u.iter().zip(&self.displacement).map(|(now, start)| now - start).collect();
             self.field(&waves)
         });
         // What rounding errors of u make of it.

@@ -117,12 +117,7 @@ impl Waves {
     }
 
     /// The same on a torus; `None` where a wave of it does not creep like a body.
-    fn on(
-        grid: &Grid,
-        boundary: Boundary,
-        room: Room,
-        layers: &Inseparable,
-    ) -> Result<Option<(Self, f64)>> {
+    fn on(grid: &Grid, boundary: Boundary, room: Room, layers: &Inseparable) -> Result<Option<(Self, f64)>> {
         let lengths = match room {
             Room::Narrow => torus(grid, boundary),
             Room::Wide => wide::lengths(grid),
@@ -175,15 +170,8 @@ impl Waves {
             relaxing.extend(own.chain(std::iter::repeat(none)).take(terms));
         }
         let nodes = ((longest - shortest) / SPACING) as usize + 6;
-        let waves = Waves {
-            lengths,
-            room,
-            first: shortest - BEFORE * SPACING,
-            nodes,
-            terms,
-            equilibrium,
-            relaxing,
-        };
+        let waves =
+            Waves { lengths, room, first: shortest - BEFORE * SPACING, nodes, terms, equilibrium, relaxing };
         Ok(Some((waves, own)))
     }
 

@@ -1,6 +1,9 @@
-//! The material of a half-space from a measured indentation.
+//! The material of a half-space, or of a thin sample, from a measured indentation.
 
-use asperity::indentation::{IndentationOptions, IndentationRecord, Interval, fit_indentation as fit};
+use asperity::indentation::{
+    IndentationOptions, IndentationRecord, Interval, SampleLayer, fit_indentation as fit,
+};
+use asperity::layer::Interface;
 use asperity::reference::MdrProfile;
 use asperity_io::choice;
 use numpy::{IntoPyArray, PyReadonlyArray1};
@@ -11,10 +14,15 @@ use crate::error::raised;
 use crate::march::{choose, choose_among};
 use crate::wait::detached;
 
-/// Fits the contact relaxation modulus to a record; `profile` is "sphere" with its radius or "cone" with its slope. Intervals
-/// are (value, low, high, determined).
+fn sample((thickness, poisson, interface): (f64, f64, String)) -> PyResult<SampleLayer> {
+    let interfaces = [("bonded", Interface::Bonded), ("slip", Interface::Slip)];
+    Ok(SampleLayer { thickness, poisson, interface: choose_among("interface", &interface, &interfaces)? })
+}
+
+/// Fits the contact relaxation modulus to a record; `profile` is "sphere" with its radius or "cone" with its slope. `thin` is
+/// thickness, Poisson's ratio and interface of a sample on a rigid base. Intervals are (value, low, high, determined).
 #[pyfunction]
-#[pyo3(signature = (times, loads, depths, profile, number, given, terms, long_time, fit_touch, springs, limit))]
+#[pyo3(signature = (times, loads, depths, profile, number, given, terms, long_time, fit_touch, thin, springs, limit))]
 #[allow(clippy::too_many_arguments)]
 pub fn fit_indentation<'py>(
     py: Python<'py>,
@@ -27,6 +35,7 @@ pub fn fit_indentation<'py>(
     terms: Option<usize>,
     long_time: &str,
     fit_touch: bool,
+    thin: Option<(f64, f64, String)>,
     springs: usize,
     limit: f64,
 ) -> PyResult<Bound<'py, PyDict>> {
@@ -38,6 +47,7 @@ pub fn fit_indentation<'py>(
         terms,
         long_time: choose("long_time", long_time)?,
         fit_touch,
+        layer: thin.map(sample).transpose()?,
         springs,
         limit,
         ..IndentationOptions::default()

@@ -150,6 +150,27 @@ def test_an_indentation_gives_the_material_back():
             asp.fit_indentation(*columns, radius=0.01, poisson=0.5)
 
 
+def test_a_thin_sample_gives_its_material_back():
+    truth = asp.Prony(equilibrium=1e6, terms=[(2e6, 1.5)], poisson=0.4)
+    sphere = asp.Surface.sphere(cells=(64, 64), size=(3e-3, 3e-3), radius=10e-3)
+    held = dict(approach=asp.trapezoid(5e-5, rise=1.0, hold=8.0, fall=1.0), times=asp.uniform(9.0, 45), fields=[], progress=False)
+    about = dict(radius=10e-3, poisson=0.4, given="depth", terms=1)
+    for interface in ("bonded", "slip"):
+        layer = asp.Layer(thickness=0.5e-3, material=truth, interface=interface)
+        pressed = asp.solve(sphere, asp.Body(layers=[layer]), **held)
+        record = (pressed.time, pressed.load, pressed.approach)
+        fit = asp.fit_indentation(*record, thickness=0.5e-3, interface=interface, **about)
+        # A contact of 22 cells across.
+        assert fit.equilibrium[0] == pytest.approx(1e6, rel=0.02) and fit.terms[0][1][0] == pytest.approx(1.5, rel=0.02)
+        assert fit.instantaneous[0] == pytest.approx(3e6, rel=0.02)
+        # The base makes a half-space of it seem much stiffer.
+        assert asp.fit_indentation(*record, max_misfit=1.0, **about).instantaneous[0] > 1.2 * 3e6
+    t = np.arange(20.0)
+    for change, words in ((dict(thickness=-1.0), "thickness"), (dict(interface="slip"), "thickness"), (dict(thickness=1e-3, interface="glued"), "glued")):
+        with pytest.raises(asp.CaseError, match=words):
+            asp.fit_indentation(t, t, t * 1e-6, **{**dict(radius=0.01, poisson=0.5), **change})
+
+
 def test_fractional_models_keep_their_tolerance():
     # J of a fractional Maxwell element: (1 + (t/tau)^a / Gamma(1 + a)) / G.
     t = np.geomspace(1e-2, 1e2, 9)

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use asperity::layer::{BodyLayer, Interface, LayeredBody, Response, response};
-use asperity::march::Simulation;
+use asperity::march::{Scheme, Simulation, check_layers};
 use asperity::material::{Body, Lateral, Material, Modulus, Relaxation};
 use asperity::surface::{Part, Shape, undeformed_gap};
 use asperity::{Boundary, Control, Grid, History, Loading, March, SolverOptions, TimeGrid};
@@ -280,11 +280,115 @@ fn a_march_resumed_from_a_checkpoint_gives_the_same_bits() {
     }
 }
 
+/// An elastic coating of thickness 0.1 on the rubber of shear relaxation 0.2 + 0.8 exp(-t).
+fn stiff_coating(shear: f64) -> Response {
+    let base = Some(body("rubber", zener(1.0, 0.2), 0.5));
+    response(&[LayeredBody { layers: vec![layer(0.1, elastic(shear), 0.3)], base }]).unwrap()
+}
+
+#[test]
+fn a_stiff_coating_on_rubber_sinks_in_from_the_glassy_to_the_relaxed_elastic_body() {
+    let of = stiff_coating(20.0);
+    let elastic_body = |g: f64| {
+        let base = Some(body("rubber", elastic(g), 0.5));
+        response(&[LayeredBody { layers: vec![layer(0.1, elastic(20.0), 0.3)], base }]).unwrap()
+    };
+    let step = || History::Step { value: 0.3 };
+    let creeping = run(sphere(48, 3.0, &of, Control::Load, step(), TimeGrid::List(vec![1e-6, 300.0])));
+    for (row, g) in [(0, 1.0), (2, 0.2)] {
+        let exact = run(sphere(48, 3.0, &elastic_body(g), Control::Load, step(), TimeGrid::List(vec![1.0])));
+        for k in [0, 2] {
+            // The misfit of the creep, and one step of 60 retardation times.
+            let (found, exact) = (creeping[row][k], exact[1][k]);
+            assert!((found / exact - 1.0).abs() < 1e-3, "{g} {k}: {found} {exact}");
+        }
+    }
+    // A domain of the same cells, twice as wide, sees the same.
+    let times = || TimeGrid::List(vec![1.0, 5.0]);
+    let [small, large] =
+        [(48, 3.0), (96, 6.0)].map(|(n, side)| run(sphere(n, side, &of, Control::Load, step(), times())));
+    for (a, b) in small.iter().zip(&large) {
+        assert!((a[0] / b[0] - 1.0).abs() < 2e-4 && (a[2] / b[2] - 1.0).abs() < 1e-3, "{a:?} {b:?}");
+    }
+}
+
+#[test]
+fn a_domain_that_is_narrow_against_the_bending_of_a_coating_is_refused() {
+    let of = stiff_coating(1e6);
+    let simulation = || {
+        let history = History::Step { value: 0.1 };
+        sphere(24, 3.0, &of, Control::Load, history, TimeGrid::List(vec![1.0]))
+    };
+    let error = March::new(simulation()).err().unwrap().to_string();
+    assert!(error.contains("bend") && error.contains("periodic"), "{error}");
+    let waves = of.waves.as_ref().unwrap();
+    assert!(check_layers(&simulation().grid, Boundary::Free, waves).is_err());
+    assert!(check_layers(&simulation().grid, Boundary::Periodic, waves).is_ok());
+    March::new(Simulation { boundary: Boundary::Periodic, ..simulation() }).unwrap();
+}
+
+#[test]
+fn laws_of_times_that_lie_far_apart_are_fitted_between_them_too() {
+    // Terms at 1e-3, 1, 1e3 and 1e5 s on rubber that relaxes in 1 s.
+    let terms = [(0.3, 1e-3), (0.3, 1.0), (0.3, 1e3), (0.099, 1e5)];
+    let wide = Relaxation::from_instantaneous(100.0, &terms).unwrap();
+    let layers = vec![layer(1.0, Material::prony(Modulus::Shear, wide).unwrap(), 0.49)];
+    let of = response(&[LayeredBody { layers, base: Some(body("rubber", zener(1.0, 0.2), 0.3)) }]).unwrap();
+    let misfit = of.waves.unwrap().misfit();
+    assert!(misfit < 5e-4, "{misfit}");
+}
+
+/// Largest estimated error of the rows, approach and pressure in the middle at the end, and the number of rows.
+fn estimated(simulation: Simulation) -> (f64, [f64; 2], usize) {
+    let middle = simulation.grid.cells().map(|n| n / 2);
+    let mut march = March::new(simulation).unwrap();
+    let (mut most, mut end) = (0.0_f64, [0.0; 2]);
+    while let Some(step) = march.advance().unwrap() {
+        most = most.max(step.row().time_error.unwrap());
+        end = [step.row().approach, step.pressure()[(middle[0], middle[1])]];
+    }
+    (most, end, march.done())
+}
+
+#[test]
+fn the_error_of_long_steps_is_estimated() {
+    let of = coated(0.2);
+    let at = |steps| {
+        let times = TimeGrid::Uniform { end: 4.0, steps };
+        estimated(sphere(33, 3.0, &of, Control::Load, History::Step { value: 0.6 }, times))
+    };
+    let (_, [_, exact], _) = at(160);
+    for steps in [1, 2, 4, 16] {
+        let (told, [_, found], _) = at(steps);
+        let error = (found / exact - 1.0).abs();
+        // An estimate of the sum over the contact, not of the middle.
+        assert!(told > 0.3 * error && told < 30.0 * error + 1e-3, "{steps}: {told} {error}");
+    }
+    assert!(at(1).0 > 0.02 && at(160).0 < 1e-3, "{} {}", at(1).0, at(160).0);
+}
+
+#[test]
+fn adaptive_steps_keep_their_tolerance() {
+    let of = coated(0.2);
+    let ramp = || History::Table { points: vec![(0.0, 0.0), (2.0, 0.6), (6.0, 0.2)] };
+    let fine = {
+        let times = TimeGrid::Uniform { end: 6.0, steps: 240 };
+        estimated(sphere(33, 3.0, &of, Control::Load, ramp(), times))
+    };
+    for tolerance in [1e-2, 1e-3] {
+        let times = TimeGrid::Adaptive { end: 6.0, tolerance, first: 0.05 };
+        let (_, end, rows) = estimated(sphere(33, 3.0, &of, Control::Load, ramp(), times));
+        let error = (end[1] / fine.1[1] - 1.0).abs();
+        assert!(error < tolerance && rows < 150, "{tolerance}: {error} in {rows} rows");
+    }
+}
+
 #[test]
 fn what_is_not_solved_is_refused() {
     let of = coated(0.2);
-    let adaptive = TimeGrid::Adaptive { end: 1.0, tolerance: 1e-2, first: 0.1 };
-    let history = History::Step { value: 0.1 };
-    let error = March::new(sphere(16, 3.0, &of, Control::Load, history, adaptive)).err().unwrap().to_string();
+    let times = TimeGrid::Uniform { end: 1.0, steps: 2 };
+    let simulation = sphere(16, 3.0, &of, Control::Load, History::Step { value: 0.1 }, times);
+    let constant = Simulation { scheme: Scheme::Constant, ..simulation };
+    let error = March::new(constant).err().unwrap().to_string();
     assert!(error.contains("layers that creep differently"), "{error}");
 }

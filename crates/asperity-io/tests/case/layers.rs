@@ -118,8 +118,8 @@ fn layers_that_creep_differently_are_described_by_their_waves() {
         assert!(longest.relaxed_modulus > shortest.relaxed_modulus);
         assert!(case.simulation().unwrap_or_else(|errors| panic!("{errors}")).layers.is_some());
     }
-    let adaptive = slower.replace("steps = 1", "spacing = \"adaptive\"\ntolerance = 1e-2");
-    let errors = parse(&adaptive).expect_err("not solved").errors;
+    let constant = slower.replace("steps = 1", "steps = 1\nscheme = \"constant\"");
+    let errors = parse(&constant).expect_err("not solved").errors;
     assert!(errors[0].to_string().contains("layers that creep differently"), "{}", errors[0]);
     let fluid = TREAD.replacen(
         "{ model = \"zener\", shear = \"10 MPa\", shear_kelvin = \"4 MPa\", retardation_time = \"10 s\" }",
@@ -132,9 +132,44 @@ fn layers_that_creep_differently_are_described_by_their_waves() {
 }
 
 #[test]
+fn a_free_line_contact_of_layers_is_refused_at_the_layer() {
+    let line = TREAD
+        .replace("cells = [32, 32]", "cells = [32]")
+        .replace("size = [\"40 mm\", \"40 mm\"]", "size = [\"40 mm\"]")
+        .replace("\"sphere\"", "\"cylinder\"")
+        .replace("\"5 N\"", "\"5 N/mm\"");
+    let errors = parse(&line).expect_err("not computed").errors;
+    assert_eq!((errors.len(), errors[0].key.as_str()), (1, "body[0].layer[0]"), "{}", errors[0]);
+    assert!(errors[0].to_string().contains("boundary = \"periodic\""), "{}", errors[0]);
+    let periodic = line.replace("[[surface]]", "boundary = \"periodic\"\n[[surface]]");
+    parse(&periodic).unwrap_or_else(|errors| panic!("{errors}"));
+}
+
+#[test]
 fn a_rigid_base_needs_a_layer() {
     let bare = "[domain]\ncells = [8, 8]\nsize = [1, 1]\n[[surface]]\nkind = \"sphere\"\nradius = 9\n[[body]]\nbase = \"rigid\"\n\
                 [load]\ncontrol = \"load\"\nhistory = { kind = \"step\", value = 1 }\n[time]\nend = 1\nsteps = 1\n";
     let errors = parse(bare).expect_err("nothing yields").errors;
     assert!(errors[0].to_string().contains("needs a [[body.layer]]"), "{}", errors[0]);
+}
+
+#[test]
+fn a_stiff_coating_on_rubber_that_a_domain_is_too_narrow_for_is_named() {
+    let coated = |young: &str| {
+        let rubber = "material = { model = \"zener\", shear = \"1 MPa\", shear_kelvin = \"0.3 MPa\", retardation_time = \"10 s\" }";
+        let layer = format!(
+            "[[body.layer]]\nthickness = \"2 mm\"\npoisson = 0.3\nmaterial = {{ model = \"elastic\", young = \"{young}\" }}\n"
+        );
+        let first = TREAD.find("[[body.layer]]").unwrap_or_default();
+        let last = TREAD.find("[load]").unwrap_or_default();
+        let (before, after) = (TREAD[..first].replace("base = \"rigid\"", ""), &TREAD[last..]);
+        format!("{before}poisson = 0.5\n{rubber}\n{layer}{after}")
+    };
+    parse(&coated("20 MPa")).unwrap_or_else(|errors| panic!("{errors}"));
+    let errors = parse(&coated("200 GPa")).expect_err("it bends beyond the domain").errors;
+    assert_eq!(errors[0].key, "body[0].layer[0]", "{}", errors[0]);
+    let shown = errors[0].to_string();
+    assert!(shown.contains("bend") && shown.contains("boundary = \"periodic\""), "{shown}");
+    let periodic = coated("200 GPa").replace("[[surface]]", "boundary = \"periodic\"\n[[surface]]");
+    parse(&periodic).unwrap_or_else(|errors| panic!("{errors}"));
 }

@@ -296,6 +296,7 @@ def fit_indentation(
     terms: int | None,
     long_time: str,
     fit_touch: bool,
+    thin: tuple[float, float, str] | None,
     springs: int,
     limit: float,
 ) -> dict[str, Any]: ...

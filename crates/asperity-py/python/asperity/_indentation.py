@@ -1,4 +1,4 @@
-"""The material of a half-space from a measured indentation.
+"""The material of a half-space, or of a thin sample, from a measured indentation.
 
 Between depth and load stands the exact one-dimensional equivalent of the contact (method of dimensionality reduction), unloading
 and loading again included; one channel is taken as given, the other is met by least squares. Intervals are an average over the
@@ -85,12 +85,14 @@ def fit_indentation(
     terms: int | None = None,
     long_time: str = "free",
     fit_touch: bool = False,
+    thickness: float | None = None,
+    interface: str = "bonded",
     hardness: float | None = None,
     name: str | None = None,
     springs: int = 150,
     max_misfit: float = 0.1,
 ) -> IndentationFit:
-    """Fits the relaxation modulus of a half-space to a record of its indentation by a rigid sphere or cone.
+    """Fits the relaxation modulus of a half-space, or of a thin sample, to a record of its indentation by a rigid sphere or cone.
 
     Parameters
     ----------
@@ -102,6 +104,9 @@ def fit_indentation(
     terms : number of terms, 6 at most; by default as many as the record calls for
     long_time : "free", "solid" or "fluid": what happens at times longer than the record
     fit_touch : whether the depth of first touch is fitted too
+    thickness : of a thin sample on a rigid base [m], such as a gel or a cell on glass: a half-space would take the stiff base for
+        stiff material. By default the body is a half-space
+    interface : of the thin sample to its base: "bonded", or "slip" (it slides without friction)
     hardness, name : of the material
     springs : of the one-dimensional model
     max_misfit : largest rms misfit over the largest value before the record is refused
@@ -119,6 +124,19 @@ def fit_indentation(
     >>> fit = asp.fit_indentation(t, np.ones_like(t), depth, radius=0.01, poisson=0.5, given="load")
     >>> round(fit.instantaneous[0] / 2e6, 2), round(fit.equilibrium[0] / 1e6, 2), round(fit.terms[0][1][0], 1)
     (1.0, 1.0, 2.0)
+
+    A gel of 5 um on glass, indented by 0.2 um with a sphere of 10 um: as a half-space it seems half as stiff again.
+
+    >>> gel = asp.Elastic(young=10e3, poisson=0.49)
+    >>> sample = asp.Body(layers=[asp.Layer(thickness=5e-6, material=gel)])
+    >>> sphere = asp.Surface.sphere(cells=(64, 64), size=(6e-6, 6e-6), radius=10e-6)
+    >>> pressed = asp.solve(sphere, sample, approach=asp.ramp(0.2e-6, duration=1.0), times=asp.uniform(1.0, 20))
+    >>> record = (pressed.time, pressed.load, pressed.approach)
+    >>> thin, thick = (
+    ...     asp.fit_indentation(*record, radius=10e-6, poisson=0.49, terms=0, thickness=d).equilibrium[0] for d in (5e-6, None)
+    ... )
+    >>> round(thin / 10e3, 1), bool(1.3 < thick / 10e3 < 1.6)
+    (1.0, True)
     """
     columns = [line(what, values) for what, values in (("time", time), ("load", load), ("depth", depth))]
     if len({len(column) for column in columns}) > 1:
@@ -131,6 +149,11 @@ def fit_indentation(
     if not -1.0 < nu <= 0.5:
         raise CaseError(f"poisson is {poisson}, but must be greater than -1 and not greater than 0.5")
     most = None if terms is None else count("terms", terms, 0)
+    if interface not in ("bonded", "slip"):
+        raise CaseError(f"interface is {interface!r}, but must be 'bonded' or 'slip'")
+    if thickness is None and interface != "bonded":
+        raise CaseError("interface is that of a thin sample to its base: give its thickness too")
+    thin = None if thickness is None else (number("thickness", thickness), nu, interface)
     found = _core.fit_indentation(
         columns[0],
         columns[1],
@@ -141,6 +164,7 @@ def fit_indentation(
         most,
         long_time,
         bool(fit_touch),
+        thin,
         count("springs", springs),
         number("max_misfit", max_misfit),
     )

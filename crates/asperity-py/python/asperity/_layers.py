@@ -49,7 +49,7 @@ class Body:
     """A body of layers.
 
     `layers` from the surface down, on a `base`: "rigid", or the material of a half-space. `hardness` [Pa] cuts off the pressure
-    on the surface. All layers (and the base, and a second body) must have the same relative creep, or be elastic.
+    on the surface. Layers (and the base, and a second body) may creep differently (docs/layers.md).
 
     >>> import asperity as asp
     >>> gel = asp.Elastic(young=10e3, poisson=0.49)

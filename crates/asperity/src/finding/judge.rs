@@ -73,6 +73,9 @@ pub struct Judge {
     /// What is to be said of a held approach once cells are at the hardness there, and whether they were.
     held: Option<Finding>,
     capped: bool,
+    /// Whether the error of steps of given length is estimated, the largest one, and the rows in which it is too large.
+    estimated: bool,
+    coarse: Option<(f64, [usize; 2])>,
     /// Thickness of a body on a free domain, and the contacts that it sees.
     thickness: Option<f64>,
     widest: Widest,
@@ -101,6 +104,8 @@ impl Judge {
             held: time::held_at_hardness(simulation)
                 .filter(|_| simulation.hardness.is_finite() || simulation.hardness_map.is_some()),
             capped: false,
+            estimated: simulation.layers.is_some() && !simulation.is_adaptive(),
+            coarse: None,
             thickness: known.thickness.filter(|_| free),
             widest: Widest::default(),
             earlier_balance: None,
@@ -178,6 +183,10 @@ impl Judge {
 
     fn take(&mut self, index: usize, row: &Row, contact: Counted) {
         self.deepest = self.deepest.max(row.approach);
+        if let Some(error) = row.time_error.filter(|error| self.estimated && *error > time::COARSE) {
+            let (most, first) = self.coarse.map_or((0.0, index), |(most, [first, _])| (most, first));
+            self.coarse = Some((error.max(most), [first, index]));
+        }
         self.resolution.see(index, contact);
         self.strain.see(index, row, contact);
         if let Some(thickness) = self.thickness {
@@ -213,6 +222,9 @@ impl Judge {
         }
         if !found.iter().any(|finding| finding.code == STEPS_TOO_LONG) {
             found.extend(self.held.clone().filter(|_| self.capped));
+        }
+        if !found.iter().any(|finding| finding.code == STEPS_TOO_LONG) {
+            found.extend(self.coarse.map(|(error, at)| time::coarse(error, at)));
         }
         found.extend(self.thickness.and_then(|thickness| self.widest.finding(thickness)));
         found.extend(self.slides.finding());

@@ -23,6 +23,8 @@ const PER_RISE: usize = 4;
 const DRIFT: f64 = 0.5;
 /// Courses that move by less than this share of the largest value are scatter of a measured history.
 const SMALL: f64 = 0.05;
+/// Estimated error of a step of given length, where it is estimated.
+pub(super) const COARSE: f64 = 0.02;
 /// Relaxation times that carry less than this share of the modulus do not matter.
 const SHARE: f64 = 0.05;
 /// A material relaxes during a course if one of its times is within this factor of the steps and of the course.
@@ -56,6 +58,17 @@ pub(super) fn of(simulation: &Simulation) -> Vec<Finding> {
     }
     found.extend(long.map(|course| too_long(&plan, &course)));
     found
+}
+
+/// What steps are whose estimated error is too large in these rows: of layers that creep differently.
+pub(super) fn coarse(error: f64, at: [usize; 2]) -> Finding {
+    let text = format!(
+        "The layers creep differently, and the steps are long for that ({}): pressures are off by {} % or so, load or approach by \
+         less. Take more steps there, or spacing = \"adaptive\".",
+        rows(at),
+        digits(100.0 * error)
+    );
+    Finding::warning(STEPS_TOO_LONG, error, COARSE, text).at(at)
 }
 
 /// What too few steps do to an approach that is held while cells are at the hardness.

@@ -24,8 +24,8 @@ use std::f64::consts::TAU;
 
 use rayon::prelude::*;
 
+use super::Stack;
 use super::compliance::is_short;
-use super::{Base, Stack};
 use crate::error::{Error, Result};
 
 /// Spacing of ln q at first, and the finest.
@@ -126,7 +126,7 @@ struct Series {
 impl Series {
     fn new(stack: &Stack, scale: f64, spacing: f64) -> Self {
         let d = stack.layers()[0].thickness;
-        let (total, contrast) = (total(stack), contrast(stack));
+        let (total, contrast) = (total(stack), stack.contrast());
         let first = libm::log(LONGEST / (total * contrast));
         let count = ((libm::log(SHORTEST / d) - first) / spacing) as usize | 1;
         let (a, b) = (stack.short_waves(), stack.long_waves());
@@ -206,18 +206,6 @@ fn total(stack: &Stack) -> f64 {
     stack.layers().iter().map(|layer| layer.thickness).sum()
 }
 
-/// Stiffest over softest shear modulus.
-fn contrast(stack: &Stack) -> f64 {
-    let base = match stack.base() {
-        Base::HalfSpace { shear, .. } => Some(shear),
-        Base::Rigid => None,
-    };
-    let moduli = stack.layers().iter().map(|layer| layer.shear).chain(base);
-    let [least, most] =
-        moduli.fold([f64::INFINITY, 0.0], |[least, most]: [f64; 2], mu| [least.min(mu), most.max(mu)]);
-    most / least
-}
-
 /// The argument of int t^(iw) J0(t) dt: w ln 2 + 2 Im ln G(1/2 + iw/2).
 fn bessel_phase(w: f64) -> f64 {
     w * std::f64::consts::LN_2 + 2.0 * gamma_phase(0.5 * w)
@@ -253,7 +241,7 @@ fn gamma_phase(y: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Interface, Layer};
+    use super::super::{Base, Interface, Layer};
     use super::*;
     use crate::layer::kernel::GAUSS_4;
 
@@ -273,7 +261,7 @@ mod tests {
     fn by_quadrature(stack: &Stack, r: f64) -> f64 {
         let d = stack.layers()[0].thickness;
         let finest = stack.layers().iter().map(|l| l.thickness).fold(0.0, f64::max);
-        let panel = (0.02 / (finest * contrast(stack).powf(0.7))).min(0.3 / r);
+        let panel = (0.02 / (finest * stack.contrast().powf(0.7))).min(0.3 / r);
         let count = (45.0 / (d * panel)).ceil() as usize;
         let value = |q: f64| (q * stack.compliance(q) - stack.short_waves()) * libm::j0(q * r);
         let of_panel = |n: usize| -> f64 {

@@ -10,8 +10,9 @@
 //!
 //! and all times λ_j lie between a relaxation time of a material and the retardation time that follows it, because outside
 //! of these intervals all μ~_i are positive on the negative axis. (A constant bulk modulus is one more positive K_i.) Here the
-//! intervals are covered by nodes λ_j, equally spaced in ln λ, and the weights of each wave follow from C~(q, s) at s = 1/λ_j by
-//! least squares with S_j >= 0. The values at t = 0 and for long times are exact.
+//! intervals are covered by nodes λ_j, equally spaced in ln λ, and the weights of each wave follow from C~(q, s) by least squares
+//! with S_j >= 0: at s = 1/λ_j, and in the middle between intervals that lie apart, where C~ tells the sum of the weights before.
+//! The values at t = 0 and for long times are exact.
 
 use std::sync::Arc;
 
@@ -30,17 +31,23 @@ const SPACINGS: [f64; 3] = [0.4, 0.3, 0.2];
 const MOST: usize = 48;
 /// Weight of the row that sets the relaxed compliance, over the other rows.
 const EXACT: f64 = 1e3;
+/// A wave whose compliance rises by less than this share does not creep.
+const STILL: f64 = 1e-6;
 /// Weights below this share of the relaxed compliance are left out.
 const NONE: f64 = 1e-10;
 /// Waves on which the fit is judged.
 const JUDGED: usize = 64;
+/// Nodes with a larger ratio are apart: C~ is fitted between them as well.
+const APART: f64 = 5.0;
 
 /// Creep compliance of bodies whose waves creep differently.
 #[derive(Clone, Debug)]
 pub struct Inseparable {
     /// λ_j \[s\], ascending.
     nodes: Vec<f64>,
-    /// The elastic bodies at s = ∞, 0 and 1/λ_j: a kernel, and the compliance \[1/Pa\] that multiplies it.
+    /// The s at which C~ is fitted, besides ∞ and 0 \[1/s\].
+    frequencies: Vec<f64>,
+    /// The elastic bodies at s = ∞, 0 and `frequencies`: a kernel, and the compliance \[1/Pa\] that multiplies it.
     stages: Vec<(Arc<Layered>, f64)>,
     misfit: f64,
 }
@@ -52,9 +59,12 @@ impl Inseparable {
         let mut best: Option<Inseparable> = None;
         for spacing in SPACINGS {
             let nodes = nodes(&intervals, spacing);
-            let frequencies = [f64::INFINITY, 0.0].into_iter().chain(nodes.iter().map(|time| 1.0 / time));
-            let stages = frequencies.map(|s| elastic(bodies, s)).collect::<Result<Vec<_>>>()?;
-            let mut tried = Inseparable { nodes, stages, misfit: 0.0 };
+            let between = nodes.windows(2).filter(|pair| pair[1] > APART * pair[0]);
+            let between = between.map(|pair| (pair[0] * pair[1]).sqrt());
+            let frequencies: Vec<f64> = nodes.iter().copied().chain(between).map(|time| 1.0 / time).collect();
+            let all = [f64::INFINITY, 0.0].into_iter().chain(frequencies.iter().copied());
+            let stages = all.map(|s| elastic(bodies, s)).collect::<Result<Vec<_>>>()?;
+            let mut tried = Inseparable { nodes, frequencies, stages, misfit: 0.0 };
             tried.misfit = tried.judge(bodies)?;
             if best.as_ref().is_none_or(|best| tried.misfit < best.misfit) {
                 best = Some(tried);
@@ -73,7 +83,7 @@ impl Inseparable {
     }
 
     /// The elastic bodies of short times: the kernel of the instantaneous response.
-    pub(super) fn glassy(&self) -> &Layered {
+    pub(crate) fn glassy(&self) -> &Layered {
         &self.stages[0].0
     }
 
@@ -84,7 +94,29 @@ impl Inseparable {
 
     /// The s of [`stages`](Self::stages) that are neither 0 nor ∞ \[1/s\].
     pub(crate) fn frequencies(&self) -> impl Iterator<Item = f64> + '_ {
-        self.nodes.iter().map(|time| 1.0 / time)
+        self.frequencies.iter().copied()
+    }
+
+    /// The length over which the stiff layers bend on the soft ones after all creep \[m\]: total thickness times the cube root of the
+    /// largest ratio of the moduli.
+    pub(crate) fn bending_length(&self) -> f64 {
+        let length = |stack: &Stack| {
+            let total: f64 = stack.layers().iter().map(|layer| layer.thickness).sum();
+            total * libm::cbrt(stack.contrast())
+        };
+        self.stages[1].0.stacks().iter().map(length).fold(0.0, f64::max)
+    }
+
+    /// Whether the displacement far from a load creeps: that of a half-space below the layers.
+    pub(crate) fn creeps_far_away(&self) -> bool {
+        let long_waves = |(kernel, compliance): &(Arc<Layered>, f64)| {
+            let stacks = kernel.stacks().iter();
+            let [long, short] =
+                [Stack::long_waves, Stack::short_waves].map(|of| stacks.clone().map(of).sum::<f64>());
+            compliance * long / short
+        };
+        let [glassy, relaxed] = [0, 1].map(|stage| long_waves(&self.stages[stage]));
+        relaxed - glassy > TOLERANCE * relaxed
     }
 
     /// The shortest and the longest retardation time \[s\].
@@ -121,7 +153,7 @@ impl Inseparable {
         if !(*glassy > 0.0 && relaxed.is_finite() && rise >= -TOLERANCE * relaxed) {
             return None;
         }
-        if rise <= NONE * relaxed {
+        if rise <= STILL * relaxed {
             return Some((Creep::elastic(*glassy), rise.abs() / relaxed));
         }
         // Rows of C~ - S_0 over C~.
@@ -146,7 +178,12 @@ impl Inseparable {
     /// Largest relative error of C~ over the waves, at frequencies beside those of the fit.
     fn judge(&self, bodies: &[LayeredBody]) -> Result<f64> {
         let [shortest, longest] = self.times();
-        let between = self.nodes.windows(2).map(|pair| 1.0 / (pair[0] * pair[1]).sqrt());
+        // In the middle between two nodes, or on both sides of the s that is fitted there.
+        let between = self.nodes.windows(2).flat_map(|pair| {
+            let ratio = pair[1] / pair[0];
+            let parts: &[f64] = if ratio > APART { &[0.25, 0.75] } else { &[0.5] };
+            parts.iter().map(move |part| 1.0 / (pair[0] * libm::pow(ratio, *part)))
+        });
         let frequencies: Vec<f64> = between.chain([0.2 / longest, 5.0 / shortest]).collect();
         let checks = frequencies.iter().map(|s| elastic(bodies, *s)).collect::<Result<Vec<_>>>()?;
         let layers = || bodies.iter().flat_map(|body| &body.layers).map(|layer| layer.thickness);

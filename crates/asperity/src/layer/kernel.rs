@@ -6,7 +6,7 @@ use ndarray::parallel::prelude::*;
 use super::hankel::Smooth;
 use super::{Base, Stack};
 use crate::error::{Error, Result};
-use crate::kernel::{HalfSpace, Kernel};
+use crate::kernel::{Kernel, love};
 
 /// Longest side of a cell over the thickness of a top layer.
 const COARSEST: f64 = 4.0;
@@ -22,6 +22,15 @@ pub(super) const GAUSS_4: [(f64, f64); 4] = [
     (0.339_981_043_584_856_26, 0.652_145_154_862_546_1),
     (0.861_136_311_594_052_6, 0.347_854_845_137_453_85),
 ];
+
+const GAUSS_2: [(f64, f64); 2] = [(-0.577_350_269_189_625_8, 1.0), (0.577_350_269_189_625_8, 1.0)];
+const GAUSS_3: [(f64, f64); 3] = [
+    (-0.774_596_669_241_483_4, 0.555_555_555_555_555_6),
+    (0.0, 0.888_888_888_888_889),
+    (0.774_596_669_241_483_4, 0.555_555_555_555_555_6),
+];
+/// The rules for parts up to these lengths over what k varies over there, with errors below 1e-8.
+const RULES: [(f64, &[(f64, f64)]); 2] = [(0.03, &GAUSS_2), (0.15, &GAUSS_3)];
 
 /// The bodies of a contact, each a [`Stack`], with all moduli times a common factor: K(q) = sum of C(q) / sum of q C(q)/2 for
 /// short waves.
@@ -68,22 +77,43 @@ impl Layered {
     pub fn stacks(&self) -> &[Stack] {
         &self.stacks
     }
+
+    /// Displacements \[m\] at the distances (`xs`\[i\], `ys`\[j\]) \[m\] from the centre of a cell of sides `cell` \[m\] under unit
+    /// pressure; distances ascend.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where the layers differ too much.
+    pub(crate) fn response(&self, cell: [f64; 2], [xs, ys]: [&[f64]; 2]) -> Result<Array2<f64>> {
+        let [dx, dy] = cell;
+        let farthest = |side: &[f64], d: f64| side.last().copied().unwrap_or(0.0) + d;
+        let reach = libm::hypot(farthest(xs, dx), farthest(ys, dy));
+        let smooth = self.stacks.iter().map(|stack| Smooth::new(stack, self.scale, reach));
+        let smooth: Vec<Smooth> = smooth.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect();
+        let at = |x: f64, y: f64| {
+            love(x, y, cell) + smooth.iter().map(|smooth| over_cell(smooth, [x, y], cell)).sum::<f64>()
+        };
+        let mut response = Array2::zeros((xs.len(), ys.len()));
+        // A square of square cells is symmetric.
+        let mirrored = dx == dy && xs == ys;
+        response.outer_iter_mut().into_par_iter().zip(xs).enumerate().for_each(|(i, (mut row, x))| {
+            let first = if mirrored { i } else { 0 };
+            row.iter_mut().zip(ys).skip(first).for_each(|(k, y)| *k = at(*x, *y));
+        });
+        if mirrored {
+            for i in 1..xs.len() {
+                for j in 0..i {
+                    response[(i, j)] = response[(j, i)];
+                }
+            }
+        }
+        Ok(response)
+    }
 }
 
 impl Kernel for Layered {
     fn influence(&self, cell: [f64; 2], count: [usize; 2]) -> Result<Array2<f64>> {
-        let [dx, dy] = cell;
-        let mut kernel = HalfSpace.influence(cell, count)?;
-        let reach = libm::hypot(dx * count[0] as f64, dy * count[1] as f64);
-        for stack in &self.stacks {
-            let Some(smooth) = Smooth::new(stack, self.scale, reach)? else { continue };
-            kernel.outer_iter_mut().into_par_iter().enumerate().for_each(|(i, mut row)| {
-                for (j, k) in row.iter_mut().enumerate() {
-                    *k += over_cell(&smooth, [i as f64 * dx, j as f64 * dy], cell);
-                }
-            });
-        }
-        Ok(kernel)
+        let [xs, ys] = [0, 1].map(|k| (0..count[k]).map(|i| i as f64 * cell[k]).collect::<Vec<f64>>());
+        self.response(cell, [&xs, &ys])
     }
 
     fn symbol(&self, qx: f64, qy: f64) -> f64 {
@@ -121,19 +151,22 @@ impl Kernel for Layered {
 
 /// Integral over the cell around (x, y): by parts no longer than half the thickness, as long as that is what k varies over.
 fn over_cell(smooth: &Smooth, [x, y]: [f64; 2], [dx, dy]: [f64; 2]) -> f64 {
-    let near = libm::hypot(x, y) < NEAR * smooth.thickness + dx.max(dy);
+    let (r, d) = (libm::hypot(x, y), smooth.thickness);
+    let near = r < NEAR * d + dx.max(dy);
     let parts = [dx, dy].map(|side| match near {
-        true => (side / (PART * smooth.thickness)).ceil().max(1.0),
+        true => (side / (PART * d)).ceil().max(1.0),
         false => 1.0,
     });
     let half = [0.5 * dx / parts[0], 0.5 * dy / parts[1]];
+    let size = 2.0 * half[0].max(half[1]) / d.max(r - dx.max(dy));
+    let rule = RULES.iter().find(|(longest, _)| size <= *longest).map_or(&GAUSS_4[..], |(_, rule)| rule);
     let mut sum = 0.0;
     for m in 0..parts[0] as usize {
         let x = x + (2.0 * m as f64 + 1.0 - parts[0]) * half[0];
         for n in 0..parts[1] as usize {
             let y = y + (2.0 * n as f64 + 1.0 - parts[1]) * half[1];
-            for (s, ws) in GAUSS_4 {
-                for (t, wt) in GAUSS_4 {
+            for (s, ws) in rule {
+                for (t, wt) in rule {
                     let (a, b) = (x + half[0] * s, y + half[1] * t);
                     sum += ws * wt * smooth.value((a * a + b * b).sqrt());
                 }

@@ -146,6 +146,18 @@ impl Stack {
         2.0 / (q * self.compliance(q))
     }
 
+    /// Stiffest over softest shear modulus of the layers and the base.
+    fn contrast(&self) -> f64 {
+        let base = match self.base {
+            Base::HalfSpace { shear, .. } => Some(shear),
+            Base::Rigid => None,
+        };
+        let moduli = self.layers.iter().map(|layer| layer.shear).chain(base);
+        let [least, most] =
+            moduli.fold([f64::INFINITY, 0.0], |[least, most]: [f64; 2], mu| [least.min(mu), most.max(mu)]);
+        most / least
+    }
+
     /// Displacement under a uniform unit pressure that squeezes the layers without lateral strain \[m/Pa\], the sum of
     /// d (1 - 2 nu)/(2 mu (1 - nu)); `None` on a half-space, which does not determine it.
     pub fn uniform(&self) -> Option<f64> {

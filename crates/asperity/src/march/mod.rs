@@ -26,6 +26,7 @@ mod warm_start;
 
 pub use checkpoint::Checkpoint;
 pub use dense::Between;
+pub use memory::check_layers;
 pub use motion::{Motion, in_contact_frame};
 pub(crate) use record::{Lone, PERIMETER_SHARE};
 pub use record::{Row, Step};
@@ -261,7 +262,10 @@ impl March {
             return Ok(None);
         };
         self.outcome = Outcome::default();
-        let (mut turn, start) = self.begin(&mut instant)?;
+        let (mut turn, start) = match self.solve_half(instant)? {
+            None => self.begin(&mut instant)?,
+            Some(half) => self.lengthen(&mut instant, half)?,
+        };
         self.solve(instant, start)?;
         let mut error = self.shorten_to_tolerance(&mut instant, &mut turn)?;
         let event = self.find_event(&mut instant)?;
@@ -283,7 +287,7 @@ impl March {
     /// Solves the step shorter and shorter until its error is small enough, where steps are adaptive; returns the error.
     fn shorten_to_tolerance(&mut self, instant: &mut Instant, turn: &mut bool) -> Result<Option<f64>> {
         if self.timeline.pace().is_none() {
-            return Ok(None);
+            return Ok(self.local_error(*instant));
         }
         if instant.jump {
             return Ok(Some(0.0));
@@ -300,6 +304,38 @@ impl March {
             let Some(dt) = shorter else { return Ok(error) };
             *turn = self.try_again(instant, dt)?;
         }
+    }
+
+    /// The first half of a step of given length, where the error of such steps is estimated and no third state is known: the error
+    /// of layers that creep differently. Returns its length.
+    fn solve_half(&mut self, instant: Instant) -> Result<Option<f64>> {
+        let moves = !matches!(self.drive(instant), Drive::Apart | Drive::Held);
+        let Past::Waves(waves) = &mut self.past else { return Ok(None) };
+        if self.timeline.pace().is_some() || instant.jump || instant.dt == 0.0 {
+            return Ok(None);
+        }
+        let known = self.timeline.smooth() && waves.leaves_a_third();
+        if !self.timeline.smooth() {
+            waves.first_step(instant.dt, None, false);
+        }
+        if known || !moves {
+            return Ok(None);
+        }
+        let mut half = self.timeline.inside(&self.simulation, 0.5 * instant.dt);
+        let (_, start) = self.begin(&mut half)?;
+        if self.is_apart() {
+            return Ok(Some(half.dt));
+        }
+        self.solve(half, start)?;
+        self.keep_as_third();
+        Ok(Some(half.dt))
+    }
+
+    /// Sets the contact of the step to `instant` after that of its part of length `tried`.
+    fn lengthen(&mut self, instant: &mut Instant, tried: f64) -> Result<(bool, Start)> {
+        self.reset(*instant, self.drive(*instant))?;
+        let turn = self.locate(instant)?;
+        Ok((turn, self.guess_again(*instant, tried)))
     }
 
     /// Sets the contact of the step that ends at `instant`: its compliance, its gap, its first guess. The step ends sooner where
@@ -455,22 +491,40 @@ impl March {
         }
     }
 
-    /// Estimated error of the stress at the end of the step, where steps are adaptive.
-    fn local_error(&self, instant: Instant) -> Option<f64> {
-        let (Past::Memory(memory), Some(_)) = (&self.past, self.timeline.pace()) else { return None };
+    /// Estimated error of the stress at the end of the step, where steps are adaptive or layers creep differently.
+    fn local_error(&mut self, instant: Instant) -> Option<f64> {
         let rigid = undeformed(&self.simulation, &self.dents, &self.moving);
-        Some(if instant.jump { 0.0 } else { memory.error(self.ends(), &self.gap, rigid) })
+        let ends = Ends {
+            approach: self.state.approach,
+            advance: self.state.approach - self.previous.approach,
+            before: (&self.previous.pressure, &self.previous.unit_displacement),
+            now: (&self.state.pressure, &self.state.unit_displacement),
+        };
+        match &mut self.past {
+            Past::Memory(_) if self.timeline.pace().is_none() => None,
+            Past::Memory(_) | Past::Waves(_) if instant.jump => Some(0.0),
+            Past::Memory(memory) => Some(memory.error(ends, &self.gap, rigid)),
+            Past::Waves(waves) => Some(waves.error(ends, rigid)),
+            Past::Constant(_) | Past::Direct(_) => None,
+        }
     }
 
     fn keep_as_third(&mut self) {
-        let Past::Memory(memory) = &mut self.past else { return };
         let rigid = undeformed(&self.simulation, &self.dents, &self.moving);
-        memory.keep_as_third(&self.state.unit_displacement, &self.gap, rigid);
+        match &mut self.past {
+            Past::Memory(memory) => memory.keep_as_third(&self.state.unit_displacement, &self.gap, rigid),
+            Past::Waves(waves) => waves.keep_as_third(&self.state.pressure),
+            Past::Constant(_) | Past::Direct(_) => {}
+        }
     }
 
     /// Whether the memory holds the state before the last row, one row after it.
     fn knows_the_state_before(&self) -> bool {
-        matches!(&self.past, Past::Memory(memory) if memory.has_third())
+        match &self.past {
+            Past::Memory(memory) => memory.has_third(),
+            Past::Waves(waves) => waves.has_third(),
+            Past::Constant(_) | Past::Direct(_) => false,
+        }
     }
 
     /// Whether the step under way has no pressure at either end.
@@ -485,7 +539,6 @@ impl March {
     /// How long the first step of a smooth piece is: a twentieth of it at most, or as the material and the load say.
     fn set_first_step(&mut self) {
         let Some(piece) = self.timeline.piece() else { return };
-        let Past::Memory(memory) = &mut self.past else { return };
         let longest = piece.length / 20.0;
         let soon = 1e-3 * longest;
         let end = piece.start + soon;
@@ -498,7 +551,11 @@ impl March {
             Control::Load => Some(piece.slope(soon)),
             Control::Pressure => Some(piece.slope(soon) * self.simulation.grid.area()),
         };
-        let first = memory.first_step(longest, load, piece.after_jump, rate);
+        let first = match &mut self.past {
+            Past::Memory(memory) => memory.first_step(longest, load, piece.after_jump, rate),
+            Past::Waves(waves) => waves.first_step(longest, load, piece.after_jump),
+            Past::Constant(_) | Past::Direct(_) => return,
+        };
         self.timeline.restart(first);
     }
 

@@ -12,7 +12,7 @@ use crate::layer::Inseparable;
 use crate::load::{Control, Course, Event, History, Loading, Programme, of_stage};
 use crate::march::Motion;
 use crate::material::{Creep, ThermalCreep};
-use crate::operator;
+use crate::operator::{self, wide};
 use crate::quantities::{Column, ContactStiffness, Quantities, Quantity};
 use crate::spots::Spots;
 use crate::time::{Plan, SAME, TimeGrid};
@@ -169,9 +169,11 @@ impl Simulation {
             _ => terms + 1 + usize::from(self.is_adaptive()),
         };
         let waves = self.layers.as_ref().map_or(0, |layers| {
-            let [mx, my] = operator::torus(grid, self.boundary);
-            // Four terms to a wave are usual: their states and moduli, u, g, and one eigenvalue for each node while they are planned.
-            mx * (my / 2 + 1) * (16 * (4 + 2) + 8 * 4 + 4 * (layers.nodes() + 2))
+            let wide = self.boundary == Boundary::Free && layers.creeps_far_away();
+            let [mx, my] = if wide { wide::lengths(grid) } else { operator::torus(grid, self.boundary) };
+            // Four terms to a wave are usual: their states and moduli, u, g, a third u and what its error takes, and one eigenvalue for
+            // each node while they are planned.
+            mx * (my / 2 + 1) * (16 * (4 + 8) + 8 * 4 + 4 * (layers.nodes() + 2))
         });
         operator::bytes(grid, self.boundary)
             + waves
@@ -235,7 +237,10 @@ impl Simulation {
             return Err(Error::invalid("gap", "infinite everywhere", "finite in one cell at least"));
         }
         if self.boundary == Boundary::Free {
-            self.kernel.check(self.grid.spacing())?;
+            match self.grid.is_line() {
+                true => _ = self.kernel.strip(self.grid.spacing()[0], 1)?,
+                false => self.kernel.check(self.grid.spacing())?,
+            }
         }
         let widest = self.grid.longest_side();
         if let Some(depth) = self.kernel.depth()
@@ -316,9 +321,6 @@ impl Simulation {
         };
         if self.scheme != Scheme::Linear {
             return refused("scheme", format!("{:?}", self.scheme).to_lowercase(), "linear");
-        }
-        if self.is_adaptive() {
-            return refused("time steps", "adaptive".into(), "uniform ones, or spacing = \"log\"");
         }
         if !self.thermal.is_empty() {
             return refused("temperature", "not constant".into(), "a constant one");

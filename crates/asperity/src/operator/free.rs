@@ -62,10 +62,12 @@ impl Free {
 
 /// The influence coefficients on the quadrant of the padded torus.
 fn influence(grid: &Grid, kernel: &dyn Kernel) -> Result<Array2<f64>> {
-    kernel.check(grid.spacing())?;
     let influence = match grid.is_line() {
         true => of_strips(kernel.strip(grid.spacing()[0], computed(grid)[0])?, grid),
-        false => kernel.influence(grid.spacing(), computed(grid))?,
+        false => {
+            kernel.check(grid.spacing())?;
+            kernel.influence(grid.spacing(), computed(grid))?
+        }
     };
     plausible(&influence)?;
     Ok(influence)
@@ -86,7 +88,7 @@ pub(super) fn padded(grid: &Grid) -> [usize; 2] {
 
 /// Coefficients along x and y: the quadrant of the padded torus. Beyond the domain the true coefficients go on: no output
 /// of the domain reads them, and the kernel stays smooth and its spectrum positive.
-fn computed(grid: &Grid) -> [usize; 2] {
+pub(super) fn computed(grid: &Grid) -> [usize; 2] {
     padded(grid).map(|length| length / 2 + 1)
 }
 
@@ -94,7 +96,7 @@ fn computed(grid: &Grid) -> [usize; 2] {
 ///
 /// The spectrum on the padded torus may be negative in places, where the response reaches beyond the domain: the torus is not
 /// the body. On the domain K is positive as long as the symbol of the body is.
-fn plausible(influence: &Array2<f64>) -> Result<()> {
+pub(super) fn plausible(influence: &Array2<f64>) -> Result<()> {
     let most =
         influence.iter().fold(0.0, |most: f64, k| if k.is_nan() { f64::NAN } else { most.max(k.abs()) });
     let own = influence[(0, 0)];

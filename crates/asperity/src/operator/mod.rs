@@ -8,6 +8,7 @@ mod dense;
 mod free;
 mod inverse;
 mod periodic;
+pub(crate) mod wide;
 
 pub use dense::Dense;
 pub use free::Free;

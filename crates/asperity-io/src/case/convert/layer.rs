@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use asperity::layer::{BodyLayer, Layered, LayeredBody, Response, response};
+use asperity::layer::{BodyLayer, Inseparable, Layered, LayeredBody, Response, response};
+use asperity::march::check_layers;
 use asperity::quantities::Quantity;
 use asperity::{Boundary, Error, Grid, Scheme};
 
@@ -157,16 +158,13 @@ pub fn respond(
 }
 
 /// Faults of what is not solved where layers creep differently.
-pub fn unsolved(checks: &mut Checks<'_, '_>, document: &raw::Document, adaptive: bool, scheme: Scheme) {
+pub fn unsolved(checks: &mut Checks<'_, '_>, document: &raw::Document, scheme: Scheme) {
     let help = "omit it, or give all layers and bodies the same relative creep";
     let mut fault = |span: &Range<usize>, what: &str, expected: &str| {
         let message = format!("{what}: this is not solved for layers that creep differently");
         checks.fault(span, message, expected, Some(help));
     };
     let time = &document.time.span;
-    if adaptive {
-        fault(time, "the time steps are adaptive", "uniform steps, or spacing = \"log\"");
-    }
     if scheme != Scheme::Linear {
         fault(time, "the scheme is not \"linear\"", "scheme = \"linear\"");
     }
@@ -181,21 +179,31 @@ pub fn unsolved(checks: &mut Checks<'_, '_>, document: &raw::Document, adaptive:
     }
 }
 
-/// Whether the cells of a free domain resolve the top layers; a periodic domain takes layers of any thickness.
+/// Whether the cells of a free domain resolve the top layers, and the domain is wide enough for `waves` that creep differently; a
+/// periodic domain takes layers of any thickness.
 pub fn resolved(
     checks: &mut Checks<'_, '_>,
     bodies: &[At<raw::Body>],
     domain: &At<raw::Domain>,
     grid: &Grid,
     layers: &Layered,
+    waves: Option<&Inseparable>,
 ) {
-    if domain.value.boundary.unwrap_or_default() == Boundary::Periodic {
+    let boundary = domain.value.boundary.unwrap_or_default();
+    if boundary == Boundary::Periodic {
         return;
+    }
+    if let (true, Some(layer)) = (grid.is_line(), bodies.iter().find_map(|at| at.value.layer.first())) {
+        let message = "a line contact of a body of layers on a free domain is not computed".to_owned();
+        let help = "set domain.boundary to \"periodic\" and take a domain several times as wide as contact and layers";
+        return checks.fault(&layer.span, message, "boundary = \"periodic\"", Some(help));
     }
     let (longest, cell) = (layers.longest_cell(), grid.cell_sides().fold(0.0, f64::max));
     let tops = bodies.iter().filter_map(|at| at.value.layer.first());
     let thinnest = tops.min_by(|a, b| a.value.thickness.get().total_cmp(&b.value.thickness.get()));
-    if let Some(layer) = thinnest.filter(|_| cell > longest) {
+    if let Some(layer) = thinnest
+        && cell > longest
+    {
         let least: Vec<String> =
             grid.extents().iter().map(|side| (side / longest).ceil().to_string()).collect();
         let message = format!(
@@ -207,6 +215,10 @@ pub fn resolved(
             least.join(", ")
         );
         checks.fault(&layer.span, message, &format!("cells of at most {} m", number(longest)), Some(&help));
+        return;
+    }
+    if let (Some(layer), Some(waves)) = (thinnest, waves) {
+        checks.core(&layer.span, check_layers(grid, boundary, waves));
     }
 }
 

@@ -109,9 +109,12 @@ pub fn case(
     let grids =
         programme.iter().flat_map(|programme| &programme.stages).filter_map(|stage| stage.times.as_ref());
     let adaptive = times.iter().chain(grids).any(TimeGrid::is_adaptive);
+    let layered = document.body.iter().any(|body| !body.value.layer.is_empty());
     let include = match output.as_ref().map(|output| &output.rows) {
-        // States between adaptive steps are interpolated; other steps end there.
-        Some(Rows::At(times)) if !adaptive || motion.iter().flatten().next().is_some() => times.clone(),
+        // States between adaptive steps are interpolated; other steps end there, and those of layers.
+        Some(Rows::At(times)) if !adaptive || layered || motion.iter().flatten().next().is_some() => {
+            times.clone()
+        }
         _ => Vec::new(),
     };
     let mut files: Vec<_> = samples.iter().flatten().filter_map(|sample| sample.file.clone()).collect();
@@ -179,7 +182,7 @@ pub fn case(
         checks.fault(&document.time.span, message, "scheme = \"linear\"", Some(help));
     }
     if pair.as_ref().is_some_and(|pair| pair.waves.is_some()) {
-        layer::unsolved(&mut checks, document, adaptive, scheme);
+        layer::unsolved(&mut checks, document, scheme);
     }
     let fields = match (scheme, &pair) {
         (_, None) => 0,
@@ -189,8 +192,8 @@ pub fn case(
     let extra = output::extra_fields(&document.solver, &document.output);
     domain::memory(&mut checks, &document.domain, grid.as_ref(), fields, extra, scheme);
 
-    if let (Some(grid), Some(layers)) = (&grid, pair.as_ref().and_then(|pair| pair.layers.as_ref())) {
-        layer::resolved(&mut checks, &document.body, &document.domain, grid, layers);
+    if let (Some(grid), Some(body::Pair { layers: Some(layers), waves, .. })) = (&grid, &pair) {
+        layer::resolved(&mut checks, &document.body, &document.domain, grid, layers, waves.as_deref());
     }
 
     let stress = match (&document.stress, &grid, &pair, &output, &times) {

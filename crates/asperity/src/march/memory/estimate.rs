@@ -21,18 +21,19 @@
 //! the whole step says. Where u runs linearly in time, 1/4 of |Δw| - |Δu| stands in its place of |u\[z0, z1, z2\]| Δz² where it is
 //! larger. (A quarter, because this error does not add up over the steps.)
 
-use super::shape::moment;
+use super::shape::{Shape, moment};
 use super::{Course, Ends, Memory, Reference};
+use crate::material::Dual;
 use asperity_sweep::{strands, sweep};
 
 /// Share of the stress at the start, and of the relaxed one, that an error is measured by at the least.
-const FLOOR: f64 = 0.1;
+pub(super) const FLOOR: f64 = 0.1;
 /// Errors of so many steps add up: the curvature of a longer course changes its sign.
 const ALIKE: f64 = 16.0;
 /// Relative rounding error of u, which a contact closes to some units in the last place of the approach.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
+pub(super) const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// Share of the error of a cell that comes into contact during the step: the others' errors add up over four steps and more.
-const LATE: f64 = 0.25;
+pub(super) const LATE: f64 = 0.25;
 /// L may grow by this share in the first step of a smooth piece.
 const GROWTH: f64 = 0.2;
 /// The first step after a jump is this share of the mean relaxation time.
@@ -66,7 +67,7 @@ impl Memory {
         if self.third.is_empty() || self.rules.length <= 0.0 {
             return 0.0;
         }
-        let (step, third) = self.clock(reference);
+        let (step, third) = reference.clock(self.rules.length, self.rules.course);
         let weight = 2.0 * self.defect();
         let advance = if self.rules.course == Course::Time { ends.advance.abs() } else { 0.0 };
         let spread = ((1.0 / third).abs() + (1.0 / step).abs()) / (third - step).abs();
@@ -108,24 +109,12 @@ impl Memory {
         if scale > 0.0 { weight * curved / scale } else { 0.0 }
     }
 
-    /// The end of the step and the third state on one clock: L where it ran one and the same way in both, else time.
-    fn clock(&self, third: Reference) -> (f64, f64) {
-        match (self.rules.course, third.course) {
-            (Course::Load(step), Course::Load(other)) if step * other > 0.0 => {
-                (step, if third.length < 0.0 { -other } else { other })
-            }
-            _ => (self.rules.length, third.length),
-        }
-    }
-
     /// Σ E_i b(x/τ_i) + ζ/(2x), with what is remembered of the steps before.
     fn defect(&self) -> f64 {
         let (x, relaxation) = (self.rules.length, &self.dual.relaxation);
-        let whole = (x + self.piece.unwrap_or(0.0)).min(ALIKE * x);
-        let terms = relaxation.terms.iter().map(|e| {
-            let y = x / e.relaxation_time;
-            e.modulus * chord_defect(y) * (moment(0, whole / e.relaxation_time) / moment(0, y))
-        });
+        let whole = x + self.piece.unwrap_or(0.0);
+        let terms = relaxation.terms.iter();
+        let terms = terms.map(|e| e.modulus * remembered_defect(x, whole, e.relaxation_time));
         terms.sum::<f64>() + 0.5 * relaxation.viscosity / x
     }
 
@@ -142,23 +131,50 @@ impl Memory {
         if self.is_elastic() || rate.is_nan() || rate <= 0.0 {
             return longest;
         }
-        let mut first = longest;
-        let relaxation = &self.dual.relaxation;
-        let decay: f64 = relaxation.terms.iter().map(|e| e.modulus / e.relaxation_time).sum();
-        if after_jump && decay > 0.0 && relaxation.viscosity == 0.0 {
-            first = first.min(FIRST * relaxation.instantaneous() / decay / rate);
-        }
-        if let Some(slope) = load {
-            self.dual.to_strains(&self.end.states, self.end.driver, &mut self.strains);
-            self.shape.set(&self.dual, self.end.load, slope / rate, &self.strains);
-            let grows =
-                |dt: f64| self.shape.change(&self.dual, dt * rate).abs() > GROWTH * self.end.driver.abs();
-            while self.end.driver != 0.0 && grows(first) && first > 1e-15 * longest {
-                first *= 0.5;
-            }
-        }
-        first
+        let relaxed = if after_jump { soon(&self.dual, longest, rate) } else { longest };
+        let Some(slope) = load else { return relaxed };
+        self.dual.to_strains(&self.end.states, self.end.driver, &mut self.strains);
+        self.shape.set(&self.dual, self.end.load, slope / rate, &self.strains);
+        growing(&self.dual, &self.shape, self.end.driver, [relaxed, longest], rate)
     }
+}
+
+impl Reference {
+    /// The end of the step under way and the third state on one clock: L where it ran one and the same way in both, else time.
+    pub(super) fn clock(self, length: f64, course: Course) -> (f64, f64) {
+        match (course, self.course) {
+            (Course::Load(step), Course::Load(other)) if step * other > 0.0 => {
+                (step, if self.length < 0.0 { -other } else { other })
+            }
+            _ => (length, self.length),
+        }
+    }
+}
+
+/// The first step after a jump, as far as the material says \[s\].
+pub(super) fn soon(dual: &Dual, longest: f64, rate: f64) -> f64 {
+    let relaxation = &dual.relaxation;
+    let decay: f64 = relaxation.terms.iter().map(|e| e.modulus / e.relaxation_time).sum();
+    match decay > 0.0 && relaxation.viscosity == 0.0 {
+        true => longest.min(FIRST * relaxation.instantaneous() / decay / rate),
+        false => longest,
+    }
+}
+
+/// The first step \[s\], at most `first`, in which L does not grow too much from `start`.
+pub(super) fn growing(dual: &Dual, shape: &Shape, start: f64, [first, longest]: [f64; 2], rate: f64) -> f64 {
+    let grows = |dt: f64| shape.change(dual, dt * rate).abs() > GROWTH * start.abs();
+    let mut first = first;
+    while start != 0.0 && grows(first) && first > 1e-15 * longest {
+        first *= 0.5;
+    }
+    first
+}
+
+/// b(x/τ) of a step of length x, with what a branch remembers of the steps before: the smooth piece is `whole` long.
+pub(super) fn remembered_defect(x: f64, whole: f64, tau: f64) -> f64 {
+    let y = x / tau;
+    chord_defect(y) * (moment(0, whole.min(ALIKE * x) / tau) / moment(0, y))
 }
 
 /// b(y) = \[y - 2 + (y + 2) exp(-y)\] / (2 y²), y/12 for small y.

@@ -7,6 +7,7 @@
 //! While the approach is held, u changes outside of the contact only, because the pressure relaxes. It runs as the pressure of the
 //! mean then, Σ A_i (1 - exp(-s/τ_i)) with A_i = E_i (L - q_i). Otherwise u runs linearly in time.
 
+use super::estimate::{growing, soon};
 use super::rules::{Course, Rules, Share};
 use super::shape::{Shape, fading_share, moment};
 use super::{Drive, Total};
@@ -93,6 +94,15 @@ impl Mean {
         self.end.set(&self.start);
         self.end.load = load;
         self.end.driver = self.rules.end(load, self.start.driver, &mut self.end.states);
+    }
+
+    /// As [`super::Memory::first_step`] on the clock of the laboratory.
+    pub(super) fn first_step(&mut self, longest: f64, load: Option<f64>, after_jump: bool) -> f64 {
+        let relaxed = if after_jump { soon(&self.dual, longest, 1.0) } else { longest };
+        let Some(slope) = load else { return relaxed };
+        self.dual.to_strains(&self.end.states, self.end.driver, &mut self.strains);
+        self.shape.set(&self.dual, self.end.load, slope, &self.strains);
+        growing(&self.dual, &self.shape, self.end.driver, [relaxed, longest], 1.0)
     }
 
     /// What a state with the relaxation time `tau` takes over a step of length `x` in which u runs so.

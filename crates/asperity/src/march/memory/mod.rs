@@ -18,6 +18,7 @@
 pub(in crate::march) mod branches;
 mod checkpoint;
 mod clocks;
+mod curvature;
 mod energy;
 mod estimate;
 mod mean;
@@ -34,6 +35,7 @@ pub(in crate::march) use energy::{Exchange, Products};
 use rules::{Course, Rules};
 use shape::Shape;
 pub(in crate::march) use spectral::Spectral;
+pub use waves::check_layers;
 
 use crate::error::Result;
 use crate::march::Simulation;

@@ -2,23 +2,24 @@
 //!
 //! A step is the elastic contact with the operator 1/e of all waves and the undeformed gap h0 + g, where g is the displacement that
 //! the past leaves: one transform of the pressure and one back for each row, beside those of the solve. On a free domain the waves are
-//! those of the padded torus of the convolution. Its response to pressures on the domain is that of the body, so that nothing
-//! wraps around.
+//! those of the padded torus of the convolution, or of one twice as wide ([`crate::operator::wide`]). Its response to pressures on the
+//! domain is that of the body, so that nothing wraps around.
 
 use std::sync::Arc;
 
 use ndarray::Array2;
 use rustfft::num_complex::Complex64;
 
-use super::mean::{Mean, linear};
-use super::waves::{Table, Waves};
-use super::{Drive, Interval, UnderWay};
+use super::mean::{Mean, Run, linear};
+use super::rules::Course;
+use super::waves::{Room, Table, Waves};
+use super::{Drive, Interval, Reference, UnderWay};
 use crate::error::Result;
 use crate::grid::{Boundary, Grid};
 use crate::kernel::Kernel;
 use crate::layer::Inseparable;
 use crate::march::Simulation;
-use crate::operator::{Operator, mean, of_eigenvalues};
+use crate::operator::{Operator, mean, of_eigenvalues, wide};
 use crate::sliding::torus::{Spectrum, Torus};
 
 /// A time without pressure is so many steps, each twice as long as the one before.
@@ -29,23 +30,29 @@ pub(in crate::march) struct Spectral {
     boundary: Boundary,
     kernel: Arc<dyn Kernel>,
     layers: Arc<Inseparable>,
-    torus: Torus,
-    waves: Waves,
+    pub(super) torus: Torus,
+    pub(super) waves: Waves,
     /// K00 of the kernel \[m\].
     own: f64,
     /// q_i and u at the start of the step under way.
     states: Vec<Complex64>,
-    displacement: Vec<Complex64>,
-    mean: Option<Mean>,
+    pub(super) displacement: Vec<Complex64>,
+    /// u of a third instant, and when that is.
+    pub(super) third: Vec<Complex64>,
+    pub(super) reference: Option<Reference>,
+    /// How long the smooth piece of the course has lasted at the start of the step under way; none of a piece that begins.
+    pub(super) piece: Option<f64>,
+    pub(super) mean: Option<Mean>,
     /// The load at the end of the last step.
     load: f64,
-    under_way: UnderWay,
-    /// Length of the step under way \[s\], and its parts.
-    length: f64,
+    pub(super) under_way: UnderWay,
+    /// Length of the step under way \[s\], how u runs over it, and its parts.
+    pub(super) length: f64,
+    pub(super) course: Course,
     steps: Vec<Table>,
     /// 1/e of the step under way, and g.
-    compliance: Array2<f64>,
-    recalled: Vec<Complex64>,
+    pub(super) compliance: Array2<f64>,
+    pub(super) recalled: Vec<Complex64>,
     past: Vec<f64>,
 }
 
@@ -64,10 +71,14 @@ impl Spectral {
             own,
             states: vec![Complex64::ZERO; count * waves.terms],
             displacement: vec![Complex64::ZERO; count],
+            third: vec![],
+            reference: None,
+            piece: None,
             mean: None,
             load: 0.0,
             under_way: UnderWay::Nothing,
             length: 0.0,
+            course: Course::Time,
             compliance: waves.compliance(&still),
             steps: vec![still],
             recalled: vec![Complex64::ZERO; count],
@@ -95,7 +106,13 @@ impl Spectral {
         rigid: &[f64],
         gap: &mut [f64],
     ) -> f64 {
-        let transform = (self.under_way == UnderWay::Contact).then(|| self.torus.transform(pressure));
+        let ends = self.under_way == UnderWay::Contact;
+        self.piece = Some(self.piece.map_or(0.0, |lasted| lasted + self.length));
+        self.reference = ends.then(|| Reference { length: -self.length, course: self.course });
+        if ends {
+            self.third.clone_from(&self.displacement);
+        }
+        let transform = ends.then(|| self.torus.transform(pressure));
         if self.under_way != UnderWay::Nothing {
             let p = transform.as_ref().map(|Spectrum(p)| &p[..]);
             self.waves.end(&self.steps, p, &mut self.displacement, &mut self.states);
@@ -117,6 +134,7 @@ impl Spectral {
         let x = step.lengths[0];
         self.length = x;
         self.under_way = if step.drive == Drive::Apart { UnderWay::Apart } else { UnderWay::Contact };
+        self.course = Course::Time;
         self.steps.clear();
         if x <= 0.0 {
             self.mean.iter_mut().for_each(|mean| _ = mean.run(step.drive, x));
@@ -128,6 +146,9 @@ impl Spectral {
                 None => self.waves.table(x, |tau| linear(x / tau)),
                 Some(mean) => {
                     let run = mean.run(step.drive, x);
+                    if let Run::Driver(course) = run {
+                        self.course = course;
+                    }
                     self.waves.table(x, |tau| mean.share(&run, tau, x))
                 }
             };
@@ -156,7 +177,15 @@ impl Spectral {
     /// The operator of the step under way, over the scalar compliance.
     pub(in crate::march) fn operator(&self) -> Box<dyn Operator> {
         let unit = &self.compliance / self.scale();
+        let unit = match self.waves.room() {
+            Room::Narrow => unit,
+            Room::Wide => wide::narrowed(&self.grid, &unit),
+        };
         of_eigenvalues(self.grid, self.boundary, self.kernel.clone(), &unit)
+    }
+
+    pub(super) fn cells(&self) -> usize {
+        self.grid.len()
     }
 
     /// g of the step under way.
@@ -189,7 +218,12 @@ impl Spectral {
             UnderWay::Contact => 1.0,
             UnderWay::Apart => 2.0,
         };
-        let mut numbers = vec![under_way, self.length, self.load, self.steps.len() as f64];
+        let course = match self.course {
+            Course::Time => f64::INFINITY,
+            Course::Load(change) => change,
+        };
+        let piece = self.piece.unwrap_or(f64::INFINITY);
+        let mut numbers = vec![under_way, self.length, self.load, course, piece, self.steps.len() as f64];
         for Table(rows) in &self.steps {
             numbers.push(rows.len() as f64);
             numbers.extend(rows.iter().flatten());
@@ -230,13 +264,15 @@ impl Spectral {
     }
 
     fn restored_steps<'n>(&mut self, numbers: &'n [f64]) -> Option<(Vec<Table>, &'n [f64])> {
-        let [under_way, length, load, count, rest @ ..] = numbers else { return None };
+        let [under_way, length, load, course, piece, count, rest @ ..] = numbers else { return None };
         self.under_way = match under_way {
             0.0 => UnderWay::Nothing,
             1.0 => UnderWay::Contact,
             _ => UnderWay::Apart,
         };
         (self.length, self.load) = (*length, *load);
+        self.course = if course.is_finite() { Course::Load(*course) } else { Course::Time };
+        self.piece = Some(*piece).filter(|lasted| lasted.is_finite());
         let mut rest = rest;
         let mut tables = vec![];
         for _ in 0..*count as usize {

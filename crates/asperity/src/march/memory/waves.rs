@@ -19,12 +19,14 @@ use super::rules::Share;
 use crate::error::{Error, Result};
 use crate::grid::{Boundary, Grid};
 use crate::layer::{Inseparable, TOLERANCE};
-use crate::operator::{eigenvalues, torus};
+use crate::operator::{eigenvalues, torus, wide};
 
 /// Spacing of ln τ in the tables: six points interpolate to 1e-9.
 const SPACING: f64 = 0.04;
 /// Nodes of the table before the shortest time.
 const BEFORE: f64 = 2.0;
+/// Cells along a side on which a case is checked before it runs.
+const COARSE: usize = 48;
 
 /// A term E_i exp(-t/τ_i) of a wave.
 #[derive(Clone, Copy, Debug)]
@@ -34,10 +36,20 @@ struct Term {
     place: f64,
 }
 
+/// Which torus the waves are of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Room {
+    /// That of the convolution.
+    Narrow,
+    /// The wide one of a free domain, on which the kernel fades out smoothly.
+    Wide,
+}
+
 /// The relaxation functions of the waves of a torus.
 pub(super) struct Waves {
     /// mx, my.
     lengths: [usize; 2],
+    room: Room,
     /// ln τ of the first node of the tables, and their nodes.
     first: f64,
     nodes: usize,
@@ -87,29 +99,58 @@ impl Table {
 
 impl Waves {
     /// Of a domain, and the displacement \[m\] of a cell under its own unit pressure at t = 0, times the modulus at the surface.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where a wave does not creep like a body, and as [`plan`](crate::operator::plan).
     pub(super) fn new(grid: &Grid, boundary: Boundary, layers: &Inseparable) -> Result<(Self, f64)> {
+        let tori: &[Room] = match boundary {
+            Boundary::Free if layers.creeps_far_away() => &[Room::Wide],
+            Boundary::Free => &[Room::Narrow, Room::Wide],
+            Boundary::Periodic => &[Room::Narrow],
+        };
+        for room in tori {
+            if let Some(found) = Waves::on(grid, boundary, *room, layers)? {
+                return Ok(found);
+            }
+        }
+        Err(unlike_a_body(grid, boundary, layers))
+    }
+
+    /// The same on a torus; `None` where a wave of it does not creep like a body.
+    fn on(grid: &Grid, boundary: Boundary, room: Room, layers: &Inseparable) -> Result<Option<(Self, f64)>> {
+        let lengths = match room {
+            Room::Narrow => torus(grid, boundary),
+            Room::Wide => wide::lengths(grid),
+        };
         let mut stages: Vec<Array2<f64>> = vec![];
         let mut own = 0.0;
         for (kernel, compliance) in layers.stages() {
-            let unit = eigenvalues(grid, boundary, &*kernel)?;
+            let unit = match room {
+                Room::Narrow => eigenvalues(grid, boundary, &*kernel)?,
+                Room::Wide => wide::eigenvalues(grid, &kernel)?,
+            };
             if stages.is_empty() {
-                own = crate::operator::mean(torus(grid, boundary), unit.view());
+                own = crate::operator::mean(lengths, unit.view());
             }
             stages.push(unit * compliance);
         }
         let (rows, columns) = stages[0].dim();
+        // A square of square cells is symmetric: the upper triangle tells all.
+        let [dx, dy] = grid.spacing();
+        let mirrored = rows == columns && dx == dy;
         let of_row = |kx: usize| {
             let wave = |ky: usize| {
                 let values: Vec<f64> = stages.iter().map(|stage| stage[(kx, ky)]).collect();
                 let uniform = kx == 0 && ky == 0;
                 match values.iter().all(|value| *value == 0.0) && uniform {
-                    true => Ok((f64::INFINITY, vec![])),
-                    false => relaxation(layers, &values, grid, boundary),
+                    true => Some((f64::INFINITY, vec![])),
+                    false => relaxation(layers, &values),
                 }
             };
-            (0..columns).map(wave).collect::<Result<Vec<_>>>()
+            (if mirrored { kx } else { 0 }..columns).map(wave).collect::<Option<Vec<_>>>()
         };
-        let all = (0..rows).into_par_iter().map(of_row).collect::<Result<Vec<_>>>()?;
+        let all = (0..rows).into_par_iter().map(of_row).collect::<Option<Vec<_>>>();
+        let Some(all) = all else { return Ok(None) };
         let terms = all.iter().flatten().map(|(_, terms)| terms.len()).max().unwrap_or(0);
         let times = || all.iter().flatten().flat_map(|(_, terms)| terms.iter().map(|term| libm::log(term.1)));
         let shortest = times().fold(f64::INFINITY, f64::min);
@@ -117,23 +158,26 @@ impl Waves {
         let (shortest, longest) = if terms > 0 { (shortest, longest) } else { (0.0, 0.0) };
         let mut relaxing = Vec::with_capacity(rows * columns * terms);
         let mut equilibrium = Vec::with_capacity(rows * columns);
-        for (relaxed, own) in all.into_iter().flatten() {
-            equilibrium.push(relaxed);
-            let place = |time: f64| (libm::log(time) - shortest) / SPACING + BEFORE;
+        let place = |time: f64| (libm::log(time) - shortest) / SPACING + BEFORE;
+        let none = Term { modulus: 0.0, place: BEFORE };
+        for (kx, ky) in (0..rows).flat_map(|kx| (0..columns).map(move |ky| (kx, ky))) {
+            let (relaxed, own) = match mirrored {
+                true => &all[kx.min(ky)][kx.max(ky) - kx.min(ky)],
+                false => &all[kx][ky],
+            };
+            equilibrium.push(*relaxed);
             let own = own.iter().map(|(modulus, time)| Term { modulus: *modulus, place: place(*time) });
-            let none = Term { modulus: 0.0, place: BEFORE };
             relaxing.extend(own.chain(std::iter::repeat(none)).take(terms));
         }
         let nodes = ((longest - shortest) / SPACING) as usize + 6;
-        let waves = Waves {
-            lengths: torus(grid, boundary),
-            first: shortest - BEFORE * SPACING,
-            nodes,
-            terms,
-            equilibrium,
-            relaxing,
-        };
-        Ok((waves, own))
+        let waves =
+            Waves { lengths, room, first: shortest - BEFORE * SPACING, nodes, terms, equilibrium, relaxing };
+        Ok(Some((waves, own)))
+    }
+
+    /// The torus of the convolution, or a wider one.
+    pub(super) fn room(&self) -> Room {
+        self.room
     }
 
     /// mx, my.
@@ -161,7 +205,7 @@ impl Waves {
         Table((0..self.nodes).into_par_iter().map(row).collect())
     }
 
-    /// 1/e of each wave.
+    /// 1/e of each wave of a quarter.
     pub(super) fn compliance(&self, step: &Table) -> Array2<f64> {
         let (rows, columns) = self.quarter();
         let of = |n: usize| {
@@ -170,6 +214,25 @@ impl Waves {
         };
         let values: Vec<f64> = (0..rows * columns).into_par_iter().map(of).collect();
         Array2::from_shape_fn((rows, columns), |(kx, ky)| values[kx * columns + ky])
+    }
+
+    /// Σ E_i times what a table has for the change of u, of each wave of a quarter.
+    pub(super) fn sum_of_new(&self, table: &Table) -> Vec<f64> {
+        let of = |n: usize| {
+            let relaxing = self.relaxing[n * self.terms..(n + 1) * self.terms].iter();
+            relaxing.map(|e| e.modulus * table.at(e.place).new).sum()
+        };
+        (0..self.equilibrium.len()).into_par_iter().map(of).collect()
+    }
+
+    /// E_inf of a wave of a quarter; 0 of one that does not yield.
+    pub(super) fn relaxed_modulus(&self, wave: usize) -> f64 {
+        Some(self.equilibrium[wave]).filter(|modulus| modulus.is_finite()).unwrap_or(0.0)
+    }
+
+    /// The number in the quarter of the n-th wave of the transform.
+    pub(super) fn quarter_of(&self, n: usize) -> usize {
+        self.place(n % self.lengths[0], n / self.lengths[0])
     }
 
     /// The number of a wave of the transform in the quarter.
@@ -286,31 +349,47 @@ impl Waves {
     }
 }
 
-/// E_inf and the terms (E_i, τ_i) of a wave with these values of C~.
-fn relaxation(
-    layers: &Inseparable,
-    values: &[f64],
-    grid: &Grid,
-    boundary: Boundary,
-) -> Result<(f64, Vec<(f64, f64)>)> {
-    let fitted = layers.fit(values).filter(|(_, misfit)| *misfit <= TOLERANCE);
-    let Some((creep, _)) = fitted else {
-        let side = grid.longest_side();
-        return Err(match boundary {
-            Boundary::Free => Error::invalid(
-                "free domain over layers that creep differently",
-                format!("{side:e} m wide"),
-                "a domain on which each wave of the response creeps like a body. Stiff layers on a soft one that creeps have \
-                 none: take boundary = \"periodic\" and a domain several times as wide as the contact and the layers",
-            ),
-            Boundary::Periodic => Error::invalid(
-                "misfit of the creep of a wave",
-                format!("more than {TOLERANCE:e}"),
-                "less: use materials with fewer or closer relaxation times",
-            ),
-        });
-    };
-    let relaxation = creep.to_relaxation()?;
+/// E_inf and the terms (E_i, τ_i) of a wave with these values of C~; `None` where it does not creep like a body.
+fn relaxation(layers: &Inseparable, values: &[f64]) -> Option<(f64, Vec<(f64, f64)>)> {
+    let (creep, _) = layers.fit(values).filter(|(_, misfit)| *misfit <= TOLERANCE)?;
+    let relaxation = creep.to_relaxation().ok()?;
     let terms = relaxation.terms.iter().map(|term| (term.modulus, term.relaxation_time));
-    Ok((relaxation.equilibrium, terms.collect()))
+    Some((relaxation.equilibrium, terms.collect()))
+}
+
+/// Whether layers that creep differently are solved on a domain, as far as a coarse grid tells.
+///
+/// # Errors
+/// [`Error::Invalid`] where a wave does not creep like a body.
+pub fn check_layers(grid: &Grid, boundary: Boundary, layers: &Inseparable) -> Result<()> {
+    if boundary == Boundary::Periodic || grid.is_line() {
+        return Ok(());
+    }
+    let longest = layers.glassy().longest_cell();
+    let coarse = |n: usize, side: f64| n.min(COARSE.max((side / longest).ceil() as usize));
+    let ([nx, ny], [lx, ly]) = (grid.cells(), grid.size());
+    Waves::new(&Grid::new([coarse(nx, lx), coarse(ny, ly)], [lx, ly])?, boundary, layers).map(|_| ())
+}
+
+fn unlike_a_body(grid: &Grid, boundary: Boundary, layers: &Inseparable) -> Error {
+    match boundary {
+        Boundary::Free => {
+            let side = grid.longest_side();
+            Error::invalid(
+                "side of a free domain over layers that creep differently",
+                format!("{side:e} m"),
+                format!(
+                    "several times the length over which the layers bend, {:.2e} m: a stiff layer on a softer one spreads the \
+                     pressure beyond the domain, where its creep is not followed. Take a larger domain with the same cells, or \
+                     boundary = \"periodic\" and a domain several times as wide as that length and the contact",
+                    layers.bending_length()
+                ),
+            )
+        }
+        Boundary::Periodic => Error::invalid(
+            "misfit of the creep of a wave",
+            format!("more than {TOLERANCE:e}"),
+            "less: use materials with fewer or closer relaxation times",
+        ),
+    }
 }

@@ -303,7 +303,9 @@ fn snap(temperature: &mut f64, points: &[(f64, f64)]) {
 fn at_isotherm(curves: &Curves, error: &asperity::Error) -> Fault {
     let message = error.to_string();
     let sweep = curves.sweeps.iter().find(|sweep| {
-        sweep.temperature.is_some_and(|kelvin| message.contains(&format!("isotherm at {kelvin:.2} K")))
+        sweep.temperature.is_some_and(|kelvin| {
+            message.contains(&format!("isotherm at {} K", (100.0 * kelvin).round() / 100.0))
+        })
     });
     let line = sweep.and_then(|sweep| sweep.lines.get(point(&message)?.checked_sub(1)?));
     match line {

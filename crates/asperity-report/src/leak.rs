@@ -187,7 +187,9 @@ fn sealing(mut panel: Curves, time: &[f64], percolates: &[f64]) -> Curves {
 /// Leak rate and gaps over time, and the flow at an instant.
 pub(crate) fn over_time(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
     let mut figure = Figure::new("");
-    for panel in curves(reader, options.log)? {
+    let window = Rows::within(reader, options)?.axis(options.log).range;
+    for mut panel in curves(reader, options.log)? {
+        panel.x.range = window.or(panel.x.range);
         figure = figure.with(panel);
     }
     // The last state of a seal that has become tight shows no flow.

@@ -2,14 +2,17 @@
 //!
 //! - [`figure`] draws panels of curves and maps with units, scale bars and colour bars, as SVG, PNG or PDF.
 //! - [`result`] makes the figures of a result, by name; [`pictures`] a directory of them.
+//! - [`animation`] shows one over the stored times.
 //! - [`page`] writes the report, one HTML file.
 //! - [`leak`] draws the flow through a gap.
 //! - [`material`] shows materials and fits.
 //! - [`paper`] makes the figures of the paper that the method comes from.
 //! - [`surface`] draws a surface with its statistics.
 
+pub mod animation;
 pub mod figure;
 mod file;
+mod histogram;
 pub mod leak;
 pub mod material;
 pub mod page;

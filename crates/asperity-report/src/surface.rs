@@ -1,11 +1,14 @@
-//! The picture of a surface: height map, power spectrum, height distribution and bearing curve.
+//! The picture of a surface: height map, power spectrum, height distribution, bearing curve and autocorrelation.
 
 use std::f64::consts::TAU;
 
-use asperity::surface::Surface;
-use asperity::surface::statistics::{BearingCurve, Summary, height_distribution};
+use asperity::Grid;
+use asperity::surface::statistics::{Autocorrelation, BearingCurve, Extent, SelfAffineFit, Summary};
+use asperity::surface::{Fill, Level, Surface, fill, level};
+use asperity_io::readable::quantity;
 
-use crate::figure::{Axis, Colours, Curves, Figure, Map, Series, Style};
+use crate::figure::{Axis, Colours, Curves, Figure, Map, Series, Style, block, means, robust};
+use crate::histogram;
 
 /// Bins of the height distribution.
 const BINS: usize = 64;
@@ -29,22 +32,27 @@ const ROUNDING: f64 = 1e-16;
 /// };
 /// let surface = Surface::new(grid, roughness.heights(&grid)?)?;
 /// let summary = Summary::of(&surface, Extent::Periodic)?;
-/// let figure = asperity_report::surface::picture("rough", &surface, &summary, &BearingCurve::of(&surface, 100)?);
-/// assert_eq!(figure.panels.len(), 4);
+/// let bearing = BearingCurve::of(&surface, 100)?;
+/// let figure = asperity_report::surface::picture("rough", &surface, Extent::Periodic, &summary, &bearing);
+/// assert_eq!(figure.panels.len(), 6);
 /// assert!(figure.to_svg().contains("height [µm]"));
 /// # Ok::<(), asperity::Error>(())
 /// ```
-pub fn picture(title: &str, surface: &Surface, summary: &Summary, bearing: &BearingCurve) -> Figure {
+pub fn picture(
+    title: &str,
+    surface: &Surface,
+    extent: Extent,
+    summary: &Summary,
+    bearing: &BearingCurve,
+) -> Figure {
     let size = surface.grid().size();
     let map = Map::new("Heights", ["height", "m"], Colours::Sequential, surface.heights(), size);
-    let mut figure = Figure::new(title).with(map);
+    let mut figure = Figure::new(title).columns(3).with(map);
     if let Some(waves) = &summary.waves {
         figure = figure.with(spectrum(waves));
     }
-    // A flat has no density.
-    if let Ok((heights, density)) = height_distribution(surface, BINS) {
-        figure = figure.with(distribution(summary, heights, density));
-    }
+    let (panel, beyond) = distribution(surface, summary);
+    figure = figure.with(panel);
     let shares: Vec<f64> = bearing.share.iter().map(|share| 100.0 * share).collect();
     let curve = Curves::new(
         "Bearing area",
@@ -52,7 +60,72 @@ pub fn picture(title: &str, surface: &Surface, summary: &Summary, bearing: &Bear
         Axis::linear("height", "m"),
     )
     .with(Series::new("", Style::Line, shares, bearing.heights.clone()));
-    figure.with(curve).caption(caption(surface, summary))
+    figure = figure.with(curve);
+    let mut words = caption(surface, summary) + &beyond;
+    match correlation(surface, extent, summary) {
+        Some((coarse, correlation)) => {
+            figure = figure.with(radial(&correlation)).with(lags(&coarse, &correlation));
+        }
+        None => words += " No autocorrelation: the surface is flat, or too many points are undefined.",
+    }
+    figure.caption(words)
+}
+
+/// Most points of a side of the surface whose autocorrelation is drawn.
+const FINEST: usize = 1024;
+
+/// The autocorrelation about the mean plane (of a periodic surface about the mean), with undefined points filled; a large surface
+/// as means of blocks.
+fn correlation(surface: &Surface, extent: Extent, summary: &Summary) -> Option<(Surface, Autocorrelation)> {
+    summary.waves.as_ref()?;
+    let heights = surface.heights();
+    let [nx, ny] = surface.grid().cells();
+    let by = nx.max(ny).div_ceil(FINEST).max(block(heights));
+    let coarse = means(heights, by);
+    let (cells, spacing) = (coarse.dim(), surface.grid().spacing());
+    let size = [cells.0 as f64 * spacing[0] * by as f64, cells.1 as f64 * spacing[1] * by as f64];
+    let grid = Grid::new([cells.0, cells.1], size).ok()?;
+    let flat = match extent {
+        Extent::Periodic => coarse,
+        Extent::Finite => level(coarse.view(), Level::Plane).ok()?,
+    };
+    let whole = match flat.iter().all(|z| z.is_finite()) {
+        true => flat,
+        false => fill(&grid, flat.view(), Fill::Harmonic, 1.0).ok()?,
+    };
+    let surface = Surface::new(grid, whole).ok()?;
+    let correlation = Autocorrelation::of(&surface, extent).ok()?;
+    Some((surface, correlation))
+}
+
+/// The autocorrelation averaged over all directions, and where it falls to 0.2.
+fn radial(correlation: &Autocorrelation) -> Curves {
+    /// The level of the autocorrelation length of ISO 25178-2.
+    const LEVEL: f64 = 0.2;
+    let (lag, values) = correlation.radial();
+    let panel = Curves::new("Autocorrelation", Axis::linear("lag", "m"), Axis::linear("autocorrelation", ""));
+    let last = lag.last().copied().unwrap_or(0.0);
+    let panel = panel.with(Series::new("mean of all directions", Style::Line, lag, values));
+    match correlation.length() {
+        Some(length) => {
+            let name = format!("Sal = {}, first fall to 0.2", quantity(length, "m"));
+            panel.with(Series::new(name, Style::Dashed, vec![length; 2], vec![LEVEL, 1.0]))
+        }
+        None => panel.with(Series::new("0.2", Style::Reference, vec![0.0, last], vec![LEVEL; 2])),
+    }
+}
+
+/// The autocorrelation over lags in both directions.
+fn lags(surface: &Surface, correlation: &Autocorrelation) -> Map {
+    let values = correlation.values.view();
+    let map = Map::new("", ["autocorrelation", ""], Colours::Diverging, values, surface.grid().size());
+    map.over_lags().between([-1.0, 1.0])
+}
+
+/// Whether the spectrum is that of a self-affine surface: a Hurst exponent between 0 and 1 within its uncertainty, and known to
+/// a quarter.
+fn fits(fit: &SelfAffineFit) -> bool {
+    fit.error < 0.25 && fit.hurst + fit.error > 0.0 && fit.hurst - fit.error < 1.0
 }
 
 fn spectrum(waves: &asperity::surface::statistics::Waves) -> Curves {
@@ -72,7 +145,9 @@ fn spectrum(waves: &asperity::surface::statistics::Waves) -> Curves {
         q.clone(),
         power,
     ));
-    if let (Some(fit), Some(first), Some(last)) = (&waves.fit, q.first(), q.last()) {
+    // A line through a spectrum that is no power law says nothing.
+    let fit = waves.fit.as_ref().filter(|fit| fits(fit));
+    if let (Some(fit), Some(first), Some(last)) = (fit, q.first(), q.last()) {
         let bend = TAU / fit.roll_off;
         let at = |q: f64| fit.plateau * (q / bend).max(1.0).powf(-2.0 * (1.0 + fit.hurst));
         let places: Vec<f64> =
@@ -84,17 +159,33 @@ fn spectrum(waves: &asperity::surface::statistics::Waves) -> Curves {
     curves
 }
 
-fn distribution(summary: &Summary, heights: Vec<f64>, density: Vec<f64>) -> Curves {
+/// The distribution of the heights, without the few that lie far out; these are told.
+fn distribution(surface: &Surface, summary: &Summary) -> (Curves, String) {
     let (mean, sq) = (summary.heights.mean, summary.heights.sq);
-    let gauss = |z: f64| (-0.5 * ((z - mean) / sq).powi(2)).exp() / (sq * TAU.sqrt());
-    let normal: Vec<f64> = heights.iter().map(|z| gauss(*z)).collect();
-    let highest = density.iter().chain(&normal).copied().fold(0.0, f64::max);
-    // Nothing to draw for an empty bin; room for the legend above the curves.
-    let density: Vec<f64> = density.into_iter().map(|d| if d > 0.0 { d } else { f64::NAN }).collect();
-    let up = Axis::linear("density", "1/m").between(0.0, 1.25 * highest);
-    Curves::new("Height distribution", Axis::linear("height", "m"), up)
-        .with(Series::new("", Style::Bars, heights.clone(), density))
-        .with(Series::new("Gaussian of the same Sq", Style::Reference, heights, normal))
+    let heights: Vec<f64> = surface.heights().iter().copied().filter(|z| z.is_finite()).collect();
+    let ends = [f64::INFINITY, f64::NEG_INFINITY];
+    let whole = heights.iter().fold(ends, |[a, b], z| [a.min(*z), b.max(*z)]);
+    let kept = robust(heights.iter().copied());
+    let [low, high] = kept.unwrap_or(whole);
+    let panel =
+        Curves::new("Height distribution", Axis::linear("height", "m"), Axis::linear("density", "1/m"))
+            .or_say("all heights are the same");
+    let panel = histogram::bars(panel, histogram::density(&heights, low..=high, BINS));
+    let beyond = match kept {
+        Some([low, high]) => format!(
+            " Distribution without the lowest and highest thousandth, which go from {} to {}.",
+            quantity(whole[0].min(low), "m"),
+            quantity(whole[1].max(high), "m")
+        ),
+        None => String::new(),
+    };
+    if sq <= 0.0 {
+        return (panel, beyond);
+    }
+    let places: Vec<f64> = (0..=100).map(|k| low + (high - low) * f64::from(k) / 100.0).collect();
+    let gauss = |z: &f64| (-0.5 * ((z - mean) / sq).powi(2)).exp() / (sq * TAU.sqrt());
+    let normal: Vec<f64> = places.iter().map(gauss).collect();
+    (panel.with(Series::new("Gaussian of the same Sq", Style::Reference, places, normal)), beyond)
 }
 
 fn caption(surface: &Surface, summary: &Summary) -> String {
@@ -106,8 +197,10 @@ fn caption(surface: &Surface, summary: &Summary) -> String {
         text += &format!(", {undefined} of them undefined (grey)");
     }
     text += &format!(". Skewness {:.2}, kurtosis {:.2}.", h.ssk, h.sku);
-    if summary.waves.is_none() {
-        text += " No spectrum: more than a quarter of the points are undefined.";
+    match summary.waves.as_ref().map(|waves| waves.fit.as_ref().is_some_and(fits)) {
+        None => text += " No spectrum: more than a quarter of the points are undefined.",
+        Some(false) => text += " The spectrum is not that of a self-affine surface.",
+        Some(true) => {}
     }
     text
 }
@@ -115,14 +208,12 @@ fn caption(surface: &Surface, summary: &Summary) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use asperity::Grid;
-    use asperity::surface::statistics::Extent;
     use asperity::surface::{Roughness, SelfAffine};
     use ndarray::Array2;
 
     fn figure(surface: &Surface) -> Figure {
         let summary = Summary::of(surface, Extent::Finite).unwrap();
-        picture("a surface", surface, &summary, &BearingCurve::of(surface, 50).unwrap())
+        picture("a surface", surface, Extent::Finite, &summary, &BearingCurve::of(surface, 50).unwrap())
     }
 
     #[test]
@@ -152,7 +243,8 @@ mod tests {
         let summary = Summary::of(&surface, Extent::Periodic).unwrap();
         let fit = summary.waves.as_ref().unwrap().fit.unwrap();
         assert!((fit.hurst - 0.7).abs() < 0.1, "{fit:?}"); // some thousand waves
-        let svg = picture("", &surface, &summary, &BearingCurve::of(&surface, 50).unwrap()).to_svg();
+        let bearing = BearingCurve::of(&surface, 50).unwrap();
+        let svg = picture("", &surface, Extent::Periodic, &summary, &bearing).to_svg();
         assert!(svg.contains(&format!("H = {:.2}", fit.hurst)));
     }
 }

@@ -18,8 +18,9 @@ pub enum Error {
     },
     /// The load cannot be carried: W > H A (no solution exists).
     #[error(
-        "the load {load:e} N exceeds {max:e} N, the hardness times the area that can touch; \
-         lower the load, raise the hardness or enlarge the domain"
+        "the load {} N exceeds {} N, the hardness times the area that can touch; \
+         lower the load, raise the hardness or enlarge the domain",
+        four(*load), four(*max)
     )]
     Infeasible {
         /// Load asked for \[N\].
@@ -30,8 +31,9 @@ pub enum Error {
     /// A periodic body pressed into full contact under approach control: the mean pressure is
     /// not determined by the approach.
     #[error(
-        "the approach {approach:e} m closes the whole periodic gap (largest with a determined load: \
-         {max:e} m); use load control for full contact"
+        "the approach {} m closes the whole periodic gap (largest with a determined load: \
+         {} m); use load control for full contact",
+        four(*approach), four(*max)
     )]
     Undetermined {
         /// Approach asked for \[m\].
@@ -121,5 +123,30 @@ pub(crate) fn non_negative(what: &str, value: f64, unit: &str) -> Result<f64> {
         Ok(value)
     } else {
         Err(Error::invalid(what, value, format!("finite and not less than 0 {unit}").trim_end()))
+    }
+}
+
+/// A temperature \[K\] to a hundredth: "293.15 K".
+pub(crate) fn kelvin(temperature: f64) -> String {
+    format!("{} K", (100.0 * temperature).round() / 100.0)
+}
+
+/// A number in four digits: "5", "0.025", "1.234e-7".
+fn four(value: f64) -> String {
+    let size = value.abs();
+    if size == 0.0 || (1e-3..1e5).contains(&size) {
+        let digits = if size == 0.0 { 0.0 } else { (3.0 - size.log10().floor()).clamp(0.0, 6.0) };
+        let text = format!("{value:.*}", digits as usize);
+        return match text.contains('.') {
+            true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+            false => text,
+        };
+    }
+    let text = format!("{value:.3e}");
+    match text.split_once('e') {
+        Some((digits, power)) if digits.contains('.') => {
+            format!("{}e{power}", digits.trim_end_matches('0').trim_end_matches('.'))
+        }
+        _ => text,
     }
 }

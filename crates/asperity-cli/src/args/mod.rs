@@ -58,7 +58,7 @@ pub enum Command {
     Report(Report),
     /// View a result in the browser with maps at full resolution, also while it is being written
     View(View),
-    /// Draw a figure of a result, or of several results together, as PNG, SVG or PDF
+    /// Draw a figure of a result, or of several results together, as PNG, SVG or PDF, or an animation
     Plot(Plot),
     /// List what differs between two results: in their cases, at their ends, and at the times that both have
     Compare(Compare),

@@ -75,6 +75,15 @@ pub struct Plot {
     /// The file to write; its extension selects the format: png, svg or pdf [default: RESULT-WHAT.png]
     #[arg(short, long, value_name = "PATH")]
     pub output: Option<PathBuf>,
+    /// Write an animation over the stored times to this file instead: .png (or .apng) or .gif
+    #[arg(long, value_name = "PATH", conflicts_with_all = ["output", "time", "same_colours"])]
+    pub animate: Option<PathBuf>,
+    /// Length of the animation, e.g. '6 s' [default: 0.2 s for each frame, at most 12 s]
+    #[arg(long, value_name = "T", requires = "animate")]
+    pub duration: Option<String>,
+    /// Largest number of frames of the animation; of more stored times some are left out evenly [default: 200]
+    #[arg(long, value_name = "N", requires = "animate", value_parser = clap::value_parser!(u32).range(2..=10000))]
+    pub frames: Option<u32>,
     /// Time of maps, profiles, distributions and the stress, e.g. '500 s'; the nearest stored one is used [default: last]
     #[arg(long, value_name = "T")]
     pub time: Option<String>,
@@ -90,6 +99,28 @@ pub struct Plot {
     /// Time on a linear axis
     #[arg(long)]
     pub linear_time: bool,
+    /// First time of figures over time, or of the animation, e.g. '1 s' (of a sweep a velocity) [default: the first]
+    #[arg(long, value_name = "T")]
+    pub from: Option<String>,
+    /// Last time likewise [default: the last]
+    #[arg(long, value_name = "T")]
+    pub to: Option<String>,
+    /// Values at the ends of the colours of a map, e.g. '0,20 MPa' [default: those of the map]
+    #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true)]
+    pub limits: Option<String>,
+    /// Colours of all stored times of all results given: maps made at other times can be compared
+    #[arg(long, conflicts_with = "limits")]
+    pub same_colours: bool,
+    /// Colour map: viridis, cividis, inferno, magma, plasma, turbo, grey or red-blue [default: inferno for pressure and
+    /// stress, else viridis]
+    #[arg(long, value_name = "NAME")]
+    pub colours: Option<String>,
+    /// Colours of a map by the logarithm of the values, e.g. of the gap; of a line contact the vertical axis
+    #[arg(long)]
+    pub log: bool,
+    /// Width and height of the figure, e.g. '160 mm,100 mm' [default: what its panels take]
+    #[arg(long, value_name = "A,B")]
+    pub size: Option<String>,
     /// The title [default: that of the case]
     #[arg(long)]
     pub title: Option<String>,

@@ -42,10 +42,15 @@ fn free(path: &Path, force: bool) -> Result<(), Failure> {
 
 /// The instant of an option --time: a time, of a sweep a velocity; the last one where the option is not given.
 pub fn instant(reader: &Reader, text: Option<&str>) -> Result<At, Failure> {
-    let Some(text) = text else { return Ok(At::Last) };
-    Ok(At::Time(match reader.header().is_sweep() {
-        true => read::<Velocity>("--time", text, "10 mm/s")?.get(),
-        false => read::<Time>("--time", text, "500 s")?.get(),
+    Ok(moment(reader, "--time", text)?.map_or(At::Last, At::Time))
+}
+
+/// An option that names a time \[s\], of a sweep a velocity \[m/s\].
+fn moment(reader: &Reader, option: &str, text: Option<&str>) -> Result<Option<f64>, Failure> {
+    let Some(text) = text else { return Ok(None) };
+    Ok(Some(match reader.header().is_sweep() {
+        true => read::<Velocity>(option, text, "10 mm/s")?.get(),
+        false => read::<Time>(option, text, "500 s")?.get(),
     }))
 }
 

@@ -168,7 +168,7 @@ pub struct Preparation {
 }
 
 /// Memory of the program itself and of its threads, whatever the case \[bytes\].
-const PROGRAM: usize = 18 << 20;
+const PROGRAM: usize = 21 << 20;
 /// Fields that are copied while a checkpoint is stored: what is compressed.
 const KEPT: usize = 2;
 /// The same while a row with fields is stored: the gap too, and what the report draws.
@@ -184,7 +184,10 @@ impl Case {
         let simulation = Simulation { quantities, ..self.with_gap(ndarray::Array2::default((0, 0))) };
         let copies = if self.output.fields.is_empty() { KEPT } else { STORED };
         let stress = self.stress.as_ref().map_or(0, |plan| plan.bytes(&self.grid, self.boundary));
-        (simulation.bytes() + copies * 8 * self.grid.len() + PROGRAM + stress) as u64
+        let run = simulation.bytes() + copies * 8 * self.grid.len() + stress;
+        // The run has given its memory back when the leakage is computed.
+        let leak = self.leakage.as_ref().map_or(0, |leak| leak.bytes(self.grid.len()) as usize);
+        (run.max(leak) + PROGRAM) as u64
     }
 
     /// What the case will do.

@@ -39,6 +39,7 @@ const FIRST_KEYS: [(&str, &str); 8] = [
 /// let size = [50e-6, 40e-6];
 /// assert_eq!(crop, Ok(Step::Crop(Crop::Lengths { size, corner: Some([0.0, 10e-6]) })));
 /// assert!(step("level=plain").unwrap_err().contains("did you mean \"plane\"?"));
+/// assert!(step("outlier=6").unwrap_err().contains("did you mean \"outliers\"?"));
 /// ```
 ///
 /// # Errors
@@ -51,7 +52,13 @@ pub fn step(words: &str) -> Result<Step, String> {
     table.insert("op".into(), Value::String(name.to_owned()));
     let rest = match (rest.strip_prefix('='), FIRST_KEYS.iter().find(|(step, _)| *step == name)) {
         (Some(value), Some((_, key))) => format!("{key}={value}"),
-        (Some(_), None) => return Err(format!("\"{words}\": write the keys of {name} by name, KEY=VALUE")),
+        (Some(_), None) => {
+            // What is wrong with the name comes first.
+            return Err(match step(name) {
+                Err(error) if error.contains("must be one of") => error,
+                _ => format!("\"{words}\": write the keys of {name} by name, KEY=VALUE"),
+            });
+        }
         (None, _) => rest.to_owned(),
     };
     for (key, value) in keys(&rest)? {

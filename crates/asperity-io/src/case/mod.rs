@@ -51,6 +51,7 @@ mod plan;
 pub mod quantity;
 mod raw;
 mod read;
+mod rehearse;
 mod schema;
 mod specimen;
 mod text;
@@ -77,6 +78,7 @@ pub use examine::{Examination, Inputs, ModulusInput, SurfaceInput};
 pub use measured::Measured;
 pub use plan::{Motion, Output, Rows, Surface, Travel};
 pub use raw::{LeakDirection, Leakage as LeakageKeys};
+pub use rehearse::Rehearsal;
 pub use schema::schema;
 pub use specimen::{Specimen, specimens};
 

@@ -87,18 +87,32 @@ fn creep(text: &mut String, measure: &str, creep: &Creep, uncertainty: &[[f64; 2
     }
 }
 
+/// A number with so many decimals at most, without the digits of a rounding error: "293.15", "-0.72".
+fn trimmed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    let text = text.trim_end_matches('0');
+    if text.ends_with('.') { format!("{text}0") } else { text.to_owned() }
+}
+
 fn law(shift: &Shift) -> String {
     match shift {
         Shift::Wlf { c1, c2, reference } => {
-            format!("{{ model = \"wlf\", c1 = {c1:?}, c2 = \"{c2:?} K\", reference = \"{reference:?} K\" }}")
+            format!(
+                "{{ model = \"wlf\", c1 = {c1:?}, c2 = \"{c2:?} K\", reference = \"{} K\" }}",
+                trimmed(*reference, 6)
+            )
         }
         Shift::Arrhenius { activation_energy, reference } => format!(
-            "{{ model = \"arrhenius\", energy = \"{activation_energy:?} J/mol\", reference = \"{reference:?} K\" }}"
+            "{{ model = \"arrhenius\", energy = \"{activation_energy:?} J/mol\", reference = \"{} K\" }}",
+            trimmed(*reference, 6)
         ),
         Shift::Table { points } => {
             let points: Vec<String> = points
                 .iter()
-                .map(|(kelvin, ln)| format!("[\"{kelvin:?} K\", {:?}]", ln / std::f64::consts::LN_10))
+                .map(|(kelvin, ln)| {
+                    let decades = trimmed(ln / std::f64::consts::LN_10, 10);
+                    format!("[\"{} K\", {decades}]", trimmed(*kelvin, 6))
+                })
                 .collect();
             format!("{{ model = \"table\", points = [{}] }}", points.join(", "))
         }

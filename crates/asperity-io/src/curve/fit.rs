@@ -98,6 +98,16 @@ impl Fitted {
         }
     }
 
+    /// The shift factor a_T of a sweep at this temperature \[K\]: of shift factors in a list that of its temperature. `None` without
+    /// a shift, or where it says nothing of that temperature.
+    pub fn shift_factor(&self, mut kelvin: f64) -> Option<f64> {
+        let shift = self.shift.as_ref()?;
+        if let Shift::Table { points } = shift {
+            snap(&mut kelvin, points);
+        }
+        shift.factor(kelvin).ok()
+    }
+
     /// The modulus of a DMA that was not fitted, and its misfit.
     pub fn other(&self) -> Option<(&'static str, Misfit)> {
         match (self.moduli, self.columns.as_slice()) {
@@ -293,7 +303,9 @@ fn snap(temperature: &mut f64, points: &[(f64, f64)]) {
 fn at_isotherm(curves: &Curves, error: &asperity::Error) -> Fault {
     let message = error.to_string();
     let sweep = curves.sweeps.iter().find(|sweep| {
-        sweep.temperature.is_some_and(|kelvin| message.contains(&format!("isotherm at {kelvin} K")))
+        sweep.temperature.is_some_and(|kelvin| {
+            message.contains(&format!("isotherm at {} K", (100.0 * kelvin).round() / 100.0))
+        })
     });
     let line = sweep.and_then(|sweep| sweep.lines.get(point(&message)?.checked_sub(1)?));
     match line {

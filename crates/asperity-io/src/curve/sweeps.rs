@@ -151,7 +151,7 @@ fn by_temperature(temperatures: &[f64], rows: &[usize]) -> Result<Vec<Vec<usize>
         let (coldest, warmest) = (temperatures[group[0]], temperatures[group[group.len() - 1]]);
         if warmest - coldest > SPREAD {
             return Err(fault(format!(
-                "the temperatures from {coldest} K to {warmest} K follow each other within {SAME_TEMPERATURE} K; \
+                "the temperatures from {coldest:.2} K to {warmest:.2} K follow each other within {SAME_TEMPERATURE} K; \
                  sweeps at held temperatures are needed"
             )));
         }

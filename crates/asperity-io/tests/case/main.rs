@@ -9,3 +9,4 @@ mod materials;
 mod measured;
 mod motion;
 mod values;
+mod work;

@@ -26,6 +26,9 @@ pub struct Axis {
     pub range: Option<[f64; 2]>,
 }
 
+/// A logarithmic axis of so many decades keeps the unit without a prefix: its numbers are powers of ten in any case.
+const DECADES_WITHOUT_PREFIX: f64 = 6.0;
+
 impl Axis {
     /// A linear axis over the range of the data.
     pub fn linear(label: impl Into<String>, unit: impl Into<String>) -> Axis {
@@ -51,6 +54,8 @@ pub(super) struct Ruler {
     ends: [f64; 2],
     /// Ends in points on paper.
     places: [f64; 2],
+    /// The unit of its numbers.
+    pub(super) unit: Shown,
     /// SI values and texts of the labelled ticks.
     pub(super) ticks: Vec<(f64, String)>,
     /// SI values of the ticks between.
@@ -63,6 +68,17 @@ impl Ruler {
     /// Lays an axis over `data`, the least and the largest value that it must show, with room for
     /// about `wanted` ticks. `margin` is the share of the range that stays free at each end.
     pub(super) fn new(axis: &Axis, data: [f64; 2], margin: f64, wanted: f64) -> Ruler {
+        Ruler::in_unit(axis, data, margin, wanted, None)
+    }
+
+    /// The same with its numbers in a unit, or in the one that suits them.
+    pub(super) fn in_unit(
+        axis: &Axis,
+        data: [f64; 2],
+        margin: f64,
+        wanted: f64,
+        own: Option<Shown>,
+    ) -> Ruler {
         let log = axis.scale == Scale::Log;
         let forward = |v: f64| if log { v.log10() } else { v };
         let [mut low, mut high] = axis.range.unwrap_or(data).map(forward);
@@ -80,7 +96,8 @@ impl Ruler {
         }
         let ends = [low, high];
         let largest = if log { 10f64.powf(high) } else { low.abs().max(high.abs()) };
-        let mut unit = shown(&axis.unit, largest);
+        let plain = log && high - low > DECADES_WITHOUT_PREFIX;
+        let mut unit = own.unwrap_or_else(|| shown(&axis.unit, if plain { 1.0 } else { largest }));
         if axis.unit.is_empty() && !log {
             let power = 3 * ((largest.log10() + 1e-9) / 3.0).floor() as i32;
             if largest > 0.0 && (power <= -6 || power >= 6) {
@@ -93,7 +110,7 @@ impl Ruler {
             "" => axis.label.clone(),
             text => format!("{} [{text}]", axis.label),
         };
-        Ruler { scale: axis.scale, ends, places: [0.0, 1.0], ticks, minor, title }
+        Ruler { scale: axis.scale, ends, places: [0.0, 1.0], unit, ticks, minor, title }
     }
 
     /// Width of the widest number \[points\].
@@ -104,6 +121,11 @@ impl Ruler {
     /// The same ruler between two points on paper.
     pub(super) fn placed(self, from: f64, to: f64) -> Ruler {
         Ruler { places: [from, to], ..self }
+    }
+
+    /// Ends of the axis \[SI\].
+    pub(super) fn reach(&self) -> [f64; 2] {
+        if self.scale == Scale::Log { self.ends.map(|end| 10f64.powf(end)) } else { self.ends }
     }
 
     /// Where a value lies on paper; `None` for one that the scale cannot show.
@@ -180,7 +202,7 @@ fn decades(ends: [f64; 2], factor: f64, wanted: f64) -> Ticks {
                 _ => false,
             };
             if labelled {
-                ticks.push((value, power(digit, n as i32)));
+                ticks.push((value, power(digit, n as i32, span < 2.0)));
             } else if every == 1 || digit == 1 {
                 minor.push(value);
             }
@@ -207,10 +229,12 @@ fn number(value: f64, decimals: usize) -> String {
     }
 }
 
-fn power(digit: i32, exponent: i32) -> String {
+/// "20", "0.05", "10⁶"; on a `short` axis, which has 2 and 5 too, "0.005" in place of a power of ten.
+fn power(digit: i32, exponent: i32, short: bool) -> String {
+    let plain = if short { 3 } else { 2 };
     match exponent {
-        0..=2 => (f64::from(digit) * 10f64.powi(exponent)).to_string(),
-        -2..0 => number(f64::from(digit) * 10f64.powi(exponent), (-exponent) as usize),
+        0.. if exponent <= plain => (f64::from(digit) * 10f64.powi(exponent)).to_string(),
+        ..0 if exponent >= -plain => number(f64::from(digit) * 10f64.powi(exponent), (-exponent) as usize),
         _ if digit == 1 => format!("10{}", superscript(exponent)),
         _ => format!("{digit}×10{}", superscript(exponent)),
     }

@@ -16,18 +16,94 @@ pub enum Colours {
 /// Where bodies do not touch.
 pub(crate) const OPEN: [u8; 3] = [240, 240, 238];
 
-impl Colours {
+/// A colour map that stands for the usual one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Palette {
+    /// Dark violet to yellow.
+    Viridis,
+    /// Dark blue to yellow, the same for red-green blind eyes.
+    Cividis,
+    /// Black over red to light yellow.
+    Inferno,
+    /// Black over violet to light yellow.
+    Magma,
+    /// Dark blue over red to yellow.
+    Plasma,
+    /// All colours of the rainbow, of even lightness steps.
+    Turbo,
+    /// Black to white.
+    Grey,
+    /// Blue over white to red.
+    RedBlue,
+}
+
+impl Palette {
+    /// Every colour map.
+    pub const ALL: [Palette; 8] = [
+        Palette::Viridis,
+        Palette::Cividis,
+        Palette::Inferno,
+        Palette::Magma,
+        Palette::Plasma,
+        Palette::Turbo,
+        Palette::Grey,
+        Palette::RedBlue,
+    ];
+
+    /// Its name on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Palette::Viridis => "viridis",
+            Palette::Cividis => "cividis",
+            Palette::Inferno => "inferno",
+            Palette::Magma => "magma",
+            Palette::Plasma => "plasma",
+            Palette::Turbo => "turbo",
+            Palette::Grey => "grey",
+            Palette::RedBlue => "red-blue",
+        }
+    }
+
+    /// The colour map of that name.
+    pub fn from_name(name: &str) -> Option<Palette> {
+        Palette::ALL.into_iter().find(|palette| palette.name() == name)
+    }
+
     /// The colour at a share of the range, 0 to 1: red, green, blue.
     pub fn at(self, share: f64) -> [u8; 3] {
         let share = share.clamp(0.0, 1.0);
-        let colour = match self {
-            Colours::Sequential => colorous::VIRIDIS.eval_continuous(share),
-            // The scale from red to blue starts with its warm end; here warm is high.
-            Colours::Diverging => colorous::RED_BLUE.eval_continuous(1.0 - share),
-            Colours::Pressure if share <= 0.0 => return OPEN,
-            Colours::Heat | Colours::Pressure => colorous::INFERNO.eval_continuous(share),
+        let gradient = match self {
+            Palette::Viridis => colorous::VIRIDIS,
+            Palette::Cividis => colorous::CIVIDIS,
+            Palette::Inferno => colorous::INFERNO,
+            Palette::Magma => colorous::MAGMA,
+            Palette::Plasma => colorous::PLASMA,
+            Palette::Turbo => colorous::TURBO,
+            // The greys start with white, and the scale from red to blue with its warm end; here high is light or warm.
+            Palette::Grey => return rgb(colorous::GREYS.eval_continuous(1.0 - share)),
+            Palette::RedBlue => return rgb(colorous::RED_BLUE.eval_continuous(1.0 - share)),
         };
-        [colour.r, colour.g, colour.b]
+        rgb(gradient.eval_continuous(share))
+    }
+}
+
+fn rgb(colour: colorous::Color) -> [u8; 3] {
+    [colour.r, colour.g, colour.b]
+}
+
+impl Colours {
+    /// The colour at a share of the range, 0 to 1: red, green, blue.
+    pub fn at(self, share: f64) -> [u8; 3] {
+        if self == Colours::Pressure && share <= 0.0 { OPEN } else { self.palette().at(share) }
+    }
+
+    /// The colour map that is usual for it.
+    pub(super) fn palette(self) -> Palette {
+        match self {
+            Colours::Sequential => Palette::Viridis,
+            Colours::Diverging => Palette::RedBlue,
+            Colours::Heat | Colours::Pressure => Palette::Inferno,
+        }
     }
 
     /// Ends of the range for values from `low` to `high`: for diverging colours zero in the middle.
@@ -49,9 +125,12 @@ impl Colours {
 mod tests {
     use super::*;
 
+    fn light([r, g, b]: [u8; 3]) -> u32 {
+        u32::from(r) + u32::from(g) + u32::from(b)
+    }
+
     #[test]
     fn high_values_are_light_or_warm() {
-        let light = |[r, g, b]: [u8; 3]| u32::from(r) + u32::from(g) + u32::from(b);
         assert_eq!(Colours::Pressure.at(0.0), OPEN);
         assert_eq!(Colours::Pressure.at(1e-9), Colours::Heat.at(0.0));
         for colours in [Colours::Sequential, Colours::Heat] {
@@ -60,6 +139,16 @@ mod tests {
         }
         let [low, middle, high] = [0.0, 0.5, 1.0].map(|share| Colours::Diverging.at(share));
         assert!(low[2] > low[0] && high[0] > high[2] && middle.iter().all(|c| *c > 235));
+    }
+
+    #[test]
+    fn colour_maps_have_names_and_rise_in_lightness() {
+        for palette in Palette::ALL {
+            assert_eq!(Palette::from_name(palette.name()), Some(palette));
+            let rises = light(palette.at(1.0)) > light(palette.at(0.0)) + 200;
+            assert!(rises || matches!(palette, Palette::Turbo | Palette::RedBlue), "{palette:?}");
+        }
+        assert_eq!(Palette::from_name("jet"), None);
     }
 
     #[test]

@@ -1,42 +1,18 @@
 //! A panel of curves over two axes.
 
+use asperity_io::readable::Shown;
+
 use super::axis::{Axis, Ruler, Scale};
+use super::colours::{Colours, Palette};
 use super::drawing::{Anchor, Drawing, GRID, INK, Paint, Pen};
+use super::font;
 use super::legend::Legend;
+use super::scale::{Bar, ColourScale};
+use super::series::{Series, Style, circle, spacing};
 use super::{Margins, Place, SMALL, TEXT};
 
 /// Colours that people with any kind of colour vision tell apart (Okabe & Ito 2008), dark ones first.
 const COLOURS: [&str; 7] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#222222"];
-
-/// How the points of a series are drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Style {
-    /// A line through the points.
-    Line,
-    /// A dashed line through the points.
-    Dashed,
-    /// A thin dotted line through the points, in black: something to compare with.
-    Reference,
-    /// A circle at each point.
-    Points,
-    /// Bars from zero (or from the foot of the axis) to the value, as wide as the distance of the points.
-    Bars,
-}
-
-/// Numbers to draw \[SI\].
-#[derive(Clone, Debug, PartialEq)]
-pub struct Series {
-    /// What the legend says; empty for a series without a line in the legend.
-    pub name: String,
-    /// Places along the horizontal axis.
-    pub x: Vec<f64>,
-    /// Values, as many as there are places; a value that is not finite leaves a gap.
-    pub y: Vec<f64>,
-    /// How it is drawn.
-    pub style: Style,
-    /// Its colour, "#rrggbb"; `None` for the next one of the panel.
-    pub colour: Option<String>,
-}
 
 /// A panel of curves.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,6 +25,52 @@ pub struct Curves {
     pub y: Axis,
     /// What is drawn, the first below the others.
     pub series: Vec<Series>,
+    /// The horizontal axis in another unit too, above the frame.
+    pub beside: Option<Beside>,
+    /// What the colours of the points stand for, as a colour bar.
+    pub key: Option<Key>,
+    /// Why there is nothing to draw, for axes that are empty.
+    pub empty: String,
+    /// Whether the names stand above the frame, also where a corner inside is free.
+    pub names_above: bool,
+}
+
+/// Another unit of a horizontal axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Beside {
+    /// The unit, `Hz`.
+    pub unit: String,
+    /// So many of it are one of the axis's own unit.
+    pub factor: f64,
+}
+
+/// What colours of points stand for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Key {
+    /// The quantity, `temperature`.
+    pub label: String,
+    /// Its unit.
+    pub unit: String,
+    /// The colours.
+    pub palette: Palette,
+    /// Values at the ends of the colours.
+    pub ends: [f64; 2],
+}
+
+impl Key {
+    /// The colour of a value, "#rrggbb".
+    pub fn colour(&self, value: f64) -> String {
+        let [low, high] = self.ends;
+        let share = if high > low { (value - low) / (high - low) } else { 0.5 };
+        let [r, g, b] = self.palette.at(share);
+        format!("#{r:02x}{g:02x}{b:02x}")
+    }
+
+    fn bar(&self, place: &Place) -> Bar {
+        let (palette, ends) = (self.palette, self.ends);
+        let scale = ColourScale { colours: Colours::Sequential, palette, ends, log: false };
+        Bar::new(scale, &self.label, &self.unit, place)
+    }
 }
 
 /// A panel laid out: its rulers, and left, top, right and bottom of its frame \[points\].
@@ -65,32 +87,19 @@ impl Layout {
     }
 }
 
-impl Series {
-    /// A series of places and values.
-    pub fn new(
-        name: impl Into<String>,
-        style: Style,
-        x: impl Into<Vec<f64>>,
-        y: impl Into<Vec<f64>>,
-    ) -> Series {
-        Series { name: name.into(), x: x.into(), y: y.into(), style, colour: None }
-    }
-
-    /// The same in a colour of its own, "#rrggbb".
-    pub fn in_colour(mut self, colour: impl Into<String>) -> Series {
-        self.colour = Some(colour.into());
-        self
-    }
-
-    pub(super) fn points(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
-        self.x.iter().zip(&self.y).map(|(x, y)| [*x, *y])
-    }
-}
-
 impl Curves {
     /// A panel without curves yet.
     pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Curves {
-        Curves { title: title.into(), x, y, series: Vec::new() }
+        Curves {
+            title: title.into(),
+            x,
+            y,
+            series: Vec::new(),
+            beside: None,
+            key: None,
+            empty: "no values to show".into(),
+            names_above: false,
+        }
     }
 
     /// The same panel with one more series on top.
@@ -101,16 +110,39 @@ impl Curves {
 
     /// What the panel needs of its margins: width of the numbers at the vertical axis, and height of a legend above the frame,
     /// where no corner inside is free of curves.
-    pub(super) fn needs(&self, size: [f64; 2]) -> Margins {
+    pub(crate) fn needs(&self, size: [f64; 2]) -> Margins {
         let labels = self.rulers(size, Margins::default()).1.widest();
         let own = Margins { labels, legend: 0.0 };
         let layout = self.layout(&Place { corner: [0.0, 0.0], size, margins: own });
         let legend = Legend::of(self);
-        if legend.is_empty() || legend.corner(self, &layout).is_some() {
+        if legend.is_empty() || self.corner(&legend, &layout).is_some() {
             return own;
         }
         let [left, _, right, _] = layout.area;
         Margins { legend: legend.rows(right - left).len() as f64 * Legend::ROW + 3.0, ..own }
+    }
+
+    /// Where the names stand inside of the frame; `None` above it.
+    fn corner(&self, legend: &Legend, layout: &Layout) -> Option<[f64; 2]> {
+        if self.names_above { None } else { legend.corner(self, layout) }
+    }
+
+    /// The same panel with its horizontal axis in another unit too.
+    pub fn beside(mut self, unit: &str, factor: f64) -> Curves {
+        self.beside = Some(Beside { unit: unit.into(), factor });
+        self
+    }
+
+    /// The same panel with what it says where it has nothing to draw.
+    pub fn or_say(mut self, why: impl Into<String>) -> Curves {
+        self.empty = why.into();
+        self
+    }
+
+    /// Ends of the data that the panel shows, by axis.
+    pub(crate) fn ends(&self) -> [[f64; 2]; 2] {
+        let [across, up] = self.extent();
+        [self.x.range.unwrap_or(across), self.y.range.unwrap_or(up)]
     }
 
     pub(super) fn draw(&self, drawing: &mut Drawing, place: &Place) {
@@ -121,17 +153,63 @@ impl Curves {
         if !self.title.is_empty() {
             drawing.text([left, y0 + TEXT + 1.0], TEXT, Anchor::Start, &self.title);
         }
+        if let Some(beside) = &self.beside {
+            self.draw_beside(drawing, &layout, beside);
+        }
+        if let Some(key) = &self.key {
+            key.bar(place).draw(drawing, [right + 8.0, top, bottom]);
+        }
+        if !self.extent()[0][0].is_finite() {
+            let middle = [0.5 * (left + right), 0.5 * (top + bottom)];
+            drawing.text(middle, SMALL, Anchor::Middle, &self.empty);
+        }
         let at = |point| layout.at(point);
-        drawing.clipped([left, top], [right - left, bottom - top], |drawing| {
-            for (series, colour) in self.coloured() {
-                draw_series(drawing, series, colour, &at, bottom, layout.y.place(0.0));
+        let inside = |[x, y]: &[f64; 2]| {
+            let room = 0.01;
+            *x >= left - room && *x <= right + room && *y >= top - room && *y <= bottom + room
+        };
+        for (series, colour) in self.coloured() {
+            if series.style == Style::Points {
+                // A circle at the edge of the frame is drawn whole.
+                series
+                    .points()
+                    .filter_map(at)
+                    .filter(inside)
+                    .for_each(|place| circle(drawing, place, colour));
+            } else {
+                drawing.clipped([left, top], [right - left, bottom - top], |drawing| {
+                    series.draw(drawing, colour, &at, bottom, layout.y.place(0.0));
+                });
             }
-        });
+        }
         let legend = Legend::of(self);
-        match legend.corner(self, &layout) {
+        match self.corner(&legend, &layout) {
             _ if legend.is_empty() => {}
             Some(corner) => legend.draw_inside(drawing, corner),
-            None => legend.draw_above(drawing, [left, top], right - left),
+            None => legend.draw_above(drawing, [left, top - self.height_beside()], right - left),
+        }
+    }
+
+    /// Height of the other unit above the frame.
+    fn height_beside(&self) -> f64 {
+        if self.beside.is_some() { SMALL + 8.0 } else { 0.0 }
+    }
+
+    /// Ticks of the other unit above the frame, and the unit at the right.
+    fn draw_beside(&self, drawing: &mut Drawing, layout: &Layout, beside: &Beside) {
+        let [_, top, right, _] = layout.area;
+        let reach = layout.x.reach().map(|end| end * beside.factor);
+        let axis = Axis { unit: beside.unit.clone(), ..self.x.clone() }.between(reach[0], reach[1]);
+        let ruler = Ruler::new(&axis, reach, 0.0, layout.x.ticks.len() as f64);
+        let unit = ruler.unit.text.clone();
+        let free = right - font::width(&unit, SMALL) - 6.0;
+        drawing.text([right, top - 5.0], SMALL, Anchor::End, &unit);
+        for (value, text) in &ruler.ticks {
+            let Some(at) = layout.x.place(value / beside.factor) else { continue };
+            drawing.line([at, top - 3.5], [at, top], Pen::new(INK, 0.7));
+            if at + 0.5 * font::width(text, SMALL) < free {
+                drawing.text([at, top - 5.0], SMALL, Anchor::Middle, text);
+            }
         }
     }
 
@@ -147,10 +225,14 @@ impl Curves {
             }
         }
         let foot = TEXT + SMALL + 12.0;
-        let head = if self.title.is_empty() { 8.0 } else { TEXT + 9.0 } + margins.legend;
-        let y = Ruler::new(&self.y, up, 0.06, (height - foot - head) / 32.0);
+        let head =
+            if self.title.is_empty() { 8.0 } else { TEXT + 9.0 } + margins.legend + self.height_beside();
         let margin = if bars || self.x.scale == Scale::Linear { 0.0 } else { 0.01 };
         let x = Ruler::new(&self.x, across, margin, (width - margins.labels - TEXT - 25.0) / 48.0);
+        // A density over a length in µm is one per µm.
+        let inverse = (self.y.unit == format!("1/{}", self.x.unit))
+            .then(|| Shown { factor: 1.0 / x.unit.factor, text: format!("1/{}", x.unit.text) });
+        let y = Ruler::in_unit(&self.y, up, 0.06, (height - foot - head) / 32.0, inverse);
         (x, y, [head, foot])
     }
 
@@ -158,7 +240,8 @@ impl Curves {
         let ([x0, y0], [width, height]) = (place.corner, place.size);
         let (x, y, [head, foot]) = self.rulers(place.size, place.margins);
         let left = x0 + TEXT + place.margins.labels + 13.0;
-        let (right, top, bottom) = (x0 + width - 12.0, y0 + head, y0 + height - foot);
+        let key = self.key.as_ref().map_or(0.0, |key| key.bar(place).width());
+        let (right, top, bottom) = (x0 + width - 12.0 - key, y0 + head, y0 + height - foot);
         Layout { x: x.placed(left, right), y: y.placed(bottom, top), area: [left, top, right, bottom] }
     }
 
@@ -176,8 +259,9 @@ impl Curves {
     fn extent(&self) -> [[f64; 2]; 2] {
         let mut extent = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
         let shows = |scale: Scale, v: f64| v.is_finite() && (scale == Scale::Linear || v > 0.0);
+        let inside = |x: f64| self.x.range.is_none_or(|[from, to]| from <= x && x <= to);
         for [x, y] in self.series.iter().flat_map(Series::points) {
-            if shows(self.x.scale, x) && shows(self.y.scale, y) {
+            if shows(self.x.scale, x) && shows(self.y.scale, y) && inside(x) {
                 for (range, v) in extent.iter_mut().zip([x, y]) {
                     *range = [range[0].min(v), range[1].max(v)];
                 }
@@ -213,63 +297,4 @@ pub(super) fn frame(drawing: &mut Drawing, x: &Ruler, y: &Ruler, area: [f64; 4],
     drawing.rect([left, top], [right - left, bottom - top], Paint::outline(Pen::new(INK, 0.8)));
     drawing.text([0.5 * (left + right), titles[1]], TEXT, Anchor::Middle, &x.title);
     drawing.upward_text([titles[0], 0.5 * (top + bottom)], TEXT, &y.title);
-}
-
-fn draw_series(
-    drawing: &mut Drawing,
-    series: &Series,
-    colour: &str,
-    at: &impl Fn([f64; 2]) -> Option<[f64; 2]>,
-    bottom: f64,
-    zero: Option<f64>,
-) {
-    let points = || series.points().map(at);
-    match series.style {
-        Style::Bars => {
-            let half = 0.5 * spacing(&series.x);
-            let foot = zero.unwrap_or(bottom).min(bottom);
-            let paint = Paint::fill(colour, 0.55);
-            for [x, y] in series.points() {
-                if let (Some([a, top]), Some([b, _])) = (at([x - half, y]), at([x + half, y]))
-                    && top != foot
-                {
-                    drawing.rect([a, top.min(foot)], [b - a, (foot - top).abs()], paint);
-                }
-            }
-        }
-        Style::Points => {
-            let paint = Paint::outline(Pen::new(colour, 0.9));
-            points().flatten().for_each(|point| drawing.circle(point, 2.0, paint));
-        }
-        style => drawing.path(points(), pen(style, colour, length(points()))),
-    }
-}
-
-/// The pen of a line of this length \[points\]: thinner where it runs to and fro so often that it would cover itself.
-pub(super) fn pen(style: Style, colour: &str, length: f64) -> Pen {
-    /// Some five times across a panel.
-    const LONG: f64 = 2000.0;
-    let width = if length > LONG { 0.7 } else { 1.5 };
-    match style {
-        Style::Reference => Pen::new(colour, 1.0).dashed(&[1.5, 1.8]),
-        Style::Dashed => Pen::new(colour, width).dashed(&[5.0, 2.5]),
-        _ => Pen::new(colour, width),
-    }
-}
-
-/// Length of a line as it is drawn.
-fn length(points: impl Iterator<Item = Option<[f64; 2]>>) -> f64 {
-    let mut last = None;
-    points
-        .map(|now| {
-            let from = std::mem::replace(&mut last, now);
-            from.zip(now).map_or(0.0, |([a, b], [c, d])| f64::hypot(c - a, d - b))
-        })
-        .sum()
-}
-
-/// The least distance of neighbouring places.
-fn spacing(x: &[f64]) -> f64 {
-    let least = x.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(f64::INFINITY, f64::min);
-    if least.is_finite() { least } else { 0.0 }
 }

@@ -64,9 +64,9 @@ pub(super) enum Shape {
 
 /// Colours of cells, row by row from the top.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Pixels {
-    pub(super) size: [usize; 2],
-    pub(super) rgb: Vec<u8>,
+pub(crate) struct Pixels {
+    pub(crate) size: [usize; 2],
+    pub(crate) rgb: Vec<u8>,
 }
 
 /// One thing on the paper.

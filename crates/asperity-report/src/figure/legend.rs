@@ -1,9 +1,10 @@
 //! The names of curves: in a corner of the frame that no curve crosses, else above the frame.
 
 use super::SMALL;
-use super::curves::{Curves, Layout, Series, Style, pen};
-use super::drawing::{Anchor, Drawing, Paint, Pen};
+use super::curves::{Curves, Layout};
+use super::drawing::{Anchor, Drawing, Paint};
 use super::font;
+use super::series::{Series, Style, pen, spot};
 
 /// Room of the sign before a name \[points\].
 const SIGN: f64 = 26.0;
@@ -108,9 +109,7 @@ fn draw(drawing: &mut Drawing, (series, colour): (&Series, &str), [x, middle]: [
         Style::Bars => {
             drawing.rect([x + 7.0, middle - 3.5], [12.0, 7.0], Paint::fill(colour, 0.55));
         }
-        Style::Points => {
-            drawing.circle([x + 13.0, middle], 2.4, Paint::outline(Pen::new(colour, 1.0)));
-        }
+        Style::Points => drawing.circle([x + 13.0, middle], 2.4, spot(colour)),
         style => drawing.line([x + 5.0, middle], [x + 21.0, middle], pen(style, colour, 0.0)),
     }
     drawing.text([x + SIGN, middle + 0.36 * SMALL], SMALL, Anchor::Start, &series.name);

@@ -4,11 +4,12 @@ use asperity_io::readable::{quantity, shown};
 use ndarray::{Array2, ArrayView2};
 
 use super::axis::{Axis, Ruler};
-use super::colours::Colours;
+use super::colours::{Colours, OPEN, Palette};
 use super::curves::frame;
 use super::drawing::{Anchor, Drawing, INK, Paint, Pen, Pixels};
 use super::font;
 use super::raster::{self, BLANK};
+use super::scale::{Bar, ColourScale, extent};
 use super::{Place, SMALL, TEXT};
 
 /// What the values of a map are.
@@ -44,6 +45,10 @@ pub struct Map {
     pub axes: Axes,
     /// Places x, y that a circle marks \[m\].
     pub marks: Vec<[f64; 2]>,
+    /// Colours instead of the usual ones of the quantity.
+    pub palette: Option<Palette>,
+    /// Whether the colours go by the logarithm of the values; values that are not positive are light then.
+    pub log: bool,
 }
 
 /// The axes of a map.
@@ -51,6 +56,8 @@ pub struct Map {
 pub enum Axes {
     /// x to the right and y upwards, from 0.
     Area,
+    /// Lags x and y from the middle, where they are 0.
+    Lags,
     /// x or y to the right, from `start` \[m\], and the depth downwards: a section of the body.
     Section {
         /// "x" or "y".
@@ -82,7 +89,14 @@ impl Map {
             size,
             axes: Axes::Area,
             marks: vec![],
+            palette: None,
+            log: false,
         }
+    }
+
+    /// The same map of something over lags in both directions.
+    pub fn over_lags(self) -> Map {
+        Map { axes: Axes::Lags, ..self }
     }
 
     /// The same map as a section whose second axis is the depth.
@@ -109,6 +123,8 @@ impl Map {
             size,
             axes: Axes::Area,
             marks: vec![],
+            palette: None,
+            log: false,
         }
     }
 
@@ -126,36 +142,50 @@ impl Map {
         self
     }
 
+    /// How its values become colours; `None` for states.
+    fn scale(&self) -> Option<ColourScale> {
+        let Values::Quantity { colours, range, .. } = &self.meaning else { return None };
+        Some(ColourScale::of(&self.values, *colours, self.palette, *range, self.log))
+    }
+
+    /// The values at the ends of its colours; `None` for states.
+    pub(crate) fn ends(&self) -> Option<[f64; 2]> {
+        self.scale().map(|scale| scale.ends)
+    }
+
     pub(super) fn draw(&self, drawing: &mut Drawing, place: &Place) {
         let [x0, y0] = place.corner;
         let [width, height] = place.size;
+        let scale = self.scale();
         let bar = match &self.meaning {
-            Values::Quantity { label, unit, colours, range } => {
+            Values::Quantity { label, unit, .. } => scale.map(|scale| {
                 let whole = extent(&self.values);
-                let ends = range.unwrap_or_else(|| colours.ends(robust(&self.values, *colours, whole)));
-                let axis = Axis::linear(label.clone(), unit.clone()).between(ends[0], ends[1]);
-                let beyond = [0, 1].map(|end| {
-                    let out = if end == 0 { whole[0] < ends[0] } else { whole[1] > ends[1] };
-                    out.then(|| quantity(whole[end], unit))
-                });
-                Some((Ruler::new(&axis, ends, 0.0, (height - 2.0 * TEXT) / 32.0), ends, *colours, beyond))
-            }
+                let out = [whole[0] < scale.ends[0], whole[1] > scale.ends[1]];
+                // What is beyond the ends of the colours; no gap and no pressure have a colour of their own.
+                let own = scale.at(whole[0]) == OPEN;
+                let beyond = [0, 1].map(|n| (out[n] && !(n == 0 && own)).then(|| quantity(whole[n], unit)));
+                (Bar::new(scale, label, unit, place), beyond)
+            }),
             Values::States(_) => None,
         };
-        let bar_labels = bar.as_ref().map_or(0.0, |(ruler, ..)| {
-            ruler.ticks.iter().map(|(_, text)| font::width(text, SMALL)).fold(0.0, f64::max)
-        });
-        let legend = bar.as_ref().map_or(0.0, |_| 8.0 + 10.0 + 6.0 + bar_labels + TEXT + 6.0);
+        let arrows = |beyond: &[Option<String>; 2]| {
+            beyond.iter().flatten().map(|text| 8.0 + SMALL + font::width(text, SMALL)).fold(0.0, f64::max)
+        };
+        let legend = bar.as_ref().map_or(0.0, |(bar, beyond)| bar.width().max(arrows(beyond)));
         let foot = TEXT + SMALL + 12.0;
-        let head = if self.title.is_empty() { 8.0 } else { TEXT + 9.0 };
+        // The title, and the names of states, in lines of their own.
+        let named = matches!(self.meaning, Values::States(_));
+        let over = if named { SMALL + 6.0 } else { 0.0 };
+        let head = if self.title.is_empty() { 8.0 } else { TEXT + 9.0 } + over;
 
         // Both axes in the same unit, and as long on paper as they are in truth; but for time.
         let (names, starts) = match self.axes {
             Axes::Area => (["x", "y"], [0.0; 2]),
+            Axes::Lags => (["lag x", "lag y"], self.size.map(|side| -0.5 * side)),
             Axes::Section { along, start } => ([along, "depth"], [start, 0.0]),
             Axes::Times { start } => (["x", "time"], [0.0, start]),
         };
-        let [over_x, over_y] = [0, 1].map(|axis| starts[axis] + self.size[axis]);
+        let [over_x, over_y] = [0, 1].map(|axis| (starts[axis] + self.size[axis]).abs());
         let of_times = matches!(self.axes, Axes::Times { .. });
         let units = match of_times {
             true => [shown("m", over_x), shown("s", over_y)],
@@ -186,15 +216,15 @@ impl Map {
         let y = if down { y.placed(top, bottom) } else { y.placed(bottom, top) };
 
         if !self.title.is_empty() {
-            drawing.text([left, top - 6.0], TEXT, Anchor::Start, &self.title);
+            drawing.text([left, top - 6.0 - over], TEXT, Anchor::Start, &self.title);
         }
         frame(drawing, &x, &y, [left, top, right, bottom], [left - labels - 10.0, bottom + foot - 5.0]);
-        let picture = match (&self.meaning, &bar) {
+        let picture = match (&self.meaning, scale) {
             (Values::States(states), _) => raster::state_picture(&self.values, states),
-            (_, Some((_, ends, colours, _))) if down => {
-                raster::quantity(&self.values.slice(ndarray::s![.., ..;-1]).to_owned(), *ends, *colours)
+            (_, Some(scale)) => {
+                let flipped = self.values.slice(ndarray::s![.., ..;-1]).to_owned();
+                raster::coloured(if down { &flipped } else { &self.values }, |value| scale.at(value))
             }
-            (_, Some((_, ends, colours, _))) => raster::quantity(&self.values, *ends, *colours),
             (_, None) => Pixels { size: [0, 0], rgb: vec![] },
         };
         // The slabs of a section are thicker than its cells.
@@ -209,18 +239,11 @@ impl Map {
         if h > 50.0 && !of_times {
             scale_bar(drawing, [left, bottom], w, self.size[0]);
         }
-        if let Some((ruler, ends, colours, beyond)) = bar {
+        if let Some((bar, beyond)) = bar {
             // Beside a strip the bar is longer than the map.
             let more = 0.5 * (room_y.min(110.0) - h).max(0.0);
             let (top, bottom) = (top - more, bottom + more);
-            colour_bar(
-                drawing,
-                &ruler.placed(bottom, top),
-                ends,
-                colours,
-                [right + 8.0, top, bottom],
-                bar_labels,
-            );
+            bar.draw(drawing, [right + 8.0, top, bottom]);
             // Values beyond the ends of the colours, above and below the bar.
             let places = [bottom + SMALL + 2.0, top - 4.0];
             for ((value, y), arrow) in beyond.into_iter().zip(places).zip(["↓", "↑"]) {
@@ -237,7 +260,8 @@ impl Map {
     /// Names of the states with their colours and shares of the area, above the map at the right.
     fn names(&self, drawing: &mut Drawing, states: &[(String, [u8; 3])], [left, top]: [f64; 2], width: f64) {
         let mut right = left + width;
-        for (name, colour) in states.iter().rev() {
+        let shown = |state: &usize| self.values.iter().any(|value| *value == *state as f64);
+        for (_, (name, colour)) in states.iter().enumerate().rev().filter(|(state, _)| shown(state)) {
             right -= font::width(name, SMALL);
             drawing.text([right, top - 5.5], SMALL, Anchor::Start, name);
             right -= 11.0;
@@ -262,53 +286,6 @@ fn scale_bar(drawing: &mut Drawing, [left, bottom]: [f64; 2], width: f64, length
     drawing.rounded([x, y - SMALL - 12.0], [wide, SMALL + 12.0], 2.0, Paint::fill("#fff", 0.8));
     drawing.rect([x + 0.5 * (wide - bar), y - 7.0], [bar, 3.0], Paint::fill(INK, 1.0));
     drawing.text([x + 0.5 * wide, y - 10.0], SMALL, Anchor::Middle, &text);
-}
-
-fn colour_bar(
-    drawing: &mut Drawing,
-    ruler: &Ruler,
-    ends: [f64; 2],
-    colours: Colours,
-    [left, top, bottom]: [f64; 3],
-    labels: f64,
-) {
-    let right = left + 10.0;
-    let column = Array2::from_shape_fn((1, 256), |(_, j)| ends[0] + (ends[1] - ends[0]) * j as f64 / 255.0);
-    drawing.image([left, top], [10.0, bottom - top], raster::quantity(&column, ends, colours), true);
-    drawing.rect([left, top], [10.0, bottom - top], Paint::outline(Pen::new(INK, 0.6)));
-    for (value, text) in &ruler.ticks {
-        if let Some(at) = ruler.place(*value) {
-            drawing.line([right, at], [right + 3.0, at], Pen::new(INK, 0.7));
-            drawing.text([right + 5.0, at + 0.36 * SMALL], SMALL, Anchor::Start, text);
-        }
-    }
-    drawing.upward_text([right + 5.0 + labels + TEXT + 1.0, 0.5 * (top + bottom)], TEXT, &ruler.title);
-}
-
-/// Share of the values that may lie beyond either end of the colours.
-const OUTLIERS: f64 = 1e-3;
-
-/// The range of the colours: least and greatest value, or the quantiles at a thousandth and at all but a thousandth where a few
-/// pits or spikes would take more than a third of the colours.
-fn robust(values: &Array2<f64>, colours: Colours, whole: [f64; 2]) -> [f64; 2] {
-    if !matches!(colours, Colours::Sequential | Colours::Diverging) {
-        return whole;
-    }
-    let mut finite: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
-    let last = finite.len().saturating_sub(1);
-    let few = (OUTLIERS * last as f64).ceil() as usize;
-    if last < 1000 {
-        return whole;
-    }
-    let low = *finite.select_nth_unstable_by(few, f64::total_cmp).1;
-    let high = *finite.select_nth_unstable_by(last - few, f64::total_cmp).1;
-    if high > low && whole[1] - whole[0] > 1.5 * (high - low) { [low, high] } else { whole }
-}
-
-/// Least and greatest of the finite values.
-fn extent(values: &Array2<f64>) -> [f64; 2] {
-    let finite = values.iter().copied().filter(|v| v.is_finite());
-    finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
 }
 
 /// The colour of undefined values, for captions.

@@ -21,17 +21,22 @@ mod legend;
 mod map;
 mod pdf;
 mod raster;
+mod scale;
+mod series;
 mod svg;
 mod write;
 
 pub use axis::{Axis, Scale};
-pub use colours::Colours;
 pub(crate) use colours::OPEN;
-pub use curves::{Curves, Series, Style};
+pub use colours::{Colours, Palette};
+pub use curves::{Beside, Curves, Key};
 pub use map::{Axes, Map, UNDEFINED, Values};
-pub(crate) use raster::{means, states};
+pub(crate) use raster::{block, means, states};
+pub(crate) use scale::robust;
+pub use series::{Series, Style};
 pub use write::{FigureError, Form};
 
+pub(crate) use drawing::Pixels;
 use drawing::{Anchor, Drawing};
 
 /// Sizes of text \[points\].
@@ -75,7 +80,12 @@ pub struct Figure {
     pub columns: usize,
     /// Width and height of a panel \[points, 1/72 inch\].
     pub panel: [f64; 2],
+    /// Width and height of the paper \[points\]; `None` for as much as the panels take.
+    pub size: Option<[f64; 2]>,
 }
+
+/// The least width and height of a panel \[points\]: less has no room for its numbers.
+const LEAST: [f64; 2] = [120.0, 100.0];
 
 /// Where a panel lies on the paper \[points\].
 struct Place {
@@ -87,11 +97,11 @@ struct Place {
 /// What panels of curves need around their frames; those in a column share the width of the numbers, those in a row the height of
 /// legends above the frames, so that the frames are aligned.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Margins {
+pub(crate) struct Margins {
     /// Width of the numbers at the vertical axis \[points\].
-    labels: f64,
+    pub(crate) labels: f64,
     /// Height of a legend above the frame \[points\].
-    legend: f64,
+    pub(crate) legend: f64,
 }
 
 impl Figure {
@@ -103,6 +113,7 @@ impl Figure {
             panels: Vec::new(),
             columns: 2,
             panel: [259.0, 202.0],
+            size: None,
         }
     }
 
@@ -122,6 +133,26 @@ impl Figure {
         Figure { caption: caption.into(), ..self }
     }
 
+    /// The same figure on paper of this width and height \[points\], with panels that fill it.
+    ///
+    /// # Errors
+    /// [`FigureError::Size`] where panels would be too small to read.
+    pub fn sized(mut self, size: [f64; 2]) -> Result<Figure, FigureError> {
+        let columns = self.columns.min(self.panels.len().max(1)) as f64;
+        let rows = self.panels.len().div_ceil(self.columns).max(1) as f64;
+        self.size = Some(size);
+        self.panel[0] = (size[0] - 2.0 * EDGE) / columns;
+        // Where a legend stands depends on the height of its panel.
+        for _ in 0..4 {
+            self.panel[1] = (self.panel[1] + (size[1] - self.needed()[1]) / rows).max(LEAST[1]);
+        }
+        if self.panel[0] < LEAST[0] || self.needed()[1] > size[1] + 0.5 {
+            let needed = [LEAST[0] * columns + 2.0 * EDGE, self.needed()[1]];
+            return Err(FigureError::Size { asked: size, needed });
+        }
+        Ok(self)
+    }
+
     /// The figure as SVG.
     pub fn to_svg(&self) -> String {
         let title = if self.title.is_empty() { "Figure" } else { &self.title };
@@ -132,10 +163,13 @@ impl Figure {
     fn drawing(&self) -> Drawing {
         let mut drawing = Drawing::default();
         let heights = self.heights();
-        let [_, height] = self.paper();
+        let [width, _] = self.paper();
         let top = self.top();
         if !self.title.is_empty() {
-            drawing.text([EDGE + 4.0, EDGE + LARGE], LARGE, Anchor::Start, &self.title);
+            // A long title is written smaller.
+            let room = (width - 2.0 * EDGE - 4.0) / font::width(&self.title, LARGE).max(1.0);
+            let size = LARGE * room.min(1.0);
+            drawing.text([EDGE + 4.0, EDGE + LARGE], size, Anchor::Start, &self.title);
         }
         for (n, panel) in self.panels.iter().enumerate() {
             let (row, column) = (n / self.columns, n % self.columns);
@@ -149,7 +183,7 @@ impl Figure {
             }
         }
         let caption = self.wrapped();
-        let first = height - EDGE - (SMALL + 3.0) * caption.len() as f64 + SMALL;
+        let first = top + heights.iter().sum::<f64>() + SMALL;
         for (n, line) in caption.iter().enumerate() {
             let at = [EDGE + 4.0, first + (SMALL + 3.0) * n as f64];
             drawing.text(at, SMALL, Anchor::Start, line);
@@ -180,7 +214,12 @@ impl Figure {
     }
 
     /// Width and height of the paper \[points\].
-    fn paper(&self) -> [f64; 2] {
+    pub(crate) fn paper(&self) -> [f64; 2] {
+        self.size.unwrap_or_else(|| self.needed())
+    }
+
+    /// Width and height that title, panels and caption take \[points\].
+    fn needed(&self) -> [f64; 2] {
         let columns = self.columns.min(self.panels.len().max(1));
         let caption = self.wrapped().len() as f64 * (SMALL + 3.0);
         let title = if self.title.is_empty() { 0.0 } else { font::width(&self.title, LARGE * 1.12) + 8.0 };

@@ -2,7 +2,6 @@
 
 use ndarray::{Array2, ArrayView2, s};
 
-use super::colours::Colours;
 use super::drawing::Pixels;
 
 /// Most cells of a side that a figure holds: a hand's breadth at 300 dots per inch.
@@ -11,7 +10,7 @@ const FINEST: usize = 1024;
 pub(super) const BLANK: [u8; 3] = [200, 200, 200];
 
 /// Cells of a side of the blocks that make a map fit for a figure.
-pub(super) fn block(values: ArrayView2<f64>) -> usize {
+pub(crate) fn block(values: ArrayView2<f64>) -> usize {
     let (nx, ny) = values.dim();
     nx.max(ny).div_ceil(FINEST).max(1)
 }
@@ -46,12 +45,6 @@ fn blocks(values: ArrayView2<f64>, block: usize, one: impl Fn(ArrayView2<f64>) -
     })
 }
 
-/// A quantity from `ends[0]` to `ends[1]` in colours.
-pub(super) fn quantity(values: &Array2<f64>, ends: [f64; 2], colours: Colours) -> Pixels {
-    let share = |v: f64| (v - ends[0]) / (ends[1] - ends[0]);
-    coloured(values, |v| if v.is_finite() { colours.at(share(v)) } else { BLANK })
-}
-
 /// States in the colours of their numbers.
 pub(super) fn state_picture(values: &Array2<f64>, states: &[(String, [u8; 3])]) -> Pixels {
     let colour =
@@ -59,8 +52,8 @@ pub(super) fn state_picture(values: &Array2<f64>, states: &[(String, [u8; 3])]) 
     coloured(values, colour)
 }
 
-/// Axis 0 to the right, axis 1 upwards.
-fn coloured(values: &Array2<f64>, colour: impl Fn(f64) -> [u8; 3]) -> Pixels {
+/// Values in their colours: axis 0 to the right, axis 1 upwards.
+pub(super) fn coloured(values: &Array2<f64>, colour: impl Fn(f64) -> [u8; 3]) -> Pixels {
     let (nx, ny) = values.dim();
     let cells = (0..ny).rev().flat_map(|j| (0..nx).map(move |i| [i, j]));
     Pixels { size: [nx, ny], rgb: cells.flat_map(|cell| colour(values[cell])).collect() }

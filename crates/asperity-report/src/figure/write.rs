@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::{Figure, dots, pdf, raster};
+use super::{Figure, Pixels, dots, pdf, raster};
 
 /// Points of paper per inch.
 const POINTS: f64 = 72.0;
@@ -41,6 +41,17 @@ pub enum FigureError {
         path: PathBuf,
         /// What the system says.
         source: std::io::Error,
+    },
+    /// The panels do not fit on the paper asked for.
+    #[error(
+        "{:.0} mm x {:.0} mm are too small for this figure; it needs {:.0} mm x {:.0} mm at least",
+        millimetres(asked[0]), millimetres(asked[1]), millimetres(needed[0]).ceil(), millimetres(needed[1]).ceil()
+    )]
+    Size {
+        /// Width and height asked for \[points\].
+        asked: [f64; 2],
+        /// Width and height needed \[points\].
+        needed: [f64; 2],
     },
     /// The drawing could not be made into dots.
     #[error("cannot draw the figure: {0}")]
@@ -86,14 +97,17 @@ impl Figure {
     /// # Errors
     /// [`FigureError::Drawing`] where `dots` is not within 20 to 2400.
     pub fn to_png(&self, dots: f64) -> Result<Vec<u8>, FigureError> {
+        raster::png(&self.dots(dots)?).map_err(undrawn)
+    }
+
+    /// The figure as dots, so many to an inch.
+    pub(crate) fn dots(&self, dots: f64) -> Result<Pixels, FigureError> {
         if !(20.0..=2400.0).contains(&dots) {
             return Err(FigureError::Drawing(format!("{dots} dots per inch; expected 20 to 2400")));
         }
         let scale = dots / POINTS;
         let size = self.paper().map(|length| (length * scale).round() as u32);
-        let pixels =
-            dots::draw(&self.drawing(), size, scale).ok_or_else(|| undrawn("its paper has no area"))?;
-        raster::png(&pixels).map_err(undrawn)
+        dots::draw(&self.drawing(), size, scale).ok_or_else(|| undrawn("its paper has no area"))
     }
 
     /// The figure as a PDF of one page.
@@ -103,6 +117,11 @@ impl Figure {
     pub fn to_pdf(&self) -> Result<Vec<u8>, FigureError> {
         pdf::write(&self.drawing(), self.paper(), &self.title).map_err(undrawn)
     }
+}
+
+/// Points of paper in millimetres.
+fn millimetres(points: f64) -> f64 {
+    points * 25.4 / POINTS
 }
 
 fn undrawn(why: impl std::fmt::Display) -> FigureError {

@@ -1,11 +1,12 @@
 //! Distributions over the area: pressure, gap, sizes of contact spots.
 
 use asperity::spots::Spots;
-use asperity_io::readable::quantity;
+use asperity_io::readable::{counted, quantity};
 use asperity_io::store::{At, FieldKind, Reader, StoreError};
 
 use super::{boundary, caption};
 use crate::figure::{Axis, Curves, Figure, Series, Style};
+use crate::histogram;
 
 const BINS: usize = 60;
 
@@ -16,14 +17,14 @@ pub(super) fn histogram(reader: &Reader, at: At) -> Result<Figure, StoreError> {
     if kept.contains(&FieldKind::Pressure) {
         let pressure = reader.field(FieldKind::Pressure, at)?;
         let inside: Vec<f64> = pressure.iter().copied().filter(|p| *p > 0.0).collect();
-        figure = figure.with(density("Pressure in contact", ["pressure", "Pa"], &inside));
+        figure = figure.with(density("Pressure in contact", ["pressure", "Pa"], &inside, "nothing touches"));
     }
     if kept.contains(&FieldKind::Gap) {
         let gap = reader.field(FieldKind::Gap, at)?;
         let states = reader.contact_states(at)?;
         let open: Vec<f64> =
             gap.iter().zip(&states).filter(|(h, s)| **s == 0 && h.is_finite()).map(|(h, _)| *h).collect();
-        figure = figure.with(density("Gap out of contact", ["gap", "m"], &open));
+        figure = figure.with(density("Gap out of contact", ["gap", "m"], &open, "no open cell"));
     }
     if figure.panels.is_empty() {
         return Err(reader.no_field(FieldKind::Pressure));
@@ -32,19 +33,11 @@ pub(super) fn histogram(reader: &Reader, at: At) -> Result<Figure, StoreError> {
 }
 
 /// The share of values per unit, over bins from the least (or zero) to the greatest.
-fn density(title: &str, [label, unit]: [&str; 2], values: &[f64]) -> Curves {
+fn density(title: &str, [label, unit]: [&str; 2], values: &[f64], none: &str) -> Curves {
     let low = values.iter().copied().fold(f64::INFINITY, f64::min).min(0.0);
     let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let width = (high - low) / BINS as f64;
     let panel = Curves::new(title, Axis::linear(label, unit), Axis::linear("density", format!("1/{unit}")));
-    if width <= 0.0 || !width.is_finite() {
-        return panel;
-    }
-    let mut counts = [0usize; BINS];
-    values.iter().for_each(|v| counts[(((v - low) / width) as usize).min(BINS - 1)] += 1);
-    let middle = (0..BINS).map(|k| low + (k as f64 + 0.5) * width).collect::<Vec<_>>();
-    let share = counts.map(|count| count as f64 / (values.len() as f64 * width)).to_vec();
-    panel.with(Series::new("", Style::Bars, middle, share))
+    histogram::bars(panel.or_say(none), histogram::density(values, low..=high, BINS))
 }
 
 pub(super) fn spots(reader: &Reader, at: At) -> Result<Figure, StoreError> {
@@ -59,11 +52,12 @@ pub(super) fn spots(reader: &Reader, at: At) -> Result<Figure, StoreError> {
         Axis::log(format!("{size} of a spot"), units),
         Axis::log("spots at least as large", ""),
     )
+    .or_say("nothing touches")
     .with(Series::new("", Style::Points, spots.areas.clone(), number));
     let largest = spots.areas.first().copied().unwrap_or(0.0);
     let sizes = format!(
-        "{} spots, mean {size} {}, largest {}. {}",
-        spots.len(),
+        "{}, mean {size} {}, largest {}. {}",
+        counted(spots.len(), "spot"),
         quantity(spots.mean_area(), units),
         quantity(largest, units),
         caption(reader, reader.index(at)?)?

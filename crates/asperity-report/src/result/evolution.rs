@@ -4,12 +4,12 @@ use asperity::quantities::Quantity;
 use asperity_io::store::{Reader, StoreError};
 
 use super::rows::Rows;
-use super::{Options, nameless};
+use super::{Options, PlotError, nameless};
 use crate::figure::{Axis, Curves, Figure, Series, Style};
 
-pub(super) fn evolution(reader: &Reader, options: &Options) -> Result<Figure, StoreError> {
+pub(super) fn evolution(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
     let time = times(reader)?;
-    let rows = Rows::of(reader)?;
+    let rows = Rows::within(reader, options)?;
     let axis = || rows.axis(options.log);
     let line = |name: &str, series: &str| -> Result<Series, StoreError> {
         Ok(Series::new(name, Style::Line, time.clone(), reader.series(series)?))
@@ -108,12 +108,12 @@ pub(crate) fn quantity_panels(reader: &Reader) -> Vec<QuantityPanel> {
     panels
 }
 
-pub(super) fn quantities(reader: &Reader, options: &Options) -> Result<Figure, StoreError> {
+pub(super) fn quantities(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
     let time = times(reader)?;
-    let rows = Rows::of(reader)?;
+    let rows = Rows::within(reader, options)?;
     let panels = quantity_panels(reader);
     if panels.is_empty() {
-        return Err(reader.no_quantities());
+        return Err(reader.no_quantities().into());
     }
     let mut figure = Figure::new("");
     for panel in panels {
@@ -127,11 +127,15 @@ pub(super) fn quantities(reader: &Reader, options: &Options) -> Result<Figure, S
     Ok(figure)
 }
 
-pub(super) fn load_displacement(reader: &Reader) -> Result<Figure, StoreError> {
-    times(reader)?;
+pub(super) fn load_displacement(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
+    let kept = shown(reader, options)?;
     let panel =
         Curves::new("", Axis::linear("approach", "m"), Axis::linear("load", reader.header().grid.units("N")));
-    let [x, y] = [reader.series("approach")?, reader.series("load")?];
+    let pick = |name: &str| -> Result<Vec<f64>, StoreError> {
+        let values = reader.series(name)?;
+        Ok(kept.iter().filter_map(|row| values.get(*row).copied()).collect())
+    };
+    let [x, y] = [pick("approach")?, pick("load")?];
     let figure = Figure::new("").with(nameless(panel.clone(), &x, y.clone()));
     let Some(cycle) = last_cycle(&y).or_else(|| last_cycle(&x)) else { return Ok(figure) };
     let last = Curves { title: "Last cycle".into(), ..panel };
@@ -142,7 +146,9 @@ pub(super) fn load_displacement(reader: &Reader) -> Result<Figure, StoreError> {
 /// on both sides, back to the next higher one, by a tenth of the range.
 pub(crate) fn last_cycle(course: &[f64]) -> Option<std::ops::RangeInclusive<usize>> {
     let ends = course.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(*v), b.max(*v)]);
-    let least = 0.1 * (ends[1] - ends[0]);
+    // A held load differs from row to row by rounding errors.
+    let moves = ends[1] - ends[0] > 1e-6 * ends[0].abs().max(ends[1].abs());
+    let least = if moves { 0.1 * (ends[1] - ends[0]) } else { f64::INFINITY };
     let (mut peaks, mut top, mut bottom) = (vec![], 0, 0);
     let mut rising = true;
     for (n, value) in course.iter().enumerate() {
@@ -160,17 +166,18 @@ pub(crate) fn last_cycle(course: &[f64]) -> Option<std::ops::RangeInclusive<usiz
         }
     }
     match peaks[..] {
-        // A constant course differs by rounding.
-        [.., _, from, to] if least > 1e-9 * ends[0].abs().max(ends[1].abs()) => Some(from..=to),
+        [.., _, from, to] => Some(from..=to),
         _ => None,
     }
 }
 
-pub(super) fn work(reader: &Reader) -> Result<Figure, StoreError> {
-    let time = times(reader)?;
-    let row: Vec<f64> = (0..time.len()).map(|row| row as f64).collect();
+pub(super) fn work(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
+    let kept = shown(reader, options)?;
+    let row: Vec<f64> = kept.iter().map(|row| *row as f64).collect();
     let points = |name: &str, series: &str| -> Result<Series, StoreError> {
-        Ok(Series::new(name, Style::Points, row.clone(), reader.series(series)?))
+        let values = reader.series(series)?;
+        let picked: Vec<f64> = kept.iter().filter_map(|row| values.get(*row).copied()).collect();
+        Ok(Series::new(name, Style::Points, row.clone(), picked))
     };
     let counts = Curves::new("Work of each row", Axis::linear("row", ""), Axis::linear("number", ""))
         .with(points("iterations", "iterations")?)
@@ -179,6 +186,13 @@ pub(super) fn work(reader: &Reader) -> Result<Figure, StoreError> {
         .with(points("contact conditions (residual)", "residual")?)
         .with(points("pressure (certificate)", "certificate")?);
     Ok(Figure::new("").with(counts).with(errors))
+}
+
+/// Numbers of the rows in the window.
+fn shown(reader: &Reader, options: &Options) -> Result<Vec<usize>, PlotError> {
+    let times = times(reader)?;
+    Rows::within(reader, options)?;
+    Ok((0..times.len()).filter(|row| options.shows(times[*row])).collect())
 }
 
 /// Times of all rows; an error where there is none yet.

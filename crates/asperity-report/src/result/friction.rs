@@ -7,12 +7,12 @@ use asperity_io::store::{Reader, StoreError};
 
 use super::evolution::times;
 use super::rows::Rows;
-use super::{Options, boundary, creep, nameless};
+use super::{Options, PlotError, boundary, creep, nameless};
 use crate::figure::{Axis, Curves, Figure, Series, Style};
 
-pub(super) fn friction(reader: &Reader, options: &Options) -> Result<Figure, StoreError> {
+pub(super) fn friction(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
     let x = times(reader)?;
-    let rows = Rows::of(reader)?;
+    let rows = Rows::within(reader, options)?;
     let axis = || rows.axis(options.log);
     let grid = &reader.header().grid;
     let line = |name: &str, series: &str| -> Result<Series, StoreError> {

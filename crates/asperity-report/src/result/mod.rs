@@ -10,6 +10,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod common;
 mod distribution;
 mod evolution;
 mod fields;
@@ -28,6 +29,8 @@ use asperity_io::store::{At, FieldKind, Reader, StoreError};
 use asperity_io::stress::StressError;
 use serde_json::Value;
 
+pub(crate) use common::Common;
+pub use common::common_limits;
 pub(crate) use evolution::{last_cycle, quantity_panels};
 pub(crate) use friction::persson;
 pub(crate) use rows::Rows;
@@ -35,7 +38,7 @@ pub use rows::is_logarithmic;
 pub use stress::stress_figure;
 pub use together::together;
 
-use crate::figure::{Curves, Figure, Series};
+use crate::figure::{Curves, Figure, FigureError, Palette, Panel, Scale, Series, Values};
 
 /// A figure of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -85,6 +88,23 @@ pub struct Options {
     pub log: Option<bool>,
     /// The title instead of the result's.
     pub title: Option<String>,
+    /// First and last time of figures over time \[s\], of a sweep velocity \[m/s\]; of an animation its first and last frame.
+    pub window: [Option<f64>; 2],
+    /// Values at the ends of the colours of a map \[SI\]; of a line contact at the ends of the vertical axis.
+    pub limits: Option<[f64; 2]>,
+    /// Colours instead of the usual ones.
+    pub palette: Option<Palette>,
+    /// Colours of a map, or the vertical axis of a line contact, by the logarithm of the values.
+    pub log_values: bool,
+    /// Width and height of the paper \[points\].
+    pub size: Option<[f64; 2]>,
+}
+
+impl Options {
+    /// Whether a time or velocity lies in the window.
+    pub(crate) fn shows(&self, time: f64) -> bool {
+        self.window[0].is_none_or(|from| time >= from) && self.window[1].is_none_or(|to| time <= to)
+    }
 }
 
 /// A line through the area along an axis.
@@ -98,7 +118,17 @@ pub enum Line {
 
 impl Default for Options {
     fn default() -> Self {
-        Options { at: At::Last, line: Line::AlongX(None), log: None, title: None }
+        Options {
+            at: At::Last,
+            line: Line::AlongX(None),
+            log: None,
+            title: None,
+            window: [None, None],
+            limits: None,
+            palette: None,
+            log_values: false,
+            size: None,
+        }
     }
 }
 
@@ -122,6 +152,15 @@ pub enum PlotError {
     /// The flow at the instant was not solved.
     #[error(transparent)]
     Flow(#[from] asperity::Error),
+    /// No row lies in the window of times.
+    #[error("no row lies in this window; the rows go from {} to {}", ends[0], ends[1])]
+    Window {
+        /// First and last row in words.
+        ends: [String; 2],
+    },
+    /// The figure is too large or too small.
+    #[error(transparent)]
+    Figure(#[from] FigureError),
     /// The line of a profile is outside of the area.
     #[error("the line at {axis} = {at:e} m is outside of the area, which goes from 0 to {length:e} m")]
     Outside {
@@ -177,6 +216,33 @@ impl Plot {
         }
     }
 
+    /// The SI unit of the values whose colours it shows; `None` where it has no such map.
+    pub fn unit(self) -> Option<&'static str> {
+        match self {
+            Plot::Pressure | Plot::Stress => Some("Pa"),
+            Plot::Gap | Plot::Displacement | Plot::Flattening | Plot::InitialGap => Some("m"),
+            _ => None,
+        }
+    }
+
+    /// Whether it shows an instant.
+    pub fn is_of_an_instant(self) -> bool {
+        !matches!(
+            self,
+            Plot::Evolution
+                | Plot::LoadDisplacement
+                | Plot::Work
+                | Plot::Quantities
+                | Plot::Friction
+                | Plot::InitialGap
+        )
+    }
+
+    /// Whether it shows the rows over time.
+    pub fn is_over_time(self) -> bool {
+        !self.is_of_an_instant() && self != Plot::InitialGap || self == Plot::Leak
+    }
+
     /// The plot of that name.
     pub fn from_name(name: &str) -> Option<Plot> {
         Plot::ALL.into_iter().find(|plot| plot.name() == name)
@@ -187,7 +253,8 @@ impl Plot {
 ///
 /// # Errors
 /// [`PlotError::Store`] where the result has no row yet, does not hold the field or the instant, or is damaged;
-/// [`PlotError::Outside`] where the line of a profile does not cross the area.
+/// [`PlotError::Outside`] where the line of a profile does not cross the area; [`PlotError::Window`] where no row lies in the
+/// window; [`PlotError::Figure`] where the paper is too small.
 pub fn figure(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, PlotError> {
     if reader.header().grid.is_line() {
         let refused = |what| Err(PlotError::OnLine { path: reader.path().to_owned(), what });
@@ -199,10 +266,10 @@ pub fn figure(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, 
             _ => {}
         }
     }
-    let figure = match plot {
+    let mut figure = match plot {
         Plot::Evolution => evolution::evolution(reader, options)?,
-        Plot::LoadDisplacement => evolution::load_displacement(reader)?,
-        Plot::Work => evolution::work(reader)?,
+        Plot::LoadDisplacement => evolution::load_displacement(reader, options)?,
+        Plot::Work => evolution::work(reader, options)?,
         Plot::Quantities => evolution::quantities(reader, options)?,
         Plot::Leak => crate::leak::over_time(reader, options)?,
         Plot::Friction => friction::friction(reader, options)?,
@@ -218,8 +285,39 @@ pub fn figure(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, 
         Plot::Stress => stress::stress(reader, options.at)?,
     };
     let own = if figure.title.is_empty() { &reader.header().title } else { &figure.title };
-    let title = options.title.clone().unwrap_or_else(|| own.clone());
-    Ok(Figure { title, ..figure })
+    figure.title = options.title.clone().unwrap_or_else(|| own.clone());
+    for panel in &mut figure.panels {
+        colour(panel, plot, options);
+    }
+    let touches = matches!(plot, Plot::Gap | Plot::InitialGap | Plot::Displacement | Plot::Flattening);
+    if options.log_values && touches {
+        let light = if plot == Plot::Gap { "contact" } else { "not above 0" };
+        figure.caption = format!("{} Light: {light}.", figure.caption).trim_start().to_owned();
+    }
+    match options.size {
+        Some(size) => Ok(figure.sized(size)?),
+        None => Ok(figure),
+    }
+}
+
+/// Limits, colours and scale of the values as they were asked for: of maps their colours, of a curve along a line contact its
+/// vertical axis.
+fn colour(panel: &mut Panel, plot: Plot, options: &Options) {
+    match panel {
+        Panel::Map(map) => {
+            map.palette = options.palette;
+            let Values::Quantity { range, .. } = &mut map.meaning else { return };
+            *range = options.limits.or(*range);
+            map.log = options.log_values;
+        }
+        Panel::Curves(curves) if plot.unit() == Some(curves.y.unit.as_str()) && plot != Plot::Stress => {
+            curves.y.range = options.limits.or(curves.y.range);
+            if options.log_values {
+                curves.y.scale = Scale::Log;
+            }
+        }
+        Panel::Curves(_) => {}
+    }
 }
 
 /// The contact states at a stored instant (0 open, 1 in contact, 2 at the hardness), from whatever field tells them;

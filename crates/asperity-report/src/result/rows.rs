@@ -2,6 +2,7 @@
 
 use asperity_io::store::{Reader, StoreError};
 
+use super::{Options, PlotError};
 use crate::figure::Axis;
 
 /// The axis of the rows.
@@ -12,25 +13,53 @@ pub(crate) struct Rows {
     pub(crate) symbol: &'static str,
     /// Whether a logarithmic axis shows them better.
     pub(crate) log: bool,
+    /// Ends of the axis; `None` for those of the data.
+    range: Option<[f64; 2]>,
 }
 
 impl Rows {
     pub(crate) fn of(reader: &Reader) -> Result<Rows, StoreError> {
+        Ok(Rows::over(reader.header().is_sweep(), &reader.series("time")?))
+    }
+
+    /// Those of a window.
+    ///
+    /// # Errors
+    /// [`PlotError::Window`] where no row lies in it.
+    pub(crate) fn within(reader: &Reader, options: &Options) -> Result<Rows, PlotError> {
         let values = reader.series("time")?;
         let sweep = reader.header().is_sweep();
-        let log = is_logarithmic(&values, sweep);
-        Ok(match sweep {
-            true => Rows { label: "velocity", unit: "m/s", symbol: "v", log },
-            false => Rows { label: "time", unit: "s", symbol: "t", log },
-        })
+        if options.window == [None, None] {
+            return Ok(Rows::over(sweep, &values));
+        }
+        let inside: Vec<f64> = values.iter().copied().filter(|value| options.shows(*value)).collect();
+        let (Some(first), Some(last)) = (inside.first(), inside.last()) else {
+            let ends = [values.first(), values.last()].map(|end| super::moment(reader, *end.unwrap_or(&0.0)));
+            return Err(PlotError::Window { ends });
+        };
+        let rows = Rows::over(sweep, &inside);
+        // A logarithmic axis begins at the first row after 0.
+        let positive = inside.iter().copied().find(|value| *value > 0.0).unwrap_or(*first);
+        let start = if options.log.unwrap_or(rows.log) { positive } else { *first };
+        let from = options.window[0].filter(|from| *from > 0.0).unwrap_or(start);
+        Ok(Rows { range: Some([from, options.window[1].unwrap_or(*last)]), ..rows })
+    }
+
+    fn over(sweep: bool, values: &[f64]) -> Rows {
+        let log = is_logarithmic(values, sweep);
+        match sweep {
+            true => Rows { label: "velocity", unit: "m/s", symbol: "v", log, range: None },
+            false => Rows { label: "time", unit: "s", symbol: "t", log, range: None },
+        }
     }
 
     /// The axis of a panel; `log` where that was asked for.
     pub(crate) fn axis(self, log: Option<bool>) -> Axis {
-        match log.unwrap_or(self.log) {
+        let axis = match log.unwrap_or(self.log) {
             true => Axis::log(self.label, self.unit),
             false => Axis::linear(self.label, self.unit),
-        }
+        };
+        Axis { range: self.range, ..axis }
     }
 }
 

@@ -5,7 +5,7 @@ use asperity_io::store::{At, FieldKind, Reader};
 use asperity_io::stress::{Below, Instant, Section, StressError, StressPlan, below_at, section};
 use ndarray::{Array2, s};
 
-use super::{PlotError, caption};
+use super::{PlotError, caption, moment};
 use crate::figure::{Axis, Colours, Curves, Figure, Map, Series, Style, Values};
 
 /// A section is this many times as wide as deep, unless the domain ends before.
@@ -100,7 +100,7 @@ pub fn stress_figure(reader: &Reader, below: &Below, index: usize) -> Result<Fig
 
 fn title(reader: &Reader, instant: &Instant) -> String {
     let title = &reader.header().title;
-    let what = format!("tress below the surface at t = {}", quantity(instant.time, "s"));
+    let what = format!("tress below the surface at {}", moment(reader, instant.time));
     if title.is_empty() { format!("S{what}") } else { format!("{title}: s{what}") }
 }
 

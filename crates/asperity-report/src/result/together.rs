@@ -1,9 +1,9 @@
-//! One figure of several results: curves in the same panels, maps side by side.
+//! One figure of several results: curves in the same panels, maps side by side in the same colours.
 
 use asperity_io::store::{At, Reader};
 
 use super::{Options, Plot, PlotError, Rows, figure};
-use crate::figure::{Curves, Figure, Panel, Series};
+use crate::figure::{Curves, Figure, Panel, Series, Values};
 
 /// The figure of each result with its name and instant, put together. Panels of curves with the same title become one, with a
 /// line of each result; maps stay panels of their own.
@@ -23,7 +23,7 @@ pub fn together(
     let mut whole = Figure::new(options.title.clone().unwrap_or_default());
     let mut captions = vec![];
     for (name, reader, at) in results {
-        let own = figure(reader, plot, &Options { at: *at, log, ..options.clone() })?;
+        let own = figure(reader, plot, &Options { at: *at, log, size: None, ..options.clone() })?;
         if !own.caption.is_empty() {
             captions.push(format!("{name}: {}", own.caption));
         }
@@ -39,7 +39,32 @@ pub fn together(
             }
         }
     }
-    Ok(whole.caption(captions.join(" ")))
+    alike(&mut whole);
+    let whole = whole.caption(captions.join(" "));
+    match options.size {
+        Some(size) => Ok(whole.sized(size)?),
+        None => Ok(whole),
+    }
+}
+
+/// Gives the maps of a quantity the same colours.
+fn alike(whole: &mut Figure) {
+    let ends = |panel: &Panel| match panel {
+        Panel::Map(map) => match &map.meaning {
+            Values::Quantity { label, .. } => map.ends().map(|ends| (label.clone(), ends)),
+            Values::States(_) => None,
+        },
+        Panel::Curves(_) => None,
+    };
+    let all: Vec<(String, [f64; 2])> = whole.panels.iter().filter_map(ends).collect();
+    for panel in &mut whole.panels {
+        if let Panel::Map(map) = panel
+            && let Values::Quantity { label, range, .. } = &mut map.meaning
+        {
+            let same = all.iter().filter(|(other, _)| other == label).map(|(_, ends)| *ends);
+            *range = same.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]);
+        }
+    }
 }
 
 /// Adds the curves of a result to the panel of the same title and axes, or as a new panel.

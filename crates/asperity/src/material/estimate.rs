@@ -13,7 +13,7 @@
 use super::align::{self, Distance, Logs};
 use super::master::{Abscissa, Isotherm, validate};
 use super::shift::{Shift, minimise};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, kelvin};
 use std::f64::consts::LN_10;
 
 /// Shift factors found from isotherms.
@@ -66,14 +66,14 @@ pub fn estimate_shift(isotherms: &[Isotherm], abscissa: Abscissa, reference: f64
         return Err(Error::invalid("number of isotherms", sorted.len(), "at least 2"));
     }
     if let Some(pair) = sorted.windows(2).find(|pair| pair[0].temperature == pair[1].temperature) {
-        let value = format!("{} K twice", pair[0].temperature);
+        let value = format!("{} twice", kelvin(pair[0].temperature));
         return Err(Error::invalid("temperature of the isotherms", value, "each once"));
     }
     let temperatures: Vec<f64> = sorted.iter().map(|isotherm| isotherm.temperature).collect();
-    let Some(anchor) = temperatures.iter().position(|kelvin| *kelvin == reference) else {
-        let known: Vec<String> = temperatures.iter().map(|kelvin| format!("{kelvin} K")).collect();
+    let Some(anchor) = temperatures.iter().position(|t| *t == reference) else {
+        let known: Vec<String> = temperatures.iter().map(|t| kelvin(*t)).collect();
         let expected = format!("one of the isotherms: {}", known.join(", "));
-        return Err(Error::invalid("reference temperature", format!("{reference} K"), expected));
+        return Err(Error::invalid("reference temperature", kelvin(reference), expected));
     };
     let measured: Vec<Distance> = sorted.windows(2).map(|pair| between(pair[0], pair[1], abscissa)).collect();
     let found = with_law(&temperatures, &measured);

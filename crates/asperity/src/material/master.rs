@@ -5,7 +5,7 @@
 //! the temperature T the time t counts as t/a_T, the frequency omega as omega a_T. The shift factors come
 //! from a law ([`Shift`]) or from neighbouring isotherms ([`estimate_shift`](super::estimate_shift)).
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, kelvin, positive};
 use crate::material::shift::Shift;
 
 /// What the abscissa of a curve is.
@@ -65,7 +65,7 @@ pub fn master_curve(isotherms: &[Isotherm], abscissa: Abscissa, shift: &Shift) -
             };
             if !(reduced.is_finite() && reduced >= f64::MIN_POSITIVE) {
                 return Err(Error::invalid(
-                    format!("reduced abscissa of point {} at {} K", k + 1, isotherm.temperature),
+                    format!("reduced abscissa of point {} at {}", k + 1, kelvin(isotherm.temperature)),
                     reduced,
                     "within the range of floating-point numbers: check the constants of the shift",
                 ));
@@ -83,7 +83,7 @@ pub(super) fn validate(isotherms: &[Isotherm]) -> Result<()> {
     };
     for isotherm in isotherms {
         positive("temperature of an isotherm", isotherm.temperature, "K (absolute)")?;
-        let at = format!("the isotherm at {} K", isotherm.temperature);
+        let at = format!("the isotherm at {}", kelvin(isotherm.temperature));
         if isotherm.x.len() < 2 {
             return Err(Error::invalid(format!("number of points of {at}"), isotherm.x.len(), "at least 2"));
         }

@@ -4,7 +4,7 @@
 //! Trans. Soc. Rheology 4 (1960) 233): the creep function acts over xi(t) - xi(s) instead of t - s, so
 //! that a march in steps of xi instead of t is exact.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, kelvin};
 use crate::material::Shift;
 use crate::material::quadrature::integrate;
 
@@ -62,7 +62,7 @@ impl ReducedTime {
         {
             return Err(Error::invalid(
                 format!("temperature of point {}", n + 1),
-                format!("{t} K"),
+                kelvin(*t),
                 "one at which the shift factor is above 1e-300: check the constants of the shift",
             ));
         }
@@ -78,7 +78,7 @@ impl ReducedTime {
                     piece.length = clock.within(&piece, piece.start, piece.end).ok_or_else(|| {
                         Error::invalid(
                             "temperature history",
-                            format!("{from} K to {to} K from {start:e} s to {end:e} s"),
+                            format!("{} to {} from {start:e} s to {end:e} s", kelvin(from), kelvin(to)),
                             "within reach of the shift: check the temperatures and its constants",
                         )
                     })?;

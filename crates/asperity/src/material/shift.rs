@@ -5,7 +5,7 @@
 //! M. L. Williams, R. F. Landel & J. D. Ferry, J. Am. Chem. Soc. 77 (1955) 3701,
 //! log10 a_T = -c1 (T - T_r) / (c2 + T - T_r), else often S. Arrhenius, ln a_T = (E_a/R) (1/T - 1/T_r).
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, kelvin, positive};
 use std::f64::consts::LN_10;
 
 /// Gas constant R \[J/(mol K)\], exact in the SI of 2019.
@@ -88,10 +88,12 @@ impl Shift {
         if !inside {
             return Err(Error::invalid(
                 "temperature",
-                format!("{temperature} K"),
+                kelvin(temperature),
                 match self {
-                    Shift::Table { .. } => format!("from {low} K to {high} K, as the shift factors are"),
-                    _ => format!("above {low} K, where the WLF shift T_r - c2 diverges"),
+                    Shift::Table { .. } => {
+                        format!("from {} to {}, as the shift factors are", kelvin(low), kelvin(high))
+                    }
+                    _ => format!("above {}, where the WLF shift T_r - c2 diverges", kelvin(low)),
                 },
             ));
         }
@@ -178,8 +180,8 @@ fn validate_table(points: &[(f64, f64)]) -> Result<()> {
         if pair[1].0 <= pair[0].0 {
             return Err(Error::invalid(
                 format!("temperature of shift factor {}", n + 2),
-                format!("{} K", pair[1].0),
-                format!("greater than the one before it, {} K (in order, none twice)", pair[0].0),
+                kelvin(pair[1].0),
+                format!("greater than the one before it, {} (in order, none twice)", kelvin(pair[0].0)),
             ));
         }
     }

@@ -52,7 +52,7 @@ pub fn show(args: &Show) -> Result<(), Failure> {
     };
     let columns = format!("{:>14}{:>14}{:>14}", "C [m/Pa]", "q C [1/Pa]", "2/(q C)");
     if at_once {
-        let _ = writeln!(text, "{:>12}{:>14}{:^42}{:^42}", "", "", "at once", "at last");
+        let _ = writeln!(text, "{:>12}{:>14}{:^42}{:^42}", "", "", "instantaneous", "relaxed");
     }
     let more = if at_once { columns.as_str() } else { "" };
     let _ = writeln!(text, "{:>12}{:>14}{columns}{more}", "wave length", "q [1/m]");

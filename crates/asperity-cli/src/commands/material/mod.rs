@@ -68,6 +68,9 @@ fn show(args: &Show) -> Result<(), Failure> {
         let materials: Vec<_> = specimens.iter().map(|s| (s.name.as_str(), &s.material)).collect();
         let title = args.file.file_stem().map_or(String::new(), |stem| stem.to_string_lossy().into_owned());
         let figure = pictures::functions(&title, &materials, window).map_err(told)?;
+        let shifts: Vec<pictures::Factors> = specimens.iter().filter_map(shift_of).collect();
+        let figure =
+            pictures::shift_factors(&shifts).into_iter().fold(figure, |figure, panel| figure.with(panel));
         figure.write(path, args.force).map_err(told)?;
     }
     let tables = specimens.iter().map(|specimen| Table::of(specimen, window, args.per_decade));
@@ -80,6 +83,12 @@ fn show(args: &Show) -> Result<(), Failure> {
     let texts: Vec<String> =
         specimens.iter().zip(&tables).map(|(specimen, table)| table.text(specimen)).collect();
     crate::print(&texts.join("\n"))
+}
+
+/// The shift of a material with the temperatures of its measurement.
+fn shift_of(specimen: &Specimen) -> Option<pictures::Factors<'_>> {
+    let MaterialReport { law, temperatures, .. } = &specimen.report;
+    Some(pictures::Factors { name: &specimen.name, law: law.as_ref()?, found: &[], temperatures })
 }
 
 /// One decade beyond all times of the materials; six decades about 1 s where they have none.

@@ -23,6 +23,7 @@ pub struct Portrait<'a> {
     name: &'a str,
     topography: &'a Topography,
     map: Map,
+    extent: Extent,
     summary: Summary,
     bearing: BearingCurve,
 }
@@ -41,7 +42,7 @@ impl<'a> Portrait<'a> {
         let told = |error: asperity::Error| Failure::input(format!("{name}: {error}"));
         let summary = Summary::of(&map, extent).map_err(told)?;
         let bearing = BearingCurve::of(&map, LEVELS).map_err(told)?;
-        Ok(Portrait { name, topography, map, summary, bearing })
+        Ok(Portrait { name, topography, map, extent, summary, bearing })
     }
 
     /// Fits the Hurst exponent to the waves between two lengths \[m\] only; no fit where there are too few.
@@ -66,7 +67,7 @@ impl<'a> Portrait<'a> {
         if let Some(plot) = plot {
             let title =
                 Path::new(self.name).file_name().map_or(self.name.into(), |name| name.to_string_lossy());
-            let figure = picture(&title, &self.map, &self.summary, &self.bearing);
+            let figure = picture(&title, &self.map, self.extent, &self.summary, &self.bearing);
             figure.write(plot, force).map_err(|error| Failure::input(error.to_string()))?;
         }
         match json {

@@ -245,7 +245,7 @@ fn warmth(sample: &Sample, course: &Course<'_>) -> asperity::Result<Warmth> {
         match factor.is_finite() && factor > 0.0 {
             true => Ok(Warmth::Constant(factor)),
             false => Err(asperity::Error::invalid(
-                format!("shift factor at {temperature} K"),
+                format!("shift factor at {temperature:.2} K"),
                 factor,
                 "within the range of floating-point numbers: check the constants of the shift",
             )),

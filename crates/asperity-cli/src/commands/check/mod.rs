@@ -1,39 +1,36 @@
 //! `asperity check`: what a case will do, without doing it.
 
+mod work;
+
 use std::time::Instant;
 
-use asperity::operator::half_space;
-use asperity::{Grid, Method, Scheme};
-use asperity_io::case::{Case, Description, Examination, Inputs, SurfaceInput, Travel};
+use asperity::Grid;
+use asperity_io::case::{Case, Examination, Inputs, SurfaceInput, Travel};
 use asperity_io::stress::StressDescription;
 use serde_json::json;
 
+use self::work::Work;
 use crate::args::Check;
 use crate::failure::Failure;
 use crate::words::{bytes, counted, duration, quantity};
 
-/// Convolutions per row, 3 to 7 in the examples whose pressure changes, and time of an iteration over that of its
-/// convolution (docs/performance.md).
-const PROJECTED_CG: [f64; 2] = [5.0, 3.0];
-/// Rows that a first one, from nothing, counts for besides.
-const FIRST: f64 = 2.0;
-/// The same of the method of Polonsky and Keer.
-const POLONSKY_KEER: [f64; 2] = [14.0, 2.5];
-/// Cells along a side on which a convolution is timed.
-const TIMED: usize = 512;
+/// Cells along a side on which the stress at a depth is timed.
+const TIMED: usize = 128;
 
 /// Validates the case, builds its gap, and says what will be solved.
 pub fn run(args: &Check) -> Result<(), Failure> {
     let case = Case::read(&args.case, &args.common.set)?;
     // The files are read and the gap is built: what `run` would refuse is refused here.
     let examined = case.examine()?;
-    let estimate = seconds(&case, &examined.description);
+    let work = work::work(&case, &examined.description);
     if args.json {
         let mut object = serde_json::to_value(&examined).unwrap_or_default();
-        object["estimated_s"] = json!(estimate);
+        object["estimated_s"] = json!(work.as_ref().map(|work| work.seconds));
+        object["estimated_rows"] = json!(work.as_ref().map(|work| work.rehearsal.rows));
+        object["estimated_convolutions"] = json!(work.as_ref().map(|work| work.rehearsal.convolutions));
         crate::print(&format!("{object}\n"))?;
     } else {
-        crate::print(&tell(&case, &examined, estimate))?;
+        crate::print(&tell(&case, &examined, work.as_ref()))?;
     }
     super::findings::strict(args.strict, &examined.findings)
 }
@@ -50,34 +47,6 @@ fn retardation(times: &[f64]) -> String {
     }
 }
 
-/// Rows times convolutions times what one takes here, timed on a small grid and scaled as N log N.
-fn seconds(case: &Case, description: &Description) -> Option<f64> {
-    let cells = case.grid.cells().map(|n| n.min(TIMED));
-    let grid = case.grid.with_cells(cells).ok()?;
-    let mut operator = half_space(grid, case.boundary);
-    let pressure = vec![1.0; grid.len()];
-    let mut displacement = vec![0.0; grid.len()];
-    operator.apply_into(&pressure, &mut displacement);
-    let start = Instant::now();
-    for _ in 0..3 {
-        operator.apply_into(&pressure, &mut displacement);
-    }
-    let timed = start.elapsed().as_secs_f64() / 3.0;
-    let cost = |n: f64| n * n.max(2.0).log2();
-    let convolution = timed * cost(case.grid.len() as f64) / cost(grid.len() as f64);
-    let rows = description.usual_rows as f64;
-    let past = match case.scheme {
-        // One sweep over a field, about a fifth of a convolution, per past row.
-        Scheme::Direct => 0.1 * rows * rows * convolution,
-        _ => 0.0,
-    };
-    let [convolutions, iteration] = match case.solver.method {
-        Method::ProjectedCg => PROJECTED_CG,
-        Method::PolonskyKeer => POLONSKY_KEER,
-    };
-    Some((rows + FIRST) * convolutions * iteration * convolution + past)
-}
-
 /// "radius 10.00 mm", "Sq 1.000 µm, Sdq 0.1"; nothing for what its name says.
 fn shape(surface: &SurfaceInput) -> Option<String> {
     let length = |value: f64| quantity(value, "m");
@@ -92,10 +61,10 @@ fn shape(surface: &SurfaceInput) -> Option<String> {
     (!parts.is_empty()).then(|| format!("{}: {}", surface.name, parts.join(", ")))
 }
 
-/// "12.00 µm", or "12.00 µm at once, 15.00 µm at the end".
+/// "12.00 µm", or "12.00 µm right after the load, 15.00 µm at the end".
 fn range([first, last]: [f64; 2], words: impl Fn(f64) -> String) -> String {
     let [first, last] = [first, last].map(words);
-    if first == last { first } else { format!("{first} at once, {last} at the end") }
+    if first == last { first } else { format!("{first} right after the load, {last} at the end") }
 }
 
 /// What is prescribed at most, and the contact to be expected: lines of a name and a value.
@@ -184,7 +153,7 @@ fn motion_lines(case: &Case) -> Vec<[String; 2]> {
 
 /// Times and depths times what the stress at a depth takes here, timed on a small grid and scaled as N log N.
 fn stress_seconds(case: &Case, description: &StressDescription) -> Option<f64> {
-    let cells = case.grid.cells().map(|n| n.min(TIMED / 4));
+    let cells = case.grid.cells().map(|n| n.min(TIMED));
     let grid = case.grid.with_cells(cells).ok()?;
     let mut stress = description.poisson.transforms(grid, case.boundary).ok()?;
     stress.set_pressure(&vec![1.0; grid.len()]).ok()?;
@@ -229,7 +198,7 @@ fn lengths(sides: &[f64]) -> String {
     sides.join(" x ")
 }
 
-fn tell(case: &Case, examined: &Examination, estimate: Option<f64>) -> String {
+fn tell(case: &Case, examined: &Examination, work: Option<&Work>) -> String {
     let (d, inputs) = (&examined.description, &examined.inputs);
     let title = d.title.as_deref().unwrap_or(&case.name);
     let mut text = format!("{title}\n");
@@ -369,13 +338,22 @@ fn tell(case: &Case, examined: &Examination, estimate: Option<f64>) -> String {
             Some(times) => crate::words::counted(times.len(), "time"),
             None => "the stored times".to_owned(),
         };
-        line("leakage", format!("{}, at {times}, up to {memory} of memory", leak.words()));
+        let seconds = work::leak_seconds(case, d);
+        let seconds = seconds.map_or(String::new(), |s| format!(", roughly {} after the run", duration(s)));
+        line("leakage", format!("{}, at {times}, up to {memory} of memory{seconds}", leak.words()));
     }
     line("memory", format!("about {}", bytes(d.memory_bytes as f64)));
-    if let Some(estimate) = estimate {
+    if let Some(work) = work {
+        let threads = counted(rayon::current_num_threads(), "thread");
+        let found = work.rehearsal;
         line(
             "run time",
-            format!("roughly {} on {} threads", duration(estimate), rayon::current_num_threads()),
+            format!(
+                "roughly {} on {threads}: about {} and {} (rehearsed on a coarse grid)",
+                duration(work.seconds),
+                counted(found.rows, "row"),
+                counted(found.convolutions, "convolution")
+            ),
         );
     }
     for finding in &examined.findings {

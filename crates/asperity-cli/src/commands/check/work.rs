@@ -1,0 +1,80 @@
+//! How long a run takes: the convolutions that a rehearsal on a coarse grid counts, times what one takes here.
+
+use std::time::Instant;
+
+use asperity::operator::half_space;
+use asperity::{Method, Scheme};
+use asperity_io::case::{Case, Description, Rehearsal};
+
+/// Cells along a side on which a convolution is timed.
+const TIMED: usize = 512;
+/// Time of an iteration over that of its convolution (docs/performance.md).
+const PROJECTED_CG: f64 = 3.0;
+const POLONSKY_KEER: f64 = 2.5;
+/// Time of a row without any iteration, and of each term that the material remembers, over that of a convolution.
+const ROW: f64 = 0.5;
+const TERM: f64 = 0.1;
+/// Of the full hereditary sum, one sweep over a field for each past row.
+const PAST: f64 = 0.2;
+/// Bytes of fields that are compressed and stored in a second.
+const STORED: f64 = 150e6;
+/// Time until the first row \[s\].
+const START: f64 = 0.03;
+
+/// What a run takes.
+pub(super) struct Work {
+    /// Rows and convolutions.
+    pub(super) rehearsal: Rehearsal,
+    /// On the clock \[s\].
+    pub(super) seconds: f64,
+}
+
+/// The work of a case; `None` where it cannot be rehearsed.
+pub(super) fn work(case: &Case, description: &Description) -> Option<Work> {
+    let rehearsal = case.rehearse()?;
+    let iteration = match case.solver.method {
+        Method::ProjectedCg => PROJECTED_CG,
+        Method::PolonskyKeer => POLONSKY_KEER,
+    };
+    let rows = rehearsal.rows as f64;
+    let past = if case.scheme == Scheme::Direct { 0.5 * PAST * rows * rows } else { 0.0 };
+    let terms = description.retardation_times.len() as f64;
+    let units = iteration * rehearsal.convolutions as f64 + (ROW + TERM * terms) * rows + past;
+    let cells = case.grid.len() as f64;
+    let stored = description.stored_rows.unwrap_or(rehearsal.rows) as f64;
+    let fields = 8.0 * cells * (stored * description.fields.len() as f64 + 1.0);
+    Some(Work { rehearsal, seconds: START + units * convolution(case)? + fields / STORED })
+}
+
+/// What a convolution takes here \[s\], timed on a small grid and scaled as N log N.
+fn convolution(case: &Case) -> Option<f64> {
+    let cells = case.grid.cells().map(|n| n.min(TIMED));
+    let grid = case.grid.with_cells(cells).ok()?;
+    let mut operator = half_space(grid, case.boundary);
+    let pressure = vec![1.0; grid.len()];
+    let mut displacement = vec![0.0; grid.len()];
+    operator.apply_into(&pressure, &mut displacement);
+    let start = Instant::now();
+    for _ in 0..3 {
+        operator.apply_into(&pressure, &mut displacement);
+    }
+    let timed = start.elapsed().as_secs_f64() / 3.0;
+    let cost = |n: f64| n * n.max(2.0).log2();
+    Some(timed * cost(case.grid.len() as f64) / cost(grid.len() as f64))
+}
+
+/// Cells along a side on which the flow through a gap is timed.
+const TIMED_FLOW: usize = 128;
+
+/// What the leakage takes after the run \[s\]: timed with all cells open on a small grid, and scaled as a sparse factorisation,
+/// N^1.3; about half of the cells of a seal are open.
+pub(super) fn leak_seconds(case: &Case, description: &Description) -> Option<f64> {
+    let leak = case.leakage.as_ref()?;
+    let times = leak.times.as_ref().map(Vec::len).or(description.stored_rows)? as f64;
+    let grid = case.grid.with_cells(case.grid.cells().map(|n| n.min(TIMED_FLOW))).ok()?;
+    let gap = ndarray::Array2::from_elem(grid.shape(), 1e-6);
+    let start = Instant::now();
+    leak.of_gap(&grid, gap.view(), None, 0.0).ok()?;
+    let open = 0.5 * case.grid.len() as f64 / grid.len() as f64;
+    Some(times * start.elapsed().as_secs_f64() * open.powf(1.3))
+}

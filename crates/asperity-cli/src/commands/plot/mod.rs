@@ -1,0 +1,95 @@
+//! `asperity plot`: one figure of a result, or of several, or an animation.
+
+mod options;
+
+use std::path::Path;
+
+use asperity_io::case::quantity::{Time, range};
+use asperity_io::store::{At, Reader};
+use asperity_report::animation::{AnimationError, Course, Motion, animation};
+use asperity_report::figure::Form;
+use asperity_report::result::{Options, Plot, common_limits, figure, together};
+
+use super::instant;
+use crate::args;
+use crate::failure::Failure;
+use crate::words::read;
+
+/// Draws the figure and prints where it is.
+pub fn run(args: &args::Plot) -> Result<(), Failure> {
+    let Some(plot) = Plot::from_name(&args.what) else {
+        let names: Vec<_> = Plot::ALL.iter().map(|plot| plot.name()).collect();
+        return Err(Failure::input(format!(
+            "there is no figure \"{}\"; choose one of {}",
+            args.what,
+            names.join(", ")
+        )));
+    };
+    options::check(args, plot)?;
+    let mut all = vec![];
+    for path in &args.results {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        all.push((name, Reader::open(path).map_err(told)?));
+    }
+    match &args.animate {
+        Some(path) => animate(args, plot, &all, path),
+        None => draw(args, plot, all),
+    }
+}
+
+fn draw(args: &args::Plot, plot: Plot, all: Vec<(String, Reader)>) -> Result<(), Failure> {
+    let names: Vec<&str> = all.iter().map(|(name, _)| name.as_str()).collect();
+    let output =
+        args.output.clone().unwrap_or_else(|| format!("{}-{}.png", names.join("-"), plot.name()).into());
+    Form::of(&output).map_err(told)?;
+    super::free(&output, args.force)?;
+    let mut chosen = Options::default();
+    if let Some((_, first)) = all.first() {
+        chosen = options::of(args, plot, first)?;
+    }
+    if args.same_colours {
+        let readers: Vec<&Reader> = all.iter().map(|(_, reader)| reader).collect();
+        chosen.limits = common_limits(&readers, plot, &chosen).map_err(told)?;
+    }
+    let at = |reader: &Reader| instant(reader, args.time.as_deref());
+    let drawn = match &all[..] {
+        [(_, reader)] => figure(reader, plot, &Options { at: at(reader)?, ..chosen }),
+        _ => {
+            let all = all.into_iter().map(|(name, reader)| {
+                let at = at(&reader)?;
+                Ok((name, reader, at))
+            });
+            together(&all.collect::<Result<Vec<_>, Failure>>()?, plot, &chosen)
+        }
+    };
+    drawn.map_err(told)?.write(&output, args.force).map_err(told)?;
+    crate::print(&format!("{}\n", output.display()))
+}
+
+fn animate(args: &args::Plot, plot: Plot, all: &[(String, Reader)], path: &Path) -> Result<(), Failure> {
+    let [(_, reader)] = all else {
+        return Err(Failure::input("--animate shows one result; give one".to_owned()));
+    };
+    Motion::of(path).map_err(told)?;
+    super::free(path, args.force)?;
+    let duration = args.duration.as_deref();
+    let duration =
+        duration.map(|text| read::<Time<range::Positive>>("--duration", text, "6 s")).transpose()?;
+    let usual = Course::default();
+    let course = Course {
+        duration: duration.map(|duration| duration.get()),
+        frames: args.frames.map_or(usual.frames, |frames| frames as usize),
+    };
+    let chosen = options::of(args, plot, reader)?;
+    match animation(reader, plot, &Options { at: At::Last, ..chosen }, course, path, args.force) {
+        Ok(frames) => crate::print(&format!("{}: {frames} frames\n", path.display())),
+        Err(AnimationError::Encoding { path, why }) => {
+            Err(Failure::System(format!("cannot write {}: {why}", path.display())))
+        }
+        Err(error) => Err(told(error)),
+    }
+}
+
+fn told(error: impl std::fmt::Display) -> Failure {
+    Failure::input(error.to_string())
+}

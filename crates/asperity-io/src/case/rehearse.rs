@@ -1,0 +1,102 @@
+//! A rehearsal: the case on a coarse grid, for the number of rows and of convolutions that its run takes.
+//!
+//! How many iterations a row takes depends on what the load does, on the roughness and on the material, hardly on the number of
+//! cells: the preconditioner sees to that. So the same case with few cells tells it, in some hundredths of a second.
+
+use asperity::sliding::Steady;
+use asperity::surface::Part;
+use asperity::{Grid, March};
+use ndarray::Array2;
+
+use super::Case;
+
+/// Cells along the longer side, of a plane and of a line.
+const CELLS: usize = 64;
+const CELLS_OF_LINE: usize = 256;
+/// Convolutions after which the rest of the rows is taken to be like those before.
+const ENOUGH: usize = 1500;
+
+/// What a rehearsal found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rehearsal {
+    /// Rows of the run.
+    pub rows: usize,
+    /// Convolutions of the run.
+    pub convolutions: usize,
+}
+
+impl Case {
+    /// Solves the case on a coarse grid. `None` where that cannot be solved.
+    pub fn rehearse(&self) -> Option<Rehearsal> {
+        let parts = self.parts().ok()?;
+        let every = self.grid.cells()[0].max(self.grid.cells()[1]).div_ceil(match self.grid.is_line() {
+            true => CELLS_OF_LINE,
+            false => CELLS,
+        });
+        let coarse = Case {
+            grid: self.grid.with_cells(self.grid.cells().map(|n| n.div_ceil(every))).ok()?,
+            hardness_map: self.hardness_map.as_ref().map(|map| sampled(map, every)),
+            ..self.clone()
+        };
+        let parts: Option<Vec<Part>> =
+            parts.into_iter().map(|part| sample(part, &self.grid, every)).collect();
+        let parts = parts?;
+        let simulation = coarse.simulation_of(&parts).ok()?;
+        let mut found = Rehearsal { rows: 0, convolutions: 0 };
+        let mut count = |convolutions: usize| {
+            found.rows += 1;
+            found.convolutions += convolutions;
+            found.convolutions < ENOUGH
+        };
+        let share = match coarse.steady_of(&parts, &simulation).ok()? {
+            Some(motion) => {
+                let total = motion.velocities.len();
+                let mut steady = Steady::new(simulation, motion).ok()?;
+                while steady.done() < total && count(steady.advance().ok()??.row().convolutions) {}
+                steady.done() as f64 / total as f64
+            }
+            None => {
+                let mut march = March::new(simulation).ok()?;
+                let mut reached = 0.0;
+                while let Some(step) = march.advance().ok()? {
+                    reached = step.instant().time;
+                    if !count(step.row().convolutions) {
+                        break;
+                    }
+                }
+                if march.finished() { 1.0 } else { reached / self.times.end() }
+            }
+        };
+        Some(found.completed(share, self.rows))
+    }
+}
+
+impl Rehearsal {
+    /// The whole run, of whose course a `share` was rehearsed, with the number of rows where it is known.
+    fn completed(self, share: f64, rows: Option<usize>) -> Rehearsal {
+        let most = |n: f64| n.round().clamp(0.0, 1e12) as usize;
+        let all = rows.unwrap_or_else(|| most(self.rows as f64 / share.max(1e-6)));
+        let each = self.convolutions as f64 / self.rows.max(1) as f64;
+        Rehearsal { rows: all, convolutions: most(each * all as f64) }
+    }
+}
+
+/// A part on the coarse grid.
+fn sample(part: Part, fine: &Grid, every: usize) -> Option<Part> {
+    let heights = match part {
+        Part::Shape { .. } => return Some(part),
+        Part::SelfAffine(surface) => surface.heights(fine).ok()?,
+        Part::Synthesis(surface) => surface.heights(fine).ok()?,
+        Part::Heights { heights, .. } => heights,
+    };
+    Some(Part::Heights { name: "heights".into(), heights: sampled(&heights, every) })
+}
+
+/// One of so many values along each axis.
+fn sampled(values: &Array2<f64>, every: usize) -> Array2<f64> {
+    let (nx, ny) = values.dim();
+    let place = |k: usize, n: usize| (k * every + every / 2).min(n - 1);
+    Array2::from_shape_fn((nx.div_ceil(every), ny.div_ceil(every)), |(i, j)| {
+        values[[place(i, nx), place(j, ny)]]
+    })
+}

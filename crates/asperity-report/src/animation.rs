@@ -1,0 +1,260 @@
+//! A figure of an instant as an animation over the stored ones: APNG or GIF.
+//!
+//! All frames have the axes and colours that hold every one of them, found in a first pass, so that colours can be compared
+//! from frame to frame. One field at a time is in memory.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use asperity_io::store::{At, Reader};
+
+use crate::figure::{FigureError, Pixels};
+use crate::result::{Common, Options, Plot, PlotError, figure};
+
+/// A form of an animation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Motion {
+    /// PNG with frames, in full colours.
+    Apng,
+    /// GIF, 256 colours a frame.
+    Gif,
+}
+
+/// How an animation runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Course {
+    /// Most frames; of more instants some are left out evenly.
+    pub frames: usize,
+    /// Length of the whole \[s\]; `None` for a fifth of a second a frame, twelve seconds at most.
+    pub duration: Option<f64>,
+}
+
+impl Default for Course {
+    fn default() -> Self {
+        Course { frames: 200, duration: None }
+    }
+}
+
+/// Why an animation cannot be written.
+#[derive(Debug, thiserror::Error)]
+pub enum AnimationError {
+    /// A frame cannot be made.
+    #[error(transparent)]
+    Plot(#[from] PlotError),
+    /// A frame cannot be drawn, or there is a file already.
+    #[error(transparent)]
+    Figure(#[from] FigureError),
+    /// The ending of the path names no form that is known.
+    #[error("{}: the ending says what an animation is written as: use .png, .apng or .gif", path.display())]
+    Ending {
+        /// The path.
+        path: PathBuf,
+    },
+    /// There are not two instants to show.
+    #[error("an animation needs two stored times at least, but {found} {stored}")]
+    Few {
+        /// How many there are.
+        found: usize,
+        /// Where.
+        stored: &'static str,
+    },
+    /// The encoder refuses.
+    #[error("cannot write {}: {why}", path.display())]
+    Encoding {
+        /// The path.
+        path: PathBuf,
+        /// What it says.
+        why: String,
+    },
+}
+
+/// Dots to an inch: a map is some 700 dots wide.
+const DOTS: f64 = 144.0;
+/// Time of a frame and of all of them, where not given \[s\].
+const FRAME: f64 = 0.2;
+const WHOLE: f64 = 12.0;
+
+impl Motion {
+    /// The form that the ending of a path asks for.
+    ///
+    /// # Errors
+    /// [`AnimationError::Ending`] where it is none of `.png`, `.apng` and `.gif`.
+    pub fn of(path: &Path) -> Result<Motion, AnimationError> {
+        match path.extension().map(|ending| ending.to_ascii_lowercase()) {
+            Some(ending) if ending == "png" || ending == "apng" => Ok(Motion::Apng),
+            Some(ending) if ending == "gif" => Ok(Motion::Gif),
+            _ => Err(AnimationError::Ending { path: path.to_owned() }),
+        }
+    }
+}
+
+/// Writes the figure at the stored instants within the window of the options as an animation that repeats, and says how many
+/// frames it has. The file appears whole or not at all.
+///
+/// # Errors
+/// [`AnimationError`].
+pub fn animation(
+    reader: &Reader,
+    plot: Plot,
+    options: &Options,
+    course: Course,
+    path: &Path,
+    force: bool,
+) -> Result<usize, AnimationError> {
+    let form = Motion::of(path)?;
+    let chosen = instants(reader, options, course.frames)?;
+    let frame = |n: usize| figure(reader, plot, &Options { at: At::Index(n), ..options.clone() });
+    let mut common = Common::default();
+    for n in &chosen {
+        common.add(&frame(*n)?);
+    }
+    let whole = course.duration.unwrap_or((FRAME * chosen.len() as f64).min(WHOLE));
+    let each = whole / chosen.len() as f64;
+    let pictures = chosen.iter().map(|n| -> Result<Pixels, AnimationError> {
+        let mut figure = frame(*n)?;
+        common.apply(&mut figure);
+        Ok(figure.dots(DOTS)?)
+    });
+    let mut stopped = None;
+    let written = crate::file::write(path, force, |file| {
+        let result = match form {
+            Motion::Apng => apng(file, chosen.len(), each, pictures),
+            Motion::Gif => gif(file, each, pictures),
+        };
+        result.map_err(|error| {
+            stopped = Some(error);
+            std::io::Error::other("stopped")
+        })
+    });
+    match (stopped, written) {
+        (Some(Stop::Frame(error)), _) => Err(error),
+        (Some(Stop::Encoder(why)), _) => Err(AnimationError::Encoding { path: path.to_owned(), why }),
+        (None, Err(error)) if error.kind() == std::io::ErrorKind::AlreadyExists => {
+            Err(FigureError::Exists { path: path.to_owned() }.into())
+        }
+        (None, Err(source)) => Err(FigureError::Io { path: path.to_owned(), source }.into()),
+        (None, Ok(())) => Ok(chosen.len()),
+    }
+}
+
+/// Numbers of the stored instants to show: those in the window, the first and the last among them.
+fn instants(reader: &Reader, options: &Options, most: usize) -> Result<Vec<usize>, AnimationError> {
+    let times = reader.field_times();
+    let inside: Vec<usize> = (0..times.len()).filter(|n| options.shows(times[*n])).collect();
+    if inside.len() < 2 {
+        let stored = if times.len() < 2 { "stored in the result (output.every)" } else { "in this window" };
+        return Err(AnimationError::Few { found: inside.len(), stored });
+    }
+    let most = most.clamp(2, inside.len());
+    let last = inside.len() - 1;
+    Ok((0..most).map(|k| inside[(k * last + (most - 1) / 2) / (most - 1)]).collect())
+}
+
+/// Why frames end early.
+enum Stop {
+    Frame(AnimationError),
+    Encoder(String),
+}
+
+impl From<AnimationError> for Stop {
+    fn from(error: AnimationError) -> Self {
+        Stop::Frame(error)
+    }
+}
+
+fn refused(error: impl std::fmt::Display) -> Stop {
+    Stop::Encoder(error.to_string())
+}
+
+fn apng(
+    file: &mut impl Write,
+    count: usize,
+    seconds: f64,
+    mut frames: impl Iterator<Item = Result<Pixels, AnimationError>>,
+) -> Result<(), Stop> {
+    let Some(first) = frames.next() else { return Ok(()) };
+    let first = first?;
+    let [width, height] = first.size.map(|side| u32::try_from(side).unwrap_or(u32::MAX));
+    let mut encoder = png::Encoder::new(file, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_animated(u32::try_from(count).unwrap_or(u32::MAX), 0).map_err(refused)?;
+    let milliseconds = (1000.0 * seconds).round().clamp(1.0, f64::from(u16::MAX)) as u16;
+    encoder.set_frame_delay(milliseconds, 1000).map_err(refused)?;
+    let mut writer = encoder.write_header().map_err(refused)?;
+    writer.write_image_data(&first.rgb).map_err(refused)?;
+    for frame in frames {
+        writer.write_image_data(&frame?.rgb).map_err(refused)?;
+    }
+    writer.finish().map_err(refused)
+}
+
+fn gif(
+    file: &mut impl Write,
+    seconds: f64,
+    mut frames: impl Iterator<Item = Result<Pixels, AnimationError>>,
+) -> Result<(), Stop> {
+    let Some(first) = frames.next() else { return Ok(()) };
+    let first = first?;
+    let [width, height] = first.size.map(|side| u16::try_from(side).unwrap_or(u16::MAX));
+    let mut encoder = gif::Encoder::new(file, width, height, &[]).map_err(refused)?;
+    encoder.set_repeat(gif::Repeat::Infinite).map_err(refused)?;
+    let delay = (100.0 * seconds).round().clamp(2.0, f64::from(u16::MAX)) as u16;
+    for frame in std::iter::once(Ok(first)).chain(frames) {
+        // 1 is the slowest and best choice of 256 colours, 30 the fastest.
+        let mut frame = gif::Frame::from_rgb_speed(width, height, &frame?.rgb, 10);
+        frame.delay = delay;
+        encoder.write_frame(&frame).map_err(refused)?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Frames of one colour each.
+    fn frames() -> Vec<Result<Pixels, AnimationError>> {
+        let frame = |k: u8| Pixels { size: [6, 4], rgb: [k, 0, 255 - k].repeat(24) };
+        [10, 20, 30].map(|k| Ok(frame(k))).into()
+    }
+
+    #[test]
+    fn an_apng_holds_every_frame_and_repeats() {
+        let mut data = vec![];
+        assert!(apng(&mut data, 3, 0.25, frames().into_iter()).is_ok());
+        let mut reader = png::Decoder::new(std::io::Cursor::new(&data)).read_info().unwrap();
+        let control = *reader.info().animation_control().unwrap();
+        assert_eq!((control.num_frames, control.num_plays), (3, 0)); // 0: for ever
+        let mut dots = vec![0; reader.output_buffer_size().unwrap()];
+        for k in [10, 20, 30] {
+            reader.next_frame(&mut dots).unwrap();
+            assert_eq!(dots[..3], [k, 0, 255 - k]);
+            let frame = reader.info().frame_control.unwrap();
+            assert_eq!((frame.delay_num, frame.delay_den), (250, 1000));
+        }
+    }
+
+    #[test]
+    fn a_gif_holds_every_frame_and_repeats() {
+        let mut data = vec![];
+        assert!(gif(&mut data, 0.25, frames().into_iter()).is_ok());
+        let mut options = gif::DecodeOptions::new();
+        options.set_color_output(gif::ColorOutput::RGBA);
+        let mut reader = options.read_info(data.as_slice()).unwrap();
+        assert_eq!(reader.repeat(), gif::Repeat::Infinite);
+        for k in [10, 20, 30] {
+            let frame = reader.read_next_frame().unwrap().unwrap();
+            assert_eq!((frame.width, frame.height, frame.delay), (6, 4, 25));
+            // One colour of 256 is kept as it is.
+            assert_eq!(frame.buffer[..3], [k, 0, 255 - k]);
+        }
+        assert!(reader.read_next_frame().unwrap().is_none());
+    }
+
+    #[test]
+    fn a_frame_that_fails_ends_the_file() {
+        let failing = [Err(AnimationError::Few { found: 1, stored: "here" })];
+        let first = frames().into_iter().take(1).chain(failing);
+        assert!(matches!(apng(&mut vec![], 3, 0.1, first), Err(Stop::Frame(AnimationError::Few { .. }))));
+    }
+}

@@ -1,0 +1,176 @@
+//! From a value to its colour, and the colour bar that says so.
+
+use ndarray::Array2;
+
+use super::axis::{Axis, Ruler};
+use super::colours::{Colours, OPEN, Palette};
+use super::drawing::{Anchor, Drawing, INK, Paint, Pen};
+use super::raster::{self, BLANK};
+
+use super::{Place, SMALL, TEXT};
+
+/// How values become colours.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct ColourScale {
+    pub(super) colours: Colours,
+    pub(super) palette: Palette,
+    /// Values at the ends.
+    pub(super) ends: [f64; 2],
+    /// Whether the colours go by the logarithm.
+    pub(super) log: bool,
+}
+
+/// Share of the values that may lie beyond either end of the colours.
+const OUTLIERS: f64 = 1e-3;
+/// A logarithmic scale shows so many decades below the greatest value at most: what is lower is rounding error.
+const DECADES: f64 = 6.0;
+
+impl ColourScale {
+    /// Between the ends that suit the values, or the ones given.
+    pub(super) fn of(
+        values: &Array2<f64>,
+        colours: Colours,
+        palette: Option<Palette>,
+        range: Option<[f64; 2]>,
+        log: bool,
+    ) -> ColourScale {
+        let own = || match log {
+            true => decades(values),
+            false if matches!(colours, Colours::Sequential | Colours::Diverging) => {
+                colours.ends(robust(values.iter().copied()).unwrap_or_else(|| extent(values)))
+            }
+            false => colours.ends(extent(values)),
+        };
+        // A logarithmic scale has no place for a range that begins at 0.
+        let ends = range.filter(|ends| !log || ends[0] > 0.0).unwrap_or_else(own);
+        ColourScale { colours, palette: palette.unwrap_or(colours.palette()), ends, log }
+    }
+
+    /// The colour of a value.
+    pub(super) fn at(&self, value: f64) -> [u8; 3] {
+        let [low, high] = self.ends;
+        if !value.is_finite() {
+            BLANK
+        } else if value <= 0.0 && (self.log || self.colours == Colours::Pressure) {
+            OPEN
+        } else if self.log {
+            self.palette.at((value / low).ln() / (high / low).ln())
+        } else {
+            self.palette.at((value - low) / (high - low))
+        }
+    }
+
+    /// The value at a share of the colour bar.
+    fn value(&self, share: f64) -> f64 {
+        let [low, high] = self.ends;
+        if self.log { low * (high / low).powf(share) } else { low + (high - low) * share }
+    }
+
+    /// The ruler of the bar.
+    fn ruler(&self, label: &str, unit: &str, height: f64) -> Ruler {
+        let axis = if self.log { Axis::log(label, unit) } else { Axis::linear(label, unit) };
+        Ruler::new(&axis.between(self.ends[0], self.ends[1]), self.ends, 0.0, height / 32.0)
+    }
+}
+
+/// A colour bar beside a frame.
+pub(super) struct Bar {
+    scale: ColourScale,
+    ruler: Ruler,
+}
+
+impl Bar {
+    pub(super) fn new(scale: ColourScale, label: &str, unit: &str, place: &Place) -> Bar {
+        Bar { scale, ruler: scale.ruler(label, unit, place.size[1] - 2.0 * TEXT) }
+    }
+
+    /// Room that it takes beside the frame.
+    pub(super) fn width(&self) -> f64 {
+        8.0 + 10.0 + 6.0 + self.ruler.widest() + TEXT + 9.0
+    }
+
+    /// Draws it from `left` on.
+    pub(super) fn draw(self, drawing: &mut Drawing, [left, top, bottom]: [f64; 3]) {
+        let ruler = self.ruler.placed(bottom, top);
+        let right = left + 10.0;
+        let column = Array2::from_shape_fn((1, 256), |(_, j)| self.scale.value((j as f64 + 0.5) / 256.0));
+        let picture = raster::coloured(&column, |value| self.scale.at(value));
+        drawing.image([left, top], [10.0, bottom - top], picture, true);
+        drawing.rect([left, top], [10.0, bottom - top], Paint::outline(Pen::new(INK, 0.6)));
+        for (value, text) in &ruler.ticks {
+            if let Some(at) = ruler.place(*value) {
+                drawing.line([right, at], [right + 3.0, at], Pen::new(INK, 0.7));
+                drawing.text([right + 5.0, at + 0.36 * SMALL], SMALL, Anchor::Start, text);
+            }
+        }
+        let title = right + 5.0 + ruler.widest() + TEXT + 4.0;
+        drawing.upward_text([title, 0.5 * (top + bottom)], TEXT, &ruler.title);
+    }
+}
+
+/// The quantiles at a thousandth and at all but a thousandth, where a few pits or spikes take more than a third of the range of
+/// the values.
+pub(crate) fn robust(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
+    let mut finite: Vec<f64> = values.filter(|v| v.is_finite()).collect();
+    let last = finite.len().saturating_sub(1);
+    let few = (OUTLIERS * last as f64).ceil() as usize;
+    if last < 1000 {
+        return None;
+    }
+    let low = *finite.select_nth_unstable_by(few, f64::total_cmp).1;
+    let high = *finite.select_nth_unstable_by(last - few, f64::total_cmp).1;
+    let ends = [f64::INFINITY, f64::NEG_INFINITY];
+    let whole = finite.iter().fold(ends, |[a, b], v| [a.min(*v), b.max(*v)]);
+    (high > low && whole[1] - whole[0] > 1.5 * (high - low)).then_some([low, high])
+}
+
+/// The range of logarithmic colours: from the quantile at a hundredth of the positive values to the greatest.
+fn decades(values: &Array2<f64>) -> [f64; 2] {
+    let mut positive: Vec<f64> = values.iter().copied().filter(|v| v.is_finite() && *v > 0.0).collect();
+    let high = positive.iter().copied().fold(0.0, f64::max);
+    if high <= 0.0 {
+        return [0.1, 1.0];
+    }
+    let few = positive.len() / 100;
+    let low = *positive.select_nth_unstable_by(few, f64::total_cmp).1;
+    let low = low.max(high * 10f64.powf(-DECADES));
+    if low < high { [low, high] } else { [0.1 * high, high] }
+}
+
+/// Least and greatest of the finite values.
+pub(super) fn extent(values: &Array2<f64>) -> [f64; 2] {
+    let finite = values.iter().copied().filter(|v| v.is_finite());
+    finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_logarithmic_scale_leaves_out_rounding_errors_and_shows_contact_as_such() {
+        let values = Array2::from_shape_fn((100, 10), |(i, _)| match i {
+            0..10 => 0.0,
+            10 => 1e-24,
+            i => 1e-9 * 10f64.powf(f64::from(i as u32) / 33.0),
+        });
+        let scale = ColourScale::of(&values, Colours::Sequential, None, None, true);
+        // Of the 90 positive values in each column the rounding error is the least one, the hundredth quantile.
+        assert!(scale.ends[0] >= 1e-12 && scale.ends[0] < 3e-9, "{:?}", scale.ends);
+        assert_eq!(scale.ends[1], values[[99, 0]]);
+        assert_eq!(scale.at(0.0), OPEN);
+        let middle = scale.value(0.5);
+        assert!((middle / (scale.ends[0] * scale.ends[1]).sqrt() - 1.0).abs() < 1e-12);
+        assert_eq!(scale.at(middle), Palette::Viridis.at(0.5));
+    }
+
+    #[test]
+    fn limits_and_names_of_colours_replace_the_usual_ones() {
+        let values = Array2::from_shape_fn((40, 40), |(i, j)| (i * j) as f64);
+        let scale =
+            ColourScale::of(&values, Colours::Pressure, Some(Palette::Grey), Some([100.0, 200.0]), false);
+        assert_eq!([scale.at(100.0), scale.at(150.0)], [Palette::Grey.at(0.0), Palette::Grey.at(0.5)]);
+        // Small pressure is still contact; none is not.
+        assert_eq!([scale.at(1.0), scale.at(0.0)], [Palette::Grey.at(0.0), OPEN]);
+    }
+}

@@ -1,0 +1,121 @@
+//! The numbers of a panel of curves, and how they are drawn.
+
+use super::drawing::{Drawing, Paint, Pen, rgb};
+
+/// How the points of a series are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Style {
+    /// A line through the points.
+    Line,
+    /// A dashed line through the points.
+    Dashed,
+    /// A thin dotted line through the points, in black: something to compare with.
+    Reference,
+    /// A circle at each point.
+    Points,
+    /// Bars from zero (or from the foot of the axis) to the value, as wide as the distance of the points.
+    Bars,
+}
+
+/// Numbers to draw \[SI\].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    /// What the legend says; empty for a series without a line in the legend.
+    pub name: String,
+    /// Places along the horizontal axis.
+    pub x: Vec<f64>,
+    /// Values, as many as there are places; a value that is not finite leaves a gap.
+    pub y: Vec<f64>,
+    /// How it is drawn.
+    pub style: Style,
+    /// Its colour, "#rrggbb"; `None` for the next one of the panel.
+    pub colour: Option<String>,
+}
+
+impl Series {
+    /// A series of places and values.
+    pub fn new(
+        name: impl Into<String>,
+        style: Style,
+        x: impl Into<Vec<f64>>,
+        y: impl Into<Vec<f64>>,
+    ) -> Series {
+        Series { name: name.into(), x: x.into(), y: y.into(), style, colour: None }
+    }
+
+    /// The same in a colour of its own, "#rrggbb".
+    pub fn in_colour(mut self, colour: impl Into<String>) -> Series {
+        self.colour = Some(colour.into());
+        self
+    }
+
+    pub(super) fn points(&self) -> impl Iterator<Item = [f64; 2]> + '_ {
+        self.x.iter().zip(&self.y).map(|(x, y)| [*x, *y])
+    }
+
+    /// Draws a line or bars; `at` places points, and `bottom` and `zero` are places of the vertical axis.
+    pub(super) fn draw(
+        &self,
+        drawing: &mut Drawing,
+        colour: &str,
+        at: &impl Fn([f64; 2]) -> Option<[f64; 2]>,
+        bottom: f64,
+        zero: Option<f64>,
+    ) {
+        let points = || self.points().map(at);
+        match self.style {
+            Style::Bars => {
+                let half = 0.5 * spacing(&self.x);
+                let foot = zero.unwrap_or(bottom).min(bottom);
+                let paint = Paint::fill(colour, 0.55);
+                for [x, y] in self.points() {
+                    if let (Some([a, top]), Some([b, _])) = (at([x - half, y]), at([x + half, y]))
+                        && top != foot
+                    {
+                        drawing.rect([a, top.min(foot)], [b - a, (foot - top).abs()], paint);
+                    }
+                }
+            }
+            style => drawing.path(points(), pen(style, colour, length(points()))),
+        }
+    }
+}
+
+/// A circle about a point.
+pub(super) fn circle(drawing: &mut Drawing, place: [f64; 2], colour: &str) {
+    drawing.circle(place, 2.0, spot(colour));
+}
+
+/// A circle filled with its colour in part: many of them on top of one another stay dark.
+pub(super) fn spot(colour: &str) -> Paint {
+    Paint { fill: Some((rgb(colour), 0.35)), pen: Some(Pen::new(colour, 0.9)) }
+}
+
+/// The pen of a line of this length \[points\]: thinner where it runs to and fro so often that it would cover itself.
+pub(super) fn pen(style: Style, colour: &str, length: f64) -> Pen {
+    /// Some five times across a panel.
+    const LONG: f64 = 2000.0;
+    let width = if length > LONG { 0.7 } else { 1.5 };
+    match style {
+        Style::Reference => Pen::new(colour, 1.0).dashed(&[1.5, 1.8]),
+        Style::Dashed => Pen::new(colour, width).dashed(&[5.0, 2.5]),
+        _ => Pen::new(colour, width),
+    }
+}
+
+/// Length of a line as it is drawn.
+fn length(points: impl Iterator<Item = Option<[f64; 2]>>) -> f64 {
+    let mut last = None;
+    points
+        .map(|now| {
+            let from = std::mem::replace(&mut last, now);
+            from.zip(now).map_or(0.0, |([a, b], [c, d])| f64::hypot(c - a, d - b))
+        })
+        .sum()
+}
+
+/// The least distance of neighbouring places.
+pub(super) fn spacing(x: &[f64]) -> f64 {
+    let least = x.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(f64::INFINITY, f64::min);
+    if least.is_finite() { least } else { 0.0 }
+}

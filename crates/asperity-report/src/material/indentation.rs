@@ -1,0 +1,42 @@
+//! The record of an indentation and the model fitted to it.
+
+use asperity::indentation::{Given, IndentationFit};
+use asperity_io::curve::Indentation;
+use asperity_io::readable::counted;
+
+use crate::figure::{Axis, Curves, Figure, Series, Style};
+
+/// The record of an indentation and the model of its fitted channel: over time, over the depth, and their distance.
+pub fn indentation(title: &str, record: &Indentation, fit: &IndentationFit) -> Figure {
+    let pick = |column: &[f64]| -> Vec<f64> {
+        fit.rows.iter().filter_map(|row| column.get(*row).copied()).collect()
+    };
+    let [times, loads, depths] = [&record.times, &record.loads, &record.depths].map(|column| pick(column));
+    let (name, unit, measured) = match fit.given {
+        Given::Depth => ("load", "N", &loads),
+        Given::Load => ("depth", "m", &depths),
+    };
+    let points = |x: &[f64], y: &[f64]| Series::new("measured", Style::Points, x.to_vec(), y.to_vec());
+    let line = |x: &[f64], y: &[f64]| Series::new("model", Style::Line, x.to_vec(), y.to_vec());
+    let over_time = Curves::new("Over time", Axis::linear("time", "s"), Axis::linear(name, unit))
+        .with(points(&times, measured))
+        .with(line(&times, &fit.predicted));
+    let (model_depths, model_loads) = match fit.given {
+        Given::Depth => (&depths, &fit.predicted),
+        Given::Load => (&fit.predicted, &loads),
+    };
+    let over_depth = Curves::new("Load over depth", Axis::linear("depth", "m"), Axis::linear("load", "N"))
+        .with(points(&depths, &loads))
+        .with(line(model_depths, model_loads));
+    let distance: Vec<f64> =
+        fit.predicted.iter().zip(measured).map(|(model, measured)| model - measured).collect();
+    let apart = Curves::new("Model less measurement", Axis::linear("time", "s"), Axis::linear(name, unit))
+        .with(Series::new("", Style::Points, times.clone(), distance));
+    let caption = format!(
+        "{}; misfit {:.2} % rms of the largest {name}; Durbin-Watson {:.2}.",
+        counted(fit.terms.len(), "term"),
+        100.0 * fit.relative_rms,
+        fit.durbin_watson
+    );
+    Figure::new(title).with(over_time).with(over_depth).with(apart).caption(caption)
+}

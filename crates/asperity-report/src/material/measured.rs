@@ -1,0 +1,198 @@
+//! Measured curves, and the functions fitted to them.
+
+use std::f64::consts::TAU;
+
+use asperity::material::{Creep, MasterCurve, Relaxation};
+use asperity_io::curve::{Curves as Measured, Fitted, Kind, Sweep};
+use asperity_io::readable::counted;
+
+use super::decades;
+use super::shift::{Factors, shift_factors};
+use crate::figure::{Axis, Curves, Figure, Key, Palette, Series, Style};
+
+/// Measured curves in the colours of their temperatures, from the coldest (dark) to the warmest (bright).
+pub fn isotherms(title: &str, measured: &Measured) -> Figure {
+    let (x, scale) = match measured.kind {
+        Kind::Dma => (Axis::log("frequency", "Hz"), TAU),
+        _ => (Axis::log("time", "s"), 1.0),
+    };
+    let panels = match measured.kind {
+        Kind::Relaxation => vec![("Relaxation", Axis::log("relaxation modulus", "Pa"))],
+        Kind::Creep => vec![("Creep", Axis::log("creep compliance", "1/Pa"))],
+        Kind::Dma => {
+            vec![("Storage", Axis::log("storage modulus", "Pa")), ("Loss", Axis::log("loss modulus", "Pa"))]
+        }
+    };
+    let key = key(measured.sweeps.iter().filter_map(|sweep| sweep.temperature));
+    let panels = panels.iter().enumerate().map(|(n, (title, y))| {
+        let mut panel = Curves::new(*title, x.clone(), y.clone());
+        for sweep in &measured.sweeps {
+            let places: Vec<f64> = sweep.x.iter().map(|x| x / scale).collect();
+            let values = sweep.curves.get(n).cloned().unwrap_or_default();
+            let colour = match (&key, sweep.temperature) {
+                (Some(key), Some(kelvin)) => key.colour(celsius(kelvin)),
+                _ => PLAIN.to_owned(),
+            };
+            for style in [Style::Line, Style::Points] {
+                let series = Series::new("", style, places.clone(), values.clone());
+                panel = panel.with(series.in_colour(colour.clone()));
+            }
+        }
+        panel.key.clone_from(&key);
+        panel
+    });
+    let caption = match measured.sweeps.as_slice() {
+        [Sweep { temperature: Some(kelvin), .. }] => format!(" at {:.1} °C", celsius(*kelvin)),
+        _ => String::new(),
+    };
+    let caption = format!(
+        "{}{caption}, {}.",
+        counted(measured.sweeps.len(), "sweep"),
+        counted(measured.points(), "point")
+    );
+    panels.fold(Figure::new(title), |figure, panel| figure.with(panel)).caption(caption)
+}
+
+/// Colour of points without a temperature.
+const PLAIN: &str = "#0072b2";
+
+fn celsius(kelvin: f64) -> f64 {
+    kelvin - 273.15
+}
+
+/// The colour bar of several temperatures \[K\]; `None` of one, or none.
+fn key(temperatures: impl Iterator<Item = f64>) -> Option<Key> {
+    let none = [f64::INFINITY, f64::NEG_INFINITY];
+    let ends = temperatures.map(celsius).fold(none, |[low, high], t| [low.min(t), high.max(t)]);
+    let (label, unit) = ("temperature".to_owned(), "°C".to_owned());
+    (ends[0] < ends[1]).then_some(Key { label, unit, palette: Palette::Plasma, ends })
+}
+
+/// Reduced places, values of each column, and colour of every sweep of several, with their colour bar.
+type Shifted = (Vec<(Vec<f64>, Vec<Vec<f64>>, String)>, Key);
+
+/// The points of several sweeps, shifted as for the fit and within its window.
+fn shifted(measured: &Measured, fitted: &Fitted) -> Option<Shifted> {
+    let key = key(measured.sweeps.iter().filter_map(|sweep| sweep.temperature))?;
+    let [first, last] = [fitted.data.x.first()?, fitted.data.x.last()?];
+    let one = |sweep: &Sweep| {
+        let kelvin = sweep.temperature?;
+        let factor = fitted.shift_factor(kelvin)?;
+        let factor = if measured.kind == Kind::Dma { factor } else { 1.0 / factor };
+        let reduced: Vec<f64> = sweep.x.iter().map(|x| x * factor).collect();
+        let inside = |x: f64| x >= first * (1.0 - 1e-9) && x <= last * (1.0 + 1e-9);
+        let kept: Vec<usize> = (0..reduced.len()).filter(|n| inside(reduced[*n])).collect();
+        let pick = |values: &Vec<f64>| kept.iter().map(|n| values[*n]).collect::<Vec<f64>>();
+        Some((pick(&reduced), sweep.curves.iter().map(pick).collect(), key.colour(celsius(kelvin))))
+    };
+    Some((measured.sweeps.iter().map(one).collect::<Option<_>>()?, key))
+}
+
+/// The measured points and the function fitted to them, their relative distance, and the shift factors of several sweeps. The
+/// points of several sweeps have the colours of their temperatures.
+///
+/// # Errors
+/// [`asperity::Error`] where a creep function has no relaxation function.
+pub fn fit(title: &str, measured: &Measured, fitted: &Fitted) -> asperity::Result<Figure> {
+    let relaxation = fitted.material.relaxation()?;
+    let (x, curves): (Axis, Vec<(&str, &str, Function<'_>)>) = match measured.kind {
+        Kind::Relaxation => {
+            (Axis::log("time", "s"), vec![("relaxation modulus", "Pa", Function::Relaxation(&relaxation))])
+        }
+        Kind::Creep => (
+            Axis::log("time", "s"),
+            vec![("creep compliance", "1/Pa", Function::Creep(fitted.material.creep()))],
+        ),
+        Kind::Dma => (
+            Axis::log("angular frequency", "rad/s"),
+            vec![
+                ("storage", "Pa", Function::Storage(&relaxation)),
+                ("loss", "Pa", Function::Loss(&relaxation)),
+            ],
+        ),
+    };
+    let y = match curves.as_slice() {
+        [(name, unit, _)] => Axis::log(*name, *unit),
+        _ => Axis::log("modulus", "Pa"),
+    };
+    let MasterCurve { x: places, curves: values } = &fitted.data;
+    let positive = places.iter().copied().filter(|x| *x > 0.0);
+    let ends = [positive.clone().fold(f64::INFINITY, f64::min), positive.fold(0.0, f64::max)];
+    let fine = decades(ends);
+    let dynamic = measured.kind == Kind::Dma;
+    let hertz = |panel: Curves| if dynamic { panel.beside("Hz", 1.0 / TAU) } else { panel };
+    let sweeps = shifted(measured, fitted);
+    let title_of = if sweeps.is_some() { "Master curve and fit" } else { "Data and fit" };
+    let mut panel = hertz(Curves::new(title_of, x.clone(), y));
+    if let Some((sweeps, key)) = &sweeps {
+        for (reduced, values, colour) in sweeps {
+            for values in values {
+                let points = Series::new("", Style::Points, reduced.clone(), values.clone());
+                panel = panel.with(points.in_colour(colour.clone()));
+            }
+        }
+        panel.key = Some(key.clone());
+    }
+    let left = fitted.other().map(|(column, _)| column);
+    let mut distance = hertz(Curves::new("Distance", x, Axis::linear("fit / data - 1", "")));
+    for (n, ((name, _, function), values)) in curves.iter().zip(values).enumerate() {
+        let at = |xs: &[f64]| xs.iter().map(|x| function.value(*x)).collect::<Vec<f64>>();
+        let left_out = left.is_some_and(|column| column == *name);
+        // Data and distance of a curve in one colour; its fit in black over the data, the second one dashed.
+        let colour = ["#0072b2", "#d55e00"][n.min(1)];
+        if sweeps.is_none() {
+            let points = Series::new(format!("{name}, data"), Style::Points, places.clone(), values.clone());
+            panel = panel.with(points.in_colour(colour));
+        }
+        let word = if left_out { "follows from the fit" } else { "fit" };
+        let style = if n == 0 { Style::Line } else { Style::Dashed };
+        let line = Series::new(format!("{name}, {word}"), style, fine.clone(), at(&fine));
+        panel = panel.with(line.in_colour("#222222"));
+        if !left_out {
+            let apart: Vec<f64> = at(places).iter().zip(values).map(|(fit, data)| fit / data - 1.0).collect();
+            let points = Series::new(*name, Style::Points, places.clone(), apart).in_colour(colour);
+            distance = distance.with(points);
+        }
+    }
+    let columns: Vec<String> = fitted
+        .columns
+        .iter()
+        .map(|(name, m)| format!("{name} {:.2} % rms, {:.2} % at most", 100.0 * m.rms, 100.0 * m.max))
+        .collect();
+    let left = left.map_or(String::new(), |column| format!(" The {column} modulus was not fitted."));
+    let caption = format!(
+        "{}; misfit of {}; scatter of the data {:.2} %.{left}",
+        counted(fitted.terms(), "term"),
+        columns.join("; "),
+        100.0 * fitted.noise
+    );
+    let figure = Figure::new(title).with(panel).with(distance);
+    let factors = fitted.shift.as_ref().and_then(|law| {
+        shift_factors(&[Factors {
+            name: "",
+            law,
+            found: &fitted.factors,
+            temperatures: &fitted.temperatures,
+        }])
+    });
+    Ok(factors.into_iter().fold(figure, |figure, panel| figure.with(panel)).caption(caption))
+}
+
+/// What a kind of measurement shows of a material.
+enum Function<'a> {
+    Relaxation(&'a Relaxation),
+    Creep(&'a Creep),
+    Storage(&'a Relaxation),
+    Loss(&'a Relaxation),
+}
+
+impl Function<'_> {
+    fn value(&self, x: f64) -> f64 {
+        match self {
+            Function::Relaxation(relaxation) => relaxation.value(x),
+            Function::Creep(creep) => creep.value(x),
+            Function::Storage(relaxation) => relaxation.complex(x).0,
+            Function::Loss(relaxation) => relaxation.complex(x).1,
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! The same axes and colours in several figures, so that they can be compared and follow one another as frames.
+
+use asperity_io::store::{At, Reader};
+
+use super::{Options, Plot, PlotError, figure};
+use crate::figure::{Figure, Panel, Scale, Values};
+
+/// What figures of the same panels have in common.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Common {
+    panels: Vec<Shared>,
+    paper: [f64; 2],
+}
+
+/// Of a panel: ends of its axes, or of its colours, and whether any of the figures has its names above the frame.
+#[derive(Clone, Copy, Debug)]
+struct Shared {
+    across: [f64; 2],
+    up: [f64; 2],
+    names_above: bool,
+}
+
+/// No end yet.
+const NOTHING: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
+
+impl Common {
+    /// Takes in one more figure.
+    pub(crate) fn add(&mut self, figure: &Figure) {
+        for (n, panel) in figure.panels.iter().enumerate() {
+            let own = match panel {
+                Panel::Map(map) => Shared::new(NOTHING, map.ends().unwrap_or(NOTHING), false),
+                Panel::Curves(curves) => {
+                    let [across, up] = curves.ends();
+                    Shared::new(across, up, curves.needs(figure.panel).legend > 0.0)
+                }
+            };
+            match self.panels.get_mut(n) {
+                Some(shared) => shared.join(own),
+                None => self.panels.push(own),
+            }
+        }
+        let paper = figure.paper();
+        self.paper = [0, 1].map(|side| self.paper[side].max(paper[side]));
+    }
+
+    /// Gives a figure the common axes, colours and paper.
+    pub(crate) fn apply(&self, figure: &mut Figure) {
+        for (panel, shared) in figure.panels.iter_mut().zip(&self.panels) {
+            match panel {
+                Panel::Map(map) => {
+                    if let Values::Quantity { range, .. } = &mut map.meaning {
+                        *range = range_of(shared.up).or(*range);
+                    }
+                }
+                Panel::Curves(curves) => {
+                    curves.names_above |= shared.names_above;
+                    curves.x.range = curves.x.range.or(range_of(shared.across));
+                    let room = if curves.y.scale == Scale::Linear { 0.06 } else { 0.0 };
+                    curves.y.range = curves.y.range.or(range_of(shared.up).map(|ends| with_room(ends, room)));
+                }
+            }
+        }
+        figure.size = figure.size.or(Some(self.paper));
+    }
+}
+
+impl Shared {
+    fn new(across: [f64; 2], up: [f64; 2], names_above: bool) -> Shared {
+        Shared { across, up, names_above }
+    }
+
+    fn join(&mut self, other: Shared) {
+        let join = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
+        *self = Shared {
+            across: join(self.across, other.across),
+            up: join(self.up, other.up),
+            names_above: self.names_above || other.names_above,
+        };
+    }
+}
+
+fn range_of(ends: [f64; 2]) -> Option<[f64; 2]> {
+    (ends[0] < ends[1] && ends.iter().all(|end| end.is_finite())).then_some(ends)
+}
+
+/// A little more than the data take; an axis that begins or ends at zero stays there.
+fn with_room([low, high]: [f64; 2], share: f64) -> [f64; 2] {
+    let room = share * (high - low);
+    [if low == 0.0 { 0.0 } else { low - room }, if high == 0.0 { 0.0 } else { high + room }]
+}
+
+/// The ends of the colours that hold the values of all stored instants of all results; `None` where nothing is stored.
+///
+/// # Errors
+/// Those of [`figure`].
+pub fn common_limits(
+    results: &[&Reader],
+    plot: Plot,
+    options: &Options,
+) -> Result<Option<[f64; 2]>, PlotError> {
+    let mut ends = NOTHING;
+    for reader in results {
+        let count = if plot == Plot::InitialGap { 1 } else { reader.field_times().len() };
+        for n in 0..count {
+            let at = if plot == Plot::InitialGap { At::Last } else { At::Index(n) };
+            let figure = figure(reader, plot, &Options { at, size: None, ..options.clone() })?;
+            for panel in &figure.panels {
+                let own = match panel {
+                    Panel::Map(map) => map.ends(),
+                    Panel::Curves(curves) if plot.unit() == Some(curves.y.unit.as_str()) => {
+                        Some(curves.ends()[1])
+                    }
+                    Panel::Curves(_) => None,
+                };
+                if let Some([low, high]) = own {
+                    ends = [ends[0].min(low), ends[1].max(high)];
+                }
+            }
+        }
+    }
+    Ok(range_of(ends))
+}

@@ -1,9 +1,11 @@
-//! Tasks of the project: `cargo xtask test | bench | peers | sanitize | miri | figures | verification | package | site`.
+//! Tasks of the project: `cargo xtask test | bench | peers | sanitize | miri | figures | verification | package |
+//! site | workflows`.
 
 mod package;
 mod peers;
 mod site;
 mod surfaces;
+mod workflows;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -25,6 +27,7 @@ cargo xtask TASK
   package       makes the crates, the wheel, the source archive and the zipped program in target/packages, and tries them;
                 with names, only these (crates, python, program); with --tag v1.2.3, first or only, asks whether the
                 sources may be released under this tag
+  workflows     compares the files for forge and archives with their schemas, and lints the workflows
   site          builds the documentation as web pages in target/site; with --check, looks at them in Chromium: links,
                 formulas, search, phone width, errors
 ";
@@ -63,6 +66,7 @@ fn main() -> ExitCode {
         Some("figures") => figures(),
         Some("verification") => verification(),
         Some("package") => package::package(&std::env::args().skip(2).collect::<Vec<_>>()),
+        Some("workflows") => workflows::workflows(),
         Some("site") => site::site(std::env::args().any(|a| a == "--check")),
         _ => {
             print!("{HELP}");

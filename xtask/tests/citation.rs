@@ -60,6 +60,8 @@ fn citation_codemeta_and_zenodo_agree() {
     assert_eq!([citation.value("version"), version], [version; 2]);
     assert_eq!((&codemeta["version"], &zenodo["version"]), (&version.into(), &version.into()));
 
+    assert!(read("packaging/conda/recipe.yaml").contains(&format!("version: \"{version}\"")));
+
     let abstract_ = citation.block("abstract").join(" ");
     assert_eq!(
         (&codemeta["description"], &zenodo["description"]),
@@ -88,6 +90,23 @@ fn citation_codemeta_and_zenodo_agree() {
     let doi = citation.block("references").into_iter().find_map(|line| line.strip_prefix("doi: ")).unwrap();
     assert_eq!(zenodo["related_identifiers"][0]["identifier"], doi);
     assert_eq!(codemeta["referencePublication"]["@id"], format!("https://doi.org/{doi}"));
+}
+
+/// Times in the paper's draft are those of the documentation, which is measured again from time to time.
+#[test]
+fn the_paper_has_the_times_of_the_documentation() {
+    let (paper, measured) = (read("docs/paper-joss/paper.md"), read("docs/performance.md"));
+    let section = paper.split("\n# ").find(|section| section.starts_with("Performance")).expect("a section Performance");
+    let words: Vec<&str> = section.split_whitespace().collect();
+    let times: Vec<&str> = words
+        .windows(2)
+        .filter(|pair| pair[1].trim_end_matches([',', '.', ';']) == "s" && pair[0].parse::<f64>().is_ok())
+        .map(|pair| pair[0])
+        .collect();
+    assert!(times.len() > 10, "only {times:?}");
+    for time in times {
+        assert!(measured.contains(&format!("{time} s")), "docs/performance.md has no {time} s");
+    }
 }
 
 #[test]

@@ -21,7 +21,7 @@ class Reference:
             "# Case file",
             "",
             "A case file is TOML. Every quantity carries its unit as text (`\"0.5 mm\"`); a bare number is SI. This page is made from "
-            "the schema, which `asperity schema` prints and editors use for completion. [How to](../howto/index.md) and the "
+            "the schema, which `asperity schema` prints and editors use for completion. Bold keys are required. [How to](../howto/index.md) and the "
             "[gallery](../gallery.md) have whole cases.",
             "",
         ]
@@ -77,7 +77,7 @@ class Reference:
                 continue
             name = f"**`{key}`**" if key in required else f"`{key}`"
             rows.append(f"| {name} | {self.kind(value)} | {cell(text(value))}{cell(inline(value))} |")
-        return [*rows, "", *(["Bold keys are required.", ""] if required and len(rows) > 2 else [])]
+        return [*rows, ""]
 
     def kind(self, value):
         """What a key takes, linked where a section describes it."""

@@ -140,7 +140,7 @@ LOOK = """() => {
     flat: all("math").filter((e) => e.querySelector("merror") || (e.offsetParent && e.getBoundingClientRect().width < 5))
       .map((e) => e.textContent.slice(0, 60)),
     broken: all("img").filter((e) => e.loading !== "lazy" && e.complete && e.naturalWidth === 0).map((e) => e.src),
-    raw: all("article p, article li").map((e) => e.innerText).filter((t) => /^(```|===|\\?\\?\\?|:::)|\\{ \\./.test(t)).map((t) => t.slice(0, 60)),
+    raw: all("article p, article li").map((e) => e.innerText).filter((t) => /^(```|===|\\?\\?\\?|:::)|\\{ \\.|\\$[^$]*\\\\[a-z]/.test(t)).map((t) => t.slice(0, 60)),
   };
 }"""
 

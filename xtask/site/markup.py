@@ -14,6 +14,19 @@ def formula(source, language, css_class, options, md, **kwargs):
     return f'<div class="{css_class}">{FORMULAS.convert_with_local_state(source, displaystyle=True)}</div>'
 
 
+def with_formulas(text):
+    """LaTeX between dollars, as notebooks have it, as MathML. Code is left alone."""
+    pieces = re.split(r"(^```.*?^```$|`[^`\n]+`)", text, flags=re.M | re.S)
+    for n in range(0, len(pieces), 2):
+        pieces[n] = re.sub(r"\$\$(.+?)\$\$", lambda m: f"\n\n```math\n{m[1].strip()}\n```\n\n", pieces[n], flags=re.S)
+        pieces[n] = re.sub(r"(?<![\w$\\])\$(?!\s)([^$\n]+?)(?<!\s)\$(?!\w)", inline, pieces[n])
+    return "".join(pieces)
+
+
+def inline(match):
+    return FORMULAS.convert_with_local_state(match[1], displaystyle=False)
+
+
 def slug(title, separator):
     """The anchor of a heading, as Git forges and the tests of the documents have it."""
     kept = "".join(c for c in title if c.isalnum() or c in " -_")

@@ -9,6 +9,7 @@ import re
 import nbformat
 from nbclient import NotebookClient
 
+import markup
 import sources
 
 
@@ -60,7 +61,7 @@ def page(notebook):
         if not source:
             continue
         if cell["cell_type"] == "markdown":
-            parts.append(source)
+            parts.append(markup.with_formulas(source))
             continue
         parts.append(f"```python\n{source}\n```")
         for output in cell.get("outputs", []):

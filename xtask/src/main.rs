@@ -153,12 +153,11 @@ fn interpreter(folder: &str) -> PathBuf {
     root().join(folder).join(programs).join(format!("python{}", std::env::consts::EXE_SUFFIX))
 }
 
-/// Builds the Python package and installs it in the environment of `python`.
-fn wheel(python: &Path) -> Done {
+/// Builds the Python package with this profile of cargo and installs it in the environment of `python`.
+fn wheel(python: &Path, profile: &str) -> Done {
     let wheels = root().join("target/wheels");
     let _ = std::fs::remove_dir_all(&wheels);
-    // Of the test profile, which shares what the other tests compile.
-    run(Command::new(python).args(["-m", "maturin", "build", "--profile", "dev", "--out"]).arg(&wheels))?;
+    run(Command::new(python).args(["-m", "maturin", "build", "--profile", profile, "--out"]).arg(&wheels))?;
     let built = std::fs::read_dir(&wheels).map_err(|error| format!("{}: {error}", wheels.display()))?;
     let wheel =
         built.flatten().map(|entry| entry.path()).find(|path| path.extension().is_some_and(|e| e == "whl"));
@@ -170,7 +169,8 @@ fn wheel(python: &Path) -> Done {
 
 /// Installs the Python package in the environment of `python`, and tests it there.
 fn package_tests(python: &Path) -> Done {
-    wheel(python)?;
+    // The test profile shares what the other tests compile.
+    wheel(python, "dev")?;
     run(Command::new(python).args(["-m", "mypy", "--strict", "crates/asperity-py/python/asperity"]))?;
     run(Command::new(python).args(["-m", "mypy.stubtest", "asperity._core"]))?;
     // Its numbers are those of the command, which must be of the same source.

@@ -7,7 +7,9 @@ use std::process::Command;
 use crate::{Done, cargo, python_in, root, run};
 
 /// What can be packaged, and how.
-const PARTS: [(&str, fn() -> Done); 3] = [("crates", crates), ("python", python), ("program", program)];
+type Part = (&'static str, fn() -> Done);
+
+const PARTS: [Part; 3] = [("crates", crates), ("python", python), ("program", program)];
 
 /// Members of the workspace that are not published as crates.
 const UNPUBLISHED: [&str; 2] = ["asperity-py", "xtask"];

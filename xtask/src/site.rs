@@ -3,14 +3,14 @@
 
 use std::process::Command;
 
-use crate::{Done, cargo, python_in, root, run, wheel};
+use crate::{Done, python_in, run, wheel};
 
 pub fn site(check: bool) -> Done {
     // The same packages in the same versions everywhere: the site is read by its checks.
     let python = python_in("target/site-python", &["-r", "xtask/site/requirements.txt"])?;
-    wheel(&python)?;
-    run(&mut cargo(&["build", "--release", "-p", "asperity-cli"]))?;
-    let program = root().join("target/release").join(format!("asperity{}", std::env::consts::EXE_SUFFIX));
+    // It has the command too.
+    wheel(&python, "release")?;
+    let program = python.with_file_name(format!("asperity{}", std::env::consts::EXE_SUFFIX));
     let program = std::path::absolute(program).map_err(|error| error.to_string())?;
     run(Command::new(&python).arg("xtask/site/build.py").env("ASPERITY_COMMAND", program))?;
     if check { run(Command::new(&python).arg("xtask/site/check.py")) } else { Ok(()) }

@@ -96,7 +96,10 @@ fn citation_codemeta_and_zenodo_agree() {
 #[test]
 fn the_paper_has_the_times_of_the_documentation() {
     let (paper, measured) = (read("docs/paper-joss/paper.md"), read("docs/performance.md"));
-    let section = paper.split("\n# ").find(|section| section.starts_with("Performance")).expect("a section Performance");
+    let section = paper
+        .split("\n# ")
+        .find(|section| section.starts_with("Performance"))
+        .expect("a section Performance");
     let words: Vec<&str> = section.split_whitespace().collect();
     let times: Vec<&str> = words
         .windows(2)

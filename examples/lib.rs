@@ -1,4 +1,5 @@
-//! The commented case files that `asperity new` writes: the examples of the repository themselves.
+//! The commented case files that `asperity new` writes and the cases of `asperity reproduce`: the examples of the repository
+//! themselves.
 //!
 //! This crate stands in the folder of the examples because a published crate cannot hold files from outside of its
 //! own folder; so each case exists once.
@@ -42,6 +43,18 @@ templates!(
     "gasket",
     "coated-steel"
 );
+
+/// Cases of the figures of Spinu and Cerlinca (2017), which `asperity reproduce` computes.
+pub mod paper {
+    /// Figure 1.
+    pub const FIGURE_1: &str = include_str!("paper/fig1-zener-step.toml");
+    /// Figure 2.
+    pub const FIGURE_2: &str = include_str!("paper/fig2-capped-sphere.toml");
+    /// Figure 4.
+    pub const FIGURE_4: &str = include_str!("paper/fig4-pmma-triangle.toml");
+    /// Figures 5 to 8.
+    pub const FIGURES_5_TO_8: &str = include_str!("paper/fig5-8-rough-pmma.toml");
+}
 
 impl Template {
     /// The starter case of that name.

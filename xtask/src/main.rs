@@ -1,7 +1,11 @@
-//! Tasks of the project: `cargo xtask test | bench | peers | sanitize | miri | figures | verification`.
+//! Tasks of the project: `cargo xtask test | bench | peers | sanitize | miri | figures | verification | package |
+//! site | workflows`.
 
+mod package;
 mod peers;
+mod site;
 mod surfaces;
+mod workflows;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
@@ -20,6 +24,12 @@ cargo xtask TASK
                 undefined behaviour (needs: rustup +nightly component add miri rust-src); hours
   figures       draws the pictures of the documentation
   verification  writes docs/verification.md from `asperity verify`
+  package       makes the crates, the wheel, the source archive and the zipped program in target/packages, and tries them;
+                with names, only these (crates, python, program); with --tag v1.2.3, first or only, asks whether the
+                sources may be released under this tag
+  workflows     compares the files for forge and archives with their schemas, and lints the workflows
+  site          builds the documentation as web pages in target/site; with --check, looks at them in Chromium: links,
+                formulas, search, phone width, errors
 ";
 
 /// What the Python side of the tests and figures imports.
@@ -55,6 +65,9 @@ fn main() -> ExitCode {
         Some("miri") => miri(),
         Some("figures") => figures(),
         Some("verification") => verification(),
+        Some("package") => package::package(&std::env::args().skip(2).collect::<Vec<_>>()),
+        Some("workflows") => workflows::workflows(),
+        Some("site") => site::site(std::env::args().any(|a| a == "--check")),
         _ => {
             print!("{HELP}");
             return ExitCode::from(if task.is_none() { 0 } else { 2 });
@@ -98,7 +111,7 @@ fn test(without_python: bool) -> Done {
     } else {
         let python = python()
             .map_err(|message| format!("{message} (--without-python leaves out what needs Python)"))?;
-        package(&python)?;
+        package_tests(&python)?;
         // A test that finds this variable may not skip what needs Python.
         tests.env("ASPERITY_PYTHON", python);
     }
@@ -118,31 +131,46 @@ fn supply_chain() -> Done {
 
 /// A Python with the packages that the checks need, in a virtual environment below target/.
 fn python() -> Result<PathBuf, String> {
-    let environment = root().join("target/python");
-    let folder = if cfg!(windows) { "Scripts" } else { "bin" };
-    let python = environment.join(folder).join("python");
+    let python = interpreter("target/python");
     let imports = format!("import {}", PYTHON_PACKAGES.join(", "));
     let complete = Command::new(&python).args(["-c", &imports]).output().is_ok_and(|o| o.status.success());
-    if !complete {
-        run(Command::new("python3").args(["-m", "venv"]).arg(&environment))?;
-        run(Command::new(&python).args(["-m", "pip", "install", "--quiet"]).args(PYTHON_PACKAGES))?;
+    if complete { Ok(python) } else { python_in("target/python", &PYTHON_PACKAGES) }
+}
+
+/// A Python in a virtual environment in this folder, with what pip installs by these words.
+fn python_in(folder: &str, packages: &[&str]) -> Result<PathBuf, String> {
+    let python = interpreter(folder);
+    if !python.exists() {
+        let python3 = if cfg!(windows) { "python" } else { "python3" };
+        run(Command::new(python3).args(["-m", "venv"]).arg(root().join(folder)))?;
     }
+    run(Command::new(&python).args(["-m", "pip", "install", "--quiet"]).args(packages))?;
     Ok(python)
 }
 
-/// Builds the Python package, installs it in the environment of `python`, and tests it there.
-fn package(python: &Path) -> Done {
+fn interpreter(folder: &str) -> PathBuf {
+    let programs = if cfg!(windows) { "Scripts" } else { "bin" };
+    root().join(folder).join(programs).join(format!("python{}", std::env::consts::EXE_SUFFIX))
+}
+
+/// Builds the Python package with this profile of cargo and installs it in the environment of `python`.
+fn wheel(python: &Path, profile: &str) -> Done {
     let wheels = root().join("target/wheels");
     let _ = std::fs::remove_dir_all(&wheels);
-    // Of the test profile, which shares what the other tests compile.
-    run(Command::new(python).args(["-m", "maturin", "build", "--profile", "dev", "--out"]).arg(&wheels))?;
+    run(Command::new(python).args(["-m", "maturin", "build", "--profile", profile, "--out"]).arg(&wheels))?;
     let built = std::fs::read_dir(&wheels).map_err(|error| format!("{}: {error}", wheels.display()))?;
     let wheel =
         built.flatten().map(|entry| entry.path()).find(|path| path.extension().is_some_and(|e| e == "whl"));
     let wheel = wheel.ok_or("maturin made no wheel")?;
     run(Command::new(python)
         .args(["-m", "pip", "install", "--quiet", "--force-reinstall", "--no-deps"])
-        .arg(&wheel))?;
+        .arg(&wheel))
+}
+
+/// Installs the Python package in the environment of `python`, and tests it there.
+fn package_tests(python: &Path) -> Done {
+    // The test profile shares what the other tests compile.
+    wheel(python, "dev")?;
     run(Command::new(python).args(["-m", "mypy", "--strict", "crates/asperity-py/python/asperity"]))?;
     run(Command::new(python).args(["-m", "mypy.stubtest", "asperity._core"]))?;
     // Its numbers are those of the command, which must be of the same source.
@@ -176,9 +204,7 @@ fn bench(quick: bool) -> Done {
 
 /// Every instruction set that this processor has, with reads and writes out of bounds told.
 fn sanitize() -> Done {
-    let version = Command::new("rustc").arg("-vV").output().map_err(|error| format!("rustc: {error}"))?;
-    let version = String::from_utf8_lossy(&version.stdout).into_owned();
-    let host = version.lines().find_map(|line| line.strip_prefix("host: ")).ok_or("rustc names no host")?;
+    let host = package::host()?;
     run(Command::new("rustup")
         .args([
             "run",
@@ -191,7 +217,7 @@ fn sanitize() -> Done {
             "asperity-sweep",
             "--lib",
             "--target",
-            host,
+            &host,
         ])
         .env("RUSTFLAGS", "-Zsanitizer=address")
         .env("CARGO_TARGET_DIR", root().join("target/sanitize")))

@@ -30,7 +30,8 @@ pub fn listen(verbose: u8) {
         .log_internal_errors(false)
         .with_filter(tracing_subscriber::filter::LevelFilter::WARN);
     let table = (verbose >= 2).then(Table::default);
-    tracing_subscriber::registry().with(warnings).with(table).init();
+    // Fails only where another part of the process listens already.
+    let _ = tracing_subscriber::registry().with(warnings).with(table).try_init();
 }
 
 /// Prints one line for every iteration of the contact solver.

@@ -1,6 +1,7 @@
 //! `asperity._core`: what the Python package calls. Thin: it converts numbers, lets other threads of Python run, and
 //! passes errors on with the same words. The interface that users see is in `python/asperity`.
 
+mod command;
 mod contact;
 mod cycles;
 mod error;
@@ -26,6 +27,8 @@ use pyo3::prelude::*;
 mod _core {
     use super::*;
 
+    #[pymodule_export]
+    use super::command::command;
     #[pymodule_export]
     use super::contact::{Elastic, spot_labels};
     #[pymodule_export]

@@ -46,7 +46,7 @@ impl Tree {
             let name = entry.file_name().to_string_lossy().into_owned();
             let path = format!("{prefix}{name}");
             let built = name == "target" || name == "__pycache__" || name.ends_with(".egg-info");
-            if (name.starts_with('.') && name != ".ci") || built {
+            if (name.starts_with('.') && ![".ci", ".github"].contains(&name.as_str())) || built {
                 continue;
             }
             self.paths.insert(path.clone());

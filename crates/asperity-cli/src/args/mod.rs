@@ -97,7 +97,8 @@ mod tests {
     #[test]
     fn every_command_line_of_the_documents_is_understood() {
         let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
-        let documents = std::fs::read_dir(format!("{root}/docs")).expect("the documents").flatten();
+        let folders = ["docs", "docs/howto"].map(|folder| std::fs::read_dir(format!("{root}/{folder}")));
+        let documents = folders.into_iter().flat_map(|folder| folder.expect("the documents").flatten());
         let documents =
             documents.map(|entry| entry.path()).filter(|path| path.extension().is_some_and(|e| e == "md"));
         let readme = [format!("{root}/README.md").into(), format!("{root}/examples/data/README.md").into()];

@@ -110,12 +110,11 @@ pub(super) fn replace(map: &mut Array2<f64>, value: impl Fn(f64) -> f64 + Sync +
     if map.len() < FEW { map.mapv_inplace(value) } else { map.par_mapv_inplace(value) }
 }
 
+/// Writes the values of line y between two columns.
+type Line<'a> = dyn Fn(usize, std::ops::Range<usize>, &mut [f64]) + Sync + 'a;
+
 /// The map whose line y, between two columns, is what `line` writes.
-fn transposed(
-    nx: usize,
-    ny: usize,
-    line: &(dyn Fn(usize, std::ops::Range<usize>, &mut [f64]) + Sync),
-) -> Array2<f64> {
+fn transposed(nx: usize, ny: usize, line: &Line<'_>) -> Array2<f64> {
     let mut map = vec![0.0; nx * ny];
     let fill = |(band, out): (usize, &mut [f64])| {
         let columns = band * TILE..band * TILE + out.len() / ny;

@@ -14,6 +14,7 @@ _Motion = tuple[str, _Grid, list[tuple[float, float]], float, tuple[str, float],
 _Stage = tuple[str, _Grid, list[tuple[float, float]], float | None, tuple[str, float] | None, bool, _Grid | None]
 
 __all__ = [
+    "command",
     "Elastic",
     "spot_labels",
     "unit_factor",
@@ -63,6 +64,8 @@ __all__ = [
     "__version__",
     "LAYERED_STRESS",
 ]
+
+def command(words: list[str]) -> int: ...
 
 __version__: str
 LAYERED_STRESS: str

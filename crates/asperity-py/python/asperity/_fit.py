@@ -303,6 +303,8 @@ def fit_file(
 ) -> Fit:
     """Fits a text table of a relaxation test, a creep test or a DMA, as ``asperity material fit`` does.
 
+    Parameters that are not listed are those of :func:`fit_dma` and :func:`fit_relaxation`; `window` in s, or rad/s of a DMA.
+
     Parameters
     ----------
     path : table or spreadsheet (.xls, .xlsx) with one point per line; quantities and units are found from its header
@@ -311,8 +313,6 @@ def fit_file(
         tan_delta, temperature
     units : units by quantity, which go before those of the header
     sheet : sheet of a spreadsheet; by default the first one that names such columns
-
-    The others are those of :func:`fit_dma` and :func:`fit_relaxation`; `window` in s, or rad/s of a DMA.
 
     Raises
     ------

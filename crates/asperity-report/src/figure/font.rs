@@ -86,7 +86,10 @@ fn add(steps: &mut Vec<Step>, glyph: u16, at: [f64; 2], depth: usize) -> Option<
     }
     // Parts with an offset each.
     let (mut place, words, more) = (10, 1, 32);
-    while depth > 0 {
+    if depth == 0 {
+        return Some(());
+    }
+    loop {
         let flags = u16_at(data, place)?;
         let part = u16_at(data, place + 2)?;
         let offset = match flags & words {
@@ -95,11 +98,10 @@ fn add(steps: &mut Vec<Step>, glyph: u16, at: [f64; 2], depth: usize) -> Option<
         };
         add(steps, part, [at[0] + offset[0]?, at[1] + offset[1]?], depth - 1)?;
         if flags & more == 0 {
-            break;
+            return Some(());
         }
         place += if flags & words == 0 { 6 } else { 8 };
     }
-    Some(())
 }
 
 /// Contours of points on and off the curve: last points, instructions, flags with repeats, then x and y as differences.

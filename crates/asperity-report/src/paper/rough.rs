@@ -3,6 +3,7 @@
 use asperity::operator::half_space;
 use asperity::surface::statistics::rms_gradient;
 use asperity::{ContactState, Grid, Method, Prescribed, Problem, Solver};
+use asperity_examples::paper::FIGURES_5_TO_8 as CASE;
 use asperity_io::case::Case;
 use asperity_io::readable::quantity;
 use asperity_io::store::{At, FieldKind, Reader};
@@ -11,8 +12,6 @@ use asperity_io::stress::StressError;
 use super::{Difference, Options, Reproduction, Result};
 use crate::figure::{Axis, Curves, Figure, Series, Style};
 use crate::result::{Options as Show, Plot, figure};
-
-const CASE: &str = include_str!("../../../../examples/paper/fig5-8-rough-pmma.toml");
 
 /// Radius of the sphere in the case \[m\].
 const RADIUS: f64 = 0.5e-3;

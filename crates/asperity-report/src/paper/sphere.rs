@@ -4,15 +4,12 @@ use std::f64::consts::PI;
 
 use asperity::History;
 use asperity::reference::{CappedHertz, HertzSphere, Ting};
+use asperity_examples::paper::{FIGURE_1, FIGURE_2, FIGURE_4};
 use asperity_io::readable::quantity;
 use asperity_io::store::{At, FieldKind, Reader};
 
 use super::{Difference, Options, Reproduction, Result};
 use crate::figure::{Axis, Curves, Figure, Series, Style};
-
-const FIGURE_1: &str = include_str!("../../../../examples/paper/fig1-zener-step.toml");
-const FIGURE_2: &str = include_str!("../../../../examples/paper/fig2-capped-sphere.toml");
-const FIGURE_4: &str = include_str!("../../../../examples/paper/fig4-pmma-triangle.toml");
 
 /// Pressure along x beside the middle, by the distance from it: (r, p).
 fn profile(reader: &Reader, at: At) -> Result<Vec<[f64; 2]>> {

@@ -1,0 +1,88 @@
+//! The command `asperity`, as a function: the program of this crate calls it, and so does the Python package, whose wheel
+//! carries the command in this way.
+//!
+//! Data goes to stdout, talk to stderr. Exit codes: 0 done; 1 the solve or the system failed, or a result is damaged; 2 the
+//! input is wrong; 130 interrupted.
+
+mod args;
+mod commands;
+mod failure;
+mod interrupt;
+mod progress;
+mod talk;
+mod terminal;
+mod threads;
+mod trace;
+mod words;
+
+use std::ffi::OsString;
+use std::io::Write;
+
+use clap::Parser;
+
+use args::{Args, Command};
+use failure::Failure;
+
+/// Runs a command line, whose first word is the name of the program, and returns the exit code. It starts the threads of
+/// the process and listens to its signals, so a process calls it once and ends with what it returns.
+pub fn command(words: impl IntoIterator<Item = OsString>) -> u8 {
+    let code = match Args::try_parse_from(words) {
+        Ok(args) => obey(args),
+        Err(error) => {
+            // A reader that has gone needs no help text.
+            let _ = error.print();
+            u8::try_from(error.exit_code()).unwrap_or(2)
+        }
+    };
+    // A program of its own would flush at its end; inside of another one nobody does.
+    let _ = std::io::stdout().flush();
+    code
+}
+
+fn obey(args: Args) -> u8 {
+    trace::listen(if let Command::Run(run) = &args.command { run.verbose } else { 0 });
+    match threads::start(&args.command).and_then(|()| run(args.command)) {
+        Ok(()) => 0,
+        Err(failure) => {
+            failure.tell();
+            failure.code()
+        }
+    }
+}
+
+fn run(command: Command) -> Result<(), Failure> {
+    match command {
+        Command::Run(run) => commands::run::run(&run),
+        Command::Check(check) => commands::check::run(&check),
+        Command::New(new) => commands::new::run(&new),
+        Command::Verify(verify) => commands::verify::run(&verify),
+        Command::Surface(surface) => commands::surface::run(&surface),
+        Command::Show(show) => commands::show::run(&show),
+        Command::VerifyResult(verify) => commands::verify_result::run(&verify),
+        Command::Report(report) => commands::report::run(&report),
+        Command::View(view) => commands::view::run(&view),
+        Command::Stress(stress) => commands::stress::run(&stress),
+        Command::Compare(compare) => commands::compare::run(&compare),
+        Command::Plot(plot) => commands::plot::run(&plot),
+        Command::Leak(leak) => commands::leak::run(&leak),
+        Command::Material(material) => commands::material::run(&material),
+        Command::FitIndentation(fit) => commands::fit_indentation::run(&fit),
+        Command::Export(export) => commands::export::run(&export),
+        Command::Reproduce(reproduce) => commands::reproduce::run(&reproduce),
+        Command::Schema => commands::schema::run(),
+        Command::Completions { shell } => commands::completions::run(shell),
+    }
+}
+
+/// Writes data to stdout. A reader that has gone (`asperity schema | head`) is no failure.
+fn print(text: &str) -> Result<(), Failure> {
+    match std::io::stdout()
+        .write_all(talk::printable(text).as_bytes())
+        .and_then(|()| std::io::stdout().flush())
+    {
+        Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Failure::input(format!("cannot write to standard output: {error}")))
+        }
+        _ => Ok(()),
+    }
+}

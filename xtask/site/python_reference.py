@@ -1,0 +1,32 @@
+"""The reference of the Python package: pages that mkdocstrings fills from signatures, types and docstrings."""
+
+import re
+
+TOPICS = {
+    "Solve and run": "solve march run check elastic open study Step March Result Cycle ElasticContact ElasticCurve ConvergenceHistory".split(),
+    "Surfaces": ["Surface", "Autocorrelation"],
+    "Materials": "Material Elastic Maxwell KelvinVoigt Zener Burgers Prony Creep Springpot FractionalMaxwell FractionalZener Body Layer "
+    "layer_compliance".split(),
+    "Fits and shifts": "fit_relaxation fit_creep fit_dma fit_file fit_indentation Fit IndentationFit wlf arrhenius shift_table Shift".split(),
+    "Loads and times": "step ramp ramp_to hold triangle trapezoid sine table History Stage uniform log listed adaptive Times".split(),
+    "Motion": "slide steady rubber_friction persson_friction PerssonFriction Magnification".split(),
+    "Leakage and stress": "leakage Leakage stress Stress".split(),
+    "Messages, threads": "CaseError ConvergenceError Finding ResultWarning threads set_threads cite".split(),
+    "Plots": ["plot.Plots", "plot.SurfacePlots", "plot.CurvePlots"],
+    "Other programs": ["compat.prony_of_tamaas", "compat.topography"],
+}
+
+
+def pages(root, write):
+    """Writes the pages and returns titles and places. Every public name is on one of them."""
+    public = set(re.findall(r'^    "(\w+)",$', (root / "crates/asperity-py/python/asperity/__init__.py").read_text(encoding="utf-8"), re.M))
+    told = {name.split(".")[0] for names in TOPICS.values() for name in names}
+    if missing := public - told - {"__version__"}:
+        raise SystemExit(f"python_reference.py: no topic for {', '.join(sorted(missing))}")
+    found = []
+    for topic, names in TOPICS.items():
+        place = f"reference/python-{re.sub('[^a-z]+', '-', topic.lower())}.md"
+        blocks = "\n\n".join(f"::: asperity.{name}" for name in names)
+        write(place, f"# {topic}\n\nNames of the package `asperity` (`import asperity as asp`). All numbers are in SI units.\n\n{blocks}\n")
+        found.append({topic: place})
+    return found

@@ -1,0 +1,172 @@
+//! `cargo xtask package`: what a release consists of, as far as one machine can make it: crates, wheel and source archive for
+//! Python, and the zipped program. Nothing is published.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::{Done, cargo, python_in, root, run};
+
+/// What can be packaged, and how.
+type Part = (&'static str, fn() -> Done);
+
+const PARTS: [Part; 3] = [("crates", crates), ("python", python), ("program", program)];
+
+/// Members of the workspace that are not published as crates.
+const UNPUBLISHED: [&str; 2] = ["asperity-py", "xtask"];
+
+/// Makes the parts that are named, or all; `--tag v1.2.3` first asks whether the sources may be released under this tag.
+pub fn package(arguments: &[String]) -> Done {
+    let mut words = arguments.iter();
+    let mut wanted = Vec::new();
+    while let Some(word) = words.next() {
+        if word == "--tag" {
+            releasable(words.next().ok_or("--tag needs a tag, such as v1.2.3")?)?;
+            if arguments.len() == 2 {
+                return Ok(());
+            }
+        } else {
+            let part = PARTS.iter().find(|(name, _)| name == word);
+            wanted.push(part.ok_or_else(|| format!("no part {word}: crates, python or program"))?);
+        }
+    }
+    if wanted.is_empty() {
+        wanted.extend(&PARTS);
+    }
+    for (_, make) in &wanted {
+        make()?;
+    }
+    eprintln!(
+        "xtask: packages are in {}; wheels and programs of other systems, the container and the conda package are made by \
+         the workflow of a release",
+        folder()?.display()
+    );
+    Ok(())
+}
+
+/// Where packages go: target/packages.
+fn folder() -> Result<PathBuf, String> {
+    let folder = root().join("target/packages");
+    std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    std::path::absolute(folder).map_err(|error| error.to_string())
+}
+
+/// The tag is the version's, the address of the repository is filled in, and the changelog has a date.
+fn releasable(tag: &str) -> Done {
+    let version = env!("CARGO_PKG_VERSION");
+    if tag != format!("v{version}") {
+        return Err(format!("the tag is {tag}, the version in Cargo.toml {version}"));
+    }
+    let read = |name| std::fs::read_to_string(root().join(name)).map_err(|error| format!("{name}: {error}"));
+    if !read("Cargo.toml")?.contains("\nrepository = \"https://") {
+        return Err("Cargo.toml: `repository` needs the address of the repository".into());
+    }
+    let heading = format!("## [{version}] - ");
+    let changelog = read("CHANGELOG.md")?;
+    let date = changelog.lines().find_map(|line| line.strip_prefix(&heading));
+    match date {
+        Some(date) if date.starts_with(|c: char| c.is_ascii_digit()) => Ok(()),
+        _ => Err(format!("CHANGELOG.md: version {version} needs its date, as in `{heading}2030-01-31`")),
+    }
+}
+
+/// The crates as they are published, each compiled from its package alone.
+fn crates() -> Done {
+    let mut package = cargo(&["package", "--workspace", "--locked", "--allow-dirty"]);
+    package.args(UNPUBLISHED.iter().flat_map(|name| ["--exclude", name]));
+    run(package.arg("--target-dir").arg(root().join("target/packages/build")))?;
+    let packed = folder()?.join("build/package");
+    for entry in
+        std::fs::read_dir(&packed).map_err(|error| format!("{}: {error}", packed.display()))?.flatten()
+    {
+        let path = entry.path();
+        if path.extension().is_none_or(|ending| ending != "crate") {
+            continue;
+        }
+        let list =
+            Command::new("tar").arg("tzf").arg(&path).output().map_err(|error| format!("tar: {error}"))?;
+        let list = String::from_utf8_lossy(&list.stdout).into_owned();
+        for file in ["LICENSE-MIT", "LICENSE-APACHE", "README.md", "Cargo.toml"] {
+            if !list.lines().any(|line| line.ends_with(&format!("/{file}"))) {
+                return Err(format!("{}: there is no {file} in it", path.display()));
+            }
+        }
+        let to = folder()?.join(entry.file_name());
+        std::fs::copy(&path, &to).map_err(|error| format!("{}: {error}", to.display()))?;
+    }
+    Ok(())
+}
+
+/// The wheel of this machine and the source archive; the wheel is tested from outside of the source tree.
+fn python() -> Done {
+    let folder = folder()?;
+    let maker = python_in("target/packages/maker", &["maturin>=1.9,<2"])?;
+    run(Command::new(&maker).args(["-m", "maturin", "sdist", "--out"]).arg(&folder))?;
+    run(Command::new(&maker)
+        .args(["-m", "maturin", "build", "--release", "--locked", "--out"])
+        .arg(&folder))?;
+    // An environment of its own: only what the wheel asks for is there.
+    let environment = root().join("target/packages/user");
+    let _ = std::fs::remove_dir_all(&environment);
+    let user = python_in("target/packages/user", &["pytest"])?;
+    run(Command::new(&user)
+        .args(["-m", "pip", "install", "--quiet", "--find-links"])
+        .arg(&folder)
+        .args(["--pre", &format!("asperity=={}", env!("CARGO_PKG_VERSION"))]))?;
+    let tests = root().join("crates/asperity-py/tests/test_command.py");
+    let test = std::path::absolute(tests).map_err(|error| error.to_string())?;
+    let mut pytest = Command::new(&user);
+    pytest.args(["-m", "pytest", "-q", "-p", "no:cacheprovider", "--rootdir"]).arg(&environment).arg(test);
+    // `run` would go to the root of the sources.
+    eprintln!("xtask: {pytest:?}");
+    let status = pytest.current_dir(&environment).status().map_err(|error| error.to_string())?;
+    if status.success() { Ok(()) } else { Err(format!("the wheel fails its tests: {status}")) }
+}
+
+/// The program with its licences, zipped.
+fn program() -> Done {
+    run(&mut cargo(&["build", "--release", "--locked", "-p", "asperity-cli"]))?;
+    let name = format!("asperity-{}-{}", env!("CARGO_PKG_VERSION"), host()?);
+    let folder = folder()?;
+    let inside = folder.join(&name);
+    std::fs::create_dir_all(&inside).map_err(|error| format!("{}: {error}", inside.display()))?;
+    let copy = |from: PathBuf| -> Done {
+        let to = inside.join(from.file_name().expect("a file"));
+        std::fs::copy(&from, &to).map(drop).map_err(|error| format!("{}: {error}", from.display()))
+    };
+    copy(root().join(format!("target/release/asperity{}", std::env::consts::EXE_SUFFIX)))?;
+    for file in ["LICENSE-MIT", "LICENSE-APACHE", "README.md", "CHANGELOG.md"] {
+        copy(root().join(file))?;
+    }
+    copy(root().join("crates/asperity-report/fonts/LICENSE-DejaVu"))?;
+    let python = if cfg!(windows) { "python" } else { "python3" };
+    let archive = folder.join(format!("{name}.zip"));
+    run(Command::new(python).args(["-m", "zipfile", "-c"]).arg(&archive).arg(&inside))?;
+    std::fs::remove_dir_all(&inside).map_err(|error| error.to_string())?;
+    unpacked(python, &archive, &name)
+}
+
+/// Unpacks the archive elsewhere and runs the program in it.
+fn unpacked(python: &str, archive: &Path, name: &str) -> Done {
+    let place = std::env::temp_dir().join(format!("asperity-package-{}", std::process::id()));
+    run(Command::new(python).args(["-m", "zipfile", "-e"]).arg(archive).arg(&place))?;
+    let program = place.join(name).join(format!("asperity{}", std::env::consts::EXE_SUFFIX));
+    #[cfg(unix)]
+    {
+        // Python's unpacker forgets which files are programs; unzip does not.
+        use std::os::unix::fs::PermissionsExt;
+        std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755))
+            .map_err(|e| e.to_string())?;
+    }
+    let ran = run(Command::new(&program).args(["new", "hertz"]).arg(place.join("hertz.toml")))
+        .and_then(|()| run(Command::new(&program).arg("check").arg(place.join("hertz.toml"))));
+    let _ = std::fs::remove_dir_all(&place);
+    ran
+}
+
+/// The machine that the compiler compiles for, such as x86_64-unknown-linux-gnu.
+pub fn host() -> Result<String, String> {
+    let version = Command::new("rustc").arg("-vV").output().map_err(|error| format!("rustc: {error}"))?;
+    let version = String::from_utf8_lossy(&version.stdout).into_owned();
+    let host = version.lines().find_map(|line| line.strip_prefix("host: "));
+    host.map(str::to_owned).ok_or_else(|| "rustc names no host".into())
+}

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use asperity::material::FitOptions;
+use asperity::material::{FitOptions, Modulus};
+use asperity_io::choice;
 use asperity_io::curve::{
     Column, Columns, CurveError, Curves, Fitted, Remedy, Request, Role, Series, ShiftRequest, Sweep,
 };
@@ -20,7 +21,8 @@ use crate::wait::detached;
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct Options {
-    measure: String,
+    /// None: what the header of the file names, or else Young's modulus.
+    measure: Option<String>,
     shift: Option<ShiftWords>,
     /// Reference temperature of a shift that is to be estimated.
     estimate: Option<f64>,
@@ -36,14 +38,16 @@ pub struct Options {
 }
 
 impl Options {
-    fn request(self) -> PyResult<Request> {
+    /// The request; `named` is the modulus that the header of the file names.
+    fn request(self, named: Option<Modulus>) -> PyResult<Request> {
+        let measure = self.measure.map(|word| choose("modulus", &word)).transpose()?;
         let shift = match (self.shift, self.estimate) {
             (Some(words), _) => ShiftRequest::Given(shift(words)?),
             (None, Some(reference)) => ShiftRequest::Estimate(reference),
             (None, None) => ShiftRequest::None,
         };
         Ok(Request {
-            measure: choose("modulus", &self.measure)?,
+            measure: measure.or(named).unwrap_or(Modulus::Young),
             shift,
             window: self.window,
             options: FitOptions {
@@ -79,7 +83,7 @@ pub fn fit<'py>(
         Sweep { temperature: *temperature, x, curves: curves.iter().map(array).collect(), lines }
     });
     let curves = Curves::of("the data", choose("kind", kind)?, sweeps.collect());
-    let request = options.request()?;
+    let request = options.request(None)?;
     let fitted = detached(py, || request.fit(&curves))?;
     told(py, fitted.map_err(located)?, &curves)
 }
@@ -116,7 +120,6 @@ pub fn fit_file<'py>(
             said.units.insert(role, unit);
         }
     }
-    let request = options.request()?;
     let unreadable = |error: CurveError| match error.path.is_file() {
         true => CaseError::new_err(error.told(Remedy::in_python)),
         false => file(error),
@@ -131,17 +134,40 @@ pub fn fit_file<'py>(
             path.display()
         )));
     };
-    let fitted = detached(py, || {
-        let curves = Curves::read(&path, found, &said)?;
-        request.fit(&curves).map(|fitted| (fitted, curves))
-    })?;
-    let (fitted, curves) = fitted.map_err(unreadable)?;
+    let mut curves = detached(py, || Curves::read(&path, found, &said))?.map_err(unreadable)?;
+    let mut request = options.request(curves.measure)?;
+    if let (ShiftRequest::None, Some(reference)) = (&request.shift, reference_of_several(&curves)) {
+        curves.notes.push(format!(
+            "no shift is given: it is estimated from the sweeps, about {reference:.2} K; shift= says it"
+        ));
+        request.shift = ShiftRequest::Estimate(reference);
+    }
+    let fitted = detached(py, || request.fit(&curves))?.map_err(unreadable)?;
     told(py, fitted, &curves)
+}
+
+/// Of sweeps at several temperatures whose shift the file does not hold, the one nearest to that of a room \[K\].
+fn reference_of_several(curves: &Curves) -> Option<f64> {
+    const ROOM: f64 = 293.15;
+    let several = curves.sweeps.len() > 1 && curves.held.shift().is_none();
+    let temperatures = curves.sweeps.iter().filter_map(|sweep| sweep.temperature);
+    temperatures.min_by(|a, b| (a - ROOM).abs().total_cmp(&(b - ROOM).abs())).filter(|_| several)
+}
+
+/// The shift that a table of temperatures and shift factors holds, in a text file or a spreadsheet.
+#[pyfunction]
+pub fn read_shift_table(path: PathBuf) -> PyResult<ShiftWords> {
+    let unreadable = |error: CurveError| match error.path.is_file() {
+        true => CaseError::new_err(error.told(Remedy::in_python)),
+        false => file(error),
+    };
+    asperity_io::curve::read_shift_table(&path).map(words).map_err(unreadable)
 }
 
 fn told<'py>(py: Python<'py>, fitted: Fitted, curves: &Curves) -> PyResult<Bound<'py, PyDict>> {
     let out = PyDict::new(py);
     out.set_item("kind", curves.kind.name())?;
+    out.set_item("modulus", choice::word(&fitted.material.measure()))?;
     match &fitted.series {
         Series::Relaxation(relaxation) => {
             let terms: Vec<_> = relaxation.terms.iter().map(|t| (t.modulus, t.relaxation_time)).collect();

@@ -36,7 +36,7 @@ mod _core {
     #[pymodule_export]
     use super::error::{CaseError, ConvergenceError, FormatError};
     #[pymodule_export]
-    use super::fit::{fit, fit_file};
+    use super::fit::{fit, fit_file, read_shift_table};
     #[pymodule_export]
     use super::indentation::fit_indentation;
     #[pymodule_export]

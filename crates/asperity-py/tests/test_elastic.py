@@ -147,3 +147,51 @@ def test_findings_of_a_contact_warn(sphere):
     with pytest.warns(asp.ResultWarning, match="contact-at-border"):
         contact = asp.elastic(sphere, 1e6, load=1.0)
     assert "contact-at-border" in [found.code for found in contact.findings]
+
+
+def test_a_contact_knows_that_its_lent_array_has_changed(sphere, tmp_path):
+    loads = (1.0, 2.0, 4.0)
+    alone = [asp.elastic(sphere, E, load=load) for load in loads]
+    lent, several, previous = np.zeros(sphere.cells), [], None
+    for load in loads:
+        previous = asp.elastic(sphere, E, load=load, start=previous, out=lent)
+        several.append(previous)
+    for contact in several[:2]:
+        for use in (lambda c: c.stiffness, lambda c: c.to_result(), lambda c: c.save(tmp_path / "a.zarr"), lambda c: c.plot, lambda c: c.spots(), copy.copy):
+            with pytest.raises(asp.CaseError, match="out="):
+                use(contact)
+    # The last one has its pressure still; a stiffness that was asked for in time is kept.
+    assert several[-1].stiffness == pytest.approx(alone[-1].stiffness, rel=1e-4)
+    assert several[-1].to_result().field("pressure").sum() == pytest.approx(alone[-1].pressure.sum(), rel=1e-6)
+    kept = asp.elastic(sphere, E, load=1.0, out=lent)
+    stiffness = kept.stiffness
+    lent[...] = 0.0
+    assert kept.stiffness == stiffness == pytest.approx(alone[0].stiffness, rel=1e-4)
+    fields = {"pressure": lent, "displacement": np.zeros(sphere.cells)}
+    moved = asp.elastic(sphere, E, load=1.0, out=fields)
+    assert np.allclose(moved.gap, alone[0].gap, rtol=0, atol=1e-10)
+    fields["displacement"][...] = 0.0
+    with pytest.raises(asp.CaseError, match="displacement"):
+        moved.gap
+    with pytest.raises(asp.CaseError, match="the same array"):
+        asp.elastic(sphere, E, load=1.0, out={"gap": lent, "pressure": lent})
+    with pytest.raises(asp.CaseError, match="the same array"):
+        asp.elastic(sphere, E, load=1.0, out={"gap": lent, "pressure": lent[::-1]})
+
+
+def test_what_was_computed_cannot_be_set(sphere):
+    contact = asp.elastic(sphere, E, load=1.0)
+    result = contact.to_result()
+    for holder, name in ((contact, "load"), (contact, "foo"), (result, "foo"), (result, "load")):
+        with pytest.raises(AttributeError, match="cannot be set"):
+            setattr(holder, name, 99.0)
+    assert "99" not in repr(contact)
+    for values in (contact.gap, contact.x, contact.pressure, result.x, result.field_times, sphere.x):
+        assert not values.flags.writeable
+    assert "evolution()" in repr(result.plot) and "heights()" in repr(sphere.plot)
+
+
+def test_a_curve_that_stops_keeps_its_contacts(sphere):
+    with pytest.raises(asp.CaseError) as caught:
+        asp.elastic(sphere, E, load=[1.0, 2.0, 1e9], hardness=1e9)
+    assert np.allclose(caught.value.result.load, [1.0, 2.0])

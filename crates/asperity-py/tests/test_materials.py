@@ -81,6 +81,39 @@ def test_a_file_is_fitted_as_the_command_does(tmp_path):
         asp.fit_file(path, columns={"stress": 1})
 
 
+def test_the_header_of_a_file_says_which_modulus_it_holds(tmp_path):
+    t = np.geomspace(0.1, 100, 40)
+    table = np.column_stack([t, 1e3 * (1 + 2 * np.exp(-t / 10))])
+    np.savetxt(tmp_path / "shear.csv", table, delimiter=",", header="t/s,G(t)/kPa", comments="")
+    np.savetxt(tmp_path / "young.csv", table, delimiter=",", header="t/s,E(t)/kPa", comments="")
+    shear, young = (asp.fit_file(tmp_path / f"{name}.csv", poisson=0.5) for name in ("shear", "young"))
+    assert shear.modulus == "shear" and young.modulus == "young"
+    # An incompressible body: E is 3 G, so that the contact is three times stiffer.
+    assert shear.material.contact_compliance(0.0) == pytest.approx(young.material.contact_compliance(0.0) / 3, rel=1e-9)
+    # What is said goes before the header, and the fit says that they differ.
+    said = asp.fit_file(tmp_path / "shear.csv", modulus="young", poisson=0.5)
+    assert said.modulus == "young" and said.terms == shear.terms and len(said.notes) > len(shear.notes)
+
+
+def test_sweeps_of_a_file_are_shifted_by_an_estimate_or_a_table(tmp_path):
+    path = EXAMPLES / "data" / "rubber-dma.csv"
+    if not path.exists():
+        pytest.skip("the examples are not here")
+    fit = asp.fit_file(path, modulus="shear", bulk_modulus=2e9)
+    reference = min(fit.temperatures, key=lambda kelvin: abs(kelvin - 293.15))
+    same = asp.fit_file(path, modulus="shear", bulk_modulus=2e9, shift="estimated", reference=reference)
+    assert fit.shift == same.shift and fit.terms == same.terms and any("estimated" in note for note in fit.notes)
+    law = asp.wlf(**WLF)
+    rows = [(kelvin - 273.15, np.log10(law.factor(kelvin)).item()) for kelvin in fit.temperatures]
+    np.savetxt(tmp_path / "shift.csv", rows, delimiter=",", header="T [°C],log_aT", comments="", encoding="utf-8")
+    table = asp.shift_table(tmp_path / "shift.csv")
+    assert np.allclose(table.factor(fit.temperatures), law.factor(fit.temperatures), rtol=1e-9)
+    by_table = asp.fit_file(path, modulus="shear", bulk_modulus=2e9, shift=table)
+    assert by_table.rms_misfit == pytest.approx(asp.fit_file(path, modulus="shear", bulk_modulus=2e9, shift=law).rms_misfit, rel=1e-3)
+    with pytest.raises(OSError, match="none.csv"):
+        asp.shift_table(tmp_path / "none.csv")
+
+
 @pytest.mark.parametrize(
     ("make", "words"),
     [

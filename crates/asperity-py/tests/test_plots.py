@@ -107,3 +107,60 @@ def test_a_sweep_is_drawn_over_its_velocities():
     axes = held.plot.evolution()
     assert axes.flat[0].get_xlabel() == "velocity [m/s]" and axes.flat[0].get_xscale() == "log"
     assert held.plot.pressure(velocity=0.01).get_title() == "v = 0.01 m/s"
+
+
+def test_the_two_curves_of_an_evolution_differ(result):
+    def looks(line):
+        return line.get_linestyle(), line.get_color(), line.get_markerfacecolor()
+
+    for style in ({}, dict(label="a"), dict(color="r"), dict(linestyle="--", color="C3"), dict(linestyle="--"), dict(ls="--", c="k", label="a"),
+                  dict(linestyle="none", marker="o", color="k")):  # fmt: skip
+        for ax in result.plot.evolution(**style).flat:
+            assert len(ax.lines) == len({looks(line) for line in ax.lines}) and len(ax.lines) in (1, 2), style
+    axes = result.plot.evolution()
+    # Ends of curves do not lie on the frame, and the legend lies above it.
+    low, high = axes.flat[0].get_xlim()
+    assert low < 0.0 and high > 5.0
+    axes.flat[0].figure.canvas.draw()
+    assert axes.flat[0].get_legend().get_window_extent().y0 >= axes.flat[0].get_window_extent().y1
+
+
+def test_decades_of_time_are_logarithmic(rough):
+    zener = asp.Zener(shear=1e6, shear_kelvin=1e6, retardation_time=1.0, poisson=0.5)
+    given = dict(pressure=1e4, boundary="periodic", fields=[], progress=False)
+    decades = asp.solve(rough, zener, times=asp.log(100.0, 8, first=0.01), **given)
+    ax = decades.plot.evolution().flat[1]
+    assert ax.get_xscale() == "log" and np.array_equal(ax.lines[0].get_xdata(), decades.time[1:])
+    assert decades.plot.evolution(log_time=False).flat[1].get_xscale() == "linear"
+    assert asp.solve(rough, zener, times=asp.uniform(10.0, 8), **given).plot.evolution().flat[1].get_xscale() == "linear"
+
+
+def test_units_and_bars_suit_what_is_shown():
+    assert asp.plot._shown(3e-7, "m", 2) == (pytest.approx(1e6), "mm²") and asp.plot._shown(9e-8, "m", 2) == (pytest.approx(1e12), "µm²")
+    wave = asp.Surface.wave(cells=(64, 16), size=(4e-3, 1e-3), amplitude=1e-6, wavelength=(1e-3, 1e-3))
+    ax = wave.plot.heights()
+    ax.figure.canvas.draw()
+    bar = ax.images[0].colorbar.ax
+    heights = [place.get_window_extent().height for place in (bar, ax)]
+    assert heights[0] < 1.5 * heights[1]
+    assert any(text.get_text().startswith("\N{MINUS SIGN}") for text in bar.get_yticklabels())
+    flat = asp.Surface.flat_punch(cells=(16, 16), size=(1e-3, 1e-3), radius=3e-4).plot.heights()
+    flat.figure.canvas.draw()
+    assert [text.get_text() for text in flat.images[0].colorbar.ax.get_yticklabels()] == ["0"]
+    rough = asp.Surface.self_affine(cells=(64, 64), size=(1e-3, 1e-3), hurst=0.8, rms_height=1e-6, longest=5e-4, shortest=4e-5)
+    spectrum = rough.plot.power_spectrum()
+    spectrum.figure.canvas.draw()
+    told = [text for text in spectrum.get_xticklabels(which="both") if text.get_text()]
+    ends = sorted((text.get_window_extent().x0, text.get_window_extent().x1) for text in told)
+    assert all(one[1] <= other[0] for one, other in zip(ends, ends[1:]))
+
+
+def test_limits_take_units(result):
+    class Quantity:
+        units = "kPa"
+
+        def m_as(self, wanted):
+            assert wanted == "Pa"
+            return 2e5
+
+    assert result.plot.pressure(vmin=0, vmax=Quantity()).images[0].get_clim() == (0, 2e5)

@@ -107,12 +107,12 @@ def test_output_is_written_as_it_goes(given, whole, tmp_path):
 def test_nothing_that_is_given_out_changes_a_result(given, tmp_path):
     result = asp.solve(**given, quantities=["elastic_energy", "pressure_histogram"], largest_pressure=1e8)
     data = result.to_xarray()
-    for array in (result.approach, result.elastic_energy, result.field("gap"), result.initial_gap, *result.histogram("pressure_histogram")):
+    histogram = result.histogram("pressure_histogram")
+    for array in (result.approach, result.elastic_energy, result.field("gap"), result.initial_gap, result.field_times, result.x, *histogram):
         with pytest.raises(ValueError, match="read-only"):
             array[...] = 7.0
     data["approach"][:] = 7.0
     data["pressure"][:] = 7.0
-    result.field_times[:] = 7.0
     assert result.approach.max() < 1 and result.field("pressure").max() > 7 and result.field_times[0] == 0
     with pytest.raises(AttributeError, match="cannot be set"):
         result.approach = np.zeros(3)
@@ -141,3 +141,32 @@ def test_attributes_are_those_that_are_there(given, whole):
         warnings.simplefilter("error")
         frame = pytest.importorskip("pandas") and whole.to_dataframe()
     assert frame.index.name == "time" and frame.attrs["units"]["contact_area"] == "m^2" and len(frame) == 11
+
+
+def test_a_run_that_stops_keeps_the_fields_of_its_last_row(given, whole, tmp_path):
+    for row in (0, 3, 4):
+        results = []
+        for place in (None, tmp_path / f"{row}.zarr"):
+            results.append(asp.solve(**given, every=3, output=place, on_step=lambda step: step.index == row))
+        held, stored = results
+        assert np.array_equal(held.field_times, stored.field_times) and held.field_times[-1] == held.time[-1] == whole.time[row]
+        for result in results:
+            assert len(result) == row + 1 and np.array_equal(result.field("pressure"), whole.field("pressure", index=row))
+    # A run that ends, and one that fails, are stored with the same rows.
+    assert len(asp.solve(**given, every=4, output=tmp_path / "end.zarr").field_times) == len(asp.solve(**given, every=4).field_times)
+
+
+def test_a_path_that_is_taken_says_what_can_be_done(given, tmp_path):
+    result = asp.solve(**given, output=tmp_path / "a.zarr")
+    for again in (lambda: asp.solve(**given, output=tmp_path / "a.zarr"), lambda: result.save(tmp_path / "a.zarr")):
+        with pytest.raises(OSError, match="force=True") as told:
+            again()
+        assert "resume" not in str(told.value)
+    result.save(tmp_path / "a.zarr", force=True)
+
+
+def test_marches_and_stages_are_told_shortly(given):
+    run = asp.march(**{key: value for key, value in given.items() if key != "progress"})
+    next(run)
+    assert repr(run) == "<March: 1 rows of 11 solved, 32 x 32 cells>"
+    assert repr(asp.Stage(approach=asp.hold(), duration=5.0)) == "Stage(approach=hold(), duration=5.0)"

@@ -325,3 +325,56 @@ def test_a_misspelt_parameter_is_an_error_at_once(tmp_path):
         with pytest.raises(asp.CaseError, match=words):
             asp.study(case, over, folder=tmp_path / "never", progress=False)
     assert not list(tmp_path.glob("never/*.zarr"))
+
+
+def test_values_with_units_become_numbers(sphere):
+    class Quantity:
+        def __init__(self, value, units):
+            self.value, self.units = value, units
+
+        def m_as(self, wanted):
+            assert (self.units, wanted) == ("mN", "N")
+            return np.asarray(self.value) * 1e-3
+
+    given = dict(surface=sphere, material=zener(), times=[1.0])
+    plain = asp.study(given, {"load": [1e-3, 2e-3]}, progress=False)
+    labelled = xarray.DataArray([1.0, 2.0], attrs={"units": "mN"})
+    for values in (Quantity([1.0, 2.0], "mN"), [Quantity(1.0, "mN"), Quantity(2.0, "mN")], labelled, xarray.DataArray([1e-3, 2e-3])):
+        same = asp.study(given, {"load": values}, progress=False)
+        assert same.load_given.values.tolist() == [1e-3, 2e-3] and np.array_equal(same.approach, plain.approach)
+    with pytest.raises(asp.CaseError, match="text"):
+        asp.study(CASE, {"load.history.value": labelled})
+
+
+def test_a_study_that_cannot_run_is_an_error_at_once(sphere, tmp_path):
+    given = dict(surface=sphere, material=zener(), times=[1.0])
+    for case, over, words in (
+        (given, {"hardness": [1e5]}, "load, pressure, approach or stages"),
+        ({**given, "load": 1e-3}, {"pressure": [1e3]}, "load and pressure"),
+        ({**given, "load": 1e-3, "gap": np.zeros((4, 4))}, {"hardness": [1e5]}, "surface or gap"),
+        ({"surface": sphere, "material": zener()}, {"load": [1e-3]}, "'times'"),
+        ({"surface": sphere, "material": zener(), "load": 1e-3, "pressure": 1.0, "boundary": "periodic"}, {"velocities": [[1.0]]}, "load and pressure"),
+    ):
+        with pytest.raises(asp.CaseError, match=words):
+            asp.study(case, over, folder=tmp_path / "never", progress=False)
+    assert not list(tmp_path.glob("never/*.zarr"))
+
+
+def test_a_stopped_study_has_what_it_found(sphere, monkeypatch):
+    given = dict(surface=sphere, material=zener(), times=[1.0])
+    whole = asp.study(given, {"load": [1e-3, 2e-3]}, progress=False)
+    there = asp._study.solved
+
+    def pressed(*arguments):
+        answers = there(*arguments)
+        try:
+            yield next(answers)
+            raise KeyboardInterrupt
+        finally:
+            answers.close()
+
+    monkeypatch.setattr(asp._study, "solved", pressed)
+    with pytest.raises(KeyboardInterrupt) as caught:
+        asp.study(given, {"load": [1e-3, 2e-3]}, progress=False, workers=1)
+    data = caught.value.result
+    assert data.status.values.tolist() == ["complete", "interrupted"] and np.array_equal(data.approach[0], whole.approach[0])

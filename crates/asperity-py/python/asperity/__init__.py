@@ -55,7 +55,7 @@ from ._materials import (
 )
 from ._motion import rubber_friction, slide, steady
 from ._persson import Magnification, PerssonFriction, persson_friction
-from ._result import Cycle, Result, open
+from ._result import Cycle, Result, open as open
 from ._shifts import Shift, arrhenius, shift_table, wlf
 from ._solve import March, Step, check, march, run, solve
 from ._stress import Stress, stress

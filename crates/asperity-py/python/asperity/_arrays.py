@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from ._core import CaseError
-from ._units import bare, carries, is_labelled
+from ._units import bare, carries, frequency, is_labelled, variable_of
 
 Floats = npt.NDArray[np.float64]
 
@@ -25,7 +26,17 @@ def number(what: str, value: Any, unit: str | None = None) -> float:
             raise TypeError
         return float(array.reshape(())[()])
     except (TypeError, ValueError):
-        raise CaseError(f"{what} is {value!r}, but must be a number in SI units") from None
+        raise CaseError(f"{what} is {shown(value)}, but must be a number in SI units") from None
+
+
+def shown(value: Any) -> str:
+    """A value in a message: a number of numpy as a plain one."""
+    return repr(value.item() if isinstance(value, np.generic) else value)
+
+
+def in_hertz(what: str, value: Any) -> float:
+    """A frequency in Hz; a quantity may be in rad/s or rpm."""
+    return number(what, frequency(what, value, angular=False))
 
 
 def angle(what: str, value: Any) -> float:
@@ -41,12 +52,12 @@ def count(what: str, value: Any, least: int = 1, most: int = 2**53) -> int:
     else:
         real = number(what, value)
         if real != int(real) if np.isfinite(real) else True:
-            raise CaseError(f"{what} is {value!r}, but must be a whole number")
+            raise CaseError(f"{what} is {shown(value)}, but must be a whole number")
         whole = int(real)
     if whole < least:
-        raise CaseError(f"{what} is {value!r}, but must be at least {least}")
+        raise CaseError(f"{what} is {shown(value)}, but must be at least {least}")
     if whole > most:
-        raise CaseError(f"{what} is {value!r}, but must be at most {most}")
+        raise CaseError(f"{what} is {shown(value)}, but must be at most {most}")
     return whole
 
 
@@ -121,22 +132,51 @@ def frozen(values: Any) -> Any:
     return view
 
 
-def in_order(what: str, value: Any) -> Any:
-    """An array of xarray with its dimensions in the order x, y; anything else as it is."""
+def in_order(what: str, value: Any, size: Sequence[float] | None = None) -> Any:
+    """An array of xarray with its dimensions in the order x, y and rising coordinates; anything else as it is. Where the `size` [m]
+    of the domain is given, the coordinates must span it."""
+    value = variable_of(what, value)
     if not is_labelled(value):
         return value
-    names = tuple(str(name) for name in value.dims)
-    if len(names) == 1:
-        return value
-    if sorted(names) != ["x", "y"]:
-        raise CaseError(f"{what} has the dimensions {names}, but must have x and y, or one: select one of the others, as in isel(time=-1)")
-    return value.transpose("x", "y")
+    names = [str(name) for name in value.dims]
+    if len(names) == 2:
+        if sorted(names) != ["x", "y"]:
+            raise CaseError(
+                f"{what} has the dimensions {tuple(names)}, but must have x and y, or one: select one of the others, as in isel(time=-1)"
+            )
+        value, names = value.transpose("x", "y"), ["x", "y"]
+    elif len(names) > 2:
+        raise CaseError(f"{what} has the dimensions {tuple(names)}, but must have x and y: select one of the others, as in isel(time=-1)")
+    for axis, name in enumerate(names):
+        pitch = pitch_of(what, value, name)
+        if pitch is None:
+            continue
+        if pitch < 0.0:
+            value = value.isel({name: slice(None, None, -1)})
+        length = abs(pitch) * value.sizes[name]
+        if size is not None and len(size) == len(names) and abs(length - size[axis]) > 0.1 * abs(pitch):
+            raise CaseError(f"the coordinate {name} of {what} spans {length:.6g} m, but the surface is {size[axis]:.6g} m long")
+    return value
 
 
-def field(what: str, value: Any, line: bool = False) -> Floats:
+def pitch_of(what: str, value: Any, name: str) -> float | None:
+    """The distance of neighbours [m] along a dimension of an array of xarray, below zero where its coordinate falls; None without
+    coordinate."""
+    if name not in value.coords or value.sizes[name] < 2 or value.coords[name].dtype.kind not in "fiu":
+        return None
+    places = array(name, value.coords[name], "m")
+    pitch = float(places[-1] - places[0]) / (len(places) - 1)
+    # Coordinates of single precision carry 1e-7 of their largest value.
+    slack = 1e-6 * np.abs(places).max() + 1e-3 * abs(pitch)
+    if pitch == 0.0 or not np.allclose(np.diff(places), pitch, rtol=0.0, atol=slack):
+        raise CaseError(f"the coordinate {name} of {what} is not evenly spaced: resample it to equal cells")
+    return pitch
+
+
+def field(what: str, value: Any, line: bool = False, *, unit: str | None = None, size: Sequence[float] | None = None) -> Floats:
     """A two-dimensional array of real numbers as C-ordered float64 in SI units; no copy where it is one already. With `line` one
-    of one dimension counts too."""
-    value = bare(what, in_order(what, value))
+    of one dimension counts too. `unit` is by default that of the parameter; coordinates must span the `size` [m] where it is given."""
+    value = bare(what, in_order(what, value, size), unit)
     mask = np.ma.getmask(value)
     array = np.asarray(np.ma.getdata(value))
     if array.dtype.kind not in "fiu":
@@ -191,5 +231,6 @@ def points(what: str, value: Any, units: tuple[str, str] = ("", "")) -> list[tup
 
 
 def centres(cells: int, length: float) -> Floats:
-    """Centres of equal cells along a length."""
-    return np.asarray((np.arange(cells) + 0.5) * (length / cells), dtype=np.float64)
+    """Centres of equal cells along a length; read-only."""
+    places: Floats = frozen(np.asarray((np.arange(cells) + 0.5) * (length / cells), dtype=np.float64))
+    return places

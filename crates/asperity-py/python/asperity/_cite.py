@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 from ._core import CaseError, __version__
 
 _BIBTEX = f"""@software{{asperity,
@@ -51,7 +53,7 @@ and, where you use them,
 """
 
 
-def cite(format: str = "text") -> str:
+def cite(format: Literal["text", "bibtex"] = "text") -> str:
     """How to cite the program and its methods, as "text" or "bibtex".
 
     >>> import asperity as asp

@@ -47,6 +47,15 @@ def units_of(name: str, unit: str, line: bool) -> str:
     return "1" if name == "contact_perimeter" else ON_LINE.get(unit, unit)
 
 
+class Sealed:
+    """What was computed: public attributes cannot be set."""
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if not name.startswith("_"):
+            raise AttributeError(f"{name} cannot be set: {type(self).__name__} holds what was computed; work on a copy of its numbers")
+        object.__setattr__(self, name, value)
+
+
 class Column:
     """A column of the rows as attribute of their holder, which finds it by `_column(name)`; it cannot be replaced."""
 

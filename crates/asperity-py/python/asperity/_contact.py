@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, overload
@@ -14,12 +15,12 @@ import numpy.typing as npt
 
 from . import _core
 from ._arrays import Floats, as_plane, cells_of, centres, count, field, frozen, number
-from ._columns import ROW, Column
+from ._columns import ROW, Column, Sealed
 from ._core import CaseError
 from ._findings import Finding, findings_of, warn
 from ._result import Result
 from ._surface import Surface, surface_of
-from ._units import bare
+from ._units import bare, is_labelled
 from ._words import Boundary, Method
 
 if TYPE_CHECKING:
@@ -97,13 +98,14 @@ class _Planned:
             number_, residual, working, steps, convolutions = zip(*iterations)
             whole = (np.array(values, dtype=np.int64) for values in (number_, convolutions))
             told = ConvergenceHistory(next(whole), np.array(residual), np.array(working), tuple(steps), next(whole))
-        contact = ElasticContact(self, found, fields["pressure"], fields["displacement"], findings, told)
+        lent = {name: values for name, values in fields.items() if name in out}
+        contact = ElasticContact(self, found, fields["pressure"], fields["displacement"], findings, told, lent)
         if "gap" in out:
             out["gap"][...] = contact.gap
         return contact
 
 
-class ElasticContact:
+class ElasticContact(Sealed):
     """The solution of one elastic contact; made by :func:`elastic`. Fields have the shape (nx, ny), of a line contact (n,).
 
     Its numbers are those of a row of a :class:`Result`; all arrays are read-only.
@@ -134,6 +136,20 @@ class ElasticContact:
     #: Iterations and convolutions that it took.
     iterations: int
     convolutions: int
+    #: Pressure [Pa], positive in compression.
+    pressure: Floats
+    #: Normal displacement [m].
+    displacement: Floats
+    #: Undeformed gap [m].
+    initial_gap: Floats
+    #: Lengths of the domain [m].
+    size: tuple[float, ...]
+    #: "free" or "periodic".
+    boundary: str
+    #: Where the numbers may be off (docs/findings.md).
+    findings: list[Finding]
+    #: What the solver did, where it was asked for.
+    history: ConvergenceHistory | None
 
     def __init__(
         self,
@@ -143,30 +159,39 @@ class ElasticContact:
         displacement: Floats,
         findings: list[Finding],
         history: ConvergenceHistory | None,
+        lent: dict[str, Floats],
     ) -> None:
         self._planned: _Planned | None = planned
         self._row = row
-        self.__dict__.update({name: value for name, value in row.items() if name not in ("time", "stage", "time_error")})
-        #: Pressure [Pa], positive in compression.
-        self.pressure: Floats = frozen(pressure)
-        #: Normal displacement [m].
-        self.displacement: Floats = frozen(displacement)
-        #: Undeformed gap [m].
-        self.initial_gap: Floats = planned.gap
-        #: Lengths of the domain [m].
-        self.size: tuple[float, ...] = planned.size
-        #: "free" or "periodic".
-        self.boundary: str = planned.keys["boundary"]
-        #: Where the numbers may be off (docs/findings.md).
-        self.findings = findings
-        #: What the solver did, where it was asked for.
-        self.history = history
         self._stiffness: float | None = None
+        # Fields in arrays of the caller, which may change: each with its checksum.
+        self._lent = {name: (frozen(values), _checksum(values)) for name, values in lent.items()}
+        self.__dict__.update({name: value for name, value in row.items() if name not in ("time", "stage", "time_error")})
+        self.__dict__.update(
+            pressure=frozen(pressure),
+            displacement=frozen(displacement),
+            initial_gap=planned.gap,
+            size=planned.size,
+            boundary=planned.keys["boundary"],
+            findings=findings,
+            history=history,
+        )
+
+    def _whole(self, what: str) -> None:
+        """Refuses to work with fields that were changed since the contact was solved."""
+        for name, (values, checksum) in self._lent.items():
+            if _checksum(values) != checksum:
+                raise CaseError(
+                    f"{what} needs the {name} of this contact, but the array that was given as out= has changed since, by another solve "
+                    "perhaps: ask for it before that, or give each contact an array of its own"
+                )
 
     @property
     def gap(self) -> Floats:
         """Gap of the deformed surfaces [m]; below zero where the pressure is cut off."""
-        values: Floats = self.initial_gap + self.displacement - self.approach
+        if "displacement" in self._lent:
+            self._whole("the gap")
+        values: Floats = frozen(self.initial_gap + self.displacement - self.approach)
         return values
 
     @property
@@ -199,11 +224,13 @@ class ElasticContact:
         if self._stiffness is None:
             if self._planned is None:
                 raise CaseError("the stiffness is computed where the contact was: ask for it before it is sent to another process")
+            self._whole("the stiffness")
             self._stiffness = self._planned.core.stiffness(np.array(as_plane(self.pressure)))
         return self._stiffness
 
     def spots(self) -> npt.NDArray[np.uint32]:
         """The contact spots as a labelled image; see :meth:`Result.spots`."""
+        self._whole("a map of the spots")
         labels = _core.spot_labels(np.array(as_plane(self.pressure)), self.boundary)
         return labels.reshape(self.pressure.shape)
 
@@ -226,8 +253,9 @@ class ElasticContact:
         return self.to_result().plot
 
     def __getstate__(self) -> dict[str, Any]:
-        # What is planned stays where it is.
-        return {**self.__dict__, "_planned": None}
+        # What is planned stays where it is; the copy has fields of its own.
+        self._whole("a copy")
+        return {**self.__dict__, "_planned": None, "_lent": {}}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
@@ -337,9 +365,15 @@ class ElasticCurve(Sequence[ElasticContact]):
         )
 
 
+def _checksum(values: Floats) -> int:
+    return zlib.crc32(np.ascontiguousarray(values).data)
+
+
 def _result(contacts: list[ElasticContact], with_fields: bool) -> Result:
     """Contacts as the rows of a result."""
     first = contacts[0]
+    for contact in contacts:
+        contact._whole("a result")
     table = {name: np.array([float(contact._row[name]) for contact in contacts]) for name in ROW}
     names = ("pressure", "gap", "displacement") if with_fields else ()
     return Result(
@@ -436,7 +470,8 @@ def elastic(
     start : warm start: a pressure [Pa], or a contact. Where a contact of the same surface is given, its plan is used again: for thousands
         of solves
     out : array (nx, ny) that takes the pressure, or a dictionary of arrays for "pressure", "displacement", "gap"; the fields of the
-        contact are views of them
+        contact are views of them. When the array has changed, by another solve say, the contact refuses what follows from its fields:
+        stiffness, spots, plots, to_result() and save()
     history : keep what the solver did as `history`: residual, working cells and kind of step of each iteration
     method : "projected-cg" or "polonsky-keer"
     tolerance : largest residual
@@ -446,6 +481,9 @@ def elastic(
     ------
     CaseError : the input is wrong, or the load is more than the hardness can carry
     ConvergenceError : not solved to the tolerance; carries the best pressure as `best`
+    KeyboardInterrupt : Ctrl-C
+
+    An error that comes after the first of a list of loads has the contacts so far as `error.result`.
 
     Warns
     -----
@@ -469,8 +507,8 @@ def elastic(
     if contact_modulus is None and kernel is None:
         raise CaseError("give contact_modulus, E* [Pa] in (1 - nu1^2)/E1 + (1 - nu2^2)/E2 = 1/E*")
     modulus = 1.0 if contact_modulus is None else number("contact_modulus", contact_modulus)
-    limit = _hardness(hardness, shape.heights.ndim)
-    table = None if kernel is None else _table(kernel, shape, boundary)
+    limit = _hardness(hardness, shape.size)
+    table = None if kernel is None else _table(kernel, shape, boundary, "m/Pa" if contact_modulus is None else "m")
     if table is not None:
         factor = _scale(table, shape, boundary)
         table, modulus = table * factor, modulus * factor
@@ -492,13 +530,19 @@ def elastic(
         raise CaseError("out is for one contact, but a list is given: the contacts of a curve have fields of their own")
     first: Floats | None = None
     if start is not None:
-        first = field("start of the pressure", start.pressure if isinstance(start, ElasticContact) else start, line=True)
+        held_pressure = start.pressure if isinstance(start, ElasticContact) else start
+        first = field("start of the pressure", held_pressure, line=True, size=shape.size)
         if first.shape != shape.heights.shape:
             raise CaseError(f"start has shape {first.shape}, but the surface has {shape.heights.shape} cells")
     contacts: list[ElasticContact] = []
-    for value in numbers:
-        force, depth = (None, value) if what == "approach" else (value, None)
-        contacts.append(planned.solve(force, depth, contacts[-1].pressure if contacts else first, history, receives))
+    try:
+        for value in numbers:
+            force, depth = (None, value) if what == "approach" else (value, None)
+            contacts.append(planned.solve(force, depth, contacts[-1].pressure if contacts else first, history, receives))
+    except BaseException as error:
+        if contacts:
+            error.result = ElasticCurve(contacts)  # type: ignore[attr-defined]
+        raise
     warn({finding["code"]: finding for contact in contacts for finding in contact.findings}.values(), 2)
     return ElasticCurve(contacts) if several else contacts[0]
 
@@ -510,10 +554,10 @@ def _prescribed(load: Any, pressure: Any, approach: Any) -> tuple[str, Any]:
     return given[0]
 
 
-def _hardness(hardness: Any, dimensions: int) -> float | Floats | None:
+def _hardness(hardness: Any, size: Sequence[float]) -> float | Floats | None:
     from ._solve import hardness_parts
 
-    cells, limit = hardness_parts(hardness, dimensions)
+    cells, limit = hardness_parts(hardness, size)
     return limit if cells is None else np.array(cells)
 
 
@@ -523,6 +567,8 @@ def _receivers(out: Any, shape: Surface) -> dict[str, Floats]:
     for name, held in given.items():
         if name not in ("pressure", "displacement", "gap"):
             raise CaseError(f"out holds {name!r}, but may hold pressure, displacement, gap")
+        if any(held is other or (np.may_share_memory(held, other) and np.shares_memory(held, other)) for key, other in given.items() if key != name):
+            raise CaseError(f"out gives the same array for {name} and another field, but each needs an array of its own")
         if not isinstance(held, np.ndarray) or held.dtype != np.float64 or held.shape != shape.heights.shape or not held.flags.writeable:
             raise CaseError(f"out must be a writable float64 array of shape {shape.heights.shape}")
     return given
@@ -541,10 +587,12 @@ def _scale(table: Floats, shape: Surface, boundary: str) -> float:
     return float(2.0 ** np.round(np.log2(usual / found))) if np.isfinite(found) and found > 0.0 else 1.0
 
 
-def _table(kernel: Any, shape: Surface, boundary: str) -> Floats:
-    """The numbers of a kernel that the core needs."""
+def _table(kernel: Any, shape: Surface, boundary: str, unit: str) -> Floats:
+    """The numbers of a kernel that the core needs, in that SI unit."""
     if not callable(kernel):
-        return as_plane(field("kernel", kernel, line=True))
+        names = sorted(map(str, kernel.dims)) if is_labelled(kernel) else []
+        ordered = kernel.transpose(*names) if names in (["x", "y"], ["qx", "qy"]) else kernel
+        return as_plane(field("kernel", bare("kernel", ordered, unit), line=True))
     cells = (*shape.cells, 1)[:2]
     lengths = (*shape.size, 1.0)[:2]
     if boundary == "periodic":
@@ -555,7 +603,7 @@ def _table(kernel: Any, shape: Surface, boundary: str) -> Floats:
 
     def values(x: Floats, y: Floats) -> Floats:
         with np.errstate(divide="ignore", invalid="ignore"):
-            found = np.broadcast_to(np.asarray(kernel(x, y), dtype=np.float64), x.shape)
+            found = np.broadcast_to(np.asarray(bare("kernel", kernel(x, y), unit), dtype=np.float64), x.shape)
         return np.array(found)
 
     table = values(*at)

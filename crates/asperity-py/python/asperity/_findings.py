@@ -4,33 +4,61 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterable, Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any, Literal
 
 
 class ResultWarning(UserWarning):
     """A finding of severity "warning": the numbers of a result may be off."""
 
 
+#: Words of a case file and of the command, and the parameters that they are in Python.
+_WORDS = {
+    "(domain.size)": "(size=)",
+    "domain.size": "size",
+    "(domain.cells)": "(cells=)",
+    "domain.cells": "cells",
+    'boundary = "': 'boundary="',
+    "(--longest, --shortest)": "(longest=, shortest=)",
+}
+
+
 class Finding(dict[str, Any]):
-    """Something that a run found about itself; its keys are attributes too.
+    """Something that a run found about itself; its keys are attributes too."""
 
-    `code` (a word of docs/findings.md), `severity` ("warning": the numbers may be off, or "note"), `text`, `value` and `limit`
-    (the number that was judged and its limit in SI units, or None), `rows` ([first, last], or None where it is about the case).
-    """
+    #: A word of docs/findings.md.
+    code: str
+    #: "warning" (the numbers may be off) or "note".
+    severity: Literal["warning", "note"]
+    #: What was found, and what to do.
+    text: str
+    #: The number that was judged, and its limit, in SI units.
+    value: float | None
+    limit: float | None
+    #: First and last row; None where it is about the case.
+    rows: list[int] | None
 
-    def __getattr__(self, name: str) -> Any:
-        try:
-            return self[name]
-        except KeyError:
-            raise AttributeError(f"a finding has no {name!r}; it has {', '.join(self)}") from None
+    if not TYPE_CHECKING:  # where it would hide misspelt names
+
+        def __getattr__(self, name):
+            try:
+                return self[name]
+            except KeyError:
+                raise AttributeError(f"a finding has no {name!r}; it has {', '.join(self)}") from None
+
+    def __dir__(self) -> list[str]:
+        return sorted({*super().__dir__(), *self})
 
     def __str__(self) -> str:
         return f"{self['text']} [{self['code']}]"
 
 
-def findings_of(objects: Iterable[Mapping[str, Any]]) -> list[Finding]:
-    """The findings of a list of objects."""
-    return [Finding(found) for found in objects]
+def findings_of(objects: Iterable[Mapping[str, Any]], *, of_case: bool = False) -> list[Finding]:
+    """The findings of a list of objects, in the words of Python, or of a case file."""
+    found = [Finding(one) for one in objects]
+    for one in [] if of_case else found:
+        for word, parameter in _WORDS.items():
+            one["text"] = str(one["text"]).replace(word, parameter)
+    return found
 
 
 def warn(findings: Iterable[Finding], stacklevel: int) -> None:

@@ -12,7 +12,7 @@ import math
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
@@ -22,6 +22,8 @@ from ._arrays import Floats, count, line, number, pair, plain
 from ._core import CaseError
 from ._materials import Creep, Material, Prony
 from ._shifts import Shift, made
+from ._words import LongTime, Measure, Moduli
+from ._units import frequency as angular_frequency, has_unit
 
 #: Temperatures closer than this belong to one sweep [K], and those of one sweep spread by no more.
 _SAME, _SPREAD = 1.0, 3.0
@@ -36,9 +38,9 @@ class Fit:
     """
 
     #: "relaxation", "creep" or "dma": what was measured.
-    kind: str
+    kind: Literal["relaxation", "creep", "dma"]
     #: "young" or "shear": what the numbers are.
-    modulus: str
+    modulus: Measure
     #: (modulus [Pa], relaxation time [s]) or, of creep data, (compliance [1/Pa], retardation time [s]).
     terms: list[tuple[float, float]]
     #: Modulus after all relaxation [Pa]; None of creep data.
@@ -152,7 +154,7 @@ def fit_relaxation(
     /,
     *,
     temperature: Any = None,
-    modulus: str = "young",
+    modulus: Measure = "young",
     shift: Shift | str | None = None,
     reference: float | None = None,
     poisson: float | None = None,
@@ -162,7 +164,7 @@ def fit_relaxation(
     window: Sequence[float] | None = None,
     per_decade: float = 3.0,
     margin: float = 1.0,
-    long_time: str = "free",
+    long_time: LongTime = "free",
     max_misfit: float = 0.1,
     max_terms: int | None = None,
     misfit: float | None = None,
@@ -208,7 +210,7 @@ def fit_creep(
     /,
     *,
     temperature: Any = None,
-    modulus: str = "young",
+    modulus: Measure = "young",
     shift: Shift | str | None = None,
     reference: float | None = None,
     poisson: float | None = None,
@@ -218,7 +220,7 @@ def fit_creep(
     window: Sequence[float] | None = None,
     per_decade: float = 3.0,
     margin: float = 1.0,
-    long_time: str = "free",
+    long_time: LongTime = "free",
     max_misfit: float = 0.1,
     max_terms: int | None = None,
     misfit: float | None = None,
@@ -242,7 +244,7 @@ def fit_dma(
     *,
     angular: bool = False,
     temperature: Any = None,
-    modulus: str = "young",
+    modulus: Measure = "young",
     shift: Shift | str | None = None,
     reference: float | None = None,
     poisson: float | None = None,
@@ -252,14 +254,15 @@ def fit_dma(
     window: Sequence[float] | None = None,
     per_decade: float = 3.0,
     margin: float = 1.0,
-    long_time: str = "free",
+    long_time: LongTime = "free",
     max_misfit: float = 0.1,
     max_terms: int | None = None,
     misfit: float | None = None,
-    moduli: str = "both",
+    moduli: Moduli = "both",
     loss_weight: float = 1.0,
 ) -> Fit:
-    """Fits storage and loss modulus [Pa] over frequency [Hz], or [rad/s] where `angular`, by one spectrum.
+    """Fits storage and loss modulus [Pa] over frequency [Hz], or [rad/s] where `angular`, by one spectrum; frequencies with a unit
+    are converted.
 
     `window` is in rad/s; `moduli` is "both", "storage" or "loss", the ones that are fitted (measured ones often contradict
     each other: then the storage modulus is usual, and :attr:`Fit.misfits` says how far off the other is); `loss_weight` is the
@@ -273,7 +276,9 @@ def fit_dma(
     (2, True)
     """
     rest = _rest(locals())
-    omega = line("frequency", frequency) * (1.0 if angular else 2.0 * math.pi)
+    at = angular_frequency("frequency", frequency, angular=True)
+    # Converted where it carries a unit; a plain number is what `angular` says.
+    omega = line("frequency", at) * (1.0 if angular or has_unit(frequency) else 2.0 * math.pi)
     return _fit("dma", omega, [storage, loss], temperature, **rest)
 
 
@@ -284,7 +289,7 @@ def fit_file(
     sheet: str | None = None,
     columns: Mapping[str, str | int] | None = None,
     units: Mapping[str, str] | None = None,
-    modulus: str = "young",
+    modulus: Measure | None = None,
     shift: Shift | str | None = None,
     reference: float | None = None,
     poisson: float | None = None,
@@ -294,11 +299,11 @@ def fit_file(
     window: Sequence[float] | None = None,
     per_decade: float = 3.0,
     margin: float = 1.0,
-    long_time: str = "free",
+    long_time: LongTime = "free",
     max_misfit: float = 0.1,
     max_terms: int | None = None,
     misfit: float | None = None,
-    moduli: str = "both",
+    moduli: Moduli = "both",
     loss_weight: float = 1.0,
 ) -> Fit:
     """Fits a text table of a relaxation test, a creep test or a DMA, as ``asperity material fit`` does.
@@ -313,6 +318,9 @@ def fit_file(
         tan_delta, temperature
     units : units by quantity, which go before those of the header
     sheet : sheet of a spreadsheet; by default the first one that names such columns
+    modulus : "young" or "shear": what the values are; by default what the header says (E or D, G or J), or else "young"
+    shift : without it, sweeps at several temperatures are shifted as the file says, or by an estimate about the temperature that is
+        nearest to 20 degC (`notes` say so)
 
     Raises
     ------
@@ -421,7 +429,7 @@ def _made(found: dict[str, Any], rest: dict[str, Any]) -> Fit:
         instantaneous, terms, fluidity = found["creep"]
     return Fit(
         kind=found["kind"],
-        modulus=rest["modulus"],
+        modulus=rest["modulus"] or found["modulus"],
         terms=terms,
         equilibrium=equilibrium,
         instantaneous=instantaneous,

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import count, line, number, points
+from ._arrays import count, in_hertz, line, number, points
 from ._core import CaseError
 from ._units import carries, unit_among
 
@@ -87,14 +87,15 @@ def trapezoid(peak: float, *, rise: float, hold: float, fall: float) -> History:
 
 
 def sine(*, mean: float, amplitude: float, frequency: float) -> History:
-    """mean + amplitude sin(2 pi frequency t), the frequency in Hz."""
+    """mean + amplitude sin(2 pi frequency t), the frequency in Hz (a quantity may be in rad/s or rpm)."""
     values, unit = _values(mean=mean, amplitude=amplitude)
-    return History("sine", (*values, number("frequency", frequency)), unit=unit)
+    return History("sine", (*values, in_hertz("frequency", frequency)), unit=unit)
 
 
 def table(pairs: Sequence[tuple[float, float]] | npt.NDArray[Any]) -> History:
     """Linear between (time [s], value) points; two points at one time are a jump; held after the last."""
-    ends = [pair[1] for pair in pairs] if isinstance(pairs, (list, tuple)) and all(np.size(pair) == 2 for pair in pairs) else []
+    several = isinstance(pairs, (list, tuple)) and all(isinstance(pair, (list, tuple)) and len(pair) == 2 for pair in pairs)
+    ends = [pair[1] for pair in pairs] if several else []
     unit = unit_among("the value of a history", ends, _UNITS)
     return History("table", (), tuple(points("points of the table", pairs, ("s", unit or ""))), unit=unit)
 
@@ -149,6 +150,10 @@ class Stage:
     until: str | tuple[str, float] | None = None
     after_jump: bool = False
     times: Times | npt.ArrayLike | None = None
+
+    def __repr__(self) -> str:
+        shown = {name: value for name, value in vars(self).items() if value is not None and value is not False}
+        return f"Stage({', '.join(f'{name}={value!r}' for name, value in shown.items())})"
 
     def _parts(self) -> _core._Stage:
         given = {"load": self.load, "pressure": self.pressure, "approach": self.approach}
@@ -218,8 +223,9 @@ def adaptive(end: float, *, tolerance: float = 1e-3, first: float | None = None)
 
 
 def listed(instants: npt.ArrayLike) -> Times:
-    """The times after 0 [s], increasing."""
-    return Times("list", tuple(float(t) for t in line("times", instants)))
+    """The times after 0 [s], increasing; a 0 at their beginning is the start, which each run has."""
+    given = [float(t) for t in line("times", instants)]
+    return Times("list", tuple(given[1:] if len(given) > 1 and given[0] == 0.0 else given))
 
 
 def as_history(what: str, value: Any, unit: str | None = None) -> History:

@@ -12,6 +12,7 @@ import numpy as np
 from . import _core
 from ._arrays import Floats, field, in_order, number, pair
 from ._findings import ResultWarning, findings_of
+from ._surface import _parts
 
 if TYPE_CHECKING:
     import xarray
@@ -135,7 +136,7 @@ def leakage(
     gap: Any,
     contact: Any = None,
     *,
-    size: Sequence[float],
+    size: Sequence[float] | None = None,
     direction: str = "x",
     sides: str = "periodic",
     smallest_gap: float = 0.0,
@@ -146,7 +147,7 @@ def leakage(
     ----------
     gap : gap between the surfaces [m], array (nx, ny)
     contact : where the surfaces touch (nonzero); default: where the gap is not above 0
-    size : lengths of the domain along x and y [m]
+    size : lengths of the domain along x and y [m]; a gap as xarray array with coordinates needs none
     direction : "x" or "y"; "both": along x, and the effective conductance of a gap that repeats in both directions
     sides : "periodic" or "closed"
     smallest_gap : cells with a smaller gap are closed [m]
@@ -170,13 +171,15 @@ def leakage(
     >>> f"{10 * leak.gas_leak_rate(inlet=2e5, outlet=1e5, gas='air', standard=True):.2e} mbar l/s"
     '4.20e-05 mbar l/s'
     """
-    h = field("gap", gap)
-    held = None if contact is None else in_order("contact", contact)
+    values, extent, _ = _parts(gap, size, "gap")
+    h = field("gap", values)
+    extent = pair("size", extent)
+    held = None if contact is None else in_order("contact", contact, extent)
     touches = None if held is None else np.ascontiguousarray(np.asarray(getattr(held, "magnitude", held)) != 0, dtype=np.uint8)
     if touches is not None and touches.shape != h.shape:
         raise _core.CaseError(f"contact has shape {touches.shape}, but gap has {h.shape}")
     keys = {"direction": direction, "sides": sides, "smallest_gap": number("smallest_gap", smallest_gap)}
-    return Leakage(h, touches, pair("size", size), keys)
+    return Leakage(h, touches, extent, keys)
 
 
 def over_time(result: Result, keys: dict[str, Any]) -> xarray.Dataset:

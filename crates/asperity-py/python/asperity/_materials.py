@@ -24,7 +24,8 @@ from . import _core
 from ._arrays import Floats, array, line, number, points
 from ._core import CaseError
 from ._shifts import Shift
-from ._units import carries
+from ._units import carries, frequency
+from ._words import Measure
 
 
 class Material:
@@ -121,7 +122,7 @@ class Material:
         return self._curve(self._body.relaxation, t)
 
     def storage_loss(self, omega: npt.ArrayLike) -> tuple[Floats, Floats]:
-        """Storage and loss modulus [Pa] at angular frequencies `omega` [rad/s].
+        """Storage and loss modulus [Pa] at angular frequencies `omega` [rad/s] (quantities may be in Hz or rpm).
 
         >>> import asperity as asp
         >>> maxwell = asp.Maxwell(shear=1e6, relaxation_time=1.0, poisson=0.5)
@@ -129,7 +130,7 @@ class Material:
         >>> round(float(storage)), round(float(loss))
         (500000, 500000)
         """
-        at = array("angular frequencies", omega)
+        at = array("angular frequencies", frequency("angular frequencies", omega, angular=True))
         storage, loss = self._body.complex(line("angular frequencies", at.reshape(-1)))
         return storage.reshape(at.shape), loss.reshape(at.shape)
 
@@ -312,7 +313,7 @@ class Prony(Material):
         equilibrium: float | None = None,
         instantaneous: float | None = None,
         terms: Sequence[tuple[float, float]],
-        modulus: str = "young",
+        modulus: Measure = "young",
         poisson: float | None = None,
         bulk_modulus: float | None = None,
         hardness: float | None = None,
@@ -346,7 +347,7 @@ class Creep(Material):
         instantaneous: float,
         terms: Sequence[tuple[float, float]] = (),
         fluidity: float = 0.0,
-        compliance: str = "young",
+        compliance: Measure = "young",
         poisson: float | None = None,
         bulk_modulus: float | None = None,
         hardness: float | None = None,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 from collections.abc import Sequence
@@ -50,7 +51,10 @@ class Record:
         self._end = core.times()[-1]
         self._output = output
         self._writer: _core.Writer | None = None
+        self._waiting: tuple[dict[str, Any], list[float]] | None = None
         if output is not None:
+            if not force and os.path.exists(output):
+                raise FileExistsError(errno.EEXIST, "exists already; choose another output or replace it with force=True", output)
             columns = [(name, ends) for name, ends in self._edges.items()]
             setup, gap = json.dumps(march._setup), np.array(as_plane(march.initial_gap))
             self._writer = _core.Writer(output, force, title, setup, list(march.size), gap, keep.fields, columns, rows)
@@ -65,10 +69,20 @@ class Record:
             values.append(row[name])
         maps = {name: step._map(name) for name in self._keep.fields} if self._keeps(step) else {}
         if self._writer is not None:
+            self._write_waiting({})
             numbers = [float(n) for name in self._edges for n in np.ravel(row[name])]
-            self._writer.append(row, numbers, maps)
+            self._waiting = (row, numbers)
+            if self._keeps(step):
+                self._write_waiting(maps)
         elif self._keeps(step):
             self._take(step.index, maps)
+
+    def _write_waiting(self, maps: dict[str, Any]) -> None:
+        """Writes the row that waits. A row whose fields are not kept waits for the next one: if none comes, its fields are kept as
+        those of the last row."""
+        if self._writer is not None and self._waiting is not None:
+            self._writer.append(*self._waiting, maps)
+            self._waiting = None
 
     def _take(self, index: int, maps: dict[str, Any]) -> None:
         self._steps.append(index)
@@ -87,6 +101,8 @@ class Record:
         """The result of a march that goes no further: "complete", "interrupted" or "failed"."""
         if self._writer is None or self._output is None:
             return self.result(status)
+        core = self._march._core
+        self._write_waiting({name: core.field(name) for name in self._keep.fields} if core.done == len(self) else {})
         self._writer.finish(status, self._march._core.findings(), message)
         self._writer = None
         return open(self._output)

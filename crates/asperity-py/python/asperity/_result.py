@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import html
 import json
 import os
@@ -11,10 +12,11 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, as_plane, cells_of, centres, frozen, number, plain
-from ._columns import HISTOGRAMS, QUANTITIES, ROW, Column, units_of
+from ._arrays import Floats, as_plane, cells_of, centres, frozen, in_hertz, number, plain
+from ._columns import HISTOGRAMS, QUANTITIES, ROW, Column, Sealed, units_of
 from ._core import CaseError
 from ._findings import Finding, findings_of
+from ._words import Field
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -46,7 +48,7 @@ class Cycle(NamedTuple):
     loss_angle: float
 
 
-class Result:
+class Result(Sealed):
     """What a run found: one-dimensional arrays over the rows, and fields at some of them.
 
     `time` [s], `load` [N], `approach` [m], `contact_area`, `contact_area_corrected`, `capped_area` [m^2],
@@ -158,6 +160,7 @@ class Result:
         self._fields = {name: held if isinstance(held, _core.Store) else frozen(np.asarray(held)) for name, held in self._fields.items()}
         self._histograms = {name: (frozen(edges), frozen(numbers)) for name, (edges, numbers) in self._histograms.items()}
         self._stress = {name: frozen(values) for name, values in self._stress.items()}
+        self._field_times = frozen(self._field_times)
         if not isinstance(self._initial_gap, _core.Store):
             self._initial_gap = frozen(np.asarray(self._initial_gap))
 
@@ -225,7 +228,7 @@ class Result:
     @property
     def findings(self) -> list[Finding]:
         """Where the numbers may be off (docs/findings.md): each with `code`, `severity`, `text`, `value`, `limit`, `rows`."""
-        return findings_of(self._attributes.get("findings", []))
+        return findings_of(self._attributes.get("findings", []), of_case=bool(self._attributes.get("case")))
 
     @property
     def fields(self) -> list[str]:
@@ -252,14 +255,14 @@ class Result:
     @property
     def field_times(self) -> Floats:
         """Times at which fields were kept [s]; of a sweep the velocities [m/s]."""
-        return self._field_times.copy()
+        return self._field_times
 
     @property
     def field_velocities(self) -> Floats:
         """Velocities at which the fields of a sweep were kept [m/s]."""
         if not self._sweep:
             raise CaseError("the result is a run in time: its fields have field_times")
-        return self._field_times.copy()
+        return self._field_times
 
     def cycles(self, frequency: float, *, start: float = 0.0) -> list[Cycle]:
         """Dissipated energy, stiffness and loss angle of each full period 1/`frequency` [Hz] from `start` [s] on.
@@ -279,7 +282,7 @@ class Result:
         True
         """
         time, load, approach = (self._table[name].tolist() for name in ("time", "load", "approach"))
-        found = _core.cycles_of(time, load, approach, number("frequency", frequency), number("start", start))
+        found = _core.cycles_of(time, load, approach, in_hertz("frequency", frequency), number("start", start))
         return [Cycle(*numbers) for numbers in found]
 
     @property
@@ -329,7 +332,7 @@ class Result:
         return gap
 
     def field(
-        self, name: str, *, time: float | None = None, velocity: float | None = None, index: int | None = None
+        self, name: Field, *, time: float | None = None, velocity: float | None = None, index: int | None = None
     ) -> Floats:
         """A field of shape (nx, ny), of a line contact (n,), at the stored time nearest to `time` [s], or with that index; default the
         last. Of a sweep at the stored velocity nearest to `velocity` [m/s]. Fields of a contact that moves are in its frame.
@@ -424,13 +427,13 @@ class Result:
         gap = ("initial_gap", (over, np.array(self.initial_gap), {"units": "m", "long_name": "undeformed gap"}))
         coordinates = {
             along: (along, np.array(self._table["time"]), {"units": self.units("time"), "long_name": along}),
-            at: (at, self.field_times, {"units": self.units("time"), "long_name": f"{along} of the fields"}),
-            "x": ("x", self.x, {"units": "m", "long_name": "x"}),
+            at: (at, np.array(self.field_times), {"units": self.units("time"), "long_name": f"{along} of the fields"}),
+            "x": ("x", np.array(self.x), {"units": "m", "long_name": "x"}),
         }
         if not self.is_line:
-            coordinates["y"] = ("y", self.y, {"units": "m", "long_name": "y"})
+            coordinates["y"] = ("y", np.array(self.y), {"units": "m", "long_name": "y"})
         if "depth" in self._stress:
-            coordinates["depth"] = ("depth", self._stress["depth"], {"units": "m", "long_name": "depth below the surface"})
+            coordinates["depth"] = ("depth", np.array(self._stress["depth"]), {"units": "m", "long_name": "depth below the surface"})
         for name, (edges, numbers) in self._histograms.items():
             bins, ends, unit, words = HISTOGRAMS[name]
             middle = np.sqrt(edges[1:] * edges[:-1]) if name == "spot_histogram" else 0.5 * (edges[1:] + edges[:-1])
@@ -539,6 +542,8 @@ class Result:
         if len(self) == 0:
             raise CaseError("the result has no rows to save")
         attributes = self._attributes
+        if not force and os.path.exists(path):
+            raise FileExistsError(errno.EEXIST, "exists already; choose another path or replace it with force=True", os.fspath(path))
         _core.save(
             os.fspath(path),
             force,

@@ -10,6 +10,7 @@ Soc. Rheology 4 (1960) 233.
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -67,13 +68,18 @@ def arrhenius(*, activation_energy: float, reference: float) -> Shift:
     return _checked(Shift("arrhenius", numbers))
 
 
-def shift_table(pairs: Sequence[tuple[float, float]]) -> Shift:
-    """log10 a_T, linear between (temperature [K], log10 a_T) points in order of temperature.
+def shift_table(pairs: Sequence[tuple[float, float]] | str | os.PathLike[str]) -> Shift:
+    """log10 a_T, linear between (temperature [K], log10 a_T) points in order of temperature; or the path of a table of temperatures
+    and shift factors with a header, in a text file or a spreadsheet, as ``asperity material fit --shift-table`` reads it.
 
     >>> import asperity as asp
     >>> round(float(asp.shift_table([(283.15, 1.0), (293.15, 0.0)]).factor(288.15)), 9)
     3.16227766
     """
+    if isinstance(pairs, (str, os.PathLike)):
+        shift = made(_core.read_shift_table(os.fspath(pairs)))
+        assert shift is not None
+        return shift
     ln10 = math.log(10.0)
     return _checked(Shift("table", (), tuple((t, decades * ln10) for t, decades in points("points of the shift", pairs, ("K", "")))))
 
@@ -96,7 +102,7 @@ def temperatures(value: float | Sequence[tuple[float, float]] | None) -> list[tu
     """A temperature of the run [K], or its (time [s], temperature [K]) points."""
     if value is None:
         return []
-    if carries(value) or np.ndim(value) == 0:
+    if carries(value) or (not isinstance(value, (list, tuple)) and np.ndim(value) == 0):
         return [(0.0, number("temperature", value))]
     pairs = points("temperature", value, ("s", "K"))
     if not pairs:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import json
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -12,8 +13,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import as_plane, count, field, frozen, in_order, number
-from ._columns import HISTOGRAMS, ROW, Number
+from ._arrays import as_plane, cells_of, count, field, frozen, in_order, number
+from ._columns import HISTOGRAMS, ROW, Number, Sealed
 from ._core import CaseError, ConvergenceError
 from ._findings import Finding, findings_of, warn
 from ._histories import History, Stage, Times, as_history, as_stage, as_times, one_of
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
     from ._arrays import Floats
 
 
-class Step:
+class Step(Sealed):
     """The state after one row of a march: its numbers as attributes, its fields as arrays.
 
     `time`, `load`, `approach`, `contact_area`, ... as in results. A step is a view: when the march has moved on, its fields can
@@ -163,6 +164,10 @@ class March:
         self._setup = setup
         self._record = Record(self, keep, title, output, force)
 
+    def __repr__(self) -> str:
+        whole = self._core.rows_expected
+        return f"<March: {len(self._record)} rows{'' if whole is None else f' of {whole}'} solved, {cells_of(self.initial_gap)}>"
+
     def __len__(self) -> int:
         """Number of rows, as far as it is known: with adaptive steps it is not known in advance."""
         return len(self._core)
@@ -247,7 +252,7 @@ def march(
     shape = surface_of(surface, gap, size)
     gap = shape.gap()
     bodies = bodies_of(material)
-    cells, limit = hardness_parts(hardness, gap.ndim)
+    cells, limit = hardness_parts(hardness, shape.size)
     if limit is not None:
         bodies = [with_hardness(body, limit) for body in bodies]
     given = {"load": load, "pressure": pressure, "approach": approach}
@@ -340,12 +345,12 @@ def bodies_of(material: Any) -> list[Material | Body]:
     )
 
 
-def hardness_parts(hardness: Any, dimensions: int) -> tuple[Floats | None, float | None]:
-    """The hardness [Pa] of each cell, or that of all."""
+def hardness_parts(hardness: Any, size: Sequence[float]) -> tuple[Floats | None, float | None]:
+    """The hardness [Pa] of each cell of a domain of that size [m], or that of all."""
     if hardness is None:
         return None, None
-    if np.ndim(bare("hardness", in_order("hardness", hardness))) == dimensions:
-        return field("hardness", hardness, line=True), None
+    if np.ndim(bare("hardness", in_order("hardness", hardness, size))) == len(size):
+        return field("hardness", hardness, line=True, size=size), None
     return None, number("hardness", hardness)
 
 
@@ -568,7 +573,10 @@ def _source(case: str | os.PathLike[str] | Mapping[str, Any]) -> tuple[str, str 
             raise CaseError(f"the case holds what a case file cannot: {error}; write quantities as text with units") from None
     if isinstance(case, str) and "\n" in case:
         return os.curdir, case
-    return os.fspath(case), None
+    path = os.fspath(case)
+    if not os.path.exists(path):
+        raise FileNotFoundError(errno.ENOENT, "there is no case file of this name", path)
+    return path, None
 
 
 def _keys(given: dict[str, Any] | Sequence[str] | None) -> list[str]:

@@ -11,6 +11,8 @@ from typing import Any
 import numpy as np
 
 from . import _core
+from ._surface import _parts
+from ._words import Boundary
 from ._arrays import Floats, array, as_plane, cells_of, field, number, plain, size_of
 
 
@@ -133,10 +135,10 @@ class Stress:
 def stress(
     pressure: Any,
     *,
-    size: float | Sequence[float],
+    size: float | Sequence[float] | None = None,
     poisson: float,
     depths: str | Sequence[float] = "auto",
-    boundary: str = "free",
+    boundary: Boundary = "free",
 ) -> Stress:
     """The stress below a pressure on a half-space.
 
@@ -146,7 +148,7 @@ def stress(
     Parameters
     ----------
     pressure : pressure [Pa], array (nx, ny), or (n,) of a line contact (plane strain)
-    size : lengths of the domain along x and y [m], of a line its length
+    size : lengths of the domain along x and y [m], of a line its length; an xarray array with coordinates needs none
     poisson : Poisson's ratio of the body, 0 to 0.5
     depths : depths below the surface [m], rising, each 0 or at least a quarter of a cell; "auto" takes 0 and 24 depths from
         half a cell to the width of the contact (periodic: to half of the shorter side)
@@ -171,8 +173,9 @@ def stress(
     >>> below.zz.shape
     (25, 64, 64)
     """
-    p = field("pressure", pressure, line=True)
-    lengths = size_of("pressure", p, size)
+    values, extent, _ = _parts(pressure, size, "pressure")
+    p = field("pressure", values, line=True)
+    lengths = size_of("pressure", p, extent)
     nu = number("poisson", poisson)
     return Stress(p, lengths, depths_below(p, lengths, boundary, depths), nu, boundary)
 

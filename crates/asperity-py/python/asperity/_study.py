@@ -20,13 +20,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._arrays import count
+from ._arrays import count, number
 from ._core import CaseError
 from ._leakage import LEAKS, units_of
 from ._points import Point, Solved, _toml, base_of, found, label, label_all, note, solve_point
 from ._processes import cores, shared, solved
 from ._progress import line_of
 from ._columns import QUANTITIES, ROW
+from ._units import UNITS, bare, carries, has_unit, is_labelled
 from ._result import FIELDS, Result
 from ._solve import _source
 
@@ -76,7 +77,7 @@ def study(
     -------
     xarray.Dataset : the numbers of all rows with dimensions (parameters..., step), NaN beyond the last row of a point;
         `time` of each step, common to all points or for each; `steps` (number of rows), `status` ("complete" or "failed") and
-        `error` (the reason) of each point. A parameter with the same name as one of these gets the suffix "_given". Points that
+        `error` (the reason) of each point ("interrupted" in the dataset of a study that was stopped). A parameter with the same name as one of these gets the suffix "_given". Points that
         are not all combinations have the dimension `point`.
 
     Raises
@@ -86,7 +87,7 @@ def study(
     Notes
     -----
     Every point has the same numbers as a single run, to the last bit, for any number of workers and threads. Ctrl-C stops
-    within one iteration of the solver; finished points are in the `folder`. A stopped point of a case continues from its last
+    within one iteration of the solver; finished points are in the `folder`, and in the dataset `error.result` of the error. A stopped point of a case continues from its last
     checkpoint, one of :func:`solve` or of a function starts again. A point in the folder is identified by its settings and by
     everything that the points share: the text of the case and the files that it names, or arguments and code of the function.
 
@@ -145,6 +146,13 @@ def study(
                 for n, answer in answers:
                     done[left[n]] = answer
                     tell(done)
+            except BaseException as error:
+                tell.end()
+                told = type(error).__name__
+                whole = [done.get(n, ("interrupted", f"the study was stopped: {told}", None)) for n in range(len(points))]
+                with contextlib.suppress(Exception):
+                    error.result = _dataset(plan, whole, points, tuple(fields), common.get("case"))  # type: ignore[attr-defined]
+                raise
             finally:
                 tell.end()
     return _dataset(plan, [done[n] for n in range(len(points))], points, tuple(fields), common.get("case"))
@@ -194,6 +202,13 @@ _pairs = zip
 
 def _values(name: str, values: Any) -> list[tuple[Any, Any]]:
     """(label, value) pairs of a parameter."""
+    if has_unit(values):
+        if "." in name or name not in UNITS:
+            raise CaseError(f"the values of {name} carry a unit, which is not converted here: write them as text, as in ['1 mN', '2 mN']")
+        # Numbers in SI units, which are labels too.
+        values = [number(name, value) for value in (np.atleast_1d(bare(name, values)) if carries(values) or is_labelled(values) else values)]
+    elif is_labelled(values):
+        values = np.asarray(values)
     if isinstance(values, Mapping):
         pairs = [(label(key), value) for key, value in values.items()]
     elif isinstance(values, (str, bytes)) or not isinstance(values, (Sequence, np.ndarray)):
@@ -216,7 +231,10 @@ def _common(case: Any, names: list[str]) -> dict[str, Any]:
 
         function = None if case is solve else case
         return {"function": function, "base": base_of(None, "", function, {})}
-    path, text = _source(case)
+    try:
+        path, text = _source(case)
+    except FileNotFoundError as error:
+        raise CaseError(f"the case {error.filename} cannot be read: {error.strerror}") from None
     directory = path
     if text is None:
         try:
@@ -251,13 +269,37 @@ def _check_names(common: dict[str, Any], plan: _Plan) -> None:
         return
     words = f"asperity.{function.__name__}" if function is solve else f"the function {getattr(function, '__name__', function)!r}"
     if any(parameter.kind is parameter.VAR_KEYWORD for parameter in parameters.values()):
+        _check_controls(function, common.get("fixed", {}), plan)
         return
     known = [name for name, parameter in parameters.items() if parameter.kind is not parameter.POSITIONAL_ONLY and name[0] != "_"]
-    for name in [*common.get("fixed", {}), *plan.names]:
+    given = [*common.get("fixed", {}), *plan.names]
+    for name in given:
         if name not in known:
             near = difflib.get_close_matches(name, known, 1)
             hint = f"did you mean {near[0]!r}?" if near else f"it takes {', '.join(known)}"
             raise CaseError(f"{words} has no parameter {name!r}: {hint}")
+    _check_controls(function, common.get("fixed", {}), plan)
+    for name in known:
+        if name not in given and parameters[name].default is parameters[name].empty:
+            raise CaseError(f"{words} needs the parameter {name!r}, which neither the common parameters nor `over` hold")
+
+
+def _check_controls(function: Any, fixed: Mapping[str, Any], plan: _Plan) -> None:
+    """Refuses points that prescribe nothing, or two things at once."""
+    from ._motion import slide, steady
+    from ._solve import solve
+
+    ways: dict[Any, list[tuple[str, ...]]] = {
+        solve: [("load", "pressure", "approach", "stages"), ("surface", "gap")],
+        slide: [("load", "pressure"), ("velocity", "path"), ("surface", "gap")],
+        steady: [("load", "pressure"), ("surface", "gap")],
+    }
+    for point in plan.points:
+        for names in ways.get(function, []):
+            here = [name for name in names if {**fixed, **point}.get(name) is not None]
+            if len(here) != 1:
+                told = f"the point {label_all(point)} has {' and '.join(here) or 'none of them'}"
+                raise CaseError(f"a study needs {', '.join(names[:-1])} or {names[-1]}, exactly one of them; {told}")
 
 
 def _check_keys(common: dict[str, Any], plan: _Plan) -> None:

@@ -6,9 +6,9 @@ import json
 import os
 import re
 import warnings
-from collections.abc import Sequence
+from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field as dataclass_field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -18,7 +18,6 @@ from ._arrays import (
     Floats,
     along,
     angle,
-    array,
     as_plane,
     cell_counts,
     cells_of,
@@ -31,14 +30,37 @@ from ._arrays import (
     lengths,
     number,
     pair,
+    pitch_of,
     size_of,
 )
 from ._core import CaseError
 from ._findings import ResultWarning, findings_of, warn
-from ._units import factor_of, is_labelled
+from ._units import carries, factor_of, is_labelled, variable_of
+from ._words import Form
 
 if TYPE_CHECKING:
     from .plot import SurfacePlots
+
+
+class Labelled(Protocol):
+    """An array of xarray."""
+
+    @property
+    def dims(self) -> tuple[Hashable, ...]: ...
+    @property
+    def coords(self) -> Any: ...
+
+
+class Topography(Protocol):
+    """A topography of SurfaceTopography."""
+
+    @property
+    def physical_sizes(self) -> Any: ...
+    def heights(self) -> Any: ...
+
+
+#: What adds to a surface; of numbers only the 0 with which sum() begins.
+Summand = Union["Surface", npt.NDArray[Any], Labelled, Topography, int]
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +153,7 @@ class Surface:
             return NotImplemented
         return self.size == other.size and np.array_equal(self.heights, other.heights, equal_nan=True)
 
-    def __add__(self, other: Any) -> Surface:
+    def __add__(self, other: Summand) -> Surface:
         if _is_number(other):
             if other == 0:  # the start of sum()
                 return self
@@ -153,15 +175,15 @@ class Surface:
 
     __radd__ = __add__
 
-    def __sub__(self, other: Any) -> Surface:
+    def __sub__(self, other: Summand) -> Surface:
         if isinstance(other, Surface):
             return self + -other
         return NotImplemented if _is_number(other) else self + _negative(other, self.size)
 
     def __mul__(self, factor: Any) -> Surface:
-        if not _is_number(factor):
+        if not _is_number(factor) and not carries(factor):
             return NotImplemented
-        scale = number("factor", factor)
+        scale = number("factor of the heights", factor, "")
         if not np.isfinite(scale):
             raise CaseError(f"factor is {scale}, but must be finite")
         words = f"heights times {scale:g}"
@@ -170,11 +192,11 @@ class Surface:
     __rmul__ = __mul__
 
     def __truediv__(self, divisor: Any) -> Surface:
-        if not _is_number(divisor):
+        if not _is_number(divisor) and not carries(divisor):
             return NotImplemented
-        if number("divisor", divisor) == 0.0:
+        if number("divisor of the heights", divisor, "") == 0.0:
             raise CaseError("heights cannot be divided by 0")
-        return self * (1.0 / number("divisor", divisor))
+        return self * (1.0 / number("divisor of the heights", divisor, ""))
 
     def __neg__(self) -> Surface:
         return Surface(-self.heights, size=self.size, metadata={**self.metadata, "history": [*self.history, "inverted"]})
@@ -187,7 +209,7 @@ class Surface:
         import xarray
 
         names = ("x",) if self.is_line else ("x", "y")
-        axes = {name: (name, getattr(self, name), {"units": "m", "long_name": name}) for name in names}
+        axes = {name: (name, np.array(getattr(self, name)), {"units": "m", "long_name": name}) for name in names}
         attributes = {"units": "m", "long_name": "height"}
         return xarray.DataArray(np.array(self.heights), dims=names, coords=axes, name="heights", attrs=attributes)
 
@@ -220,7 +242,7 @@ class Surface:
         metadata = {**self.metadata, "history": [*self.history, *done]}
         return Surface(heights, size=size, metadata=metadata)
 
-    def level(self, form: str = "plane") -> Surface:
+    def level(self, form: Form = "plane") -> Surface:
         """The surface without its least-squares "mean", "plane" or "quadratic" form; "none" leaves it."""
         return self.process(f"level={form}")
 
@@ -454,7 +476,7 @@ class Surface:
         size: float | Sequence[float] | None = None,
         height_unit: float | None = None,
         channel: str | int | None = None,
-        level: str | None = None,
+        level: Form | None = None,
         fill: str | None = None,
         transpose: bool | None = None,
     ) -> Surface:
@@ -704,6 +726,10 @@ def surface_of(surface: Any, gap: Any, size: float | Sequence[float] | None) -> 
 
 def _parts(value: Any, size: Any, what: str = "heights") -> tuple[Any, Any, dict[str, Any]]:
     """The numbers [m] of what stands for a surface, its size [m] and its metadata."""
+    value = variable_of(what, value)
+    held = getattr(value, "magnitude", None)
+    if isinstance(held, Surface):  # of pint, which multiplies whatever it finds
+        return _parts(held * number("factor of the surface", type(value)(1.0, value.units), ""), size, what)
     if isinstance(value, Surface):
         if size is not None and not np.allclose(size_of("heights", value.heights, size), value.size, rtol=1e-9, atol=0.0):
             raise CaseError(f"size is {size!r}, but the surface has the size {value.size} m already")
@@ -713,8 +739,8 @@ def _parts(value: Any, size: Any, what: str = "heights") -> tuple[Any, Any, dict
     if is_labelled(value):
         return _of_labelled(what, value, size)
     if size is None:
-        article = "gap is" if what == "gap" else "surface is"
-        raise CaseError(f"the {article} an array, so that its size in m is needed: size=(Lx, Ly), or size=(L,) of a line")
+        article = "surface" if what == "heights" else what
+        raise CaseError(f"the {article} is an array, so that its size in m is needed: size=(Lx, Ly), or size=(L,) of a line")
     return value, size, {}
 
 
@@ -734,21 +760,8 @@ def _of_labelled(what: str, given: Any, size: Any) -> tuple[Any, Any, dict[str, 
     names = [str(name) for name in values.dims]
     if names not in (["x", "y"], ["x"]):
         raise CaseError(f"{what} has the dimensions {tuple(names)}, but must have x and y, or x alone")
-    extent: list[float] = []
-    for name in names:
-        if name not in values.coords:
-            continue
-        places = array(name, values.coords[name])
-        if len(places) < 2:
-            continue
-        pitch = (places[-1] - places[0]) / (len(places) - 1)
-        # Coordinates of single precision carry 1e-7 of their largest value.
-        slack = 1e-6 * np.abs(places).max() + 1e-3 * abs(pitch)
-        if pitch == 0.0 or not np.allclose(np.diff(places), pitch, rtol=0.0, atol=slack):
-            raise CaseError(f"the coordinate {name} of {what} is not evenly spaced: resample it to equal cells")
-        if pitch < 0.0:
-            values = values.isel({name: slice(None, None, -1)})
-        extent.append(abs(pitch) * len(places))
+    pitches = [pitch_of(what, values, name) for name in names]
+    extent = [abs(pitch) * values.sizes[name] for name, pitch in zip(names, pitches) if pitch is not None]
     if size is None:
         if len(extent) < len(names):
             raise CaseError("the array has no coordinates x and y in m, so that its size is needed: size=(Lx, Ly)")

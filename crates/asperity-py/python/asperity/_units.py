@@ -5,6 +5,8 @@ They become plain numbers in the SI unit that is asked for, or they are refused.
 
 from __future__ import annotations
 
+import math
+import re
 from typing import Any
 
 import numpy as np
@@ -35,8 +37,6 @@ UNITS: dict[str, str] = {
     **dict.fromkeys(["first time of the window", "last time of the window", "include"], "s"),
     **dict.fromkeys(["temperature", "temperatures", "reference", "c2"], "K"),
     **dict.fromkeys(["velocity", "velocities"], "m/s"),
-    "frequency": "1/s",
-    "angular frequencies": "1/s",
     "wave numbers": "1/m",
 }
 #: Words that units of arrays are written in besides their symbols.
@@ -51,6 +51,12 @@ WORDS = {
     **dict.fromkeys(["second", "seconds", "sec"], "s"),
     **dict.fromkeys(["kelvin"], "K"),
 }
+#: Units of an angle: packages of units take their numbers as plain ones, in radian.
+_ANGLE = re.compile(r"rad|deg|rpm|rps|turn|revol|cycle|arc_?(min|sec)|gon\b|°(?![CF])|′|″", re.IGNORECASE)
+#: Turns per time, as units of arrays.
+_TURNS = {"rpm": "1/min", "cycle/s": "1/s", "cycles/s": "1/s"}
+#: Parameters that are differences of temperatures: a temperature in degC is none.
+_DIFFERENCES = ("c2",)
 
 
 def carries(value: Any) -> bool:
@@ -58,14 +64,69 @@ def carries(value: Any) -> bool:
     return hasattr(value, "m_as") or (hasattr(value, "to_value") and (hasattr(value, "unit") or hasattr(value, "units")))
 
 
+def has_unit(value: Any) -> bool:
+    """Whether numbers carry a unit: a quantity, a list of some, or an array of xarray with the attribute `units`."""
+    if isinstance(value, (list, tuple)):
+        return any(has_unit(one) for one in value)
+    return carries(value) or (is_labelled(value) and ("units" in value.attrs or carries(value.data)))
+
+
 def is_labelled(value: Any) -> bool:
     """Whether it is an array of xarray."""
     return hasattr(value, "dims") and hasattr(value, "coords") and hasattr(value, "attrs")
 
 
+def unit_text(value: Any) -> str:
+    """The unit of a quantity, or of an array of xarray, in the words of its package; "dimensionless" where they are none."""
+    unit = value.attrs.get("units", "") if is_labelled(value) else getattr(value, "units", None)
+    return str(getattr(value, "unit", "") if unit is None else unit) or "dimensionless"
+
+
+def variable_of(what: str, value: Any) -> Any:
+    """The one array of an xarray.Dataset; anything else as it is."""
+    if not hasattr(value, "data_vars"):
+        return value
+    names = [name for name, held in value.data_vars.items() if held.ndim > 0]
+    if len(names) != 1:
+        raise CaseError(
+            f"{what} is a Dataset that holds {', '.join(map(str, names)) or 'no array'}, but must be one array: select it, as in "
+            f"dataset[{str(names[0]) if names else 'heights'!r}]"
+        )
+    return value[names[0]]
+
+
+def is_angle(value: Any) -> bool:
+    """Whether the unit of a quantity, or of an array of xarray, is one of an angle, or of an angle per time."""
+    text = unit_text(value)
+    return text != "dimensionless" and not re.search("celsius|fahrenheit|deg(ree)?_?[CF]|gradient", text, re.IGNORECASE) and bool(_ANGLE.search(text))
+
+
+def frequency(what: str, value: Any, *, angular: bool) -> Any:
+    """Numbers of frequencies: angular ones [rad/s], or cycles per second [Hz]. Quantities are converted: Hz, 1/s and rpm count cycles,
+    rad/s is angular. Plain numbers are returned as they are."""
+    if isinstance(value, (list, tuple)) and any(carries(one) or is_labelled(one) for one in value):
+        return type(value)([frequency(what, one, angular=angular) for one in value])
+    if is_labelled(value) and not carries(value.data):
+        if "units" not in value.attrs:
+            return bare(what, value, "1/s")
+        text = str(value.attrs["units"]).strip()
+        given = is_angle(value) and text not in _TURNS
+        plain = value.copy()
+        plain.attrs["units"] = _TURNS.get(text, re.sub(r"\brad(ian)?s?\b", "1", text))
+        found = bare(what, plain, "1/s")
+    else:
+        held = value.data if is_labelled(value) else value
+        if not carries(held):
+            return held
+        given = is_angle(held)
+        found = bare(what, held, "rad/s" if given else "1/s")
+    return found * (1.0 if given == angular else 2.0 * math.pi if angular else 0.5 / math.pi)
+
+
 def bare(what: str, value: Any, unit: str | None = None) -> Any:
     """`value` in the SI unit `unit`, by default that of the parameter `what`; what carries no unit is returned as it is."""
     unit = UNITS.get(what, "") if unit is None else unit
+    value = variable_of(what, value)
     if is_labelled(value):
         given = value.attrs.get("units")
         if carries(value.data):
@@ -78,13 +139,25 @@ def bare(what: str, value: Any, unit: str | None = None) -> Any:
     if not carries(value):
         return value
     wanted = "dimensionless" if unit == "" else unit
+    if unit == "" and is_angle(value):
+        raise CaseError(f"{what} is in {unit_text(value)}, but must be a plain number: the tangent of an angle, where it is a slope")
+    if what in _DIFFERENCES and _has_offset(value):
+        raise CaseError(f"{what} is in {unit_text(value)}, but is a difference of temperatures: give it in K or delta_degC")
     try:
         if hasattr(value, "m_as"):
             return value.m_as(wanted)
         return value.to_value(unit)
     except Exception as error:  # each package has errors of its own
-        given = getattr(value, "units", None) or getattr(value, "unit", None)
-        raise CaseError(f"{what} is in {given}, but must be {expected(unit)}: {error}") from None
+        raise CaseError(f"{what} is in {unit_text(value)}, but must be {expected(unit)}: {error}") from None
+
+
+def _has_offset(value: Any) -> bool:
+    """Whether the zero of its unit is not that of kelvin, as of degC."""
+    try:
+        zero = type(value)(0.0, value.units)
+        return bool((zero.m_as("K") if hasattr(zero, "m_as") else zero.to_value("K")) != 0.0)
+    except Exception:  # each package has errors of its own; then the conversion says what is wrong
+        return False
 
 
 def factor_of(what: str, given: Any, unit: str) -> float:
@@ -114,7 +187,7 @@ def unit_among(what: str, values: list[Any], units: tuple[str, ...]) -> str | No
         except CaseError:
             continue
         return unit if held else None
-    given = ", ".join(str(getattr(value, "units", value)) for value in held)
+    given = ", ".join(unit_text(value) for value in held)
     raise CaseError(f"{what} is in {given}, but must be in {', '.join(units[:-1])} or {units[-1]}, or a number in SI units")
 
 

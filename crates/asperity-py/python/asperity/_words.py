@@ -8,6 +8,10 @@ Boundary = Literal["free", "periodic"]
 Method = Literal["projected-cg", "polonsky-keer"]
 Scheme = Literal["linear", "constant", "direct"]
 Plasticity = Literal["cap", "accumulate"]
+Measure = Literal["young", "shear"]
+Moduli = Literal["both", "storage", "loss"]
+LongTime = Literal["free", "solid", "fluid"]
+Form = Literal["mean", "plane", "quadratic", "none"]
 Field = Literal["pressure", "gap", "displacement", "contact", "flattening"]
 Quantity = Literal[
     "contact_stiffness",

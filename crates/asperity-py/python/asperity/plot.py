@@ -8,26 +8,38 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import numpy.typing as npt
 
 from ._arrays import number
 from ._core import CaseError
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes  # type: ignore[import-not-found,import-untyped,unused-ignore]
+
     from ._contact import ElasticCurve
     from ._fit import Fit
     from ._result import Result
     from ._surface import Surface
+    from ._words import Field
 
 #: Prefixes by power of a thousand.
 _PREFIXES = {-4: "p", -3: "n", -2: "µ", -1: "m", 0: "", 1: "k", 2: "M", 3: "G"}
 
 
 def _shown(largest: float, unit: str, power: int = 1) -> tuple[float, str]:
-    """Factor and text of the unit that makes the largest number lie between 1 and 1000."""
+    """Factor and text of the unit that makes the largest number lie between 1 and 1000, of areas between 0.1 and 100000."""
     k = 0
     if np.isfinite(largest) and largest > 0:
-        k = int(np.clip(np.floor((np.log10(largest) + 1e-9) / (3 * power)), -4, 0 if unit == "m" else 3))
+        # Areas change by a million from unit to unit: from 0.1 mm² on they are in mm².
+        shift = 0 if power == 1 else 1
+        k = int(np.clip(np.floor((np.log10(largest) + shift + 1e-9) / (3 * power)), -4, 0 if unit == "m" else 3))
     return 10.0 ** (-3 * k * power), f"{_PREFIXES[k]}{unit}{'²' if power == 2 else ''}"
+
+
+def _told(plots: Any) -> str:
+    """Which figures there are."""
+    names = [name for name, value in vars(type(plots)).items() if name[0] != "_" and callable(value)]
+    return f"<plots: {', '.join(f'{name}()' for name in names)}>"
 
 
 #: Labels of the contact states, by number.
@@ -44,9 +56,13 @@ class Plots:
     def __init__(self, result: Result) -> None:
         self._result = result
 
-    def evolution(self, *, axes: Any = None, log_time: bool | None = None, label: str | None = None, **style: Any) -> Any:
-        """Contact area, approach, load and pressure over time (of a sweep over the velocity, logarithmic): four axes, in a new figure
-        or the `axes` that another evolution returned."""
+    def __repr__(self) -> str:
+        return _told(self)
+
+    def evolution(self, *, axes: Any = None, log_time: bool | None = None, label: str | None = None, **style: Any) -> npt.NDArray[Any]:
+        """Contact area, approach, load and pressure over time (of a sweep over the velocity): four axes, in a new figure or the `axes`
+        that another evolution returned. Time is logarithmic where half of the rows lie in the first tenth of the run, and where
+        `log_time` says so; the row at the time 0 is not shown then."""
         result = self._result
         if axes is None:
             import matplotlib.pyplot as plt
@@ -63,48 +79,52 @@ class Plots:
             ("pressure", "Pa", 1, [("mean", "mean_pressure"), ("largest", "max_pressure")]),
         ]
         over = result._table["time"]
+        if log_time is None:
+            log_time = result.is_sweep or _crowds_the_start(over)
+        # A logarithmic axis has no place for the row at the time 0.
+        rows = over > 0 if log_time else np.full(over.shape, True)
         for ax, (title, unit, power, names) in zip(np.ravel(np.asarray(axes, dtype=object)), panels):
             largest = max(float(np.max(np.abs(getattr(result, key)), initial=0.0)) for _, key in names)
             factor, text = _scale(ax, title, largest, unit, power)
             for n, (words, key) in enumerate(names):
                 told = ", ".join(part for part in (label, words) if part)
-                dashed = {"linestyle": "--"} if n == 1 and "linestyle" not in style and "ls" not in style and label else {}
-                ax.plot(over, getattr(result, key) * factor, label=told or None, **{**dashed, **style})
+                given = style if n == 0 else _second(style, label)
+                ax.plot(over[rows], getattr(result, key)[rows] * factor, label=told or None, **given)
             ax.set_xlabel("velocity [m/s]" if result.is_sweep else "time [s]")
             ax.set_ylabel(f"{title} [{text}]")
-            ax.margins(x=0)
-            if log_time or (log_time is None and result.is_sweep):
+            if log_time:
                 ax.set_xscale("log")
             if len(names) > 1 or label:
-                ax.legend(frameon=False)
-        return axes
+                _legend(ax)
+        drawn: npt.NDArray[Any] = np.asarray(axes, dtype=object)
+        return drawn
 
-    def load_displacement(self, *, ax: Any = None, **style: Any) -> Any:
+    def load_displacement(self, *, ax: Axes | None = None, **style: Any) -> Axes:
         """Load over approach."""
         return _load_displacement(self._result.approach, self._result.load, self._result.units("load"), ax, style)
 
-    def pressure(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Any = None, **style: Any) -> Any:
+    def pressure(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Axes | None = None, **style: Any) -> Axes:
         """Map of the pressure at the stored time nearest to `time` [s] (of a sweep: velocity [m/s]), or with that index; default the
         last. Of a line contact a curve over x."""
         return self._map("pressure", "contact pressure", "Pa", "inferno", (time, velocity, index), ax, style)
 
-    def gap(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Any = None, **style: Any) -> Any:
+    def gap(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Axes | None = None, **style: Any) -> Axes:
         """Map of the gap, as :meth:`pressure`."""
         return self._map("gap", "gap", "m", "viridis", (time, velocity, index), ax, style)
 
     def displacement(
-        self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Any = None, **style: Any
-    ) -> Any:
+        self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Axes | None = None, **style: Any
+    ) -> Axes:
         """Map of the displacement, as :meth:`pressure`."""
         return self._map("displacement", "displacement", "m", "viridis", (time, velocity, index), ax, style)
 
     def flattening(
-        self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Any = None, **style: Any
-    ) -> Any:
+        self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Axes | None = None, **style: Any
+    ) -> Axes:
         """Map of the permanent flattening, as :meth:`pressure`."""
         return self._map("flattening", "flattening", "m", "viridis", (time, velocity, index), ax, style)
 
-    def contact(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Any = None, **style: Any) -> Any:
+    def contact(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Axes | None = None, **style: Any) -> Axes:
         """Map of the contact state: open, in contact, at the hardness."""
         from matplotlib.colors import ListedColormap
         from matplotlib.patches import Patch
@@ -121,7 +141,6 @@ class Plots:
             ax.step(result.x * along[0], states, **{"where": "mid", **style})
             ax.set_xlabel(f"x [{along[1]}]")
             ax.set_yticks([0, 1, 2], [name for name, _ in _STATES.values()])
-            ax.margins(x=0)
             return ax
         colours = [colour for _, colour in _STATES.values()]
         _image(ax, states, result.size, {"cmap": ListedColormap(colours), "vmin": 0, "vmax": 2, **style})
@@ -131,7 +150,7 @@ class Plots:
             ax.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=3, frameon=False)
         return ax
 
-    def spots(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Any = None, **style: Any) -> Any:
+    def spots(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Axes | None = None, **style: Any) -> Axes:
         """Map of the contact spots by their number, the largest first, what is open left white."""
         at = (time, velocity, index)
         labels = self._result.spots(time=time, velocity=velocity, index=index)
@@ -155,10 +174,10 @@ class Plots:
         velocity: float | None = None,
         index: int | None = None,
         y: float | None = None,
-        field: str = "pressure",
-        ax: Any = None,
+        field: Field = "pressure",
+        ax: Axes | None = None,
         **style: Any,
-    ) -> Any:
+    ) -> Axes:
         """A field along x at `y` [m]; default the pressure through the middle."""
         result, at = self._result, (time, velocity, index)
         unit = "Pa" if field == "pressure" else "1" if field == "contact" else "m"
@@ -169,12 +188,12 @@ class Plots:
         values = values[:, int(np.argmin(np.abs(result.y - place)))]
         return self._line(field, unit, values, at, ax, style)
 
-    def _curve(self, name: str, unit: str, at: Any, ax: Any, style: dict[str, Any]) -> Any:
+    def _curve(self, name: str, unit: str, at: Any, ax: Axes | None, style: dict[str, Any]) -> Axes:
         """A field of a line contact over x."""
         values = self._field(name, at)
         return self._line(name, unit, np.where(np.isfinite(values), values, np.nan), at, ax, style)
 
-    def _line(self, name: str, unit: str, values: Any, at: Any, ax: Any, style: dict[str, Any]) -> Any:
+    def _line(self, name: str, unit: str, values: Any, at: Any, ax: Axes | None, style: dict[str, Any]) -> Axes:
         result = self._result
         ax = _axes(ax)
         along = _shown(result.size[0], "m")
@@ -182,24 +201,24 @@ class Plots:
         ax.plot(result.x * along[0], values * factor, **style)
         ax.set_xlabel(f"x [{along[1]}]")
         ax.set_ylabel(f"{name} [{text}]" if unit != "1" else name)
-        ax.margins(x=0)
         if "label" in style:
-            ax.legend(frameon=False)
+            _legend(ax)
         else:
             self._tell(ax, at)
         return ax
 
-    def _map(self, name: str, words: str, unit: str, colours: str, at: Any, ax: Any, style: dict[str, Any]) -> Any:
+    def _map(self, name: str, words: str, unit: str, colours: str, at: Any, ax: Axes | None, style: dict[str, Any]) -> Axes:
         if self._result.is_line:
             return self._curve(name, unit, at, ax, style)
         values = self._field(name, at)
         ax = _axes(ax)
         self._tell(ax, at)
+        style = _in_si(style, unit)
         image = _image(ax, np.where(np.isfinite(values), values, np.nan), self._result.size, {"cmap": colours, **style})
         _bar(ax, image, words, unit, values)
         return ax
 
-    def _field(self, name: str, at: Any) -> Any:
+    def _field(self, name: Any, at: Any) -> Any:
         time, velocity, index = at
         return self._result.field(name, time=time, velocity=velocity, index=index)
 
@@ -213,13 +232,33 @@ class Plots:
         ax.set_title(f"v = {result.field_times[n]:.4g} m/s" if result.is_sweep else f"t = {result.field_times[n]:.4g} s")
 
 
+def _second(style: dict[str, Any], label: str | None) -> dict[str, Any]:
+    """The style of the second curve of axes, which must differ from the first: by its line where colours are given or count the runs."""
+    if not label and "color" not in style and "c" not in style:
+        return style
+    line = style.get("linestyle", style.get("ls", "-"))
+    rest = {key: value for key, value in style.items() if key not in ("linestyle", "ls")}
+    if line in ("", " ", "none", "None"):
+        return {**style, "markerfacecolor": "none"}
+    return {**rest, "linestyle": ":" if line in ("--", "dashed") else "--"}
+
+
+def _crowds_the_start(times: Any) -> bool:
+    """Whether half of the times lie in the first tenth of the run: a linear axis would draw them on top of one another."""
+    after = times[times > 0]
+    return len(after) > 4 and bool(after[len(after) // 2] < 0.1 * after[-1])
+
+
 class CurvePlots:
     """Figures of elastic contacts under a list of loads; further arguments go to ``plot`` of matplotlib."""
 
     def __init__(self, curve: ElasticCurve) -> None:
         self._curve = curve
 
-    def area(self, *, corrected: bool = True, ax: Any = None, **style: Any) -> Any:
+    def __repr__(self) -> str:
+        return _told(self)
+
+    def area(self, *, corrected: bool = True, ax: Axes | None = None, **style: Any) -> Axes:
         """Contact fraction over mean pressure; with `corrected` that of the area less its perimeter's share."""
         curve, ax = self._curve, _axes(ax)
         factor, text = _scale(ax, "pressure", float(np.max(curve.mean_pressure)), "Pa")
@@ -230,10 +269,10 @@ class CurvePlots:
         ax.set_xlabel(f"mean pressure [{text}]")
         ax.set_ylabel("contact area [% of nominal]")
         if "label" in style:
-            ax.legend(frameon=False)
+            _legend(ax)
         return ax
 
-    def load_displacement(self, *, ax: Any = None, **style: Any) -> Any:
+    def load_displacement(self, *, ax: Axes | None = None, **style: Any) -> Axes:
         """Load over approach."""
         curve = self._curve
         return _load_displacement(curve.approach, curve.load, "N/m" if curve[0].is_line else "N", ax, {"marker": ".", **style})
@@ -246,7 +285,10 @@ class SurfacePlots:
     def __init__(self, surface: Surface) -> None:
         self._surface = surface
 
-    def heights(self, *, ax: Any = None, **style: Any) -> Any:
+    def __repr__(self) -> str:
+        return _told(self)
+
+    def heights(self, *, ax: Axes | None = None, **style: Any) -> Axes:
         """Map of the heights about their mean, undefined points left white; of a profile a curve."""
         surface = self._surface
         z = np.where(np.isfinite(surface.heights), surface.heights, np.nan)
@@ -258,36 +300,38 @@ class SurfacePlots:
             ax.plot(surface.x * along[0], z * factor, **style)
             ax.set_xlabel(f"x [{along[1]}]")
             ax.set_ylabel(f"height [{text}]")
-            ax.margins(x=0)
             return ax
-        image = _image(ax, z, surface.size, {"cmap": "viridis", **style})
+        image = _image(ax, z, surface.size, {"cmap": "viridis", **_in_si(style, "m")})
         _bar(ax, image, "height", "m", z)
         return ax
 
-    def power_spectrum(self, *, per_decade: int = 16, ax: Any = None, **style: Any) -> Any:
+    def power_spectrum(self, *, per_decade: int = 16, ax: Axes | None = None, **style: Any) -> Axes:
         """Radially averaged power spectrum over wavenumber, both logarithmic; of a profile its own."""
         q, c = self._surface.power_spectrum(per_decade)
         return _spectrum(q, c, "C1 [m³]" if self._surface.is_line else "C [m⁴]", ax, style)
 
-    def power_spectrum_1d(self, *, direction: str = "x", ax: Any = None, **style: Any) -> Any:
+    def power_spectrum_1d(self, *, direction: str = "x", ax: Axes | None = None, **style: Any) -> Axes:
         """Mean power spectrum of the profiles along "x" or "y"."""
         return _spectrum(*self._surface.power_spectrum_1d(direction), "C1 [m³]", ax, style)
 
-    def power_spectrum_2d(self, *, ax: Any = None, **style: Any) -> Any:
+    def power_spectrum_2d(self, *, ax: Axes | None = None, **style: Any) -> Axes:
         """Map of the logarithm of the power spectrum over the wavenumbers along x and y."""
         qx, qy, c = self._surface.power_spectrum_2d()
         ax = _axes(ax)
         # Below is the rounding of the transform, where a synthetic surface has no waves.
         shown = np.log10(np.where(c > 1e-20 * c.max(initial=0.0), c, np.nan))
         half = [0.5 * (q[1] - q[0]) if len(q) > 1 else 0.5 for q in (qx, qy)]
-        extent = (qx[0] - half[0], qx[-1] + half[0], qy[0] - half[1], qy[-1] + half[1])
+        # Wave numbers of 1/µm, 1/mm or 1/m.
+        longest = max(qx[-1] + half[0], qy[-1] + half[1])
+        factor, text = (1e-6, "µm") if longest >= 1e6 else (1e-3, "mm") if longest >= 1e3 else (1.0, "m")
+        extent = tuple(end * factor for end in (qx[0] - half[0], qx[-1] + half[0], qy[0] - half[1], qy[-1] + half[1]))
         image = ax.imshow(shown.T, **{"origin": "lower", "extent": extent, "interpolation": "nearest", "cmap": "viridis", **style})
-        ax.set_xlabel("qx [1/m]")
-        ax.set_ylabel("qy [1/m]")
-        ax.figure.colorbar(image, ax=ax, label="log10 of the power spectrum C [m⁴]")
+        ax.set_xlabel(f"qx [1/{text}]")
+        ax.set_ylabel(f"qy [1/{text}]")
+        _beside(ax, image, "log10 of the power spectrum C [m⁴]")
         return ax
 
-    def autocorrelation(self, *, periodic: bool | None = None, ax: Any = None, **style: Any) -> Any:
+    def autocorrelation(self, *, periodic: bool | None = None, ax: Axes | None = None, **style: Any) -> Axes:
         """Map of the autocorrelation function over the lags."""
         found = self._surface.autocorrelation(periodic=periodic)
         ax = _axes(ax)
@@ -298,10 +342,10 @@ class SurfacePlots:
         image = ax.imshow(found.values.T, **{**settings, **style})
         ax.set_xlabel(f"lag along x [{text}]")
         ax.set_ylabel(f"lag along y [{text}]")
-        ax.figure.colorbar(image, ax=ax, label="autocorrelation")
+        _beside(ax, image, "autocorrelation")
         return ax
 
-    def height_distribution(self, *, bins: int = 100, ax: Any = None, **style: Any) -> Any:
+    def height_distribution(self, *, bins: int = 100, ax: Axes | None = None, **style: Any) -> Axes:
         """Density of the points over height."""
         z, density = self._surface.height_distribution(bins)
         ax = _axes(ax)
@@ -311,7 +355,7 @@ class SurfacePlots:
         ax.set_ylabel(f"density [1/{text}]")
         return ax
 
-    def bearing_curve(self, *, ax: Any = None, **style: Any) -> Any:
+    def bearing_curve(self, *, ax: Axes | None = None, **style: Any) -> Axes:
         """Height over the share of the surface above it."""
         z, share = self._surface.bearing_curve()
         ax = _axes(ax)
@@ -323,7 +367,7 @@ class SurfacePlots:
         return ax
 
 
-def _load_displacement(approach: Any, load: Any, unit: str, ax: Any, style: dict[str, Any]) -> Any:
+def _load_displacement(approach: Any, load: Any, unit: str, ax: Axes | None, style: dict[str, Any]) -> Axes:
     ax = _axes(ax)
     across = _scale(ax, "load", float(np.max(np.abs(load), initial=0.0)), unit)
     along = _scale(ax, "approach", float(np.max(np.abs(approach), initial=0.0)), "m", axis="x")
@@ -331,19 +375,32 @@ def _load_displacement(approach: Any, load: Any, unit: str, ax: Any, style: dict
     ax.set_xlabel(f"approach [{along[1]}]")
     ax.set_ylabel(f"load [{across[1]}]")
     if "label" in style:
-        ax.legend(frameon=False)
+        _legend(ax)
     return ax
 
 
-def _spectrum(q: Any, c: Any, words: str, ax: Any, style: dict[str, Any]) -> Any:
+def _two_or_five(value: float) -> str:
+    """2 and 5 times a power of ten in the words of matplotlib; nothing for other numbers."""
+    power = math.floor(math.log10(value) + 1e-9) if value > 0 else 0
+    first = round(value / 10.0**power)
+    return f"${first}\\times10^{{{power}}}$" if first in (2, 5) else ""
+
+
+def _spectrum(q: Any, c: Any, words: str, ax: Axes | None, style: dict[str, Any]) -> Axes:
+    from matplotlib.ticker import FuncFormatter
+
     ax = _axes(ax)
     # Below is the rounding of the transform, where a synthetic surface has no waves.
     seen = c > 1e-20 * np.max(c, initial=0.0)
     ax.loglog(q[seen], c[seen], **{"marker": ".", **style})
+    ends = ax.get_xlim()
+    few = ends[1] < 300.0 * ends[0]
+    # Within a decade or two there are few powers of ten; all numbers between them would overlap.
+    ax.xaxis.set_minor_formatter(FuncFormatter(lambda value, _: _two_or_five(value) if few else ""))
     ax.set_xlabel("wavenumber q [1/m]")
     ax.set_ylabel(f"power spectrum {words}")
     if "label" in style:
-        ax.legend(frameon=False)
+        _legend(ax)
     return ax
 
 
@@ -362,10 +419,36 @@ def _bar(ax: Any, image: Any, words: str, unit: str, values: Any) -> None:
     """A colour bar in a unit that suits the values."""
     from matplotlib.ticker import FuncFormatter
 
-    finite = np.abs(values[np.isfinite(values)])
-    factor, text = _shown(float(finite.max(initial=0.0)), unit)
-    written = FuncFormatter(lambda value, _: f"{value * factor:.6g}")
-    ax.figure.colorbar(image, ax=ax, label=f"{words} [{text}]", format=written)
+    finite = values[np.isfinite(values)]
+    factor, text = _shown(float(np.abs(finite).max(initial=0.0)), unit)
+    written = FuncFormatter(lambda value, _: f"{value * factor + 0.0:.6g}".replace("-", "\N{MINUS SIGN}"))
+    low, high = image.get_clim()
+    if finite.size and np.ptp(finite) == 0.0 and low == high:
+        # One value everywhere: the colours have no width of their own.
+        only = float(finite.flat[0])
+        image.set_clim(only - 1.0, only + 1.0)
+        _beside(ax, image, f"{words} [{text}]", format=written, ticks=[only])
+        return
+    _beside(ax, image, f"{words} [{text}]", format=written)
+
+
+def _beside(ax: Any, image: Any, label: str, **keys: Any) -> None:
+    """A colour bar, about as high as the map: a wide map fills a part of the height of its axes only."""
+    left, right, bottom, top = image.get_extent()
+    place = ax.get_window_extent()
+    # The bar takes a sixth of the width.
+    share = min(1.0, 0.83 * place.width / place.height * abs((top - bottom) / (right - left)))
+    ax.figure.colorbar(image, ax=ax, label=label, shrink=share, aspect=max(20.0 * share, 4.0), **keys)
+
+
+def _legend(ax: Any) -> None:
+    """A legend above the axes, where it covers no curve."""
+    ax.legend(frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.1, fontsize="small")
+
+
+def _in_si(style: dict[str, Any], unit: str) -> dict[str, Any]:
+    """Limits of a map in SI units, where they carry units."""
+    return {key: number(key, value, unit) if key in ("vmin", "vmax") and value is not None else value for key, value in style.items()}
 
 
 def _scale(ax: Any, words: str, largest: float, unit: str, power: int = 1, axis: str = "y") -> tuple[float, str]:
@@ -380,7 +463,7 @@ def _scale(ax: Any, words: str, largest: float, unit: str, power: int = 1, axis:
     return _shown(largest, unit, power)
 
 
-def fitted(fit: Fit, ax: Any) -> Any:
+def fitted(fit: Fit, ax: Axes | None) -> Any:
     """Points and curves of a fit."""
     ax = _axes(ax)
     dma = fit.kind == "dma"
@@ -394,14 +477,13 @@ def fitted(fit: Fit, ax: Any) -> Any:
     letter = "E" if fit.modulus == "young" else "G"
     names = {"relaxation": f"{letter}(t) [Pa]", "creep": f"{'D' if letter == 'E' else 'J'}(t) [1/Pa]"}
     ax.set_ylabel(names.get(fit.kind, f"{letter}′, {letter}″ [Pa]"))
-    ax.legend(frameon=False)
+    _legend(ax)
     return ax
 
 
-def _axes(ax: Any) -> Any:
-    if ax is not None:
-        return ax
-    import matplotlib.pyplot as plt
+def _axes(ax: Axes | None) -> Axes:
+    if ax is None:
+        import matplotlib.pyplot as plt
 
-    _, ax = plt.subplots(layout="constrained")
+        _, ax = plt.subplots(layout="constrained")
     return ax

@@ -1,0 +1,50 @@
+"""Type checkers find misspelt words, and accept what works."""
+
+import os
+import pathlib
+import subprocess
+import sys
+
+import pytest
+
+import asperity as asp
+
+pytest.importorskip("mypy", reason="mypy is not installed")
+
+RIGHT = """
+import asperity as asp, numpy as np
+ball = asp.Surface.sphere(cells=(8, 8), size=(1e-3, 1e-3), radius=1e-2)
+total = sum([ball, ball + np.zeros((8, 8)), -ball])
+result = asp.open("a.zarr")
+pressure = result.field("pressure")
+asp.fit_relaxation(np.ones(3), np.ones(3), modulus="shear")
+code: str = result.findings[0].code
+asp.cite("bibtex")
+ball.level("plane")
+asp.elastic(ball, 1e6, load=1.0).stiffness
+"""
+WRONG = [
+    'asp.open("a.zarr").field("presure")',
+    'ball.level("plan")',
+    'asp.fit_relaxation(np.ones(3), np.ones(3), modulus="shearing")',
+    'asp.fit_dma(np.ones(3), np.ones(3), np.ones(3), moduli="storge")',
+    'asp.cite("bibtx")',
+    'asp.open("a.zarr").findings[0].sevrity',
+    'ball + "a"',
+    'asp.elastic(ball, 1e6, load=1.0).stifness',
+]
+
+
+def test_misspelt_words_are_found(tmp_path):
+    text = RIGHT + "\n".join(WRONG) + "\n"
+    (tmp_path / "script.py").write_text(text)
+    package = pathlib.Path(asp.__file__).parent.parent
+    # mypy finds installed packages by itself, and refuses to be told where.
+    path = {} if "site-packages" in package.parts else {"MYPYPATH": str(package)}
+    found = subprocess.run(
+        [sys.executable, "-m", "mypy", "--strict", "--no-error-summary", "script.py"],
+        cwd=tmp_path, env={**os.environ, **path}, capture_output=True, text=True,
+    )  # fmt: skip
+    lines = [int(line.split(":")[1]) for line in found.stdout.splitlines() if line.startswith("script.py") and ": error:" in line]
+    first = RIGHT.count("\n") + 1
+    assert lines == list(range(first, first + len(WRONG))), found.stdout + found.stderr

@@ -50,7 +50,6 @@ pub fn fit_indentation<'py>(
         layer: thin.map(sample).transpose()?,
         springs,
         limit,
-        ..IndentationOptions::default()
     };
     let profile = choose_among("profile", profile, &profiles)?;
     let record = IndentationRecord { times: &times, loads: &loads, depths: &depths };

@@ -195,3 +195,17 @@ def test_messages_say_plain_numbers_and_units():
         asp.Surface(Q(np.zeros((4, 4)), "dimensionless"), size=(1.0, 1.0))
     with pytest.raises(FileNotFoundError, match="nope.toml"):
         asp.run("nope.toml")
+
+
+def test_degrees_celsius_for_kelvin_warn(recwarn):
+    with pytest.warns(asp.ResultWarning, match="20 °C is 293.15 K"):
+        shift = asp.wlf(c1=8.86, c2=101.6, reference=20.0)
+    with pytest.warns(asp.ResultWarning, match="reference is 25 K"):
+        asp.arrhenius(activation_energy=1e5, reference=25.0)
+    material = asp.Zener(shear=1e6, shear_kelvin=1e6, retardation_time=1.0, poisson=0.5, shift=shift)
+    ball = asp.Surface.sphere(cells=(8, 8), size=(1e-3, 1e-3), radius=1e-2)
+    with pytest.warns(asp.ResultWarning, match="temperature is 25 K"):
+        asp.solve(ball, material, load=1e-3, times=[1.0], temperature=25.0)
+    recwarn.clear()
+    asp.wlf(c1=8.86, c2=101.6, reference=Q(20.0, "degree_Celsius"))
+    assert not recwarn.list

@@ -255,7 +255,8 @@ class ElasticContact(Sealed):
     def __getstate__(self) -> dict[str, Any]:
         # What is planned stays where it is; the copy has fields of its own.
         self._whole("a copy")
-        return {**self.__dict__, "_planned": None, "_lent": {}}
+        own = {name: np.array(values) for name, (values, _) in self._lent.items()}
+        return {**self.__dict__, "_planned": None, "_lent": {}, **own}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)

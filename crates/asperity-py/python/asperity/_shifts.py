@@ -11,8 +11,10 @@ from __future__ import annotations
 
 import math
 import os
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +22,7 @@ import numpy.typing as npt
 from . import _core
 from ._arrays import Floats, array, line, number, points
 from ._core import CaseError
+from ._findings import ResultWarning
 from ._units import carries
 
 
@@ -59,12 +62,12 @@ class Shift:
 
 def wlf(*, c1: float, c2: float, reference: float) -> Shift:
     """log10 a_T = -c1 (T - T_r)/(c2 + T - T_r), c2 and the reference temperature T_r in K."""
-    return _checked(Shift("wlf", (number("c1", c1), number("c2", c2), number("reference", reference))))
+    return _checked(Shift("wlf", (number("c1", c1), number("c2", c2), _kelvin("reference", reference, 3))))
 
 
 def arrhenius(*, activation_energy: float, reference: float) -> Shift:
     """ln a_T = (E_a/R)(1/T - 1/T_r), the activation energy in J/mol, the reference temperature in K."""
-    numbers = (number("activation_energy", activation_energy), number("reference", reference))
+    numbers = (number("activation_energy", activation_energy), _kelvin("reference", reference, 3))
     return _checked(Shift("arrhenius", numbers))
 
 
@@ -82,6 +85,19 @@ def shift_table(pairs: Sequence[tuple[float, float]] | str | os.PathLike[str]) -
         return shift
     ln10 = math.log(10.0)
     return _checked(Shift("table", (), tuple((t, decades * ln10) for t, decades in points("points of the shift", pairs, ("K", "")))))
+
+
+#: Below this temperature no curves of a polymer are shifted [K]: it is one in degrees Celsius.
+_COLD = 100.0
+
+
+def _kelvin(what: str, value: Any, stacklevel: int) -> float:
+    """A temperature [K], with a warning where it looks like one in degrees Celsius."""
+    kelvin = number(what, value)
+    if 0.0 < kelvin < _COLD and not carries(value):
+        words = f"{what} is {kelvin:g} K, which is {kelvin - 273.15:g} °C: temperatures are in K, and {kelvin:g} °C is {kelvin + 273.15:g} K"
+        warnings.warn(f"{words} [unlikely-unit]", ResultWarning, stacklevel=stacklevel)
+    return kelvin
 
 
 def _checked(shift: Shift) -> Shift:
@@ -103,7 +119,7 @@ def temperatures(value: float | Sequence[tuple[float, float]] | None) -> list[tu
     if value is None:
         return []
     if carries(value) or (not isinstance(value, (list, tuple)) and np.ndim(value) == 0):
-        return [(0.0, number("temperature", value))]
+        return [(0.0, _kelvin("temperature", value, 5))]
     pairs = points("temperature", value, ("s", "K"))
     if not pairs:
         raise CaseError("temperature holds no points: give a number [K] or (time [s], temperature [K]) pairs")

@@ -276,6 +276,7 @@ def march(
     steady = _motion is not None and _motion.steady
     include = [] if keep.times is None or steady else [t for t in keep.times.tolist() if t > 0]
     of_motion = [] if _motion is None else _motion.quantities(shape, boundary)
+    kelvin = temperatures(temperature)
     core = _core.March(
         gap=as_plane(gap),
         size=list(shape.size),
@@ -286,7 +287,7 @@ def march(
         times=grid.kind,
         times_numbers=list(grid.numbers),
         include=include,
-        temperatures=temperatures(temperature),
+        temperatures=kelvin,
         scheme=scheme,
         method=method,
         tolerance=number("tolerance", tolerance),
@@ -323,7 +324,7 @@ def march(
     if _motion is not None:
         setup["motion"] = _motion.setup()
     if temperature is not None:
-        setup["temperature"] = temperatures(temperature)
+        setup["temperature"] = kelvin
     if any(isinstance(body, Body) for body in bodies):
         misfit = core.layer_misfit()
         setup["layer_separable"], setup["layer_misfit"] = misfit is None, misfit or 0.0

@@ -138,7 +138,7 @@ pub fn fit_file<'py>(
     let mut request = options.request(curves.measure)?;
     if let (ShiftRequest::None, Some(reference)) = (&request.shift, reference_of_several(&curves)) {
         curves.notes.push(format!(
-            "no shift is given: it is estimated from the sweeps, about {reference:.2} K; shift= says it"
+            "no shift is given, so it is estimated from the sweeps, about {reference:.2} K; give shift= to set it"
         ));
         request.shift = ShiftRequest::Estimate(reference);
     }

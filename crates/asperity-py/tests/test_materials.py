@@ -104,7 +104,9 @@ def test_sweeps_of_a_file_are_shifted_by_an_estimate_or_a_table(tmp_path):
     same = asp.fit_file(path, modulus="shear", bulk_modulus=2e9, shift="estimated", reference=reference)
     assert fit.shift == same.shift and fit.terms == same.terms and any("estimated" in note for note in fit.notes)
     law = asp.wlf(**WLF)
-    rows = [(kelvin - 273.15, np.log10(law.factor(kelvin)).item()) for kelvin in fit.temperatures]
+    # A degree beyond both ends, so that these do not lie outside by rounding.
+    points = sorted([min(fit.temperatures) - 1.0, *fit.temperatures, max(fit.temperatures) + 1.0])
+    rows = [(kelvin - 273.15, np.log10(law.factor(kelvin)).item()) for kelvin in points]
     np.savetxt(tmp_path / "shift.csv", rows, delimiter=",", header="T [°C],log_aT", comments="", encoding="utf-8")
     table = asp.shift_table(tmp_path / "shift.csv")
     assert np.allclose(table.factor(fit.temperatures), law.factor(fit.temperatures), rtol=1e-9)

@@ -209,3 +209,15 @@ def test_degrees_celsius_for_kelvin_warn(recwarn):
     recwarn.clear()
     asp.wlf(c1=8.86, c2=101.6, reference=Q(20.0, "degree_Celsius"))
     assert not recwarn.list
+
+
+def test_the_window_of_a_fit_has_units():
+    omega = np.geomspace(0.01, 100, 40)
+    moduli = ZENER.storage_loss(omega)
+    plain = asp.fit_dma(omega, *moduli, angular=True, window=(0.1, 10.0))
+    same = asp.fit_dma(omega, *moduli, angular=True, window=(Q(0.1, "radian / second"), Q(10.0 / TURN, "hertz")))
+    assert same.terms == plain.terms and len(same.x) == len(plain.x) < 40
+    with pytest.raises(asp.CaseError, match="window"):
+        asp.fit_dma(omega, *moduli, window=(Q(0.1, "second"), Q(1.0, "second")))
+    relaxed = asp.fit_relaxation(omega, ZENER.relaxation_modulus(omega), window=(Q(0.1, "second"), Q(10.0, "second")))
+    assert len(relaxed.x) == len(plain.x)

@@ -23,7 +23,7 @@ from ._core import CaseError
 from ._materials import Creep, Material, Prony
 from ._shifts import Shift, made
 from ._words import LongTime, Measure, Moduli
-from ._units import frequency as angular_frequency, has_unit
+from ._units import bare, frequency as angular_frequency, has_unit
 
 #: Temperatures closer than this belong to one sweep [K], and those of one sweep spread by no more.
 _SAME, _SPREAD = 1.0, 3.0
@@ -335,7 +335,7 @@ def fit_file(
         place = None if told is not None or at is None else count(f"column of {role}", at)
         said.append((role, told, place, given_units.get(role)))
     rest = _rest(locals())
-    options = _options(rest)
+    options = _options(rest, kind)
     return _made(_core.fit_file(os.fspath(path), kind, said, sheet, options), rest)
 
 
@@ -347,7 +347,16 @@ def _rest(given: dict[str, Any]) -> dict[str, Any]:
     return {key: given[key] for key in names if key in given}
 
 
-def _options(rest: dict[str, Any]) -> dict[str, Any]:
+def _window(given: Any, kind: str | None) -> list[float] | None:
+    """The ends of the window [s], of a DMA [rad/s]; with a unit only where the kind is known."""
+    if given is None:
+        return None
+    if has_unit(given) and kind is not None:
+        given = angular_frequency("window", given, angular=True) if kind == "dma" else bare("window", given, "s")
+    return list(pair("window", given))
+
+
+def _options(rest: dict[str, Any], kind: str | None) -> dict[str, Any]:
     shift, reference = rest["shift"], rest["reference"]
     estimated = isinstance(shift, str) and shift == "estimated"
     if shift is not None and not estimated and not isinstance(shift, Shift):
@@ -361,7 +370,7 @@ def _options(rest: dict[str, Any]) -> dict[str, Any]:
         "measure": rest["modulus"],
         "shift": shift._words if isinstance(shift, Shift) else None,
         "estimate": number("reference", reference) if estimated else None,
-        "window": None if rest["window"] is None else list(pair("window", rest["window"])),
+        "window": _window(rest["window"], kind),
         "per_decade": number("per_decade", rest["per_decade"]),
         "margin": number("margin", rest["margin"]),
         "long_time": rest["long_time"],
@@ -386,7 +395,7 @@ def _fit(kind: str, x: Any, values: list[Any], temperature: Any, **rest: Any) ->
             f"the data hold {len(sweeps)} temperatures ({known}); state how times depend on temperature: "
             "shift=asperity.wlf(c1=..., c2=..., reference=...), or shift='estimated' with reference=..."
         )
-    return _made(_core.fit(kind, sweeps, _options(rest)), rest)
+    return _made(_core.fit(kind, sweeps, _options(rest, kind)), rest)
 
 
 def _sweeps(x: Floats, curves: list[Floats], temperature: Any) -> list[tuple[float | None, Floats, list[Floats]]]:

@@ -26,7 +26,8 @@ pub struct Axis {
     pub range: Option<[f64; 2]>,
 }
 
-/// A logarithmic axis of so many decades keeps the unit without a prefix: its numbers are powers of ten in any case.
+/// A logarithmic axis of more decades on both sides of 1 keeps the unit without a prefix: its numbers are powers of ten in any
+/// case.
 const DECADES_WITHOUT_PREFIX: f64 = 6.0;
 
 impl Axis {
@@ -96,7 +97,7 @@ impl Ruler {
         }
         let ends = [low, high];
         let largest = if log { 10f64.powf(high) } else { low.abs().max(high.abs()) };
-        let plain = log && high - low > DECADES_WITHOUT_PREFIX;
+        let plain = log && high - low > DECADES_WITHOUT_PREFIX && low < 0.0 && high > 0.0;
         let mut unit = own.unwrap_or_else(|| shown(&axis.unit, if plain { 1.0 } else { largest }));
         if axis.unit.is_empty() && !log {
             let power = 3 * ((largest.log10() + 1e-9) / 3.0).floor() as i32;

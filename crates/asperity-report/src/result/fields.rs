@@ -9,11 +9,17 @@ use crate::figure::{Colours, Figure, Map, OPEN, Panel};
 pub(super) const CONTACT_STATES: [(&str, [u8; 3]); 3] =
     [("open", OPEN), ("contact", [0, 114, 178]), ("at hardness", [213, 94, 0])];
 
-pub(super) fn map(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, StoreError> {
+/// The map of a field at an instant, for colours by the logarithm where `log`.
+pub(super) fn map(reader: &Reader, kind: FieldKind, at: At, log: bool) -> Result<Figure, StoreError> {
     if reader.header().grid.is_line() {
         return line::field(reader, kind, at);
     }
-    let values = reader.field(kind, at)?;
+    let mut values = reader.field(kind, at)?;
+    if kind == FieldKind::Gap && log && reader.contact_kind().is_some() {
+        // In contact the gap is closed to rounding errors, which have decades of their own.
+        let states = reader.contact_states(at)?;
+        values.zip_mut_with(&states, |gap, state| *gap = if *state > 0 { 0.0 } else { *gap });
+    }
     let index = reader.index(at)?;
     let (title, colours) = match kind {
         FieldKind::Pressure => ("Pressure", Colours::Pressure),

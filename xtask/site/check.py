@@ -6,12 +6,11 @@
 import functools
 import http.server
 import shutil
-import sys
 import threading
 from pathlib import Path
 from urllib.parse import unquote, urljoin, urlsplit
 
-from playwright.sync_api import sync_playwright
+from playwright.sync_api import TimeoutError, sync_playwright
 
 SITE = Path(__file__).parents[2] / "target/site"
 BROWSERS = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome"]
@@ -112,7 +111,12 @@ class Checks:
         for query, wanted in QUERIES.items():
             self.page.goto(self.address + "index.html")
             self.page.fill("input.md-search__input", query)
-            self.page.locator(f".md-search-result__link[href*='{wanted}']").first.wait_for(state="attached", timeout=20000)
+            found = self.page.locator(f".md-search-result__link[href*='{wanted}']").first
+            try:
+                # A busy machine takes a while to read the index.
+                found.wait_for(state="attached", timeout=120_000)
+            except TimeoutError:
+                self.fault(f"{query!r} does not find {wanted}")
 
     def dark(self):
         """The switch to dark changes the background, and stays."""

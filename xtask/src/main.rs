@@ -153,15 +153,21 @@ fn interpreter(folder: &str) -> PathBuf {
     root().join(folder).join(programs).join(format!("python{}", std::env::consts::EXE_SUFFIX))
 }
 
-/// Builds the Python package with this profile of cargo and installs it in the environment of `python`.
-fn wheel(python: &Path, profile: &str) -> Done {
+/// Builds the Python package with this profile of cargo, and returns its wheel.
+fn wheel(python: &Path, profile: &str) -> Result<PathBuf, String> {
     let wheels = root().join("target/wheels");
     let _ = std::fs::remove_dir_all(&wheels);
     run(Command::new(python).args(["-m", "maturin", "build", "--profile", profile, "--out"]).arg(&wheels))?;
     let built = std::fs::read_dir(&wheels).map_err(|error| format!("{}: {error}", wheels.display()))?;
-    let wheel =
-        built.flatten().map(|entry| entry.path()).find(|path| path.extension().is_some_and(|e| e == "whl"));
-    let wheel = wheel.ok_or("maturin made no wheel")?;
+    let mut built = built.flatten().map(|entry| entry.path());
+    built
+        .find(|path| path.extension().is_some_and(|e| e == "whl"))
+        .ok_or_else(|| "maturin made no wheel".into())
+}
+
+/// Builds the Python package and installs it in the environment of `python`, which has what it needs.
+fn install(python: &Path, profile: &str) -> Done {
+    let wheel = wheel(python, profile)?;
     run(Command::new(python)
         .args(["-m", "pip", "install", "--quiet", "--force-reinstall", "--no-deps"])
         .arg(&wheel))
@@ -170,7 +176,7 @@ fn wheel(python: &Path, profile: &str) -> Done {
 /// Installs the Python package in the environment of `python`, and tests it there.
 fn package_tests(python: &Path) -> Done {
     // The test profile shares what the other tests compile.
-    wheel(python, "dev")?;
+    install(python, "dev")?;
     run(Command::new(python).args(["-m", "mypy", "--strict", "crates/asperity-py/python/asperity"]))?;
     run(Command::new(python).args(["-m", "mypy.stubtest", "asperity._core"]))?;
     // Its numbers are those of the command, which must be of the same source.

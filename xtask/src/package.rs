@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::{Done, cargo, python_in, root, run};
+use crate::{Done, cargo, python_in, root, run, wheel};
 
 /// What can be packaged, and how.
 type Part = (&'static str, fn() -> Done);
@@ -101,17 +101,14 @@ fn python() -> Done {
     let folder = folder()?;
     let maker = python_in("target/packages/maker", &["maturin>=1.9,<2"])?;
     run(Command::new(&maker).args(["-m", "maturin", "sdist", "--out"]).arg(&folder))?;
-    run(Command::new(&maker)
-        .args(["-m", "maturin", "build", "--release", "--locked", "--out"])
-        .arg(&folder))?;
+    let wheel = wheel(&maker, "release")?;
+    let to = folder.join(wheel.file_name().expect("a file"));
+    std::fs::copy(&wheel, &to).map_err(|error| format!("{}: {error}", to.display()))?;
     // An environment of its own: only what the wheel asks for is there.
     let environment = root().join("target/packages/user");
     let _ = std::fs::remove_dir_all(&environment);
     let user = python_in("target/packages/user", &["pytest"])?;
-    run(Command::new(&user)
-        .args(["-m", "pip", "install", "--quiet", "--find-links"])
-        .arg(&folder)
-        .args(["--pre", &format!("asperity=={}", env!("CARGO_PKG_VERSION"))]))?;
+    run(Command::new(&user).args(["-m", "pip", "install", "--quiet"]).arg(&wheel))?;
     let tests = root().join("crates/asperity-py/tests/test_command.py");
     let test = std::path::absolute(tests).map_err(|error| error.to_string())?;
     let mut pytest = Command::new(&user);

@@ -3,13 +3,13 @@
 
 use std::process::Command;
 
-use crate::{Done, python_in, run, wheel};
+use crate::{Done, install, python_in, run};
 
 pub fn site(check: bool) -> Done {
     // The same packages in the same versions everywhere: the site is read by its checks.
     let python = python_in("target/site-python", &["-r", "xtask/site/requirements.txt"])?;
     // It has the command too.
-    wheel(&python, "release")?;
+    install(&python, "release")?;
     let program = python.with_file_name(format!("asperity{}", std::env::consts::EXE_SUFFIX));
     let program = std::path::absolute(program).map_err(|error| error.to_string())?;
     run(Command::new(&python).arg("xtask/site/build.py").env("ASPERITY_COMMAND", program))?;

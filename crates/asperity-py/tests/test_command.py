@@ -37,7 +37,7 @@ def test_it_runs_a_case_from_any_folder(command, tmp_path):
     (tmp_path / "case.toml").write_text(CASE % dict(cells=32, steps=4))
     ran = run([*command, "run", "case.toml", "-o", "a.zarr", "--json"], cwd=tmp_path)
     assert ran.returncode == 0, ran.stderr
-    assert json.loads(ran.stdout)["status"] == "done"
+    assert json.loads(ran.stdout)["status"] == "complete"
     same = asp.run(tmp_path / "case.toml", output=tmp_path / "b.zarr")
     assert (asp.open(tmp_path / "a.zarr").approach == same.approach).all()
 

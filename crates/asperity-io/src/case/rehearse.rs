@@ -13,8 +13,9 @@ use super::Case;
 /// Cells along the longer side, of a plane and of a line.
 const CELLS: usize = 64;
 const CELLS_OF_LINE: usize = 256;
-/// Convolutions after which the rest of the rows is taken to be like those before.
+/// Convolutions, and rows, after which the rest of the rows is taken to be like those before.
 const ENOUGH: usize = 1500;
+const ENOUGH_ROWS: usize = 3000;
 
 /// What a rehearsal found.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,7 +47,7 @@ impl Case {
         let mut count = |convolutions: usize| {
             found.rows += 1;
             found.convolutions += convolutions;
-            found.convolutions < ENOUGH
+            found.convolutions < ENOUGH && found.rows < ENOUGH_ROWS
         };
         let share = match coarse.steady_of(&parts, &simulation).ok()? {
             Some(motion) => {

@@ -326,7 +326,7 @@ class Prony(Material):
             raise CaseError(
                 "give equilibrium with terms of (modulus, time), or instantaneous with terms of (fraction, time)"
             )
-        pairs = points("terms", terms, ("Pa" if equilibrium is not None else "", "s"))
+        pairs = points("terms", terms, ("Pa" if equilibrium is not None else "", "s")) if len(terms) else []
         given["terms"] = pairs
         if equilibrium is not None:
             super().__init__("prony", modulus, [number("equilibrium", equilibrium)], pairs, given=given)

@@ -224,11 +224,11 @@ fn too_long(plan: &Plan, course: &Piece) -> Finding {
     let coarse =
         if course.what == "load rises" { "pressures and energies" } else { "load, approach and energies" };
     let text = format!(
-        "Where the {} within {}{place} there are {} steps, less than {}, while the material relaxes: {coarse} are coarse \
+        "Where the {} within {}{place} the run has {}, less than {}, while the material relaxes: {coarse} are coarse \
          there. Take more steps, or spacing = \"adaptive\".",
         course.what,
         si(course.length, "s"),
-        course.steps,
+        if course.steps == 1 { "1 step".to_owned() } else { format!("{} steps", course.steps) },
         course.least
     );
     let finding = Finding::warning(STEPS_TOO_LONG, course.steps as f64, course.least as f64, text);

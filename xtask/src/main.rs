@@ -126,7 +126,7 @@ fn supply_chain() -> Done {
         eprintln!("xtask: cargo-deny is not installed: licences and advisories are not checked");
         return Ok(());
     }
-    run(&mut cargo(&["deny", "check"]))
+    run(&mut cargo(&["deny", "--workspace", "check"]))
 }
 
 /// A Python with the packages that the checks need, in a virtual environment below target/.

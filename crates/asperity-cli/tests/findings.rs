@@ -123,7 +123,7 @@ fn check_repeats_what_a_slip_would_hide_in() {
     }
     // a^3 = 3 R W / (4 E*): 0.454 mm on 8 MPa, at 5 s 0.572 mm; 18 cells of 62.5 um.
     assert!(
-        text.contains("contact radius 454.3 µm at once, 57") && text.contains("18 cells across"),
+        text.contains("contact radius 454.3 µm right after the load, 57") && text.contains("18 cells across"),
         "{text}"
     );
     let inputs = object(&asperity(directory.path(), &["check", "case.toml", "--json"]))["inputs"].clone();

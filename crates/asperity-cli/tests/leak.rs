@@ -247,7 +247,10 @@ fn a_tight_seal_is_said_to_be_tight_everywhere() {
     let drawn = asperity(&["plot", "seal.zarr", "leak", "-o", "tight.svg"], directory);
     assert!(drawn.status.success(), "{}", text(&drawn.stderr));
     let picture = std::fs::read_to_string(directory.join("tight.svg")).unwrap();
-    assert!(picture.contains("from the inlet") && !picture.contains("Leak rate"), "{picture}");
+    assert!(
+        picture.contains("Inlet and") && picture.contains("closed") && !picture.contains("Leak rate"),
+        "{picture}"
+    );
     let pictures = asperity(&["export", "seal.zarr", "--to", "png", "-o", "pictures"], directory);
     assert!(
         pictures.status.success() && directory.join("pictures/leak.png").exists(),

@@ -140,7 +140,7 @@ fn a_free_line_contact_of_layers_is_refused_at_the_layer() {
         .replace("\"5 N\"", "\"5 N/mm\"");
     let errors = parse(&line).expect_err("not computed").errors;
     assert_eq!((errors.len(), errors[0].key.as_str()), (1, "body[0].layer[0]"), "{}", errors[0]);
-    assert!(errors[0].to_string().contains("boundary = \"periodic\""), "{}", errors[0]);
+    assert!(errors[0].to_string().contains("domain.boundary to \"periodic\""), "{}", errors[0]);
     let periodic = line.replace("[[surface]]", "boundary = \"periodic\"\n[[surface]]");
     parse(&periodic).unwrap_or_else(|errors| panic!("{errors}"));
 }

@@ -519,7 +519,7 @@ fn faults_of_measured_curves_are_named_with_their_line() {
             "letters.csv",
             &["letters.csv, line 4", "\"soft\" is not a finite number", "column 2, \"E [MPa]\""][..],
         ),
-        ("kilo.csv", &["line 4", "1500 kPa", "a unit belongs to the column"]),
+        ("kilo.csv", &["line 4", "1500 kPa", "its unit belongs into the header"]),
         ("unit.csv", &["modulus (column 2, \"E [mm]\")", "is the unit of a length"]),
         ("typo.csv", &["\"mpa\" is not a known unit"]),
         ("growing.csv", &["line 5", "relaxation modulus of point 4", "does not rise"]),

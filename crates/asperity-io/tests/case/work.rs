@@ -20,7 +20,7 @@ const FREE: &str = "[domain]\ncells = [192, 192]\nsize = [\"2 mm\", \"2 mm\"]";
 const PERIODIC: &str = "[domain]\ncells = [192, 192]\nsize = [\"1 mm\", \"1 mm\"]\nboundary = \"periodic\"";
 const SPHERE: &str = "[[surface]]\nkind = \"sphere\"\nradius = \"10 mm\"";
 const ROUGH: &str = "[[surface]]\nkind = \"self-affine\"\nhurst = 0.8\nrms_gradient = 0.1\nlongest = \"0.5 mm\"\n\
-                     roll_off = \"0.25 mm\"\nshortest = \"20 um\"\nseed = 1";
+                     roll_off = \"0.25 mm\"\nshortest = \"25 um\"\nseed = 1";
 const UNTIL: &str = "[time]\nend = \"20 s\"\nsteps = 20";
 
 /// Rows and convolutions of the run itself.

@@ -3,7 +3,7 @@
 use asperity_io::store::{At, Reader};
 
 use super::{Options, Plot, PlotError, Rows, figure};
-use crate::figure::{Curves, Figure, Panel, Series, Values};
+use crate::figure::{Axis, Curves, Figure, Panel, Series, Values};
 
 /// The figure of each result with its name and instant, put together. Panels of curves with the same title become one, with a
 /// line of each result; maps stay panels of their own.
@@ -67,7 +67,7 @@ fn alike(whole: &mut Figure) {
     }
 }
 
-/// Adds the curves of a result to the panel of the same title and axes, or as a new panel.
+/// Adds the curves of a result to the panel of the same title, axes and units, or as a new panel.
 fn overlay(whole: &mut Figure, curves: Curves, name: &str) {
     let named = |series: Series| {
         let name = if series.name.is_empty() { name.to_owned() } else { format!("{name}: {}", series.name) };
@@ -75,7 +75,8 @@ fn overlay(whole: &mut Figure, curves: Curves, name: &str) {
     };
     let alike = |panel: &&mut Panel| match panel {
         Panel::Curves(other) => {
-            other.title == curves.title && other.x.label == curves.x.label && other.y.label == curves.y.label
+            let same = |a: &Axis, b: &Axis| a.label == b.label && a.unit == b.unit;
+            other.title == curves.title && same(&other.x, &curves.x) && same(&other.y, &curves.y)
         }
         Panel::Map(_) => false,
     };

@@ -192,8 +192,11 @@ fn plan(args: &Stress, reader: &Reader) -> Result<StressPlan, Failure> {
 fn faults(faults: Vec<Fault>) -> Failure {
     let sentence = |fault: &Fault| {
         let help = fault.help.as_ref().map(|help| format!("; {help}")).unwrap_or_default();
-        let option =
-            if fault.key.is_empty() { String::new() } else { format!("--{} ", fault.key.replace('_', "-")) };
+        // The table of a case as a whole has no option.
+        let option = match fault.key.as_str() {
+            "" | "stress" => String::new(),
+            key => format!("--{} ", key.replace('_', "-")),
+        };
         format!("{option}{}{help}", fault.message)
     };
     Failure::input(faults.iter().map(sentence).collect::<Vec<_>>().join("\n"))

@@ -1,7 +1,7 @@
 //! A rehearsal: the case on a coarse grid, for the number of rows and of convolutions that its run takes.
 //!
 //! How many iterations a row takes depends on what the load does, on the roughness and on the material, hardly on the number of
-//! cells: the preconditioner sees to that. So the same case with few cells tells it, in some hundredths of a second.
+//! cells, because the solver is preconditioned. So the same case with few cells tells it.
 
 use asperity::sliding::Steady;
 use asperity::surface::Part;

@@ -40,42 +40,6 @@ impl Kind {
     }
 }
 
-/// Evaluates an expression with the width of a kind of number as the constant `$width` and the function from its
-/// bytes to f64 as `$decode`.
-macro_rules! with_decoder {
-    ($kind:expr, $order:expr, |$width:ident, $decode:ident| $body:expr) => {{
-        macro_rules! arm {
-            ($bytes:literal, $number:expr) => {{
-                const $width: usize = $bytes;
-                let $decode = $number;
-                $body
-            }};
-        }
-        match ($kind, $order) {
-            (Kind::U8, _) => arm!(1, |[b]: [u8; 1]| f64::from(b)),
-            (Kind::I8, _) => arm!(1, |[b]: [u8; 1]| f64::from(b as i8)),
-            (Kind::U16, Order::Little) => arm!(2, |b| f64::from(u16::from_le_bytes(b))),
-            (Kind::U16, Order::Big) => arm!(2, |b| f64::from(u16::from_be_bytes(b))),
-            (Kind::I16, Order::Little) => arm!(2, |b| f64::from(i16::from_le_bytes(b))),
-            (Kind::I16, Order::Big) => arm!(2, |b| f64::from(i16::from_be_bytes(b))),
-            (Kind::F16, Order::Little) => arm!(2, |b| half(u16::from_le_bytes(b))),
-            (Kind::F16, Order::Big) => arm!(2, |b| half(u16::from_be_bytes(b))),
-            (Kind::U32, Order::Little) => arm!(4, |b| f64::from(u32::from_le_bytes(b))),
-            (Kind::U32, Order::Big) => arm!(4, |b| f64::from(u32::from_be_bytes(b))),
-            (Kind::I32, Order::Little) => arm!(4, |b| f64::from(i32::from_le_bytes(b))),
-            (Kind::I32, Order::Big) => arm!(4, |b| f64::from(i32::from_be_bytes(b))),
-            (Kind::F32, Order::Little) => arm!(4, |b| f64::from(f32::from_le_bytes(b))),
-            (Kind::F32, Order::Big) => arm!(4, |b| f64::from(f32::from_be_bytes(b))),
-            (Kind::U64, Order::Little) => arm!(8, |b| u64::from_le_bytes(b) as f64),
-            (Kind::U64, Order::Big) => arm!(8, |b| u64::from_be_bytes(b) as f64),
-            (Kind::I64, Order::Little) => arm!(8, |b| i64::from_le_bytes(b) as f64),
-            (Kind::I64, Order::Big) => arm!(8, |b| i64::from_be_bytes(b) as f64),
-            (Kind::F64, Order::Little) => arm!(8, f64::from_le_bytes),
-            (Kind::F64, Order::Big) => arm!(8, f64::from_be_bytes),
-        }
-    }};
-}
-
 /// The first `count` numbers of `bytes`.
 ///
 /// # Errors
@@ -103,12 +67,33 @@ pub(super) fn decode(
 
 /// The numbers of `bytes`, as many as there is room for.
 pub(super) fn decode_into(numbers: &mut [f64], bytes: &[u8], kind: Kind, order: Order) {
-    with_decoder!(kind, order, |WIDTH, decode| {
-        numbers
-            .iter_mut()
-            .zip(bytes.as_chunks::<WIDTH>().0)
-            .for_each(|(number, bytes)| *number = decode(*bytes));
-    });
+    match (kind, order) {
+        (Kind::U8, _) => each(numbers, bytes, |[b]: [u8; 1]| f64::from(b)),
+        (Kind::I8, _) => each(numbers, bytes, |[b]: [u8; 1]| f64::from(b as i8)),
+        (Kind::U16, Order::Little) => each(numbers, bytes, |b| f64::from(u16::from_le_bytes(b))),
+        (Kind::U16, Order::Big) => each(numbers, bytes, |b| f64::from(u16::from_be_bytes(b))),
+        (Kind::I16, Order::Little) => each(numbers, bytes, |b| f64::from(i16::from_le_bytes(b))),
+        (Kind::I16, Order::Big) => each(numbers, bytes, |b| f64::from(i16::from_be_bytes(b))),
+        (Kind::F16, Order::Little) => each(numbers, bytes, |b| half(u16::from_le_bytes(b))),
+        (Kind::F16, Order::Big) => each(numbers, bytes, |b| half(u16::from_be_bytes(b))),
+        (Kind::U32, Order::Little) => each(numbers, bytes, |b| f64::from(u32::from_le_bytes(b))),
+        (Kind::U32, Order::Big) => each(numbers, bytes, |b| f64::from(u32::from_be_bytes(b))),
+        (Kind::I32, Order::Little) => each(numbers, bytes, |b| f64::from(i32::from_le_bytes(b))),
+        (Kind::I32, Order::Big) => each(numbers, bytes, |b| f64::from(i32::from_be_bytes(b))),
+        (Kind::F32, Order::Little) => each(numbers, bytes, |b| f64::from(f32::from_le_bytes(b))),
+        (Kind::F32, Order::Big) => each(numbers, bytes, |b| f64::from(f32::from_be_bytes(b))),
+        (Kind::U64, Order::Little) => each(numbers, bytes, |b| u64::from_le_bytes(b) as f64),
+        (Kind::U64, Order::Big) => each(numbers, bytes, |b| u64::from_be_bytes(b) as f64),
+        (Kind::I64, Order::Little) => each(numbers, bytes, |b| i64::from_le_bytes(b) as f64),
+        (Kind::I64, Order::Big) => each(numbers, bytes, |b| i64::from_be_bytes(b) as f64),
+        (Kind::F64, Order::Little) => each(numbers, bytes, f64::from_le_bytes),
+        (Kind::F64, Order::Big) => each(numbers, bytes, f64::from_be_bytes),
+    }
+}
+
+/// Every number as `decode` reads its bytes.
+fn each<const WIDTH: usize>(numbers: &mut [f64], bytes: &[u8], decode: impl Fn([u8; WIDTH]) -> f64) {
+    numbers.iter_mut().zip(bytes.as_chunks::<WIDTH>().0).for_each(|(number, bytes)| *number = decode(*bytes));
 }
 
 /// IEEE 754 binary16: sign, 5 bits of exponent (bias 15), 10 bits of fraction.

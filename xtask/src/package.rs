@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::{Done, cargo, python_in, root, run, wheel};
+use crate::{Done, cargo, python_in, root, run};
 
 /// What can be packaged, and how.
 type Part = (&'static str, fn() -> Done);
@@ -43,6 +43,13 @@ pub fn package(arguments: &[String]) -> Done {
     Ok(())
 }
 
+/// The files of a folder with this ending.
+fn files(folder: &Path, ending: &str) -> Result<Vec<PathBuf>, String> {
+    let entries = std::fs::read_dir(folder).map_err(|error| format!("{}: {error}", folder.display()))?;
+    let paths = entries.flatten().map(|entry| entry.path());
+    Ok(paths.filter(|path| path.to_string_lossy().ends_with(&format!(".{ending}"))).collect())
+}
+
 /// Where packages go: target/packages.
 fn folder() -> Result<PathBuf, String> {
     let folder = root().join("target/packages");
@@ -75,13 +82,7 @@ fn crates() -> Done {
     package.args(UNPUBLISHED.iter().flat_map(|name| ["--exclude", name]));
     run(package.arg("--target-dir").arg(root().join("target/packages/build")))?;
     let packed = folder()?.join("build/package");
-    for entry in
-        std::fs::read_dir(&packed).map_err(|error| format!("{}: {error}", packed.display()))?.flatten()
-    {
-        let path = entry.path();
-        if path.extension().is_none_or(|ending| ending != "crate") {
-            continue;
-        }
+    for path in files(&packed, "crate")? {
         let list =
             Command::new("tar").arg("tzf").arg(&path).output().map_err(|error| format!("tar: {error}"))?;
         let list = String::from_utf8_lossy(&list.stdout).into_owned();
@@ -90,25 +91,28 @@ fn crates() -> Done {
                 return Err(format!("{}: there is no {file} in it", path.display()));
             }
         }
-        let to = folder()?.join(entry.file_name());
+        let to = folder()?.join(path.file_name().expect("a file"));
         std::fs::copy(&path, &to).map_err(|error| format!("{}: {error}", to.display()))?;
     }
     Ok(())
 }
 
-/// The wheel of this machine and the source archive; the wheel is tested from outside of the source tree.
+/// The source archive, and the wheel of this machine made from it alone; the wheel is tested from outside of the source tree.
 fn python() -> Done {
     let folder = folder()?;
+    for old in files(&folder, "tar.gz")?.into_iter().chain(files(&folder, "whl")?) {
+        std::fs::remove_file(&old).map_err(|error| format!("{}: {error}", old.display()))?;
+    }
     let maker = python_in("target/packages/maker", &["maturin>=1.9,<2"])?;
     run(Command::new(&maker).args(["-m", "maturin", "sdist", "--out"]).arg(&folder))?;
-    let wheel = wheel(&maker, "release")?;
-    let to = folder.join(wheel.file_name().expect("a file"));
-    std::fs::copy(&wheel, &to).map_err(|error| format!("{}: {error}", to.display()))?;
+    let mut pip = Command::new(&maker);
+    pip.args(["-m", "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir"]).arg(&folder);
+    run(pip.args(files(&folder, "tar.gz")?).env("CARGO_TARGET_DIR", folder.join("build")))?;
     // An environment of its own: only what the wheel asks for is there.
     let environment = root().join("target/packages/user");
     let _ = std::fs::remove_dir_all(&environment);
     let user = python_in("target/packages/user", &["pytest"])?;
-    run(Command::new(&user).args(["-m", "pip", "install", "--quiet"]).arg(&wheel))?;
+    run(Command::new(&user).args(["-m", "pip", "install", "--quiet"]).args(files(&folder, "whl")?))?;
     let tests = root().join("crates/asperity-py/tests/test_command.py");
     let test = std::path::absolute(tests).map_err(|error| error.to_string())?;
     let mut pytest = Command::new(&user);
@@ -121,7 +125,8 @@ fn python() -> Done {
 
 /// The program with its licences, zipped.
 fn program() -> Done {
-    run(&mut cargo(&["build", "--release", "--locked", "-p", "asperity-cli"]))?;
+    let mut build = cargo(&["build", "--profile", "dist", "--locked", "-p", "asperity-cli", "--target-dir"]);
+    run(build.arg(folder()?.join("build")))?;
     let name = format!("asperity-{}-{}", env!("CARGO_PKG_VERSION"), host()?);
     let folder = folder()?;
     let inside = folder.join(&name);
@@ -130,7 +135,7 @@ fn program() -> Done {
         let to = inside.join(from.file_name().expect("a file"));
         std::fs::copy(&from, &to).map(drop).map_err(|error| format!("{}: {error}", from.display()))
     };
-    copy(root().join(format!("target/release/asperity{}", std::env::consts::EXE_SUFFIX)))?;
+    copy(folder.join(format!("build/dist/asperity{}", std::env::consts::EXE_SUFFIX)))?;
     for file in ["LICENSE-MIT", "LICENSE-APACHE", "README.md", "CHANGELOG.md"] {
         copy(root().join(file))?;
     }

@@ -84,11 +84,11 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
     let mut line = |name: &str, value: String| text += &format!("{name:<13}{value}\n");
     let of = header.rows_expected.map_or(String::new(), |total| format!(" of {total}"));
     let state = match reader.status() {
-        Status::Complete => "complete",
-        Status::Running if reader.is_being_written() => "running now",
-        Status::Running => "killed before its end; continue with asperity run --resume",
-        Status::Interrupted => "interrupted; continue with asperity run --resume",
-        Status::Failed => "failed",
+        Status::Complete => "complete".to_owned(),
+        Status::Running if reader.is_being_written() => "running now".to_owned(),
+        Status::Running => format!("killed before its end{}", reader.continuation()),
+        Status::Interrupted => format!("interrupted{}", reader.continuation()),
+        Status::Failed => "failed".to_owned(),
     };
     line("status", format!("{state}, {}{of} rows", reader.len()));
     if let Some(message) = &reader.work().message {

@@ -23,7 +23,7 @@ pub(super) const SCHEMA: u64 = 2;
 pub struct Header {
     /// Title of the case.
     pub title: String,
-    /// The case file as text, as it was run.
+    /// The case file as text, as it was run; empty for what Python solved without one.
     pub case_text: String,
     /// Version of asperity that runs it.
     pub version: String,

@@ -100,6 +100,14 @@ impl Reader {
         matches!(shared, Ok(Err(std::fs::TryLockError::WouldBlock)))
     }
 
+    /// How a run that stopped early goes on: empty, unless a case file is stored from which `run --resume` can continue.
+    pub fn continuation(&self) -> &'static str {
+        match self.header().case_text.is_empty() {
+            true => "",
+            false => "; continue with asperity run --resume",
+        }
+    }
+
     /// Rows.
     pub fn len(&self) -> usize {
         self.document.progress.rows

@@ -176,10 +176,10 @@ fn status(reader: &Reader) -> String {
     let of = reader.header().rows_expected.map_or(String::new(), |total| format!(" of {total}"));
     let state = match reader.status() {
         Status::Complete => return format!("complete, {rows} rows"),
-        Status::Running if reader.is_being_written() => "running",
-        Status::Running => "incomplete: its run was killed (continue with asperity run --resume)",
-        Status::Interrupted => "incomplete: its run was interrupted (continue with asperity run --resume)",
-        Status::Failed => "incomplete: its run failed",
+        Status::Running if reader.is_being_written() => "running".to_owned(),
+        Status::Running => format!("incomplete: its run was killed{}", reader.continuation()),
+        Status::Interrupted => format!("incomplete: its run was interrupted{}", reader.continuation()),
+        Status::Failed => "incomplete: its run failed".to_owned(),
     };
     let why = reader.work().message.as_ref().map_or(String::new(), |message| format!(": {message}"));
     format!("{rows}{of} rows; {state}{why}")

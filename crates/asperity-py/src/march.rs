@@ -97,6 +97,8 @@ pub struct March {
     judge: Judge,
     /// The numbers of the last row.
     last: Option<march::Row>,
+    /// Whether the state is that of the last row.
+    settled: bool,
     interrupt: Arc<AtomicBool>,
 }
 
@@ -351,16 +353,19 @@ impl March {
         })?;
         let (mut march, judge) = made.map_err(|error| raised(py, error))?;
         march.interrupt_with(interrupt.clone());
-        Ok(March { march: Mutex::new(march), judge, last: None, interrupt })
+        Ok(March { march: Mutex::new(march), judge, last: None, settled: false, interrupt })
     }
 
     /// Goes on by one row; False at the end.
     fn advance(&mut self, py: Python<'_>) -> PyResult<bool> {
         self.interrupt.store(false, Ordering::Relaxed);
         let march = self.march.get_mut().unwrap_or_else(PoisonError::into_inner);
-        let (judge, last) = (&mut self.judge, &mut self.last);
+        let (judge, last, settled) = (&mut self.judge, &mut self.last, &mut self.settled);
         let done = without_python(py, &self.interrupt, || -> asperity::Result<bool> {
-            let Some(step) = march.advance()? else { return Ok(false) };
+            let before = std::mem::replace(settled, false);
+            let step = march.advance()?;
+            *settled = before || step.is_some();
+            let Some(step) = step else { return Ok(false) };
             let row = step.row();
             judge.see(&step, &row);
             *last = Some(row);
@@ -430,6 +435,12 @@ impl March {
     #[getter]
     fn finished(&self) -> bool {
         self.locked().finished()
+    }
+
+    /// Whether the fields are those of the last row, and not those of a step that was interrupted or did not converge.
+    #[getter]
+    fn settled(&self) -> bool {
+        self.settled
     }
 
     /// Rows done.

@@ -24,13 +24,41 @@ type Histogram<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray2<f64>>);
 #[pyclass(frozen)]
 pub struct Store {
     reader: Reader,
+    /// The directory that was opened.
+    #[cfg(unix)]
+    directory: std::fs::File,
+}
+
+impl Store {
+    /// The reader, unless another result stands in the place of the one that was opened: rows of one and fields of the other would
+    /// be mixed.
+    fn unchanged(&self) -> PyResult<&Reader> {
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::MetadataExt;
+            let path = self.reader.path();
+            let (opened, here) = (self.directory.metadata().map_err(file)?, std::fs::metadata(path));
+            if !here.is_ok_and(|here| (here.dev(), here.ino()) == (opened.dev(), opened.ino())) {
+                let path = path.display();
+                return Err(file(format!(
+                    "{path} was replaced or removed since it was opened: open it again"
+                )));
+            }
+        }
+        Ok(&self.reader)
+    }
 }
 
 #[pymethods]
 impl Store {
     #[new]
     fn new(path: PathBuf) -> PyResult<Store> {
-        Ok(Store { reader: Reader::open(&path).map_err(file)? })
+        let reader = Reader::open(&path).map_err(file)?;
+        Ok(Store {
+            #[cfg(unix)]
+            directory: std::fs::File::open(&path).map_err(file)?,
+            reader,
+        })
     }
 
     /// A number of every row.
@@ -53,17 +81,18 @@ impl Store {
     /// A field at a stored instant, by its number.
     fn field<'py>(&self, py: Python<'py>, name: &str, index: usize) -> PyResult<Bound<'py, PyAny>> {
         let kind = FieldKind::from_name(name).ok_or_else(|| file(format!("there is no field '{name}'")))?;
-        let at = At::Index(index);
+        let (reader, at) = (self.unchanged()?, At::Index(index));
         Ok(match kind {
             FieldKind::Contact => {
-                detached(py, || self.reader.contact(at))?.map_err(file)?.into_pyarray(py).into_any()
+                detached(py, || reader.contact(at))?.map_err(file)?.into_pyarray(py).into_any()
             }
-            kind => detached(py, || self.reader.field(kind, at))?.map_err(file)?.into_pyarray(py).into_any(),
+            kind => detached(py, || reader.field(kind, at))?.map_err(file)?.into_pyarray(py).into_any(),
         })
     }
 
     fn initial_gap<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        Ok(detached(py, || self.reader.initial_gap())?.map_err(file)?.into_pyarray(py))
+        let reader = self.unchanged()?;
+        Ok(detached(py, || reader.initial_gap())?.map_err(file)?.into_pyarray(py))
     }
 
     /// The stress below the surface, where it was computed: depth, and by name what each instant of the fields has, NaN where it
@@ -101,7 +130,8 @@ impl Store {
         let fields = self.reader.stress().map(|set| set.fields()).unwrap_or_default();
         let found = fields.into_iter().find(|(_, series)| series.name == name);
         let (quantity, _) = found.ok_or_else(|| file(format!("there is no stress field '{name}'")))?;
-        let read = || self.reader.stress_field(quantity, At::Index(index), depth);
+        let reader = self.unchanged()?;
+        let read = || reader.stress_field(quantity, At::Index(index), depth);
         Ok(detached(py, read)?.map_err(file)?.into_pyarray(py))
     }
 
@@ -148,7 +178,8 @@ impl Store {
 
     /// Pressure of the fluid at a leak, by its number.
     fn fluid_pressure<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        Ok(detached(py, || self.reader.fluid_pressure(index))?.map_err(file)?.into_pyarray(py))
+        let reader = self.unchanged()?;
+        Ok(detached(py, || reader.fluid_pressure(index))?.map_err(file)?.into_pyarray(py))
     }
 
     /// The attributes of the group, as JSON.

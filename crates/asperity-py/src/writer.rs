@@ -109,6 +109,12 @@ impl Writer {
         .map_err(file)
     }
 
+    /// Rows stored.
+    #[getter]
+    fn rows(&self) -> usize {
+        self.writer.as_ref().map_or(0, asperity_io::store::Writer::len)
+    }
+
     /// Ends the result as "complete", "interrupted" or "failed" with its findings, a JSON list, and a message.
     #[pyo3(signature = (status, findings, message))]
     fn finish(

@@ -1,6 +1,7 @@
 """A run that stops keeps its rows: interrupted, stopped by the caller, failed, or looked at under way; in memory and on disk."""
 
 import signal
+import sys
 import warnings
 
 import numpy as np
@@ -170,3 +171,43 @@ def test_marches_and_stages_are_told_shortly(given):
     next(run)
     assert repr(run) == "<March: 1 rows of 11 solved, 32 x 32 cells>"
     assert repr(asp.Stage(approach=asp.hold(), duration=5.0)) == "Stage(approach=hold(), duration=5.0)"
+
+
+def test_ctrl_c_at_any_line_keeps_the_rows_in_their_places(given, whole, tmp_path):
+    """Python raises KeyboardInterrupt between any two lines: here after each line that takes in the rows 3 and 4."""
+    code = (asp._record.Record.see.__code__, asp._record.Record._write.__code__)
+
+    def interrupted(line, **rest):
+        lines = iter(range(10_000))
+
+        def trace(frame, event, argument):
+            if frame.f_code not in code:
+                return trace
+            if event == "line" and len(frame.f_locals["self"]) in (3, 4) and next(lines) == line:
+                raise KeyboardInterrupt
+            return trace
+
+        sys.settrace(trace)
+        try:
+            return asp.solve(**given, **rest)
+        except KeyboardInterrupt as error:
+            return error.result
+        finally:
+            sys.settrace(None)
+
+    stopped = 0
+    for line in range(200):
+        rows = []
+        for n, rest in enumerate(({}, {"output": tmp_path / f"{line}.zarr"})):
+            result = interrupted(line, **rest)
+            for name in asp._columns.ROW:
+                assert np.array_equal(getattr(result, name), getattr(whole, name)[: len(result)], equal_nan=True), (line, rest, name)
+            for index, time in enumerate(result.field_times):
+                held = result.field("pressure", index=index)
+                assert np.array_equal(held, whole.field("pressure", time=time)), (line, rest, time)
+            assert result.field_times[-1] == result.time[-1]
+            rows.append(len(result))
+        if min(rows) == len(whole):
+            break
+        stopped += 1
+    assert stopped > 10 and max(rows) == len(whole)

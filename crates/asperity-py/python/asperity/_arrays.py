@@ -121,7 +121,8 @@ def array(what: str, value: Any, unit: str | None = None) -> Floats:
     value = bare(what, value, unit)
     found = np.asarray(value)
     if found.dtype.kind not in "fiu":
-        raise CaseError(f"{what} is {value!r}, but must hold real numbers in SI units")
+        told = f"has dtype {found.dtype}" if found.ndim else f"is {value!r}"
+        raise CaseError(f"{what} {told}, but must hold real numbers in SI units")
     return np.asarray(found, dtype=np.float64)
 
 
@@ -162,9 +163,10 @@ def in_order(what: str, value: Any, size: Sequence[float] | None = None) -> Any:
 def pitch_of(what: str, value: Any, name: str) -> float | None:
     """The distance of neighbours [m] along a dimension of an array of xarray, below zero where its coordinate falls; None without
     coordinate."""
-    if name not in value.coords or value.sizes[name] < 2 or value.coords[name].dtype.kind not in "fiu":
+    coords = getattr(value, "coords", {})
+    if name not in coords or value.sizes[name] < 2 or coords[name].dtype.kind not in "fiu":
         return None
-    places = array(name, value.coords[name], "m")
+    places = array(name, coords[name], "m")
     pitch = float(places[-1] - places[0]) / (len(places) - 1)
     # Coordinates of single precision carry 1e-7 of their largest value.
     slack = 1e-6 * np.abs(places).max() + 1e-3 * abs(pitch)
@@ -176,19 +178,17 @@ def pitch_of(what: str, value: Any, name: str) -> float | None:
 def field(what: str, value: Any, line: bool = False, *, unit: str | None = None, size: Sequence[float] | None = None) -> Floats:
     """A two-dimensional array of real numbers as C-ordered float64 in SI units; no copy where it is one already. With `line` one
     of one dimension counts too. `unit` is by default that of the parameter; coordinates must span the `size` [m] where it is given."""
-    value = bare(what, in_order(what, value, size), unit)
-    mask = np.ma.getmask(value)
-    array = np.asarray(np.ma.getdata(value))
+    value = in_order(what, value, size)
+    if np.ma.isMaskedArray(value) and value.dtype.kind in "fiu":
+        value = np.ma.filled(value.astype(np.float64), np.nan)
+    array = np.asarray(bare(what, value, unit))
     if array.dtype.kind not in "fiu":
         raise CaseError(f"{what} has dtype {array.dtype}, but must hold real numbers")
     if array.ndim not in ((1, 2) if line else (2,)) or array.size == 0:
         raise CaseError(
             f"{what} has shape {array.shape}, but must be two-dimensional, (nx, ny)" + (", or (n,) for a line of cells" if line else "")
         )
-    out = plain(array)
-    if mask is not np.ma.nomask and np.any(mask):
-        out = np.where(mask, np.nan, out)
-    return out
+    return plain(array)
 
 
 def as_plane(array: Floats) -> Floats:

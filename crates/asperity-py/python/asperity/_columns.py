@@ -48,12 +48,15 @@ def units_of(name: str, unit: str, line: bool) -> str:
 
 
 class Sealed:
-    """What was computed: public attributes cannot be set."""
+    """What does not change once it is made: public attributes cannot be set."""
 
     def __setattr__(self, name: str, value: Any) -> None:
         if not name.startswith("_"):
-            raise AttributeError(f"{name} cannot be set: {type(self).__name__} holds what was computed; work on a copy of its numbers")
+            raise AttributeError(f"{name} cannot be set: {type(self).__name__} does not change once it is made; work on a copy of its numbers")
         object.__setattr__(self, name, value)
+
+    def __delattr__(self, name: str) -> None:
+        raise AttributeError(f"{name} cannot be deleted: {type(self).__name__} does not change once it is made")
 
 
 class Column:

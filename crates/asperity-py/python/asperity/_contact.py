@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, as_plane, cells_of, centres, count, field, frozen, number
+from ._arrays import Floats, array, as_plane, cells_of, centres, count, field, frozen, number
 from ._columns import ROW, Column, Sealed
 from ._core import CaseError
 from ._findings import Finding, findings_of, warn
@@ -604,7 +604,7 @@ def _table(kernel: Any, shape: Surface, boundary: str, unit: str) -> Floats:
 
     def values(x: Floats, y: Floats) -> Floats:
         with np.errstate(divide="ignore", invalid="ignore"):
-            found = np.broadcast_to(np.asarray(bare("kernel", kernel(x, y), unit), dtype=np.float64), x.shape)
+            found = np.broadcast_to(array("kernel", kernel(x, y), unit), x.shape)
         return np.array(found)
 
     table = values(*at)

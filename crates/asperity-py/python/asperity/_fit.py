@@ -42,7 +42,7 @@ class Fit:
     #: "young" or "shear": what the numbers are.
     modulus: Measure
     #: (modulus [Pa], relaxation time [s]) or, of creep data, (compliance [1/Pa], retardation time [s]).
-    terms: list[tuple[float, float]]
+    terms: tuple[tuple[float, float], ...]
     #: Modulus after all relaxation [Pa]; None of creep data.
     equilibrium: float | None
     #: Instantaneous compliance [1/Pa] and fluidity [1/(Pa s)] of creep data; else None.
@@ -439,7 +439,7 @@ def _made(found: dict[str, Any], rest: dict[str, Any]) -> Fit:
     return Fit(
         kind=found["kind"],
         modulus=rest["modulus"] or found["modulus"],
-        terms=terms,
+        terms=tuple(terms),
         equilibrium=equilibrium,
         instantaneous=instantaneous,
         fluidity=fluidity,

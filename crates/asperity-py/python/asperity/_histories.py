@@ -12,7 +12,7 @@ import numpy.typing as npt
 from . import _core
 from ._arrays import count, in_hertz, line, number, points
 from ._core import CaseError
-from ._units import carries, unit_among
+from ._units import has_unit, unit_among
 
 __all__ = ["History", "Stage", "Times", "adaptive", "hold", "listed", "log", "ramp", "ramp_to", "sine", "step", "table", "trapezoid", "triangle", "uniform"]
 
@@ -56,7 +56,7 @@ def _values(**given: Any) -> tuple[tuple[float, ...], str | None]:
     """The values of a history, and their unit where they carry one: all of them then, but zeros."""
     unit = unit_among("the value of a history", list(given.values()), _UNITS)
     for name, value in given.items():
-        if unit is not None and not carries(value) and number(name, value, unit) != 0.0:
+        if unit is not None and not has_unit(value) and number(name, value, unit) != 0.0:
             raise CaseError(f"{name} is {value!r} without a unit, but other values of the history are in {unit}")
     return tuple(number(name.replace("_", " "), value, unit or "") for name, value in given.items()), unit
 
@@ -155,10 +155,18 @@ class Stage:
         shown = {name: value for name, value in vars(self).items() if value is not None and value is not False}
         return f"Stage({', '.join(f'{name}={value!r}' for name, value in shown.items())})"
 
-    def _parts(self) -> _core._Stage:
+    def __post_init__(self) -> None:
+        # Values of its own, which compare and do not follow an array that changes.
+        if self.times is not None:
+            object.__setattr__(self, "times", as_times(self.times))
+        if isinstance(self.until, list):
+            object.__setattr__(self, "until", tuple(self.until))
+
+    def _parts(self, load_unit: str) -> _core._Stage:
+        """As the core takes it; the unit of a load is N, or N/m of a line contact."""
         given = {"load": self.load, "pressure": self.pressure, "approach": self.approach}
         control, value = one_of(given, "a stage needs load, pressure or approach")
-        history = as_history(control, value)
+        history = as_history(control, value, load_unit if control == "load" else None)
         until: tuple[str, float] | None = None
         if isinstance(self.until, str):
             until = (self.until, 0.0)
@@ -166,7 +174,7 @@ class Stage:
                 raise CaseError(f"until is {self.until!r}, but must be 'contact-lost' or a pair as in ('load', 0.1)")
         elif self.until is not None:
             event, limit = self.until
-            until = (str(event), number(f"until {event}", limit, {"approach": "m", "load": "N", "pressure": "Pa"}.get(str(event))))
+            until = (str(event), number(f"until {event}", limit, {"approach": "m", "load": load_unit, "pressure": "Pa"}.get(str(event))))
         grid = None if self.times is None else as_times(self.times)
         return (
             control,
@@ -232,7 +240,7 @@ def as_history(what: str, value: Any, unit: str | None = None) -> History:
     """A history of what is prescribed, in the SI unit `unit`, by default that of the parameter; a number is a step."""
     unit = {"load": "N", "pressure": "Pa", "approach": "m", "path": "m", "velocity": "m/s"}[what] if unit is None else unit
     if not isinstance(value, History):
-        return History("step", (number(what, value, unit),), unit=unit if carries(value) else None)
+        return History("step", (number(what, value, unit),), unit=unit if has_unit(value) else None)
     if value.unit not in (None, unit):
         raise CaseError(f"{what} is a history in {value.unit}, but must be in {unit}")
     return value

@@ -22,13 +22,14 @@ import numpy.typing as npt
 
 from . import _core
 from ._arrays import Floats, array, line, number, points
+from ._columns import Sealed
 from ._core import CaseError
 from ._shifts import Shift
-from ._units import carries, frequency
+from ._units import carries, frequency, is_labelled
 from ._words import Measure
 
 
-class Material:
+class Material(Sealed):
     """A deformable body; the base of all models.
 
     Its functions take a number or an array of any shape and return the same.
@@ -47,7 +48,7 @@ class Material:
     ) -> None:
         # Plain numbers, so that materials are compared, shown and sent without the package of their units.
         self._given = {
-            key: number(key, value) if carries(value) else value
+            key: number(key, value) if carries(value) or is_labelled(value) or isinstance(value, (np.ndarray, np.generic)) else value
             for key, value in given.items()
             if value is not None and key not in ("self", "__class__")
         }

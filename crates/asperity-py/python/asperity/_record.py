@@ -42,16 +42,15 @@ class Record:
         core = march._core
         self._march, self._keep, self._title = march, keep, title
         self._edges: dict[str, Floats] = {name: np.array(ends) for name, ends in core.columns()}
-        self._table: dict[str, list[Any]] = {name: [] for name in [*ROW, *self._edges]}
-        self._maps: dict[str, list[Any]] = {name: [] for name in keep.fields}
-        self._steps: list[int] = []
+        self._rows: list[dict[str, Any]] = []
+        # The fields that are kept, by the number of their row; with an output those that are not yet on disk.
+        self._maps: dict[int, dict[str, Any]] = {}
         # Adaptive steps find their rows as they go.
         rows = core.rows_expected
         self._stride = keep.every if keep.every is not None else max(1, -(-((rows or 1) - 1) // 20))
         self._end = core.times()[-1]
         self._output = output
         self._writer: _core.Writer | None = None
-        self._waiting: tuple[dict[str, Any], list[float]] | None = None
         if output is not None:
             if not force and os.path.exists(output):
                 raise FileExistsError(errno.EEXIST, "exists already; choose another output or replace it with force=True", output)
@@ -60,35 +59,37 @@ class Record:
             self._writer = _core.Writer(output, force, title, setup, list(march.size), gap, keep.fields, columns, rows)
 
     def __len__(self) -> int:
-        return len(self._table["time"])
+        return len(self._rows)
 
+    # Ctrl-C may come between any two lines of Python: each of them leaves a state from which `see` can be called again for the row.
     def see(self, step: Step) -> None:
         """Takes in a row."""
-        row = step.row
-        for name, values in self._table.items():
-            values.append(row[name])
-        maps = {name: step._map(name) for name in self._keep.fields} if self._keeps(step) else {}
-        if self._writer is not None:
-            self._write_waiting({})
+        keeps = self._keeps(step)
+        if keeps:
+            self._maps[step.index] = {name: step._map(name) for name in self._keep.fields}
+        if step.index == len(self._rows):
+            self._rows.append(step.row)
+        # A row whose fields are not kept waits for the next one: if none comes, its fields are kept as those of the last row.
+        self._write(len(self) if keeps else len(self) - 1)
+
+    def _write(self, end: int) -> None:
+        """Writes the rows up to this one to the output, where there is one."""
+        while self._writer is not None and self._writer.rows < end:
+            row = self._rows[self._writer.rows]
             numbers = [float(n) for name in self._edges for n in np.ravel(row[name])]
-            self._waiting = (row, numbers)
-            if self._keeps(step):
-                self._write_waiting(maps)
-        elif self._keeps(step):
-            self._take(step.index, maps)
+            self._writer.append(row, numbers, self._maps.get(self._writer.rows, {}))
+            self._maps.pop(self._writer.rows - 1, None)
 
-    def _write_waiting(self, maps: dict[str, Any]) -> None:
-        """Writes the row that waits. A row whose fields are not kept waits for the next one: if none comes, its fields are kept as
-        those of the last row."""
-        if self._writer is not None and self._waiting is not None:
-            self._writer.append(*self._waiting, maps)
-            self._waiting = None
-
-    def _take(self, index: int, maps: dict[str, Any]) -> None:
-        self._steps.append(index)
-        shape = self._march.initial_gap.shape
-        for name in self._keep.fields:
-            self._maps[name].append(maps[name].reshape(shape))
+    def _catch_up(self) -> None:
+        """Takes in the row that was solved when Ctrl-C came, and keeps the fields of the last row. They are lost where a step was
+        interrupted, or did not converge."""
+        march, last = self._march, len(self) - 1
+        if march._core.done == last + 2:
+            last += 1
+            self.see(march._step(last))
+        written = 0 if self._writer is None else self._writer.rows
+        if written <= last and last not in self._maps and march._core.settled:
+            self._maps[last] = {name: march._core.field(name) for name in self._keep.fields}
 
     def _keeps(self, step: Step) -> bool:
         if step.index == 0 or self._march._core.finished:
@@ -101,25 +102,23 @@ class Record:
         """The result of a march that goes no further: "complete", "interrupted" or "failed"."""
         if self._writer is None or self._output is None:
             return self.result(status)
-        core = self._march._core
-        self._write_waiting({name: core.field(name) for name in self._keep.fields} if core.done == len(self) else {})
+        self._catch_up()
+        self._write(len(self))
         self._writer.finish(status, self._march._core.findings(), message)
         self._writer = None
         return open(self._output)
 
     def result(self, status: str) -> Result:
-        """The rows so far with the fields that were kept, and those of the last row."""
-        core = self._march._core
-        last = len(self) - 1
-        if last >= 0 and last not in self._steps and core.done == last + 1:
-            self._take(last, {name: core.field(name) for name in self._keep.fields})
-        table = {name: np.array(values) for name, values in self._table.items() if name not in HISTOGRAMS}
-        shape = self._march.initial_gap.shape
+        """The rows so far with the fields that were kept, and those of the last row where they are known."""
+        self._catch_up()
+        shape, steps = self._march.initial_gap.shape, sorted(self._maps)
+        stacks = {name: [self._maps[step][name].reshape(shape) for step in steps] for name in self._keep.fields}
+        table = {name: np.array([row[name] for row in self._rows]) for name in [*ROW, *self._edges]}
         return Result(
-            table={name: values if last >= 0 else np.empty(0) for name, values in table.items()},
-            histograms={name: (ends, np.array(self._table[name])) for name, ends in self._edges.items() if name in HISTOGRAMS},
-            fields={name: np.array(stack) if stack else np.empty((0, *shape)) for name, stack in self._maps.items()},
-            field_steps=np.array(self._steps, dtype=np.int64),
+            table={name: values if self._rows else np.empty(0) for name, values in table.items() if name not in HISTOGRAMS},
+            histograms={name: (ends, table[name]) for name, ends in self._edges.items() if name in HISTOGRAMS},
+            fields={name: np.array(stack) if stack else np.empty((0, *shape)) for name, stack in stacks.items()},
+            field_steps=np.array(steps, dtype=np.int64),
             initial_gap=self._march.initial_gap,
             size=self._march.size,
             attributes={

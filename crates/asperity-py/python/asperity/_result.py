@@ -134,6 +134,7 @@ class Result(Sealed):
         field_times: Any = None,
         stress: dict[str, Floats] | None = None,
         leaks: dict[str, Floats] | None = None,
+        store: _core.Store | None = None,
     ) -> None:
         self._table = table
         self._fields = fields
@@ -149,6 +150,7 @@ class Result(Sealed):
         # A sweep over velocities: they stand in place of the times.
         self._sweep = bool(motion.get("steady"))
         self._path = path
+        self._store = store
         self._histograms = dict(histograms or {})
         self._stress = dict(stress or {})
         self._leaks = dict(leaks or {})
@@ -209,6 +211,7 @@ class Result(Sealed):
         state = dict(self.__dict__)
         state["_fields"] = {name: self._stack(name) for name in self._fields}
         state["_initial_gap"] = self.initial_gap
+        state["_store"] = None
         return state
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -640,8 +643,8 @@ class Result(Sealed):
 
     def _stress_volume(self, name: str) -> Floats:
         """A stored stress field of shape (field_time, depth, x, y), of a line (field_time, depth, x)."""
-        assert self._path is not None
-        store = _core.Store(self._path)
+        store = self._disk()
+        assert store is not None
         depths = range(len(self._stress["depth"]))
         found = np.array([[store.stress_field(name, n, depth) for depth in depths] for n in range(len(self._field_steps))])
         return found[..., 0] if self.is_line else found
@@ -649,14 +652,18 @@ class Result(Sealed):
     @property
     def _fluid_pressures(self) -> Floats | None:
         """Pressures of the fluid of shape (leak_time, x, y), where they are stored."""
-        if self._path is None or not (store := _core.Store(self._path)).has_fluid_pressure:
+        if (store := self._disk()) is None or not store.has_fluid_pressure:
             return None
         return np.array([store.fluid_pressure(n) for n in range(len(self._leaks["leak_time"]))])
 
     @property
     def _stress_fields(self) -> list[str]:
         """Names of the stress fields that are stored."""
-        return [] if self._path is None or not self._stress else _core.Store(self._path).stress_fields
+        return [] if not self._stress or (store := self._disk()) is None else store.stress_fields
+
+    def _disk(self) -> _core.Store | None:
+        """The result on disk; a copy in another process opens it again."""
+        return self._store if self._store is not None or self._path is None else _core.Store(self._path)
 
     def _stack(self, name: str) -> Floats:
         held = self._fields[name]
@@ -684,4 +691,5 @@ def open(path: str | os.PathLike[str]) -> Result:
         path=os.fspath(path),
         stress=store.stress(),
         leaks=store.leaks(),
+        store=store,
     )

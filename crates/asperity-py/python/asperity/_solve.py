@@ -6,6 +6,7 @@ import contextlib
 import errno
 import json
 import os
+import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -157,6 +158,8 @@ class March:
         force: bool,
     ) -> None:
         self._core = core
+        # Threads that share a march take turns.
+        self._turn = threading.Lock()
         #: Undeformed gap [m], shape (nx, ny), of a line contact (n,); read-only.
         self.initial_gap = frozen(initial_gap)
         #: Lengths of the domain along x and y [m], of a line contact along x.
@@ -186,11 +189,15 @@ class March:
         return self
 
     def __next__(self) -> Step:
-        if not self._core.advance():
-            raise StopIteration
-        step = Step(self, self._core.row(), self._core.done - 1)
-        self._record.see(step)
-        return step
+        with self._turn:
+            if not self._core.advance():
+                raise StopIteration
+            step = self._step(self._core.done - 1)
+            self._record.see(step)
+            return step
+
+    def _step(self, index: int) -> Step:
+        return Step(self, self._core.row(), index)
 
     def result(self) -> Result:
         """The rows so far, with the fields that :func:`march` was told to keep, and those of the last row. The march can go on.
@@ -256,6 +263,7 @@ def march(
     if limit is not None:
         bodies = [with_hardness(body, limit) for body in bodies]
     given = {"load": load, "pressure": pressure, "approach": approach}
+    load_unit = "N/m" if shape.is_line else "N"
     if stages is not None:
         if any(value is not None for value in given.values()):
             raise CaseError("give load, pressure, approach or stages, exactly one of them")
@@ -265,7 +273,7 @@ def march(
         control, history = "stages", repr(programme)
     else:
         control, value = one_of(given, "give load, pressure, approach or stages")
-        prescribed = as_history(control, value, "N/m" if control == "load" and shape.is_line else None)
+        prescribed = as_history(control, value, load_unit if control == "load" else None)
         programme = [as_stage(control, prescribed)]
         history = repr(prescribed)
     grid = as_times(times)
@@ -283,7 +291,7 @@ def march(
         boundary=boundary,
         bodies=[material for materials, _ in parts for material in materials],
         stacks=[stack for _, stack in parts],
-        stages=[stage._parts() for stage in programme],
+        stages=[stage._parts(load_unit) for stage in programme],
         times=grid.kind,
         times_numbers=list(grid.numbers),
         include=include,
@@ -425,7 +433,8 @@ def solve(
     ConvergenceError : a step was not solved to the tolerance; its `best` is the best state that was found
     KeyboardInterrupt : Ctrl-C
 
-    An error that comes after the first row has the rows so far as `error.result`.
+    An error that comes after the first row has the rows so far as `error.result`; the fields of the last row are among them where it
+    came between two steps.
 
     Returns
     -------

@@ -27,9 +27,10 @@ from ._points import Point, Solved, _toml, base_of, found, label, label_all, not
 from ._processes import cores, shared, solved
 from ._progress import line_of
 from ._columns import QUANTITIES, ROW
-from ._units import UNITS, bare, carries, has_unit, is_labelled
+from ._units import UNITS, bare, carries, has_unit, is_labelled, unit_among
 from ._result import FIELDS, Result
 from ._solve import _source
+from ._surface import Surface
 
 if TYPE_CHECKING:
     import xarray
@@ -117,6 +118,7 @@ def study(
             count(what, number)
     common = _common(case, plan.names)
     _check_names(common, plan)
+    _check_loads(common, over, plan)
     place = None if folder is None else os.path.abspath(os.fspath(folder))
     if place is not None:
         os.makedirs(place, exist_ok=True)
@@ -200,13 +202,30 @@ class _Plan:
 _pairs = zip
 
 
+def _load_unit(values: Any) -> str | None:
+    """The SI unit of loads that carry one: per length on a line contact."""
+    return unit_among("load", list(values) if isinstance(values, (list, tuple)) else [values], ("N", "N/m"))
+
+
+def _check_loads(common: dict[str, Any], over: Any, plan: _Plan) -> None:
+    """Refuses loads with a unit that is not that of the contact, of a line or of a plane."""
+    unit = _load_unit(over["load"]) if isinstance(over, Mapping) and "load" in over and has_unit(over["load"]) else None
+    for point in plan.points if unit is not None and "fixed" in common else ():
+        given = {**common["fixed"], **point}
+        shape = given.get("surface", given.get("gap"))
+        wanted = "N/m" if (shape.is_line if isinstance(shape, Surface) else np.ndim(np.asarray(shape)) == 1) else "N"
+        if unit != wanted:
+            raise CaseError(f"load is in {unit}, but must be in {wanted} or a unit of the same kind")
+
+
 def _values(name: str, values: Any) -> list[tuple[Any, Any]]:
     """(label, value) pairs of a parameter."""
     if has_unit(values):
         if "." in name or name not in UNITS:
             raise CaseError(f"the values of {name} carry a unit, which is not converted here: write them as text, as in ['1 mN', '2 mN']")
         # Numbers in SI units, which are labels too.
-        values = [number(name, value) for value in (np.atleast_1d(bare(name, values)) if carries(values) or is_labelled(values) else values)]
+        unit = _load_unit(values) if name == "load" else None
+        values = [number(name, value, unit) for value in (np.atleast_1d(bare(name, values, unit)) if carries(values) or is_labelled(values) else values)]
     elif is_labelled(values):
         values = np.asarray(values)
     if isinstance(values, Mapping):

@@ -159,9 +159,9 @@ class Surface:
                 return self
             raise CaseError("a number cannot be added to a surface, whose heights are measured from no fixed level: add surfaces")
         try:
-            other = as_surface(other, self.size if isinstance(other, np.ndarray) else None)
+            other = as_surface(other, self.size if isinstance(other, np.ndarray) or carries(other) else None)
         except CaseError:
-            if isinstance(other, np.ndarray) or is_labelled(other) or hasattr(other, "physical_sizes"):
+            if isinstance(other, np.ndarray) or carries(other) or is_labelled(other) or hasattr(other, "physical_sizes"):
                 raise
             return NotImplemented
         if self.cells != other.cells or not np.allclose(self.size, other.size, rtol=1e-9, atol=0.0):
@@ -173,7 +173,11 @@ class Surface:
         known = {"format": one.metadata["format"] for one in (self, other) if "format" in one.metadata}
         return Surface(self.heights + other.heights, size=self.size, metadata=known)
 
-    __radd__ = __add__
+    def __radd__(self, other: Summand) -> Surface:
+        if isinstance(other, np.ndarray):
+            # xarray adds the numbers of its array, which may be in micrometres.
+            raise CaseError("an array on the left of a surface may have lost its unit: write surface + array")
+        return self + other
 
     def __sub__(self, other: Summand) -> Surface:
         if isinstance(other, Surface):
@@ -249,7 +253,7 @@ class Surface:
     def outliers(self, threshold: float = 6.0, *, radius: int = 2) -> Surface:
         """Spikes become undefined: points farther from the median of the `radius` cells around them than `threshold`
         robust standard deviations."""
-        return self.process(f"outliers threshold={number('threshold', threshold)!r} radius={count('radius', radius)}")
+        return self.process(f"outliers threshold={number('threshold of outliers', threshold)!r} radius={count('radius', radius)}")
 
     def fill(self, method: str = "harmonic", *, share: float = 0.25) -> Surface:
         """Undefined points filled: "harmonic" (Laplace's equation) or "nearest"; refused above that share of them."""
@@ -766,14 +770,14 @@ def _of_labelled(what: str, given: Any, size: Any) -> tuple[Any, Any, dict[str, 
         if len(extent) < len(names):
             raise CaseError("the array has no coordinates x and y in m, so that its size is needed: size=(Lx, Ly)")
         return values, extent, {}
-    told = [str(values.coords[name].attrs.get("units", "")) for name in names if name in values.coords]
-    if len(extent) == len(names) and any(told) and not np.allclose(lengths("size", size), extent, rtol=1e-6, atol=0.0):
+    # Numbers of cells are no places.
+    if len(extent) == len(names) and any(abs(pitch or 1.0) != 1.0 for pitch in pitches) and not np.allclose(lengths("size", size), extent, rtol=1e-6, atol=0.0):
         raise CaseError(f"size is {size!r} m, but the coordinates of {what} tell {tuple(extent)} m: leave size out")
     return values, size, {}
 
 
 def _negative(value: Any, size: Any) -> Surface:
-    return -as_surface(value, size if isinstance(value, np.ndarray) else None)
+    return -as_surface(value, size if isinstance(value, np.ndarray) or carries(value) else None)
 
 
 def _is_number(value: Any) -> bool:

@@ -72,8 +72,8 @@ def has_unit(value: Any) -> bool:
 
 
 def is_labelled(value: Any) -> bool:
-    """Whether it is an array of xarray."""
-    return hasattr(value, "dims") and hasattr(value, "coords") and hasattr(value, "attrs")
+    """Whether it is an array or a variable of xarray."""
+    return hasattr(value, "dims") and hasattr(value, "attrs") and hasattr(value, "isel")
 
 
 def unit_text(value: Any) -> str:
@@ -127,11 +127,13 @@ def bare(what: str, value: Any, unit: str | None = None) -> Any:
     """`value` in the SI unit `unit`, by default that of the parameter `what`; what carries no unit is returned as it is."""
     unit = UNITS.get(what, "") if unit is None else unit
     value = variable_of(what, value)
+    if np.ma.isMaskedArray(value) and np.ma.getmaskarray(value).any():
+        raise CaseError(f"{what} has masked values: leave them out, or fill them")
     if is_labelled(value):
         given = value.attrs.get("units")
         if carries(value.data):
             return bare(what, value.data, unit)
-        numbers = np.ma.getdata(value.data) if np.ma.isMaskedArray(value.data) else np.asarray(value.data)
+        numbers = np.asarray(value.data)
         factor = 1.0 if given is None else factor_of(what, given, unit)
         return numbers if factor == 1.0 else numbers * factor
     if isinstance(value, (list, tuple)) and any(carries(one) or is_labelled(one) for one in value):

@@ -79,7 +79,10 @@ class Plots:
             ("pressure", "Pa", 1, [("mean", "mean_pressure"), ("largest", "max_pressure")]),
         ]
         over = result._table["time"]
-        if log_time is None:
+        drawn_before = [ax for ax in np.ravel(np.asarray(axes, dtype=object)) if ax.lines]
+        if log_time is None and drawn_before:
+            log_time = drawn_before[0].get_xscale() == "log"
+        elif log_time is None:
             log_time = result.is_sweep or _crowds_the_start(over)
         # A logarithmic axis has no place for the row at the time 0.
         rows = over > 0 if log_time else np.full(over.shape, True)
@@ -93,7 +96,8 @@ class Plots:
             ax.set_xlabel("velocity [m/s]" if result.is_sweep else "time [s]")
             ax.set_ylabel(f"{title} [{text}]")
             if log_time:
-                ax.set_xscale("log")
+                # What another evolution has at the time 0 has no place here either.
+                ax.set_xscale("log", nonpositive="mask")
             if len(names) > 1 or label:
                 _legend(ax)
         drawn: npt.NDArray[Any] = np.asarray(axes, dtype=object)

@@ -117,6 +117,15 @@ pub(crate) fn positive(what: &str, value: f64, unit: &str) -> Result<f64> {
     }
 }
 
+/// `Ok(value)` for a length that bodies may have: products of four of them are numbers.
+pub(crate) fn length(what: &str, value: f64) -> Result<f64> {
+    const LENGTHS: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
+    match LENGTHS.contains(&value) {
+        true => Ok(value),
+        false => Err(Error::invalid(what, value, "greater than 0 m: from 1e-60 m to 1e60 m")),
+    }
+}
+
 /// `Ok(value)` where it is finite and >= 0.
 pub(crate) fn non_negative(what: &str, value: f64, unit: &str) -> Result<f64> {
     if value.is_finite() && value >= 0.0 {

@@ -3,7 +3,7 @@
 //! Cell (i, j) has its centre at ((i + 1/2) dx, (j + 1/2) dy) from the corner of the domain.
 //! Fields on the grid are C-order arrays of shape (nx, ny).
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, length};
 
 /// A rectangle Lx x Ly of nx x ny cells.
 ///
@@ -36,7 +36,7 @@ impl Grid {
     /// A grid of `cells` = \[nx, ny\] over `size` = \[Lx, Ly\] in metres.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a count is 0, a size is not positive and finite, the cells are
+    /// [`Error::Invalid`] where a count is 0, a size is not from 1e-60 m to 1e60 m, the cells are
     /// more than 2^31, or a cell is longer than 1000 times its width.
     pub fn new(cells: [usize; 2], size: [f64; 2]) -> Result<Self> {
         for (count, axis) in cells.iter().zip(["x", "y"]) {
@@ -44,8 +44,8 @@ impl Grid {
                 return Err(Error::invalid(format!("number of cells along {axis}"), count, "at least 1"));
             }
         }
-        for (length, axis) in size.iter().zip(["x", "y"]) {
-            positive(&format!("size of the domain along {axis}"), *length, "m")?;
+        for (side, axis) in size.iter().zip(["x", "y"]) {
+            length(&format!("size of the domain along {axis}"), *side)?;
         }
         let product = cells[0].checked_mul(cells[1]);
         if product.is_none_or(|n| n > 1 << 31) {
@@ -77,13 +77,13 @@ impl Grid {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the count is 0 or more than 2^31, or the length not positive and finite.
-    pub fn line(cells: usize, length: f64) -> Result<Self> {
-        positive("size of the domain along x", length, "m")?;
+    /// [`Error::Invalid`] where the count is 0 or more than 2^31, or the length not from 1e-60 m to 1e60 m.
+    pub fn line(cells: usize, side: f64) -> Result<Self> {
+        length("size of the domain along x", side)?;
         if cells == 0 || cells > 1 << 31 {
             return Err(Error::invalid("number of cells along x", cells, "between 1 and 2^31"));
         }
-        Ok(Grid { cells: [cells, 1], size: [length, 1.0], line: true })
+        Ok(Grid { cells: [cells, 1], size: [side, 1.0], line: true })
     }
 
     /// The same domain with other cells; of a line the number along y is 1.
@@ -195,5 +195,18 @@ impl Grid {
     /// Centre of the domain \[m\].
     pub fn centre(&self) -> [f64; 2] {
         [0.5 * self.size[0], 0.5 * self.size[1]]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_whose_products_are_no_numbers_are_refused() {
+        for side in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e-200, 1e200] {
+            assert!(Grid::new([4, 4], [side, side]).is_err() && Grid::line(4, side).is_err(), "{side}");
+        }
+        assert!(Grid::new([4, 4], [1e-60, 1e-60]).is_ok() && Grid::line(4, 1e60).is_ok());
     }
 }

@@ -30,7 +30,7 @@ pub use inseparable::Inseparable;
 pub(crate) use inseparable::TOLERANCE;
 pub use kernel::Layered;
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, length, positive};
 
 /// What the lower face of a layer does on what lies below.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -99,7 +99,7 @@ impl Stack {
     pub fn new(layers: Vec<Layer>, base: Base) -> Result<Self> {
         for (n, layer) in layers.iter().enumerate() {
             let of = |what: &str| format!("{what} of layer {}", n + 1);
-            positive(&of("thickness"), layer.thickness, "m")?;
+            length(&of("thickness"), layer.thickness)?;
             elasticity(of, layer.shear, layer.poisson)?;
         }
         match base {

@@ -62,12 +62,10 @@ impl Free {
 
 /// The influence coefficients on the quadrant of the padded torus.
 fn influence(grid: &Grid, kernel: &dyn Kernel) -> Result<Array2<f64>> {
+    kernel.check(grid.longest_cell())?;
     let influence = match grid.is_line() {
         true => of_strips(kernel.strip(grid.spacing()[0], computed(grid)[0])?, grid),
-        false => {
-            kernel.check(grid.spacing())?;
-            kernel.influence(grid.spacing(), computed(grid))?
-        }
+        false => kernel.influence(grid.spacing(), computed(grid))?,
     };
     plausible(&influence)?;
     Ok(influence)

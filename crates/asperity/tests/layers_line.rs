@@ -21,7 +21,13 @@ fn kernel(layers: &[Layer], base: Base) -> Arc<Layered> {
 }
 
 /// A cylinder of radius 1 on a compliance of 1/2: (1 - nu)/mu = 1 of the top layer.
-fn cylinder(grid: Grid, boundary: Boundary, control: Control, value: f64, kernel: Arc<dyn Kernel>) -> Simulation {
+fn cylinder(
+    grid: Grid,
+    boundary: Boundary,
+    control: Control,
+    value: f64,
+    kernel: Arc<dyn Kernel>,
+) -> Simulation {
     let part = Part::Shape { shape: Shape::Cylinder { radius: 1.0 }, center: [0.0, 0.0] };
     Simulation {
         boundary,
@@ -58,16 +64,16 @@ fn a_thick_layer_and_a_layer_of_the_same_material_are_the_half_space() {
     let same = Base::HalfSpace { shear: 0.7, poisson: 0.3 };
     for (kernel, tolerance) in [
         // The tolerance of the solver.
-        (kernel(&[layer(0.01, 0.7, 0.3), layer(0.02, 0.7, 0.3)], same), 1e-8),
-        // What the base adds to differences of the displacement: the square of the domain over the thickness.
-        (kernel(&[layer(1e5, 0.5, 0.5)], Base::HalfSpace { shear: 1e-2, poisson: 0.0 }), 1e-8),
+        (kernel(&[layer(0.01, 0.7, 0.3), layer(0.02, 0.7, 0.3)], same), 1e-7),
+        // What the base adds to differences of the displacement: the square of the domain over the thickness, 1e-11.
+        (kernel(&[layer(1e5, 0.5, 0.5)], Base::HalfSpace { shear: 1e-2, poisson: 0.0 }), 1e-7),
     ] {
         let (row, pressure) = run(kernel);
         close(&pressure, &exact, tolerance);
         assert!((row[0] / half_space[0] - 1.0).abs() < tolerance, "{row:?} {half_space:?}");
     }
     let (_, pressure) = run(kernel(&[layer(1e5, 0.7, 0.3)], Base::Rigid));
-    close(&pressure, &exact, 1e-8);
+    close(&pressure, &exact, 1e-7);
 }
 
 #[test]
@@ -76,7 +82,14 @@ fn a_thick_layer_on_a_rigid_base_moves_by_the_logarithm_of_its_thickness() {
     let load = 5e-3;
     let at = |d: f64| {
         let grid = Grid::line(512, 0.3).unwrap();
-        solved(cylinder(grid, Boundary::Free, Control::Load, load, kernel(&[layer(d, 0.7, 0.3)], Base::Rigid))).0[0]
+        solved(cylinder(
+            grid,
+            Boundary::Free,
+            Control::Load,
+            load,
+            kernel(&[layer(d, 0.7, 0.3)], Base::Rigid),
+        ))
+        .0[0]
     };
     let [w, ten_times] = [at(100.0), at(1000.0)];
     let exact = 2.0 * load * 0.5 / PI * 10f64.ln();
@@ -97,22 +110,15 @@ fn a_thin_layer_is_a_bed_of_springs_or_is_squeezed_out() {
     let errors = |ratio: f64| {
         let d = a / ratio;
         // M = 2 mu (1 - nu)/(1 - 2 nu), with mu = 1 - nu.
-        let modulus = 2.0 * 0.7 * 0.7 / 0.4;
-        let [_, springs, _, wide] = run(d, 0.3, a * a / 2.0);
-        let [_, squeezed, _, length] = run(d, 0.5, a * a / 6.0);
-        [
-            springs / (2.0 / 3.0 * modulus * (0.5 * wide).powi(3) / d) - 1.0,
-            0.5 * wide / a - 1.0,
-            squeezed / (2.0 / 15.0 * 0.5 * (0.5 * length).powi(5) / d.powi(3)) - 1.0,
-            0.5 * length / a - 1.0,
-        ]
+        let springs = 2.0 / 3.0 * 2.0 * 0.7 * 0.7 / 0.4 * a.powi(3) / d;
+        let squeezed = 2.0 / 15.0 * 0.5 * a.powi(5) / d.powi(3);
+        [run(d, 0.3, a * a / 2.0)[1] / springs - 1.0, run(d, 0.5, a * a / 6.0)[1] / squeezed - 1.0]
     };
     let [thin, thinner] = [20.0, 40.0].map(errors);
-    println!("{thin:?} {thinner:?}");
-    for (thin, thinner) in thin.iter().zip(thinner) {
-        // The zone at the edge is about as wide as the layer is thick: errors of first order in d/a.
-        assert!(thin.abs() < 0.5 && thinner.abs() < 0.7 * thin.abs(), "{thin} {thinner}");
-    }
+    // The zone at the edge, as wide as the layer is thick, has little pressure on springs, and less of it under a squeezed layer: errors
+    // of second order in d/a.
+    assert!(thin[0].abs() < 1e-3 && thinner[0].abs() < 0.5 * thin[0].abs(), "{thin:?} {thinner:?}");
+    assert!(thin[1].abs() < 5e-2 && thinner[1].abs() < 0.4 * thin[1].abs(), "{thin:?} {thinner:?}");
 }
 
 #[test]
@@ -187,7 +193,9 @@ fn layers_that_creep_differently_end_at_the_relaxed_elastic_bodies() {
             let material = |&(shear, kelvin, time, nu): &(f64, f64, f64, f64)| {
                 let material = match (relaxed, kelvin.is_finite()) {
                     (_, false) => Material::elastic(Modulus::Shear, shear).unwrap(),
-                    (true, _) => Material::elastic(Modulus::Shear, 1.0 / (1.0 / shear + 1.0 / kelvin)).unwrap(),
+                    (true, _) => {
+                        Material::elastic(Modulus::Shear, 1.0 / (1.0 / shear + 1.0 / kelvin)).unwrap()
+                    }
                     (false, _) => zener(shear, kelvin, time),
                 };
                 body("material", material, nu)

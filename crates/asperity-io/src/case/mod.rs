@@ -356,7 +356,8 @@ impl Case {
                 let swept = self.motion.as_ref().is_some_and(|m| matches!(m.travel, Travel::Steady(_)));
                 let by_displacement = quantity.is_energy() || *quantity == Quantity::ContactStiffness;
                 let known = !(quantity.is_energy() && simulation.scheme == Scheme::Direct)
-                    && !((simulation.is_up_to_a_constant() || swept || self.waves.is_some()) && by_displacement);
+                    && !((simulation.is_up_to_a_constant() || swept || self.waves.is_some())
+                        && by_displacement);
                 known && simulation.columns_of(&alone).is_ok()
             };
             wanted.list = Quantity::at_rest().filter(possible).collect();

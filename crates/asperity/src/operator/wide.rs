@@ -13,7 +13,7 @@
 
 use ndarray::{Array2, s};
 
-use super::free::{computed, padded, plausible};
+use super::free::{computed, of_strips, padded, plausible};
 use crate::convolution::{Convolution, even_spectrum};
 use crate::error::Result;
 use crate::grid::Grid;
@@ -39,7 +39,7 @@ pub(crate) fn eigenvalues(grid: &Grid, kernel: &Layered) -> Result<Array2<f64>> 
     let (cells, cell, lengths) = (grid.cells(), grid.spacing(), lengths(grid));
     let [xs, ys] = [0, 1].map(|k| distances(cells[k], lengths[k], cell[k]));
     let influence = match grid.is_line() {
-        true => Array2::from_shape_vec((xs.len(), 1), kernel.response_of_line(cell[0], &xs)?).unwrap_or_default(),
+        true => of_strips(kernel.response_of_line(cell[0], &xs)?, lengths[1]),
         false => kernel.response(cell, [&xs, &ys])?,
     };
     plausible(&influence)?;

@@ -132,7 +132,7 @@ impl Waves {
             };
             if grid.is_line() && boundary == Boundary::Free && kernel.depth().is_none() {
                 // A constant is free, and with it the response to a uniform pressure: it creeps as the longest wave does.
-                unit[(0, 0)] = 2.0 * unit[(1, 0)];
+                (0..unit.ncols()).for_each(|ky| unit[(0, ky)] = 2.0 * unit[(1, ky)]);
             }
             if stages.is_empty() {
                 own = crate::operator::mean(lengths, unit.view());
@@ -258,7 +258,14 @@ impl Waves {
     }
 
     /// One step of a wave: its displacement under the pressure `p` at the end, which its states take in.
-    fn step(&self, wave: usize, rules: &[Rule], p: Complex64, u: Complex64, q: &mut [Complex64]) -> Complex64 {
+    fn step(
+        &self,
+        wave: usize,
+        rules: &[Rule],
+        p: Complex64,
+        u: Complex64,
+        q: &mut [Complex64],
+    ) -> Complex64 {
         let mut modulus = self.equilibrium[wave];
         if modulus.is_infinite() {
             return Complex64::ZERO;

@@ -145,6 +145,11 @@ impl Grid {
         self.spacing().into_iter().take(self.dimensions())
     }
 
+    /// Longest side of a cell \[m\].
+    pub fn longest_cell(&self) -> f64 {
+        self.cell_sides().fold(0.0, f64::max)
+    }
+
     /// \[nx, ny\].
     pub fn cells(&self) -> [usize; 2] {
         self.cells

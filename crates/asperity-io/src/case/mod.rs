@@ -352,25 +352,23 @@ impl Case {
         if self.output.all_quantities {
             let possible = |quantity: &Quantity| {
                 let alone = Quantities { list: vec![*quantity], ..wanted.clone() };
-                // Displacements of a free line contact are known up to a constant, those of steady motion have no history.
+                // Displacements may be known up to a constant, and those of steady motion have no history.
                 let swept = self.motion.as_ref().is_some_and(|m| matches!(m.travel, Travel::Steady(_)));
-                let free_line = self.grid.is_line() && self.boundary == Boundary::Free;
                 let by_displacement = quantity.is_energy() || *quantity == Quantity::ContactStiffness;
                 let known = !(quantity.is_energy() && simulation.scheme == Scheme::Direct)
-                    && !((free_line || swept || self.waves.is_some()) && by_displacement);
+                    && !((simulation.is_up_to_a_constant() || swept || self.waves.is_some())
+                        && by_displacement);
                 known && simulation.columns_of(&alone).is_ok()
             };
             wanted.list = Quantity::at_rest().filter(possible).collect();
         }
         if let Some(motion) = &self.motion {
             let steady = matches!(motion.travel, Travel::Steady(_));
-            // What steady states have no row of, or what a free line contact does not determine.
+            // What steady states have no row of, or what displacements that are known up to a constant do not determine.
             let known = |quantity: &Quantity| match quantity {
                 Quantity::Velocity | Quantity::SlidingDistance => !steady,
                 Quantity::DissipatedPower => {
-                    steady
-                        || simulation.scheme != Scheme::Direct
-                            && !(self.grid.is_line() && self.boundary == Boundary::Free)
+                    steady || simulation.scheme != Scheme::Direct && !simulation.is_up_to_a_constant()
                 }
                 _ => true,
             };

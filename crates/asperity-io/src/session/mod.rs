@@ -11,6 +11,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use asperity::finding::{Finding, Judge, Known};
+use asperity::kernel::Kernel;
 use asperity::march::{March, Row, Step, in_contact_frame};
 use asperity::material::Creep;
 use asperity::sliding::Friction;
@@ -534,10 +535,11 @@ fn setup(case: &Case) -> Map<String, Value> {
             case.files.iter().map(|(path, digest)| (path.clone(), json!(digest))).collect();
         setup.insert("md5_of_files".into(), json!(files));
     }
-    if case.layers.is_some() {
+    if let Some(layers) = &case.layers {
         let misfit = case.waves.as_ref().map(|waves| waves.misfit());
         setup.insert("layer_separable".into(), json!(misfit.is_none()));
         setup.insert("layer_misfit".into(), json!(misfit.unwrap_or(0.0)));
+        setup.insert("layer_rigid_base".into(), json!(layers.depth().is_some()));
     }
     if let Some(motion) = &case.motion {
         let steady = matches!(motion.travel, Travel::Steady(_));

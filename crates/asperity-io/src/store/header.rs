@@ -40,9 +40,12 @@ pub struct Header {
 }
 
 impl Header {
-    /// Whether it is a line contact of half-spaces without period, whose displacements are known up to a constant.
-    pub fn is_free_line(&self) -> bool {
-        self.grid.is_line() && self.setup.get("boundary").and_then(Value::as_str) != Some("periodic")
+    /// Whether displacements and approach are known up to a constant: in a line contact on a free domain, unless all bodies lie on a
+    /// rigid base.
+    pub fn is_up_to_a_constant(&self) -> bool {
+        self.grid.is_line()
+            && self.setup.get("boundary").and_then(Value::as_str) != Some("periodic")
+            && self.setup.get("layer_rigid_base").and_then(Value::as_bool) != Some(true)
     }
 
     /// Whether its rows are steady states of motion: they have a velocity in place of a time.

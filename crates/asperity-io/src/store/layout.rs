@@ -111,10 +111,10 @@ pub struct Series {
 }
 
 impl Series {
-    /// A scalar of a result: on a line forces and areas are per length, and what is measured from the end of a free line says so.
+    /// A scalar of a result: on a line forces and areas are per length, and what is measured from the end of the domain says so.
     pub(super) fn of_scalar(scalar: &Scalar, header: &Header) -> Series {
         let long_name = match scalar.name {
-            "approach" if header.is_free_line() => {
+            "approach" if header.is_up_to_a_constant() => {
                 "rigid-body approach, measured from the end of the domain (known up to a constant on a free line)"
             }
             "contact_area" if header.grid.is_line() => "contact length",
@@ -489,7 +489,7 @@ fn over_time(header: &Header, rows: usize, maps: usize) -> Vec<ArraySpec> {
     });
     for kind in FieldKind::ALL.into_iter().filter(|kind| header.fields.contains(kind)) {
         let mut attributes = json!({"units": kind.units(), "long_name": kind.long_name()});
-        if kind == FieldKind::Displacement && header.is_free_line() {
+        if kind == FieldKind::Displacement && header.is_up_to_a_constant() {
             attributes["long_name"] = json!("normal displacement, measured from the end of the domain");
         }
         if kind == FieldKind::Contact {

@@ -132,17 +132,28 @@ fn layers_that_creep_differently_are_described_by_their_waves() {
 }
 
 #[test]
-fn a_free_line_contact_of_layers_is_refused_at_the_layer() {
+fn a_free_line_contact_on_a_rigid_base_takes_an_approach() {
     let line = TREAD
         .replace("cells = [32, 32]", "cells = [32]")
         .replace("size = [\"40 mm\", \"40 mm\"]", "size = [\"40 mm\"]")
         .replace("\"sphere\"", "\"cylinder\"")
         .replace("\"5 N\"", "\"5 N/mm\"");
-    let errors = parse(&line).expect_err("not computed").errors;
-    assert_eq!((errors.len(), errors[0].key.as_str()), (1, "body[0].layer[0]"), "{}", errors[0]);
-    assert!(errors[0].to_string().contains("domain.boundary to \"periodic\""), "{}", errors[0]);
-    let periodic = line.replace("[[surface]]", "boundary = \"periodic\"\n[[surface]]");
-    parse(&periodic).unwrap_or_else(|errors| panic!("{errors}"));
+    let case = parse(&line).unwrap_or_else(|errors| panic!("{errors}"));
+    let simulation = case.simulation().unwrap_or_else(|errors| panic!("{errors}"));
+    assert!(!simulation.is_up_to_a_constant());
+    let approach =
+        line.replace("control = \"load\"", "control = \"approach\"").replace("\"5 N/mm\"", "\"0.1 mm\"");
+    assert!(parse(&approach).is_ok());
+    // On a half-space the approach of a line is known up to a constant.
+    let rubber = "poisson = 0.5\nmaterial = { model = \"zener\", shear = \"10 MPa\", shear_kelvin = \"4 MPa\", retardation_time = \"10 s\" }";
+    let coated = |text: &str| parse(&text.replace("base = \"rigid\"", rubber));
+    assert!(coated(&line).is_ok());
+    let errors = coated(&approach).expect_err("known up to a constant").errors;
+    assert!(errors[0].to_string().contains("rigid base"), "{}", errors[0]);
+    // Cells of 1.25 mm.
+    let thin = line.replace("\"10 mm\"", "\"0.3 mm\"");
+    let errors = parse(&thin).expect_err("not resolved").errors;
+    assert!(errors[0].to_string().contains("domain.cells to [34] or more"), "{}", errors[0]);
 }
 
 #[test]

@@ -336,6 +336,7 @@ def march(
     if any(isinstance(body, Body) for body in bodies):
         misfit = core.layer_misfit()
         setup["layer_separable"], setup["layer_misfit"] = misfit is None, misfit or 0.0
+        setup["layer_rigid_base"] = not any(on_half_space for _, (_, on_half_space) in parts)
     limits = [limit for limit in map(hardness_of, bodies) if limit is not None]
     if limits:
         setup["hardness"] = float(min(limits))

@@ -29,15 +29,15 @@ pub trait Kernel: std::fmt::Debug + Send + Sync {
     fn influence(&self, cell: [f64; 2], count: [usize; 2]) -> Result<Array2<f64>>;
 
     /// Displacements \[m\] at the centres of the cells 0, 1, ... `count` - 1 away from a strip of width `dx` \[m\] under unit
-    /// pressure, in plane strain. A constant is free: the smallest one is 0.
+    /// pressure, in plane strain. Without [`depth`](Self::depth) a constant is free: the smallest one is 0.
     ///
     /// # Errors
     /// [`Error::Invalid`] where they cannot be computed.
     fn strip(&self, _dx: f64, _count: usize) -> Result<Vec<f64>> {
         Err(Error::invalid(
-            "body of a line contact on a free domain",
-            "layers",
-            "a half-space, or boundary = \"periodic\": influence coefficients of layers under a line are not computed",
+            "kernel of a line contact on a free domain",
+            "without influence coefficients of a strip",
+            "one that has them, or boundary = \"periodic\"",
         ))
     }
 
@@ -61,11 +61,11 @@ pub trait Kernel: std::fmt::Debug + Send + Sync {
         false
     }
 
-    /// Whether cells of sides `cell` = \[dx, dy\] \[m\] of a free domain resolve the body.
+    /// Whether cells of a free domain whose longest side is `longest` \[m\] resolve the body.
     ///
     /// # Errors
     /// [`Error::Invalid`] where they do not.
-    fn check(&self, _cell: [f64; 2]) -> Result<()> {
+    fn check(&self, _longest: f64) -> Result<()> {
         Ok(())
     }
 }

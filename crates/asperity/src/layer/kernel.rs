@@ -1,12 +1,14 @@
 //! The kernel of one or two bodies of layers.
 
+use std::f64::consts::PI;
+
 use ndarray::Array2;
 use ndarray::parallel::prelude::*;
 
-use super::hankel::Smooth;
+use super::hankel::{Load, Smooth};
 use super::{Base, Stack};
 use crate::error::{Error, Result};
-use crate::kernel::{Kernel, love};
+use crate::kernel::{Kernel, love, strip_at};
 
 /// Longest side of a cell over the thickness of a top layer.
 const COARSEST: f64 = 4.0;
@@ -14,6 +16,8 @@ const COARSEST: f64 = 4.0;
 const PART: f64 = 0.5;
 /// ... up to this distance over the thickness; further away the response varies over the distance itself.
 const NEAR: f64 = 30.0;
+/// The same of a line.
+const PART_OF_LINE: f64 = 0.25;
 
 /// Gauss-Legendre rule on \[-1, 1\] (Abramowitz & Stegun, table 25.4).
 pub(super) const GAUSS_4: [(f64, f64); 4] = [
@@ -87,7 +91,7 @@ impl Layered {
         let [dx, dy] = cell;
         let farthest = |side: &[f64], d: f64| side.last().copied().unwrap_or(0.0) + d;
         let reach = libm::hypot(farthest(xs, dx), farthest(ys, dy));
-        let smooth = self.stacks.iter().map(|stack| Smooth::new(stack, self.scale, reach));
+        let smooth = self.stacks.iter().map(|stack| Smooth::new(stack, Load::Point, self.scale, reach));
         let smooth: Vec<Smooth> = smooth.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect();
         let at = |x: f64, y: f64| {
             love(x, y, cell) + smooth.iter().map(|smooth| over_cell(smooth, [x, y], cell)).sum::<f64>()
@@ -108,12 +112,44 @@ impl Layered {
         }
         Ok(response)
     }
+
+    /// Displacements \[m\] at the distances `xs` \[m\] from the middle of a strip of width `dx` \[m\] under unit pressure, in plane strain.
+    /// Where a body has no rigid base, a constant is free: the smallest one is 0. Distances ascend.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where the layers differ too much.
+    pub(crate) fn response_of_line(&self, dx: f64, xs: &[f64]) -> Result<Vec<f64>> {
+        let reach = xs.last().copied().unwrap_or(0.0) + dx;
+        let smooth = self.stacks.iter().map(|stack| Smooth::new(stack, Load::Line, self.scale, reach));
+        let smooth: Vec<Smooth> = smooth.collect::<Result<Vec<_>>>()?.into_iter().flatten().collect();
+        // The logarithm of the half-space is that of x/dx, the other one of r/d: on a rigid base the difference counts.
+        let units = self.stacks.iter().filter_map(|stack| {
+            let d = stack.layers().first()?.thickness;
+            Some(self.scale * stack.short_waves() / PI * libm::log(d / dx))
+        });
+        let constant = dx * units.sum::<f64>();
+        let at = |x: &f64| {
+            let layers: f64 = smooth.iter().map(|smooth| over_strip(smooth, *x, dx)).sum();
+            strip_at(*x, dx) + constant + layers
+        };
+        let mut response: Vec<f64> = xs.par_iter().map(at).collect();
+        if self.depth().is_none() {
+            let least = response.iter().copied().fold(f64::INFINITY, f64::min);
+            response.iter_mut().for_each(|k| *k -= least);
+        }
+        Ok(response)
+    }
 }
 
 impl Kernel for Layered {
     fn influence(&self, cell: [f64; 2], count: [usize; 2]) -> Result<Array2<f64>> {
         let [xs, ys] = [0, 1].map(|k| (0..count[k]).map(|i| i as f64 * cell[k]).collect::<Vec<f64>>());
         self.response(cell, [&xs, &ys])
+    }
+
+    fn strip(&self, dx: f64, count: usize) -> Result<Vec<f64>> {
+        let xs: Vec<f64> = (0..count).map(|i| i as f64 * dx).collect();
+        self.response_of_line(dx, &xs)
     }
 
     fn symbol(&self, qx: f64, qy: f64) -> f64 {
@@ -133,8 +169,8 @@ impl Kernel for Layered {
         all.then(|| self.stacks.iter().map(thickness).sum())
     }
 
-    fn check(&self, cell: [f64; 2]) -> Result<()> {
-        let (longest, most) = (cell[0].max(cell[1]), self.longest_cell());
+    fn check(&self, longest: f64) -> Result<()> {
+        let most = self.longest_cell();
         if longest <= most {
             return Ok(());
         }
@@ -174,4 +210,16 @@ fn over_cell(smooth: &Smooth, [x, y]: [f64; 2], [dx, dy]: [f64; 2]) -> f64 {
         }
     }
     half[0] * half[1] * sum
+}
+
+/// The same over the strip around x.
+fn over_strip(smooth: &Smooth, x: f64, dx: f64) -> f64 {
+    let d = smooth.thickness;
+    let parts = if x < NEAR * d + 4.0 * dx { (dx / (PART_OF_LINE * d)).ceil().max(1.0) } else { 1.0 };
+    let half = 0.5 * dx / parts;
+    let part = |m: usize| -> f64 {
+        let x = x + (2.0 * m as f64 + 1.0 - parts) * half;
+        GAUSS_4.iter().map(|(s, weight)| weight * smooth.value((x + half * s).abs())).sum()
+    };
+    half * (0..parts as usize).map(part).sum::<f64>()
 }

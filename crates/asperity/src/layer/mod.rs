@@ -15,7 +15,8 @@
 //! | `body` | bodies of viscoelastic layers, and whether space and time separate |
 //! | `inseparable` | how each wave creeps where they do not |
 //! | `kernel` | the [`Kernel`](crate::kernel::Kernel) of one or two such bodies |
-//! | `hankel` | from C(q) to the displacement around a point load |
+//! | `hankel` | from C(q) to the displacement around a load at a point or along a line |
+//! | `series` | C(q) as a series whose terms have known transforms |
 //!
 //! Theory: docs/layers.md.
 
@@ -24,6 +25,7 @@ mod compliance;
 mod hankel;
 mod inseparable;
 mod kernel;
+mod series;
 
 pub use body::{BodyLayer, LayeredBody, Response, response};
 pub use inseparable::Inseparable;

@@ -37,7 +37,6 @@ use std::sync::atomic::AtomicBool;
 
 use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem, Solver, Start};
 use crate::error::{Error, Result};
-use crate::grid::Boundary;
 use crate::load::{Control, Event};
 use crate::operator::{Operator, plan};
 use crate::sliding::Friction;
@@ -131,15 +130,11 @@ fn cap<'a>(simulation: &Simulation, of_cells: &'a Option<Vec<f64>>) -> Hardness<
     of_cells.as_deref().map_or(Hardness::Uniform(simulation.hardness), Hardness::Cells)
 }
 
-fn is_free_line(simulation: &Simulation) -> bool {
-    simulation.grid.is_line() && simulation.boundary == Boundary::Free
-}
-
-/// The displacement \[m\] that the displacements `u` of a contact are measured from: of a free line contact that of the domain's
-/// end, x = L, on the straight line through the last two cells; else 0.
+/// The displacement \[m\] that the displacements `u` of a contact are measured from: where they are known up to a constant, that of the
+/// domain's end, x = L, on the straight line through the last two cells; else 0.
 pub(crate) fn datum(simulation: &Simulation, u: &[f64]) -> f64 {
     match u {
-        [.., before, last] if is_free_line(simulation) => last + 0.5 * (last - before),
+        [.., before, last] if simulation.is_up_to_a_constant() => last + 0.5 * (last - before),
         _ => 0.0,
     }
 }
@@ -673,7 +668,7 @@ impl March {
 
     /// What the displacements of the state are measured from: see [`datum`].
     fn datum(&self) -> f64 {
-        if !is_free_line(&self.simulation) {
+        if !self.simulation.is_up_to_a_constant() {
             return 0.0;
         }
         let mut u = vec![0.0; self.simulation.grid.len()];

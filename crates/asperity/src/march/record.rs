@@ -20,7 +20,7 @@ pub struct Row {
     pub time: f64,
     /// W = cell area times sum p \[N\].
     pub load: f64,
-    /// w \[m\], zero at first touch of the undeformed bodies. Of a free line contact it is measured from the end of the domain,
+    /// w \[m\], zero at first touch of the undeformed bodies. Of a free line contact of half-spaces it is measured from the end of the domain,
     /// x = L: a half-space under a load on a line moves endlessly against points at infinity.
     pub approach: f64,
     /// Area of the cells with p > 0 \[m^2\].

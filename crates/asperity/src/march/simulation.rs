@@ -237,10 +237,7 @@ impl Simulation {
             return Err(Error::invalid("gap", "infinite everywhere", "finite in one cell at least"));
         }
         if self.boundary == Boundary::Free {
-            match self.grid.is_line() {
-                true => _ = self.kernel.strip(self.grid.spacing()[0], 1)?,
-                false => self.kernel.check(self.grid.spacing())?,
-            }
+            self.kernel.check(self.grid.longest_cell())?;
         }
         let widest = self.grid.longest_side();
         if let Some(depth) = self.kernel.depth()
@@ -335,9 +332,15 @@ impl Simulation {
         }
     }
 
-    /// Displacements of a free line contact are known up to a constant.
+    /// Whether displacements are known up to a constant, which the approach then has too: in a line contact on a free domain, unless
+    /// all bodies lie on a rigid base.
+    pub fn is_up_to_a_constant(&self) -> bool {
+        self.grid.is_line() && self.boundary == Boundary::Free && self.kernel.depth().is_none()
+    }
+
+    /// Where displacements are known up to a constant.
     fn validate_line(&self) -> Result<()> {
-        if !self.grid.is_line() || self.boundary != Boundary::Free {
+        if !self.is_up_to_a_constant() {
             return Ok(());
         }
         if self.grid.len() < 2 {
@@ -354,7 +357,8 @@ impl Simulation {
                     what,
                     value,
                     "a load or a pressure: under a load on a line a half-space moves endlessly, so the approach is known up to a \
-                     constant that depends on the domain; a periodic domain (boundary = \"periodic\") has no such limit",
+                     constant that depends on the domain; a periodic domain (boundary = \"periodic\") has no such limit, nor have \
+                     layers on a rigid base",
                 );
                 return Err(if self.loading.stages.len() > 1 { of_stage(error, n) } else { error });
             }

@@ -41,7 +41,7 @@ impl Free {
     /// The operator of the elastic half-space.
     pub fn half_space(grid: Grid) -> Self {
         let influence = match grid.is_line() {
-            true => of_strips(strip(grid.spacing()[0], computed(&grid)[0]), &grid),
+            true => of_strips(strip(grid.spacing()[0], computed(&grid)[0]), padded(&grid)[1]),
             false => HalfSpace.coefficients(grid.spacing(), computed(&grid)),
         };
         let spectrum = even_spectrum(&influence, padded(&grid));
@@ -62,21 +62,18 @@ impl Free {
 
 /// The influence coefficients on the quadrant of the padded torus.
 fn influence(grid: &Grid, kernel: &dyn Kernel) -> Result<Array2<f64>> {
+    kernel.check(grid.longest_cell())?;
     let influence = match grid.is_line() {
-        true => of_strips(kernel.strip(grid.spacing()[0], computed(grid)[0])?, grid),
-        false => {
-            kernel.check(grid.spacing())?;
-            kernel.influence(grid.spacing(), computed(grid))?
-        }
+        true => of_strips(kernel.strip(grid.spacing()[0], computed(grid)[0])?, padded(grid)[1]),
+        false => kernel.influence(grid.spacing(), computed(grid))?,
     };
     plausible(&influence)?;
     Ok(influence)
 }
 
-/// The coefficients of a line as those of a grid with one cell along y.
-fn of_strips(strips: Vec<f64>, grid: &Grid) -> Array2<f64> {
-    let [nx, ny] = computed(grid);
-    let mut influence = Array2::zeros((nx, ny));
+/// The coefficients of a line as those of a grid with one cell along y, on a torus that is so long along y.
+pub(super) fn of_strips(strips: Vec<f64>, across: usize) -> Array2<f64> {
+    let mut influence = Array2::zeros((strips.len(), across / 2 + 1));
     influence.column_mut(0).assign(&Array1::from(strips));
     influence
 }
@@ -160,7 +157,7 @@ mod tests {
         }
         for cells in [2, 3, 17, 64, 1000] {
             let grid = Grid::line(cells, 1e-3).unwrap();
-            let strips = of_strips(strip(grid.spacing()[0], computed(&grid)[0]), &grid);
+            let strips = of_strips(strip(grid.spacing()[0], computed(&grid)[0]), padded(&grid)[1]);
             let spectrum = even_spectrum(&strips, padded(&grid));
             assert!(spectrum.iter().all(|s| *s > 0.0), "a line of {cells}");
         }

@@ -13,7 +13,7 @@
 
 use ndarray::{Array2, s};
 
-use super::free::{computed, padded, plausible};
+use super::free::{computed, of_strips, padded, plausible};
 use crate::convolution::{Convolution, even_spectrum};
 use crate::error::Result;
 use crate::grid::Grid;
@@ -25,7 +25,9 @@ const WIDTH: usize = 4;
 
 /// Lengths of the torus.
 pub(crate) fn lengths(grid: &Grid) -> [usize; 2] {
-    grid.cells().map(|n| Convolution::good_length(WIDTH * n))
+    let across = if grid.is_line() { 1 } else { WIDTH };
+    let [nx, ny] = grid.cells();
+    [Convolution::good_length(WIDTH * nx), Convolution::good_length(across * ny)]
 }
 
 /// The eigenvalues of K on it, those of a quarter of the waves, \[kx\]\[ky\] \[m\].
@@ -33,10 +35,13 @@ pub(crate) fn lengths(grid: &Grid) -> [usize; 2] {
 /// # Errors
 /// As [`plan`](super::plan).
 pub(crate) fn eigenvalues(grid: &Grid, kernel: &Layered) -> Result<Array2<f64>> {
-    kernel.check(grid.spacing())?;
+    kernel.check(grid.longest_cell())?;
     let (cells, cell, lengths) = (grid.cells(), grid.spacing(), lengths(grid));
     let [xs, ys] = [0, 1].map(|k| distances(cells[k], lengths[k], cell[k]));
-    let influence = kernel.response(cell, [&xs, &ys])?;
+    let influence = match grid.is_line() {
+        true => of_strips(kernel.response_of_line(cell[0], &xs)?, lengths[1]),
+        false => kernel.response(cell, [&xs, &ys])?,
+    };
     plausible(&influence)?;
     Ok(even_spectrum(&influence, lengths))
 }

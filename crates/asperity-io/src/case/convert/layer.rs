@@ -193,12 +193,7 @@ pub fn resolved(
     if boundary == Boundary::Periodic {
         return;
     }
-    if let (true, Some(layer)) = (grid.is_line(), bodies.iter().find_map(|at| at.value.layer.first())) {
-        let message = "a line contact of a body of layers on a free domain is not computed".to_owned();
-        let help = "set domain.boundary to \"periodic\" and take a domain several times as wide as contact and layers";
-        return checks.fault(&layer.span, message, "boundary = \"periodic\"", Some(help));
-    }
-    let (longest, cell) = (layers.longest_cell(), grid.cell_sides().fold(0.0, f64::max));
+    let (longest, cell) = (layers.longest_cell(), grid.longest_cell());
     let tops = bodies.iter().filter_map(|at| at.value.layer.first());
     let thinnest = tops.min_by(|a, b| a.value.thickness.get().total_cmp(&b.value.thickness.get()));
     if let Some(layer) = thinnest

@@ -18,6 +18,7 @@ use rustfft::num_complex::Complex64;
 use super::rules::Share;
 use crate::error::{Error, Result};
 use crate::grid::{Boundary, Grid};
+use crate::kernel::Kernel;
 use crate::layer::{Inseparable, TOLERANCE};
 use crate::operator::{eigenvalues, torus, wide};
 
@@ -66,7 +67,7 @@ pub(super) struct Waves {
 pub(super) struct Table(pub(super) Vec<[f64; 3]>);
 
 /// E, γ and 1 - γ of a state.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Rule {
     keep: f64,
     new: f64,
@@ -125,10 +126,14 @@ impl Waves {
         let mut stages: Vec<Array2<f64>> = vec![];
         let mut own = 0.0;
         for (kernel, compliance) in layers.stages() {
-            let unit = match room {
+            let mut unit = match room {
                 Room::Narrow => eigenvalues(grid, boundary, &*kernel)?,
                 Room::Wide => wide::eigenvalues(grid, &kernel)?,
             };
+            if grid.is_line() && boundary == Boundary::Free && kernel.depth().is_none() {
+                // A constant is free, and with it the response to a uniform pressure: it creeps as the longest wave does.
+                (0..unit.ncols()).for_each(|ky| unit[(0, ky)] = 2.0 * unit[(1, ky)]);
+            }
             if stages.is_empty() {
                 own = crate::operator::mean(lengths, unit.view());
             }
@@ -240,25 +245,41 @@ impl Waves {
         kx.min(self.lengths[0] - kx) * self.quarter().1 + ky
     }
 
+    /// The two waves of a column of the transform that have the same rules, kx and mx - kx; one where they are the same.
+    fn pair(&self, kx: usize) -> impl Iterator<Item = usize> {
+        let mirrored = Some(self.lengths[0] - kx).filter(|other| kx > 0 && *other != kx);
+        std::iter::once(kx).chain(mirrored)
+    }
+
+    /// What a step does to the states of a wave of the quarter.
+    fn rules(&self, wave: usize, step: &Table, rules: &mut [Rule]) {
+        let terms = &self.relaxing[wave * self.terms..(wave + 1) * self.terms];
+        terms.iter().zip(rules).for_each(|(term, rule)| *rule = step.at(term.place));
+    }
+
     /// One step of a wave: its displacement under the pressure `p` at the end, which its states take in.
-    fn step(&self, wave: usize, step: &Table, p: Complex64, u: Complex64, q: &mut [Complex64]) -> Complex64 {
+    fn step(
+        &self,
+        wave: usize,
+        rules: &[Rule],
+        p: Complex64,
+        u: Complex64,
+        q: &mut [Complex64],
+    ) -> Complex64 {
         let mut modulus = self.equilibrium[wave];
         if modulus.is_infinite() {
             return Complex64::ZERO;
         }
         let terms = &self.relaxing[wave * self.terms..(wave + 1) * self.terms];
         let mut held = p;
-        for (e, q) in terms.iter().zip(&mut *q) {
-            let Rule { keep, new, left } = step.at(e.place);
-            modulus += e.modulus * left;
+        for ((e, rule), q) in terms.iter().zip(rules).zip(&mut *q) {
+            modulus += e.modulus * rule.left;
             // What the state is without the change of u.
-            *q = keep * *q + (1.0 - keep - new).max(0.0) * u;
+            *q = rule.keep * *q + (1.0 - rule.keep - rule.new).max(0.0) * u;
             held += e.modulus * *q;
         }
         let fresh = held / modulus;
-        for (e, q) in terms.iter().zip(q) {
-            *q += step.at(e.place).new * fresh;
-        }
+        rules.iter().zip(q).for_each(|(rule, q)| *q += rule.new * fresh);
         fresh
     }
 
@@ -276,12 +297,16 @@ impl Waves {
         if self.terms == 0 {
             return self.end_of_springs(p, u);
         }
-        let chunks = states.par_chunks_mut(mx * self.terms);
-        u.par_chunks_mut(mx).zip(chunks).enumerate().for_each(|(ky, (u, q))| {
-            for (kx, (u, q)) in u.iter_mut().zip(q.chunks_mut(self.terms)).enumerate() {
-                let p = p.map_or(Complex64::ZERO, |p| p[ky * mx + kx]);
-                for step in steps {
-                    *u = self.step(self.place(kx, ky), step, p, *u, q);
+        let columns = u.par_chunks_mut(mx).zip(states.par_chunks_mut(mx * self.terms));
+        columns.enumerate().for_each(|(ky, (u, states))| {
+            let mut rules = vec![Rule::default(); self.terms];
+            for (first, step) in (0..=mx / 2).flat_map(|kx| steps.iter().map(move |step| (kx, step))) {
+                let wave = self.place(first, ky);
+                self.rules(wave, step, &mut rules);
+                for kx in self.pair(first) {
+                    let p = p.map_or(Complex64::ZERO, |p| p[ky * mx + kx]);
+                    let q = &mut states[kx * self.terms..(kx + 1) * self.terms];
+                    u[kx] = self.step(wave, &rules, p, u[kx], q);
                 }
             }
         });
@@ -311,14 +336,15 @@ impl Waves {
         let columns =
             recalled.par_chunks_mut(mx).zip(u.par_chunks(mx)).zip(states.par_chunks(mx * self.terms));
         columns.enumerate().for_each(|(ky, ((recalled, u), states))| {
-            let mut q = vec![Complex64::ZERO; self.terms];
-            for (kx, ((recalled, u), states)) in
-                recalled.iter_mut().zip(u).zip(states.chunks(self.terms)).enumerate()
-            {
-                q.copy_from_slice(states);
-                *recalled = *u;
-                for step in steps {
-                    *recalled = self.step(self.place(kx, ky), step, Complex64::ZERO, *recalled, &mut q);
+            let mut rules = vec![Rule::default(); self.terms];
+            let mut q = states.to_vec();
+            recalled.copy_from_slice(u);
+            for (first, step) in (0..=mx / 2).flat_map(|kx| steps.iter().map(move |step| (kx, step))) {
+                let wave = self.place(first, ky);
+                self.rules(wave, step, &mut rules);
+                for kx in self.pair(first) {
+                    let q = &mut q[kx * self.terms..(kx + 1) * self.terms];
+                    recalled[kx] = self.step(wave, &rules, Complex64::ZERO, recalled[kx], q);
                 }
             }
         });
@@ -362,13 +388,14 @@ fn relaxation(layers: &Inseparable, values: &[f64]) -> Option<(f64, Vec<(f64, f6
 /// # Errors
 /// [`Error::Invalid`] where a wave does not creep like a body.
 pub fn check_layers(grid: &Grid, boundary: Boundary, layers: &Inseparable) -> Result<()> {
-    if boundary == Boundary::Periodic || grid.is_line() {
+    if boundary == Boundary::Periodic {
         return Ok(());
     }
     let longest = layers.glassy().longest_cell();
     let coarse = |n: usize, side: f64| n.min(COARSE.max((side / longest).ceil() as usize));
     let ([nx, ny], [lx, ly]) = (grid.cells(), grid.size());
-    Waves::new(&Grid::new([coarse(nx, lx), coarse(ny, ly)], [lx, ly])?, boundary, layers).map(|_| ())
+    let cells = [coarse(nx, lx), coarse(ny, ly)];
+    Waves::new(&grid.with_cells(cells)?, boundary, layers).map(|_| ())
 }
 
 fn unlike_a_body(grid: &Grid, boundary: Boundary, layers: &Inseparable) -> Error {

@@ -16,7 +16,7 @@
 
 use std::fmt::Write;
 
-use asperity::material::{GAS_CONSTANT, Lateral, Material, Modulus, Relaxation, Shift};
+use asperity::material::{GAS_CONSTANT, Lateral, Material, Modulus, Relaxation, Shift, VerticalShift};
 
 /// A program that reads materials.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,6 +42,8 @@ pub struct Exported<'a> {
     pub lateral: Option<Lateral>,
     /// Its shift.
     pub shift: Option<&'a Shift>,
+    /// How its moduli depend on temperature; the programs take none, so that it is a remark.
+    pub vertical: Option<&'a VerticalShift>,
 }
 
 /// The constants that a finite-element program takes.
@@ -71,7 +73,7 @@ pub fn text(exported: &Exported<'_>, program: Program) -> Result<String, String>
             exported.name
         ));
     }
-    match program {
+    let text = match program {
         Program::Csv => Ok(csv(exported, &relaxation)),
         Program::Comsol => Ok(comsol(exported, &relaxation, &isotropic(exported, instantaneous)?)),
         Program::Abaqus | Program::Ansys if relaxation.equilibrium <= 0.0 => Err(format!(
@@ -80,7 +82,28 @@ pub fn text(exported: &Exported<'_>, program: Program) -> Result<String, String>
         )),
         Program::Abaqus => Ok(abaqus(exported, &relaxation, &isotropic(exported, instantaneous)?)),
         Program::Ansys => Ok(ansys(exported, &relaxation, &isotropic(exported, instantaneous)?)),
-    }
+    };
+    let mark = match program {
+        Program::Abaqus => "**",
+        Program::Ansys => "!",
+        Program::Comsol => "%",
+        Program::Csv => "#",
+    };
+    Ok(exported.vertical.map_or(String::new(), |vertical| raised(vertical, mark)) + &text?)
+}
+
+/// A remark on a vertical shift.
+fn raised(vertical: &VerticalShift, mark: &str) -> String {
+    let law = match vertical {
+        VerticalShift::Density { reference, expansion } => {
+            format!("b_T = (Tr/T) (1 + a (T - Tr)), Tr = {reference:?} K, a = {expansion:?} 1/K\n")
+        }
+        VerticalShift::Table { points } => {
+            let points: Vec<String> = points.iter().map(|(kelvin, ln)| format!("({kelvin:?}, {:?})", ln.exp())).collect();
+            format!("(T [K], b_T) {}\n", points.join(" "))
+        }
+    };
+    format!("{mark} At the temperature T all moduli are those below over b_T, which is not in the numbers: {law}")
 }
 
 fn isotropic(exported: &Exported<'_>, modulus: f64) -> Result<Isotropic, String> {
@@ -276,7 +299,7 @@ mod tests {
     }
 
     fn exported(material: &Material, lateral: Lateral) -> Exported<'_> {
-        Exported { name: "rubber 1", material, lateral: Some(lateral), shift: Some(&WLF) }
+        Exported { name: "rubber 1", material, lateral: Some(lateral), shift: Some(&WLF), vertical: None }
     }
 
     /// The numbers of the lines that begin neither with a remark nor a keyword.
@@ -306,6 +329,20 @@ mod tests {
         let terms: Vec<(f64, f64)> = rows[1..5].iter().map(|row| (row[0], row[2])).collect();
         assert!(rows[1..5].iter().all(|row| row[0] == row[1]) && rows[0][1] == 0.49, "{written}");
         same(&Relaxation::from_instantaneous(rows[0][0], &terms).unwrap(), &material);
+    }
+
+    #[test]
+    fn a_vertical_shift_is_a_remark() {
+        let material = rubber(Modulus::Young);
+        let vertical = VerticalShift::Density { reference: 293.15, expansion: 6e-4 };
+        let with = Exported { vertical: Some(&vertical), ..exported(&material, Lateral::Poisson(0.49)) };
+        for (program, mark) in
+            [(Program::Abaqus, "** "), (Program::Ansys, "! "), (Program::Comsol, "% "), (Program::Csv, "# ")]
+        {
+            let written = text(&with, program).unwrap();
+            let first = written.lines().next().unwrap();
+            assert!(first.starts_with(mark) && first.contains("293.15 K, a = 0.0006 1/K"), "{first}");
+        }
     }
 
     #[test]
@@ -358,7 +395,7 @@ mod tests {
     #[test]
     fn what_a_program_cannot_take_is_said() {
         let says = |material: &Material, lateral: Option<Lateral>, program: Program, words: &str| {
-            let refused = text(&Exported { name: "x", material, lateral, shift: None }, program).unwrap_err();
+            let refused = text(&Exported { name: "x", material, lateral, shift: None, vertical: None }, program).unwrap_err();
             assert!(refused.contains(words), "{refused}");
         };
         let young = rubber(Modulus::Young);

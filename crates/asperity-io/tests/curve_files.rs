@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::io::{Cursor, Write};
 
 use asperity::material::{Modulus, Relaxation, Shift};
-use asperity_io::curve::{Columns, Curves, Kind, Request};
+use asperity_io::curve::{Columns, Curves, Kind, Request, ShiftRequest, VerticalRequest};
 
 fn rubber() -> Relaxation {
     Relaxation::absolute(1e6, &[(5e8, 1e-4), (8e7, 1e-2), (3e6, 2.0)]).unwrap()
@@ -230,4 +230,142 @@ fn a_damaged_workbook_is_refused() {
     let mut old = vec![0xd0, 0xcf, 0x11, 0xe0, 0xa1, 0xb1, 0x1a, 0xe1];
     old.extend(std::iter::repeat_n(0, 4096));
     assert!(Curves::parse("e.xls".as_ref(), &old, Kind::Dma, &Columns::default()).is_err());
+}
+
+#[test]
+fn logarithms_other_symbols_and_other_units_are_the_same_moduli() {
+    let mega = |value: f64| 1e-6 * value;
+    let psi = |value: f64| value / 6_894.757_293_168_361;
+    for (text, measure) in [
+        (
+            table("log f [Hz];lg(E' [Pa]);log10(E'')\n", |f, s, l| {
+                format!("{};{};{}", f.log10(), s.log10(), l.log10())
+            }),
+            Some(Modulus::Young),
+        ),
+        (
+            table("ln(omega) (rad/s)\tlog G' (Pa)\tlog G'' (Pa)", |f, s, l| {
+                format!("{}\t{}\t{}", (TAU * f).ln(), s.log10(), l.log10())
+            }),
+            Some(Modulus::Shear),
+        ),
+        (
+            table("f_Hz,E1_MPa,E2_MPa", |f, s, l| format!("{f},{},{}", mega(s), mega(l))),
+            Some(Modulus::Young),
+        ),
+        (
+            table("f [Hz],Re(E*),Im(E*) [psi]", |f, s, l| format!("{f},{s},{}", psi(l))),
+            Some(Modulus::Young),
+        ),
+        (
+            table("f [Hz],|G*| [ksi],delta (°)", |f, s, l| {
+                format!("{f},{},{}", 1e-3 * psi(s.hypot(l)), l.atan2(s).to_degrees())
+            }),
+            Some(Modulus::Shear),
+        ),
+        (
+            table(
+                "   Index    t    Frequency    Modulus    E'    Tan Delta\n   []    [s]    [Hz]    [MPa]    [MPa]    []",
+                |f, s, l| format!("   1    7.5    {f}    {}    {}    {}", mega(s.hypot(l)), mega(s), l / s),
+            ) + "Results:\n  Sample:\n    rubber, 12.3 mg\n",
+            Some(Modulus::Young),
+        ),
+        (
+            table("f [Hz];|eta*| [Pa.s];tan(delta) [-]", |f, s, l| {
+                format!("{f};{};{}", s.hypot(l) / (TAU * f), l / s)
+            }),
+            Some(Modulus::Shear),
+        ),
+    ] {
+        is_the_rubber(&text, measure);
+    }
+    let linear = "log f [Hz];E' [Pa];E'' [Pa]\n1;2e6;1e5\n100;3e6;1e5\n";
+    let refused = Curves::parse("x.csv".as_ref(), linear.as_bytes(), Kind::Dma, &Columns::default());
+    assert!(refused.unwrap_err().to_string().contains("99 decades"));
+}
+
+#[test]
+fn points_without_a_number_are_left_out_and_repeated_ones_averaged() {
+    let mut n = 0;
+    let text = table("f [Hz];E' [MPa];E'' [MPa];remark", |f, s, l| {
+        n += 1;
+        match n {
+            4 => format!("{f};NaN;{l};slip"),
+            9 => format!("{f};;{l};slip"),
+            // Twice, 1 % apart: the mean is the value.
+            20 => format!("{f};{};{};\n{f};{};{};", 0.995e-6 * s, 1e-6 * l, 1.005e-6 * s, 1e-6 * l),
+            _ => format!("{f};{};{};", 1e-6 * s, 1e-6 * l),
+        }
+    });
+    is_the_rubber(&text, Some(Modulus::Young));
+    let read = |text: &str| Curves::parse("x.csv".as_ref(), text.as_bytes(), Kind::Dma, &Columns::default());
+    let curves = read(&text).unwrap();
+    assert_eq!((curves.left_out, curves.points()), (2, 38));
+    let notes = curves.notes.join("\n");
+    assert!(notes.contains("2 of 41 points lack a number and are left out (lines 5, 10)"), "{notes}");
+    assert!(notes.contains("1 points repeat a frequency, the first on line 22"), "{notes}");
+    assert_eq!(Request::default().fit(&curves).unwrap().left_out, 2);
+    // Sweeps at several temperatures without a column that says so.
+    let twice = "f [Hz],E' [MPa],E'' [MPa]\n1,10,1\n2,12,1\n1,5,1\n2,6,1\n";
+    let refused = read(twice).unwrap_err();
+    assert_eq!(refused.line, Some(4));
+    assert!(refused.to_string().contains("column of temperatures"), "{refused}");
+    let mostly = "f [Hz],E' [MPa],E'' [MPa]\n1,10,1\n2,,1\n3,,1\n4,6,1\n5,nan,1\n";
+    assert!(read(mostly).unwrap_err().to_string().contains("3 of 5 points lack a number"));
+}
+
+/// Sweeps of the rubber at temperatures \[°C\], whose moduli grow as `factor`.
+fn sweeps(factor: impl Fn(f64) -> f64) -> Curves {
+    let law = Shift::Wlf { c1: 8.86, c2: 101.6, reference: 293.15 };
+    let mut text = "T [°C];f [Hz];E' [Pa];E'' [Pa]\n".to_owned();
+    for celsius in [0.0, 10.0, 20.0, 30.0, 45.0, 60.0] {
+        let a = law.factor(celsius + 273.15).unwrap();
+        for k in 0..21 {
+            let f = 10f64.powf(-2.0 + 0.2 * f64::from(k));
+            let (storage, loss) = rubber().complex(TAU * f * a);
+            let factor = factor(celsius + 273.15);
+            text += &format!("{celsius};{f:.9e};{:.9e};{:.9e}\n", factor * storage, factor * loss);
+        }
+    }
+    Curves::parse("x.csv".as_ref(), text.as_bytes(), Kind::Dma, &Columns::default()).unwrap()
+}
+
+#[test]
+fn moduli_that_grow_with_temperature_are_brought_to_the_reference() {
+    let curves = sweeps(|kelvin| kelvin / 293.15);
+    let shift = ShiftRequest::Given(Shift::Wlf { c1: 8.86, c2: 101.6, reference: 293.15 });
+    let plain = Request { shift: shift.clone(), ..Request::default() }.fit(&curves).unwrap();
+    // 7 % too low at 0 °C, 14 % too high at 60 °C.
+    assert!(plain.misfit.max > 0.03 && plain.vertical.is_none(), "{:?}", plain.misfit);
+    for vertical in [VerticalRequest::Density { expansion: 0.0 }, VerticalRequest::Free] {
+        let free = vertical == VerticalRequest::Free;
+        let fitted = Request { shift: shift.clone(), vertical, ..Request::default() }.fit(&curves).unwrap();
+        // Ten digits; factors from polynomials through sweeps of two decades and more in common.
+        let most = if free { 0.01 } else { 1e-4 };
+        assert!(fitted.misfit.max < most, "{free} {:?}", fitted.misfit);
+        assert_eq!(fitted.vertical_factors.len(), 6);
+        for [kelvin, factor, uncertainty] in &fitted.vertical_factors {
+            assert!((factor * kelvin / 293.15 - 1.0).abs() < most, "{free} {kelvin}: {factor}");
+            assert!(*uncertainty < 0.02 && (free || *uncertainty == 0.0));
+        }
+        let block = fitted.to_toml(&curves);
+        let said = if free { "vertical = [[\"273.15 K\", " } else { "vertical = \"density\" } }" };
+        assert!(block.contains(said), "{block}");
+    }
+    // Factors of both kinds at once, from the sweeps alone.
+    let curves = sweeps(|kelvin| 1.0 + 0.004 * (kelvin - 293.15));
+    let request = Request {
+        shift: ShiftRequest::Estimate(293.15),
+        vertical: VerticalRequest::Free,
+        ..Request::default()
+    };
+    let fitted = request.fit(&curves).unwrap();
+    for [kelvin, factor, uncertainty] in &fitted.vertical_factors {
+        let error = factor * (1.0 + 0.004 * (kelvin - 293.15)) - 1.0;
+        // Three standard deviations, and what a law within 0.1 decades of the factors does to moduli of a slope of a half.
+        assert!(error.abs() < 3.0 * uncertainty + 0.05, "{kelvin}: {error} {uncertainty}");
+    }
+    let one = Request { vertical: VerticalRequest::Free, ..Request::default() };
+    let refused = one.fit(&Curves { sweeps: curves.sweeps[..1].to_vec(), ..curves }).unwrap_err().to_string();
+    assert!(refused.contains("two temperatures"), "{refused}");
 }

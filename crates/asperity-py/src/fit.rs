@@ -7,6 +7,7 @@ use asperity::material::{FitOptions, Modulus};
 use asperity_io::choice;
 use asperity_io::curve::{
     Column, Columns, CurveError, Curves, Fitted, Remedy, Request, Role, Series, ShiftRequest, Sweep,
+    VerticalRequest, VerticalWord,
 };
 use numpy::{IntoPyArray, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -26,6 +27,8 @@ pub struct Options {
     shift: Option<ShiftWords>,
     /// Reference temperature of a shift that is to be estimated.
     estimate: Option<f64>,
+    /// "density", "free", or none.
+    vertical: Option<String>,
     window: Option<[f64; 2]>,
     per_decade: f64,
     margin: f64,
@@ -41,14 +44,25 @@ impl Options {
     /// The request; `named` is the modulus that the header of the file names.
     fn request(self, named: Option<Modulus>) -> PyResult<Request> {
         let measure = self.measure.map(|word| choose("modulus", &word)).transpose()?;
-        let shift = match (self.shift, self.estimate) {
-            (Some(words), _) => ShiftRequest::Given(shift(words)?),
-            (None, Some(reference)) => ShiftRequest::Estimate(reference),
-            (None, None) => ShiftRequest::None,
+        let (shift, vertical) = match (self.shift, self.estimate) {
+            (Some(words), _) => {
+                let (shift, vertical) = shift(words)?;
+                (ShiftRequest::Given(shift), vertical)
+            }
+            (None, Some(reference)) => (ShiftRequest::Estimate(reference), VerticalRequest::None),
+            (None, None) => (ShiftRequest::None, VerticalRequest::None),
+        };
+        let word = self.vertical.map(|word| choose("vertical", &word)).transpose()?;
+        let vertical = match (word, vertical) {
+            (None, vertical) => vertical,
+            (Some(VerticalWord::Density), VerticalRequest::None) => VerticalRequest::Density { expansion: 0.0 },
+            (Some(VerticalWord::Free), VerticalRequest::None) => VerticalRequest::Free,
+            (Some(_), _) => return Err(CaseError::new_err("vertical is given, and the shift has one of its own")),
         };
         Ok(Request {
             measure: measure.or(named).unwrap_or(Modulus::Young),
             shift,
+            vertical,
             window: self.window,
             options: FitOptions {
                 per_decade: self.per_decade,
@@ -161,7 +175,7 @@ pub fn read_shift_table(path: PathBuf) -> PyResult<ShiftWords> {
         true => CaseError::new_err(error.told(Remedy::in_python)),
         false => file(error),
     };
-    asperity_io::curve::read_shift_table(&path).map(words).map_err(unreadable)
+    asperity_io::curve::read_shift_table(&path).map(|shift| words(shift, None)).map_err(unreadable)
 }
 
 fn told<'py>(py: Python<'py>, fitted: Fitted, curves: &Curves) -> PyResult<Bound<'py, PyDict>> {
@@ -186,8 +200,11 @@ fn told<'py>(py: Python<'py>, fitted: Fitted, curves: &Curves) -> PyResult<Bound
     out.set_item("noise", fitted.noise)?;
     out.set_item("uncertainty", fitted.uncertainty.iter().map(|u| (u[0], u[1])).collect::<Vec<_>>())?;
     out.set_item("window", (fitted.window[0], fitted.window[1]))?;
-    out.set_item("shift", fitted.shift.clone().map(words))?;
+    out.set_item("shift", fitted.shift.clone().map(|shift| words(shift, fitted.vertical.as_ref())))?;
     out.set_item("shift_rms", fitted.shift_rms)?;
+    let factors = |list: &[[f64; 3]]| list.iter().map(|f| (f[0], f[1], f[2])).collect::<Vec<_>>();
+    out.set_item("shift_factors", factors(&fitted.factors))?;
+    out.set_item("vertical_factors", factors(&fitted.vertical_factors))?;
     out.set_item("temperatures", fitted.temperatures.clone())?;
     out.set_item("notes", fitted.notes.clone())?;
     out.set_item("toml", fitted.to_toml(curves))?;

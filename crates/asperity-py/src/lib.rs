@@ -44,7 +44,7 @@ mod _core {
     #[pymodule_export]
     use super::march::{March, quantities};
     #[pymodule_export]
-    use super::material::{Body, layer_compliance, shift_factor};
+    use super::material::{Body, layer_compliance, shift_factor, vertical_shift_factor};
     #[pymodule_export]
     use super::session::{case_text, check, report, run};
     #[pymodule_export]

@@ -6,8 +6,9 @@ use asperity::kernel::{HalfSpace, Kernel};
 use asperity::layer::{BodyLayer, Inseparable, Interface, LayeredBody, Response, response};
 use asperity::material::{
     self, Creep, CreepTerm, Fractional, Lateral, Material, Modulus, ReducedTime, Relaxation, Shift,
-    ThermalCreep,
+    ThermalCreep, VerticalShift,
 };
+use asperity_io::curve::VerticalRequest;
 use asperity_io::stress::Ratio;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -22,16 +23,27 @@ pub struct Body {
     pub inner: material::Body,
     /// Where the temperature of the run is its own.
     shift: Option<Shift>,
+    /// How its moduli depend on that temperature.
+    vertical: Option<VerticalShift>,
     /// Relative error of the Prony sum that stands for a fractional model.
     error: Option<f64>,
 }
 
-/// A shift as Python gives it: its model, numbers, and points of (temperature, ln a_T).
-pub type ShiftWords = (String, Vec<f64>, Vec<(f64, f64)>);
+/// A vertical shift as Python gives it: the expansion of one by density, or points of (temperature, ln b_T).
+pub type VerticalWords = (Option<f64>, Vec<(f64, f64)>);
 
-pub fn shift(words: ShiftWords) -> PyResult<Shift> {
-    let (model, numbers, points) = words;
-    Ok(match (model.as_str(), numbers.as_slice()) {
+/// A shift as Python gives it: its model, numbers, points of (temperature, ln a_T), and its vertical shift.
+pub type ShiftWords = (String, Vec<f64>, Vec<(f64, f64)>, Option<VerticalWords>);
+
+/// A shift, and how the moduli depend on temperature.
+pub fn shift(words: ShiftWords) -> PyResult<(Shift, VerticalRequest)> {
+    let (model, numbers, points, vertical) = words;
+    let vertical = match vertical {
+        None => VerticalRequest::None,
+        Some((Some(expansion), _)) => VerticalRequest::Density { expansion },
+        Some((None, points)) => VerticalRequest::Given(VerticalShift::Table { points }),
+    };
+    let shift = match (model.as_str(), numbers.as_slice()) {
         ("wlf", [c1, c2, reference]) => Shift::Wlf { c1: *c1, c2: *c2, reference: *reference },
         ("arrhenius", [activation_energy, reference]) => {
             Shift::Arrhenius { activation_energy: *activation_energy, reference: *reference }
@@ -43,17 +55,22 @@ pub fn shift(words: ShiftWords) -> PyResult<Shift> {
                 numbers.len()
             )));
         }
-    })
+    };
+    Ok((shift, vertical))
 }
 
 /// The words of a shift, for Python.
-pub fn words(shift: Shift) -> ShiftWords {
+pub fn words(shift: Shift, vertical: Option<&VerticalShift>) -> ShiftWords {
+    let vertical = vertical.map(|vertical| match vertical {
+        VerticalShift::Density { expansion, .. } => (Some(*expansion), vec![]),
+        VerticalShift::Table { points } => (None, points.clone()),
+    });
     match shift {
-        Shift::Wlf { c1, c2, reference } => ("wlf".into(), vec![c1, c2, reference], vec![]),
+        Shift::Wlf { c1, c2, reference } => ("wlf".into(), vec![c1, c2, reference], vec![], vertical),
         Shift::Arrhenius { activation_energy, reference } => {
-            ("arrhenius".into(), vec![activation_energy, reference], vec![])
+            ("arrhenius".into(), vec![activation_energy, reference], vec![], vertical)
         }
-        Shift::Table { points } => ("table".into(), vec![], points),
+        Shift::Table { points } => ("table".into(), vec![], points, vertical),
     }
 }
 
@@ -64,10 +81,25 @@ pub fn shift_factor<'py>(
     words: ShiftWords,
     temperatures: PyReadonlyArray1<'_, f64>,
 ) -> PyResult<Curve<'py>> {
-    let shift = shift(words)?;
+    let (shift, vertical) = shift(words)?;
     shift.validate().map_err(|error| raised(py, error))?;
+    vertical.known(shift.reference()).map_err(CaseError::new_err)?;
     let factors =
         temperatures.as_array().iter().map(|t| shift.factor(*t)).collect::<asperity::Result<Vec<_>>>();
+    Ok(factors.map_err(|error| raised(py, error))?.into_pyarray(py))
+}
+
+/// Vertical shift factors b_T at temperatures; 1 where there is no vertical shift.
+#[pyfunction]
+pub fn vertical_shift_factor<'py>(
+    py: Python<'py>,
+    words: ShiftWords,
+    temperatures: PyReadonlyArray1<'_, f64>,
+) -> PyResult<Curve<'py>> {
+    let (shift, vertical) = shift(words)?;
+    let vertical = vertical.known(shift.reference()).map_err(CaseError::new_err)?;
+    let factor = |t: &f64| vertical.as_ref().map_or(Ok(1.0), |vertical| vertical.factor(*t));
+    let factors = temperatures.as_array().iter().map(factor).collect::<asperity::Result<Vec<_>>>();
     Ok(factors.map_err(|error| raised(py, error))?.into_pyarray(py))
 }
 
@@ -156,9 +188,15 @@ fn at(body: &Body, temperatures: &[(f64, f64)]) -> asperity::Result<(material::B
         return Ok((body.inner.clone(), None));
     };
     let clock = ReducedTime::new(shift.clone(), temperatures)?;
-    match rest.iter().all(|point| point.1 == first.1) {
-        true => Ok((stretched(&body.inner, shift.factor(first.1)?)?, None)),
-        false => Ok((body.inner.clone(), Some(clock))),
+    match (rest.iter().all(|point| point.1 == first.1), &body.vertical) {
+        (true, vertical) => Ok((warmed(&body.inner, shift, vertical.as_ref(), first.1)?, None)),
+        (false, None) => Ok((body.inner.clone(), Some(clock))),
+        (false, Some(_)) => Err(asperity::Error::invalid(
+            "temperature of a material with a vertical shift",
+            "changing during the run",
+            "constant: moduli that change during a run are not solved; hold the temperature, or leave vertical out of the shift \
+             (then only its times depend on temperature)",
+        )),
     }
 }
 
@@ -188,8 +226,16 @@ impl Body {
     }
 }
 
-fn stretched(body: &material::Body, factor: f64) -> asperity::Result<material::Body> {
-    let material = if factor == 1.0 { body.material.clone() } else { body.material.stretched(factor)? };
+/// A body at a constant temperature.
+fn warmed(
+    body: &material::Body,
+    shift: &Shift,
+    vertical: Option<&VerticalShift>,
+    kelvin: f64,
+) -> asperity::Result<material::Body> {
+    let (times, moduli) = (shift.factor(kelvin)?, vertical.map_or(Ok(1.0), |vertical| vertical.factor(kelvin))?);
+    let material = if times == 1.0 { body.material.clone() } else { body.material.stretched(times)? };
+    let material = if moduli == 1.0 { material } else { material.scaled(1.0 / moduli)? };
     Ok(material::Body { material, ..body.clone() })
 }
 
@@ -223,22 +269,26 @@ impl Body {
         };
         let (material, error) = build(model, measure, &numbers, &terms).map_err(|error| raised(py, error))?;
         let mut inner = material::Body { name, material, lateral, hardness };
-        let mut shift = shift.map(self::shift).transpose()?;
-        if let Some(shift) = &shift {
-            shift.validate().map_err(|error| raised(py, error))?;
-        }
+        let (mut shift, vertical) = shift.map(self::shift).transpose()?.unzip();
+        let mut vertical = match &shift {
+            Some(shift) => {
+                shift.validate().map_err(|error| raised(py, error))?;
+                vertical.unwrap_or_default().known(shift.reference()).map_err(CaseError::new_err)?
+            }
+            None => None,
+        };
         if let Some(own) = temperature {
             let Some(law) = shift.take() else {
                 let words =
                     "but without a shift the material does not depend on it: give shift=asperity.wlf(...)";
                 return Err(CaseError::new_err(format!("temperature is {own}, {words}")));
             };
-            let moved = law.factor(own).and_then(|factor| stretched(&inner, factor));
+            let moved = warmed(&inner, &law, vertical.take().as_ref(), own);
             inner = moved.map_err(|error| raised(py, error))?;
         }
         // Poisson's ratio, bulk modulus and hardness are checked where they are used.
         inner.contact_creep().map_err(|error| raised(py, error))?;
-        Ok(Body { inner, shift, error })
+        Ok(Body { inner, shift, vertical, error })
     }
 
     /// Creep compliance at times: 1/Pa, of the modulus that the material was given in.

@@ -116,6 +116,35 @@ def test_sweeps_of_a_file_are_shifted_by_an_estimate_or_a_table(tmp_path):
         asp.shift_table(tmp_path / "none.csv")
 
 
+def test_a_vertical_shift_divides_the_moduli(tmp_path):
+    times = np.geomspace(0.1, 100, 25)
+    law = asp.wlf(**WLF)
+    kelvin = np.repeat([283.15, 293.15, 303.15, 318.15], 25)
+    t = np.tile(times, 4)
+    modulus = 1e6 * (1 + 5 * np.exp(-((t / law.factor(kelvin) / 3) ** 0.4))) * kelvin / 293.15
+    rows = np.column_stack([kelvin - 273.15, t, modulus])
+    np.savetxt(tmp_path / "warm.csv", rows, delimiter=",", header="T [°C],t [s],E(t) [Pa]", comments="", encoding="utf-8")
+    plain = asp.fit_file(tmp_path / "warm.csv", shift=law, poisson=0.5)
+    assert plain.vertical_factors == []
+    for fit in (
+        asp.fit_file(tmp_path / "warm.csv", shift=law, vertical="density", poisson=0.5),
+        asp.fit_file(tmp_path / "warm.csv", shift=law, vertical="free", poisson=0.5),
+        asp.fit_file(tmp_path / "warm.csv", shift=asp.wlf(**WLF, vertical="density"), poisson=0.5),
+    ):
+        assert fit.max_misfit < 0.5 * plain.max_misfit
+        assert [f[1] for f in fit.vertical_factors] == pytest.approx([293.15 / T for T in (283.15, 293.15, 303.15, 318.15)], rel=0.01)
+        warm = fit.with_body(poisson=0.5, temperature=318.15)
+        cold = fit.with_body(poisson=0.5)
+        a = float(fit.shift.factor(318.15))
+        ratio = warm.relaxation_modulus(2.0 * a) / cold.relaxation_modulus(2.0)
+        assert float(np.squeeze(ratio)) == pytest.approx(318.15 / 293.15, rel=0.01)
+    with pytest.raises(asp.CaseError, match="has one of its own"):
+        asp.fit_file(tmp_path / "warm.csv", shift=asp.wlf(**WLF, vertical="density"), vertical="free")
+    with pytest.raises(asp.CaseError, match="'density'"):
+        asp.wlf(**WLF, vertical="dense")
+    assert "vertical='density'" in repr(asp.wlf(**WLF, vertical="density"))
+
+
 @pytest.mark.parametrize(
     ("make", "words"),
     [

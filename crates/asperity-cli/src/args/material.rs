@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use asperity::indentation::Given;
 use asperity::layer::Interface;
 use asperity::material::{LongTime, Moduli, Modulus};
-use asperity_io::curve::Kind;
+use asperity_io::curve::{Kind, VerticalWord};
 use clap::{Subcommand, ValueEnum};
 
 use super::choice;
@@ -161,6 +161,13 @@ pub struct Fit {
     /// file holds several temperatures and no shift: the temperature nearest to 20 °C]
     #[arg(long, value_name = "REF", allow_hyphen_values = true)]
     pub estimate_shift: Option<String>,
+    /// How the moduli of sweeps at several temperatures depend on temperature, besides their times: as density times absolute
+    /// temperature (density, rubbers), or by one factor per sweep, estimated from both moduli (free) [default: they do not]
+    #[arg(long, value_parser = choice::<VerticalWord>())]
+    pub vertical: Option<VerticalWord>,
+    /// Relative growth of the volume per kelvin for --vertical density, e.g. '6e-4 1/K' [default: a constant density]
+    #[arg(long, value_name = "1/K")]
+    pub expansion: Option<String>,
     /// The file to write, with a `material = { ... }` for a case [default: printed]
     #[arg(short, long, value_name = "PATH")]
     pub output: Option<PathBuf>,

@@ -2,7 +2,7 @@
 
 use asperity::kernel::Kernel;
 use asperity::layer::{Base, Interface, Layered, Stack};
-use asperity::material::{Body, Creep, Shift};
+use asperity::material::{Body, Creep, Shift, VerticalShift};
 use asperity::quantities::Quantity;
 use asperity::surface::Part;
 use asperity::{Course, History, Simulation};
@@ -39,6 +39,9 @@ pub struct MaterialReport {
     pub window: Option<[f64; 2]>,
     /// Measured points.
     pub points: Option<usize>,
+    /// Points that lack a number and were left out.
+    #[serde(skip)]
+    pub left_out: usize,
     /// Temperatures at which they were measured \[K\].
     pub temperatures: Vec<f64>,
     /// The file that holds them, as the case names it.
@@ -50,6 +53,15 @@ pub struct MaterialReport {
     pub law: Option<Shift>,
     /// Shift factor a_T at the constant temperature of the body, where it has a shift.
     pub shift_factor: Option<f64>,
+    /// How the moduli of the material depend on temperature, where they do.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub vertical: Option<String>,
+    /// The same as a law.
+    #[serde(skip)]
+    pub vertical_law: Option<VerticalShift>,
+    /// Vertical shift factor b_T at the constant temperature of the body, where it has one: its moduli are divided by it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub vertical_factor: Option<f64>,
     /// What was assumed.
     pub notes: Vec<String>,
 }

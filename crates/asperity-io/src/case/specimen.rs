@@ -32,7 +32,8 @@ impl Specimen {
     /// [`asperity::Error`] where its times leave the range of numbers.
     pub fn at_reference(&self) -> asperity::Result<(Material, Option<&Shift>)> {
         let factor = self.report.shift_factor.unwrap_or(1.0);
-        Ok((self.material.stretched(1.0 / factor)?, self.report.law.as_ref()))
+        let moduli = self.report.vertical_factor.unwrap_or(1.0);
+        Ok((self.material.stretched(1.0 / factor)?.scaled(moduli)?, self.report.law.as_ref()))
     }
 }
 

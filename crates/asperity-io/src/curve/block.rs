@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use asperity::material::{Creep, Relaxation, Shift};
+use asperity::material::{Creep, Relaxation, Shift, VerticalShift};
 
 use super::{Curves, Fitted, Series};
 use crate::choice;
@@ -31,7 +31,8 @@ impl Fitted {
             Series::Creep(function) => creep(&mut text, measure, function, &self.uncertainty),
         }
         if let Some(shift) = &self.shift {
-            let _ = write!(text, ", shift = {}", law(shift));
+            let vertical = self.vertical.as_ref().map_or(String::new(), vertical);
+            let _ = write!(text, ", shift = {}{vertical} }}", law(shift));
         }
         text.push_str(" }\n");
         text
@@ -94,16 +95,17 @@ fn trimmed(value: f64, decimals: usize) -> String {
     if text.ends_with('.') { format!("{text}0") } else { text.to_owned() }
 }
 
+/// A shift, without the bracket that closes it.
 fn law(shift: &Shift) -> String {
     match shift {
         Shift::Wlf { c1, c2, reference } => {
             format!(
-                "{{ model = \"wlf\", c1 = {c1:?}, c2 = \"{c2:?} K\", reference = \"{} K\" }}",
+                "{{ model = \"wlf\", c1 = {c1:?}, c2 = \"{c2:?} K\", reference = \"{} K\"",
                 trimmed(*reference, 6)
             )
         }
         Shift::Arrhenius { activation_energy, reference } => format!(
-            "{{ model = \"arrhenius\", energy = \"{activation_energy:?} J/mol\", reference = \"{} K\" }}",
+            "{{ model = \"arrhenius\", energy = \"{activation_energy:?} J/mol\", reference = \"{} K\"",
             trimmed(*reference, 6)
         ),
         Shift::Table { points } => {
@@ -114,7 +116,23 @@ fn law(shift: &Shift) -> String {
                     format!("[\"{} K\", {decades}]", trimmed(*kelvin, 6))
                 })
                 .collect();
-            format!("{{ model = \"table\", points = [{}] }}", points.join(", "))
+            format!("{{ model = \"table\", points = [{}]", points.join(", "))
+        }
+    }
+}
+
+/// The key of a shift.
+fn vertical(vertical: &VerticalShift) -> String {
+    match vertical {
+        VerticalShift::Density { expansion: 0.0, .. } => ", vertical = \"density\"".to_owned(),
+        VerticalShift::Density { expansion, .. } => {
+            format!(", vertical = {{ expansion = \"{expansion:?} 1/K\" }}")
+        }
+        VerticalShift::Table { points } => {
+            let point =
+                |(kelvin, ln): &(f64, f64)| format!("[\"{} K\", {}]", trimmed(*kelvin, 6), trimmed(ln.exp(), 10));
+            let points: Vec<String> = points.iter().map(point).collect();
+            format!(", vertical = [{}]", points.join(", "))
         }
     }
 }

@@ -107,21 +107,16 @@ pub(super) fn values(
     table: &Table,
     form: Form,
     said: &Columns,
-) -> Result<(Values, Vec<Place>, Vec<String>), Fault> {
+) -> Result<Read, Fault> {
     let places = places(table, form, said)?;
-    for (role, column) in &places {
-        if table.names.get(*column).is_some_and(|name| is_logarithm(name)) {
-            let column = format!("column {}{}", column + 1, table.quoted(*column));
-            return Err(fault(format!(
-                "{} ({column}) is named as a logarithm; give the values themselves, in a column with their unit",
-                role.name()
-            )));
-        }
-    }
-    let (mut values, mut used, mut notes) = (Values::new(), Vec::new(), Vec::new());
+    let (kept, mut notes) = complete(table, &places)?;
+    let (mut values, mut used) = (Values::new(), Vec::new());
     for (role, column) in places {
         let name = table.names.get(column).map_or("", String::as_str);
         let header_unit = table.units.get(column).map_or("", String::as_str);
+        let base = table.bases.get(column).copied().flatten();
+        // "[log Pa]" under "log G'".
+        let header_unit = if base.is_some() { role::logarithm(header_unit).1 } else { header_unit };
         let unit = match (said.units.get(&role), role) {
             (Some(unit), _) => tidy(role, name, unit.trim()),
             // "tan(delta) [-]": a ratio whatever the brackets say, but for per cent.
@@ -131,12 +126,24 @@ pub(super) fn values(
         let place = format!("column {}{}", column + 1, table.quoted(column));
         let numbers = match role {
             Role::Set => table.labels(column),
-            _ => table.numbers(column)?,
+            _ => table.sparse(column)?.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect(),
+        };
+        let numbers: Vec<f64> = kept.iter().map(|row| numbers[*row]).collect();
+        let numbers = match base {
+            Some(base) => {
+                notes.push(format!(
+                    "{} ({place}) holds logarithms, of base {}, as its name says",
+                    role.name(),
+                    if base == 10.0 { "10" } else { "e" }
+                ));
+                powers(base, &numbers).map_err(|why| fault(format!("{} ({place}) {why}", role.name())))?
+            }
+            None => numbers,
         };
         let converted = convert(role, &unit, numbers).map_err(|(row, why)| {
             let fault = fault(format!("{} ({place}): {why}", role.name())).remedy(Remedy::Unit(role));
             match row {
-                Some(row) => fault.at(table.rows[row].line),
+                Some(row) => fault.at(table.rows[kept[row]].line),
                 None => fault,
             }
         })?;
@@ -148,7 +155,58 @@ pub(super) fn values(
         let unit = if unit.is_empty() { role.si().to_owned() } else { unit };
         used.push(Place { role, column: column + 1, header, unit });
     }
-    Ok((values, used, notes))
+    let lines = kept.iter().map(|row| table.rows[*row].line).collect();
+    Ok(Read { values, places: used, lines, left_out: table.rows.len() - kept.len(), notes })
+}
+
+/// What the columns of a table hold.
+pub(super) struct Read {
+    pub values: Values,
+    pub places: Vec<Place>,
+    /// The line of each point.
+    pub lines: Vec<usize>,
+    /// Points that lack a number.
+    pub left_out: usize,
+    /// What was assumed.
+    pub notes: Vec<String>,
+}
+
+/// The rows with a number in each of the columns, and a note on the others.
+fn complete(table: &Table, places: &BTreeMap<Role, usize>) -> Result<(Vec<usize>, Vec<String>), Fault> {
+    let mut whole = vec![true; table.rows.len()];
+    for (_, column) in places.iter().filter(|(role, _)| **role != Role::Set) {
+        for (whole, number) in whole.iter_mut().zip(table.sparse(*column)?) {
+            *whole &= number.is_some();
+        }
+    }
+    let (kept, lacking): (Vec<usize>, Vec<usize>) = (0..whole.len()).partition(|row| whole[*row]);
+    let Some(first) = lacking.first() else { return Ok((kept, Vec::new())) };
+    if 2 * lacking.len() > whole.len() {
+        return Err(fault(format!(
+            "{} of {} points lack a number in one of the columns that are read",
+            lacking.len(),
+            whole.len()
+        ))
+        .at(table.rows[*first].line));
+    }
+    let lines: Vec<String> = lacking.iter().take(10).map(|row| table.rows[*row].line.to_string()).collect();
+    let more = if lacking.len() > lines.len() { ", ..." } else { "" };
+    let lacking = lacking.len();
+    Ok((kept, vec![format!("{lacking} of {} points lack a number and are left out (lines {}{more})", whole.len(), lines.join(", "))]))
+}
+
+/// The numbers of their logarithms.
+fn powers(base: f64, logarithms: &[f64]) -> Result<Vec<f64>, String> {
+    /// More decades than any quantity of a curve spans.
+    const MOST: f64 = 60.0;
+    let ends = logarithms.iter().fold([0.0, 0.0], |[low, high]: [f64; 2], v| [low.min(*v), high.max(*v)]);
+    let decades = base.log10() * (ends[1] - ends[0]);
+    match decades <= MOST {
+        true => Ok(logarithms.iter().map(|v| libm::pow(base, *v)).collect()),
+        false => Err(format!(
+            "is named as a logarithm, but its numbers would span {decades:.0} decades: rename the column if it holds the values"
+        )),
+    }
 }
 
 /// The column of each quantity: as said; else by the names in the header; else in order.
@@ -247,7 +305,7 @@ fn time_or_temperature(table: &Table, column: usize, form: Form) -> Role {
             .any(|n| n != column && (table.names[n] == "t" || Role::Time.is_called(&table.names[n])))
     };
     match tidy(Role::Temperature, "", unit).as_str() {
-        "K" | "°C" => Role::Temperature,
+        "K" | "°C" | "°F" => Role::Temperature,
         unit if Unit::parse(unit).is_ok_and(|unit| unit.powers == dimension::Time::POWERS) => Role::Time,
         _ if table.names[column] == "T" && another() => Role::Temperature,
         _ => form.t,
@@ -272,11 +330,11 @@ pub(super) fn measure(used: &[Place], table: &Table) -> Option<Modulus> {
     }
 }
 
-/// Whether a name is that of a logarithm: "log E", "lg(t)", "ln G'".
-fn is_logarithm(name: &str) -> bool {
-    let name = name.to_lowercase();
-    let rest = ["log10", "log", "lg", "ln"].iter().find_map(|start| name.strip_prefix(start));
-    rest.is_some_and(|rest| !rest.starts_with(char::is_alphanumeric))
+/// Whether the header names storage and loss modulus, or what stands in their place.
+pub(super) fn is_dynamic(table: &Table) -> bool {
+    let form = Form::from(Kind::Dma);
+    let has = |role: &Role| (0..table.names.len()).any(|n| means(table, n, *role, form));
+    form.pairs.iter().any(|pair| pair.iter().all(&has))
 }
 
 /// Whether the header names all that a file of this kind needs.
@@ -314,6 +372,7 @@ pub(super) fn tidy(role: Role, name: &str, unit: &str) -> String {
             "°C"
         }
         Role::Temperature if matches!(bare.as_str(), "k" | "kelvin") => "K",
+        Role::Temperature if matches!(bare.as_str(), "f" | "degf" | "fahrenheit" | "degreesf" | "gradf") => "°F",
         Role::Frequency if bare == "hz" || bare == "hertz" => "Hz",
         // Angular frequencies in 1/s are those in rad/s.
         Role::Frequency if matches!(unit, "1/s" | "s^-1" | "s-1") && is_angular(name) => "rad/s",
@@ -421,7 +480,8 @@ pub fn angular_frequency(text: &str) -> Result<f64, QuantityError> {
         help: None,
     };
     let text = text.trim();
-    let end = text.find(|c: char| c.is_whitespace()).unwrap_or(text.len());
+    let digits = |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | 'e' | 'E');
+    let end = text.find(|c: char| !digits(c)).unwrap_or(text.len());
     let value: f64 = text[..end].parse().map_err(|_| expected())?;
     let factor =
         frequency(text[end..].trim()).map_err(|help| QuantityError { help: Some(help), ..expected() })?;

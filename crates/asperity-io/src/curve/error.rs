@@ -28,6 +28,8 @@ pub enum Remedy {
     Header,
     /// Say how times depend on temperature.
     Shift,
+    /// Give a shift in place of an estimate.
+    KnownShift,
     /// Fit one of the two moduli of a DMA.
     Moduli,
     /// Say which of the sheets, named here, to read.
@@ -56,6 +58,9 @@ impl Remedy {
                               \"101.6 K\", reference = \"20 °C\" }, or model = \"estimated\" or \"table\""
                     .to_owned()
             }
+            Remedy::KnownShift => {
+                "shift = { model = \"table\", path = \"factors.csv\" } gives factors, model = \"wlf\" or \"arrhenius\" constants".to_owned()
+            }
             Remedy::Moduli => "say fit = { moduli = \"storage\" } (or \"loss\")".to_owned(),
             Remedy::Sheet(sheets) => format!("say which with sheet = \"...\": {sheets}"),
         }
@@ -81,6 +86,7 @@ impl Remedy {
                               --estimate-shift"
                     .to_owned()
             }
+            Remedy::KnownShift => "--shift-table FILE gives factors, --wlf or --arrhenius constants".to_owned(),
             Remedy::Moduli => "give --fit storage (or loss)".to_owned(),
             Remedy::Sheet(sheets) => format!("say which with --sheet NAME: {sheets}"),
         }
@@ -104,6 +110,9 @@ impl Remedy {
             Remedy::Shift => "state how times depend on temperature: shift=asperity.wlf(c1=..., c2=..., reference=...), \
                               or shift=\"estimated\" with reference=..."
                 .to_owned(),
+            Remedy::KnownShift => {
+                "shift=asperity.shift_table(...) gives factors, asperity.wlf(...) or arrhenius(...) constants".to_owned()
+            }
             Remedy::Moduli => "say moduli=\"storage\" (or \"loss\")".to_owned(),
             Remedy::Sheet(sheets) => format!("say which with sheet=\"...\": {sheets}"),
         }

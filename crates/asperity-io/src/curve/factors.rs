@@ -119,7 +119,12 @@ fn factors(table: &Table, unit: Option<&str>) -> Result<Shift, Fault> {
     // The brackets of "log10(aT)" hold no unit.
     let factor = (0..table.columns).find_map(|n| {
         let [name, header] = [table.names.get(n)?, table.headers.get(n)?];
-        Some((n, written(header).or_else(|| written(name))?))
+        let by_name = || match (written(name)?, table.bases.get(n).copied().flatten()) {
+            (Written::Plain, Some(10.0)) => Some(Written::Log10),
+            (Written::Plain, Some(_)) => Some(Written::Ln),
+            (how, _) => Some(how),
+        };
+        Some((n, written(header).or_else(by_name)?))
     });
     let (Some(temperature), Some((column, how))) = (temperature, factor) else {
         return Err(fault(format!(
@@ -174,6 +179,8 @@ mod tests {
     fn logarithms_and_factors_are_told_by_their_names() {
         let points = vec![(273.15, LN_10), (293.15, 0.0)];
         for text in [
+            "T [°C];log aT (1)\n0;1\n20;0\n",
+            "T [°F];log_aT\n32;1\n68;0\n",
             "\u{feff}T,log_aT\nC, -\n20,0\n0,1\n",
             "T [°C];log10(aT)\n0;1\n20;0\n",
             "Temperature (K), aT\n273.15, 10\n293.15, 1\n",

@@ -3,12 +3,14 @@
 use std::f64::consts::LN_10;
 
 use asperity::material::{
-    Abscissa, Creep, Fit, FitOptions, Isotherm, MasterCurve, Material, Misfit, Moduli, Modulus, Relaxation,
-    Shift, estimate_shift, fit_arrhenius, fit_creep, fit_dma, fit_relaxation, fit_wlf, master_curve,
+    Abscissa, Creep, Fit, FitOptions, Isotherm, MasterCurve, Material, Misfit, Moduli, Modulus,
+    ModulusChange, Relaxation, Shift, VerticalShift, estimate_shift, fit_arrhenius, fit_creep, fit_dma,
+    fit_relaxation, fit_wlf, master_curve,
 };
 
 use super::error::{CurveError, Fault, Remedy, fault};
 use super::sweeps::SAME_TEMPERATURE;
+use super::vertical::{self, VerticalRequest};
 use super::{Curves, Kind, Sweep};
 
 /// How times depend on temperature.
@@ -30,6 +32,8 @@ pub struct Request {
     pub measure: Modulus,
     /// How times depend on temperature.
     pub shift: ShiftRequest,
+    /// How moduli depend on temperature besides.
+    pub vertical: VerticalRequest,
     /// The part of the (reduced) curve that is fitted: times \[s\] or angular frequencies \[rad/s\].
     pub window: Option<[f64; 2]>,
     /// Grid, margins, terms.
@@ -41,6 +45,7 @@ impl Default for Request {
         Request {
             measure: Modulus::Young,
             shift: ShiftRequest::None,
+            vertical: VerticalRequest::None,
             window: None,
             options: FitOptions::default(),
         }
@@ -83,8 +88,14 @@ pub struct Fitted {
     pub shift_rms: Option<f64>,
     /// Temperature \[K\], log10 a_T and standard deviation \[decades\] of the shift factors that were estimated.
     pub factors: Vec<[f64; 3]>,
+    /// How moduli depend on temperature besides, where that was asked for.
+    pub vertical: Option<VerticalShift>,
+    /// Temperature \[K\], b_T and its relative standard deviation (0 where it is given) of the sweeps.
+    pub vertical_factors: Vec<[f64; 3]>,
     /// Temperatures of the sweeps \[K\], where the file holds them.
     pub temperatures: Vec<f64>,
+    /// Points of the file that lack a number and were left out.
+    pub left_out: usize,
     /// What was assumed.
     pub notes: Vec<String>,
 }
@@ -106,6 +117,13 @@ impl Fitted {
             snap(&mut kelvin, points);
         }
         shift.factor(kelvin).ok()
+    }
+
+    /// The factor of the values of a sweep at this temperature \[K\] that brings them to the reference temperature: b_T of
+    /// moduli, one over it of compliances; 1 without vertical shifts.
+    pub fn value_factor(&self, kind: Kind, kelvin: f64) -> f64 {
+        let found = self.vertical_factors.iter().find(|[known, ..]| *known == kelvin);
+        vertical::of_values(kind, found.map_or(1.0, |[_, factor, _]| *factor))
     }
 
     /// The modulus of a DMA that was not fitted, and its misfit.
@@ -164,8 +182,18 @@ impl Request {
                 .map(|named| contradiction(named, self.measure)),
         );
         let temperatures: Vec<f64> = curves.sweeps.iter().filter_map(|sweep| sweep.temperature).collect();
-        let Found { shift, rms: shift_rms, factors } = self.shift_of(curves, &mut notes)?;
-        let (data, lines) = master(curves, shift.as_ref())?;
+        let reference = self.reference(curves);
+        let corrected = vertical::corrected(curves, &self.vertical, reference)?;
+        let Found { shift, rms: shift_rms, factors } =
+            self.shift_of(corrected.as_ref().map_or(curves, |corrected| &corrected.curves), &mut notes)?;
+        let corrected = match (&self.vertical, &shift) {
+            (VerticalRequest::Free, shift) => Some(vertical::free(curves, shift.as_ref(), &factors)?),
+            _ => corrected,
+        };
+        let (data, lines) =
+            master(corrected.as_ref().map_or(curves, |corrected| &corrected.curves), shift.as_ref())?;
+        let (vertical, vertical_factors) =
+            corrected.map_or((None, Vec::new()), |corrected| (Some(corrected.vertical), corrected.factors));
         let (data, lines) = self.inside(data, lines)?;
         let located = |error: asperity::Error| {
             let message = error.to_string();
@@ -216,7 +244,10 @@ impl Request {
             shift,
             shift_rms,
             factors,
+            vertical,
+            vertical_factors,
             temperatures,
+            left_out: curves.left_out,
             notes,
         })
     }
@@ -240,7 +271,23 @@ impl Request {
                 shift.validate().map_err(|error| fault(error.to_string()))?;
                 Ok(known(Some(shift.clone())))
             }
-            (ShiftRequest::Estimate(reference), _) => estimated(curves, *reference, notes),
+            (ShiftRequest::Estimate(reference), _) => {
+                let moduli = match &self.vertical {
+                    VerticalRequest::None => ModulusChange::Neglected,
+                    VerticalRequest::Density { .. } | VerticalRequest::Given(_) => ModulusChange::Corrected,
+                    VerticalRequest::Free => ModulusChange::Free,
+                };
+                estimated(curves, *reference, moduli, notes)
+            }
+        }
+    }
+
+    /// The reference temperature of the shift \[K\], where there is one.
+    fn reference(&self, curves: &Curves) -> Option<f64> {
+        match &self.shift {
+            ShiftRequest::Given(shift) => shift.reference(),
+            ShiftRequest::Estimate(reference) => Some(*reference),
+            ShiftRequest::None => curves.held.shift().and_then(Shift::reference),
         }
     }
 
@@ -289,7 +336,7 @@ fn master(curves: &Curves, shift: Option<&Shift>) -> Result<(MasterCurve, Vec<us
 }
 
 /// The temperature of the shift factor that belongs to a sweep: chambers hold it to about a kelvin.
-fn snap(temperature: &mut f64, points: &[(f64, f64)]) {
+pub(super) fn snap(temperature: &mut f64, points: &[(f64, f64)]) {
     let nearest = points.iter().map(|point| point.0).min_by(|a, b| {
         let away = |kelvin: f64| (kelvin - *temperature).abs();
         away(*a).total_cmp(&away(*b))
@@ -300,7 +347,7 @@ fn snap(temperature: &mut f64, points: &[(f64, f64)]) {
 }
 
 /// A fault of the isotherms, with the line of the point that it names.
-fn at_isotherm(curves: &Curves, error: &asperity::Error) -> Fault {
+pub(super) fn at_isotherm(curves: &Curves, error: &asperity::Error) -> Fault {
     let message = error.to_string();
     let sweep = curves.sweeps.iter().find(|sweep| {
         sweep.temperature.is_some_and(|kelvin| {
@@ -314,7 +361,7 @@ fn at_isotherm(curves: &Curves, error: &asperity::Error) -> Fault {
     }
 }
 
-fn isotherms(curves: &Curves) -> Vec<Isotherm> {
+pub(super) fn isotherms(curves: &Curves) -> Vec<Isotherm> {
     let isotherm = |sweep: &Sweep| {
         let temperature = sweep.temperature?;
         Some(Isotherm { temperature, x: sweep.x.clone(), curves: sweep.curves.clone() })
@@ -322,7 +369,7 @@ fn isotherms(curves: &Curves) -> Vec<Isotherm> {
     curves.sweeps.iter().filter_map(isotherm).collect()
 }
 
-fn abscissa(kind: Kind) -> Abscissa {
+pub(super) fn abscissa(kind: Kind) -> Abscissa {
     match kind {
         Kind::Dma => Abscissa::Frequency,
         Kind::Relaxation | Kind::Creep => Abscissa::Time,
@@ -338,7 +385,12 @@ struct Found {
 
 /// The shift about `reference` from the sweeps themselves: the WLF or the Arrhenius law where one describes the factors, else
 /// the factors.
-fn estimated(curves: &Curves, reference: f64, notes: &mut Vec<String>) -> Result<Found, Fault> {
+fn estimated(
+    curves: &Curves,
+    reference: f64,
+    moduli: ModulusChange,
+    notes: &mut Vec<String>,
+) -> Result<Found, Fault> {
     let isotherms = isotherms(curves);
     if isotherms.len() < 2 {
         return Err(fault("a shift can be estimated from sweeps at two temperatures or more")
@@ -349,8 +401,8 @@ fn estimated(curves: &Curves, reference: f64, notes: &mut Vec<String>) -> Result
     let Some(anchor) = nearest.map(|isotherm| isotherm.temperature) else {
         return Err(fault("there are no sweeps"));
     };
-    let estimate = estimate_shift(&isotherms, abscissa(curves.kind), anchor)
-        .map_err(|error| at_isotherm(curves, &error))?;
+    let estimate = estimate_shift(&isotherms, abscissa(curves.kind), anchor, moduli)
+        .map_err(|error| at_isotherm(curves, &error).remedy(Remedy::KnownShift))?;
     let table = estimate.shift;
     let Shift::Table { points } = &table else {
         return Ok(Found { shift: Some(table), rms: None, factors: Vec::new() });

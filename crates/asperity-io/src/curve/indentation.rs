@@ -70,7 +70,7 @@ impl Indentation {
             let first = read.next().unwrap_or_else(|| Err(fault("the file holds no table")));
             if first.is_ok() { first } else { read.find(Result::is_ok).unwrap_or(first) }
         });
-        let (values, _, notes) = parsed.map_err(|fault| fault.of(path))?;
+        let columns::Read { values, notes, .. } = parsed.map_err(|fault| fault.of(path))?;
         let of = |role: Role| values.get(&role).cloned().unwrap_or_default();
         let [times, loads, depths] = [Role::Time, Role::Load, Role::Depth].map(of);
         Ok(Indentation { path: path.to_owned(), times, loads, depths, notes })

@@ -33,6 +33,7 @@ mod indentation;
 mod role;
 mod sweeps;
 mod table;
+mod vertical;
 mod workbook;
 
 use std::io::Read;
@@ -44,6 +45,7 @@ pub use factors::{HeldShift, read_shift_table};
 pub use fit::{Fitted, Request, Series, ShiftRequest};
 pub use indentation::{Indentation, MaterialOf, indentation_block};
 pub use role::Role;
+pub use vertical::{VerticalRequest, VerticalWord};
 
 use asperity::material::Modulus;
 use serde::Deserialize;
@@ -106,6 +108,8 @@ pub struct Curves {
     pub measure: Option<Modulus>,
     /// One sweep per temperature, the coldest first.
     pub sweeps: Vec<Sweep>,
+    /// Points that lack a number and were left out.
+    pub left_out: usize,
     /// The sheet of a spreadsheet that was read.
     pub sheet: Option<String>,
     /// The columns that were read.
@@ -140,7 +144,16 @@ impl Curves {
     pub fn kind_of(path: &Path, sheet: Option<&str>) -> Result<Option<Kind>, CurveError> {
         let kinds = |bytes: Vec<u8>| -> Result<Option<Kind>, Fault> {
             let sheets = workbook::sheets(&bytes, sheet)?;
-            Ok(sheets.iter().find_map(|sheet| kind_of(sheet.table.as_ref().ok()?)))
+            let found = sheets.iter().find_map(|sheet| kind_of(sheet.table.as_ref().ok()?));
+            let tables = || sheets.iter().filter_map(|sheet| sheet.table.as_ref().ok());
+            match (found, tables().find(|table| columns::is_dynamic(table))) {
+                (None, Some(table)) => {
+                    let listed = table.listed();
+                    let message = format!("storage and loss modulus need a column of frequencies; the file has {listed}");
+                    Err(fault(message).remedy(Remedy::Column(Role::Frequency)))
+                }
+                (found, _) => Ok(found),
+            }
         };
         kinds(bytes(path)?).map_err(|fault| fault.of(path))
     }
@@ -160,17 +173,20 @@ impl Curves {
                 sheets => factors::held(sheets),
             };
             let (sheet, table) = chosen(sheets, kind)?;
-            let (values, used, notes) = columns::values(&table, kind.into(), columns)?;
-            let lines: Vec<usize> = table.rows.iter().map(|row| row.line).collect();
+            let columns::Read { values, places: used, lines, left_out, mut notes } =
+                columns::values(&table, kind.into(), columns)?;
             let measure = columns::measure(&used, &table);
             let unused = (1..=table.columns).filter(|n| !used.iter().any(|place| place.column == *n));
             let unused =
                 unused.filter_map(|n| table.headers.get(n - 1).filter(|name| !name.is_empty()).cloned());
+            let (sweeps, repeated) = sweeps::sweeps(kind, &values, &lines)?;
+            notes.extend(repeated);
             Ok(Curves {
                 path: path.to_owned(),
                 kind,
                 measure,
-                sweeps: sweeps::sweeps(kind, &values, &lines)?,
+                sweeps,
+                left_out,
                 sheet,
                 unused: unused.collect(),
                 columns: used,
@@ -190,6 +206,7 @@ impl Curves {
             kind,
             measure: None,
             sweeps,
+            left_out: 0,
             sheet: None,
             columns: Vec::new(),
             unused: Vec::new(),
@@ -218,6 +235,10 @@ fn bytes(path: &Path) -> Result<Vec<u8>, CurveError> {
 
 /// What the header of a table says that it holds.
 fn kind_of(table: &Table) -> Option<Kind> {
+    // An instrument that gives storage and loss modulus also gives times.
+    if columns::is_dynamic(table) && !columns::named(table, Kind::Dma) {
+        return None;
+    }
     [Kind::Dma, Kind::Relaxation, Kind::Creep].into_iter().find(|kind| columns::named(table, *kind))
 }
 

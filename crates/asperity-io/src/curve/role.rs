@@ -211,6 +211,14 @@ impl Role {
                 "angfrequency",
                 "angfreq",
                 "reducedangularfrequency",
+                "angularfrequencyω",
+                "kreisfrequenzω",
+                "oscillationfrequency",
+                "omegaat",
+                "ωat",
+                "atω",
+                "fat",
+                "atf",
                 "omega",
                 "ω",
                 "w",
@@ -234,6 +242,14 @@ impl Role {
                 "storagemodulus",
                 "storagemoduluse'",
                 "storagemodulusg'",
+                "modulus'",
+                "e1",
+                "g1",
+                "ree*",
+                "reg*",
+                "reale*",
+                "realg*",
+                "dynamicstoragemodulus",
                 "shearstoragemodulus",
                 "tensilestoragemodulus",
                 "bendingstoragemodulus",
@@ -253,6 +269,14 @@ impl Role {
                 "lossmodulus",
                 "lossmoduluse''",
                 "lossmodulusg''",
+                "modulus''",
+                "e2",
+                "g2",
+                "ime*",
+                "img*",
+                "image*",
+                "imagg*",
+                "dynamiclossmodulus",
                 "shearlossmodulus",
                 "tensilelossmodulus",
                 "bendinglossmodulus",
@@ -267,6 +291,9 @@ impl Role {
                 "tan",
                 "lossfactor",
                 "losstangent",
+                "tangensdelta",
+                "tgdelta",
+                "tgδ",
                 "lossfactortandelta",
                 "lossfactortanδ",
                 "dampingfactor",
@@ -274,7 +301,23 @@ impl Role {
                 "verlustfaktortandelta",
                 "verlustfaktortanδ",
             ],
-            Role::Phase => &["phase", "phaseangle", "phaseshift", "phaselag", "delta", "δ", "phasenwinkel"],
+            Role::Phase => &[
+                "phase",
+                "phaseangle",
+                "phaseangledelta",
+                "phaseangleδ",
+                "phaseshift",
+                "phaselag",
+                "lossangle",
+                "delta",
+                "δ",
+                "phasenwinkel",
+                "phasenwinkeldelta",
+                "phasenwinkelδ",
+                "phasenverschiebung",
+                "phasenverschiebungswinkel",
+                "verlustwinkel",
+            ],
             Role::ComplexModulus => &[
                 "e*",
                 "g*",
@@ -285,6 +328,12 @@ impl Role {
                 "gcomplex",
                 "complexmodulus",
                 "complexmoduluse*",
+                "abse*",
+                "absg*",
+                "absolutemodulus",
+                "dynamischermodul",
+                "komplexermodule*",
+                "komplexermodulg*",
                 "complexmodulusg*",
                 "complexshearmodulus",
                 "dynamicmodulus",
@@ -309,6 +358,9 @@ impl Role {
                 "temp",
                 "sampletemperature",
                 "sampletemp",
+                "ts",
+                "tsample",
+                "tprobe",
                 "chambertemperature",
                 "meantemperature",
                 "temperatur",
@@ -342,6 +394,33 @@ impl FromStr for Role {
     }
 }
 
+/// The base of the logarithm that a header names, and what it is the logarithm of: "log f", "lg(G')", "ln(E' [MPa])", "logE'".
+pub(super) fn logarithm(header: &str) -> (Option<f64>, &str) {
+    let header = header.trim();
+    let bases = [("log10", 10.0), ("log", 10.0), ("lg", 10.0), ("ln", std::f64::consts::E)];
+    for (word, base) in bases {
+        let Some((start, rest)) = header.split_at_checked(word.len()) else { continue };
+        let apart = !rest.starts_with(char::is_alphanumeric);
+        let joined = || word != "ln" && Role::ALL.iter().any(|role| role.is_called(rest));
+        if !start.eq_ignore_ascii_case(word) || rest.trim().is_empty() || !(apart || word == "log10" || joined()) {
+            continue;
+        }
+        let rest = rest.trim_start_matches([' ', '_', '-', '.']);
+        let inner = [('(', ')'), ('[', ']')].into_iter().find_map(|(open, close)| {
+            let inner = rest.strip_prefix(open)?.strip_suffix(close)?;
+            // The brackets are one pair around everything.
+            let mut depth = 1;
+            let closed = inner.chars().any(|c| {
+                depth += i32::from(c == open) - i32::from(c == close);
+                depth == 0
+            });
+            (!closed).then_some(inner)
+        });
+        return (Some(base), inner.unwrap_or(rest).trim());
+    }
+    (None, header)
+}
+
 /// A name in lower case, primes written in one way, without blanks, brackets and other marks.
 pub(super) fn bare(name: &str) -> String {
     let mut text = String::with_capacity(name.len());
@@ -360,7 +439,9 @@ pub(super) fn bare(name: &str) -> String {
 /// What a name calls the modulus or compliance: E and D are Young's, G and J shear.
 pub(super) fn measure_of(name: &str) -> Option<Modulus> {
     /// What may follow the symbol.
-    const REST: [&str; 18] = [
+    const REST: [&str; 20] = [
+        "1",
+        "2",
         "",
         "'",
         "''",
@@ -387,6 +468,9 @@ pub(super) fn measure_of(name: &str) -> Option<Modulus> {
     if ["young", "tensile", "bending", "elastizität", "zugmodul"].iter().any(|word| name.contains(word)) {
         return Some(Modulus::Young);
     }
+    // "Re(E*)"
+    let parts = ["real", "imag", "abs", "re", "im"];
+    let name = parts.iter().find_map(|part| name.strip_prefix(part).filter(|rest| rest.ends_with('*'))).unwrap_or(&name);
     let of = |symbol: char| match symbol {
         'g' | 'j' => Some(Modulus::Shear),
         'e' | 'd' => Some(Modulus::Young),
@@ -410,9 +494,9 @@ mod tests {
         for (role, names) in [
             (
                 Role::Storage,
-                &["E'", "G′", "E_stor", "Storage Modulus", "Storage modulus G'", "Speichermodul"][..],
+                &["E'", "G′", "E_stor", "Storage Modulus", "Storage modulus G'", "Speichermodul", "E1", "Re(E*)"][..],
             ),
-            (Role::Loss, &["E''", "E″", "G\"", "E_loss", "Loss Modulus", "Verlustmodul G''"]),
+            (Role::Loss, &["E''", "E″", "G\"", "E_loss", "Loss Modulus", "Verlustmodul G''", "Im(G*)"]),
             (Role::TanDelta, &["tan delta", "Tan(δ)", "tan_delta", "tan d", "Loss Factor", "Verlustfaktor"]),
             (Role::ComplexModulus, &["|E*|", "G*", "Complex Modulus"]),
             (Role::ComplexViscosity, &["|η*|", "Complex Viscosity"]),
@@ -436,13 +520,35 @@ mod tests {
     }
 
     #[test]
+    fn logarithms_are_told_from_names_that_begin_alike() {
+        let ten = Some(10.0);
+        for (header, found) in [
+            ("log f", (ten, "f")),
+            ("lg(G')", (ten, "G'")),
+            ("log10 E'", (ten, "E'")),
+            ("log10E'", (ten, "E'")),
+            ("logG\"", (ten, "G\"")),
+            ("log(f [Hz])", (ten, "f [Hz]")),
+            ("log (f) [Hz]", (ten, "(f) [Hz]")),
+            ("Log_t", (ten, "t")),
+            ("ln(E'/MPa)", (Some(std::f64::consts::E), "E'/MPa")),
+            ("Logger time", (None, "Logger time")),
+            ("ln", (None, "ln")),
+            ("length", (None, "length")),
+            ("loss", (None, "loss")),
+        ] {
+            assert_eq!(logarithm(header), found, "{header}");
+        }
+    }
+
+    #[test]
     fn a_name_says_which_modulus_it_is() {
         for name in
-            ["E'", "E_stor", "|E*|", "Storage modulus E'", "tensile storage modulus", "D(t)", "E-Modul"]
+            ["E'", "E_stor", "|E*|", "Storage modulus E'", "tensile storage modulus", "D(t)", "E-Modul", "Re(E*)", "E1"]
         {
             assert_eq!(measure_of(name), Some(Modulus::Young), "{name}");
         }
-        for name in ["G(t)", "Storage modulus G'", "J'", "Schubmodul", "G_relax"] {
+        for name in ["G(t)", "Storage modulus G'", "J'", "Schubmodul", "G_relax", "Im(G*)", "|G*|"] {
             assert_eq!(measure_of(name), Some(Modulus::Shear), "{name}");
         }
         for name in ["storage modulus", "dynamic modulus", "modulus", "Speichermodul"] {

@@ -19,7 +19,11 @@ const MOST_SWEEPS: usize = 1000;
 
 /// The rows by temperature, the coldest first; each sweep in the order of the file, or the reverse where that goes down;
 /// a DMA by frequency.
-pub(super) fn sweeps(kind: Kind, values: &Values, lines: &[usize]) -> Result<Vec<Sweep>, Fault> {
+pub(super) fn sweeps(
+    kind: Kind,
+    values: &Values,
+    lines: &[usize],
+) -> Result<(Vec<Sweep>, Option<String>), Fault> {
     let of = |role: Role| values.get(&role).cloned().unwrap_or_default();
     let (x, curves) = match kind {
         Kind::Relaxation => (of(Role::Time), vec![of(Role::Modulus)]),
@@ -28,7 +32,8 @@ pub(super) fn sweeps(kind: Kind, values: &Values, lines: &[usize]) -> Result<Vec
     };
     let sweep = |temperature: Option<f64>, rows: &[usize]| {
         let mut rows = rows.to_vec();
-        let falls = rows.len() > 1 && rows.windows(2).all(|pair| x[pair[1]] < x[pair[0]]);
+        let falls = rows.windows(2).all(|pair| x[pair[1]] <= x[pair[0]])
+            && rows.first().zip(rows.last()).is_some_and(|(first, last)| x[*last] < x[*first]);
         match kind {
             // The order of frequencies means nothing.
             Kind::Dma => rows.sort_by(|a, b| x[*a].total_cmp(&x[*b])),
@@ -51,7 +56,7 @@ pub(super) fn sweeps(kind: Kind, values: &Values, lines: &[usize]) -> Result<Vec
                 format!("the file holds {} sweeps (column of sets), but no temperatures", sets.len());
             return Err(fault(message).remedy(Remedy::Column(Role::Temperature)));
         }
-        return Ok(vec![sweep(None, &all)]);
+        return once(kind, vec![sweep(None, &all)]);
     };
     let groups = match held(&sets, temperatures) {
         true if sets.len() > 1 => sets,
@@ -63,7 +68,56 @@ pub(super) fn sweeps(kind: Kind, values: &Values, lines: &[usize]) -> Result<Vec
     let mut found: Vec<Sweep> =
         groups.iter().map(|rows| sweep(Some(mean(temperatures, rows)), rows)).collect();
     found.sort_by(|a, b| a.temperature.unwrap_or(0.0).total_cmp(&b.temperature.unwrap_or(0.0)));
-    Ok(found)
+    once(kind, found)
+}
+
+/// Values at one abscissa of a sweep differ from their mean by no more: others belong to different sweeps.
+const SAME_VALUE: f64 = 0.1;
+
+/// Each sweep with the mean of the values at the same time or frequency, and a note on these.
+fn once(kind: Kind, sweeps: Vec<Sweep>) -> Result<(Vec<Sweep>, Option<String>), Fault> {
+    let name = if kind == Kind::Dma { "frequency" } else { "time" };
+    let (mut repeated, mut farthest, mut first) = (0, 0.0_f64, None);
+    let mut single = Vec::with_capacity(sweeps.len());
+    for sweep in sweeps {
+        let mut kept = Sweep { x: vec![], lines: vec![], curves: vec![vec![]; sweep.curves.len()], ..sweep };
+        let mut start = 0;
+        for group in sweep.x.chunk_by(|a, b| a == b) {
+            let rows = start..start + group.len();
+            start = rows.end;
+            kept.x.push(group[0]);
+            kept.lines.push(sweep.lines[rows.start]);
+            for (curve, values) in kept.curves.iter_mut().zip(&sweep.curves) {
+                let values = &values[rows.clone()];
+                let mean = values.iter().sum::<f64>() / values.len() as f64;
+                curve.push(mean);
+                let apart = values.iter().map(|value| (value / mean - 1.0).abs()).fold(0.0, f64::max);
+                if group.len() > 1 && !(apart <= SAME_VALUE) {
+                    let [first, other] = [sweep.lines[rows.start], sweep.lines[rows.end - 1]];
+                    return Err(fault(format!(
+                        "the {name} is that of line {first}, but the values differ by {:.0} %: points of different sweeps need a \
+                         column of temperatures",
+                        100.0 * (values[values.len() - 1] / values[0] - 1.0).abs()
+                    ))
+                    .at(other));
+                }
+                farthest = farthest.max(apart);
+            }
+            if group.len() > 1 {
+                repeated += group.len() - 1;
+                first = first.or(Some(sweep.lines[rows.end - 1]));
+            }
+        }
+        single.push(kept);
+    }
+    let note = first.map(|line| {
+        format!(
+            "{repeated} points repeat a {name}, the first on line {line}: the mean is taken, and values differ from it by {:.1} % \
+             at most",
+            100.0 * farthest
+        )
+    });
+    Ok((single, note))
 }
 
 /// Storage and loss modulus.

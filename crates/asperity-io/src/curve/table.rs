@@ -9,6 +9,7 @@
 use std::ops::Range;
 
 use super::error::{Fault, fault};
+use super::role;
 use crate::case::quantity::unit::Unit;
 use crate::topography::{dialect, is_numbers, to_text};
 
@@ -21,6 +22,8 @@ pub(super) struct Table {
     pub headers: Vec<String>,
     /// Unit of each column as it is written; empty where the file names none.
     pub units: Vec<String>,
+    /// The base where a column holds logarithms.
+    pub bases: Vec<Option<f64>>,
     /// The line before the numbers, where it does not name the columns.
     pub unread: Option<String>,
     /// Number of columns.
@@ -85,21 +88,34 @@ impl Table {
             false => None,
         };
         let named: Vec<&str> = if unread.is_none() { heading(&lines[..first]) } else { vec![] };
+        let is_row = |line: &str| {
+            let width = cells(line, separator).len();
+            numbers(line) >= 2 && (width == columns || width == columns + 1)
+        };
+        let last = lines.iter().rposition(|line| is_row(line)).unwrap_or(first);
         let mut rows = Vec::new();
         let mut skipped = first;
         for (n, line) in lines.iter().enumerate().skip(first) {
             if n < skipped || is_blank(line, separator) || is_comment(line) {
                 continue;
             }
-            if numbers(line) == 0
-                && let Some(next) = repeated_heading(&lines, n, &named, &numbers)
-            {
-                skipped = next;
-                continue;
-            }
             let mut cells = cells(line, separator);
+            if numbers(line) == 0 || cells.len() + 1 < columns {
+                // Text below the table.
+                if n > last && numbers(line) == 0 && cells.len() < columns {
+                    break;
+                }
+                if let Some(next) = repeated_heading(&lines[..=last], n, &named, &is_row) {
+                    skipped = next;
+                    continue;
+                }
+            }
             if cells.len() == columns + 1 && cells.last().is_some_and(|cell| cell.is_empty()) {
                 cells.pop(); // a separator ends the line
+            }
+            // The last cells of a line with tabs may be empty.
+            if line.contains('\t') && separator.is_none() && cells.len() < columns && cells.len() > columns / 2 {
+                cells.resize(columns, "");
             }
             if cells.len() != columns {
                 let found = cells.len();
@@ -112,21 +128,38 @@ impl Table {
             let start = line.as_ptr() as usize - text.as_ptr() as usize;
             rows.push(Row { line: n + 1, span: start..start + line.len() });
         }
-        let names = headers.iter().map(|header| split_unit(header).0.to_owned()).collect();
-        let units = match units {
-            Some(units) => units,
-            None => headers.iter().map(|header| split_unit(header).1.to_owned()).collect(),
-        };
+        let logarithms: Vec<(Option<f64>, &str)> = headers.iter().map(|header| role::logarithm(header)).collect();
+        let bases = logarithms.iter().map(|(base, _)| *base).collect();
+        let split = logarithms.iter().map(|(_, name)| split_unit(name));
+        let (names, own): (Vec<String>, Vec<String>) =
+            split.map(|(name, unit)| (name.to_owned(), unit.to_owned())).unzip();
+        let units = units.unwrap_or(own);
         drop(lines);
-        Ok(Table { names, headers, units, unread, columns, rows, text, separator, decimal_comma })
+        Ok(Table { names, headers, units, bases, unread, columns, rows, text, separator, decimal_comma })
     }
 
     /// The numbers of a column.
     pub(super) fn numbers(&self, column: usize) -> Result<Vec<f64>, Fault> {
-        let parse = |row: &Row| {
-            let line = self.text.get(row.span.clone()).unwrap_or_default();
-            let cell = cells(line, self.separator).get(column).copied().unwrap_or_default();
-            parse_number(cell, self.decimal_comma).ok_or_else(|| {
+        self.rows.iter().map(|row| self.number(row, column)).collect()
+    }
+
+    /// The numbers of a column, and `None` where a cell is empty or says that there is none.
+    pub(super) fn sparse(&self, column: usize) -> Result<Vec<Option<f64>>, Fault> {
+        let sparse = |row: &Row| match is_missing(self.cell(row, column)) {
+            true => Ok(None),
+            false => self.number(row, column).map(Some),
+        };
+        self.rows.iter().map(sparse).collect()
+    }
+
+    fn cell(&self, row: &Row, column: usize) -> &str {
+        let line = self.text.get(row.span.clone()).unwrap_or_default();
+        cells(line, self.separator).get(column).copied().unwrap_or_default()
+    }
+
+    fn number(&self, row: &Row, column: usize) -> Result<f64, Fault> {
+        let cell = self.cell(row, column);
+        parse_number(cell, self.decimal_comma).ok_or_else(|| {
                 let shown: String = cell.chars().take(40).collect();
                 let (why, help) = match cell {
                     "" => ("the cell is empty".to_owned(), "fill it, or take the line out"),
@@ -136,17 +169,14 @@ impl Table {
                     ),
                 };
                 fault(format!("{why} (column {}{}); {help}", column + 1, self.quoted(column))).at(row.line)
-            })
-        };
-        self.rows.iter().map(parse).collect()
+        })
     }
 
     /// The entries of a column as numbers from 0, equal where the entries are equal, in the order of the file.
     pub(super) fn labels(&self, column: usize) -> Vec<f64> {
         let mut known = std::collections::HashMap::new();
         let label = |row: &Row| {
-            let line = self.text.get(row.span.clone()).unwrap_or_default();
-            let cell = cells(line, self.separator).get(column).copied().unwrap_or_default();
+            let cell = self.cell(row, column);
             let next = known.len();
             *known.entry(cell.to_owned()).or_insert(next) as f64
         };
@@ -201,11 +231,11 @@ fn repeated_heading(
     lines: &[&str],
     from: usize,
     named: &[&str],
-    numbers: &dyn Fn(&str) -> usize,
+    is_row: &dyn Fn(&str) -> bool,
 ) -> Option<usize> {
     /// Lines between two sweeps.
     const MOST: usize = 50;
-    let next = (from..lines.len().min(from + MOST)).find(|n| numbers(lines[*n]) >= 2)?;
+    let next = (from..lines.len().min(from + MOST)).find(|n| is_row(lines[*n]))?;
     lines[from..next].iter().any(|line| named.contains(line)).then_some(next)
 }
 
@@ -226,6 +256,15 @@ fn parse_number(cell: &str, decimal_comma: bool) -> Option<f64> {
         false => cell.parse(),
     };
     number.ok().filter(|value: &f64| value.is_finite())
+}
+
+/// Whether a cell says that there is no number.
+fn is_missing(cell: &str) -> bool {
+    const MARKS: [&str; 16] = [
+        "", "-", "--", "---", "–", "—", "*", "nan", "na", "n/a", "n.a.", "#n/a", "#nv", "null", "none", "inf",
+    ];
+    let cell = cell.trim_matches('"').trim().to_lowercase();
+    MARKS.contains(&cell.trim_start_matches('+')) || cell == "-inf" || cell.starts_with('#')
 }
 
 /// Separator and decimal mark of a file whose lines hold text as well.
@@ -358,6 +397,10 @@ fn split_unit(header: &str) -> (&str, &str) {
             && let Some((unit, "")) = rest.rsplit_once(close).map(|(unit, after)| (unit, after.trim()))
         {
             return match unit.trim() {
+                // A part of a name: "Re(E*)".
+                part if !is_unit(part) && role::Role::ALL.iter().any(|role| role.is_called(header)) => {
+                    (header.trim(), "")
+                }
                 // A function of something, not a quantity in a unit.
                 "t" | "w" | "f" | "T" | "ω" | "omega" | "delta" | "δ" => (header.trim(), ""),
                 unit => (name.trim(), unit),

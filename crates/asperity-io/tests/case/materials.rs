@@ -240,6 +240,43 @@ fn a_constant_temperature_stretches_the_times() {
 }
 
 #[test]
+fn a_vertical_shift_divides_the_moduli_at_a_constant_temperature() {
+    let with = |vertical: &str, more: &str| {
+        shifted(more).replace("reference = \"20 °C\" }", &format!("reference = \"20 °C\", vertical = {vertical} }}"))
+    };
+    let warm = ", temperature = \"80 °C\"";
+    let plain = case(&body(&shifted(warm)), "").creep;
+    let volume = 1.0 + 6e-4 * 60.0;
+    for (vertical, b) in [
+        ("\"density\"", 293.15 / 353.15),
+        ("{ expansion = \"6e-4 1/K\" }", 293.15 / 353.15 * volume),
+        ("[[\"20 °C\", 1.0], [\"100 °C\", 0.81]]", 0.9f64.powf(1.5)),
+    ] {
+        let case = case(&body(&with(vertical, warm)), "");
+        for t in [0.0, 1e-3, 3.0, 100.0] {
+            // Moduli over b_T: compliances times b_T.
+            assert!((case.creep.value(t) / (b * plain.value(t)) - 1.0).abs() < 1e-12, "{vertical} {t}");
+        }
+        let report = &case.describe().materials[0];
+        assert!((report.vertical_factor.unwrap() / b - 1.0).abs() < 1e-12 && report.vertical.is_some());
+    }
+    // At the reference there is no change.
+    assert_eq!(case(&body(&with("\"density\"", "")), "").creep, case(&body(&shifted("")), "").creep);
+    let refused = |material: &str, more: &str, words: &str| {
+        let Err(errors) = Case::parse(&text(&body(material), more), Path::new(""), &[]) else {
+            panic!("accepted: {material} {more}")
+        };
+        assert!(errors.to_string().contains(words), "{errors}");
+    };
+    let ramp = "[temperature]\nhistory = { kind = \"ramp\", from = \"10 °C\", to = \"30 °C\", duration = \"35 s\" }\n";
+    refused(&with("\"density\"", ""), ramp, "moduli that change during a run are not solved");
+    refused(&with("\"free\"", ""), "", "only from a file with several temperatures");
+    refused(&with("\"dense\"", ""), "", "pairs [temperature, b_T]");
+    refused(&with("[[\"20 °C\", 1.0], [\"40 °C\", 0.9]]", warm), "", "as the vertical shift factors are");
+    refused(&with("[[\"20 °C\", -1.0]]", warm), "", "pairs [temperature, b_T]");
+}
+
+#[test]
 fn a_temperature_history_gives_each_body_its_clock() {
     let dir = files(&[("t.csv", "time [min], T [°C]\n0, 10\n1, 30\n1, 20\n")]);
     let other = r#"{ model = "maxwell", young = "1 GPa", relaxation_time = "9 s", shift = { model = "arrhenius", energy = "120 kJ/mol", reference = "20 °C" } }"#;

@@ -22,7 +22,7 @@ from ._arrays import Floats, count, line, number, pair, plain
 from ._core import CaseError
 from ._materials import Creep, Material, Prony
 from ._shifts import Shift, made
-from ._words import LongTime, Measure, Moduli
+from ._words import LongTime, Measure, Moduli, Vertical
 from ._units import bare, frequency as angular_frequency, has_unit
 
 #: Temperatures closer than this belong to one sweep [K], and those of one sweep spread by no more.
@@ -65,6 +65,11 @@ class Fit:
     shift: Shift | None
     #: Distance of an estimated law from the factors found [decades of a_T]; None where there is none.
     shift_rms: float | None
+    #: (temperature [K], log10 a_T, standard deviation [decades]) of each sweep whose factor was estimated.
+    shift_factors: list[tuple[float, float, float]]
+    #: (temperature [K], b_T, relative standard deviation) of each sweep, where vertical shifts were asked for: its moduli are those
+    #: at the reference temperature over b_T.
+    vertical_factors: list[tuple[float, float, float]]
     #: Temperatures of the sweeps [K].
     temperatures: list[float]
     #: What was assumed.
@@ -157,6 +162,7 @@ def fit_relaxation(
     modulus: Measure = "young",
     shift: Shift | str | None = None,
     reference: float | None = None,
+    vertical: Vertical | None = None,
     poisson: float | None = None,
     bulk_modulus: float | None = None,
     hardness: float | None = None,
@@ -178,6 +184,8 @@ def fit_relaxation(
     temperature : temperature of each point [K], where there are several
     modulus : "young" or "shear": what the values are
     shift : how times depend on temperature, or "estimated": from the overlap of the sweeps, about `reference` [K]
+    vertical : how moduli depend on temperature besides: "density" (as density times absolute temperature, rubbers) or "free" (one
+        factor b_T per sweep, estimated); they do not if not given
     poisson, bulk_modulus, hardness, name : of the body, for :attr:`Fit.material`
     window : first and last (reduced) time that is fitted [s]
     per_decade : times per decade that the fit begins with
@@ -213,6 +221,7 @@ def fit_creep(
     modulus: Measure = "young",
     shift: Shift | str | None = None,
     reference: float | None = None,
+    vertical: Vertical | None = None,
     poisson: float | None = None,
     bulk_modulus: float | None = None,
     hardness: float | None = None,
@@ -247,6 +256,7 @@ def fit_dma(
     modulus: Measure = "young",
     shift: Shift | str | None = None,
     reference: float | None = None,
+    vertical: Vertical | None = None,
     poisson: float | None = None,
     bulk_modulus: float | None = None,
     hardness: float | None = None,
@@ -292,6 +302,7 @@ def fit_file(
     modulus: Measure | None = None,
     shift: Shift | str | None = None,
     reference: float | None = None,
+    vertical: Vertical | None = None,
     poisson: float | None = None,
     bulk_modulus: float | None = None,
     hardness: float | None = None,
@@ -341,7 +352,7 @@ def fit_file(
 
 def _rest(given: dict[str, Any]) -> dict[str, Any]:
     names = [
-        *("modulus", "shift", "reference", "poisson", "bulk_modulus", "hardness", "name"),
+        *("modulus", "shift", "reference", "vertical", "poisson", "bulk_modulus", "hardness", "name"),
         *("window", "per_decade", "margin", "long_time", "max_misfit", "max_terms", "misfit", "moduli", "loss_weight"),
     ]
     return {key: given[key] for key in names if key in given}
@@ -370,6 +381,7 @@ def _options(rest: dict[str, Any], kind: str | None) -> dict[str, Any]:
         "measure": rest["modulus"],
         "shift": shift._words if isinstance(shift, Shift) else None,
         "estimate": number("reference", reference) if estimated else None,
+        "vertical": rest["vertical"],
         "window": _window(rest["window"], kind),
         "per_decade": number("per_decade", rest["per_decade"]),
         "margin": number("margin", rest["margin"]),
@@ -452,6 +464,8 @@ def _made(found: dict[str, Any], rest: dict[str, Any]) -> Fit:
         window=found["window"],
         shift=made(found["shift"]),
         shift_rms=found["shift_rms"],
+        shift_factors=found["shift_factors"],
+        vertical_factors=found["vertical_factors"],
         temperatures=found["temperatures"],
         notes=found["notes"],
         x=found["x"],

@@ -13,7 +13,7 @@ import math
 import os
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -26,14 +26,27 @@ from ._findings import ResultWarning
 from ._units import carries
 
 
+#: A shift as the core takes it.
+Words = tuple[str, list[float], list[tuple[float, float]], tuple[float | None, list[tuple[float, float]]] | None]
+#: How moduli depend on temperature, besides their times: "density", its expansion [1/K], or (temperature [K], b_T) points.
+Vertical = str | float | Sequence[tuple[float, float]] | None
+
+
 @dataclass(frozen=True)
 class Shift:
-    """A shift factor a_T over temperature [K]; made by :func:`wlf`, :func:`arrhenius`, :func:`shift_table` or a fit."""
+    """A shift factor a_T over temperature [K]; made by :func:`wlf`, :func:`arrhenius`, :func:`shift_table` or a fit.
+
+    With a vertical shift the moduli at a temperature are those at the reference over b_T: ``vertical="density"`` is
+    b_T = T_r/T (a rubber), a number its volume expansion alpha [1/K] besides, b_T = (T_r/T)(1 + alpha (T - T_r)), and points are
+    (temperature [K], b_T), with ln b_T linear in between. A run needs a constant temperature then.
+    """
 
     model: str
     numbers: tuple[float, ...]
     #: Points of a table: (temperature [K], ln a_T).
     points: tuple[tuple[float, float], ...] = ()
+    #: How moduli depend on temperature: (expansion [1/K] of a density, ()) or (None, ((temperature [K], ln b_T), ...)).
+    vertical: tuple[float | None, tuple[tuple[float, float], ...]] | None = None
 
     def factor(self, temperature: npt.ArrayLike) -> Floats:
         """a_T at temperatures [K]: processes take a_T times as long as at the reference temperature.
@@ -46,32 +59,54 @@ class Shift:
         out: Floats = _core.shift_factor(self._words, line("temperatures", at.reshape(-1)))
         return out.reshape(at.shape)
 
+    def vertical_factor(self, temperature: npt.ArrayLike) -> Floats:
+        """b_T at temperatures [K]: moduli are those at the reference temperature over b_T; 1 without a vertical shift.
+
+        >>> import asperity as asp
+        >>> rubber = asp.wlf(c1=8.86, c2=101.6, reference=293.15, vertical="density")
+        >>> round(1 / float(rubber.vertical_factor(353.15)), 4)
+        1.2047
+        """
+        at = array("temperatures", temperature)
+        out: Floats = _core.vertical_shift_factor(self._words, line("temperatures", at.reshape(-1)))
+        return out.reshape(at.shape)
+
     @property
-    def _words(self) -> tuple[str, list[float], list[tuple[float, float]]]:
-        return self.model, list(self.numbers), list(self.points)
+    def _words(self) -> Words:
+        vertical = None if self.vertical is None else (self.vertical[0], list(self.vertical[1]))
+        return self.model, list(self.numbers), list(self.points), vertical
 
     def __repr__(self) -> str:
+        raised = ""
+        if self.vertical is not None:
+            expansion, points = self.vertical
+            pairs = [(t, math.exp(ln)) for t, ln in points]
+            raised = f", vertical={pairs if expansion is None else (expansion or 'density')!r}"
         if self.model == "wlf":
             c1, c2, reference = self.numbers
-            return f"wlf(c1={c1!r}, c2={c2!r}, reference={reference!r})"
+            return f"wlf(c1={c1!r}, c2={c2!r}, reference={reference!r}{raised})"
         if self.model == "arrhenius":
             energy, reference = self.numbers
-            return f"arrhenius(activation_energy={energy!r}, reference={reference!r})"
-        return f"shift_table({[(t, ln / math.log(10.0)) for t, ln in self.points]!r})"
+            return f"arrhenius(activation_energy={energy!r}, reference={reference!r}{raised})"
+        return f"shift_table({[(t, ln / math.log(10.0)) for t, ln in self.points]!r}{raised})"
 
 
-def wlf(*, c1: float, c2: float, reference: float) -> Shift:
-    """log10 a_T = -c1 (T - T_r)/(c2 + T - T_r), c2 and the reference temperature T_r in K."""
-    return _checked(Shift("wlf", (number("c1", c1), number("c2", c2), _kelvin("reference", reference, 3))))
+def wlf(*, c1: float, c2: float, reference: float, vertical: Vertical = None) -> Shift:
+    """log10 a_T = -c1 (T - T_r)/(c2 + T - T_r), c2 and the reference temperature T_r in K; `vertical` as :class:`Shift` says."""
+    numbers = (number("c1", c1), number("c2", c2), _kelvin("reference", reference, 3))
+    return _checked(Shift("wlf", numbers, vertical=_vertical(vertical)))
 
 
-def arrhenius(*, activation_energy: float, reference: float) -> Shift:
-    """ln a_T = (E_a/R)(1/T - 1/T_r), the activation energy in J/mol, the reference temperature in K."""
+def arrhenius(*, activation_energy: float, reference: float, vertical: Vertical = None) -> Shift:
+    """ln a_T = (E_a/R)(1/T - 1/T_r), the activation energy in J/mol, the reference temperature in K; `vertical` as :class:`Shift`
+    says."""
     numbers = (number("activation_energy", activation_energy), _kelvin("reference", reference, 3))
-    return _checked(Shift("arrhenius", numbers))
+    return _checked(Shift("arrhenius", numbers, vertical=_vertical(vertical)))
 
 
-def shift_table(pairs: Sequence[tuple[float, float]] | str | os.PathLike[str]) -> Shift:
+def shift_table(
+    pairs: Sequence[tuple[float, float]] | str | os.PathLike[str], *, vertical: Vertical = None
+) -> Shift:
     """log10 a_T, linear between (temperature [K], log10 a_T) points in order of temperature; or the path of a table of temperatures
     and shift factors with a header, in a text file or a spreadsheet, as ``asperity material fit --shift-table`` reads it.
 
@@ -82,9 +117,25 @@ def shift_table(pairs: Sequence[tuple[float, float]] | str | os.PathLike[str]) -
     if isinstance(pairs, (str, os.PathLike)):
         shift = made(_core.read_shift_table(os.fspath(pairs)))
         assert shift is not None
-        return shift
+        return _checked(replace(shift, vertical=_vertical(vertical)))
     ln10 = math.log(10.0)
-    return _checked(Shift("table", (), tuple((t, decades * ln10) for t, decades in points("points of the shift", pairs, ("K", "")))))
+    factors = tuple((t, decades * ln10) for t, decades in points("points of the shift", pairs, ("K", "")))
+    return _checked(Shift("table", (), factors, _vertical(vertical)))
+
+
+def _vertical(given: Vertical) -> tuple[float | None, tuple[tuple[float, float], ...]] | None:
+    if given is None:
+        return None
+    if isinstance(given, str):
+        if given != "density":
+            raise CaseError(f"vertical is {given!r}, but must be 'density', an expansion in 1/K, or (temperature, b_T) points")
+        return 0.0, ()
+    if not isinstance(given, (list, tuple)) and np.ndim(given) == 0:
+        return number("vertical", given), ()
+    pairs = points("points of the vertical shift", given, ("K", ""))
+    if any(not factor > 0.0 for _, factor in pairs):
+        raise CaseError(f"points of the vertical shift are {pairs!r}, but the factors b_T must be greater than 0")
+    return None, tuple((t, math.log(factor)) for t, factor in pairs)
 
 
 #: Below this temperature no curves of a polymer are shifted [K]: it is one in degrees Celsius.
@@ -106,12 +157,13 @@ def _checked(shift: Shift) -> Shift:
     return shift
 
 
-def made(words: tuple[str, list[float], list[tuple[float, float]]] | None) -> Shift | None:
+def made(words: Words | None) -> Shift | None:
     """The shift of the core's words."""
     if words is None:
         return None
-    model, numbers, pairs = words
-    return Shift(model, tuple(numbers), tuple(pairs))
+    model, numbers, pairs, vertical = words
+    raised = None if vertical is None else (vertical[0], tuple(vertical[1]))
+    return Shift(model, tuple(numbers), tuple(pairs), raised)
 
 
 def temperatures(value: float | Sequence[tuple[float, float]] | None) -> list[tuple[float, float]]:

@@ -11,6 +11,7 @@ Plasticity = Literal["cap", "accumulate"]
 Measure = Literal["young", "shear"]
 Moduli = Literal["both", "storage", "loss"]
 LongTime = Literal["free", "solid", "fluid"]
+Vertical = Literal["density", "free"]
 Form = Literal["mean", "plane", "quadratic", "none"]
 Field = Literal["pressure", "gap", "displacement", "contact", "flattening"]
 Quantity = Literal[

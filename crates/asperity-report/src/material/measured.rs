@@ -7,7 +7,7 @@ use asperity_io::curve::{Curves as Measured, Fitted, Kind, Sweep};
 use asperity_io::readable::counted;
 
 use super::decades;
-use super::shift::{Factors, shift_factors};
+use super::shift::{Factors, shift_factors, vertical_shift_factors};
 use crate::figure::{Axis, Curves, Figure, Key, Palette, Series, Style};
 
 /// Measured curves in the colours of their temperatures, from the coldest (dark) to the warmest (bright).
@@ -83,7 +83,9 @@ fn shifted(measured: &Measured, fitted: &Fitted) -> Option<Shifted> {
         let inside = |x: f64| x >= first * (1.0 - 1e-9) && x <= last * (1.0 + 1e-9);
         let kept: Vec<usize> = (0..reduced.len()).filter(|n| inside(reduced[*n])).collect();
         let pick = |values: &Vec<f64>| kept.iter().map(|n| values[*n]).collect::<Vec<f64>>();
-        Some((pick(&reduced), sweep.curves.iter().map(pick).collect(), key.colour(celsius(kelvin))))
+        let raise = fitted.value_factor(measured.kind, kelvin);
+        let raised = |values: &Vec<f64>| pick(values).into_iter().map(|value| raise * value).collect();
+        Some((pick(&reduced), sweep.curves.iter().map(raised).collect(), key.colour(celsius(kelvin))))
     };
     Some((measured.sweeps.iter().map(one).collect::<Option<_>>()?, key))
 }
@@ -175,7 +177,9 @@ pub fn fit(title: &str, measured: &Measured, fitted: &Fitted) -> asperity::Resul
             temperatures: &fitted.temperatures,
         }])
     });
-    Ok(factors.into_iter().fold(figure, |figure, panel| figure.with(panel)).caption(caption))
+    let vertical =
+        fitted.vertical.as_ref().and_then(|law| vertical_shift_factors(law, &fitted.vertical_factors));
+    Ok(factors.into_iter().chain(vertical).fold(figure, |figure, panel| figure.with(panel)).caption(caption))
 }
 
 /// What a kind of measurement shows of a material.

@@ -1,6 +1,6 @@
 //! Shift factors a_T over the temperature.
 
-use asperity::material::Shift;
+use asperity::material::{Shift, VerticalShift};
 
 use crate::figure::{Axis, Curves, Series, Style};
 
@@ -60,6 +60,32 @@ pub fn shift_factors(all: &[Factors]) -> Option<Curves> {
         }
     }
     (!panel.series.is_empty()).then_some(panel)
+}
+
+/// The panel of vertical shift factors b_T: those of the sweeps (temperature \[K\], b_T, relative standard deviation) as points with
+/// bars of a standard deviation, the law as a line. `None` of fewer than two sweeps.
+pub fn vertical_shift_factors(law: &VerticalShift, found: &[[f64; 3]]) -> Option<Curves> {
+    let (low, high) = (found.first()?[0], found.last()?[0]);
+    if low >= high {
+        return None;
+    }
+    let axes = [Axis::linear("temperature [°C]", ""), Axis::linear("vertical shift factor b_T", "")];
+    let [x, y] = axes;
+    let places = (0..=200).map(|k| low + (high - low) * f64::from(k) / 200.0);
+    let known = places.filter_map(|kelvin| Some((kelvin - 273.15, law.factor(kelvin).ok()?)));
+    let (line_x, line_y): (Vec<f64>, Vec<f64>) = known.unzip();
+    let (name, points) = match law {
+        VerticalShift::Density { .. } => ("density times temperature", "at the sweeps"),
+        VerticalShift::Table { .. } => ("", "from the sweeps"),
+    };
+    let panel = Curves::new("Moduli are divided by b_T", x, y)
+        .with(Series::new(name, Style::Line, line_x, line_y).in_colour("#222222"));
+    let panel = found.iter().filter(|[.., share]| *share > 0.0).fold(panel, |panel, [kelvin, factor, share]| {
+        let ends = vec![factor * (1.0 - share), factor * (1.0 + share)];
+        panel.with(Series::new("", Style::Line, vec![kelvin - 273.15; 2], ends).in_colour("#0072b2"))
+    });
+    let (x, y): (Vec<f64>, Vec<f64>) = found.iter().map(|[kelvin, factor, _]| (kelvin - 273.15, *factor)).unzip();
+    Some(panel.with(Series::new(points, Style::Points, x, y).in_colour("#0072b2")))
 }
 
 /// The law over the temperatures measured, or about its reference; a list from its first to its last temperature.

@@ -1,7 +1,7 @@
 //! Materials: moduli that look like a slip of the unit, and how well measured data are fitted and covered.
 
 use super::words::{digits, si};
-use super::{BEYOND_MATERIAL_DATA, Finding, MATERIAL_MISFIT, UNLIKELY_UNIT};
+use super::{BEYOND_MATERIAL_DATA, Finding, MATERIAL_MISFIT, POINTS_LEFT_OUT, UNLIKELY_UNIT};
 use crate::march::Simulation;
 
 /// Moduli of solids: from the softest gels to beyond diamond \[Pa\].
@@ -58,6 +58,15 @@ pub fn contradiction(name: &str, column: &str, rms: f64) -> Option<Finding> {
             digits(100.0 * rms)
         );
         Finding::warning(MATERIAL_MISFIT, rms, MISFIT, text)
+    })
+}
+
+/// Points of a measurement, of so many, that lack a number and were left out of a fit.
+pub fn points_left_out(name: &str, left_out: usize, of: usize) -> Option<Finding> {
+    (left_out > 0).then(|| {
+        let points = if left_out == 1 { "point lacks a number and is" } else { "points lack a number and are" };
+        let text = format!("{name}: {left_out} of {of} measured {points} left out of the fit.");
+        Finding::warning(POINTS_LEFT_OUT, left_out as f64, 0.0, text).as_note()
     })
 }
 

@@ -42,7 +42,7 @@ use std::borrow::Cow;
 pub use expected::{Contact, Expected};
 pub use judge::{Judge, Known};
 pub use leak::{LeakJudge, LeakState};
-pub use material::{beyond_data, contradiction, misfit, unlikely_modulus};
+pub use material::{beyond_data, contradiction, misfit, points_left_out, unlikely_modulus};
 pub use motion::{friction_zero, own_track};
 pub use stress::{stress_at_deepest, stress_times_miss_peak, stress_unresolved, yield_exceeded};
 pub use surface::{hurst, of_heights};
@@ -129,7 +129,7 @@ impl std::fmt::Display for Finding {
 }
 
 /// Every code. A code keeps its meaning.
-pub const CODES: [&str; 28] = [
+pub const CODES: [&str; 29] = [
     CONTACT_AT_BORDER,
     GAP_NOT_PERIODIC,
     ROUGH_ON_FREE_DOMAIN,
@@ -143,6 +143,7 @@ pub const CODES: [&str; 28] = [
     ALIASED_HISTORY,
     MATERIAL_MISFIT,
     BEYOND_MATERIAL_DATA,
+    POINTS_LEFT_OUT,
     HURST_OUT_OF_RANGE,
     HURST_UNCERTAIN,
     OUTLIERS,
@@ -186,6 +187,8 @@ pub const ALIASED_HISTORY: &str = "aliased-history";
 pub const MATERIAL_MISFIT: &str = "material-misfit";
 /// The run needs the material at times that were not measured.
 pub const BEYOND_MATERIAL_DATA: &str = "beyond-material-data";
+/// Measured points without a number.
+pub const POINTS_LEFT_OUT: &str = "points-left-out";
 /// A Hurst exponent outside of (0, 1].
 pub const HURST_OUT_OF_RANGE: &str = "hurst-out-of-range";
 /// A Hurst exponent that window, levelling or band decide.

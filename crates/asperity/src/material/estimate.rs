@@ -2,17 +2,20 @@
 //!
 //! 1. Each pair of neighbours in temperature gives the distance along ln x at which one curve continues the other, and
 //!    its standard deviation ([`super::align`]). The first curve (relaxation modulus, compliance, storage modulus) decides;
-//!    the others join in where it is flat.
+//!    the others join in where it is flat. Where the moduli change with temperature by factors that are not known
+//!    ([`ModulusChange::Free`]), all curves decide together, each pair with one factor for all of its curves.
 //! 2. The WLF or the Arrhenius law through all distances, weighted by their variances, says what a pair has that says
 //!    little itself: each distance becomes the mean of the measured one and that of the law, weighted by one over their
 //!    variances, where a law is taken to be right to 0.6 decades and 60 % of the distance. Warmer is faster: no distance is
-//!    negative.
+//!    negative. A law does not make a gap between two curves known: the standard deviation is the gap at least.
 //! 3. Distances add up from the reference to each temperature, and so do their variances. A factor that is uncertain by
 //!    more than a decade is refused.
+//! 4. The factors by which moduli change follow at the distances of the final shift ([`estimate_vertical`]).
 
-use super::align::{self, Distance, Logs};
+use super::align::{self, Distance, Logs, Ordinate};
 use super::master::{Abscissa, Isotherm, validate};
 use super::shift::{Shift, minimise};
+use super::vertical::{VerticalShift, interpolated};
 use crate::error::{Error, Result, kelvin};
 use std::f64::consts::LN_10;
 
@@ -25,6 +28,27 @@ pub struct ShiftEstimate {
     pub uncertainty: Vec<f64>,
 }
 
+/// How the moduli of isotherms change with temperature, besides their times.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ModulusChange {
+    /// As little as those of a rubber, T/T_r, or a glass: it is not corrected, but counts as an uncertainty.
+    #[default]
+    Neglected,
+    /// The curves are multiplied by their vertical shift factors already.
+    Corrected,
+    /// By one unknown factor per isotherm, the same for all of its curves.
+    Free,
+}
+
+/// Vertical shift factors found from isotherms.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VerticalEstimate {
+    /// The factors as a table, b_T = 1 at the reference temperature of the shift.
+    pub vertical: VerticalShift,
+    /// Relative standard deviation of each factor, in the order of the table; 0 at the isotherm nearest to the reference.
+    pub uncertainty: Vec<f64>,
+}
+
 /// Standard deviation of the logarithm of a factor beyond which it is refused \[decades\].
 const MOST_UNCERTAIN: f64 = 1.0;
 /// Standard deviation of the distance of a pair by a law \[decades\], and per distance.
@@ -33,6 +57,12 @@ const LAW: [f64; 2] = [0.6, 0.6];
 const RUBBER: f64 = 1e8;
 /// Curves of more points are averaged over tenths of ln x.
 const MOST_POINTS: usize = 100;
+/// Share of the change of its modulus with temperature that a rubber shows, and a glass; by what it is off once that of a
+/// rubber is corrected.
+const RUBBERY: f64 = 1.0;
+const GLASSY: f64 = 0.15;
+/// Standard deviation of ln b_T beyond which it is refused: a factor of two.
+const MOST_UNCERTAIN_MODULUS: f64 = std::f64::consts::LN_2;
 /// A pair is flat, and all curves are used, where the first one leaves its distance uncertain by more \[decades\].
 const FLAT: f64 = 1.0;
 
@@ -42,13 +72,13 @@ const FLAT: f64 = 1.0;
 /// [`fit_wlf`](crate::material::fit_wlf) and [`fit_arrhenius`](crate::material::fit_arrhenius) turn the table into a law.
 ///
 /// ```
-/// use asperity::material::{Abscissa, Isotherm, estimate_shift};
+/// use asperity::material::{Abscissa, Isotherm, ModulusChange, estimate_shift};
 /// // Power-law relaxation t^-0.3, ten times as fast at the warmer temperature.
 /// let x: Vec<f64> = (0..13).map(|k| 10f64.powf(k as f64 / 4.0)).collect();
 /// let curve = |a: f64| vec![x.iter().map(|t| 1e6 / (1.0 + (t / a).powf(0.3))).collect()];
 /// let cold = Isotherm { temperature: 290.0, x: x.clone(), curves: curve(10.0) };
 /// let warm = Isotherm { temperature: 300.0, x: x.clone(), curves: curve(1.0) };
-/// let found = estimate_shift(&[cold, warm], Abscissa::Time, 300.0)?;
+/// let found = estimate_shift(&[cold, warm], Abscissa::Time, 300.0, ModulusChange::Neglected)?;
 /// assert!((found.shift.factor(290.0)? / 10.0 - 1.0).abs() < 0.01);
 /// // A modulus in proportion to the temperature would shift the curve as well: 0.034/0.25/ln 10 decades.
 /// assert!(found.uncertainty[0] < 0.1);
@@ -58,24 +88,20 @@ const FLAT: f64 = 1.0;
 /// # Errors
 /// [`Error::Invalid`] as [`master_curve`](crate::material::master_curve); for fewer than two isotherms; where a factor is
 /// uncertain by more than a decade, naming the pair of isotherms that says least.
-pub fn estimate_shift(isotherms: &[Isotherm], abscissa: Abscissa, reference: f64) -> Result<ShiftEstimate> {
-    validate(isotherms)?;
-    let mut sorted: Vec<&Isotherm> = isotherms.iter().collect();
-    sorted.sort_by(|a, b| a.temperature.total_cmp(&b.temperature));
-    if sorted.len() < 2 {
-        return Err(Error::invalid("number of isotherms", sorted.len(), "at least 2"));
-    }
-    if let Some(pair) = sorted.windows(2).find(|pair| pair[0].temperature == pair[1].temperature) {
-        let value = format!("{} twice", kelvin(pair[0].temperature));
-        return Err(Error::invalid("temperature of the isotherms", value, "each once"));
-    }
+pub fn estimate_shift(
+    isotherms: &[Isotherm],
+    abscissa: Abscissa,
+    reference: f64,
+    moduli: ModulusChange,
+) -> Result<ShiftEstimate> {
+    let sorted = sorted(isotherms)?;
     let temperatures: Vec<f64> = sorted.iter().map(|isotherm| isotherm.temperature).collect();
     let Some(anchor) = temperatures.iter().position(|t| *t == reference) else {
         let known: Vec<String> = temperatures.iter().map(|t| kelvin(*t)).collect();
         let expected = format!("one of the isotherms: {}", known.join(", "));
         return Err(Error::invalid("reference temperature", kelvin(reference), expected));
     };
-    let measured: Vec<Distance> = sorted.windows(2).map(|pair| between(pair[0], pair[1], abscissa)).collect();
+    let measured: Vec<Distance> = sorted.windows(2).map(|pair| between(pair[0], pair[1], abscissa, moduli)).collect();
     let found = with_law(&temperatures, &measured);
     let sums = |of: &dyn Fn(&Distance) -> f64| -> Vec<f64> {
         std::iter::once(0.0)
@@ -96,27 +122,122 @@ pub fn estimate_shift(isotherms: &[Isotherm], abscissa: Abscissa, reference: f64
     Ok(ShiftEstimate { shift: Shift::Table { points }, uncertainty })
 }
 
-/// The distance in ln t by which the colder isotherm is behind the warmer one.
-fn between(cold: &Isotherm, warm: &Isotherm, abscissa: Abscissa) -> Distance {
-    let of = |curve: usize| {
-        let [first, second] = [cold, warm].map(|isotherm| logs(isotherm, abscissa, curve));
-        let change = (warm.temperature / cold.temperature).ln() * share_of_temperature(&first, &second);
-        align::distance(&first, &second, change)
-    };
-    let first = of(0);
-    if first.deviation <= FLAT * LN_10 {
-        return first;
+/// Factors by which the moduli of isotherms change with temperature, where their times follow a `shift` whose factors have
+/// these standard deviations \[decades\], in order of temperature (none where it is known). The factor of a compliance is that of
+/// its values: one over that of the modulus.
+///
+/// ```
+/// use asperity::material::{Abscissa, Isotherm, Shift, estimate_vertical};
+/// // A rubber that is 20 % stiffer at the warmer temperature, and ten times as fast.
+/// let x: Vec<f64> = (0..13).map(|k| 10f64.powf(k as f64 / 4.0)).collect();
+/// let curve = |a: f64, b: f64| vec![x.iter().map(|t| 1e6 / (1.0 + (t / a).powf(0.3)) / b).collect()];
+/// let cold = Isotherm { temperature: 290.0, x: x.clone(), curves: curve(10.0, 1.2) };
+/// let warm = Isotherm { temperature: 300.0, x: x.clone(), curves: curve(1.0, 1.0) };
+/// let shift = Shift::Table { points: vec![(290.0, 10f64.ln()), (300.0, 0.0)] };
+/// let found = estimate_vertical(&[cold, warm], Abscissa::Time, &shift, &[])?;
+/// assert!((found.vertical.factor(290.0)? / 1.2 - 1.0).abs() < 1e-3);
+/// # Ok::<(), asperity::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::Invalid`] as [`estimate_shift`]; where the shift is not defined at a temperature; where a factor is uncertain by more
+/// than a factor of two, naming the pair of isotherms that says least.
+pub fn estimate_vertical(
+    isotherms: &[Isotherm],
+    abscissa: Abscissa,
+    shift: &Shift,
+    uncertainty: &[f64],
+) -> Result<VerticalEstimate> {
+    let sorted = sorted(isotherms)?;
+    let ln: Vec<f64> = sorted.iter().map(|i| shift.ln_factor(i.temperature)).collect::<Result<_>>()?;
+    // Variances of factors add up from the reference: their differences are those of the pairs.
+    let variance = |k: usize| uncertainty.get(k).map_or(0.0, |decades| (LN_10 * decades).powi(2));
+    let (mut value, mut deviation) = (vec![0.0], vec![0.0]);
+    for (k, pair) in sorted.windows(2).enumerate() {
+        let raised = align::raised(&pairs(pair[0], pair[1], abscissa), ln[k] - ln[k + 1]);
+        let time = (variance(k + 1) - variance(k)).abs() * raised.slope * raised.slope;
+        value.push(value[k] + raised.value);
+        deviation.push((raised.deviation.powi(2) + time).sqrt());
     }
-    (1..cold.curves.len()).map(of).fold(first, mean)
+    let temperatures: Vec<f64> = sorted.iter().map(|isotherm| isotherm.temperature).collect();
+    let reference = shift.reference().unwrap_or(temperatures[0]);
+    let distance = |k: &usize| (temperatures[*k] - reference).abs();
+    let anchor = (0..temperatures.len()).min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or(0);
+    let uncertainty: Vec<f64> = (0..temperatures.len())
+        .map(|k| {
+            let between = if k < anchor { k + 1..=anchor } else { anchor + 1..=k };
+            between.map(|pair| deviation[pair] * deviation[pair]).sum::<f64>().sqrt()
+        })
+        .collect();
+    let worst = (1..deviation.len()).max_by(|a, b| deviation[*a].total_cmp(&deviation[*b])).unwrap_or(1);
+    if uncertainty.iter().any(|ln| ln.is_nan() || *ln > MOST_UNCERTAIN_MODULUS) {
+        let [cold, warm] = [temperatures[worst - 1], temperatures[worst]].map(kelvin);
+        return Err(Error::invalid(
+            format!("factor between the moduli of the isotherms at {cold} and {warm}"),
+            format!("uncertain by a factor of {:.1}", libm::exp(deviation[worst].min(7.0))),
+            "known to a factor of 2: isotherms that overlap at these shift factors; correct by the density instead, or leave \
+             vertical shifts out",
+        ));
+    }
+    let points: Vec<(f64, f64)> = temperatures.iter().copied().zip(value).collect();
+    let zero = interpolated(&points, reference);
+    let vertical = VerticalShift::Table { points: points.iter().map(|(t, ln)| (*t, ln - zero)).collect() };
+    vertical.validate()?;
+    Ok(VerticalEstimate { vertical, uncertainty })
 }
 
-/// How the modulus itself changes with the absolute temperature, as a power: a rubber's grows in proportion (elasticity of
-/// entropy), that of a glass changes some seven times less.
-fn share_of_temperature(first: &Logs, second: &Logs) -> f64 {
+/// Two isotherms at least, in order of temperature, none twice.
+fn sorted(isotherms: &[Isotherm]) -> Result<Vec<&Isotherm>> {
+    validate(isotherms)?;
+    let mut sorted: Vec<&Isotherm> = isotherms.iter().collect();
+    sorted.sort_by(|a, b| a.temperature.total_cmp(&b.temperature));
+    if sorted.len() < 2 {
+        return Err(Error::invalid("number of isotherms", sorted.len(), "at least 2"));
+    }
+    if let Some(pair) = sorted.windows(2).find(|pair| pair[0].temperature == pair[1].temperature) {
+        let value = format!("{} twice", kelvin(pair[0].temperature));
+        return Err(Error::invalid("temperature of the isotherms", value, "each once"));
+    }
+    Ok(sorted)
+}
+
+/// The distance in ln t by which the colder isotherm is behind the warmer one.
+fn between(cold: &Isotherm, warm: &Isotherm, abscissa: Abscissa, moduli: ModulusChange) -> Distance {
+    let pairs = pairs(cold, warm, abscissa);
+    let share = |pair: &[Logs; 2]| match (moduli, is_rubber(pair)) {
+        (ModulusChange::Corrected, true) | (ModulusChange::Neglected, false) => GLASSY,
+        _ => RUBBERY,
+    };
+    let change = (warm.temperature / cold.temperature).ln();
+    let of = |pair: &[Logs; 2]| {
+        align::distance(std::slice::from_ref(pair), Ordinate::Held(change * share(pair)))
+    };
+    match (moduli, pairs.split_first()) {
+        (ModulusChange::Free, _) => align::distance(&pairs, Ordinate::Free),
+        (_, Some((first, others))) => {
+            let first = of(first);
+            if first.deviation <= FLAT * LN_10 {
+                return first;
+            }
+            others.iter().map(of).fold(first, mean)
+        }
+        (_, None) => align::distance(&[], Ordinate::Free),
+    }
+}
+
+/// Each quantity of both isotherms.
+fn pairs(cold: &Isotherm, warm: &Isotherm, abscissa: Abscissa) -> Vec<[Logs; 2]> {
+    let of = |curve: usize| [cold, warm].map(|isotherm| logs(isotherm, abscissa, curve));
+    (0..cold.curves.len()).map(of).collect()
+}
+
+/// Whether moduli are those of a rubber, which grow with the absolute temperature (elasticity of entropy); those of a glass
+/// change some seven times less.
+fn is_rubber([first, second]: &[Logs; 2]) -> bool {
     let count = (first.len() + second.len()) as f64;
     let mean = first.iter().chain(second).map(|point| point.1).sum::<f64>() / count;
     // The logarithm of a compliance is negative; its absolute value is that of a modulus.
-    if mean.abs() < RUBBER.ln() { 1.0 } else { 0.15 }
+    mean.abs() < RUBBER.ln()
 }
 
 /// ln t or -ln omega, rising, and the logarithm of the values.
@@ -150,17 +271,23 @@ fn mean(a: Distance, b: Distance) -> Distance {
     if wa + wb == 0.0 {
         return a;
     }
-    Distance { value: (wa * a.value + wb * b.value) / (wa + wb), deviation: (wa + wb).sqrt().recip() }
+    let value = (wa * a.value + wb * b.value) / (wa + wb);
+    Distance { value, deviation: (wa + wb).sqrt().recip(), ..a }
 }
 
 /// The measured distances, each averaged with that of a law through all of them, and not negative.
 fn with_law(temperatures: &[f64], measured: &[Distance]) -> Vec<Distance> {
     let law = law(temperatures, measured);
     let averaged = measured.iter().enumerate().map(|(k, distance)| match &law {
-        Some(law) => mean(*distance, Distance { value: law[k], deviation: doubt(law[k]) }),
+        Some(law) => mean(*distance, Distance { value: law[k], deviation: doubt(law[k]), ..*distance }),
         None => *distance,
     });
-    averaged.map(|distance| Distance { value: distance.value.max(0.0), ..distance }).collect()
+    averaged
+        .map(|distance| {
+            let distance = Distance { value: distance.value.max(0.0), ..distance };
+            Distance { deviation: distance.deviation.max(distance.gap()), ..distance }
+        })
+        .collect()
 }
 
 /// Standard deviation of a distance by a law \[ln\].
@@ -223,8 +350,8 @@ fn uncertain(sorted: &[&Isotherm], measured: &[Distance], uncertainty: &[f64]) -
         ),
         format!("uncertain by {}, and shift factors by {}", shown(decades), shown(largest)),
         format!(
-            "known to {MOST_UNCERTAIN} decade: curves with a slope, at temperatures close enough to overlap; leave an \
-             isotherm out, measure between them, or give the shift"
+            "known to {MOST_UNCERTAIN} decade: curves with a slope, at temperatures so close that neighbours overlap; measure \
+             between them, leave an isotherm out, or give the shift (a table of factors, or the constants of a law)"
         ),
     )
 }

@@ -13,7 +13,7 @@
 //! - fractional models, as Prony sums to a stated error: [`Fractional`];
 //! - measured curves: [`fit_relaxation`], [`fit_creep`], [`fit_dma`]; or [`CreepTable`] as it is;
 //! - curves at several temperatures: [`master_curve`], with a [`Shift`] that is given or
-//!   [estimated](estimate_shift).
+//!   [estimated](estimate_shift), and a [`VerticalShift`] of the moduli.
 //!
 //! A temperature that changes during the run makes a [`ReducedTime`], the clock of a [`ThermalCreep`];
 //! one that does not stretches the times: [`Material::stretched`].
@@ -41,11 +41,12 @@ mod shift;
 mod spectrum;
 mod table;
 mod thermal;
+mod vertical;
 
 pub use body::{Body, Lateral, PoissonCreep, pair_creep, pair_hardness};
 pub use creep::{Creep, CreepTerm};
 pub(crate) use dual::Dual;
-pub use estimate::{ShiftEstimate, estimate_shift};
+pub use estimate::{ModulusChange, ShiftEstimate, VerticalEstimate, estimate_shift, estimate_vertical};
 pub use fit::{Fit, FitOptions, LongTime, Misfit, Moduli, fit_creep, fit_dma, fit_relaxation};
 pub use fractional::{Approximation, Fractional};
 pub use master::{Abscissa, Isotherm, MasterCurve, master_curve};
@@ -57,3 +58,4 @@ pub use relaxation::{Relaxation, RelaxationTerm};
 pub use shift::{GAS_CONSTANT, Shift, ShiftFit, fit_arrhenius, fit_wlf};
 pub use table::CreepTable;
 pub use thermal::ThermalCreep;
+pub use vertical::VerticalShift;

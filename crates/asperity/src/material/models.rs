@@ -195,6 +195,23 @@ impl Material {
         Self::generalised_kelvin(self.measure, self.creep.stretched(factor))
     }
 
+    /// The material whose moduli are `factor` times as large: 1/b_T at a temperature with a
+    /// [`VerticalShift`](super::VerticalShift).
+    ///
+    /// ```
+    /// use asperity::material::{Material, Modulus};
+    /// let stiffer = Material::zener(Modulus::Shear, 6e6, 3e6, 9.0)?.scaled(1.2)?;
+    /// assert!((stiffer.relaxation()?.equilibrium / 2.4e6 - 1.0).abs() < 1e-14);
+    /// # Ok::<(), asperity::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// `Invalid` where the factor is not finite and positive, or a compliance leaves the range of floating-point numbers.
+    pub fn scaled(&self, factor: f64) -> Result<Self> {
+        positive("factor of the moduli", factor, "")?;
+        Self::generalised_kelvin(self.measure, self.creep.scaled(1.0 / factor))
+    }
+
     /// Whether the moduli are Young's or shear moduli.
     pub fn measure(&self) -> Modulus {
         self.measure

@@ -137,6 +137,20 @@ impl Shift {
         })
     }
 
+    /// The temperature at which a_T is 1 \[K\]: the reference of a law; of a table where its factors pass 1, if they do.
+    pub fn reference(&self) -> Option<f64> {
+        match self {
+            Shift::Wlf { reference, .. } | Shift::Arrhenius { reference, .. } => Some(*reference),
+            Shift::Table { points } => {
+                let exact = points.iter().find(|point| point.1 == 0.0).map(|point| point.0);
+                exact.or_else(|| {
+                    let pair = points.windows(2).find(|pair| pair[0].1 * pair[1].1 < 0.0)?;
+                    Some(pair[0].0 + (pair[1].0 - pair[0].0) * pair[0].1 / (pair[0].1 - pair[1].1))
+                })
+            }
+        }
+    }
+
     /// ln a_T inside the domain.
     pub(super) fn ln_factor_unchecked(&self, temperature: f64) -> f64 {
         match self {

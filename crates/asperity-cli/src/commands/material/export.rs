@@ -22,7 +22,8 @@ pub fn export(args: &MaterialExport) -> Result<(), Failure> {
     };
     let (material, shift) = specimen.at_reference().map_err(told)?;
     let lateral = poisson.or(specimen.lateral);
-    let exported = Exported { name: &specimen.name, material: &material, lateral, shift };
+    let vertical = specimen.report.vertical_law.as_ref();
+    let exported = Exported { name: &specimen.name, material: &material, lateral, shift, vertical };
     let program = match args.to {
         To::Abaqus => Program::Abaqus,
         To::Ansys => Program::Ansys,

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use asperity::finding::{self, Finding};
-use asperity::material::{Misfit, Modulus, Shift};
+use asperity::material::{Misfit, Modulus, Shift, VerticalShift};
 use asperity_io::curve::{Curves, Fitted, Kind, Request, Series, ShiftRequest};
 use asperity_report::material as pictures;
 use serde_json::{Map, Value, json};
@@ -23,7 +23,7 @@ pub fn fit(args: &Fit) -> Result<(), Failure> {
     for path in args.output.iter().chain(&args.plot) {
         crate::commands::free(path, args.force)?;
     }
-    let (shift, options) = (given::shift(args)?, given::options(args));
+    let (shift, vertical, options) = (given::shift(args)?, given::vertical(args)?, given::options(args));
     let mut curves = given::curves(&args.data, &args.table)?;
     let window = args.window.as_deref().map(|text| given::ends(curves.kind, text)).transpose()?;
     let measure = args.modulus.or(curves.measure).unwrap_or_else(|| {
@@ -32,7 +32,7 @@ pub fn fit(args: &Fit) -> Result<(), Failure> {
         Modulus::Young
     });
     let shift = estimated_unless_known(shift, &mut curves);
-    let fitted = Request { measure, shift, window, options }.fit(&curves).map_err(refused)?;
+    let fitted = Request { measure, shift, vertical, window, options }.fit(&curves).map_err(refused)?;
     let findings = findings(&args.data.display().to_string(), &fitted);
     let block = fitted.to_toml(&curves);
     if let Some(path) = &args.output {
@@ -82,7 +82,8 @@ fn estimated_unless_known(shift: ShiftRequest, curves: &mut Curves) -> ShiftRequ
 fn findings(name: &str, fitted: &Fitted) -> Vec<Finding> {
     let Misfit { rms, max, .. } = fitted.misfit;
     let other = fitted.other().and_then(|(column, misfit)| finding::contradiction(name, column, misfit.rms));
-    finding::misfit(name, rms, max, fitted.noise).into_iter().chain(other).collect()
+    let left_out = finding::points_left_out(name, fitted.left_out, fitted.data.x.len() + fitted.left_out);
+    finding::misfit(name, rms, max, fitted.noise).into_iter().chain(other).chain(left_out).collect()
 }
 
 fn report(args: &Fit, curves: &Curves, fitted: &Fitted) -> String {
@@ -104,6 +105,13 @@ fn report(args: &Fit, curves: &Curves, fitted: &Fitted) -> String {
     }
     for [kelvin, decades, uncertainty] in &fitted.factors {
         line("", format!("{:8.1} °C  log10 a_T = {decades:7.3} +- {uncertainty:.3}", kelvin - 273.15));
+    }
+    if let Some(vertical) = &fitted.vertical {
+        line("moduli", vertical_law(vertical));
+    }
+    for [kelvin, factor, uncertainty] in &fitted.vertical_factors {
+        let known = if *uncertainty > 0.0 { format!(" +- {:.1} %", 100.0 * uncertainty) } else { String::new() };
+        line("", format!("{:8.1} °C  b_T = {factor:.4}{known}", kelvin - 273.15));
     }
     let [first, last] = fitted.window;
     line("times", format!("{first:.3e} s to {last:.3e} s"));
@@ -163,6 +171,19 @@ fn law(shift: &Shift) -> String {
     }
 }
 
+fn vertical_law(vertical: &VerticalShift) -> String {
+    match vertical {
+        VerticalShift::Density { reference, expansion } => {
+            let volume = match *expansion > 0.0 {
+                true => format!(" (1 + {expansion:.3e} 1/K (T - reference))"),
+                false => String::new(),
+            };
+            format!("divided by b_T = {:.2} °C over T, in kelvin{volume}", reference - 273.15)
+        }
+        VerticalShift::Table { .. } => "divided by b_T, one factor for each sweep".to_owned(),
+    }
+}
+
 fn json_of(curves: &Curves, fitted: &Fitted) -> Value {
     let function = match &fitted.series {
         Series::Relaxation(relaxation) => json!({
@@ -205,6 +226,15 @@ fn json_of(curves: &Curves, fitted: &Fitted) -> Value {
         "sheet": curves.sheet,
         "shift_factors": fitted.factors.iter().map(|[kelvin, decades, uncertainty]| {
             json!({ "temperature": kelvin, "log10_factor": decades, "uncertainty_decades": uncertainty })
+        }).collect::<Vec<Value>>(),
+        "vertical": fitted.vertical.as_ref().map(|vertical| match vertical {
+            VerticalShift::Density { reference, expansion } => {
+                json!({ "model": "density", "reference": reference, "expansion": expansion })
+            }
+            VerticalShift::Table { points } => json!({ "model": "table", "ln_factors": points }),
+        }),
+        "vertical_factors": fitted.vertical_factors.iter().map(|[kelvin, factor, uncertainty]| {
+            json!({ "temperature": kelvin, "factor": factor, "uncertainty": uncertainty })
         }).collect::<Vec<Value>>(),
         "noise": fitted.noise,
         "uncertainty": fitted.uncertainty,

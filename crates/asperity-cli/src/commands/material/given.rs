@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use asperity::material::{FitOptions, Shift};
-use asperity_io::case::quantity::{MolarEnergy, Number, Temperature, TemperatureDifference, Time, range};
+use asperity_io::case::quantity::{Expansion, MolarEnergy, Number, Temperature, TemperatureDifference, Time, range};
 use asperity_io::curve::{
-    Column, Columns, CurveError, Curves, Kind, Remedy, Role, ShiftRequest, angular_frequency,
-    read_shift_table,
+    Column, Columns, CurveError, Curves, Kind, Remedy, Role, ShiftRequest, VerticalRequest,
+    VerticalWord, angular_frequency, read_shift_table,
 };
 
 use super::told;
@@ -93,6 +93,21 @@ pub fn shift(args: &Fit) -> Result<ShiftRequest, Failure> {
     match &args.estimate_shift {
         Some(text) => Ok(ShiftRequest::Estimate(parsed::<Temperature>("--estimate-shift", text)?.get())),
         None => Ok(ShiftRequest::None),
+    }
+}
+
+pub fn vertical(args: &Fit) -> Result<VerticalRequest, Failure> {
+    let expansion = args.expansion.as_deref();
+    let expansion = expansion
+        .map(|text| parsed::<Expansion<range::NonNegative>>("--expansion", text).map(|expansion| expansion.get()))
+        .transpose()?;
+    match (args.vertical, expansion) {
+        (None, None) => Ok(VerticalRequest::None),
+        (Some(VerticalWord::Free), None) => Ok(VerticalRequest::Free),
+        (Some(VerticalWord::Density), expansion) => {
+            Ok(VerticalRequest::Density { expansion: expansion.unwrap_or(0.0) })
+        }
+        (_, Some(_)) => Err(Failure::input("--expansion goes with --vertical density")),
     }
 }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use asperity::finding::{self, Finding};
 use asperity::layer::{Inseparable, Layered};
-use asperity::material::{Body, Creep, Lateral, Material, ReducedTime, Shift, ThermalCreep, pair_hardness};
+use asperity::material::{Body, Creep, Lateral, Material, ReducedTime, Shift, ThermalCreep, VerticalShift, pair_hardness};
 use asperity::time::Plan;
 
 use super::Checks;
@@ -166,10 +166,10 @@ fn made(
     let window = warmth.window(plan);
     let (reference, report, outside) = reference(checks, part.material, sample, window, beyond)?;
     let findings = findings(&name, &report, window, outside);
-    let factor = warmth.constant_factor();
-    let material = match factor {
-        Some(factor) if factor != 1.0 => checks.core(&part.material.span, reference.stretched(factor))?,
-        _ => reference,
+    let factors = warmth.constant();
+    let material = match factors {
+        Some(factors) => checks.core(&part.material.span, factors.of(reference))?,
+        None => reference,
     };
     let clock = match warmth {
         Warmth::Changing(clock) => Some(clock),
@@ -178,7 +178,10 @@ fn made(
     let report = MaterialReport {
         body: name.clone(),
         law: sample.shift.clone(),
-        shift_factor: factor.filter(|_| sample.shift.is_some()),
+        vertical_law: sample.vertical.clone(),
+        vertical: sample.vertical.as_ref().map(vertical),
+        shift_factor: factors.filter(|_| sample.shift.is_some()).map(|factors| factors.times),
+        vertical_factor: factors.filter(|_| sample.vertical.is_some()).map(|factors| factors.moduli),
         terms: material.creep().terms.len(),
         ..report
     };
@@ -206,7 +209,9 @@ fn findings(
         .other_misfit
         .as_ref()
         .and_then(|(column, misfit)| finding::contradiction(name, column, *misfit));
-    misfit.into_iter().chain(other).chain(beyond).collect()
+    let measured = report.points.unwrap_or(0) + report.left_out;
+    let left_out = finding::points_left_out(name, report.left_out, measured);
+    misfit.into_iter().chain(other).chain(beyond).chain(left_out).collect()
 }
 
 /// A material by itself, and where it comes from.
@@ -218,32 +223,57 @@ pub fn alone(
 ) -> Option<(Material, MaterialReport)> {
     let plan = |_: &[f64]| Plan { instants: Vec::new(), exact: true };
     let course = Course { end: None, plan: &plan, temperatures: None, beyond: 1.0 };
-    let factor = checks.core(&at.span, warmth(sample, &course))?.constant_factor().unwrap_or(1.0);
+    let factors = checks.core(&at.span, warmth(sample, &course))?.constant().unwrap_or(Factors::NONE);
     let around = match &sample.model {
         Model::Fractional { time, .. } => Some([1e-4 * time, 1e4 * time]),
         _ => None,
     };
-    let window = window.map(|window| window.map(|t| t / factor)).or(around);
+    let window = window.map(|window| window.map(|t| t / factors.times)).or(around);
     let (reference, report, _) = reference(checks, at, sample, window, 1.0)?;
-    let material = checks.core(&at.span, reference.stretched(factor))?;
-    let terms = material.creep().terms.len();
-    let shift_factor = sample.shift.is_some().then_some(factor);
-    Some((material, MaterialReport { terms, shift_factor, law: sample.shift.clone(), ..report }))
+    let material = checks.core(&at.span, factors.of(reference))?;
+    let report = MaterialReport {
+        terms: material.creep().terms.len(),
+        shift_factor: sample.shift.is_some().then_some(factors.times),
+        law: sample.shift.clone(),
+        vertical_law: sample.vertical.clone(),
+        vertical: sample.vertical.as_ref().map(vertical),
+        vertical_factor: sample.vertical.is_some().then_some(factors.moduli),
+        ..report
+    };
+    Some((material, report))
 }
 
 /// How warm a body is.
 enum Warmth {
-    /// The shift factor of its constant temperature, 1 without a shift.
-    Constant(f64),
+    /// At a constant temperature.
+    Constant(Factors),
     Changing(ReducedTime),
 }
 
+/// What a constant temperature makes of a material: its times are multiplied by a_T, its moduli are divided by b_T.
+#[derive(Clone, Copy)]
+struct Factors {
+    times: f64,
+    moduli: f64,
+}
+
+impl Factors {
+    /// Those of the reference temperature.
+    const NONE: Factors = Factors { times: 1.0, moduli: 1.0 };
+
+    fn of(self, reference: Material) -> asperity::Result<Material> {
+        let stretched = if self.times == 1.0 { reference } else { reference.stretched(self.times)? };
+        if self.moduli == 1.0 { Ok(stretched) } else { stretched.scaled(1.0 / self.moduli) }
+    }
+}
+
 fn warmth(sample: &Sample, course: &Course<'_>) -> asperity::Result<Warmth> {
-    let Some(shift) = &sample.shift else { return Ok(Warmth::Constant(1.0)) };
+    let Some(shift) = &sample.shift else { return Ok(Warmth::Constant(Factors::NONE)) };
     let factor = |temperature: f64| -> asperity::Result<Warmth> {
         let factor = shift.factor(temperature)?;
+        let moduli = sample.vertical.as_ref().map_or(Ok(1.0), |vertical| vertical.factor(temperature))?;
         match factor.is_finite() && factor > 0.0 {
-            true => Ok(Warmth::Constant(factor)),
+            true => Ok(Warmth::Constant(Factors { times: factor, moduli })),
             false => Err(asperity::Error::invalid(
                 format!("shift factor at {temperature:.2} K"),
                 factor,
@@ -254,8 +284,14 @@ fn warmth(sample: &Sample, course: &Course<'_>) -> asperity::Result<Warmth> {
     match (sample.temperature, course.temperatures) {
         (Some(own), _) => factor(own),
         (None, Some([first, rest @ ..])) if rest.iter().all(|point| point.1 == first.1) => factor(first.1),
+        (None, Some(_)) if sample.vertical.is_some() => Err(asperity::Error::invalid(
+            "temperature of a material with a vertical shift",
+            "changing during the run",
+            "constant: moduli that change during a run are not solved; hold the temperature, or leave `vertical` out of the \
+             material (then only its times depend on temperature)",
+        )),
         (None, Some(points)) => Ok(Warmth::Changing(ReducedTime::new(shift.clone(), points)?)),
-        (None, None) => Ok(Warmth::Constant(1.0)),
+        (None, None) => Ok(Warmth::Constant(Factors::NONE)),
     }
 }
 
@@ -267,9 +303,9 @@ impl Warmth {
         }
     }
 
-    fn constant_factor(&self) -> Option<f64> {
+    fn constant(&self) -> Option<Factors> {
         match self {
-            Warmth::Constant(factor) => Some(*factor),
+            Warmth::Constant(factors) => Some(*factors),
             Warmth::Changing(_) => None,
         }
     }
@@ -278,7 +314,7 @@ impl Warmth {
     fn window(&self, plan: &Plan) -> Option<[f64; 2]> {
         let [shortest, end] = plan.window();
         let window = match self {
-            Warmth::Constant(factor) => [shortest / factor, end / factor],
+            Warmth::Constant(factors) => [shortest / factors.times, end / factors.times],
             Warmth::Changing(clock) => {
                 let steps = plan.instants.iter().filter(|instant| instant.dt > 0.0);
                 let lengths = steps.map(|i| clock.elapsed(i.time - i.dt, i.time));
@@ -324,6 +360,7 @@ fn reference(
                     .collect(),
                 window: Some(fitted.window),
                 points: Some(fitted.data.x.len()),
+                left_out: fitted.left_out,
                 temperatures: fitted.temperatures.clone(),
                 file: Some(file.clone()),
                 shift: sample.shift.as_ref().map(law),
@@ -332,6 +369,17 @@ fn reference(
             };
             Some((fitted.material.clone(), report, warning))
         }
+    }
+}
+
+/// The vertical shift in words.
+fn vertical(vertical: &VerticalShift) -> String {
+    match vertical {
+        VerticalShift::Density { expansion, .. } => {
+            let volume = if *expansion > 0.0 { format!(", expansion {expansion:e} 1/K") } else { String::new() };
+            format!("density times temperature{volume}")
+        }
+        VerticalShift::Table { points } => format!("table of {} factors b_T", points.len()),
     }
 }
 

@@ -6,7 +6,7 @@ use super::Checks;
 use crate::case::quantity::range::Positive;
 use crate::case::quantity::{Prescribed, QuantityError, dimension};
 use crate::case::raw::{self, At, Two};
-use crate::curve::{self, Columns, Curves, Fitted, Kind, Request, Role, ShiftRequest};
+use crate::curve::{self, Columns, Curves, Fitted, Kind, Request, Role, ShiftRequest, VerticalRequest};
 
 /// A fit and its file.
 pub struct Fit {
@@ -33,17 +33,17 @@ macro_rules! said {
     }};
 }
 
-pub fn relaxation(checks: &mut Checks<'_, '_>, m: &raw::RelaxationTable, shift: ShiftRequest) -> Option<Fit> {
+pub fn relaxation(checks: &mut Checks<'_, '_>, m: &raw::RelaxationTable, shift: ShiftRequest, vertical: VerticalRequest) -> Option<Fit> {
     let said = said!(m; time = Time, modulus = Modulus, temperature = Temperature, set = Set);
-    fit(checks, Kind::Relaxation, m.modulus, &m.path, &said, m.fit.as_ref(), shift)
+    fit(checks, Kind::Relaxation, m.modulus, &m.path, &said, m.fit.as_ref(), (shift, vertical))
 }
 
-pub fn creep(checks: &mut Checks<'_, '_>, m: &raw::CreepTable, shift: ShiftRequest) -> Option<Fit> {
+pub fn creep(checks: &mut Checks<'_, '_>, m: &raw::CreepTable, shift: ShiftRequest, vertical: VerticalRequest) -> Option<Fit> {
     let said = said!(m; time = Time, compliance = Compliance, temperature = Temperature, set = Set);
-    fit(checks, Kind::Creep, m.compliance, &m.path, &said, m.fit.as_ref(), shift)
+    fit(checks, Kind::Creep, m.compliance, &m.path, &said, m.fit.as_ref(), (shift, vertical))
 }
 
-pub fn dma(checks: &mut Checks<'_, '_>, m: &raw::Dma, shift: ShiftRequest) -> Option<Fit> {
+pub fn dma(checks: &mut Checks<'_, '_>, m: &raw::Dma, shift: ShiftRequest, vertical: VerticalRequest) -> Option<Fit> {
     let columns = m.columns.as_ref().map(|at| &at.value);
     if let (Some(at), Some(_), Some(_)) =
         (&m.columns, columns.and_then(|c| c.loss.as_ref()), columns.and_then(|c| c.tan_delta.as_ref()))
@@ -68,7 +68,7 @@ pub fn dma(checks: &mut Checks<'_, '_>, m: &raw::Dma, shift: ShiftRequest) -> Op
         temperature = Temperature,
         set = Set,
     );
-    fit(checks, Kind::Dma, m.modulus, &m.path, &said, m.fit.as_ref(), shift)
+    fit(checks, Kind::Dma, m.modulus, &m.path, &said, m.fit.as_ref(), (shift, vertical))
 }
 
 fn column(column: &raw::Column) -> curve::Column {
@@ -85,14 +85,14 @@ fn fit(
     path: &At<String>,
     columns: &Columns,
     raw: Option<&At<raw::Fit>>,
-    shift: ShiftRequest,
+    (shift, vertical): (ShiftRequest, VerticalRequest),
 ) -> Option<Fit> {
     let file = checks.file(path)?;
     let (options, window) = match raw {
         Some(at) => (options(&at.value), window(checks, kind, &at.value)?),
         None => (FitOptions::default(), None),
     };
-    let request = Request { measure, shift, window, options };
+    let request = Request { measure, shift, vertical, window, options };
     let curves = Curves::read(&file, kind, columns);
     let fitted = curves.and_then(|curves| Ok((request.fit(&curves)?, curves.digest)));
     match fitted {

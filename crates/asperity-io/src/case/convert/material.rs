@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use asperity::material::{Creep, CreepTerm, Fractional, Material, Modulus, Relaxation, Shift};
+use asperity::material::{Creep, CreepTerm, Fractional, Material, Modulus, Relaxation, Shift, VerticalShift};
 
 use super::{Checks, curve, temperature};
 use crate::case::error::CaseError;
@@ -10,7 +10,7 @@ use crate::case::quantity::range::{Order, Positive, Tolerance};
 use crate::case::quantity::{Number, Pressure, Time};
 use crate::case::raw::{self, At};
 use crate::case::text::Text;
-use crate::curve::{Fitted, ShiftRequest};
+use crate::curve::{Fitted, ShiftRequest, VerticalRequest};
 
 /// A material as the case gives it, at its reference temperature.
 pub struct Sample {
@@ -19,6 +19,8 @@ pub struct Sample {
     pub name: &'static str,
     /// How its times depend on temperature.
     pub shift: Option<Shift>,
+    /// How its moduli do.
+    pub vertical: Option<VerticalShift>,
     /// Its own constant temperature [K].
     pub temperature: Option<f64>,
     /// The file that it was fitted to, and its MD5.
@@ -50,6 +52,7 @@ pub fn sample(checks: &mut Checks<'_, '_>, at: &At<raw::Material>) -> Option<Sam
         Some(shift) => temperature::shift(checks, shift)?,
         None => ShiftRequest::None,
     };
+    let vertical = temperature::vertical(checks, shift, fit_of(&at.value))?;
     let measured = matches!(
         &at.value,
         raw::Material::RelaxationTable(_) | raw::Material::CreepTable(_) | raw::Material::Dma(_)
@@ -63,26 +66,26 @@ pub fn sample(checks: &mut Checks<'_, '_>, at: &At<raw::Material>) -> Option<Sam
     let own = temperature.map(|at| at.value.get());
     let fitted = |checks: &mut Checks<'_, '_>, fit: Option<curve::Fit>| {
         let fit = fit?;
-        let shift = fit.fitted.shift.clone();
+        let (shift, vertical) = (fit.fitted.shift.clone(), fit.fitted.vertical.clone());
         if let (Some(at), None) = (temperature, &shift) {
             checks.fault(&at.span, WITHOUT_SHIFT.to_owned(), "a material with a shift", Some(ADD_SHIFT));
             return None;
         }
         let file = Some((fit.file.clone(), fit.digest));
         let model = Model::Fitted { fitted: Box::new(fit.fitted), file: fit.file };
-        Some(Sample { model, name, shift, temperature: own, file })
+        Some(Sample { model, name, shift, vertical, temperature: own, file })
     };
     match &at.value {
         raw::Material::RelaxationTable(m) => {
-            let fit = curve::relaxation(checks, m, request);
+            let fit = curve::relaxation(checks, m, request, vertical);
             return fitted(checks, fit);
         }
         raw::Material::CreepTable(m) => {
-            let fit = curve::creep(checks, m, request);
+            let fit = curve::creep(checks, m, request, vertical);
             return fitted(checks, fit);
         }
         raw::Material::Dma(m) => {
-            let fit = curve::dma(checks, m, request);
+            let fit = curve::dma(checks, m, request, vertical);
             return fitted(checks, fit);
         }
         _ => {}
@@ -91,17 +94,39 @@ pub fn sample(checks: &mut Checks<'_, '_>, at: &At<raw::Material>) -> Option<Sam
         Some(model) => model?,
         None => Model::Known(known(checks, span, &at.value)?),
     };
-    let shift = match request {
+    let place = shift.map_or(span, |at| &at.span);
+    let law = match request {
         ShiftRequest::None => None,
         ShiftRequest::Given(shift) => Some(shift),
         ShiftRequest::Estimate(_) => {
-            let place = shift.map_or(span, |at| &at.span);
             let message = "a shift can be estimated only from a file with several temperatures".to_owned();
             checks.fault(place, message, "wlf, arrhenius or table", Some("give the constants of the shift"));
             return None;
         }
     };
-    Some(Sample { model, name, shift, temperature: own, file: None })
+    if vertical == VerticalRequest::Free {
+        let message = "factors of moduli can be estimated only from a file with several temperatures".to_owned();
+        checks.fault(place, message, "\"density\", or pairs [temperature, b_T]", Some("give vertical = \"density\""));
+        return None;
+    }
+    let vertical = match vertical.known(law.as_ref().and_then(Shift::reference)) {
+        Ok(vertical) => vertical,
+        Err(message) => {
+            checks.fault(place, message, "a vertical shift", None);
+            return None;
+        }
+    };
+    Some(Sample { model, name, shift: law, vertical, temperature: own, file: None })
+}
+
+/// How a measured material is fitted, where it says so.
+fn fit_of(material: &raw::Material) -> Option<&At<raw::Fit>> {
+    match material {
+        raw::Material::RelaxationTable(m) => m.fit.as_ref(),
+        raw::Material::CreepTable(m) => m.fit.as_ref(),
+        raw::Material::Dma(m) => m.fit.as_ref(),
+        _ => None,
+    }
 }
 
 /// The shortest time that the bodies show in a run to `end` [s]: the shortest retardation time, at the warmest; for

@@ -1,13 +1,13 @@
 //! Shifts of materials, and the temperature of the run.
 
-use asperity::material::Shift;
+use asperity::material::{Shift, VerticalShift};
 
 use super::material::Sample;
 use super::{Checks, history_file};
 use crate::case::quantity::{Number, Prescribed, Temperature};
 use crate::case::raw::{self, At, TemperatureHistory, Two};
 use crate::case::words::number;
-use crate::curve::{self, ShiftRequest};
+use crate::curve::{self, ShiftRequest, VerticalRequest, VerticalWord};
 
 pub fn shift(checks: &mut Checks<'_, '_>, at: &At<raw::Shift>) -> Option<ShiftRequest> {
     let shift = match &at.value {
@@ -32,6 +32,35 @@ pub fn shift(checks: &mut Checks<'_, '_>, at: &At<raw::Shift>) -> Option<ShiftRe
     };
     checks.core(&at.span, shift.validate())?;
     Some(ShiftRequest::Given(shift))
+}
+
+/// How moduli depend on temperature, as the shift or the fit of a material says.
+pub fn vertical(
+    checks: &mut Checks<'_, '_>,
+    shift: Option<&At<raw::Shift>>,
+    fit: Option<&At<raw::Fit>>,
+) -> Option<VerticalRequest> {
+    let of_shift = shift.and_then(|at| at.value.vertical());
+    let of_fit = fit.and_then(|at| at.value.vertical.map(|word| (at, raw::Vertical::Word(word))));
+    let said = match (of_shift, of_fit) {
+        (Some(_), Some((at, _))) => {
+            let message = "has `vertical`, and so has `shift`, but one of them is enough".to_owned();
+            checks.fault(&at.span, message, "one `vertical`", Some("leave one of them out"));
+            return None;
+        }
+        (Some(vertical), None) => vertical.clone(),
+        (None, Some((_, vertical))) => vertical,
+        (None, None) => return Some(VerticalRequest::None),
+    };
+    Some(match said {
+        raw::Vertical::Word(VerticalWord::Density) => VerticalRequest::Density { expansion: 0.0 },
+        raw::Vertical::Word(VerticalWord::Free) => VerticalRequest::Free,
+        raw::Vertical::Density(density) => VerticalRequest::Density { expansion: density.expansion.get() },
+        raw::Vertical::Points(points) => {
+            let point = |Two(kelvin, factor): &Two<Temperature, Number<_>>| (kelvin.get(), libm::log(factor.get()));
+            VerticalRequest::Given(VerticalShift::Table { points: points.iter().map(point).collect() })
+        }
+    })
 }
 
 fn shift_table(checks: &mut Checks<'_, '_>, path: &At<String>) -> Option<Shift> {

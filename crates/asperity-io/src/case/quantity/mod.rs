@@ -86,6 +86,7 @@ pub mod dimension {
         "51.6 K",
         [0, 0, 0, 1, 0]
     );
+    dimension!(Expansion, "an expansion per kelvin", "1/K", "1/K", "6e-4 1/K", [0, 0, 0, -1, 0]);
     dimension!(
         MolarEnergy,
         "an energy per mole",
@@ -101,7 +102,7 @@ pub mod dimension {
         macro_rules! find {
             ($($type:ident)*) => { $(if powers == $type::POWERS { return Some($type::NAME); })* };
         }
-        find!(Length Pressure Time Force ForcePerLength Velocity Compliance Frequency Fluidity Viscosity MolarMass TemperatureDifference MolarEnergy
+        find!(Length Pressure Time Force ForcePerLength Velocity Compliance Frequency Fluidity Viscosity MolarMass TemperatureDifference Expansion MolarEnergy
             Number);
         None
     }
@@ -138,6 +139,8 @@ pub type Viscosity<R = Finite> = Quantity<dimension::Viscosity, R>;
 pub type MolarMass<R = Finite> = Quantity<dimension::MolarMass, R>;
 /// A difference of temperatures \[K\]; a temperature itself is a [`Temperature`].
 pub type TemperatureDifference<R = Finite> = Quantity<dimension::TemperatureDifference, R>;
+/// An expansion per kelvin \[1/K\].
+pub type Expansion<R = Finite> = Quantity<dimension::Expansion, R>;
 /// An energy per mole \[J/mol\].
 pub type MolarEnergy<R = Finite> = Quantity<dimension::MolarEnergy, R>;
 /// A pure number.

@@ -1,4 +1,4 @@
-//! Temperatures: absolute, in kelvin or degrees Celsius.
+//! Temperatures: absolute, in kelvin, degrees Celsius or degrees Fahrenheit.
 //!
 //! 0 °C is 273.15 K, so the conversion is not a factor: "20 °C" is 293.15 K as a temperature, and no
 //! difference of temperatures at all (those are in K).
@@ -29,6 +29,8 @@ const ICE: f64 = 273.15;
 const EXPECTED: &str = "a temperature above 0 K such as \"20 °C\" or \"293.15 K\"";
 /// How degrees Celsius are written.
 const CELSIUS: [&str; 4] = ["°C", "℃", "degC", "ºC"];
+/// How degrees Fahrenheit are written.
+const FAHRENHEIT: [&str; 4] = ["°F", "℉", "degF", "ºF"];
 
 impl Temperature {
     /// From kelvin.
@@ -42,7 +44,7 @@ impl Temperature {
         }
     }
 
-    /// From a number of a unit's text, "K", "°C", "degC" or (in tables) "C".
+    /// From a number of a unit's text, "K", "°C", "degC", "°F", "degF" or (in tables) "C".
     ///
     /// # Errors
     /// [`QuantityError`] for another unit, or a temperature that is not above 0 K.
@@ -52,7 +54,9 @@ impl Temperature {
             "" | "K" => Temperature::from_kelvin(value),
             "C" => Temperature::from_kelvin(celsius(value)),
             _ if CELSIUS.contains(&unit) => Temperature::from_kelvin(celsius(value)),
-            _ => Err(error(Some(format!("\"{unit}\" is not a unit of temperature; units: K, °C")))),
+            // 32 °F is 0 °C.
+            _ if FAHRENHEIT.contains(&unit) => Temperature::from_kelvin(celsius((value - 32.0) / 1.8)),
+            _ => Err(error(Some(format!("\"{unit}\" is not a unit of temperature; units: K, °C, °F")))),
         }
     }
 
@@ -79,7 +83,7 @@ impl FromStr for Temperature {
 
     fn from_str(text: &str) -> Result<Self, QuantityError> {
         let text = text.trim();
-        for unit in CELSIUS {
+        for unit in CELSIUS.into_iter().chain(FAHRENHEIT) {
             let Some(number) = text.strip_suffix(unit) else { continue };
             let value: f64 =
                 number.trim().parse().map_err(|_| error(Some(format!("{number:?} is not a number"))))?;
@@ -87,7 +91,7 @@ impl FromStr for Temperature {
         }
         if text.ends_with(['C', 'F']) {
             return Err(error(Some(
-                "write degrees Celsius as \"°C\" or \"degC\", or kelvin as \"K\"".into(),
+                "write degrees Celsius as \"°C\" or \"degC\", Fahrenheit as \"°F\", or kelvin as \"K\"".into(),
             )));
         }
         let kelvin = text.parse::<Quantity<dimension::TemperatureDifference>>();
@@ -134,7 +138,7 @@ impl JsonSchema for Temperature {
 
     fn json_schema(_: &mut SchemaGenerator) -> Schema {
         json_schema!({
-            "description": "An absolute temperature: text with its unit (K, °C), or a bare number in K.",
+            "description": "An absolute temperature: text with its unit (K, °C, °F), or a bare number in K.",
             "anyOf": [
                 { "type": "string", "pattern": r"^\s*[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)" },
                 { "type": "number", "exclusiveMinimum": 0 }
@@ -152,6 +156,8 @@ mod tests {
     fn degrees_are_shifted_and_kelvin_are_not() {
         for (text, kelvin) in [
             ("20 °C", 293.15),
+            ("68 °F", 293.15),
+            ("-40 degF", 233.15),
             ("20degC", 293.15),
             ("-40 ℃", 233.15),
             ("23.5 °C", 296.65),

@@ -6,6 +6,7 @@ use serde::Deserialize;
 
 use super::thermal::Shift;
 use super::{At, Two};
+use crate::curve::VerticalWord;
 use crate::case::quantity::range::{Decades, Density, NonNegative, Order, Positive, Share, Tolerance};
 use crate::case::quantity::{Compliance, Fluidity, Number, Prescribed, Pressure, Temperature, Time, Whole};
 
@@ -452,6 +453,9 @@ pub struct Fit {
     pub max_misfit: Option<Number<Share>>,
     /// Behaviour at times longer than the data; "free" if not given.
     pub long_time: Option<LongTime>,
+    /// How the moduli of sweeps at several temperatures depend on temperature, besides their times; they do not if not given. It
+    /// may stand in `shift` as well.
+    pub vertical: Option<VerticalWord>,
     /// The part of the curve that is fitted: two times or, for a dma, two frequencies (after the shift, if there
     /// are several temperatures); all of it if not given.
     #[schemars(example = ["0.1 s", "1000 s"])]

@@ -37,7 +37,7 @@ pub use motion::{Heading, Motion, MotionKind, RangeSpacing, Speed, Velocities};
 pub use run::{Output, Quantities, Solver};
 pub use stress::{Depths, Progression, Stress, Which};
 pub use surface::{Distribution, File, Preset, SelfAffine, Surface};
-pub use thermal::{Shift, Temperature, TemperatureHistory, TemperaturePoint};
+pub use thermal::{Shift, Temperature, TemperatureHistory, TemperaturePoint, Vertical};
 pub use times::StoredTimes;
 
 use super::quantity::range::Positive;

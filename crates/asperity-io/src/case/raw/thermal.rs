@@ -4,8 +4,9 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{At, Two};
-use crate::case::quantity::range::Positive;
-use crate::case::quantity::{MolarEnergy, Number, Temperature as Kelvin, TemperatureDifference, Time};
+use crate::curve::VerticalWord;
+use crate::case::quantity::range::{NonNegative, Positive};
+use crate::case::quantity::{Expansion, MolarEnergy, Number, Temperature as Kelvin, TemperatureDifference, Time};
 
 /// How all times of a material scale with temperature: by the shift factor a_T, 1 at the reference.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -34,6 +35,9 @@ pub struct Wlf {
     /// Reference temperature, to which the given values of the material belong.
     #[schemars(example = "20 °C")]
     pub reference: Kelvin,
+    /// How the moduli depend on temperature; they do not if not given.
+    #[schemars(example = &"density")]
+    pub vertical: Option<Vertical>,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -45,6 +49,9 @@ pub struct Arrhenius {
     /// Reference temperature, to which the given values of the material belong.
     #[schemars(example = "20 °C")]
     pub reference: Kelvin,
+    /// How the moduli depend on temperature; they do not if not given.
+    #[schemars(example = &"density")]
+    pub vertical: Option<Vertical>,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -57,6 +64,9 @@ pub struct ShiftTable {
     /// header. This or `points`.
     #[schemars(example = "shift.csv")]
     pub path: Option<At<String>>,
+    /// How the moduli depend on temperature; they do not if not given.
+    #[schemars(example = &"density")]
+    pub vertical: Option<Vertical>,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -65,6 +75,45 @@ pub struct Estimated {
     /// Reference temperature, among those of the file.
     #[schemars(example = "20 °C")]
     pub reference: Kelvin,
+    /// How the moduli depend on temperature; they do not if not given.
+    #[schemars(example = &"free")]
+    pub vertical: Option<Vertical>,
+}
+
+/// How the moduli of a material depend on temperature, besides its times: at T they are those at the reference temperature of
+/// the shift over b_T.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+#[serde(expecting = "\"density\" (b_T = reference/T, as for a rubber), \"free\" (one factor for each sweep of a file), \
+                     { expansion = \"6e-4 1/K\" }, or pairs [temperature, b_T]")]
+pub enum Vertical {
+    /// "density" or "free".
+    Word(VerticalWord),
+    /// As density times absolute temperature, where the density falls.
+    Density(VerticalDensity),
+    /// Pairs [temperature, b_T] in order of temperature; 1 at the reference, ln b_T is linear in between.
+    Points(Vec<Two<Kelvin, Number<Positive>>>),
+}
+
+/// Moduli grow as density times absolute temperature: b_T = (reference/T) (1 + expansion (T - reference)).
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct VerticalDensity {
+    /// Relative growth of the volume per kelvin.
+    #[schemars(example = "6e-4 1/K")]
+    pub expansion: Expansion<NonNegative>,
+}
+
+impl Shift {
+    /// How the moduli depend on temperature.
+    pub fn vertical(&self) -> Option<&Vertical> {
+        match self {
+            Shift::Wlf(law) => law.vertical.as_ref(),
+            Shift::Arrhenius(law) => law.vertical.as_ref(),
+            Shift::Table(table) => table.vertical.as_ref(),
+            Shift::Estimated(estimated) => estimated.vertical.as_ref(),
+        }
+    }
 }
 
 /// The temperature of the bodies that have a `shift`.

@@ -303,7 +303,7 @@ fn points_without_a_number_are_left_out_and_repeated_ones_averaged() {
     assert_eq!((curves.left_out, curves.points()), (2, 38));
     let notes = curves.notes.join("\n");
     assert!(notes.contains("2 of 41 points lack a number and are left out (lines 5, 10)"), "{notes}");
-    assert!(notes.contains("1 points repeat a frequency, the first on line 22"), "{notes}");
+    assert!(notes.contains("1 point repeats a frequency, the first on line 22"), "{notes}");
     assert_eq!(Request::default().fit(&curves).unwrap().left_out, 2);
     // Sweeps at several temperatures without a column that says so.
     let twice = "f [Hz],E' [MPa],E'' [MPa]\n1,10,1\n2,12,1\n1,5,1\n2,6,1\n";

@@ -324,10 +324,19 @@ pub(super) fn measure(used: &[Place], table: &Table) -> Option<Modulus> {
     ];
     let place = moduli.iter().find_map(|role| used.iter().find(|place| place.role == *role));
     match place {
-        Some(place) => role::measure_of(table.names.get(place.column - 1)?),
+        Some(place) => {
+            let named = role::measure_of(table.names.get(place.column - 1)?);
+            named.or_else(|| is_sheared(table).then_some(Modulus::Shear))
+        }
         // Viscosities of rheometers are those of shear.
         None => used.iter().any(|place| place.role.name().ends_with("viscosity")).then_some(Modulus::Shear),
     }
+}
+
+/// Whether other columns say that the test was one in shear: its strain, its stress, or a torque.
+fn is_sheared(table: &Table) -> bool {
+    let words = ["shearstr", "torque", "scher", "schubspannung", "drehmoment"];
+    table.names.iter().any(|name| words.iter().any(|word| role::bare(name).starts_with(word)))
 }
 
 /// Whether the header names storage and loss modulus, or what stands in their place.

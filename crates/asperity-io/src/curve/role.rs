@@ -480,6 +480,13 @@ pub(super) fn measure_of(name: &str) -> Option<Modulus> {
     if REST.contains(&rest) {
         return of(symbol);
     }
+    // "Relaxation modulus E(t)"
+    for (end, measure) in [("et", 'e'), ("gt", 'g'), ("jt", 'j'), ("dt", 'd')] {
+        let words = name.strip_suffix(end).unwrap_or_default();
+        if ["modulus", "modul", "compliance", "nachgiebigkeit"].iter().any(|word| words.ends_with(word)) {
+            return of(measure);
+        }
+    }
     // "Storage modulus G'"
     let end = name.trim_end_matches(['\'', '*']);
     if end.len() < name.len() { of(end.chars().next_back()?) } else { None }
@@ -544,7 +551,7 @@ mod tests {
     #[test]
     fn a_name_says_which_modulus_it_is() {
         for name in
-            ["E'", "E_stor", "|E*|", "Storage modulus E'", "tensile storage modulus", "D(t)", "E-Modul", "Re(E*)", "E1"]
+            ["E'", "E_stor", "|E*|", "Storage modulus E'", "tensile storage modulus", "D(t)", "E-Modul", "Re(E*)", "E1", "Relaxation Modulus E(t)"]
         {
             assert_eq!(measure_of(name), Some(Modulus::Young), "{name}");
         }

@@ -112,8 +112,8 @@ fn once(kind: Kind, sweeps: Vec<Sweep>) -> Result<(Vec<Sweep>, Option<String>), 
     }
     let note = first.map(|line| {
         format!(
-            "{repeated} points repeat a {name}, the first on line {line}: the mean is taken, and values differ from it by {:.1} % \
-             at most",
+            "{} a {name}, the first on line {line}: the mean is taken, and values differ from it by {:.1} % at most",
+            if repeated == 1 { "1 point repeats".to_owned() } else { format!("{repeated} points repeat") },
             100.0 * farthest
         )
     });

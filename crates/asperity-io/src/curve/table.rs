@@ -65,7 +65,8 @@ impl Table {
     /// From text whose separator and decimal mark are known.
     pub(super) fn split(text: String, separator: Option<char>, decimal_comma: bool) -> Result<Table, Fault> {
         let lines: Vec<&str> = text.lines().map(trim).collect();
-        let number = |cell: &str| parse_number(cell, decimal_comma).is_some();
+        // "NaN" stands where a number would; dashes may be anything.
+        let number = |cell: &str| parse_number(cell, decimal_comma).is_some() || is_undefined(cell);
         let numbers = |line: &str| cells(line, separator).iter().filter(|cell| number(cell)).count();
         let first = first_row(&lines, separator, &numbers).ok_or_else(|| {
             fault("there is no line with two numbers; a curve is a text table with one point per line")
@@ -100,7 +101,7 @@ impl Table {
                 continue;
             }
             let mut cells = cells(line, separator);
-            if numbers(line) == 0 || cells.len() + 1 < columns {
+            if numbers(line) == 0 || cells.len() != columns {
                 // Text below the table.
                 if n > last && numbers(line) == 0 && cells.len() < columns {
                     break;
@@ -258,13 +259,17 @@ fn parse_number(cell: &str, decimal_comma: bool) -> Option<f64> {
     number.ok().filter(|value: &f64| value.is_finite())
 }
 
+/// Whether a cell is a word for a number that is none.
+fn is_undefined(cell: &str) -> bool {
+    let cell = cell.trim_matches('"');
+    ["nan", "na", "n/a", "#n/a", "#nv"].iter().any(|word| cell.eq_ignore_ascii_case(word))
+}
+
 /// Whether a cell says that there is no number.
 fn is_missing(cell: &str) -> bool {
-    const MARKS: [&str; 16] = [
-        "", "-", "--", "---", "–", "—", "*", "nan", "na", "n/a", "n.a.", "#n/a", "#nv", "null", "none", "inf",
-    ];
-    let cell = cell.trim_matches('"').trim().to_lowercase();
-    MARKS.contains(&cell.trim_start_matches('+')) || cell == "-inf" || cell.starts_with('#')
+    const MARKS: [&str; 12] = ["", "-", "--", "---", "–", "—", "*", "n.a.", "null", "none", "inf", "-inf"];
+    let bare = cell.trim_matches('"').trim();
+    is_undefined(bare) || bare.starts_with('#') || MARKS.iter().any(|mark| bare.eq_ignore_ascii_case(mark))
 }
 
 /// Separator and decimal mark of a file whose lines hold text as well.
@@ -323,11 +328,16 @@ fn header_cells(line: &str, separator: Option<char>, columns: usize) -> Option<V
     let clean = |cells: Vec<&str>| -> Vec<String> {
         cells.iter().map(|cell| unquoted(cell.trim()).trim().to_owned()).collect()
     };
+    let spaced = clean(line.split("  ").filter(|cell| !cell.trim().is_empty()).collect());
+    let spaced = (separator.is_none() && spaced.len() == columns).then_some(spaced);
     let mut plain = clean(quoted_cells(line, separator));
     if plain.len() == columns + 1 && plain.last().is_some_and(String::is_empty) {
         plain.pop();
     }
     if plain.len() > columns {
+        if spaced.is_some() {
+            return spaced;
+        }
         plain = with_units(plain);
     }
     // The last cells of a line with tabs may be empty.
@@ -337,8 +347,7 @@ fn header_cells(line: &str, separator: Option<char>, columns: usize) -> Option<V
     if plain.len() == columns {
         return Some(plain);
     }
-    let spaced = clean(line.split("  ").filter(|cell| !cell.trim().is_empty()).collect());
-    (separator.is_none() && spaced.len() == columns).then_some(spaced)
+    spaced
 }
 
 /// The cells of a header line, where a separator between quotes is none. Quotes begin with the cell: that of E" is a double prime.
@@ -470,6 +479,8 @@ mod tests {
             "t,E\ns,MPa\n0.5,2\n\n# half way\n1.5,1\n",
             // A heading that is repeated before the next points.
             "t,E\ns,MPa\n0.5,2\n\nnext step\nt,E\ns,MPa\n1.5,1\n",
+            // Text below the table.
+            "t;E\ns;MPa\n0,5;2\n1,5;1\nend of data\n12 mg\n",
             // Other numbers before the table.
             "3 samples of 2 mm\nmade 2024 5 17\nt\tE\ns\tMPa\n0.5\t2\n1.5\t1\n",
             "sample A\nt;E;\n[s];[MPa];\n0,5;2;\n1,5;1;\n",
@@ -485,6 +496,11 @@ mod tests {
         }
         let table = Table::parse(b"0.5 2\n1.5 1\n").unwrap();
         assert_eq!(table.names, ["", ""]);
+        // Other numbers before each heading.
+        let block = "Interval and points:\t1\t7\t9\nt\tE\ns\tMPa\n\n0.5\t2\n1.5\t1\n\n";
+        let table = Table::parse(block.repeat(2).as_bytes()).unwrap();
+        assert_eq!((table.names[0].as_str(), table.units[1].as_str()), ("t", "MPa"));
+        assert_eq!(table.numbers(0).unwrap(), [0.5, 1.5, 0.5, 1.5]);
     }
 
     #[test]

@@ -5,12 +5,14 @@
 //!
 //! ```text
 //! S(d) = min over v and the coefficients of  sum over both curves of (y - P(x))^2,   d = argmin S
-//! variance of d = max of (S/free) / (S''/2)  and  the mean of (d' - d)^2 with the weights exp(-(S(d') - S)/(2 S/free))
+//! variance of d = max of s^2 / (S''/2)  and  the mean of (d' - d)^2 with the weights (1 + (S(d') - S)/(n s^2))^(-n/2)
 //!                 + (|ln(T2/T1)| / slope)^2  +  gap^2
 //! ```
 //!
-//! The first part of the variance is that of the scatter: from the curvature of S (the Gauss-Newton value of one unknown)
-//! or, where other distances describe the curves about as well, from the likelihood of all of them. The second one is what a
+//! The first part of the variance is that of the scatter s: from the curvature of S (the Gauss-Newton value of one unknown)
+//! or, where other distances describe the curves about as well, from the likelihood of all of them (Student's distribution of n
+//! degrees of freedom). The scatter is what the polynomial leaves, or what parabolas through each curve alone leave: a
+//! distance that is chosen among many describes the scatter of a few points by chance. The second one is what a
 //! change of the moduli with temperature does where v is not free: the modulus of a rubber grows as T, and a curve that is
 //! higher for this reason looks shifted by the change over its slope. The third one is the distance between curves that do
 //! not overlap, in which the polynomial is an extrapolation. The degree of the polynomial is that of the least Bayesian
@@ -87,11 +89,15 @@ pub(super) fn distance(pairs: &[[Logs; 2]], ordinate: Ordinate) -> Distance {
     let at = |d: f64| Joint::fit(pairs, d, degree.min(most_degree(range.overlap(d))), free);
     let (step, here) = (0.05, at(value));
     let bend = (at(value + step).squares - 2.0 * here.squares + at(value - step).squares) / (step * step);
-    let per_point = variance(here.squares, count - unknowns(pairs, degree, free) - 1.0);
+    let degrees = (count - unknowns(pairs, degree, free) - 1.0).max(1.0);
+    let per_point = variance(here.squares, degrees).max(own_variance(pairs));
     let scatter = per_point / (0.5 * bend).max(f64::MIN_POSITIVE);
     // Other distances that describe the curves about as well.
     let width = (high - low) / steps as f64;
-    let likelihood = |d: f64| libm::exp(0.5 * (here.squares - at(d).squares) / per_point).min(1.0);
+    let likelihood = |d: f64| {
+        let worse = (at(d).squares - here.squares).max(0.0) / (degrees * per_point);
+        libm::pow(1.0 + worse, -0.5 * degrees)
+    };
     let places = (0..=steps).map(|k| low + width * k as f64);
     let (mut weights, mut moments) = (libm::sqrt(std::f64::consts::TAU * scatter).min(high - low), 0.0);
     for d in places {
@@ -109,6 +115,13 @@ pub(super) fn distance(pairs: &[[Logs; 2]], ordinate: Ordinate) -> Distance {
     let found = Distance { value, ..unknown };
     let deviation = (scatter.max(moments / weights) + change + found.gap().powi(2)).sqrt();
     Distance { deviation: if deviation.is_finite() { deviation } else { f64::INFINITY }, ..found }
+}
+
+/// How far curves are from one polynomial at a distance that others tell, as the root of the mean square of the logarithm.
+pub(super) fn apart(pairs: &[[Logs; 2]], d: f64) -> f64 {
+    let Some(range) = Range::of(pairs) else { return 0.0 };
+    let degree = most_degree(range.overlap(d)).min(range.highest_degree(false)).max(1);
+    (Joint::fit(pairs, d, degree, false).squares / range.count(pairs)).sqrt()
 }
 
 /// How far the second curve of each pair is raised to continue the first one.
@@ -151,6 +164,18 @@ fn information(squares: f64, count: f64, unknowns: f64) -> f64 {
 /// Coefficients of all polynomials, and v.
 fn unknowns(pairs: &[[Logs; 2]], degree: usize, free: bool) -> f64 {
     (pairs.len() * (degree + 1) + usize::from(free)) as f64
+}
+
+/// Mean variance of the values about a parabola through each curve alone; 0 for curves of fewer points.
+fn own_variance(pairs: &[[Logs; 2]]) -> f64 {
+    let (mut squares, mut degrees) = (0.0, 0);
+    for curve in pairs.iter().flatten().filter(|curve| curve.len() > 3) {
+        let mut rest: Vec<f64> = curve.iter().map(|point| point.1).collect();
+        orthonormal(curve, 2).iter().for_each(|column| remove(&mut rest, column));
+        squares += dot(&rest, &rest);
+        degrees += curve.len() - 3;
+    }
+    if degrees > 0 { squares / degrees as f64 } else { 0.0 }
 }
 
 /// Variance of a value from a sum of squares, not below the digits of a file.
@@ -247,32 +272,16 @@ impl Polynomial {
     fn fit(first: &Logs, second: &Logs, d: f64, degree: usize, free: bool) -> Polynomial {
         let points: Vec<(f64, f64)> =
             first.iter().copied().chain(second.iter().map(|(x, y)| (x + d, *y))).collect();
-        let [low, high] = points
-            .iter()
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (x, _)| [low.min(*x), high.max(*x)]);
-        let unit = 2.0 / (high - low).max(f64::MIN_POSITIVE);
-        let places: Vec<f64> = points.iter().map(|(x, _)| unit * (x - low) - 1.0).collect();
-        // Chebyshev polynomials, made orthogonal one after the other (modified Gram-Schmidt); what is left of the values
-        // is their distance from the polynomial.
-        let mut basis: Vec<Vec<f64>> = Vec::with_capacity(degree + 1);
         let mut rest: Vec<f64> = points.iter().map(|(_, y)| *y).collect();
         let values = rest.clone();
         let mut step: Vec<f64> = match free {
             true => (0..points.len()).map(|n| if n < first.len() { 0.0 } else { 1.0 }).collect(),
             false => Vec::new(),
         };
-        for n in 0..=degree {
-            let mut column: Vec<f64> = places.iter().map(|u| chebyshev(n, *u)).collect();
-            for other in &basis {
-                remove(&mut column, other);
-            }
-            let norm = dot(&column, &column).sqrt();
-            if norm > 1e-9 * (column.len() as f64).sqrt() {
-                column.iter_mut().for_each(|value| *value /= norm);
-                remove(&mut rest, &column);
-                remove(&mut step, &column);
-                basis.push(column);
-            }
+        // What is left of the values is their distance from the polynomial.
+        for column in orthonormal(&points, degree) {
+            remove(&mut rest, &column);
+            remove(&mut step, &column);
         }
         let fitted: Vec<f64> = values.iter().zip(&rest).map(|(value, rest)| value - rest).collect();
         Polynomial {
@@ -282,6 +291,29 @@ impl Polynomial {
             along: dot(&step, &rest),
         }
     }
+}
+
+/// Polynomials up to a degree at the places of points: Chebyshev polynomials, made orthogonal one after the other (modified
+/// Gram-Schmidt).
+fn orthonormal(points: &[(f64, f64)], degree: usize) -> Vec<Vec<f64>> {
+    let ends = points
+        .iter()
+        .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], (x, _)| [low.min(*x), high.max(*x)]);
+    let unit = 2.0 / (ends[1] - ends[0]).max(f64::MIN_POSITIVE);
+    let places: Vec<f64> = points.iter().map(|(x, _)| unit * (x - ends[0]) - 1.0).collect();
+    let mut basis: Vec<Vec<f64>> = Vec::with_capacity(degree + 1);
+    for n in 0..=degree {
+        let mut column: Vec<f64> = places.iter().map(|u| chebyshev(n, *u)).collect();
+        for other in &basis {
+            remove(&mut column, other);
+        }
+        let norm = dot(&column, &column).sqrt();
+        if norm > 1e-9 * (column.len() as f64).sqrt() {
+            column.iter_mut().for_each(|value| *value /= norm);
+            basis.push(column);
+        }
+    }
+    basis
 }
 
 /// Root of the mean square of the slope of the fitted values between neighbours of either curve, where the curves overlap.

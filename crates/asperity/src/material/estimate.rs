@@ -55,6 +55,9 @@ const MOST_UNCERTAIN: f64 = 1.0;
 const LAW: [f64; 2] = [0.6, 0.6];
 /// Rubbers have lower moduli \[Pa\].
 const RUBBER: f64 = 1e8;
+/// Distance of the other curves from each other, as a root of the mean square of the logarithm, that contradicts the first: they differ
+/// by half of their value.
+const CONTRADICTION: f64 = 0.2;
 /// Curves of more points are averaged over tenths of ln x.
 const MOST_POINTS: usize = 100;
 /// Share of the change of its modulus with temperature that a rubber shows, and a glass; by what it is off once that of a
@@ -217,7 +220,10 @@ fn between(cold: &Isotherm, warm: &Isotherm, abscissa: Abscissa, moduli: Modulus
         (_, Some((first, others))) => {
             let first = of(first);
             if first.deviation <= FLAT * LN_10 {
-                return first;
+                // The scatter of a flat curve looks like a distance, which the other ones then contradict.
+                let contradicted = !others.is_empty() && align::apart(others, first.value) > CONTRADICTION;
+                let deviation = if contradicted { f64::INFINITY } else { first.deviation };
+                return Distance { deviation, ..first };
             }
             others.iter().map(of).fold(first, mean)
         }

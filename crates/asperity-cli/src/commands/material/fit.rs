@@ -9,7 +9,7 @@ use asperity_report::material as pictures;
 use serde_json::{Map, Value, json};
 
 use super::given::{self, refused};
-use super::{symbols, told, write};
+use super::{celsius, symbols, told, write};
 use crate::args::Fit;
 use crate::failure::Failure;
 use crate::words::quantity;
@@ -94,7 +94,7 @@ fn report(args: &Fit, curves: &Curves, fitted: &Fitted) -> String {
     line("data", format!("{}{sheet} ({}, {modulus})", args.data.display(), curves.kind.name()));
     line("points", format!("{} fitted of {}", fitted.data.x.len(), curves.points()));
     if !fitted.temperatures.is_empty() {
-        let shown: Vec<String> = fitted.temperatures.iter().map(|t| format!("{:.1}", t - 273.15)).collect();
+        let shown: Vec<String> = fitted.temperatures.iter().map(|t| format!("{:.1}", celsius(*t))).collect();
         line("sweeps", format!("{} °C", shown.join(", ")));
     }
     if let Some(shift) = &fitted.shift {
@@ -104,14 +104,14 @@ fn report(args: &Fit, curves: &Curves, fitted: &Fitted) -> String {
         line("shift", format!("{}{rms}", law(shift)));
     }
     for [kelvin, decades, uncertainty] in &fitted.factors {
-        line("", format!("{:8.1} °C  log10 a_T = {decades:7.3} +- {uncertainty:.3}", kelvin - 273.15));
+        line("", format!("{:8.1} °C  log10 a_T = {decades:7.3} +- {uncertainty:.3}", celsius(*kelvin)));
     }
     if let Some(vertical) = &fitted.vertical {
         line("moduli", vertical_law(vertical));
     }
     for [kelvin, factor, uncertainty] in &fitted.vertical_factors {
         let known = if *uncertainty > 0.0 { format!(" +- {:.1} %", 100.0 * uncertainty) } else { String::new() };
-        line("", format!("{:8.1} °C  b_T = {factor:.4}{known}", kelvin - 273.15));
+        line("", format!("{:8.1} °C  b_T = {factor:.4}{known}", celsius(*kelvin)));
     }
     let [first, last] = fitted.window;
     line("times", format!("{first:.3e} s to {last:.3e} s"));

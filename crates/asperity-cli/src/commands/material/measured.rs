@@ -8,7 +8,7 @@ use asperity_io::curve::{Curves, Kind, Sweep};
 use asperity_report::material as pictures;
 use serde_json::{Value, json};
 
-use super::{given, told};
+use super::{celsius, given, told};
 use crate::args::Show;
 use crate::failure::Failure;
 use crate::words::{counted, quantity};
@@ -69,7 +69,7 @@ fn text(curves: &Curves) -> String {
         Kind::Dma => &["storage", "loss"],
     };
     for sweep in &curves.sweeps {
-        let at = sweep.temperature.map_or(String::new(), |kelvin| format!("{:7.1} °C: ", kelvin - 273.15));
+        let at = sweep.temperature.map_or(String::new(), |kelvin| format!("{:7.1} °C: ", celsius(kelvin)));
         let _ = write!(text, "  {at}{}", counted(sweep.x.len(), "point"));
         let _ = write!(text, ", {}", range(&abscissae(curves.kind, sweep), abscissa_unit(curves.kind)));
         for (name, curve) in names.iter().zip(&sweep.curves) {

@@ -266,6 +266,11 @@ pub fn source(report: &MaterialReport) -> Vec<String> {
     lines
 }
 
+/// A temperature of a sweep \[°C\] to a tenth, and no -0.
+fn celsius(kelvin: f64) -> f64 {
+    (10.0 * (kelvin - 273.15)).round() / 10.0 + 0.0
+}
+
 pub(super) fn told(error: impl std::fmt::Display) -> Failure {
     Failure::input(error.to_string())
 }

@@ -341,3 +341,43 @@ fn relaxation_at_several_temperatures_needs_no_option() {
     let below = asperity(dir.path(), &["material", "fit", "raw.csv", "--estimate-shift", "-4 °C", "--json"]);
     assert!(json(&below)["shift"].to_string().contains("269.15"), "{}", stdout(&below));
 }
+
+#[test]
+fn moduli_that_grow_with_temperature_take_a_vertical_shift() {
+    let dir = tempfile::tempdir().unwrap();
+    let law = asperity::material::Shift::Wlf { c1: 10.0, c2: 110.0, reference: 293.15 };
+    let mut text = "f [Hz],E' [MPa],E'' [MPa],T [°C]\n".to_owned();
+    for celsius in [0.0, 10.0, 20.0, 30.0, 45.0, 60.0] {
+        let kelvin = celsius + 273.15;
+        for k in 0..25 {
+            let f = 10f64.powf(-3.0 + 0.2 * f64::from(k));
+            let (storage, loss) = polymer().complex(std::f64::consts::TAU * f * law.factor(kelvin).unwrap());
+            let scale = 1e-6 * kelvin / 293.15;
+            text += &format!("{f:e},{},{},{celsius}\n", scale * storage, scale * loss);
+        }
+    }
+    std::fs::write(dir.path().join("warm.csv"), text).unwrap();
+    let fit = |more: &[&str]| {
+        let same = ["material", "fit", "warm.csv", "--wlf", "10,110K,20°C"];
+        asperity(dir.path(), &[&same, more].concat())
+    };
+    let rms = |more: &[&str]| json(&fit(&[more, &["--json"]].concat()))["misfit"]["rms"].as_f64().unwrap();
+    let (none, density, free) =
+        (rms(&[]), rms(&["--vertical", "density"]), rms(&["--vertical", "free", "--plot", "free.svg"]));
+    // Exact but for the terms that stand for the polymer's; free factors come from polynomials.
+    assert!(density < 1e-3 && free < 0.3 * none && none > 0.01, "{none} {density} {free}");
+    let svg = std::fs::read_to_string(dir.path().join("free.svg")).unwrap();
+    assert!(svg.contains("vertical shift factor b_T"));
+    let report = stdout(&fit(&["--vertical", "density", "--window", "0.1Hz,100Hz", "-o", "m.toml"]));
+    assert!(
+        report.contains("60.0 °C  b_T = 0.8799") && report.contains("1.000e-1 Hz to 1.000e2 Hz"),
+        "{report}"
+    );
+    let block = std::fs::read_to_string(dir.path().join("m.toml")).unwrap();
+    assert!(block.contains("vertical = \"density\""), "{block}");
+    // What is written is read, and told to another program.
+    let exported = asperity(dir.path(), &["material", "export", "m.toml", "--to", "csv"]);
+    assert!(stdout(&exported).contains("over b_T"), "{}", stderr(&exported));
+    let alone = stderr(&fit(&["--expansion", "6e-4 1/K"]));
+    assert!(alone.contains("--vertical density"), "{alone}");
+}

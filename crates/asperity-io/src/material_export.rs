@@ -99,11 +99,14 @@ fn raised(vertical: &VerticalShift, mark: &str) -> String {
             format!("b_T = (Tr/T) (1 + a (T - Tr)), Tr = {reference:?} K, a = {expansion:?} 1/K\n")
         }
         VerticalShift::Table { points } => {
-            let points: Vec<String> = points.iter().map(|(kelvin, ln)| format!("({kelvin:?}, {:?})", ln.exp())).collect();
+            let points: Vec<String> =
+                points.iter().map(|(kelvin, ln)| format!("({kelvin:?}, {:?})", ln.exp())).collect();
             format!("(T [K], b_T) {}\n", points.join(" "))
         }
     };
-    format!("{mark} At the temperature T all moduli are those below over b_T, which is not in the numbers: {law}")
+    format!(
+        "{mark} At the temperature T all moduli are those below over b_T, which is not in the numbers: {law}"
+    )
 }
 
 fn isotropic(exported: &Exported<'_>, modulus: f64) -> Result<Isotropic, String> {
@@ -395,7 +398,9 @@ mod tests {
     #[test]
     fn what_a_program_cannot_take_is_said() {
         let says = |material: &Material, lateral: Option<Lateral>, program: Program, words: &str| {
-            let refused = text(&Exported { name: "x", material, lateral, shift: None, vertical: None }, program).unwrap_err();
+            let refused =
+                text(&Exported { name: "x", material, lateral, shift: None, vertical: None }, program)
+                    .unwrap_err();
             assert!(refused.contains(words), "{refused}");
         };
         let young = rubber(Modulus::Young);

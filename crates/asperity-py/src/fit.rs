@@ -55,9 +55,13 @@ impl Options {
         let word = self.vertical.map(|word| choose("vertical", &word)).transpose()?;
         let vertical = match (word, vertical) {
             (None, vertical) => vertical,
-            (Some(VerticalWord::Density), VerticalRequest::None) => VerticalRequest::Density { expansion: 0.0 },
+            (Some(VerticalWord::Density), VerticalRequest::None) => {
+                VerticalRequest::Density { expansion: 0.0 }
+            }
             (Some(VerticalWord::Free), VerticalRequest::None) => VerticalRequest::Free,
-            (Some(_), _) => return Err(CaseError::new_err("vertical is given, and the shift has one of its own")),
+            (Some(_), _) => {
+                return Err(CaseError::new_err("vertical is given, and the shift has one of its own"));
+            }
         };
         Ok(Request {
             measure: measure.or(named).unwrap_or(Modulus::Young),

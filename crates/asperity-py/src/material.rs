@@ -233,7 +233,8 @@ fn warmed(
     vertical: Option<&VerticalShift>,
     kelvin: f64,
 ) -> asperity::Result<material::Body> {
-    let (times, moduli) = (shift.factor(kelvin)?, vertical.map_or(Ok(1.0), |vertical| vertical.factor(kelvin))?);
+    let (times, moduli) =
+        (shift.factor(kelvin)?, vertical.map_or(Ok(1.0), |vertical| vertical.factor(kelvin))?);
     let material = if times == 1.0 { body.material.clone() } else { body.material.stretched(times)? };
     let material = if moduli == 1.0 { material } else { material.scaled(1.0 / moduli)? };
     Ok(material::Body { material, ..body.clone() })

@@ -129,8 +129,9 @@ fn vertical(vertical: &VerticalShift) -> String {
             format!(", vertical = {{ expansion = \"{expansion:?} 1/K\" }}")
         }
         VerticalShift::Table { points } => {
-            let point =
-                |(kelvin, ln): &(f64, f64)| format!("[\"{} K\", {}]", trimmed(*kelvin, 6), trimmed(ln.exp(), 10));
+            let point = |(kelvin, ln): &(f64, f64)| {
+                format!("[\"{} K\", {}]", trimmed(*kelvin, 6), trimmed(ln.exp(), 10))
+            };
             let points: Vec<String> = points.iter().map(point).collect();
             format!(", vertical = [{}]", points.join(", "))
         }

@@ -1,7 +1,6 @@
 //! Which column is what, and in which unit.
 
 use std::collections::BTreeMap;
-use std::f64::consts::TAU;
 
 use asperity::material::Modulus;
 
@@ -9,8 +8,9 @@ use super::Kind;
 use super::error::{Fault, Remedy, fault};
 use super::role::{self, Role};
 use super::table::Table;
+use super::units::{convert, tidy};
 use crate::case::quantity::unit::Unit;
-use crate::case::quantity::{Dimension, Quantity, QuantityError, Temperature, dimension, range};
+use crate::case::quantity::{Dimension, dimension};
 
 /// The columns of a kind of file.
 #[derive(Clone, Copy)]
@@ -103,11 +103,7 @@ pub struct Place {
 }
 
 /// The values of all quantities of a curve of `form` in SI, the columns that hold them, and what was assumed.
-pub(super) fn values(
-    table: &Table,
-    form: Form,
-    said: &Columns,
-) -> Result<Read, Fault> {
+pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read, Fault> {
     let places = places(table, form, said)?;
     let (kept, mut notes) = complete(table, &places)?;
     let (mut values, mut used) = (Values::new(), Vec::new());
@@ -191,8 +187,12 @@ fn complete(table: &Table, places: &BTreeMap<Role, usize>) -> Result<(Vec<usize>
     }
     let lines: Vec<String> = lacking.iter().take(10).map(|row| table.rows[*row].line.to_string()).collect();
     let more = if lacking.len() > lines.len() { ", ..." } else { "" };
-    let lacking = lacking.len();
-    Ok((kept, vec![format!("{lacking} of {} points lack a number and are left out (lines {}{more})", whole.len(), lines.join(", "))]))
+    let (count, of, lines) = (lacking.len(), whole.len(), lines.join(", "));
+    let note = match count {
+        1 => format!("1 of {of} points lacks a number and is left out (line {lines})"),
+        _ => format!("{count} of {of} points lack a number and are left out (lines {lines}{more})"),
+    };
+    Ok((kept, vec![note]))
 }
 
 /// The numbers of their logarithms.
@@ -313,7 +313,30 @@ fn time_or_temperature(table: &Table, column: usize, form: Form) -> Role {
 }
 
 /// What the names of the columns call the modulus or compliance: E and D are Young's, G and J shear.
-pub(super) fn measure(used: &[Place], table: &Table) -> Option<Modulus> {
+///
+/// # Errors
+/// Where one column is called one and another the other.
+pub(super) fn measure(used: &[Place], table: &Table) -> Result<Option<Modulus>, Fault> {
+    let called = |place: &&Place| {
+        let is_modulus = !matches!(
+            place.role,
+            Role::Time | Role::Frequency | Role::TanDelta | Role::Phase | Role::Temperature | Role::Set
+        );
+        let name = table.names.get(place.column - 1).filter(|_| is_modulus)?;
+        role::measure_of(name)
+    };
+    let of = |measure: Modulus| used.iter().find(|place| called(place) == Some(measure));
+    if let (Some(young), Some(shear)) = (of(Modulus::Young), of(Modulus::Shear)) {
+        return Err(fault(format!(
+            "column {} ({:?}) is named as a Young's modulus, and column {} ({:?}) as a shear modulus; they differ by \
+             2 (1 + Poisson's ratio), and cannot be fitted together",
+            young.column, young.header, shear.column, shear.header
+        )));
+    }
+    Ok(said(used, table))
+}
+
+fn said(used: &[Place], table: &Table) -> Option<Modulus> {
     let moduli = [
         Role::Storage,
         Role::Modulus,
@@ -367,135 +390,5 @@ fn find(table: &Table, role: Role, column: &Column) -> Result<usize, Fault> {
             let found = table.headers.iter().position(same).or_else(|| table.names.iter().position(same));
             found.ok_or_else(|| wrong(format!("in the column {wanted:?}")))
         }
-    }
-}
-
-/// A unit as programs write it in the way that it is read here.
-pub(super) fn tidy(role: Role, name: &str, unit: &str) -> String {
-    let bare = role::bare(unit);
-    let tidied = match role {
-        _ if unit == "-" => "",
-        Role::Temperature
-            if matches!(bare.as_str(), "c" | "degc" | "celsius" | "degreesc" | "gradc" | "degcelsius") =>
-        {
-            "°C"
-        }
-        Role::Temperature if matches!(bare.as_str(), "k" | "kelvin") => "K",
-        Role::Temperature if matches!(bare.as_str(), "f" | "degf" | "fahrenheit" | "degreesf" | "gradf") => "°F",
-        Role::Frequency if bare == "hz" || bare == "hertz" => "Hz",
-        // Angular frequencies in 1/s are those in rad/s.
-        Role::Frequency if matches!(unit, "1/s" | "s^-1" | "s-1") && is_angular(name) => "rad/s",
-        Role::ComplexViscosity | Role::RealViscosity | Role::ImaginaryViscosity if bare == "pas" => "Pa s",
-        Role::ComplexViscosity | Role::RealViscosity | Role::ImaginaryViscosity if bare == "mpas" => {
-            // "mPa·s" and "MPa·s" differ by their first letter.
-            if unit.starts_with('m') { "mPa s" } else { "MPa s" }
-        }
-        Role::Phase
-            if matches!(unit, "°" | "º")
-                || matches!(bare.as_str(), "deg" | "degree" | "degrees" | "grad") =>
-        {
-            "deg"
-        }
-        Role::Time if matches!(bare.as_str(), "sec" | "second" | "seconds" | "sekunden") => "s",
-        _ => unit,
-    };
-    tidied.to_owned()
-}
-
-fn is_angular(name: &str) -> bool {
-    let name = role::bare(name);
-    ["ang", "omega", "ω", "kreis", "winkel"].iter().any(|start| name.starts_with(start))
-}
-
-/// The numbers in SI, or the row and why not.
-fn convert(role: Role, unit: &str, numbers: Vec<f64>) -> Result<Vec<f64>, (Option<usize>, String)> {
-    let whole = |why: String| (None, why);
-    let factor = match role {
-        Role::Temperature => {
-            let kelvin = |(row, value): (usize, &f64)| {
-                let temperature = Temperature::from_unit(*value, unit);
-                temperature.map(Temperature::get).map_err(|error| {
-                    let why = error.help.unwrap_or_else(|| format!("{value} must be {}", error.expected));
-                    (Some(row), why)
-                })
-            };
-            return numbers.iter().enumerate().map(kelvin).collect();
-        }
-        Role::Set => 1.0,
-        Role::Phase => degrees(unit, &numbers).map_err(whole)?,
-        Role::Frequency => frequency(unit).map_err(whole)?,
-        Role::Time => scale::<dimension::Time>(unit).map_err(whole)?,
-        Role::Modulus | Role::Storage | Role::Loss | Role::ComplexModulus => {
-            scale::<dimension::Pressure>(unit).map_err(whole)?
-        }
-        Role::Compliance | Role::StorageCompliance | Role::LossCompliance => {
-            scale::<dimension::Compliance>(unit).map_err(whole)?
-        }
-        Role::ComplexViscosity | Role::RealViscosity | Role::ImaginaryViscosity => {
-            scale::<dimension::Viscosity>(unit).map_err(whole)?
-        }
-        Role::TanDelta => scale::<dimension::Number>(unit).map_err(whole)?,
-        Role::Load => scale::<dimension::Force>(unit).map_err(whole)?,
-        Role::Depth => scale::<dimension::Length>(unit).map_err(whole)?,
-    };
-    Ok(numbers.into_iter().map(|value| factor * value).collect())
-}
-
-/// SI of one unit.
-fn scale<D: Dimension>(unit: &str) -> Result<f64, String> {
-    let one = format!("1 {unit}");
-    let quantity = one.parse::<Quantity<D, range::Positive>>();
-    quantity.map(Quantity::get).map_err(|error| error.help.unwrap_or(error.expected))
-}
-
-/// Radians of one unit of a phase angle, which is at most a right angle.
-fn degrees(unit: &str, numbers: &[f64]) -> Result<f64, String> {
-    let most = numbers.iter().copied().fold(0.0, f64::max);
-    match unit {
-        "deg" => Ok(std::f64::consts::PI / 180.0),
-        "" if most > std::f64::consts::FRAC_PI_2 => Ok(std::f64::consts::PI / 180.0),
-        "rad" => Ok(1.0),
-        "" => Err("has no unit: give deg or rad".to_owned()),
-        _ => Err(format!("\"{unit}\" is not a unit of an angle (deg, rad)")),
-    }
-}
-
-/// rad/s of one unit: cycles and radians are told apart, never guessed.
-fn frequency(unit: &str) -> Result<f64, String> {
-    let radians = unit.contains("rad");
-    if !radians && !unit.contains("Hz") {
-        return Err(match unit {
-            "" => "has no unit: give Hz (cycles per second) or rad/s (radians per second)".to_owned(),
-            _ => format!("\"{unit}\" may mean cycles (Hz) or radians (rad/s)"),
-        });
-    }
-    let parsed = Unit::parse(&unit.replace("rad", "1"));
-    match parsed {
-        Ok(parsed) if parsed.powers == dimension::Frequency::POWERS => {
-            let scale = parsed.numerator / parsed.denominator * 10f64.powi(parsed.exponent);
-            Ok(if radians { scale } else { TAU * scale })
-        }
-        _ => Err(format!("\"{unit}\" is not a unit of frequency (Hz, kHz, rad/s)")),
-    }
-}
-
-/// "0.1 Hz" or "2 rad/s" as angular frequency \[rad/s\], greater than 0.
-///
-/// # Errors
-/// [`QuantityError`] for another dimension, or a unit that does not tell cycles from radians.
-pub fn angular_frequency(text: &str) -> Result<f64, QuantityError> {
-    let expected = || QuantityError {
-        expected: "a frequency greater than 0, such as \"0.1 Hz\" or \"2 rad/s\"".to_owned(),
-        help: None,
-    };
-    let text = text.trim();
-    let digits = |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | 'e' | 'E');
-    let end = text.find(|c: char| !digits(c)).unwrap_or(text.len());
-    let value: f64 = text[..end].parse().map_err(|_| expected())?;
-    let factor =
-        frequency(text[end..].trim()).map_err(|help| QuantityError { help: Some(help), ..expected() })?;
-    match value.is_finite() && value > 0.0 {
-        true => Ok(factor * value),
-        false => Err(expected()),
     }
 }

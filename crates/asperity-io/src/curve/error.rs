@@ -86,7 +86,9 @@ impl Remedy {
                               --estimate-shift"
                     .to_owned()
             }
-            Remedy::KnownShift => "--shift-table FILE gives factors, --wlf or --arrhenius constants".to_owned(),
+            Remedy::KnownShift => {
+                "--shift-table FILE gives factors, --wlf or --arrhenius constants".to_owned()
+            }
             Remedy::Moduli => "give --fit storage (or loss)".to_owned(),
             Remedy::Sheet(sheets) => format!("say which with --sheet NAME: {sheets}"),
         }

@@ -6,10 +6,10 @@ use std::path::Path;
 use asperity::material::Shift;
 
 use super::bytes;
-use super::columns::tidy;
 use super::error::{CurveError, Fault, Remedy, fault};
 use super::role::{Role, bare};
 use super::table::Table;
+use super::units::tidy;
 use super::workbook::{Sheet, sheets};
 use crate::case::quantity::Temperature;
 

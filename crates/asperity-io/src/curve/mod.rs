@@ -33,18 +33,20 @@ mod indentation;
 mod role;
 mod sweeps;
 mod table;
+mod units;
 mod vertical;
 mod workbook;
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
-pub use columns::{Column, Columns, Place, angular_frequency};
+pub use columns::{Column, Columns, Place};
 pub use error::{CurveError, Remedy};
 pub use factors::{HeldShift, read_shift_table};
 pub use fit::{Fitted, Request, Series, ShiftRequest};
 pub use indentation::{Indentation, MaterialOf, indentation_block};
 pub use role::Role;
+pub use units::angular_frequency;
 pub use vertical::{VerticalRequest, VerticalWord};
 
 use asperity::material::Modulus;
@@ -149,7 +151,9 @@ impl Curves {
             match (found, tables().find(|table| columns::is_dynamic(table))) {
                 (None, Some(table)) => {
                     let listed = table.listed();
-                    let message = format!("storage and loss modulus need a column of frequencies; the file has {listed}");
+                    let message = format!(
+                        "storage and loss modulus need a column of frequencies; the file has {listed}"
+                    );
                     Err(fault(message).remedy(Remedy::Column(Role::Frequency)))
                 }
                 (found, _) => Ok(found),
@@ -175,7 +179,7 @@ impl Curves {
             let (sheet, table) = chosen(sheets, kind)?;
             let columns::Read { values, places: used, lines, left_out, mut notes } =
                 columns::values(&table, kind.into(), columns)?;
-            let measure = columns::measure(&used, &table);
+            let measure = columns::measure(&used, &table)?;
             let unused = (1..=table.columns).filter(|n| !used.iter().any(|place| place.column == *n));
             let unused =
                 unused.filter_map(|n| table.headers.get(n - 1).filter(|name| !name.is_empty()).cloned());

@@ -4,6 +4,8 @@
 //! The names are those of the exports of DMAs and rheometers (TA, Netzsch, Anton Paar, Mettler) in English and German and
 //! of the tables of Python and Matlab users.
 
+mod names;
+
 use std::str::FromStr;
 
 use asperity::material::Modulus;
@@ -126,260 +128,9 @@ impl Role {
         }
     }
 
-    /// Names that mean it, bare (see [`bare`]); "t" and "T" are told apart elsewhere.
-    fn names(self) -> &'static [&'static str] {
-        match self {
-            Role::Time => &[
-                "time",
-                "testtime",
-                "steptime",
-                "elapsedtime",
-                "totaltime",
-                "reducedtime",
-                "relaxationtime",
-                "creeptime",
-                "zeit",
-                "messzeit",
-                "prüfzeit",
-                "versuchszeit",
-            ],
-            Role::Modulus => &[
-                "modulus",
-                "e",
-                "g",
-                "et",
-                "gt",
-                "er",
-                "gr",
-                "erelax",
-                "grelax",
-                "erel",
-                "grel",
-                "relaxationmodulus",
-                "relaxationmoduluset",
-                "relaxationmodulusgt",
-                "stressrelaxationmodulus",
-                "shearmodulus",
-                "shearrelaxationmodulus",
-                "tensilemodulus",
-                "tensilerelaxationmodulus",
-                "youngsmodulus",
-                "young'smodulus",
-                "emodulus",
-                "gmodulus",
-                "modul",
-                "emodul",
-                "gmodul",
-                "relaxationsmodul",
-                "relaxationsmodulet",
-                "relaxationsmodulgt",
-                "schubmodul",
-                "zugmodul",
-                "elastizitätsmodul",
-            ],
-            Role::Compliance => &[
-                "compliance",
-                "d",
-                "j",
-                "dt",
-                "jt",
-                "dcreep",
-                "jcreep",
-                "creepcompliance",
-                "creepcompliancejt",
-                "creepcompliancedt",
-                "shearcompliance",
-                "tensilecompliance",
-                "shearcreepcompliance",
-                "tensilecreepcompliance",
-                "nachgiebigkeit",
-                "kriechnachgiebigkeit",
-                "kriechnachgiebigkeitjt",
-                "kriechnachgiebigkeitdt",
-                "komplianz",
-                "kriechkomplianz",
-            ],
-            Role::Frequency => &[
-                "frequency",
-                "freq",
-                "f",
-                "testfrequency",
-                "reducedfrequency",
-                "fred",
-                "angularfrequency",
-                "angularfreq",
-                "angfrequency",
-                "angfreq",
-                "reducedangularfrequency",
-                "angularfrequencyω",
-                "kreisfrequenzω",
-                "oscillationfrequency",
-                "omegaat",
-                "ωat",
-                "atω",
-                "fat",
-                "atf",
-                "omega",
-                "ω",
-                "w",
-                "frequenz",
-                "kreisfrequenz",
-                "winkelfrequenz",
-                "prüffrequenz",
-                "messfrequenz",
-            ],
-            Role::Storage => &[
-                "storage",
-                "e'",
-                "g'",
-                "m'",
-                "estor",
-                "gstor",
-                "estorage",
-                "gstorage",
-                "eprime",
-                "gprime",
-                "storagemodulus",
-                "storagemoduluse'",
-                "storagemodulusg'",
-                "modulus'",
-                "e1",
-                "g1",
-                "ree*",
-                "reg*",
-                "reale*",
-                "realg*",
-                "dynamicstoragemodulus",
-                "shearstoragemodulus",
-                "tensilestoragemodulus",
-                "bendingstoragemodulus",
-                "speichermodul",
-                "speichermodule'",
-                "speichermodulg'",
-            ],
-            Role::Loss => &[
-                "loss",
-                "e''",
-                "g''",
-                "m''",
-                "eloss",
-                "gloss",
-                "edoubleprime",
-                "gdoubleprime",
-                "lossmodulus",
-                "lossmoduluse''",
-                "lossmodulusg''",
-                "modulus''",
-                "e2",
-                "g2",
-                "ime*",
-                "img*",
-                "image*",
-                "imagg*",
-                "dynamiclossmodulus",
-                "shearlossmodulus",
-                "tensilelossmodulus",
-                "bendinglossmodulus",
-                "verlustmodul",
-                "verlustmodule''",
-                "verlustmodulg''",
-            ],
-            Role::TanDelta => &[
-                "tandelta",
-                "tand",
-                "tanδ",
-                "tan",
-                "lossfactor",
-                "losstangent",
-                "tangensdelta",
-                "tgdelta",
-                "tgδ",
-                "lossfactortandelta",
-                "lossfactortanδ",
-                "dampingfactor",
-                "verlustfaktor",
-                "verlustfaktortandelta",
-                "verlustfaktortanδ",
-            ],
-            Role::Phase => &[
-                "phase",
-                "phaseangle",
-                "phaseangledelta",
-                "phaseangleδ",
-                "phaseshift",
-                "phaselag",
-                "lossangle",
-                "delta",
-                "δ",
-                "phasenwinkel",
-                "phasenwinkeldelta",
-                "phasenwinkelδ",
-                "phasenverschiebung",
-                "phasenverschiebungswinkel",
-                "verlustwinkel",
-            ],
-            Role::ComplexModulus => &[
-                "e*",
-                "g*",
-                "m*",
-                "estar",
-                "gstar",
-                "ecomplex",
-                "gcomplex",
-                "complexmodulus",
-                "complexmoduluse*",
-                "abse*",
-                "absg*",
-                "absolutemodulus",
-                "dynamischermodul",
-                "komplexermodule*",
-                "komplexermodulg*",
-                "complexmodulusg*",
-                "complexshearmodulus",
-                "dynamicmodulus",
-                "komplexermodul",
-                "komplexerschubmodul",
-            ],
-            Role::StorageCompliance => {
-                &["d'", "j'", "storagecompliance", "speichernachgiebigkeit", "speicherkomplianz"]
-            }
-            Role::LossCompliance => {
-                &["d''", "j''", "losscompliance", "verlustnachgiebigkeit", "verlustkomplianz"]
-            }
-            Role::ComplexViscosity => {
-                &["η*", "eta*", "complexviscosity", "complexviscosityη*", "komplexeviskosität"]
-            }
-            Role::RealViscosity => {
-                &["η'", "eta'", "realviscosity", "dynamicviscosity", "realpartofviscosity"]
-            }
-            Role::ImaginaryViscosity => &["η''", "eta''", "imaginaryviscosity", "imaginarypartofviscosity"],
-            Role::Temperature => &[
-                "temperature",
-                "temp",
-                "sampletemperature",
-                "sampletemp",
-                "ts",
-                "tsample",
-                "tprobe",
-                "chambertemperature",
-                "meantemperature",
-                "temperatur",
-                "probentemperatur",
-                "messtemperatur",
-            ],
-            Role::Set => {
-                &["set", "run", "sweep", "segment", "interval", "isotherm", "lauf", "messreihe", "intervall"]
-            }
-            Role::Load => &["load", "force", "normalload", "normalforce", "w", "p", "f", "fn"],
-            Role::Depth => {
-                &["depth", "indentation", "displacement", "indentationdepth", "approach", "h", "d"]
-            }
-        }
-    }
-
     /// Whether a name means it.
     pub(super) fn is_called(self, name: &str) -> bool {
-        self.names().contains(&bare(name).as_str())
+        names::of(self).contains(&bare(name).as_str())
     }
 }
 
@@ -402,7 +153,10 @@ pub(super) fn logarithm(header: &str) -> (Option<f64>, &str) {
         let Some((start, rest)) = header.split_at_checked(word.len()) else { continue };
         let apart = !rest.starts_with(char::is_alphanumeric);
         let joined = || word != "ln" && Role::ALL.iter().any(|role| role.is_called(rest));
-        if !start.eq_ignore_ascii_case(word) || rest.trim().is_empty() || !(apart || word == "log10" || joined()) {
+        if !start.eq_ignore_ascii_case(word)
+            || rest.trim().is_empty()
+            || !(apart || word == "log10" || joined())
+        {
             continue;
         }
         let rest = rest.trim_start_matches([' ', '_', '-', '.']);
@@ -470,7 +224,10 @@ pub(super) fn measure_of(name: &str) -> Option<Modulus> {
     }
     // "Re(E*)"
     let parts = ["real", "imag", "abs", "re", "im"];
-    let name = parts.iter().find_map(|part| name.strip_prefix(part).filter(|rest| rest.ends_with('*'))).unwrap_or(&name);
+    let name = parts
+        .iter()
+        .find_map(|part| name.strip_prefix(part).filter(|rest| rest.ends_with('*')))
+        .unwrap_or(&name);
     let of = |symbol: char| match symbol {
         'g' | 'j' => Some(Modulus::Shear),
         'e' | 'd' => Some(Modulus::Young),
@@ -501,7 +258,16 @@ mod tests {
         for (role, names) in [
             (
                 Role::Storage,
-                &["E'", "G′", "E_stor", "Storage Modulus", "Storage modulus G'", "Speichermodul", "E1", "Re(E*)"][..],
+                &[
+                    "E'",
+                    "G′",
+                    "E_stor",
+                    "Storage Modulus",
+                    "Storage modulus G'",
+                    "Speichermodul",
+                    "E1",
+                    "Re(E*)",
+                ][..],
             ),
             (Role::Loss, &["E''", "E″", "G\"", "E_loss", "Loss Modulus", "Verlustmodul G''", "Im(G*)"]),
             (Role::TanDelta, &["tan delta", "Tan(δ)", "tan_delta", "tan d", "Loss Factor", "Verlustfaktor"]),
@@ -550,9 +316,18 @@ mod tests {
 
     #[test]
     fn a_name_says_which_modulus_it_is() {
-        for name in
-            ["E'", "E_stor", "|E*|", "Storage modulus E'", "tensile storage modulus", "D(t)", "E-Modul", "Re(E*)", "E1", "Relaxation Modulus E(t)"]
-        {
+        for name in [
+            "E'",
+            "E_stor",
+            "|E*|",
+            "Storage modulus E'",
+            "tensile storage modulus",
+            "D(t)",
+            "E-Modul",
+            "Re(E*)",
+            "E1",
+            "Relaxation Modulus E(t)",
+        ] {
             assert_eq!(measure_of(name), Some(Modulus::Young), "{name}");
         }
         for name in ["G(t)", "Storage modulus G'", "J'", "Schubmodul", "G_relax", "Im(G*)", "|G*|"] {

@@ -92,7 +92,7 @@ fn once(kind: Kind, sweeps: Vec<Sweep>) -> Result<(Vec<Sweep>, Option<String>), 
                 let mean = values.iter().sum::<f64>() / values.len() as f64;
                 curve.push(mean);
                 let apart = values.iter().map(|value| (value / mean - 1.0).abs()).fold(0.0, f64::max);
-                if group.len() > 1 && !(apart <= SAME_VALUE) {
+                if group.len() > 1 && (apart.is_nan() || apart > SAME_VALUE) {
                     let [first, other] = [sweep.lines[rows.start], sweep.lines[rows.end - 1]];
                     return Err(fault(format!(
                         "the {name} is that of line {first}, but the values differ by {:.0} %: points of different sweeps need a \

@@ -115,7 +115,7 @@ impl Table {
                 cells.pop(); // a separator ends the line
             }
             // The last cells of a line with tabs may be empty.
-            if line.contains('\t') && separator.is_none() && cells.len() < columns && cells.len() > columns / 2 {
+            if line.contains('\t') && separator.is_none() && (2..columns).contains(&cells.len()) {
                 cells.resize(columns, "");
             }
             if cells.len() != columns {
@@ -129,7 +129,8 @@ impl Table {
             let start = line.as_ptr() as usize - text.as_ptr() as usize;
             rows.push(Row { line: n + 1, span: start..start + line.len() });
         }
-        let logarithms: Vec<(Option<f64>, &str)> = headers.iter().map(|header| role::logarithm(header)).collect();
+        let logarithms: Vec<(Option<f64>, &str)> =
+            headers.iter().map(|header| role::logarithm(header)).collect();
         let bases = logarithms.iter().map(|(base, _)| *base).collect();
         let split = logarithms.iter().map(|(_, name)| split_unit(name));
         let (names, own): (Vec<String>, Vec<String>) =

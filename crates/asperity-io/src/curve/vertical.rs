@@ -49,7 +49,9 @@ impl VerticalRequest {
                 VerticalShift::Density { reference, expansion: *expansion }
             }
             (VerticalRequest::Density { .. }, None) => {
-                return Err("vertical shifts need the reference temperature of a shift, at which a_T is 1".to_owned());
+                return Err(
+                    "vertical shifts need the reference temperature of a shift, at which a_T is 1".to_owned()
+                );
             }
         };
         vertical.validate().map_err(|error| error.to_string())?;
@@ -85,11 +87,7 @@ pub(super) fn corrected(
 
 /// The curves by factors that let neighbours continue each other, at the distances of the shift; `factors` are those of the shift with
 /// their standard deviations \[decades\].
-pub(super) fn free(
-    curves: &Curves,
-    shift: Option<&Shift>,
-    factors: &[[f64; 3]],
-) -> Result<Corrected, Fault> {
+pub(super) fn free(curves: &Curves, shift: Option<&Shift>, factors: &[[f64; 3]]) -> Result<Corrected, Fault> {
     let Some(shift) = shift.filter(|_| curves.sweeps.len() > 1) else {
         return Err(fault("vertical shifts that are free need sweeps at two temperatures or more"));
     };

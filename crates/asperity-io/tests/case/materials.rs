@@ -242,7 +242,8 @@ fn a_constant_temperature_stretches_the_times() {
 #[test]
 fn a_vertical_shift_divides_the_moduli_at_a_constant_temperature() {
     let with = |vertical: &str, more: &str| {
-        shifted(more).replace("reference = \"20 °C\" }", &format!("reference = \"20 °C\", vertical = {vertical} }}"))
+        shifted(more)
+            .replace("reference = \"20 °C\" }", &format!("reference = \"20 °C\", vertical = {vertical} }}"))
     };
     let warm = ", temperature = \"80 °C\"";
     let plain = case(&body(&shifted(warm)), "").creep;

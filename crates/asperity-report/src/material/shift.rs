@@ -80,11 +80,13 @@ pub fn vertical_shift_factors(law: &VerticalShift, found: &[[f64; 3]]) -> Option
     };
     let panel = Curves::new("Moduli are divided by b_T", x, y)
         .with(Series::new(name, Style::Line, line_x, line_y).in_colour("#222222"));
-    let panel = found.iter().filter(|[.., share]| *share > 0.0).fold(panel, |panel, [kelvin, factor, share]| {
-        let ends = vec![factor * (1.0 - share), factor * (1.0 + share)];
-        panel.with(Series::new("", Style::Line, vec![kelvin - 273.15; 2], ends).in_colour("#0072b2"))
-    });
-    let (x, y): (Vec<f64>, Vec<f64>) = found.iter().map(|[kelvin, factor, _]| (kelvin - 273.15, *factor)).unzip();
+    let panel =
+        found.iter().filter(|[.., share]| *share > 0.0).fold(panel, |panel, [kelvin, factor, share]| {
+            let ends = vec![factor * (1.0 - share), factor * (1.0 + share)];
+            panel.with(Series::new("", Style::Line, vec![kelvin - 273.15; 2], ends).in_colour("#0072b2"))
+        });
+    let (x, y): (Vec<f64>, Vec<f64>) =
+        found.iter().map(|[kelvin, factor, _]| (kelvin - 273.15, *factor)).unzip();
     Some(panel.with(Series::new(points, Style::Points, x, y).in_colour("#0072b2")))
 }
 

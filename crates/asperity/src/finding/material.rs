@@ -64,7 +64,8 @@ pub fn contradiction(name: &str, column: &str, rms: f64) -> Option<Finding> {
 /// Points of a measurement, of so many, that lack a number and were left out of a fit.
 pub fn points_left_out(name: &str, left_out: usize, of: usize) -> Option<Finding> {
     (left_out > 0).then(|| {
-        let points = if left_out == 1 { "point lacks a number and is" } else { "points lack a number and are" };
+        let points =
+            if left_out == 1 { "point lacks a number and is" } else { "points lack a number and are" };
         let text = format!("{name}: {left_out} of {of} measured {points} left out of the fit.");
         Finding::warning(POINTS_LEFT_OUT, left_out as f64, 0.0, text).as_note()
     })

@@ -84,7 +84,11 @@ impl VerticalShift {
                     return Err(Error::invalid(
                         "temperature",
                         kelvin(temperature),
-                        format!("from {} to {}, as the vertical shift factors are", kelvin(low), kelvin(high)),
+                        format!(
+                            "from {} to {}, as the vertical shift factors are",
+                            kelvin(low),
+                            kelvin(high)
+                        ),
                     ));
                 }
                 Ok(libm::exp(interpolated(points, temperature)))

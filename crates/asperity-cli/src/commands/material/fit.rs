@@ -110,7 +110,8 @@ fn report(args: &Fit, curves: &Curves, fitted: &Fitted) -> String {
         line("moduli", vertical_law(vertical));
     }
     for [kelvin, factor, uncertainty] in &fitted.vertical_factors {
-        let known = if *uncertainty > 0.0 { format!(" +- {:.1} %", 100.0 * uncertainty) } else { String::new() };
+        let known =
+            if *uncertainty > 0.0 { format!(" +- {:.1} %", 100.0 * uncertainty) } else { String::new() };
         line("", format!("{:8.1} °C  b_T = {factor:.4}{known}", celsius(*kelvin)));
     }
     let [first, last] = fitted.window;

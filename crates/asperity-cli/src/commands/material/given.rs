@@ -3,10 +3,12 @@
 use std::collections::BTreeMap;
 
 use asperity::material::{FitOptions, Shift};
-use asperity_io::case::quantity::{Expansion, MolarEnergy, Number, Temperature, TemperatureDifference, Time, range};
+use asperity_io::case::quantity::{
+    Expansion, MolarEnergy, Number, Temperature, TemperatureDifference, Time, range,
+};
 use asperity_io::curve::{
-    Column, Columns, CurveError, Curves, Kind, Remedy, Role, ShiftRequest, VerticalRequest,
-    VerticalWord, angular_frequency, read_shift_table,
+    Column, Columns, CurveError, Curves, Kind, Remedy, Role, ShiftRequest, VerticalRequest, VerticalWord,
+    angular_frequency, read_shift_table,
 };
 
 use super::told;
@@ -99,7 +101,9 @@ pub fn shift(args: &Fit) -> Result<ShiftRequest, Failure> {
 pub fn vertical(args: &Fit) -> Result<VerticalRequest, Failure> {
     let expansion = args.expansion.as_deref();
     let expansion = expansion
-        .map(|text| parsed::<Expansion<range::NonNegative>>("--expansion", text).map(|expansion| expansion.get()))
+        .map(|text| {
+            parsed::<Expansion<range::NonNegative>>("--expansion", text).map(|expansion| expansion.get())
+        })
         .transpose()?;
     match (args.vertical, expansion) {
         (None, None) => Ok(VerticalRequest::None),

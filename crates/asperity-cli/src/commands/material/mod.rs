@@ -259,7 +259,9 @@ pub fn source(report: &MaterialReport) -> Vec<String> {
             .map(|factor| format!("shift factor a_T = {factor:.4e}: all times are multiplied by it")),
     );
     lines.extend(report.vertical.as_ref().map(|law| {
-        let at = report.vertical_factor.map_or(String::new(), |b| format!("; b_T = {b:.4}: all moduli are divided by it"));
+        let at = report
+            .vertical_factor
+            .map_or(String::new(), |b| format!("; b_T = {b:.4}: all moduli are divided by it"));
         format!("vertical shift: {law}{at}")
     }));
     lines.extend(report.notes.iter().map(|note| format!("note: {note}")));

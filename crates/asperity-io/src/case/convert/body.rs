@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use asperity::finding::{self, Finding};
 use asperity::layer::{Inseparable, Layered};
-use asperity::material::{Body, Creep, Lateral, Material, ReducedTime, Shift, ThermalCreep, VerticalShift, pair_hardness};
+use asperity::material::{
+    Body, Creep, Lateral, Material, ReducedTime, Shift, ThermalCreep, VerticalShift, pair_hardness,
+};
 use asperity::time::Plan;
 
 use super::Checks;
@@ -376,7 +378,8 @@ fn reference(
 fn vertical(vertical: &VerticalShift) -> String {
     match vertical {
         VerticalShift::Density { expansion, .. } => {
-            let volume = if *expansion > 0.0 { format!(", expansion {expansion:e} 1/K") } else { String::new() };
+            let volume =
+                if *expansion > 0.0 { format!(", expansion {expansion:e} 1/K") } else { String::new() };
             format!("density times temperature{volume}")
         }
         VerticalShift::Table { points } => format!("table of {} factors b_T", points.len()),

@@ -33,17 +33,32 @@ macro_rules! said {
     }};
 }
 
-pub fn relaxation(checks: &mut Checks<'_, '_>, m: &raw::RelaxationTable, shift: ShiftRequest, vertical: VerticalRequest) -> Option<Fit> {
+pub fn relaxation(
+    checks: &mut Checks<'_, '_>,
+    m: &raw::RelaxationTable,
+    shift: ShiftRequest,
+    vertical: VerticalRequest,
+) -> Option<Fit> {
     let said = said!(m; time = Time, modulus = Modulus, temperature = Temperature, set = Set);
     fit(checks, Kind::Relaxation, m.modulus, &m.path, &said, m.fit.as_ref(), (shift, vertical))
 }
 
-pub fn creep(checks: &mut Checks<'_, '_>, m: &raw::CreepTable, shift: ShiftRequest, vertical: VerticalRequest) -> Option<Fit> {
+pub fn creep(
+    checks: &mut Checks<'_, '_>,
+    m: &raw::CreepTable,
+    shift: ShiftRequest,
+    vertical: VerticalRequest,
+) -> Option<Fit> {
     let said = said!(m; time = Time, compliance = Compliance, temperature = Temperature, set = Set);
     fit(checks, Kind::Creep, m.compliance, &m.path, &said, m.fit.as_ref(), (shift, vertical))
 }
 
-pub fn dma(checks: &mut Checks<'_, '_>, m: &raw::Dma, shift: ShiftRequest, vertical: VerticalRequest) -> Option<Fit> {
+pub fn dma(
+    checks: &mut Checks<'_, '_>,
+    m: &raw::Dma,
+    shift: ShiftRequest,
+    vertical: VerticalRequest,
+) -> Option<Fit> {
     let columns = m.columns.as_ref().map(|at| &at.value);
     if let (Some(at), Some(_), Some(_)) =
         (&m.columns, columns.and_then(|c| c.loss.as_ref()), columns.and_then(|c| c.tan_delta.as_ref()))

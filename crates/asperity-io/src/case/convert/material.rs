@@ -105,8 +105,14 @@ pub fn sample(checks: &mut Checks<'_, '_>, at: &At<raw::Material>) -> Option<Sam
         }
     };
     if vertical == VerticalRequest::Free {
-        let message = "factors of moduli can be estimated only from a file with several temperatures".to_owned();
-        checks.fault(place, message, "\"density\", or pairs [temperature, b_T]", Some("give vertical = \"density\""));
+        let message =
+            "factors of moduli can be estimated only from a file with several temperatures".to_owned();
+        checks.fault(
+            place,
+            message,
+            "\"density\", or pairs [temperature, b_T]",
+            Some("give vertical = \"density\""),
+        );
         return None;
     }
     let vertical = match vertical.known(law.as_ref().and_then(Shift::reference)) {

@@ -57,7 +57,8 @@ pub fn vertical(
         raw::Vertical::Word(VerticalWord::Free) => VerticalRequest::Free,
         raw::Vertical::Density(density) => VerticalRequest::Density { expansion: density.expansion.get() },
         raw::Vertical::Points(points) => {
-            let point = |Two(kelvin, factor): &Two<Temperature, Number<_>>| (kelvin.get(), libm::log(factor.get()));
+            let point =
+                |Two(kelvin, factor): &Two<Temperature, Number<_>>| (kelvin.get(), libm::log(factor.get()));
             VerticalRequest::Given(VerticalShift::Table { points: points.iter().map(point).collect() })
         }
     })

@@ -91,7 +91,8 @@ impl FromStr for Temperature {
         }
         if text.ends_with(['C', 'F']) {
             return Err(error(Some(
-                "write degrees Celsius as \"°C\" or \"degC\", Fahrenheit as \"°F\", or kelvin as \"K\"".into(),
+                "write degrees Celsius as \"°C\" or \"degC\", Fahrenheit as \"°F\", or kelvin as \"K\""
+                    .into(),
             )));
         }
         let kelvin = text.parse::<Quantity<dimension::TemperatureDifference>>();

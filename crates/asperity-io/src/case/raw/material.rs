@@ -6,9 +6,9 @@ use serde::Deserialize;
 
 use super::thermal::Shift;
 use super::{At, Two};
-use crate::curve::VerticalWord;
 use crate::case::quantity::range::{Decades, Density, NonNegative, Order, Positive, Share, Tolerance};
 use crate::case::quantity::{Compliance, Fluidity, Number, Prescribed, Pressure, Temperature, Time, Whole};
+use crate::curve::VerticalWord;
 
 /// A linear viscoelastic material. Springs and dashpots are given by moduli, either all as Young's (`young`)
 /// or all as shear moduli (`shear`); Poisson's ratio or the bulk modulus converts.

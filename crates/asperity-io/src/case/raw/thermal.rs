@@ -4,9 +4,11 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::{At, Two};
-use crate::curve::VerticalWord;
 use crate::case::quantity::range::{NonNegative, Positive};
-use crate::case::quantity::{Expansion, MolarEnergy, Number, Temperature as Kelvin, TemperatureDifference, Time};
+use crate::case::quantity::{
+    Expansion, MolarEnergy, Number, Temperature as Kelvin, TemperatureDifference, Time,
+};
+use crate::curve::VerticalWord;
 
 /// How all times of a material scale with temperature: by the shift factor a_T, 1 at the reference.
 #[derive(Debug, Deserialize, JsonSchema)]
@@ -84,8 +86,10 @@ pub struct Estimated {
 /// the shift over b_T.
 #[derive(Clone, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
-#[serde(expecting = "\"density\" (b_T = reference/T, as for a rubber), \"free\" (one factor for each sweep of a file), \
-                     { expansion = \"6e-4 1/K\" }, or pairs [temperature, b_T]")]
+#[serde(
+    expecting = "\"density\" (b_T = reference/T, as for a rubber), \"free\" (one factor for each sweep of a file), \
+                     { expansion = \"6e-4 1/K\" }, or pairs [temperature, b_T]"
+)]
 pub enum Vertical {
     /// "density" or "free".
     Word(VerticalWord),

@@ -84,7 +84,9 @@ fn what_cannot_be_shifted_is_told() {
         curves: vec![curve.to_vec()],
     };
     let says = |isotherms: &[Isotherm], reference: f64, words: &str| {
-        let error = estimate_shift(isotherms, Abscissa::Time, reference, ModulusChange::Neglected).unwrap_err().to_string();
+        let error = estimate_shift(isotherms, Abscissa::Time, reference, ModulusChange::Neglected)
+            .unwrap_err()
+            .to_string();
         assert!(error.contains(words), "{error}");
     };
     let x = [1.0, 2.0, 4.0, 8.0];
@@ -118,7 +120,8 @@ fn relaxing(temperatures: &[f64]) -> Vec<Isotherm> {
 #[test]
 fn the_uncertainty_grows_from_the_reference_and_holds_the_error() {
     let temperatures = [295.0, 302.0, 310.0, 320.0, 332.0];
-    let found = estimate_shift(&relaxing(&temperatures), Abscissa::Time, 310.0, ModulusChange::Neglected).unwrap();
+    let found =
+        estimate_shift(&relaxing(&temperatures), Abscissa::Time, 310.0, ModulusChange::Neglected).unwrap();
     assert_eq!(found.uncertainty[2], 0.0);
     assert!(found.uncertainty[0] > found.uncertainty[1] && found.uncertainty[4] > found.uncertainty[3]);
     for (t, uncertainty) in temperatures.iter().zip(&found.uncertainty) {
@@ -132,7 +135,8 @@ fn the_uncertainty_grows_from_the_reference_and_holds_the_error() {
 fn isotherms_far_apart_are_continued_with_their_uncertainty() {
     // Twenty kelvin and more apart: three decades of time each, three decades of shift and more.
     let temperatures = [293.0, 313.0, 340.0, 377.0];
-    let found = estimate_shift(&relaxing(&temperatures), Abscissa::Time, 313.0, ModulusChange::Neglected).unwrap();
+    let found =
+        estimate_shift(&relaxing(&temperatures), Abscissa::Time, 313.0, ModulusChange::Neglected).unwrap();
     for (t, uncertainty) in temperatures.iter().zip(&found.uncertainty) {
         let error = (found.shift.ln_factor(*t).unwrap() - law().ln_factor(*t).unwrap()) / LN_10;
         // The estimate says how far off it may be, and that is less than a decade.
@@ -144,7 +148,8 @@ fn isotherms_far_apart_are_continued_with_their_uncertainty() {
 fn a_flat_pair_follows_the_law_of_the_others() {
     // Rubbery at the two warmest temperatures: the modulus changes by less than its own change with temperature.
     let temperatures = [295.0, 300.0, 305.0, 310.0, 318.0, 326.0, 380.0, 390.0];
-    let found = estimate_shift(&relaxing(&temperatures), Abscissa::Time, 310.0, ModulusChange::Neglected).unwrap();
+    let found =
+        estimate_shift(&relaxing(&temperatures), Abscissa::Time, 310.0, ModulusChange::Neglected).unwrap();
     let step = |shift: &Shift| (shift.ln_factor(380.0).unwrap() - shift.ln_factor(390.0).unwrap()) / LN_10;
     // Half of what the law itself is trusted to.
     assert!((step(&found.shift) - step(&law())).abs() < 0.3, "{found:?}");
@@ -215,7 +220,8 @@ fn a_glass_whose_sweeps_do_not_overlap_is_refused() {
     let mut random = random(3);
     let mut scatter = move || 1.0 + 0.01 * (random() - 0.5);
     let weights = (-24..26).map(|k| (-0.1 * f64::from(k * k) / 4.0).exp());
-    let terms: Vec<_> = weights.zip(-24..26).map(|(w, k)| (4e8 * w, 10f64.powf(0.5 * f64::from(k)))).collect();
+    let terms: Vec<_> =
+        weights.zip(-24..26).map(|(w, k)| (4e8 * w, 10f64.powf(0.5 * f64::from(k)))).collect();
     let glass = Relaxation::absolute(3e6, &terms).unwrap();
     let mut isotherm = |temperature: f64| {
         let a = law.factor(temperature).unwrap();
@@ -225,6 +231,7 @@ fn a_glass_whose_sweeps_do_not_overlap_is_refused() {
         Isotherm { temperature, x, curves: vec![storage, loss] }
     };
     let isotherms = [296.15, 303.15, 310.15, 317.15].map(&mut isotherm);
-    let refused = estimate_shift(&isotherms, Abscissa::Frequency, 296.15, ModulusChange::Neglected).unwrap_err();
+    let refused =
+        estimate_shift(&isotherms, Abscissa::Frequency, 296.15, ModulusChange::Neglected).unwrap_err();
     assert!(refused.to_string().contains("or give the shift"), "{refused}");
 }

@@ -1,0 +1,143 @@
+//! Units of columns as programs write them, and numbers in SI.
+
+use std::f64::consts::TAU;
+
+use super::role::{self, Role};
+use crate::case::quantity::unit::Unit;
+use crate::case::quantity::{Dimension, Quantity, QuantityError, Temperature, dimension, range};
+
+/// A unit as programs write it in the way that it is read here.
+pub(super) fn tidy(role: Role, name: &str, unit: &str) -> String {
+    let bare = role::bare(unit);
+    let tidied = match role {
+        _ if unit == "-" => "",
+        Role::Temperature
+            if matches!(bare.as_str(), "c" | "degc" | "celsius" | "degreesc" | "gradc" | "degcelsius") =>
+        {
+            "°C"
+        }
+        Role::Temperature if matches!(bare.as_str(), "k" | "kelvin") => "K",
+        Role::Temperature if matches!(bare.as_str(), "f" | "degf" | "fahrenheit" | "degreesf" | "gradf") => {
+            "°F"
+        }
+        Role::Frequency if bare == "hz" || bare == "hertz" => "Hz",
+        // Angular frequencies in 1/s are those in rad/s.
+        Role::Frequency if matches!(unit, "1/s" | "s^-1" | "s-1") && is_angular(name) => "rad/s",
+        Role::ComplexViscosity | Role::RealViscosity | Role::ImaginaryViscosity if bare == "pas" => "Pa s",
+        Role::ComplexViscosity | Role::RealViscosity | Role::ImaginaryViscosity if bare == "mpas" => {
+            // "mPa·s" and "MPa·s" differ by their first letter.
+            if unit.starts_with('m') { "mPa s" } else { "MPa s" }
+        }
+        Role::Phase
+            if matches!(unit, "°" | "º")
+                || matches!(bare.as_str(), "deg" | "degree" | "degrees" | "grad") =>
+        {
+            "deg"
+        }
+        Role::Time if matches!(bare.as_str(), "sec" | "second" | "seconds" | "sekunden") => "s",
+        _ => unit,
+    };
+    tidied.to_owned()
+}
+
+fn is_angular(name: &str) -> bool {
+    let name = role::bare(name);
+    ["ang", "omega", "ω", "kreis", "winkel"].iter().any(|start| name.starts_with(start))
+}
+
+/// The numbers in SI, or the row and why not.
+pub(super) fn convert(
+    role: Role,
+    unit: &str,
+    numbers: Vec<f64>,
+) -> Result<Vec<f64>, (Option<usize>, String)> {
+    let whole = |why: String| (None, why);
+    let factor = match role {
+        Role::Temperature => {
+            let kelvin = |(row, value): (usize, &f64)| {
+                let temperature = Temperature::from_unit(*value, unit);
+                temperature.map(Temperature::get).map_err(|error| {
+                    let why = error.help.unwrap_or_else(|| format!("{value} must be {}", error.expected));
+                    (Some(row), why)
+                })
+            };
+            return numbers.iter().enumerate().map(kelvin).collect();
+        }
+        Role::Set => 1.0,
+        Role::Phase => degrees(unit, &numbers).map_err(whole)?,
+        Role::Frequency => frequency(unit).map_err(whole)?,
+        Role::Time => scale::<dimension::Time>(unit).map_err(whole)?,
+        Role::Modulus | Role::Storage | Role::Loss | Role::ComplexModulus => {
+            scale::<dimension::Pressure>(unit).map_err(whole)?
+        }
+        Role::Compliance | Role::StorageCompliance | Role::LossCompliance => {
+            scale::<dimension::Compliance>(unit).map_err(whole)?
+        }
+        Role::ComplexViscosity | Role::RealViscosity | Role::ImaginaryViscosity => {
+            scale::<dimension::Viscosity>(unit).map_err(whole)?
+        }
+        Role::TanDelta => scale::<dimension::Number>(unit).map_err(whole)?,
+        Role::Load => scale::<dimension::Force>(unit).map_err(whole)?,
+        Role::Depth => scale::<dimension::Length>(unit).map_err(whole)?,
+    };
+    Ok(numbers.into_iter().map(|value| factor * value).collect())
+}
+
+/// SI of one unit.
+fn scale<D: Dimension>(unit: &str) -> Result<f64, String> {
+    let one = format!("1 {unit}");
+    let quantity = one.parse::<Quantity<D, range::Positive>>();
+    quantity.map(Quantity::get).map_err(|error| error.help.unwrap_or(error.expected))
+}
+
+/// Radians of one unit of a phase angle, which is at most a right angle.
+fn degrees(unit: &str, numbers: &[f64]) -> Result<f64, String> {
+    let most = numbers.iter().copied().fold(0.0, f64::max);
+    match unit {
+        "deg" => Ok(std::f64::consts::PI / 180.0),
+        "" if most > std::f64::consts::FRAC_PI_2 => Ok(std::f64::consts::PI / 180.0),
+        "rad" => Ok(1.0),
+        "" => Err("has no unit: give deg or rad".to_owned()),
+        _ => Err(format!("\"{unit}\" is not a unit of an angle (deg, rad)")),
+    }
+}
+
+/// rad/s of one unit: cycles and radians are told apart, never guessed.
+fn frequency(unit: &str) -> Result<f64, String> {
+    let radians = unit.contains("rad");
+    if !radians && !unit.contains("Hz") {
+        return Err(match unit {
+            "" => "has no unit: give Hz (cycles per second) or rad/s (radians per second)".to_owned(),
+            _ => format!("\"{unit}\" may mean cycles (Hz) or radians (rad/s)"),
+        });
+    }
+    let parsed = Unit::parse(&unit.replace("rad", "1"));
+    match parsed {
+        Ok(parsed) if parsed.powers == dimension::Frequency::POWERS => {
+            let scale = parsed.numerator / parsed.denominator * 10f64.powi(parsed.exponent);
+            Ok(if radians { scale } else { TAU * scale })
+        }
+        _ => Err(format!("\"{unit}\" is not a unit of frequency (Hz, kHz, rad/s)")),
+    }
+}
+
+/// "0.1 Hz" or "2 rad/s" as angular frequency \[rad/s\], greater than 0.
+///
+/// # Errors
+/// [`QuantityError`] for another dimension, or a unit that does not tell cycles from radians.
+pub fn angular_frequency(text: &str) -> Result<f64, QuantityError> {
+    let expected = || QuantityError {
+        expected: "a frequency greater than 0, such as \"0.1 Hz\" or \"2 rad/s\"".to_owned(),
+        help: None,
+    };
+    let text = text.trim();
+    let digits = |c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | 'e' | 'E');
+    let end = text.find(|c: char| !digits(c)).unwrap_or(text.len());
+    let value: f64 = text[..end].parse().map_err(|_| expected())?;
+    let factor =
+        frequency(text[end..].trim()).map_err(|help| QuantityError { help: Some(help), ..expected() })?;
+    match value.is_finite() && value > 0.0 {
+        true => Ok(factor * value),
+        false => Err(expected()),
+    }
+}

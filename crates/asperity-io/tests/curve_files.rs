@@ -11,7 +11,7 @@ fn rubber() -> Relaxation {
 }
 
 /// A table of the rubber over frequency in Hz, with the columns that `row` makes of (f, storage, loss).
-fn table(header: &str, row: impl Fn(f64, f64, f64) -> String) -> String {
+fn table(header: &str, mut row: impl FnMut(f64, f64, f64) -> String) -> String {
     let mut text = format!("{header}\n");
     for k in 0..40 {
         let f = 10f64.powf(-2.0 + 0.15 * f64::from(k));

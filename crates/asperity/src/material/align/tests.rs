@@ -47,7 +47,7 @@ fn a_curve_that_is_moved_and_raised_is_told_by_its_bend_and_a_power_law_is_not()
     // A power law moved along ln x is one that is raised.
     let line = |x: f64| -0.2 * x;
     let lines = [curve(0.0, 5.0, line), curve(0.0, 5.0, |x| line(x + 1.0) + 0.1)];
-    let both = distance(&[lines.clone()], Ordinate::Free);
+    let both = distance(std::slice::from_ref(&lines), Ordinate::Free);
     assert!(both.deviation > 2.3, "a decade: {both:?}");
     // A second quantity with a bend tells the distance of both.
     let tan = [curve(0.0, 5.0, bend), curve(0.0, 5.0, |x| bend(x + 1.0) + 0.1)];

@@ -2,7 +2,9 @@
 
 use super::*;
 use crate::material::series::tests::random;
-use crate::material::{FitOptions, Relaxation, fit_dma, fit_relaxation, fit_wlf, master_curve};
+use crate::material::{
+    FitOptions, Relaxation, VerticalShift, fit_dma, fit_relaxation, fit_wlf, master_curve,
+};
 
 /// A transition over six decades.
 fn polymer() -> Relaxation {
@@ -225,7 +227,7 @@ fn a_glass_whose_sweeps_do_not_overlap_is_refused() {
     let glass = Relaxation::absolute(3e6, &terms).unwrap();
     let mut isotherm = |temperature: f64| {
         let a = law.factor(temperature).unwrap();
-        let x: Vec<f64> = (0..6).map(|k| 6.28 * 10f64.powf(0.2 * f64::from(k))).collect();
+        let x: Vec<f64> = (0..6).map(|k| 6.0 * 10f64.powf(0.2 * f64::from(k))).collect();
         let (storage, loss): (Vec<_>, Vec<_>) =
             x.iter().map(|w| glass.complex(w * a)).map(|(s, l)| (s * scatter(), l * scatter())).unzip();
         Isotherm { temperature, x, curves: vec![storage, loss] }

@@ -88,7 +88,7 @@ fn data_files_name_their_units_or_are_asked_for_them() {
     // What cannot be read is asked for, and not taken in Pa.
     for (header, words) in [
         ("log t, log E", "logarithm"),
-        ("t [s], log E", "no column is recognised as modulus"),
+        ("t [s], log Q", "no column is recognised as modulus"),
         ("t, E relaxed, all in MPa", "does not name 2 columns"),
     ] {
         let error = read(header).unwrap_err().to_string();

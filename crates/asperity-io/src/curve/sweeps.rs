@@ -91,7 +91,8 @@ fn once(kind: Kind, sweeps: Vec<Sweep>) -> Result<(Vec<Sweep>, Option<String>), 
                 let values = &values[rows.clone()];
                 let mean = values.iter().sum::<f64>() / values.len() as f64;
                 curve.push(mean);
-                let apart = values.iter().map(|value| (value / mean - 1.0).abs()).fold(0.0, f64::max);
+                let from_mean = |value: &f64| if *value == mean { 0.0 } else { (value / mean - 1.0).abs() };
+                let apart = values.iter().map(from_mean).fold(0.0, f64::max);
                 if group.len() > 1 && (apart.is_nan() || apart > SAME_VALUE) {
                     let [first, other] = [sweep.lines[rows.start], sweep.lines[rows.end - 1]];
                     return Err(fault(format!(

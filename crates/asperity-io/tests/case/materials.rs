@@ -588,7 +588,12 @@ fn faults_of_measured_curves_are_named_with_their_line() {
         at,
         &["no column is recognised as", "1 \"t [s]\", 2 \"E [MPa]\"", "columns = {"],
     );
-    says(dir, &dma("sweep.csv", ""), at, &["line 4", "the frequency is that of line 3", "column of temperatures"]);
+    says(
+        dir,
+        &dma("sweep.csv", ""),
+        at,
+        &["line 4", "the frequency is that of line 3", "column of temperatures"],
+    );
     says(dir, &dma("loss.csv", ""), at, &["passive material", "moduli = \"storage\""]);
     says(dir, &dma("five.csv", ""), at, &["3 temperatures (0.0 °C, 20.0 °C, 40.0 °C)", "shift = {"]);
     says(

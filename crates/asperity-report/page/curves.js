@@ -54,10 +54,10 @@ function stages() {
 
 function evolutionPart() {
   const time = state.series.time, events = stages();
-  evolution.set([...ALWAYS, ...state.quantities].map(([title, label, names]) => ({
+  evolution.set([...ALWAYS, ...state.quantities].map(([title, label, names, states]) => ({
     title,
     x: rowsAxis(),
-    y: { label, unit: plain(state.units[names[0][1]]) },
+    y: { label, unit: plain(state.units[names[0][1]]), states: states?.length ? states : null, linear: Boolean(states?.length) },
     zero: ZERO[names[0][1]],
     none: names[0][1] in ZERO ? ZERO[names[0][1]] : undefined,
     events,
@@ -168,9 +168,9 @@ async function surfacePart() {
   if (!s) return;
   const map = await load("surface");
   if (map) {
-    const [low, high] = robust(map);
+    const [low, high] = robust(map), [least, most] = extent(map);
     heights.show({ map, colours: "sequential", low, high, unit: "m", label: "height" });
-    $("height-note").textContent = `${s.note}${outside(extent(map), low, high, "m")}`;
+    $("height-note").textContent = `${s.note}${outside(least < low ? least : null, most > high ? most : null, "m")}`;
   }
   $("statistics").replaceChildren(...terms(s.statistics));
   if (s.wave_number) spectra.set([{ title: "Radially averaged power spectrum", x: { label: "wavenumber", unit: "1/m", log: true }, y: { label: "C(q)", unit: "m4", log: true }, series: [{ name: "", x: s.wave_number, y: s.power }] }]);

@@ -13,16 +13,16 @@ use crate::result::{Options, PlotError, Rows};
 /// Names and colours of the cells where the seal leaks.
 const LEAKING: [(&str, [u8; 3]); 4] = [
     ("closed", CLOSED),
-    ("open from inlet to outlet", [86, 180, 233]),
+    ("through passage", [86, 180, 233]),
     ("dead end", [230, 159, 0]),
-    ("enclosed pocket", POCKET),
+    ("closed pocket", POCKET),
 ];
 /// And where it is tight.
 const TIGHT: [(&str, [u8; 3]); 4] = [
     ("closed", CLOSED),
     ("open to the inlet", [86, 180, 233]),
     ("open to the outlet", [0, 158, 115]),
-    ("enclosed pocket", POCKET),
+    ("closed pocket", POCKET),
 ];
 const CLOSED: [u8; 3] = [110, 110, 108];
 const POCKET: [u8; 3] = [213, 94, 0];
@@ -167,14 +167,14 @@ pub(crate) fn curves(reader: &Reader, log: Option<bool>) -> Result<Vec<Curves>, 
             .with(scaled("estimate from the critical constriction", Style::Dashed, "leak_estimate_junction")?)
             .with(scaled(
                 "estimate from all gaps (effective medium)",
-                Style::Dotted,
+                Style::DashDotted,
                 "leak_estimate_medium",
             )?);
         all.push(sealing(panel, &time, &percolates));
     }
     let gaps = Curves::new("Gaps", axis(), Axis::log("gap", "m"))
-        .with(line("hydraulic: an even gap that leaks as much", Style::Line, "hydraulic_gap")?)
-        .with(line("critical: at the tightest place of the widest path", Style::Dashed, "critical_gap")?);
+        .with(line("hydraulic: even gap, same leak", Style::Line, "hydraulic_gap")?)
+        .with(line("critical: narrowest on best path", Style::Dashed, "critical_gap")?);
     all.push(sealing(gaps, &time, &percolates));
     Ok(all)
 }

@@ -57,10 +57,17 @@ impl Layout {
         Layout { x, y, area: [left, top, right, bottom], titles, bar, beyond, room: room[1] }
     }
 
-    /// Lower end of the colour bar, which is longer than a strip beside it.
-    pub(super) fn bar_end(&self) -> f64 {
+    /// Upper and lower end of the colour bar: beside a strip it is longer than the frame, and words about values beyond its colours
+    /// have their room above and below it.
+    pub(super) fn bar_ends(&self) -> [f64; 2] {
+        let room = |words: &Option<String>| if words.is_some() { SMALL + 7.0 } else { 0.0 };
+        [self.area[1] + room(&self.beyond[1]), self.foot() - room(&self.beyond[0])]
+    }
+
+    /// Lower end of the frame or of the colour bar beside it.
+    fn foot(&self) -> f64 {
         let [_, top, _, bottom] = self.area;
-        bottom.max(top + self.room.min(BAR))
+        if self.bar.is_some() { bottom.max(top + self.room.min(BAR)) } else { bottom }
     }
 }
 
@@ -76,9 +83,7 @@ impl Map {
     /// The height that it takes of a panel of this size \[points\]: less than there is where the area is wide.
     pub(crate) fn height(&self, size: [f64; 2], margins: Margins) -> f64 {
         let layout = Layout::of(self, &Place { corner: [0.0; 2], size, margins });
-        let [_, top, _, bottom] = layout.area;
-        let end = if layout.bar.is_some() { layout.bar_end() } else { bottom };
-        size[1] - layout.room + (end - top)
+        size[1] - layout.room + (layout.foot() - layout.area[1])
     }
 
     /// Whether the second axis points downwards.

@@ -185,15 +185,15 @@ impl Map {
             scale_bar(drawing, [left, bottom], w, self.size[0]);
         }
         // Values beyond the ends of the colours, below and above the bar.
-        let end = layout.bar_end();
-        let places = [end + SMALL + 2.0, top - 4.0];
+        let [first, last] = layout.bar_ends();
+        let places = [last + SMALL + 6.0, first - 7.0];
         for ((value, y), arrow) in layout.beyond.iter().zip(places).zip(["↓", "↑"]) {
             if let Some(value) = value {
                 drawing.text([right + 6.0, y], SMALL, Anchor::Start, &format!("{arrow} {value}"));
             }
         }
         if let Some(bar) = layout.bar {
-            bar.draw(drawing, [right + 8.0, top, end]);
+            bar.draw(drawing, [right + 8.0, first, last]);
         }
         if let Some(states) = states {
             self.names(drawing, states, [left, top]);

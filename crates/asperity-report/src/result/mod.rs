@@ -327,7 +327,7 @@ fn colour(panel: &mut Panel, plot: Plot, options: &Options) {
                 _ => *range,
             };
             *range = options.limits.or(own);
-            map.log = options.log_values;
+            map.log |= options.log_values;
         }
         Panel::Curves(curves) if plot.unit() == Some(curves.y.unit.as_str()) && plot != Plot::Stress => {
             curves.y.range = options.limits.or(curves.y.range);

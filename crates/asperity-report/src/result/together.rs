@@ -29,7 +29,7 @@ pub fn together(
         if !own.caption.is_empty() {
             captions.push(format!("{name}: {}", own.caption));
         }
-        (whole.panel, whole.columns) = (own.panel, own.columns.max(whole.columns));
+        (whole.panel, whole.columns) = (own.panel, own.columns);
         for panel in own.panels {
             match panel {
                 Panel::Curves(curves) => match all.iter_mut().find(|other| other.is_like(&curves)) {
@@ -113,8 +113,11 @@ impl Together {
         }
     }
 
-    /// The style of a quantity: the one that it has already, or the next.
+    /// The style of a quantity: the one that it has already, or the next. One without a name is the only one of its result.
     fn style(&mut self, series: &Series) -> Style {
+        if series.name.is_empty() {
+            return series.style;
+        }
         if let Some((_, style)) = self.quantities.iter().find(|(name, _)| *name == series.name) {
             return *style;
         }
@@ -136,13 +139,11 @@ impl Together {
         let entry =
             |name: String, style, colour: &str| Series::new(name, style, vec![], vec![]).in_colour(colour);
         let several = self.quantities.len() > 1;
-        let of_result = match self.quantities.first() {
-            Some((_, style)) if !several => *style,
-            _ => Style::Line,
-        };
+        let only = self.panel.series.first().map_or(Style::Line, |series| series.style);
+        let of_result = if several { Style::Line } else { only };
         let results = self.results.into_iter().map(|(name, colour)| entry(name, of_result, colour));
-        let named = self.quantities.into_iter().filter(|(name, _)| several && !name.is_empty());
-        let quantities = named.map(|(name, style)| entry(name, style, INK));
+        let quantities = self.quantities.into_iter().filter(|_| several);
+        let quantities = quantities.map(|(name, style)| entry(name, style, INK));
         let legend: Vec<Series> = results.chain(quantities).collect();
         legend.into_iter().fold(self.panel, Curves::with)
     }

@@ -303,7 +303,9 @@ class Chart {
     const line = (at, name, text) => {
       if (this.isLog("x") && !(at > 0)) return null;
       const left = u.valToPos(at, "x");
-      if (isFinite(left)) u.under.append(make("i", { class: name, style: `left: ${left.toFixed(1)}px` }, ...(text ? [make("span", {}, text)] : [])));
+      // Near the right border the words stand before their line.
+      const side = left + 7 * text.length > u.under.clientWidth ? { class: "before" } : {};
+      if (isFinite(left)) u.under.append(make("i", { class: name, style: `left: ${left.toFixed(1)}px` }, ...(text ? [make("span", side, text)] : [])));
       return left;
     };
     let free = -Infinity;
@@ -312,6 +314,6 @@ class Chart {
       const left = line(at, "event", room ? text : "");
       if (room && left !== null && left >= 0) free = left + 7 * text.length + 10;
     }
-    if (this.marked !== undefined && this.marked !== null) line(this.marked, "mark");
+    if (this.marked !== undefined && this.marked !== null) line(this.marked, "mark", "");
   }
 }

@@ -192,7 +192,8 @@ async function showProfile(kind, map) {
   }
   const time = moment(state.instants[chosen.instant]);
   const title = state.grid.line ? `${kind.title} at ${time}` : `${kind.title} at ${across} = ${words(where, "m")}, ${time}`;
-  profile.set([{ title, x: { label: chosen.along, unit: "m", linear: true }, y: { label: kind.label, unit: plain(kind.unit) }, series }]);
+  profile.set([{ title, x: { label: chosen.along, unit: "m", linear: true }, y: { label: kind.label, unit: plain(kind.unit) }, series,
+    zero: kind.name === "pressure" ? "No pressure along this line." : undefined }]);
 }
 
 /** Surface of the deformed body: down by u, where u = h - h0 + w. */

@@ -148,9 +148,9 @@ impl Map {
         Some(ColourScale::of(&self.values, *colours, self.palette, *range, self.log))
     }
 
-    /// The values at the ends of its colours; `None` for states.
+    /// The values at the ends of its colours; `None` for states, and for the pressure where nothing touches.
     pub(crate) fn ends(&self) -> Option<[f64; 2]> {
-        self.scale().map(|scale| scale.ends)
+        self.scale().filter(|_| !self.shows_no_pressure()).map(|scale| scale.ends)
     }
 
     /// Whether it is a map of the pressure where nothing touches, with no ends of its colours given.

@@ -79,7 +79,7 @@ class Chart {
   notes() {
     const { x, series, note } = this.spec;
     const zero = this.isLog("x") && series.some((one) => one.x.some((at, n) => at === 0 && isFinite(one.y[n])));
-    this.note.textContent = [note, zero && !this.words() ? `${x.label} = 0 is not shown.` : ""].filter(Boolean).join(" ");
+    this.note.textContent = [note, zero && !this.words() ? `Not shown: ${x.label} = 0.` : ""].filter(Boolean).join(" ");
     this.note.hidden = !this.note.textContent;
   }
 

@@ -84,14 +84,15 @@ def filled(items, lists):
 
 
 def landing(path):
-    """The first page: without lists at its sides, and with buttons."""
+    """The first page: without lists at its sides, the picture beside the first words and commands, and with buttons."""
     text = path.read_text(encoding="utf-8")
     head, _, rest = text.partition("\n![")
     picture, _, rest = rest.partition("\n\n")
-    caption, _, rest = rest.partition("\n\n[")
+    caption, _, rest = rest.partition("\n\n```")
+    commands, _, rest = rest.partition("\n```\n\n")
     _, _, rest = rest.partition("\n\n")
     path.write_text(
-        f"---\nhide: [navigation, toc]\ntitle: asperity\n---\n<div class='hero' markdown>\n<div markdown>\n{head}\n"
+        f"---\nhide: [navigation, toc]\ntitle: asperity\n---\n<div class='hero' markdown>\n<div markdown>\n{head}\n```{commands}\n```\n\n"
         "[Start in five minutes](start.md){ .md-button .md-button--primary } [Gallery](gallery.md){ .md-button }\n</div>\n"
         f"<figure markdown>\n![{picture}{{ .plate }}\n<figcaption>{caption}</figcaption>\n</figure>\n</div>\n\n"
         f"<div class='topics' markdown>\n\n{rest}\n</div>\n",

@@ -17,7 +17,7 @@ BROWSERS = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stab
 #: Width of a phone [px].
 PHONE = 390
 #: Queries and a page that each must find.
-QUERIES = {"hardness": "materials.html", "percolates": "leakage.html", "Polonsky": "theory.html"}
+QUERIES = {"hardness": "materials.html", "percolates": "leakage.html", "Polonsky": "theory.html", "large-strain": "findings.html"}
 
 
 class Quiet(http.server.SimpleHTTPRequestHandler):

@@ -3,6 +3,8 @@
 import os
 import subprocess
 
+import markup
+
 #: Case, lines that draw it, caption. RESULT stands for the result of the case, PICTURE for the file.
 PICTURES = [
     ("rough-pmma", "plot RESULT pressure -o PICTURE", "A rough sphere on PMMA: pressure after 500 s, limited by the hardness."),
@@ -36,7 +38,7 @@ def page(program, root, work, pictures):
     """The page; results go to `work`, pictures to `pictures`."""
     work.mkdir(parents=True, exist_ok=True)
     pictures.mkdir(parents=True, exist_ok=True)
-    cards = []
+    thumbs, cards = [], []
     for number, (name, draw, caption) in enumerate(PICTURES):
         case = root / "examples" / f"{name}.toml"
         result = work / f"{name}.zarr"
@@ -48,8 +50,18 @@ def page(program, root, work, pictures):
             picture.unlink(missing_ok=True)
             given = {"RESULT": str(result), "PICTURE": str(picture), "CASE": str(case)}
             asperity(program, root, [given.get(word, word) for word in words])
+        thumbs.append(thumb(caption, picture.name))
         cards.append(card(name, draw, caption, picture.name, case.read_text(encoding="utf-8")))
-    return OPENING + "\n".join(cards)
+    return OPENING + "<div class='thumbs' markdown>\n\n" + "\n".join(thumbs) + "\n\n</div>\n\n" + "\n".join(cards)
+
+
+def title(caption):
+    return caption.split(":")[0].rstrip(".")
+
+
+def thumb(caption, picture):
+    """A small picture with its title, which leads to the large one."""
+    return f"- [![]({'gallery/' + picture}){{ loading=lazy }} {title(caption)}](#{markup.slug(title(caption), '-')})"
 
 
 def card(name, draw, caption, picture, case):
@@ -57,7 +69,7 @@ def card(name, draw, caption, picture, case):
     commands = [f"asperity run {name}.toml -o {name}.zarr"] if "RESULT" in draw else []
     commands.append("asperity " + " ".join(shown.get(word, word) for word in split(draw)))
     block = "\n".join(f"    {line}" if line else "" for line in case.splitlines())
-    return f"""## {caption.split(":")[0].rstrip(".")}
+    return f"""## {title(caption)}
 
 ![{caption}](gallery/{picture}){{ .plate loading=lazy }}
 

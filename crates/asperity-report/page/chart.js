@@ -30,8 +30,9 @@ function track(u, k) {
 }
 
 /**
- * One chart in `host`, of {title, note, x: {label, unit, log}, y: {label, unit, log}, series: [{name, x, y, points, dashed}],
- * free, events: [{at, text}], zero, none}. All series have the same x. `free`: x is not sorted. `zero` and `none` are the
+ * One chart in `host`, of {title, note, x: {label, unit, log}, y: {label, unit, log, states}, series: [{name, x, y, points, dashed}],
+ * free, events: [{at, text}], zero, none}. All series have the same x. `free`: x is not sorted. `states`: names of the values
+ * 0, 1, 2 ... that are held from one x to the next. `zero` and `none` are the
  * words in place of curves that are zero throughout, or that have no value.
  * Charts with the same `shared` have one cursor and one zoom along x; `pick` is called with the x of a click.
  */
@@ -66,13 +67,20 @@ class Chart {
   set(spec) {
     this.spec = spec;
     this.heading.textContent = spec.title || "";
-    this.note.textContent = spec.note || "";
-    this.note.hidden = !spec.note;
     this.plot.setAttribute("aria-label", `${spec.title || spec.y.label} over ${spec.x.label}; arrow keys read values`);
     if (!this.uplot || this.words() || this.drawn !== this.form()) return this.build();
+    this.notes();
     const zoomed = this.zoomed();
     this.uplot.setData(this.data(), !zoomed);
     if (zoomed) this.uplot.redraw();
+  }
+
+  /** The note of the chart, and what a logarithmic axis leaves out. */
+  notes() {
+    const { x, series, note } = this.spec;
+    const zero = this.isLog("x") && series.some((one) => one.x.some((at, n) => at === 0 && isFinite(one.y[n])));
+    this.note.textContent = [note, zero && !this.words() ? `Not shown: ${x.label} = 0.` : ""].filter(Boolean).join(" ");
+    this.note.hidden = !this.note.textContent;
   }
 
   /** A logarithmic or linear axis. */
@@ -141,7 +149,8 @@ class Chart {
 
   /** Ticks of an axis as it is shown now: values in SI and texts in the unit shown. */
   ticks(u, key) {
-    const { min, max } = u.scales[key];
+    const { min, max } = u.scales[key], { states } = this.spec[key];
+    if (states) return states.map((text, value) => ({ value, text }));
     const unit = this.unit(u, key);
     const length = (key === "x" ? u.bbox.width : u.bbox.height) / (window.devicePixelRatio || 1);
     return ticks(min * unit.factor, max * unit.factor, length / (key === "x" ? 70 : 38), this.isLog(key))
@@ -172,20 +181,20 @@ class Chart {
     const value = (u, v, k, n) => {
       if (n === null || n === undefined) return "";
       const [at, is] = free ? [u.data[k][0][n], u.data[k][1][n]] : [null, v];
-      const text = is === null || is === undefined ? "–" : words(is, y.unit || "");
+      const text = is === null || is === undefined ? "–" : y.states?.[is] ?? words(is, y.unit || "");
       return free ? `${text} at ${words(at, x.unit || "")}` : text;
     };
     const series = spec.series.map((one, k) => ({
       label: one.name || y.label, show: !this.hidden.has(one.name), scale: "y", width: 1.8, value,
       stroke: () => css(`--c${k % 4}`), dash: one.dashed ? [6, 4] : undefined,
-      ...(free ? { facets, paths: track } : {}), ...(one.points ? { paths: () => null } : {}),
+      ...(free ? { facets, paths: track } : {}), ...(y.states ? { paths: uPlot.paths.stepped({ align: 1 }) } : {}), ...(one.points ? { paths: () => null } : {}),
       points: one.points ? { show: true, size: 5, width: 1.2, fill: () => css("--paper") } : free ? { show: false } : { size: 4, space: 14, fill: () => css(`--c${k % 4}`) },
     }));
     return {
       ...this.size(), mode: free ? 2 : 1, padding: [8, 14, 0, 0], pxAlign: 0,
       scales: {
         x: { time: false, distr: this.isLog("x") ? 3 : 1, range: (u, low, high) => this.across(u, low, high) },
-        y: { distr: this.isLog("y") ? 3 : 1, range: (u, low, high) => (this.up = low === null ? [1, 10] : ends(low, high, this.isLog("y"), 0.05)) },
+        y: { distr: this.isLog("y") ? 3 : 1, range: (u, low, high) => (this.up = y.states ? [-0.2, y.states.length - 0.8] : low === null ? [1, 10] : ends(low, high, this.isLog("y"), 0.05)) },
       },
       axes: [this.axis("x"), this.axis("y")],
       series: [free ? {} : { label: x.label, value: (u, v) => (v === null || v === undefined ? "" : words(v, x.unit || "")) }, ...series],
@@ -225,6 +234,7 @@ class Chart {
     this.uplot = null;
     [this.drawn, this.drawnAxes] = [this.form(), this.axes()];
     const words = this.words();
+    this.notes();
     this.buttons(words ? [] : ["x", "y"]);
     this.plot.replaceChildren(...(words ? [make("p", { class: "empty" }, words)] : []));
     if (words) return this.legend.replaceChildren();
@@ -293,7 +303,9 @@ class Chart {
     const line = (at, name, text) => {
       if (this.isLog("x") && !(at > 0)) return null;
       const left = u.valToPos(at, "x");
-      if (isFinite(left)) u.under.append(make("i", { class: name, style: `left: ${left.toFixed(1)}px` }, ...(text ? [make("span", {}, text)] : [])));
+      // Near the right border the words stand before their line.
+      const side = left + 7 * text.length > u.under.clientWidth ? { class: "before" } : {};
+      if (isFinite(left)) u.under.append(make("i", { class: name, style: `left: ${left.toFixed(1)}px` }, ...(text ? [make("span", side, text)] : [])));
       return left;
     };
     let free = -Infinity;
@@ -302,6 +314,6 @@ class Chart {
       const left = line(at, "event", room ? text : "");
       if (room && left !== null && left >= 0) free = left + 7 * text.length + 10;
     }
-    if (this.marked !== undefined && this.marked !== null) line(this.marked, "mark");
+    if (this.marked !== undefined && this.marked !== null) line(this.marked, "mark", "");
   }
 }

@@ -47,9 +47,9 @@ function extent(map, contact) {
   return !values ? [map.min, map.max] : values.length ? [values[0], values[values.length - 1]] : null;
 }
 
-/** What lies beyond the colours, in words. */
-function outside([least, most], low, high, unit) {
-  const parts = [least < low ? `down to ${words(least, unit)}` : "", most > high ? `up to ${words(most, unit)}` : ""].filter(Boolean);
+/** What lies beyond the colours, in words: the least and the greatest value, null where they do not. */
+function outside(least, most, unit) {
+  const parts = [least === null ? "" : `down to ${words(least, unit)}`, most === null ? "" : `up to ${words(most, unit)}`].filter(Boolean);
   return parts.length ? ` Values outside of the colours: ${parts.join(" and ")}.` : "";
 }
 

@@ -54,10 +54,10 @@ function stages() {
 
 function evolutionPart() {
   const time = state.series.time, events = stages();
-  evolution.set([...ALWAYS, ...state.quantities].map(([title, label, names]) => ({
+  evolution.set([...ALWAYS, ...state.quantities].map(([title, label, names, states]) => ({
     title,
     x: rowsAxis(),
-    y: { label, unit: plain(state.units[names[0][1]]) },
+    y: { label, unit: plain(state.units[names[0][1]]), states: states?.length ? states : null, linear: Boolean(states?.length) },
     zero: ZERO[names[0][1]],
     none: names[0][1] in ZERO ? ZERO[names[0][1]] : undefined,
     events,
@@ -144,7 +144,7 @@ function leakPart() {
   const line = (name, key, dashed, factor) => ({ name, x, y: values(key, factor), dashed });
   const none = `The seal is tight at all ${state.rows.label === "time" ? "times" : "velocities"}: no open path from inlet to outlet.`;
   const specs = [
-    { title: "Gaps", note, none, zero: none, events, x: rowsAxis(), y: { label: "gap", unit: "m", log: true }, series: [line("hydraulic", "hydraulic_gap"), line("critical", "critical_gap")] },
+    { title: "Gaps", note, none, zero: none, events, x: rowsAxis(), y: { label: "gap", unit: "m", log: true }, series: [line("hydraulic: even gap, same leak", "hydraulic_gap"), line("critical: narrowest on best path", "critical_gap", true)] },
     { title: "Open cells", events, x: rowsAxis(), y: { label: "share of the domain", unit: "" }, zero: "No cell is open.", series: [{ name: "", x, y: leak.open_fraction.values }] },
   ];
   if (leak.leak_rate) {
@@ -153,7 +153,8 @@ function leakPart() {
     const ratios = gas ? gas.values.map((standard, n) => (10 * standard) / leak.leak_rate.values[n]).filter(isFinite) : [];
     const factor = ratios.length ? ratios[0] : 1;
     specs.unshift({ title: "Leak rate", note, none, zero: none, events, x: rowsAxis(), y: { label: "leak rate", unit: gas ? "mbar l/s" : "m3/s", log: true },
-      series: [line("computed", "leak_rate", false, factor), line("one junction", "leak_estimate_junction", true, factor), line("effective medium", "leak_estimate_medium", true, factor)] });
+      series: [line("solved on the grid", "leak_rate", false, factor), line("estimate from the critical constriction", "leak_estimate_junction", true, factor),
+        line("estimate from all gaps (effective medium)", "leak_estimate_medium", true, factor)] });
   }
   leaks.set(specs);
   $("leak-asked").textContent = leak.asked;
@@ -168,9 +169,9 @@ async function surfacePart() {
   if (!s) return;
   const map = await load("surface");
   if (map) {
-    const [low, high] = robust(map);
+    const [low, high] = robust(map), [least, most] = extent(map);
     heights.show({ map, colours: "sequential", low, high, unit: "m", label: "height" });
-    $("height-note").textContent = `${s.note}${outside(extent(map), low, high, "m")}`;
+    $("height-note").textContent = `${s.note}${outside(least < low ? least : null, most > high ? most : null, "m")}`;
   }
   $("statistics").replaceChildren(...terms(s.statistics));
   if (s.wave_number) spectra.set([{ title: "Radially averaged power spectrum", x: { label: "wavenumber", unit: "1/m", log: true }, y: { label: "C(q)", unit: "m4", log: true }, series: [{ name: "", x: s.wave_number, y: s.power }] }]);

@@ -51,9 +51,12 @@ async function coloured(kind, map, contact) {
   const swatches = kind.colours === "pressure" ? [[OPEN, "no contact"]] : contact ? [[TOUCHING, "contact"]] : [];
   if (map.holes) swatches.push([UNDEFINED, "undefined"]);
   const inside = extent(map, contact), [least, most] = inside ?? [low, high], states = kind.colours === "states";
-  const beyond = [!states && kind.colours !== "pressure" && least < low && !(log && least <= 0), !states && most > high];
-  const note = inside ? outside([beyond[0] ? least : low, beyond[1] ? most : high], low, high, kind.unit) : " All cells that can touch do.";
-  return { map, contact, colours: kind.colours, low, high, log, unit: kind.unit, label: kind.label, swatches, beyond, note, closed: !inside };
+  // Less than half of a colour beyond an end is rounding.
+  const past = (value) => Math.max(-share(value, low, high, log), share(value, low, high, log) - 1) > 0.5 / 256;
+  const beyond = [!states && kind.colours !== "pressure" && least < low && !(log && least <= 0) && past(least), !states && most > high && past(most)];
+  const none = kind.colours === "pressure" && map.max <= 0 && chosenLimits.ends === "each";
+  const note = none ? " Nothing touches." : inside ? outside(beyond[0] ? least : null, beyond[1] ? most : null, kind.unit) : " All cells that can touch do.";
+  return { map, contact, colours: kind.colours, low, high, log, unit: kind.unit, label: kind.label, swatches, beyond, note, closed: !inside || none };
 }
 
 async function showMap() {
@@ -63,7 +66,8 @@ async function showMap() {
   const stale = () => kind !== field() || instant !== state.instants[chosen.instant];
   const map = await load(`${kind.name}-${index}`);
   if (!map || stale()) return;
-  $("map-title").textContent = `${kind.title} at ${moment(instant)}`;
+  const touches = ["pressure", "contact"].includes(kind.name) ? map.max > 0 : state.series.contact_area[instant.row] > 0;
+  $("map-title").textContent = `${kind.title} at ${moment(instant)}${touches ? "" : ": no contact"}`;
   if (state.grid.line) await showOverTime(kind, instant, stale);
   else {
     const what = await coloured(kind, map, await contactOf(kind, index));
@@ -94,11 +98,11 @@ function showNearest(at) {
 function showLimits(kind, { low, high, log, note }) {
   $("limits-part").hidden = kind.colours === "states";
   if (kind.colours === "states") return ($("map-range").textContent = "");
-  const shownUnit = shown(kind.unit, Math.max(Math.abs(low), Math.abs(high)));
+  const largest = Math.max(Math.abs(low), Math.abs(high)), shownUnit = shown(kind.unit, largest);
   $("limits").value = limitsOf(kind).ends;
   if (!state.grid.line) $("limits").querySelector("[value=all]").disabled = !canShare(kind);
   for (const [id, value] of [["low", low], ["high", high]]) {
-    if (document.activeElement !== $(id)) $(id).value = Number((value * shownUnit.factor).toPrecision(4));
+    if (document.activeElement !== $(id)) $(id).value = rounded(value * shownUnit.factor, log ? value * shownUnit.factor : largest * shownUnit.factor);
     $(id).removeAttribute("aria-invalid");
   }
   $("limits-unit").textContent = shownUnit.text;
@@ -188,7 +192,8 @@ async function showProfile(kind, map) {
   }
   const time = moment(state.instants[chosen.instant]);
   const title = state.grid.line ? `${kind.title} at ${time}` : `${kind.title} at ${across} = ${words(where, "m")}, ${time}`;
-  profile.set([{ title, x: { label: chosen.along, unit: "m", linear: true }, y: { label: kind.label, unit: plain(kind.unit) }, series }]);
+  profile.set([{ title, x: { label: chosen.along, unit: "m", linear: true }, y: { label: kind.label, unit: plain(kind.unit) }, series,
+    zero: kind.name === "pressure" ? "No pressure along this line." : undefined }]);
 }
 
 /** Surface of the deformed body: down by u, where u = h - h0 + w. */

@@ -38,6 +38,12 @@ function digits(value) {
   return String(size >= 1000 ? Math.round(value) : Number(value.toPrecision(4))).replace("-", "−");
 }
 
+/** A number rounded where the fourth digit of `of` is. */
+function rounded(value, of) {
+  const digit = 3 - Math.floor(Math.log10(Math.abs(of) || 1));
+  return Number(value.toFixed(Math.min(Math.max(digit, 0), 20))) + 0; // no negative zero
+}
+
 /** A quantity with four digits, its prefix and its unit. */
 function words(value, unit) {
   if (!isFinite(value)) return "undefined";

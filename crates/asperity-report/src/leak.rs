@@ -3,7 +3,7 @@
 use asperity::leakage::{CellKind, flux};
 use asperity_io::leakage::words::{MBAR_LITRE, rate};
 use asperity_io::leakage::{Leak, Leakage, settings};
-use asperity_io::readable::quantity;
+use asperity_io::readable::{quantity, superscript};
 use asperity_io::store::{At, FieldKind, Reader};
 use ndarray::{Array2, ArrayView2, Zip};
 
@@ -13,16 +13,16 @@ use crate::result::{Options, PlotError, Rows};
 /// Names and colours of the cells where the seal leaks.
 const LEAKING: [(&str, [u8; 3]); 4] = [
     ("closed", CLOSED),
-    ("inlet to outlet", [86, 180, 233]),
+    ("through passage", [86, 180, 233]),
     ("dead end", [230, 159, 0]),
-    ("pocket", POCKET),
+    ("closed pocket", POCKET),
 ];
 /// And where it is tight.
 const TIGHT: [(&str, [u8; 3]); 4] = [
     ("closed", CLOSED),
-    ("from the inlet", [86, 180, 233]),
-    ("to the outlet", [0, 158, 115]),
-    ("pocket", POCKET),
+    ("open to the inlet", [86, 180, 233]),
+    ("open to the outlet", [0, 158, 115]),
+    ("closed pocket", POCKET),
 ];
 const CLOSED: [u8; 3] = [110, 110, 108];
 const POCKET: [u8; 3] = [213, 94, 0];
@@ -69,27 +69,38 @@ fn open_gap(found: &Leakage, gap: ArrayView2<'_, f64>, size: [f64; 2]) -> Map {
     Map::new("Tight: gap of the open cells", ["gap", "m"], Colours::Sequential, open.view(), size)
 }
 
-/// The flux in decades below its largest; blank in contact, the lowest colour where the fluid rests.
+/// The flow per width over its largest value; blank in contact, the lowest colour where the fluid rests.
 fn flow(found: &Leakage, gap: ArrayView2<'_, f64>, size: [f64; 2]) -> Map {
     let flux = flux(size, gap, found.pressure.view());
     let largest = flux.iter().copied().filter(|q| q.is_finite()).fold(0.0, f64::max);
-    let mut decades = Array2::from_elem(flux.dim(), f64::NAN);
-    Zip::from(&mut decades).and(&flux).and(&found.cells).for_each(|decades, q, kind| {
+    let least = 10f64.powf(-DECADES);
+    let mut share = Array2::from_elem(flux.dim(), f64::NAN);
+    Zip::from(&mut share).and(&flux).and(&found.cells).for_each(|share, q, kind| {
         if *kind != CellKind::Closed {
-            *decades = if largest > 0.0 { (q / largest).log10().max(-DECADES) } else { -DECADES };
+            *share = if largest > 0.0 { (q / largest).max(least) } else { least };
         }
     });
-    let label = ["log10 of flux over largest flux", ""];
-    let map = Map::new("Flow per width", label, Colours::Sequential, decades.view(), size);
-    map.between([-DECADES, 0.0])
+    let map = Map::new("Flow", ["flow over its largest", ""], Colours::Sequential, share.view(), size);
+    Map { log: true, ..map.between([least, 1.0]) }
 }
 
 /// The leak in a few words.
 fn heading(found: &Leakage) -> String {
     match found.leak_rate {
         _ if !found.percolates => "Tight".to_owned(),
-        Some(leak_rate) => format!("Leak rate {}", rate(leak_rate, found.leak_rate_standard)),
+        Some(leak_rate) => format!("Leak rate {}", printed(&rate(leak_rate, found.leak_rate_standard))),
         None => format!("Hydraulic gap {}", quantity(found.hydraulic_gap, "m")),
+    }
+}
+
+/// A number with its unit as it is printed: "4.9e-10 m3/s" as "4.9×10⁻¹⁰ m³/s".
+fn printed(text: &str) -> String {
+    let text = text.replace("m3", "m³");
+    let Some((digits, rest)) = text.split_once('e') else { return text };
+    let (power, unit) = rest.split_once(' ').unwrap_or((rest, ""));
+    match power.parse() {
+        Ok(power) => format!("{digits}×10{} {unit}", superscript(power)),
+        Err(_) => text,
     }
 }
 
@@ -152,14 +163,18 @@ pub(crate) fn curves(reader: &Reader, log: Option<bool>) -> Result<Vec<Curves>, 
             Ok(series)
         };
         let panel = Curves::new("Leak rate", axis(), label)
-            .with(scaled("computed", Style::Line, "leak_rate")?)
-            .with(scaled("one junction", Style::Dashed, "leak_estimate_junction")?)
-            .with(scaled("effective medium", Style::Dashed, "leak_estimate_medium")?);
+            .with(scaled("solved on the grid", Style::Line, "leak_rate")?)
+            .with(scaled("estimate from the critical constriction", Style::Dashed, "leak_estimate_junction")?)
+            .with(scaled(
+                "estimate from all gaps (effective medium)",
+                Style::DashDotted,
+                "leak_estimate_medium",
+            )?);
         all.push(sealing(panel, &time, &percolates));
     }
     let gaps = Curves::new("Gaps", axis(), Axis::log("gap", "m"))
-        .with(line("hydraulic", Style::Line, "hydraulic_gap")?)
-        .with(line("critical", Style::Line, "critical_gap")?);
+        .with(line("hydraulic: even gap, same leak", Style::Line, "hydraulic_gap")?)
+        .with(line("critical: narrowest on best path", Style::Dashed, "critical_gap")?);
     all.push(sealing(gaps, &time, &percolates));
     Ok(all)
 }
@@ -174,8 +189,9 @@ fn sealing(mut panel: Curves, time: &[f64], percolates: &[f64]) -> Curves {
     let ends = [10f64.powf(low.log10().floor()), 10f64.powf(high.log10().ceil())];
     panel.y = panel.y.between(ends[0], ends[1]);
     if percolates.iter().filter(|open| **open > 0.0).count() <= FEW {
-        let dots = panel.series.iter().map(|series| Series { style: Style::Points, ..series.clone() });
-        panel.series = dots.collect();
+        for (series, sign) in panel.series.iter_mut().zip(Style::SIGNS.iter().cycle()) {
+            series.style = *sign;
+        }
     }
     let moments = (1..time.len()).filter(|n| percolates[n - 1] > 0.0 && percolates[*n] == 0.0);
     moments.enumerate().fold(panel, |panel, (k, n)| {
@@ -237,4 +253,16 @@ pub(crate) fn last_leak(reader: &Reader) -> At {
         reader.field_times()[*index] == times[n] && reader.field_steps()[*index] as f64 == steps[n]
     };
     (0..reader.field_times().len()).rfind(same).map_or(At::Last, At::Index)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::printed;
+
+    #[test]
+    fn rates_are_printed_with_powers_of_ten() {
+        assert_eq!(printed("4.862e-10 mbar l/s"), "4.862×10⁻¹⁰ mbar l/s");
+        assert_eq!(printed("1.000e0 m3/s"), "1.000×10⁰ m³/s");
+        assert_eq!(printed("NaN m3/s"), "NaN m³/s");
+    }
 }

@@ -1,6 +1,6 @@
 //! The picture of a surface: height map, power spectrum, height distribution, bearing curve and autocorrelation.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{LN_2, TAU};
 
 use asperity::Grid;
 use asperity::surface::statistics::{Autocorrelation, BearingCurve, Extent, SelfAffineFit, Summary};
@@ -98,34 +98,55 @@ fn correlation(surface: &Surface, extent: Extent, summary: &Summary) -> Option<(
     Some((surface, correlation))
 }
 
-/// The autocorrelation averaged over all directions, and where it falls to 0.2.
+/// The autocorrelation averaged over all directions, that along the direction in which it falls first, and Sal, where it falls to 0.2.
 fn radial(correlation: &Autocorrelation) -> Curves {
     /// The level of the autocorrelation length of ISO 25178-2.
     const LEVEL: f64 = 0.2;
-    let (lag, values) = correlation.radial();
+    let (lags, mean) = correlation.radial();
+    let last = lags.last().copied().unwrap_or(0.0);
     let panel = Curves::new("Autocorrelation", Axis::linear("lag", "m"), Axis::linear("autocorrelation", ""));
-    let last = lag.last().copied().unwrap_or(0.0);
-    let panel = panel.with(Series::new("mean of all directions", Style::Line, lag, values));
-    match correlation.length() {
-        Some(length) => {
-            let name = format!("Sal = {}, first fall to 0.2", quantity(length, "m"));
-            panel.with(Series::new(name, Style::Dashed, vec![length; 2], vec![LEVEL, 1.0]))
-        }
-        None => panel.with(Series::new("0.2", Style::Reference, vec![0.0, last], vec![LEVEL; 2])),
-    }
+    let Some((angle, length)) = correlation.fastest_decay() else {
+        return panel.with(Series::new("mean of all directions", Style::Line, lags, mean)).with(Series::new(
+            "0.2, not reached in any direction",
+            Style::Reference,
+            vec![0.0, last],
+            vec![LEVEL; 2],
+        ));
+    };
+    let (sin, cos) = angle.sin_cos();
+    let along: Vec<f64> =
+        lags.iter().map(|lag| correlation.at(lag * cos, lag * sin).unwrap_or(f64::NAN)).collect();
+    let foot = mean.iter().chain(&along).copied().fold(0.0, f64::min);
+    let name = format!("0.2 is reached at Sal = {}", quantity(length, "m"));
+    panel
+        .with(Series::new("mean of all directions", Style::Line, lags.clone(), mean))
+        .with(Series::new(
+            format!("fastest fall, at {:.0}° from x", angle.to_degrees()),
+            Style::Dashed,
+            lags,
+            along,
+        ))
+        .with(Series::new(name, Style::Reference, vec![0.0, length, length], vec![LEVEL, LEVEL, foot]))
 }
 
 /// The autocorrelation over lags in both directions.
 fn lags(surface: &Surface, correlation: &Autocorrelation) -> Map {
     let values = correlation.values.view();
-    let map = Map::new("", ["autocorrelation", ""], Colours::Diverging, values, surface.grid().size());
+    let map = Map::new(
+        "Autocorrelation",
+        ["autocorrelation", ""],
+        Colours::Diverging,
+        values,
+        surface.grid().size(),
+    );
     map.over_lags().between([-1.0, 1.0])
 }
 
 /// Whether the spectrum is that of a self-affine surface: a Hurst exponent between 0 and 1 within its uncertainty, and known to
-/// a quarter.
+/// a quarter, and a spectrum within a factor of two of the fit.
 fn fits(fit: &SelfAffineFit) -> bool {
-    fit.error < 0.25 && fit.hurst + fit.error > 0.0 && fit.hurst - fit.error < 1.0
+    let within = fit.hurst + fit.error > 0.0 && fit.hurst - fit.error < 1.0;
+    within && fit.error < 0.25 && fit.misfit < LN_2
 }
 
 fn spectrum(waves: &asperity::surface::statistics::Waves) -> Curves {
@@ -153,7 +174,7 @@ fn spectrum(waves: &asperity::surface::statistics::Waves) -> Curves {
         let places: Vec<f64> =
             [*first, bend, *last].into_iter().filter(|q| (*first..=*last).contains(q)).collect();
         let values: Vec<f64> = places.iter().map(|q| at(*q)).collect();
-        let name = format!("H = {:.2} \u{b1} {:.2}", fit.hurst, fit.error);
+        let name = format!("fitted slope: H = {:.2} \u{b1} {:.2}", fit.hurst, fit.error);
         curves = curves.with(Series::new(name, Style::Dashed, places, values));
     }
     curves

@@ -40,11 +40,12 @@ fn text(found: &Comparison, first: &Reader) -> String {
         let [a, b] = number.last;
         let change = match b / a - 1.0 {
             _ if a == b => "none".to_owned(),
+            change if change >= FACTOR => format!("{:.4} times", 1.0 + change),
             change if change.is_finite() => format!("{:+.3} %", 100.0 * change),
             _ => String::new(),
         };
         let word = |value: f64| if units.is_empty() { format!("{value:.6}") } else { quantity(value, units) };
-        let largest = number.largest_difference.map_or(String::new(), |share| format!("{share:.2e}"));
+        let largest = number.largest_difference.map_or(String::new(), apart);
         let name = if sweep && number.name == "time" { "velocity" } else { &number.name };
         text += &format!("{name:<28}{:<16}{:<16}{change:<14}{largest}\n", word(a), word(b));
     }
@@ -55,9 +56,20 @@ fn text(found: &Comparison, first: &Reader) -> String {
         ),
     };
     if let Some(share) = found.pressure {
-        text += &format!("Pressures stored last: {share:.2e} of the largest one apart at most.\n");
+        text += &match share {
+            0.0 => "Pressures stored last: the same in every cell.\n".to_owned(),
+            share => format!("Pressures stored last: {share:.2e} of the largest one apart at most.\n"),
+        };
     }
     text
+}
+
+/// A change of this much is told as a factor.
+const FACTOR: f64 = 9.0;
+
+/// A relative difference.
+fn apart(share: f64) -> String {
+    if share == 0.0 { "none".to_owned() } else { format!("{share:.2e}") }
 }
 
 /// The text, or its beginning and an ellipsis.

@@ -183,8 +183,8 @@ pub struct Preparation {
 const PROGRAM: usize = 21 << 20;
 /// Fields that are copied while a checkpoint is stored: what is compressed.
 const KEPT: usize = 2;
-/// The same while a row with fields is stored: the gap too, and what the report draws.
-const STORED: usize = 5;
+/// The same while a row with fields is stored: the gap too.
+const STORED: usize = 4;
 
 impl Case {
     /// The memory that a run takes at its peak \[bytes\]: what its plans say, and what storing takes.

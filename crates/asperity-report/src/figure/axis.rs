@@ -24,6 +24,8 @@ pub struct Axis {
     pub scale: Scale,
     /// Ends of the axis \[SI\]; `None` for those of the data.
     pub range: Option<[f64; 2]>,
+    /// Names of the values 0, 1, 2 ... in place of numbers; empty for numbers.
+    pub names: Vec<String>,
 }
 
 /// A logarithmic axis of more decades on both sides of 1 keeps the unit without a prefix: its numbers are powers of ten in any
@@ -33,12 +35,19 @@ const DECADES_WITHOUT_PREFIX: f64 = 6.0;
 impl Axis {
     /// A linear axis over the range of the data.
     pub fn linear(label: impl Into<String>, unit: impl Into<String>) -> Axis {
-        Axis { label: label.into(), unit: unit.into(), scale: Scale::Linear, range: None }
+        Axis { label: label.into(), unit: unit.into(), scale: Scale::Linear, range: None, names: vec![] }
     }
 
     /// A logarithmic axis over the range of the data.
     pub fn log(label: impl Into<String>, unit: impl Into<String>) -> Axis {
         Axis { scale: Scale::Log, ..Axis::linear(label, unit) }
+    }
+
+    /// An axis of states 0, 1, 2 ..., each with its name.
+    pub fn states(label: impl Into<String>, names: &[&str]) -> Axis {
+        let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
+        let last = names.len() as f64 - 1.0;
+        Axis { names, ..Axis::linear(label, "").between(-0.2, last + 0.2) }
     }
 
     /// The same axis between two ends \[SI\].
@@ -105,8 +114,13 @@ impl Ruler {
                 unit = Shown { factor: 10f64.powi(-power), text: format!("10{}", superscript(power)) };
             }
         }
-        let (ticks, minor) =
-            if log { decades(ends, unit.factor, wanted) } else { steps(ends, unit.factor, wanted) };
+        let (ticks, minor) = match log {
+            _ if !axis.names.is_empty() => {
+                ((0u32..).map(f64::from).zip(axis.names.clone()).collect(), vec![])
+            }
+            true => decades(ends, unit.factor, wanted),
+            false => steps(ends, unit.factor, wanted),
+        };
         let title = match unit.text.as_str() {
             "" => axis.label.clone(),
             text => format!("{} [{text}]", axis.label),
@@ -270,6 +284,12 @@ mod tests {
         assert_eq!(ticks, ["10⁻³", "0.01", "0.1", "1"]);
         let (_, ticks) = texts(&Axis::log("modulus", "Pa"), [1.1e9, 1.9e9]);
         assert_eq!(ticks, ["1.2", "1.4", "1.6", "1.8"]);
+    }
+
+    #[test]
+    fn states_have_names_in_place_of_numbers() {
+        let (title, ticks) = texts(&Axis::states("contact", &["open", "closed"]), [0.0, 1.0]);
+        assert_eq!((title.as_str(), ticks), ("contact", vec!["open".to_owned(), "closed".to_owned()]));
     }
 
     #[test]

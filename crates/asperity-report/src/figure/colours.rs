@@ -107,7 +107,7 @@ impl Colours {
     }
 
     /// Ends of the range for values from `low` to `high`: for diverging colours zero in the middle.
-    pub(super) fn ends(self, [low, high]: [f64; 2]) -> [f64; 2] {
+    pub(crate) fn ends(self, [low, high]: [f64; 2]) -> [f64; 2] {
         match self {
             _ if low > high || (low == 0.0 && high == 0.0) => [0.0, 1.0],
             Colours::Diverging => {

@@ -8,11 +8,12 @@ use super::drawing::{Anchor, Drawing, GRID, INK, Paint, Pen};
 use super::font;
 use super::legend::Legend;
 use super::scale::{Bar, ColourScale};
-use super::series::{Series, Style, circle, spacing};
+use super::series::{Series, Style, sign, spacing};
 use super::{Margins, Place, SMALL, TEXT};
 
 /// Colours that people with any kind of colour vision tell apart (Okabe & Ito 2008), dark ones first.
-const COLOURS: [&str; 7] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#222222"];
+pub(crate) const COLOURS: [&str; 7] =
+    ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#222222"];
 
 /// A panel of curves.
 #[derive(Clone, Debug, PartialEq)]
@@ -112,14 +113,14 @@ impl Curves {
     /// where no corner inside is free of curves.
     pub(crate) fn needs(&self, size: [f64; 2]) -> Margins {
         let labels = self.rulers(size, Margins::default()).1.widest();
-        let own = Margins { labels, legend: 0.0 };
+        let own = Margins { labels, legend: 0.0, head: super::head(&self.title) };
         let layout = self.layout(&Place { corner: [0.0, 0.0], size, margins: own });
         let legend = Legend::of(self);
         if legend.is_empty() || self.corner(&legend, &layout).is_some() {
             return own;
         }
         let [left, _, right, _] = layout.area;
-        Margins { legend: legend.rows(right - left).len() as f64 * Legend::ROW + 3.0, ..own }
+        Margins { legend: legend.height_above(right - left), ..own }
     }
 
     /// Where the names stand inside of the frame; `None` above it.
@@ -145,13 +146,23 @@ impl Curves {
         [self.x.range.unwrap_or(across), self.y.range.unwrap_or(up)]
     }
 
+    /// Whether a value at zero is left out because the horizontal axis is logarithmic.
+    pub(crate) fn leaves_out_zero(&self) -> bool {
+        let at_zero = |[x, y]: [f64; 2]| x == 0.0 && y.is_finite();
+        self.x.scale == Scale::Log && self.series.iter().flat_map(Series::points).any(at_zero)
+    }
+
     pub(super) fn draw(&self, drawing: &mut Drawing, place: &Place) {
         let layout = self.layout(place);
         let [left, top, right, bottom] = layout.area;
         let [x0, y0] = place.corner;
         frame(drawing, &layout.x, &layout.y, layout.area, [x0 + TEXT, y0 + place.size[1] - 5.0]);
+        let legend = Legend::of(self);
+        let corner = self.corner(&legend, &layout);
+        let above = if corner.is_some() { 0.0 } else { legend.height_above(right - left) };
         if !self.title.is_empty() {
-            drawing.text([left, y0 + TEXT + 1.0], TEXT, Anchor::Start, &self.title);
+            let at = [left, top - self.height_beside() - above - 7.0];
+            drawing.text(at, TEXT, Anchor::Start, &self.title);
         }
         if let Some(beside) = &self.beside {
             self.draw_beside(drawing, &layout, beside);
@@ -169,21 +180,17 @@ impl Curves {
             *x >= left - room && *x <= right + room && *y >= top - room && *y <= bottom + room
         };
         for (series, colour) in self.coloured() {
-            if series.style == Style::Points {
-                // A circle at the edge of the frame is drawn whole.
-                series
-                    .points()
-                    .filter_map(at)
-                    .filter(inside)
-                    .for_each(|place| circle(drawing, place, colour));
+            if series.style.is_of_points() {
+                // A sign at the edge of the frame is drawn whole.
+                let places = series.points().filter_map(at).filter(inside);
+                places.for_each(|place| sign(drawing, series.style, place, colour));
             } else {
                 drawing.clipped([left, top], [right - left, bottom - top], |drawing| {
                     series.draw(drawing, colour, &at, bottom, layout.y.place(0.0));
                 });
             }
         }
-        let legend = Legend::of(self);
-        match self.corner(&legend, &layout) {
+        match corner {
             _ if legend.is_empty() => {}
             Some(corner) => legend.draw_inside(drawing, corner),
             None => legend.draw_above(drawing, [left, top - self.height_beside()], right - left),
@@ -225,8 +232,7 @@ impl Curves {
             }
         }
         let foot = TEXT + SMALL + 12.0;
-        let head =
-            if self.title.is_empty() { 8.0 } else { TEXT + 9.0 } + margins.legend + self.height_beside();
+        let head = margins.head + margins.legend + self.height_beside();
         let margin = if bars || self.x.scale == Scale::Linear { 0.0 } else { 0.01 };
         let x = Ruler::new(&self.x, across, margin, (width - margins.labels - TEXT - 25.0) / 48.0);
         // A density over a length in µm is one per µm.

@@ -2,11 +2,12 @@
 
 use tiny_skia::{
     Color, FillRule, FilterQuality, LineJoin, Mask, Paint as Brush, Path, PathBuilder, Pixmap, PixmapPaint,
-    Rect, Stroke, StrokeDash, Transform,
+    Stroke, StrokeDash, Transform,
 };
 
 use super::drawing::{Colour, Drawing, INK, Mark, Paint, Pen, Pixels, Shape};
 use super::font::{self, Step};
+use super::outline;
 
 /// White paper of so many dots, of `scale` dots to a point, with the drawing; `None` where the paper has no area.
 pub(super) fn draw(drawing: &Drawing, [width, height]: [u32; 2], scale: f64) -> Option<Pixels> {
@@ -46,37 +47,18 @@ fn marks(paper: &mut Pixmap, list: &[Mark], scale: Transform, mask: Option<&Mask
     }
 }
 
+/// The outline of a shape; `None` where it has no step.
 fn path_of(shape: &Shape) -> Option<Path> {
     let mut path = PathBuilder::new();
-    match shape {
-        Shape::Rect { corner: [x, y], size: [w, h], round } => {
-            let [x, y, w, h] = [x, y, w, h].map(|v| *v as f32);
-            let r = (*round as f32).min(0.5 * w).min(0.5 * h);
-            if r <= 0.0 {
-                path.push_rect(Rect::from_xywh(x, y, w, h)?);
-            } else {
-                path.move_to(x + r, y);
-                path.line_to(x + w - r, y);
-                path.quad_to(x + w, y, x + w, y + r);
-                path.line_to(x + w, y + h - r);
-                path.quad_to(x + w, y + h, x + w - r, y + h);
-                path.line_to(x + r, y + h);
-                path.quad_to(x, y + h, x, y + h - r);
-                path.line_to(x, y + r);
-                path.quad_to(x, y, x + r, y);
-                path.close();
+    for step in shape.outline() {
+        match step {
+            outline::Step::Move([x, y]) => path.move_to(x as f32, y as f32),
+            outline::Step::Line([x, y]) => path.line_to(x as f32, y as f32),
+            outline::Step::Cubic(points) => {
+                let [[x1, y1], [x2, y2], [x, y]] = points.map(|point| point.map(|v| v as f32));
+                path.cubic_to(x1, y1, x2, y2, x, y);
             }
-        }
-        Shape::Circle { at: [x, y], radius } => path.push_circle(*x as f32, *y as f32, *radius as f32),
-        Shape::Lines(lines) => {
-            for line in lines {
-                for (n, [x, y]) in line.iter().enumerate() {
-                    match n {
-                        0 => path.move_to(*x as f32, *y as f32),
-                        _ => path.line_to(*x as f32, *y as f32),
-                    }
-                }
-            }
+            outline::Step::Close => path.close(),
         }
     }
     path.finish()

@@ -4,7 +4,7 @@
 use super::font;
 
 /// Text and frames.
-pub(super) const INK: &str = "#222222";
+pub(crate) const INK: &str = "#222222";
 /// Lines behind the curves.
 pub(super) const GRID: &str = "#e3e3e3";
 

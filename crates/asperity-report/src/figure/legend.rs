@@ -4,7 +4,7 @@ use super::SMALL;
 use super::curves::{Curves, Layout};
 use super::drawing::{Anchor, Drawing, Paint};
 use super::font;
-use super::series::{Series, Style, pen, spot};
+use super::series::{Series, Style, pen, sign};
 
 /// Room of the sign before a name \[points\].
 const SIGN: f64 = 26.0;
@@ -18,7 +18,7 @@ pub(super) struct Legend<'a> {
 
 impl<'a> Legend<'a> {
     /// Height of a row \[points\].
-    pub(super) const ROW: f64 = SMALL + 3.5;
+    const ROW: f64 = SMALL + 3.5;
 
     pub(super) fn of(panel: &'a Curves) -> Self {
         Legend { named: panel.coloured().filter(|(series, _)| !series.name.is_empty()).collect() }
@@ -51,8 +51,13 @@ impl<'a> Legend<'a> {
         corners.into_iter().find(free)
     }
 
+    /// Height of the names above a frame of this width \[points\].
+    pub(super) fn height_above(&self, width: f64) -> f64 {
+        if self.is_empty() { 0.0 } else { Self::ROW * self.rows(width).len() as f64 + 3.0 }
+    }
+
     /// The names in rows of this width.
-    pub(super) fn rows(&self, width: f64) -> Vec<Vec<(&'a Series, &'a str)>> {
+    fn rows(&self, width: f64) -> Vec<Vec<(&'a Series, &'a str)>> {
         let mut rows: Vec<Vec<_>> = vec![];
         let mut used = f64::INFINITY;
         for entry in &self.named {
@@ -98,7 +103,7 @@ fn covers(series: &Series, layout: &Layout, under: &impl Fn([f64; 2]) -> bool) -
     };
     match series.style {
         Style::Bars => places.iter().any(|place| between(*place, [place[0], layout.area[3]])),
-        Style::Points => places.iter().any(|place| under(*place)),
+        style if style.is_of_points() => places.iter().any(|place| under(*place)),
         _ => places.windows(2).any(|pair| between(pair[0], pair[1])),
     }
 }
@@ -109,7 +114,7 @@ fn draw(drawing: &mut Drawing, (series, colour): (&Series, &str), [x, middle]: [
         Style::Bars => {
             drawing.rect([x + 7.0, middle - 3.5], [12.0, 7.0], Paint::fill(colour, 0.55));
         }
-        Style::Points => drawing.circle([x + 13.0, middle], 2.4, spot(colour)),
+        style if style.is_of_points() => sign(drawing, style, [x + 13.0, middle], colour),
         style => drawing.line([x + 5.0, middle], [x + 21.0, middle], pen(style, colour, 0.0)),
     }
     drawing.text([x + SIGN, middle + 0.36 * SMALL], SMALL, Anchor::Start, &series.name);

@@ -1,15 +1,15 @@
 //! A panel of a map: values over the area in colours, with colour bar and scale bar.
 
-use asperity_io::readable::{quantity, shown};
+use asperity_io::readable::shown;
 use ndarray::{Array2, ArrayView2};
 
-use super::axis::{Axis, Ruler};
-use super::colours::{Colours, OPEN, Palette};
+use super::colours::{Colours, Palette};
 use super::curves::frame;
 use super::drawing::{Anchor, Drawing, INK, Paint, Pen, Pixels};
 use super::font;
+use super::frame::{Layout, NAMES};
 use super::raster::{self, BLANK};
-use super::scale::{Bar, ColourScale, extent};
+use super::scale::ColourScale;
 use super::{Place, SMALL, TEXT};
 
 /// What the values of a map are.
@@ -143,131 +143,85 @@ impl Map {
     }
 
     /// How its values become colours; `None` for states.
-    fn scale(&self) -> Option<ColourScale> {
+    pub(super) fn scale(&self) -> Option<ColourScale> {
         let Values::Quantity { colours, range, .. } = &self.meaning else { return None };
         Some(ColourScale::of(&self.values, *colours, self.palette, *range, self.log))
     }
 
-    /// The values at the ends of its colours; `None` for states.
+    /// The values at the ends of its colours; `None` for states, and for the pressure where nothing touches.
     pub(crate) fn ends(&self) -> Option<[f64; 2]> {
-        self.scale().map(|scale| scale.ends)
+        self.scale().filter(|_| !self.shows_no_pressure()).map(|scale| scale.ends)
+    }
+
+    /// Whether it is a map of the pressure where nothing touches, with no ends of its colours given.
+    pub(super) fn shows_no_pressure(&self) -> bool {
+        let own = matches!(self.meaning, Values::Quantity { colours: Colours::Pressure, range: None, .. });
+        own && !self.values.iter().any(|value| *value > 0.0)
     }
 
     pub(super) fn draw(&self, drawing: &mut Drawing, place: &Place) {
-        let [x0, y0] = place.corner;
-        let [width, height] = place.size;
-        let scale = self.scale();
-        let bar = match &self.meaning {
-            Values::Quantity { label, unit, .. } => scale.map(|scale| {
-                let whole = extent(&self.values);
-                let out = [whole[0] < scale.ends[0], whole[1] > scale.ends[1]];
-                // What is beyond the ends of the colours; no gap and no pressure have a colour of their own.
-                let own = scale.at(whole[0]) == OPEN;
-                let beyond = [0, 1].map(|n| (out[n] && !(n == 0 && own)).then(|| quantity(whole[n], unit)));
-                (Bar::new(scale, label, unit, place), beyond)
-            }),
-            Values::States(_) => None,
+        let layout = Layout::of(self, place);
+        let [left, top, right, bottom] = layout.area;
+        let [w, h] = [right - left, bottom - top];
+        let states = match &self.meaning {
+            Values::States(states) => Some(states),
+            Values::Quantity { .. } => None,
         };
-        let arrows = |beyond: &[Option<String>; 2]| {
-            beyond.iter().flatten().map(|text| 8.0 + SMALL + font::width(text, SMALL)).fold(0.0, f64::max)
-        };
-        let legend = bar.as_ref().map_or(0.0, |(bar, beyond)| bar.width().max(arrows(beyond)));
-        let foot = TEXT + SMALL + 12.0;
-        // The title, and the names of states, in lines of their own.
-        let named = matches!(self.meaning, Values::States(_));
-        let over = if named { SMALL + 6.0 } else { 0.0 };
-        let head = if self.title.is_empty() { 8.0 } else { TEXT + 9.0 } + over;
-
-        // Both axes in the same unit, and as long on paper as they are in truth; but for time.
-        let (names, starts) = match self.axes {
-            Axes::Area => (["x", "y"], [0.0; 2]),
-            Axes::Lags => (["lag x", "lag y"], self.size.map(|side| -0.5 * side)),
-            Axes::Section { along, start } => ([along, "depth"], [start, 0.0]),
-            Axes::Times { start } => (["x", "time"], [0.0, start]),
-        };
-        let [over_x, over_y] = [0, 1].map(|axis| (starts[axis] + self.size[axis]).abs());
-        let of_times = matches!(self.axes, Axes::Times { .. });
-        let units = match of_times {
-            true => [shown("m", over_x), shown("s", over_y)],
-            false => [(); 2].map(|()| shown("m", over_x.max(over_y))),
-        };
-        let [across, up] = [0, 1].map(|axis| {
-            let (unit, start) = (&units[axis], starts[axis]);
-            let label = format!("{} [{}]", names[axis], unit.text);
-            Axis::linear(label, "").between(start * unit.factor, (start + self.size[axis]) * unit.factor)
-        });
-        let room_y = height - foot - head;
-        let y = Ruler::new(&up, [0.0, 1.0], 0.0, room_y / 32.0);
-        let labels = y.ticks.iter().map(|(_, text)| font::width(text, SMALL)).fold(0.0, f64::max);
-        let margin = TEXT + labels + 13.0;
-        let room_x = width - margin - 8.0 - legend;
-        let points = (room_x / self.size[0]).min(room_y / self.size[1]);
-        let [w, h] = match of_times {
-            true => [room_x, room_y],
-            // A strip keeps a visible breadth.
-            false => [0, 1].map(|axis| (self.size[axis] * points).max(12.0).min([room_x, room_y][axis])),
-        };
-        let left = x0 + margin;
-        let (right, top) = (left + w, y0 + head + 0.5 * (room_y - h));
-        let bottom = top + h;
-        let x = Ruler::new(&across, [0.0, 1.0], 0.0, w / 42.0).placed(left, right);
-        let y = Ruler::new(&up, [0.0, 1.0], 0.0, h / 32.0);
-        let down = matches!(self.axes, Axes::Section { .. });
-        let y = if down { y.placed(top, bottom) } else { y.placed(bottom, top) };
-
         if !self.title.is_empty() {
+            let over = if states.is_some() { NAMES } else { 0.0 };
             drawing.text([left, top - 6.0 - over], TEXT, Anchor::Start, &self.title);
         }
-        frame(drawing, &x, &y, [left, top, right, bottom], [left - labels - 10.0, bottom + foot - 5.0]);
-        let picture = match (&self.meaning, scale) {
-            (Values::States(states), _) => raster::state_picture(&self.values, states),
-            (_, Some(scale)) => {
-                let flipped = self.values.slice(ndarray::s![.., ..;-1]).to_owned();
-                raster::coloured(if down { &flipped } else { &self.values }, |value| scale.at(value))
-            }
-            (_, None) => Pixels { size: [0, 0], rgb: vec![] },
-        };
+        frame(drawing, &layout.x, &layout.y, layout.area, layout.titles);
         // The slabs of a section are thicker than its cells.
-        let smooth = down || self.values.dim().0 > w as usize;
-        drawing.image([left, top], [w, h], picture, smooth);
+        let smooth = self.goes_down() || self.values.dim().0 > w as usize;
+        drawing.image([left, top], [w, h], self.picture(), smooth);
         drawing.rect([left, top], [w, h], Paint::outline(Pen::new(INK, 0.8)));
         for [x, y] in &self.marks {
             let at = [left + w * x / self.size[0], bottom - h * y / self.size[1]];
             drawing.circle(at, 5.0, Paint::outline(Pen::new("#fff", 3.0)));
             drawing.circle(at, 5.0, Paint::outline(Pen::new("#d62728", 1.5)));
         }
-        if h > 50.0 && !of_times {
+        if h > 50.0 && !matches!(self.axes, Axes::Times { .. }) {
             scale_bar(drawing, [left, bottom], w, self.size[0]);
         }
-        if let Some((bar, beyond)) = bar {
-            // Beside a strip the bar is longer than the map.
-            let more = 0.5 * (room_y.min(110.0) - h).max(0.0);
-            let (top, bottom) = (top - more, bottom + more);
-            bar.draw(drawing, [right + 8.0, top, bottom]);
-            // Values beyond the ends of the colours, above and below the bar.
-            let places = [bottom + SMALL + 2.0, top - 4.0];
-            for ((value, y), arrow) in beyond.into_iter().zip(places).zip(["↓", "↑"]) {
-                if let Some(value) = value {
-                    drawing.text([right + 6.0, y], SMALL, Anchor::Start, &format!("{arrow} {value}"));
-                }
+        // Values beyond the ends of the colours, below and above the bar.
+        let [first, last] = layout.bar_ends();
+        let places = [last + SMALL + 6.0, first - 7.0];
+        for ((value, y), arrow) in layout.beyond.iter().zip(places).zip(["↓", "↑"]) {
+            if let Some(value) = value {
+                drawing.text([right + 6.0, y], SMALL, Anchor::Start, &format!("{arrow} {value}"));
             }
         }
-        if let Values::States(states) = &self.meaning {
-            self.names(drawing, states, [left, top], w);
+        if let Some(bar) = layout.bar {
+            bar.draw(drawing, [right + 8.0, first, last]);
+        }
+        if let Some(states) = states {
+            self.names(drawing, states, [left, top]);
         }
     }
 
-    /// Names of the states with their colours and shares of the area, above the map at the right.
-    fn names(&self, drawing: &mut Drawing, states: &[(String, [u8; 3])], [left, top]: [f64; 2], width: f64) {
-        let mut right = left + width;
-        let shown = |state: &usize| self.values.iter().any(|value| *value == *state as f64);
-        for (_, (name, colour)) in states.iter().enumerate().rev().filter(|(state, _)| shown(state)) {
-            right -= font::width(name, SMALL);
-            drawing.text([right, top - 5.5], SMALL, Anchor::Start, name);
-            right -= 11.0;
+    /// The values in their colours.
+    fn picture(&self) -> Pixels {
+        match (&self.meaning, self.scale()) {
+            (Values::States(states), _) => raster::state_picture(&self.values, states),
+            (_, Some(scale)) if self.goes_down() => {
+                let flipped = self.values.slice(ndarray::s![.., ..;-1]).to_owned();
+                raster::coloured(&flipped, |value| scale.at(value))
+            }
+            (_, Some(scale)) => raster::coloured(&self.values, |value| scale.at(value)),
+            (_, None) => Pixels { size: [0, 0], rgb: vec![] },
+        }
+    }
+
+    /// Names of the states that occur, with their colours, above the map.
+    fn names(&self, drawing: &mut Drawing, states: &[(String, [u8; 3])], [left, top]: [f64; 2]) {
+        let mut x = left;
+        let occurs = |state: usize| self.values.iter().any(|value| *value == state as f64);
+        for (_, (name, colour)) in states.iter().enumerate().filter(|(state, _)| occurs(*state)) {
             let paint = Paint { fill: Some((*colour, 1.0)), pen: Some(Pen::new(INK, 0.4)) };
-            drawing.rect([right, top - 12.0], [7.5, 7.5], paint);
-            right -= 8.0;
+            drawing.rect([x, top - 12.0], [7.5, 7.5], paint);
+            drawing.text([x + 11.0, top - 5.5], SMALL, Anchor::Start, name);
+            x += 19.0 + font::width(name, SMALL);
         }
     }
 }

@@ -17,8 +17,10 @@ mod curves;
 mod dots;
 mod drawing;
 mod font;
+mod frame;
 mod legend;
 mod map;
+mod outline;
 mod pdf;
 mod raster;
 mod scale;
@@ -29,6 +31,7 @@ mod write;
 pub use axis::{Axis, Scale};
 pub(crate) use colours::OPEN;
 pub use colours::{Colours, Palette};
+pub(crate) use curves::COLOURS;
 pub use curves::{Beside, Curves, Key};
 pub use map::{Axes, Map, UNDEFINED, Values};
 pub(crate) use raster::{block, means, states};
@@ -36,6 +39,7 @@ pub(crate) use scale::robust;
 pub use series::{Series, Style};
 pub use write::{FigureError, Form};
 
+pub(crate) use drawing::INK;
 pub(crate) use drawing::Pixels;
 use drawing::{Anchor, Drawing};
 
@@ -94,7 +98,7 @@ struct Place {
     margins: Margins,
 }
 
-/// What panels of curves need around their frames; those in a column share the width of the numbers, those in a row the height of
+/// What panels need around their frames; those in a column share the width of the numbers, those in a row the height of titles and
 /// legends above the frames, so that the frames are aligned.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Margins {
@@ -102,6 +106,13 @@ pub(crate) struct Margins {
     pub(crate) labels: f64,
     /// Height of a legend above the frame \[points\].
     pub(crate) legend: f64,
+    /// Height of the title above the frame \[points\].
+    pub(crate) head: f64,
+}
+
+/// Height of a panel's title above its frame \[points\].
+fn head(title: &str) -> f64 {
+    if title.is_empty() { 8.0 } else { TEXT + 9.0 }
 }
 
 impl Figure {
@@ -142,8 +153,8 @@ impl Figure {
         let rows = self.panels.len().div_ceil(self.columns).max(1) as f64;
         self.size = Some(size);
         self.panel[0] = (size[0] - 2.0 * EDGE) / columns;
-        // Where a legend stands depends on the height of its panel.
-        for _ in 0..4 {
+        // Where a legend stands depends on the height of its panel, and wide maps take less than they are given.
+        for _ in 0..16 {
             self.panel[1] = (self.panel[1] + (size[1] - self.needed()[1]) / rows).max(LEAST[1]);
         }
         if self.panel[0] < LEAST[0] || self.needed()[1] > size[1] + 0.5 {
@@ -191,23 +202,36 @@ impl Figure {
         drawing
     }
 
-    /// The height of each row \[points\]: a legend above the frames adds to it.
+    /// The height of each row \[points\]: a legend above the frames adds to it, and a row of wide maps takes less.
     fn heights(&self) -> Vec<f64> {
-        let rows = self.panels.len().div_ceil(self.columns).max(1);
-        (0..rows).map(|row| self.panel[1] + self.margins(row, 0).legend).collect()
+        let rows = self.panels.chunks(self.columns).enumerate().map(|(row, panels)| {
+            let each = panels.iter().enumerate().map(|(column, panel)| {
+                let margins = self.margins(row, column);
+                let size = [self.panel[0], self.panel[1] + margins.legend];
+                match panel {
+                    Panel::Curves(_) => size[1],
+                    Panel::Map(map) => map.height(size, margins),
+                }
+            });
+            each.fold(0.0, f64::max)
+        });
+        rows.collect()
     }
 
     /// The margins of the panels in this row and column.
     fn margins(&self, row: usize, column: usize) -> Margins {
         let mut margins = Margins::default();
         for (n, panel) in self.panels.iter().enumerate() {
-            let Panel::Curves(curves) = panel else { continue };
-            let own = curves.needs(self.panel);
+            let own = match panel {
+                Panel::Curves(curves) => curves.needs(self.panel),
+                Panel::Map(map) => map.needs(self.panel),
+            };
             if n % self.columns == column {
                 margins.labels = margins.labels.max(own.labels);
             }
             if n / self.columns == row {
                 margins.legend = margins.legend.max(own.legend);
+                margins.head = margins.head.max(own.head);
             }
         }
         margins

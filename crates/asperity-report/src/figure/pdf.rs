@@ -10,14 +10,12 @@ use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
 
 use super::drawing::{Anchor, Colour, Drawing, INK, Mark, Paint, Pixels, Shape, rgb};
 use super::font;
+use super::outline::Step;
 
 /// The typeface's name in the file and in its resources.
 const TYPEFACE: Name = Name(b"DejaVuSans");
 const FACE: Name = Name(b"F");
 const GLYPHS: SystemInfo = SystemInfo { registry: Str(b"Adobe"), ordering: Str(b"Identity"), supplement: 0 };
-
-/// Distance of a control point of a quarter of a circle from its end, per radius.
-const QUARTER: f32 = 0.552_284_8;
 
 /// The file, of a page of this width and height \[points\].
 pub(super) fn write(drawing: &Drawing, paper: [f64; 2], title: &str) -> std::io::Result<Vec<u8>> {
@@ -120,42 +118,16 @@ fn fill(content: &mut Content, colour: Colour) {
 }
 
 fn outline(content: &mut Content, shape: &Shape) {
-    match shape {
-        Shape::Rect { corner, size, round } => {
-            let [x, y, w, h] = [corner[0], corner[1], size[0], size[1]].map(|v| v as f32);
-            let r = (*round as f32).min(0.5 * w).min(0.5 * h);
-            if r <= 0.0 {
-                content.rect(x, y, w, h);
-                return;
+    for step in shape.outline() {
+        match step {
+            Step::Move([x, y]) => content.move_to(x as f32, y as f32),
+            Step::Line([x, y]) => content.line_to(x as f32, y as f32),
+            Step::Cubic(points) => {
+                let [[x1, y1], [x2, y2], [x, y]] = points.map(|point| point.map(|v| v as f32));
+                content.cubic_to(x1, y1, x2, y2, x, y)
             }
-            let c = r * (1.0 - QUARTER);
-            let (right, bottom) = (x + w, y + h);
-            content.move_to(x + r, y).line_to(right - r, y);
-            content.cubic_to(right - c, y, right, y + c, right, y + r).line_to(right, bottom - r);
-            content.cubic_to(right, bottom - c, right - c, bottom, right - r, bottom).line_to(x + r, bottom);
-            content.cubic_to(x + c, bottom, x, bottom - c, x, bottom - r).line_to(x, y + r);
-            content.cubic_to(x, y + c, x + c, y, x + r, y).close_path();
-        }
-        Shape::Circle { at, radius } => {
-            let ([x, y], r) = (at.map(|v| v as f32), *radius as f32);
-            let k = r * QUARTER;
-            content.move_to(x + r, y);
-            content.cubic_to(x + r, y + k, x + k, y + r, x, y + r);
-            content.cubic_to(x - k, y + r, x - r, y + k, x - r, y);
-            content.cubic_to(x - r, y - k, x - k, y - r, x, y - r);
-            content.cubic_to(x + k, y - r, x + r, y - k, x + r, y).close_path();
-        }
-        Shape::Lines(lines) => {
-            for line in lines {
-                for (n, at) in line.iter().enumerate() {
-                    let [x, y] = at.map(|v| v as f32);
-                    match n {
-                        0 => content.move_to(x, y),
-                        _ => content.line_to(x, y),
-                    };
-                }
-            }
-        }
+            Step::Close => content.close_path(),
+        };
     }
 }
 

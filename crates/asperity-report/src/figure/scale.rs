@@ -34,29 +34,45 @@ impl ColourScale {
         range: Option<[f64; 2]>,
         log: bool,
     ) -> ColourScale {
+        let whole = || extent(values.iter().copied());
+        // Colours that change their hue in the middle have zero there.
+        let centred = if palette == Some(Palette::RedBlue) { Colours::Diverging } else { colours };
         let own = || match log {
             true => decades(values),
             false if matches!(colours, Colours::Sequential | Colours::Diverging) => {
-                colours.ends(robust(values.iter().copied()).unwrap_or_else(|| extent(values)))
+                centred.ends(robust(values.iter().copied()).unwrap_or_else(whole))
             }
-            false => colours.ends(extent(values)),
+            false => centred.ends(whole()),
         };
         // A logarithmic scale has no place for a range that begins at 0.
         let ends = range.filter(|ends| !log || ends[0] > 0.0).unwrap_or_else(own);
         ColourScale { colours, palette: palette.unwrap_or(colours.palette()), ends, log }
     }
 
+    /// Place of a value between the ends, 0 to 1.
+    fn share(&self, value: f64) -> f64 {
+        let [low, high] = self.ends;
+        if self.log { (value / low).ln() / (high / low).ln() } else { (value - low) / (high - low) }
+    }
+
+    /// The least and the greatest value that has a colour of the scale, where it lies beyond the ends by half of a colour or
+    /// more; less than that nobody sees.
+    pub(super) fn beyond(&self, values: &Array2<f64>) -> [Option<f64>; 2] {
+        const HALF: f64 = 0.5 / 256.0;
+        let coloured = values.iter().copied().filter(|value| self.at(*value) != OPEN);
+        let [least, most] = extent(coloured);
+        let found = [(least, -self.share(least)), (most, self.share(most) - 1.0)];
+        found.map(|(value, beyond)| (value.is_finite() && beyond > HALF).then_some(value))
+    }
+
     /// The colour of a value.
     pub(super) fn at(&self, value: f64) -> [u8; 3] {
-        let [low, high] = self.ends;
         if !value.is_finite() {
             BLANK
         } else if value <= 0.0 && (self.log || self.colours == Colours::Pressure) {
             OPEN
-        } else if self.log {
-            self.palette.at((value / low).ln() / (high / low).ln())
         } else {
-            self.palette.at((value - low) / (high - low))
+            self.palette.at(self.share(value))
         }
     }
 
@@ -119,8 +135,7 @@ pub(crate) fn robust(values: impl Iterator<Item = f64>) -> Option<[f64; 2]> {
     }
     let low = *finite.select_nth_unstable_by(few, f64::total_cmp).1;
     let high = *finite.select_nth_unstable_by(last - few, f64::total_cmp).1;
-    let ends = [f64::INFINITY, f64::NEG_INFINITY];
-    let whole = finite.iter().fold(ends, |[a, b], v| [a.min(*v), b.max(*v)]);
+    let whole = extent(finite.into_iter());
     (high > low && whole[1] - whole[0] > 1.5 * (high - low)).then_some([low, high])
 }
 
@@ -138,8 +153,8 @@ fn decades(values: &Array2<f64>) -> [f64; 2] {
 }
 
 /// Least and greatest of the finite values.
-pub(super) fn extent(values: &Array2<f64>) -> [f64; 2] {
-    let finite = values.iter().copied().filter(|v| v.is_finite());
+fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    let finite = values.filter(|v| v.is_finite());
     finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| [low.min(v), high.max(v)])
 }
 
@@ -162,6 +177,26 @@ mod tests {
         let middle = scale.value(0.5);
         assert!((middle / (scale.ends[0] * scale.ends[1]).sqrt() - 1.0).abs() < 1e-12);
         assert_eq!(scale.at(middle), Palette::Viridis.at(0.5));
+    }
+
+    #[test]
+    fn values_beyond_the_colours_are_told_unless_by_rounding() {
+        let values = Array2::from_shape_fn((40, 40), |(i, j)| 1e-6 + 1e-9 * (i + j) as f64);
+        let of = |range| ColourScale::of(&values, Colours::Sequential, None, range, false).beyond(&values);
+        let [low, high] = [1e-6, 1.078e-6];
+        assert_eq!(of(Some([low * (1.0 + 1e-12), high * (1.0 - 1e-12)])), [None, None]);
+        assert_eq!(of(Some([1.03e-6, 1.2e-6])), [Some(values[[0, 0]]), None]);
+        let log = ColourScale::of(&values, Colours::Sequential, None, Some([low, 1.05e-6]), true);
+        assert_eq!(log.beyond(&values), [None, Some(values[[39, 39]])]);
+    }
+
+    #[test]
+    fn colours_from_blue_to_red_are_white_at_zero() {
+        let values = Array2::from_shape_fn((40, 40), |(i, j)| (i + j) as f64 - 3.0);
+        for colours in [Colours::Sequential, Colours::Heat, Colours::Pressure] {
+            let scale = ColourScale::of(&values, colours, Some(Palette::RedBlue), None, false);
+            assert_eq!(scale.ends, [-75.0, 75.0]);
+        }
     }
 
     #[test]

@@ -9,12 +9,32 @@ pub enum Style {
     Line,
     /// A dashed line through the points.
     Dashed,
+    /// A dotted line through the points.
+    Dotted,
+    /// A line of dashes and dots through the points.
+    DashDotted,
     /// A thin dotted line through the points, in black: something to compare with.
     Reference,
     /// A circle at each point.
     Points,
+    /// A cross at each point.
+    Crosses,
+    /// A square at each point.
+    Squares,
     /// Bars from zero (or from the foot of the axis) to the value, as wide as the distance of the points.
     Bars,
+}
+
+impl Style {
+    /// The styles of lines, for several quantities in one colour.
+    pub(crate) const LINES: [Style; 4] = [Style::Line, Style::Dashed, Style::Dotted, Style::DashDotted];
+    /// The signs of points, likewise.
+    pub(crate) const SIGNS: [Style; 3] = [Style::Points, Style::Crosses, Style::Squares];
+
+    /// Whether each point has a sign of its own, with no line between them.
+    pub(crate) fn is_of_points(self) -> bool {
+        Style::SIGNS.contains(&self)
+    }
 }
 
 /// Numbers to draw \[SI\].
@@ -41,6 +61,17 @@ impl Series {
         y: impl Into<Vec<f64>>,
     ) -> Series {
         Series { name: name.into(), x: x.into(), y: y.into(), style, colour: None }
+    }
+
+    /// The same with each value held until the next place: steps.
+    pub fn stepped(self) -> Series {
+        let mut steps: Vec<[f64; 2]> = vec![];
+        for [x, y] in self.points() {
+            steps.extend(steps.last().map(|last| [x, last[1]]));
+            steps.push([x, y]);
+        }
+        let (x, y) = steps.into_iter().map(|[x, y]| (x, y)).unzip();
+        Series { x, y, ..self }
     }
 
     /// The same in a colour of its own, "#rrggbb".
@@ -81,13 +112,21 @@ impl Series {
     }
 }
 
-/// A circle about a point.
-pub(super) fn circle(drawing: &mut Drawing, place: [f64; 2], colour: &str) {
-    drawing.circle(place, 2.0, spot(colour));
+/// The sign of a series of points at a place.
+pub(super) fn sign(drawing: &mut Drawing, style: Style, [x, y]: [f64; 2], colour: &str) {
+    const HALF: f64 = 2.0;
+    match style {
+        Style::Crosses => {
+            let arm = |up: f64| [Some([x - HALF, y - up]), Some([x + HALF, y + up]), None];
+            drawing.path(arm(HALF).into_iter().chain(arm(-HALF)), Pen::new(colour, 1.1));
+        }
+        Style::Squares => drawing.rect([x - HALF, y - HALF], [2.0 * HALF; 2], spot(colour)),
+        _ => drawing.circle([x, y], HALF, spot(colour)),
+    }
 }
 
-/// A circle filled with its colour in part: many of them on top of one another stay dark.
-pub(super) fn spot(colour: &str) -> Paint {
+/// Filled with its colour in part: many signs on top of one another stay dark.
+fn spot(colour: &str) -> Paint {
     Paint { fill: Some((rgb(colour), 0.35)), pen: Some(Pen::new(colour, 0.9)) }
 }
 
@@ -99,6 +138,8 @@ pub(super) fn pen(style: Style, colour: &str, length: f64) -> Pen {
     match style {
         Style::Reference => Pen::new(colour, 1.0).dashed(&[1.5, 1.8]),
         Style::Dashed => Pen::new(colour, width).dashed(&[5.0, 2.5]),
+        Style::Dotted => Pen::new(colour, width).dashed(&[1.6, 2.2]),
+        Style::DashDotted => Pen::new(colour, width).dashed(&[6.0, 2.0, 1.6, 2.0]),
         _ => Pen::new(colour, width),
     }
 }

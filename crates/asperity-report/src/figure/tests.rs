@@ -77,6 +77,26 @@ fn nothing_of_a_panel_leaves_the_paper() {
 }
 
 #[test]
+fn a_figure_is_as_low_as_its_area_is_wide() {
+    let of = |size: [f64; 2]| Figure { panel: [345.0, 280.0], ..Figure::new("").with(Map { size, ..map() }) };
+    let [square, wide] = [[4e-5, 4e-5], [8e-5, 1e-5]].map(|size| of(size).paper());
+    // The map itself would be 35 points high; its colour bar has 96.
+    assert!(wide[0] == square[0] && wide[1] < 0.6 * square[1], "{square:?} {wide:?}");
+    assert_eq!(of([8e-5, 1e-5]).sized([400.0, 300.0]).unwrap().paper(), [400.0, 300.0]);
+}
+
+#[test]
+fn a_map_of_no_pressure_has_no_colour_bar() {
+    let of = |value: f64| {
+        let values = Array2::from_elem((4, 4), value);
+        let map = Map::new("", ["pressure", "Pa"], Colours::Pressure, values.view(), [1e-3, 1e-3]);
+        let svg = Figure::new("").with(map).to_svg();
+        svg.matches("<image").count()
+    };
+    assert_eq!([of(0.0), of(1e6)], [1, 2]);
+}
+
+#[test]
 fn a_png_has_the_dots_that_its_paper_asks_for() {
     let data = figure().to_png(150.0).unwrap();
     let reader = png::Decoder::new(std::io::Cursor::new(&data)).read_info().unwrap();

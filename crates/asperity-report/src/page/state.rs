@@ -147,7 +147,7 @@ fn quantities(reader: &Reader, theory: bool) -> Vec<Value> {
                 panel.lines.push(("Persson's theory", PERSSON_FRICTION));
             }
             let lines: Vec<_> = panel.lines.iter().map(|(name, series)| json!([name, series])).collect();
-            json!([panel.title, panel.label, lines])
+            json!([panel.title, panel.label, lines, panel.states])
         })
         .collect()
 }

@@ -3,7 +3,7 @@
 use asperity_io::store::{At, Reader};
 
 use super::{Options, Plot, PlotError, figure};
-use crate::figure::{Figure, Panel, Scale, Values};
+use crate::figure::{Curves, Figure, Map, Panel, Scale, Values};
 
 /// What figures of the same panels have in common.
 #[derive(Clone, Debug, Default)]
@@ -12,12 +12,13 @@ pub(crate) struct Common {
     paper: [f64; 2],
 }
 
-/// Of a panel: ends of its axes, or of its colours, and whether any of the figures has its names above the frame.
+/// Of a panel: ends of its axes, or of its colours, and what any of the figures has above the frame.
 #[derive(Clone, Copy, Debug)]
 struct Shared {
     across: [f64; 2],
     up: [f64; 2],
     names_above: bool,
+    titled: bool,
 }
 
 /// No end yet.
@@ -28,10 +29,16 @@ impl Common {
     pub(crate) fn add(&mut self, figure: &Figure) {
         for (n, panel) in figure.panels.iter().enumerate() {
             let own = match panel {
-                Panel::Map(map) => Shared::new(NOTHING, map.ends().unwrap_or(NOTHING), false),
+                Panel::Map(map) => Shared {
+                    across: NOTHING,
+                    up: map.ends().unwrap_or(NOTHING),
+                    names_above: false,
+                    titled: !map.title.is_empty(),
+                },
                 Panel::Curves(curves) => {
                     let [across, up] = curves.ends();
-                    Shared::new(across, up, curves.needs(figure.panel).legend > 0.0)
+                    let names_above = curves.needs(figure.panel).legend > 0.0;
+                    Shared { across, up, names_above, titled: !curves.title.is_empty() }
                 }
             };
             match self.panels.get_mut(n) {
@@ -46,6 +53,11 @@ impl Common {
     /// Gives a figure the common axes, colours and paper.
     pub(crate) fn apply(&self, figure: &mut Figure) {
         for (panel, shared) in figure.panels.iter_mut().zip(&self.panels) {
+            // A blank title keeps the frame where that of the others is.
+            let (Panel::Map(Map { title, .. }) | Panel::Curves(Curves { title, .. })) = panel;
+            if title.is_empty() && shared.titled {
+                title.push(' ');
+            }
             match panel {
                 Panel::Map(map) => {
                     if let Values::Quantity { range, .. } = &mut map.meaning {
@@ -65,16 +77,13 @@ impl Common {
 }
 
 impl Shared {
-    fn new(across: [f64; 2], up: [f64; 2], names_above: bool) -> Shared {
-        Shared { across, up, names_above }
-    }
-
     fn join(&mut self, other: Shared) {
         let join = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
         *self = Shared {
             across: join(self.across, other.across),
             up: join(self.up, other.up),
             names_above: self.names_above || other.names_above,
+            titled: self.titled || other.titled,
         };
     }
 }

@@ -48,7 +48,12 @@ pub(crate) struct QuantityPanel {
     pub(crate) units: &'static str,
     /// Name in the legend and name of the series.
     pub(crate) lines: Vec<(&'static str, &'static str)>,
+    /// Names of the values 0, 1, 2 ... of a quantity that is a state; empty for a number.
+    pub(crate) states: &'static [&'static str],
 }
+
+/// Directions in which something percolates, by number.
+const DIRECTIONS: [&str; 4] = ["none", "x", "y", "x and y"];
 
 /// The quantities with one number per row that were asked for: one panel for all energies, one for the areas of spots,
 /// one for each other.
@@ -72,8 +77,8 @@ pub(crate) fn quantity_panels(reader: &Reader) -> Vec<QuantityPanel> {
             Quantity::ContactStiffness => ("Contact stiffness", "stiffness", ""),
             Quantity::ContactPerimeter if line => ("Ends of the contact", "number", ""),
             Quantity::ContactPerimeter => ("Perimeter of the contact", "length", ""),
-            Quantity::ContactPercolation => ("Percolation", "1: x, 2: y, 3: both", "contact"),
-            Quantity::GapPercolation => ("Percolation", "1: x, 2: y, 3: both", "gap"),
+            Quantity::ContactPercolation => ("Percolation", "connected along", "contact"),
+            Quantity::GapPercolation => ("Percolation", "connected along", "open gap"),
             Quantity::Velocity => ("Velocity", "velocity", ""),
             Quantity::SlidingDistance => ("Distance moved", "distance", ""),
             Quantity::FrictionForce => ("Friction", "force", "against motion"),
@@ -87,6 +92,8 @@ pub(crate) fn quantity_panels(reader: &Reader) -> Vec<QuantityPanel> {
             Quantity::DissipatedPower => ("Power lost", "power", ""),
             _ => ("Gap", "gap", "rms"),
         };
+        let percolates = matches!(quantity, Quantity::ContactPercolation | Quantity::GapPercolation);
+        let states: &'static [&'static str] = if percolates { &DIRECTIONS } else { &[] };
         let line = (line, quantity.name());
         // The mean gap, which every row has, beside the rms gap.
         let mean = (quantity == Quantity::RmsGap).then_some(("mean", "mean_gap"));
@@ -101,6 +108,7 @@ pub(crate) fn quantity_panels(reader: &Reader) -> Vec<QuantityPanel> {
                     label,
                     units,
                     lines: std::iter::once(line).chain(mean).collect(),
+                    states,
                 });
             }
         }
@@ -117,10 +125,14 @@ pub(super) fn quantities(reader: &Reader, options: &Options) -> Result<Figure, P
     }
     let mut figure = Figure::new("");
     for panel in panels {
-        let mut curves =
-            Curves::new(panel.title, rows.axis(options.log), Axis::linear(panel.label, panel.units));
+        let (up, steps) = match panel.states {
+            [] => (Axis::linear(panel.label, panel.units), false),
+            names => (Axis::states(panel.label, names), true),
+        };
+        let mut curves = Curves::new(panel.title, rows.axis(options.log), up);
         for (name, series) in panel.lines {
-            curves = curves.with(Series::new(name, Style::Line, time.clone(), reader.series(series)?));
+            let line = Series::new(name, Style::Line, time.clone(), reader.series(series)?);
+            curves = curves.with(if steps { line.stepped() } else { line });
         }
         figure = figure.with(curves);
     }

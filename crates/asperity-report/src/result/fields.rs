@@ -2,7 +2,7 @@
 
 use asperity_io::store::{At, FieldKind, Reader, StoreError};
 
-use super::{caption, line};
+use super::{caption, line, no_contact};
 use crate::figure::{Colours, Figure, Map, OPEN, Panel};
 
 /// Names and colours of the contact states.
@@ -29,7 +29,8 @@ pub(super) fn map(reader: &Reader, kind: FieldKind, at: At, log: bool) -> Result
         FieldKind::Contact => return contact(reader, at),
     };
     let size = reader.header().grid.size();
-    let map = Map::new("", [&title.to_lowercase(), kind.units()], colours, values.view(), size);
+    let label = [&title.to_lowercase(), kind.units()];
+    let map = Map::new(no_contact(reader, index)?, label, colours, values.view(), size);
     let open = if kind == FieldKind::Pressure { " Light: no contact." } else { "" };
     single(map, caption(reader, index)? + open)
 }
@@ -39,9 +40,11 @@ pub(super) fn contact(reader: &Reader, at: At) -> Result<Figure, StoreError> {
         return line::field(reader, FieldKind::Contact, at);
     }
     let states = reader.contact_states(at)?;
+    let index = reader.index(at)?;
     let names = CONTACT_STATES.map(|(name, colour)| (name.to_owned(), colour)).to_vec();
-    let map = Map::states("", names, states.mapv(f64::from).view(), reader.header().grid.size());
-    single(map, caption(reader, reader.index(at)?)?)
+    let title = no_contact(reader, index)?;
+    let map = Map::states(title, names, states.mapv(f64::from).view(), reader.header().grid.size());
+    single(map, caption(reader, index)?)
 }
 
 pub(super) fn initial_gap(reader: &Reader) -> Result<Figure, StoreError> {

@@ -4,7 +4,7 @@ use asperity_io::store::{At, FieldKind, Reader, StoreError};
 use ndarray::Array2;
 
 use super::fields::CONTACT_STATES;
-use super::{caption, nameless};
+use super::{caption, nameless, no_contact};
 use crate::figure::{Axis, Colours, Curves, Figure, Map, Series, Style, means, states};
 
 /// Rows of a picture over time, and most columns.
@@ -35,8 +35,7 @@ fn of_sweep(reader: &Reader, kind: FieldKind, index: usize) -> Result<Curves, St
     let count = reader.field_times().len();
     let every = count.div_ceil(MOST_CURVES).max(1);
     let chosen = (0..count).filter(|n| n % every == index % every);
-    let (label, units) = label(kind);
-    let mut panel = Curves::new("", Axis::linear("x", "m"), Axis::linear(label, units));
+    let mut panel = Curves::new("", Axis::linear("x", "m"), axis(kind));
     for n in chosen {
         let name = super::moment(reader, reader.field_times()[n]);
         let values = one(reader, kind, At::Index(n))?.into_raw_vec_and_offset().0;
@@ -75,16 +74,16 @@ pub(super) fn surfaces(reader: &Reader, index: usize, gap: &Array2<f64>) -> Resu
 /// A field over x at a stored instant.
 pub(crate) fn curve(reader: &Reader, kind: FieldKind, at: At) -> Result<Curves, StoreError> {
     let values = one(reader, kind, at)?.into_raw_vec_and_offset().0;
-    let (label, units) = label(kind);
-    let panel = Curves::new("", Axis::linear("x", "m"), Axis::linear(label, units));
+    let title = no_contact(reader, reader.index(at)?)?;
+    let panel = Curves::new(title, Axis::linear("x", "m"), axis(kind));
     Ok(nameless(panel, &places(reader), values))
 }
 
-/// What stands at the axis of a field, and its unit.
-fn label(kind: FieldKind) -> (&'static str, &'static str) {
+/// The vertical axis of a field.
+fn axis(kind: FieldKind) -> Axis {
     match kind {
-        FieldKind::Contact => ("state: 1 contact, 2 at hardness", ""),
-        kind => (title(kind), kind.units()),
+        FieldKind::Contact => Axis::states("", &CONTACT_STATES.map(|(name, _)| name)),
+        kind => Axis::linear(title(kind), kind.units()),
     }
 }
 

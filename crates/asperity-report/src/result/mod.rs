@@ -38,7 +38,7 @@ pub use rows::is_logarithmic;
 pub use stress::stress_figure;
 pub use together::together;
 
-use crate::figure::{Curves, Figure, FigureError, Palette, Panel, Scale, Series, Values};
+use crate::figure::{Colours, Curves, Figure, FigureError, Palette, Panel, Scale, Series, Values};
 
 /// A figure of a result.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -256,6 +256,23 @@ impl Plot {
 /// [`PlotError::Outside`] where the line of a profile does not cross the area; [`PlotError::Window`] where no row lies in the
 /// window; [`PlotError::Figure`] where the paper is too small.
 pub fn figure(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, PlotError> {
+    finished(panels(reader, plot, options)?, options)
+}
+
+/// The figure with what it says of rows that a logarithmic axis leaves out, on the paper asked for.
+fn finished(mut figure: Figure, options: &Options) -> Result<Figure, PlotError> {
+    let leaves_out = |panel: &Panel| matches!(panel, Panel::Curves(curves) if curves.leaves_out_zero());
+    if figure.panels.iter().any(leaves_out) {
+        figure.caption += " t = 0 is not shown: the time axis is logarithmic.";
+    }
+    match options.size {
+        Some(size) => Ok(figure.sized(size)?),
+        None => Ok(figure),
+    }
+}
+
+/// The figure with its title, colours and caption.
+fn panels(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, PlotError> {
     if reader.header().grid.is_line() {
         let refused = |what| Err(PlotError::OnLine { path: reader.path().to_owned(), what });
         match plot {
@@ -294,10 +311,7 @@ pub fn figure(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, 
         let light = if plot == Plot::Gap { "contact" } else { "not above 0" };
         figure.caption = format!("{} Light: {light}.", figure.caption).trim_start().to_owned();
     }
-    match options.size {
-        Some(size) => Ok(figure.sized(size)?),
-        None => Ok(figure),
-    }
+    Ok(figure)
 }
 
 /// Limits, colours and scale of the values as they were asked for: of maps their colours, of a curve along a line contact its
@@ -307,8 +321,13 @@ fn colour(panel: &mut Panel, plot: Plot, options: &Options) {
         Panel::Map(map) => {
             map.palette = options.palette;
             let Values::Quantity { range, .. } = &mut map.meaning else { return };
-            *range = options.limits.or(*range);
-            map.log = options.log_values;
+            // Colours that are white in the middle have zero there, unless limits say otherwise.
+            let own = match options.palette {
+                Some(Palette::RedBlue) => range.map(|ends| Colours::Diverging.ends(ends)),
+                _ => *range,
+            };
+            *range = options.limits.or(own);
+            map.log |= options.log_values;
         }
         Panel::Curves(curves) if plot.unit() == Some(curves.y.unit.as_str()) && plot != Plot::Stress => {
             curves.y.range = options.limits.or(curves.y.range);
@@ -365,6 +384,13 @@ fn caption(reader: &Reader, index: usize) -> Result<String, StoreError> {
         quantity(at("contact_area")?, grid.units("m2")),
         100.0 * at("contact_fraction")?,
     ))
+}
+
+/// "No contact at t = 70 s" where nothing touches at a stored instant, as the title of a panel; empty where something does.
+fn no_contact(reader: &Reader, index: usize) -> Result<String, StoreError> {
+    let touches = at_instant(reader, index, "contact_area")? > 0.0;
+    let moment = || moment(reader, reader.field_times()[index]);
+    Ok(if touches { String::new() } else { format!("No contact at {}", moment()) })
 }
 
 /// "t = 500 s", or "v = 10 mm/s" of a sweep over velocities.

@@ -4,7 +4,7 @@ use asperity_io::readable::quantity;
 use asperity_io::store::{FieldKind, Reader};
 use ndarray::{ArrayView1, ArrayView2, Axis as Side};
 
-use super::{Line, Options, PlotError, caption, nameless};
+use super::{Line, Options, PlotError, caption, nameless, no_contact};
 use crate::figure::{Axis, Curves, Figure, Series, Style};
 
 pub(super) fn profile(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
@@ -27,16 +27,17 @@ pub(super) fn profile(reader: &Reader, options: &Options) -> Result<Figure, Plot
     let kept = &reader.header().fields;
     let mut figure = Figure::new("").columns(1);
     figure.panel = [430.0, 180.0];
+    let title = no_contact(reader, index)?;
     if kept.contains(&FieldKind::Pressure) {
         let pressure = reader.field(FieldKind::Pressure, options.at)?;
-        let panel = Curves::new("", axis(), Axis::linear("pressure", "Pa"));
+        let panel = Curves::new(title.as_str(), axis(), Axis::linear("pressure", "Pa"));
         figure = figure.with(nameless(panel, &place, line(pressure.view(), along, row).to_vec()));
     }
     if kept.contains(&FieldKind::Gap) {
         let gap = reader.field(FieldKind::Gap, options.at)?;
         let before = reader.initial_gap()?;
         let start = line(before.view(), along, row).to_vec();
-        let panel = Curves::new("", axis(), Axis::linear("gap", "m"))
+        let panel = Curves::new(title.as_str(), axis(), Axis::linear("gap", "m"))
             .with(Series::new("now", Style::Line, place.clone(), line(gap.view(), along, row).to_vec()))
             .with(Series::new("undeformed", Style::Dashed, place.clone(), start));
         figure = figure.with(panel);
@@ -46,7 +47,7 @@ pub(super) fn profile(reader: &Reader, options: &Options) -> Result<Figure, Plot
     }
     if kept.contains(&FieldKind::Displacement) {
         let displacement = reader.field(FieldKind::Displacement, options.at)?;
-        let panel = Curves::new("", axis(), Axis::linear("displacement", "m"));
+        let panel = Curves::new(title.as_str(), axis(), Axis::linear("displacement", "m"));
         figure = figure.with(nameless(panel, &place, line(displacement.view(), along, row).to_vec()));
     }
     if figure.panels.is_empty() {

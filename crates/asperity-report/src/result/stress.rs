@@ -73,7 +73,7 @@ pub fn stress_figure(reader: &Reader, below: &Below, index: usize) -> Result<Fig
     let title = title(reader, instant);
     let y_words = if found.along_y.is_some() { format!(", y = {}", length(y)) } else { String::new() };
     let sentence = format!(
-        "von Mises stress of {} (Poisson's ratio {}), largest {} at x = {}{y_words}, depth {}. {}",
+        "Von Mises stress of {} (Poisson's ratio {}), largest {} at x = {}{y_words}, depth {}. {}",
         below.set.body,
         below.set.poisson,
         quantity(found.largest, "Pa"),

@@ -2,7 +2,7 @@
 
 mod options;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use asperity_io::case::quantity::{Time, range};
 use asperity_io::store::{At, Reader};
@@ -27,8 +27,7 @@ pub fn run(args: &args::Plot) -> Result<(), Failure> {
     };
     options::check(args, plot)?;
     let mut all = vec![];
-    for path in &args.results {
-        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    for (path, name) in args.results.iter().zip(names(&args.results)) {
         all.push((name, Reader::open(path).map_err(told)?));
     }
     match &args.animate {
@@ -37,10 +36,21 @@ pub fn run(args: &args::Plot) -> Result<(), Failure> {
     }
 }
 
+/// What the results are called: by their file names or, where two have the same, by their paths.
+fn names(results: &[PathBuf]) -> Vec<String> {
+    let short = |path: &PathBuf| path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let is_twice = |name: &String| results.iter().filter(|path| short(path) == *name).count() > 1;
+    let name =
+        |path| Some(short(path)).filter(|name| !is_twice(name)).unwrap_or_else(|| path.display().to_string());
+    results.iter().map(name).collect()
+}
+
 fn draw(args: &args::Plot, plot: Plot, all: Vec<(String, Reader)>) -> Result<(), Failure> {
-    let names: Vec<&str> = all.iter().map(|(name, _)| name.as_str()).collect();
-    let output =
-        args.output.clone().unwrap_or_else(|| format!("{}-{}.png", names.join("-"), plot.name()).into());
+    let stems = args.results.iter().map(|path| path.file_stem().unwrap_or_default().to_string_lossy());
+    let output = args
+        .output
+        .clone()
+        .unwrap_or_else(|| format!("{}-{}.png", stems.collect::<Vec<_>>().join("-"), plot.name()).into());
     Form::of(&output).map_err(told)?;
     super::free(&output, args.force)?;
     let mut chosen = Options::default();

@@ -114,7 +114,15 @@ impl Autocorrelation {
 
     /// Sal, the shortest lag at which f falls to 0.2 \[m\]; `None` where it does not within the known lags.
     pub fn length(&self) -> Option<f64> {
-        self.lengths().flatten().min_by(f64::total_cmp)
+        self.fastest_decay().map(|(_, length)| length)
+    }
+
+    /// The direction in which f falls to 0.2 first, an angle from x to y in 0 to pi \[rad\], and the lag at which it does \[m\]: Sal.
+    /// `None` where f does not fall that far within the known lags.
+    pub fn fastest_decay(&self) -> Option<(f64, f64)> {
+        let found = self.lengths().enumerate().filter_map(|(n, lag)| Some((n, lag?)));
+        let (degree, lag) = found.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        Some((PI * degree as f64 / 180.0, lag))
     }
 
     /// Str, the shortest over the longest of the lags at which f falls to 0.2; `None` where it does not
@@ -167,6 +175,7 @@ mod tests {
         // cos(4 pi t) = 0.2; bilinear between cells of a sixteenth of a wave
         let exact = 0.2f64.acos() / (2.0 * TAU);
         assert!((f.length().unwrap() / exact - 1.0).abs() < 0.02, "{:?}", f.length());
+        assert_eq!(f.fastest_decay(), f.length().map(|length| (0.0, length)));
     }
 
     #[test]

@@ -47,18 +47,6 @@ def units_of(name: str, unit: str, line: bool) -> str:
     return "1" if name == "contact_perimeter" else ON_LINE.get(unit, unit)
 
 
-class Sealed:
-    """What does not change once it is made: public attributes cannot be set."""
-
-    def __setattr__(self, name: str, value: Any) -> None:
-        if not name.startswith("_"):
-            raise AttributeError(f"{name} cannot be set: {type(self).__name__} does not change once it is made; work on a copy of its numbers")
-        object.__setattr__(self, name, value)
-
-    def __delattr__(self, name: str) -> None:
-        raise AttributeError(f"{name} cannot be deleted: {type(self).__name__} does not change once it is made")
-
-
 class Column:
     """A column of the rows as attribute of their holder, which finds it by `_column(name)`; it cannot be replaced."""
 

@@ -15,10 +15,11 @@ import numpy.typing as npt
 
 from . import _core
 from ._arrays import Floats, array, as_plane, cells_of, centres, count, field, frozen, number
-from ._columns import ROW, Column, Sealed
+from ._columns import ROW, Column
 from ._core import CaseError
 from ._findings import Finding, findings_of, warn
 from ._result import Result
+from ._sealed import ReadOnlyArrays, Sealed
 from ._surface import Surface, surface_of
 from ._units import bare, is_labelled
 from ._words import Boundary, Method
@@ -31,7 +32,7 @@ Kernel = npt.ArrayLike | Callable[[Floats, Floats], npt.ArrayLike]
 
 
 @dataclass(frozen=True, eq=False)
-class ConvergenceHistory:
+class ConvergenceHistory(ReadOnlyArrays):
     """What a solver did, one entry for each iteration, and the state in which it stopped."""
 
     iteration: npt.NDArray[np.int64]
@@ -282,7 +283,7 @@ class ElasticContact(Sealed):
         )
 
 
-class ElasticCurve(Sequence[ElasticContact]):
+class ElasticCurve(Sealed, Sequence[ElasticContact]):
     """Elastic contacts of one surface under a list of loads, pressures or approaches; made by :func:`elastic`.
 
     ``curve[n]`` is a contact with its fields; `load`, `approach`, `contact_area`, ... are arrays over all of them.
@@ -312,7 +313,8 @@ class ElasticCurve(Sequence[ElasticContact]):
     @property
     def stiffness(self) -> Floats:
         """Contact stiffness dW/dw [N/m] of each."""
-        return np.array([contact.stiffness for contact in self._contacts])
+        values: Floats = frozen(np.array([contact.stiffness for contact in self._contacts]))
+        return values
 
     @property
     def findings(self) -> list[Finding]:

@@ -21,6 +21,7 @@ from . import _core
 from ._arrays import Floats, count, line, number, pair, plain
 from ._core import CaseError
 from ._materials import Creep, Material, Prony
+from ._sealed import ReadOnlyArrays
 from ._shifts import Shift, made
 from ._words import LongTime, Measure, Moduli, Vertical
 from ._units import bare, frequency as angular_frequency, has_unit
@@ -31,7 +32,7 @@ _LABELS = {"relaxation": ("relaxation modulus",), "creep": ("creep compliance",)
 
 
 @dataclass(frozen=True, eq=False)
-class Fit:
+class Fit(ReadOnlyArrays):
     """A Prony series fitted to measured curves, and its misfit.
 
     Made by :func:`fit_relaxation`, :func:`fit_creep`, :func:`fit_dma` and :func:`fit_file`.

@@ -17,6 +17,7 @@ from . import _core
 from ._arrays import Floats, count, line, number
 from ._core import CaseError
 from ._materials import Prony
+from ._sealed import ReadOnlyArrays
 
 #: A value, and the lower and upper end of its 95 % interval. The value is NaN where the record does not determine it: the ends
 #: are more than a factor of 10 apart.
@@ -24,7 +25,7 @@ Interval = tuple[float, float, float]
 
 
 @dataclass(frozen=True, eq=False)
-class IndentationFit:
+class IndentationFit(ReadOnlyArrays):
     """A material fitted to a record of load and depth; moduli are Young's. Made by :func:`fit_indentation`."""
 
     #: (modulus [Pa], relaxation time [s]) of each term, each as (value, low, high).

@@ -11,7 +11,8 @@ import numpy as np
 
 from . import _core
 from ._arrays import Floats, field, in_order, number, pair
-from ._findings import ResultWarning, findings_of
+from ._findings import Finding, ResultWarning, findings_of
+from ._sealed import Sealed
 from ._surface import _parts
 
 if TYPE_CHECKING:
@@ -46,7 +47,7 @@ def units_of(name: str, gas: bool) -> str:
     return "kg/s" if gas and name in _RATES else LEAKS[name][0]
 
 
-class Leakage:
+class Leakage(Sealed):
     """The flow through one gap: numbers as attributes, lengths in m.
 
     Whether inlet and outlet are connected (`percolates`); the gap of the parallel plates that leak as much (`hydraulic_gap`); the
@@ -70,19 +71,22 @@ class Leakage:
     trapped_volume: float
     pressure: Floats
     leak_resolved: bool
+    cells: Any
+    #: What was found against the numbers.
+    findings: list[Finding]
+    #: Effective conductance [m^3], where direction is "both".
+    conductance: Floats | None
 
     def __init__(self, gap: Floats, contact: Any, size: tuple[float, float], keys: dict[str, Any]) -> None:
-        self._gap, self._contact, self._size, self._keys = gap, contact, size, keys
+        # Leaks of a gas are computed later: the array of the caller may have changed until then.
+        self._gap, self._contact, self._size, self._keys = np.array(gap), contact, size, keys
         found = self._solved({})
-        self.cells: Any = found.pop("cells")
-        #: What was found against the numbers.
-        self.findings = findings_of(json.loads(found.pop("findings")))
-        conductance = found.pop("conductance")
-        #: Effective conductance [m^3], where direction is "both".
-        self.conductance: Floats | None = None if conductance is None else np.array(conductance)
+        found["findings"] = findings_of(json.loads(found["findings"]))
+        if found["conductance"] is not None:
+            found["conductance"] = np.array(found["conductance"])
         for name in ("leak_rate", "leak_rate_standard", "leak_estimate_junction", "leak_estimate_medium", "knudsen_number"):
             found.pop(name)
-        self.__dict__.update(found)
+        self._hold(**found)
 
     def _solved(self, fluid: dict[str, Any]) -> dict[str, Any]:
         keys = json.dumps({**self._keys, **fluid})

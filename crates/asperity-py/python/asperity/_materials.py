@@ -22,8 +22,8 @@ import numpy.typing as npt
 
 from . import _core
 from ._arrays import Floats, array, line, number, points
-from ._columns import Sealed
 from ._core import CaseError
+from ._sealed import Sealed
 from ._shifts import Shift
 from ._units import carries, frequency, is_labelled
 from ._words import Measure

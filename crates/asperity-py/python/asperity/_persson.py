@@ -13,11 +13,12 @@ from . import _core
 from ._arrays import Floats, angle, array, line, number
 from ._core import CaseError
 from ._materials import Material
+from ._sealed import ReadOnlyArrays, Sealed
 from ._surface import as_surface
 
 
 @dataclass(frozen=True, eq=False)
-class Magnification:
+class Magnification(ReadOnlyArrays):
     """Friction and contact as waves of shorter and shorter wavelength are seen; arrays of one length."""
 
     #: Wave number up to which waves are seen [rad/m].
@@ -34,18 +35,20 @@ class Magnification:
         return seen
 
 
-class PerssonFriction:
+class PerssonFriction(Sealed):
     """What :func:`persson_friction` finds: arrays over the velocities."""
+
+    #: Velocities [m/s], as given.
+    velocity: Floats
+    #: Friction coefficient, against the motion whatever its sign.
+    friction_coefficient: Floats
+    #: Share of the nominal area in contact.
+    contact_fraction: Floats
 
     def __init__(self, theory: _core.Persson, velocity: Floats) -> None:
         self._theory = theory
-        #: Velocities [m/s], as given.
-        self.velocity = velocity
-        #: Friction coefficient, against the motion whatever its sign.
-        self.friction_coefficient: Floats
-        #: Share of the nominal area in contact.
-        self.contact_fraction: Floats
-        self.friction_coefficient, self.contact_fraction = theory.sweep(velocity)
+        friction, contact = theory.sweep(velocity)
+        self._hold(velocity=np.array(velocity), friction_coefficient=friction, contact_fraction=contact)
 
     def magnification(self, velocity: float) -> Magnification:
         """Friction and contact over the magnification, at one velocity [m/s]."""

@@ -13,9 +13,10 @@ import numpy.typing as npt
 
 from . import _core
 from ._arrays import Floats, as_plane, cells_of, centres, frozen, in_hertz, number, plain
-from ._columns import HISTOGRAMS, QUANTITIES, ROW, Column, Sealed, units_of
+from ._columns import HISTOGRAMS, QUANTITIES, ROW, Column, units_of
 from ._core import CaseError
 from ._findings import Finding, findings_of
+from ._sealed import Sealed
 from ._words import Field
 
 if TYPE_CHECKING:

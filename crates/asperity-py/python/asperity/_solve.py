@@ -14,8 +14,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import as_plane, cells_of, count, field, frozen, in_order, number
-from ._columns import HISTOGRAMS, ROW, Number, Sealed
+from ._arrays import as_plane, cells_of, count, field, in_order, number
+from ._columns import HISTOGRAMS, ROW, Number
 from ._core import CaseError, ConvergenceError
 from ._findings import Finding, findings_of, warn
 from ._histories import History, Stage, Times, as_history, as_stage, as_times, one_of
@@ -25,6 +25,7 @@ from ._motion import Motion
 from ._progress import Progress
 from ._record import Keep, Record, path_of
 from ._result import Result, open
+from ._sealed import Sealed
 from ._shifts import temperatures
 from ._surface import surface_of
 from ._units import bare
@@ -143,8 +144,13 @@ class Step(Sealed):
         )
 
 
-class March:
+class March(Sealed):
     """A simulation that is solved step by step: iterate over it for its :class:`Step` s. Made by :func:`march`."""
+
+    #: Undeformed gap [m], shape (nx, ny), of a line contact (n,).
+    initial_gap: Floats
+    #: Lengths of the domain along x and y [m], of a line contact along x.
+    size: tuple[float, ...]
 
     def __init__(
         self,
@@ -160,10 +166,7 @@ class March:
         self._core = core
         # Threads that share a march take turns.
         self._turn = threading.Lock()
-        #: Undeformed gap [m], shape (nx, ny), of a line contact (n,); read-only.
-        self.initial_gap = frozen(initial_gap)
-        #: Lengths of the domain along x and y [m], of a line contact along x.
-        self.size = size
+        self._hold(initial_gap=initial_gap, size=size)
         self._setup = setup
         self._record = Record(self, keep, title, output, force)
 

@@ -11,16 +11,20 @@ from typing import Any
 import numpy as np
 
 from . import _core
+from ._sealed import Sealed
 from ._surface import _parts
 from ._words import Boundary
-from ._arrays import Floats, array, as_plane, cells_of, field, number, plain, size_of
+from ._arrays import Floats, array, as_plane, cells_of, field, frozen, number, plain, size_of
 
 
-class Stress:
+class Stress(Sealed):
     """Stress below a pressure: fields of shape (depth, x, y), of a line contact (depth, x), in Pa, tension positive, z into the body.
 
-    A field is computed when it is first asked for, and kept.
+    A field is computed when it is first asked for, and kept; all arrays are read-only.
     """
+
+    #: Depths [m].
+    depths: Floats
 
     def __init__(
         self,
@@ -31,14 +35,14 @@ class Stress:
         boundary: str,
         transverse: tuple[Floats, float] | None = None,
     ) -> None:
-        self._pressure = pressure
+        # Fields are computed later: the array of the caller may have changed until then.
+        self._pressure = np.array(pressure)
         self._size = size
         self._poisson = poisson
         self._boundary = boundary
         # Where the Poisson's ratio changes with time: see `changing`.
         self._transverse = transverse
-        #: Depths [m].
-        self.depths = depths
+        self._hold(depths=np.array(depths))
         # Errors come here and not with the first field.
         _core.stress_check(*self._what, [float(d) for d in depths])
 
@@ -50,7 +54,8 @@ class Stress:
 
     def _field(self, name: str) -> Floats:
         found = _core.stress_field(name, *self._what, [float(d) for d in self.depths])
-        return found[:, :, 0] if self._pressure.ndim == 1 else found
+        values: Floats = frozen(found[:, :, 0] if self._pressure.ndim == 1 else found)
+        return values
 
     @cached_property
     def xx(self) -> Floats:

@@ -35,6 +35,7 @@ from ._arrays import (
 )
 from ._core import CaseError
 from ._findings import ResultWarning, findings_of, warn
+from ._sealed import ReadOnlyArrays
 from ._units import carries, factor_of, is_labelled, variable_of
 from ._words import Form
 
@@ -64,7 +65,7 @@ Summand = Union["Surface", npt.NDArray[Any], Labelled, Topography, int]
 
 
 @dataclass(frozen=True, eq=False)
-class Autocorrelation:
+class Autocorrelation(ReadOnlyArrays):
     """f(tx, ty) = <z(x, y) z(x + tx, y + ty)>/<z^2>, z about its mean."""
 
     #: f at the lags `x`, `y`, shape (nx, ny); 1 where both are 0.

@@ -1,0 +1,47 @@
+"""Objects that hold what was computed: their attributes cannot be replaced, and their arrays are read-only."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ._arrays import frozen
+
+
+def read_only(value: Any) -> Any:
+    """An array, or a tuple of some, that cannot be written to; anything else as it is."""
+    if isinstance(value, np.ndarray):
+        return frozen(value)
+    if type(value) is tuple and any(isinstance(one, np.ndarray) for one in value):
+        return tuple(read_only(one) for one in value)
+    return value
+
+
+class ReadOnlyArrays:
+    """A dataclass whose arrays are read-only, in its copies and pickles too."""
+
+    def __post_init__(self) -> None:
+        self.__setstate__(self.__dict__)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update({name: read_only(value) for name, value in state.items()})
+
+
+class Sealed:
+    """What does not change once it is made: public attributes cannot be set, and arrays are read-only."""
+
+    def _hold(self, **values: Any) -> None:
+        """Sets attributes."""
+        self.__dict__.update({name: read_only(value) for name, value in values.items()})
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self._hold(**state)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if not name.startswith("_"):
+            raise AttributeError(f"{name} cannot be set: {type(self).__name__} does not change once it is made; work on a copy of its numbers")
+        object.__setattr__(self, name, value)
+
+    def __delattr__(self, name: str) -> None:
+        raise AttributeError(f"{name} cannot be deleted: {type(self).__name__} does not change once it is made")

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._core import CaseError
-from ._units import bare, carries, frequency, is_labelled, variable_of
+from ._units import bare, frequency, has_unit, is_labelled, variable_of
 
 Floats = npt.NDArray[np.float64]
 
@@ -41,7 +41,7 @@ def in_hertz(what: str, value: Any) -> float:
 
 def angle(what: str, value: Any) -> float:
     """An angle in rad; a quantity of pint, say, may be in degrees."""
-    return number(what, value, "rad") if carries(value) else number(what, value)
+    return number(what, value, "rad") if has_unit(value) else number(what, value)
 
 
 def count(what: str, value: Any, least: int = 1, most: int = 2**53) -> int:
@@ -160,6 +160,23 @@ def in_order(what: str, value: Any, size: Sequence[float] | None = None) -> Any:
     return value
 
 
+def check_places(what: str, value: Any, surface: Any) -> None:
+    """Refuses an array of xarray that lies beside the array of the surface, where the coordinates of both tell: a
+    :class:`Surface` does not keep its place."""
+    value, surface = variable_of(what, value), variable_of("surface", surface)
+    if not (is_labelled(value) and is_labelled(surface)):
+        return
+    for name in map(str, value.dims):
+        if name not in surface.dims or value.sizes[name] != surface.sizes[name]:
+            continue
+        pitch, other = (abs(pitch_of(what, one, name) or np.nan) for one in (value, surface))
+        if not abs(pitch - other) < 1e-6 * pitch:
+            continue
+        starts = [float(array(name, one.coords[name], "m").min()) for one in (value, surface)]
+        if abs(starts[0] - starts[1]) > 0.1 * pitch:
+            raise CaseError(f"the coordinate {name} of {what} begins at {starts[0]:.6g} m, but that of the surface at {starts[1]:.6g} m")
+
+
 def pitch_of(what: str, value: Any, name: str) -> float | None:
     """The distance of neighbours [m] along a dimension of an array of xarray, below zero where its coordinate falls; None without
     coordinate."""
@@ -202,6 +219,10 @@ def size_of(what: str, array: Floats, size: Any) -> list[float]:
     if len(found) != array.ndim:
         words = "two lengths, size=(Lx, Ly)" if array.ndim == 2 else "one length, size=(L,)"
         raise CaseError(f"size is {size!r}, but {what} has shape {array.shape}, which needs {words}")
+    for length in found:
+        # Squares of other lengths are no float.
+        if not 1e-150 < length < 1e150:
+            raise CaseError(f"size is {size!r} m, but must be finite and greater than 0 m (1e-150 m to 1e150 m)")
     return list(found)
 
 

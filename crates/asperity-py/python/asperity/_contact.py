@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, array, as_plane, cells_of, centres, count, field, frozen, number
+from ._arrays import Floats, array, as_plane, cells_of, centres, check_places, count, field, frozen, number
 from ._columns import ROW, Column
 from ._core import CaseError
 from ._findings import Finding, findings_of, warn
@@ -510,6 +510,8 @@ def elastic(
     if contact_modulus is None and kernel is None:
         raise CaseError("give contact_modulus, E* [Pa] in (1 - nu1^2)/E1 + (1 - nu2^2)/E2 = 1/E*")
     modulus = 1.0 if contact_modulus is None else number("contact_modulus", contact_modulus)
+    for what, value in (("hardness", hardness), ("start of the pressure", start)):
+        check_places(what, value, surface if gap is None else gap)
     limit = _hardness(hardness, shape.size)
     table = None if kernel is None else _table(kernel, shape, boundary, "m/Pa" if contact_modulus is None else "m")
     if table is not None:

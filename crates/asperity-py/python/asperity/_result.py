@@ -620,7 +620,7 @@ class Result(Sealed):
         if time is not None and index is not None:
             raise CaseError("give time or index, exactly one of them")
         if time is not None:
-            distance = np.abs(self.field_times - number("time", time))
+            distance = np.abs(self.field_times - number("velocity" if self._sweep else "time", time))
             # Of two at the same time, before and after a jump, the later.
             return int(kept - 1 - np.argmin(distance[::-1]))
         if index is None:

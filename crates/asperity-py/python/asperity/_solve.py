@@ -14,7 +14,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import as_plane, cells_of, count, field, in_order, number
+from ._arrays import as_plane, cells_of, check_places, count, field, in_order, number
 from ._columns import HISTOGRAMS, ROW, Number
 from ._core import CaseError, ConvergenceError
 from ._findings import Finding, findings_of, warn
@@ -260,6 +260,7 @@ def march(
     """
     keep = Keep(fields, every, field_times)
     shape = surface_of(surface, gap, size)
+    check_places("hardness", hardness, surface if gap is None else gap)
     gap = shape.gap()
     bodies = bodies_of(material)
     cells, limit = hardness_parts(hardness, shape.size)

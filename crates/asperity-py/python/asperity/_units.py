@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from . import _core
+from . import _core, _unit_words
 from ._core import CaseError
 
 #: SI unit of each parameter, by its name in messages; parameters that are not listed have no unit.
@@ -39,22 +39,13 @@ UNITS: dict[str, str] = {
     **dict.fromkeys(["velocity", "velocities"], "m/s"),
     "wave numbers": "1/m",
 }
-#: Words that units of arrays are written in besides their symbols.
-WORDS = {
-    **dict.fromkeys(["meter", "meters", "metre", "metres"], "m"),
-    **dict.fromkeys(["millimeter", "millimeters", "millimetre", "millimetres"], "mm"),
-    **dict.fromkeys(["micrometer", "micrometers", "micrometre", "micrometres", "micron", "microns"], "um"),
-    **dict.fromkeys(["nanometer", "nanometers", "nanometre", "nanometres"], "nm"),
-    **dict.fromkeys(["angstrom", "Angstrom", "A"], "Å"),
-    **dict.fromkeys(["pascal", "pascals"], "Pa"),
-    **dict.fromkeys(["newton", "newtons"], "N"),
-    **dict.fromkeys(["second", "seconds", "sec"], "s"),
-    **dict.fromkeys(["kelvin"], "K"),
-}
 #: Units of an angle: packages of units take their numbers as plain ones, in radian.
 _ANGLE = re.compile(r"rad|deg|rpm|rps|turn|revol|cycle|arc_?(min|sec)|gon\b|°(?![CF])|′|″", re.IGNORECASE)
 #: Turns per time, as units of arrays.
-_TURNS = {"rpm": "1/min", "cycle/s": "1/s", "cycles/s": "1/s"}
+_TURNS = {**dict.fromkeys(["rpm", "revolution_per_minute", "revolutions_per_minute"], "1/min"), **dict.fromkeys(["cycle/s", "cycles/s"], "1/s")}
+#: Units of an angle in rad, as units of arrays.
+_ANGLES = {**dict.fromkeys(["rad", "radian", "radians"], 1.0), **dict.fromkeys(["deg", "degree", "degrees", "°"], math.pi / 180.0)}
+_NO_ANGLE = "{} is in {}, but must be a plain number: the tangent of an angle, where it is a slope"
 #: Parameters that are differences of temperatures: a temperature in degC is none.
 _DIFFERENCES = ("c2",)
 
@@ -134,7 +125,14 @@ def bare(what: str, value: Any, unit: str | None = None) -> Any:
         if carries(value.data):
             return bare(what, value.data, unit)
         numbers = np.asarray(value.data)
-        factor = 1.0 if given is None else factor_of(what, given, unit)
+        if given is None:
+            return numbers
+        if unit == "" and is_angle(value):
+            raise CaseError(_NO_ANGLE.format(what, given))
+        if unit == "K" and (scale := _unit_words.temperature(str(given).strip())) is not None:
+            _check_temperature(what, str(given), True)
+            return numbers * scale[1] + scale[0]
+        factor = factor_of(what, given, unit)
         return numbers if factor == 1.0 else numbers * factor
     if isinstance(value, (list, tuple)) and any(carries(one) or is_labelled(one) for one in value):
         return type(value)([bare(what, one, unit) for one in value])
@@ -142,15 +140,23 @@ def bare(what: str, value: Any, unit: str | None = None) -> Any:
         return value
     wanted = "dimensionless" if unit == "" else unit
     if unit == "" and is_angle(value):
-        raise CaseError(f"{what} is in {unit_text(value)}, but must be a plain number: the tangent of an angle, where it is a slope")
-    if what in _DIFFERENCES and _has_offset(value):
-        raise CaseError(f"{what} is in {unit_text(value)}, but is a difference of temperatures: give it in K or delta_degC")
+        raise CaseError(_NO_ANGLE.format(what, unit_text(value)))
+    if unit == "K":
+        _check_temperature(what, unit_text(value), _has_offset(value))
     try:
         if hasattr(value, "m_as"):
             return value.m_as(wanted)
         return value.to_value(unit)
     except Exception as error:  # each package has errors of its own
         raise CaseError(f"{what} is in {unit_text(value)}, but must be {expected(unit)}: {error}") from None
+
+
+def _check_temperature(what: str, text: str, offset: bool) -> None:
+    """Refuses a temperature for a difference of temperatures, and the reverse; `offset`: the zero of its unit is not that of kelvin."""
+    if what in _DIFFERENCES and offset:
+        raise CaseError(f"{what} is in {text}, but is a difference of temperatures: give it in K or delta_degC")
+    if what not in _DIFFERENCES and _unit_words.is_difference(text):
+        raise CaseError(f"{what} is in {text}, a difference of temperatures, but must be a temperature: give it in K or degC")
 
 
 def _has_offset(value: Any) -> bool:
@@ -165,13 +171,18 @@ def _has_offset(value: Any) -> bool:
 def factor_of(what: str, given: Any, unit: str) -> float:
     """What a number in the unit `given`, the text of an array, is times in the SI unit `unit`."""
     text = str(given).strip()
+    if unit == "K":
+        _check_temperature(what, text, False)
+    if unit == "rad" and text in _ANGLES:
+        return _ANGLES[text]
+    short, others = ("Å", 1.0) if text == "A" else _unit_words.short(text)
     try:
-        factor = _core.unit_factor(WORDS.get(text, text), unit)
+        factor = _core.unit_factor(short, "" if unit == "rad" else unit)
     except CaseError as error:
         raise CaseError(f"{what} has the unit {text!r}, which is not understood ({error}): convert it to SI units") from None
     if factor is None:
-        raise CaseError(f"{what} is in {text}, but must be {expected(unit)}")
-    return factor
+        raise CaseError(f"{what} is {f'in {text}' if short not in ('', '1') else f'a plain number (its units are {text!r})'}, but must be {expected(unit)}")
+    return factor * others
 
 
 def expected(unit: str) -> str:

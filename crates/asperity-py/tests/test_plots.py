@@ -136,7 +136,7 @@ def test_decades_of_time_are_logarithmic(rough):
 
 
 def test_units_and_bars_suit_what_is_shown():
-    assert asp.plot._shown(3e-7, "m", 2) == (pytest.approx(1e6), "mm²") and asp.plot._shown(9e-8, "m", 2) == (pytest.approx(1e12), "µm²")
+    assert asp.plot._shown(9.5e-8, "m", 2) == (pytest.approx(1e6), "mm²") and asp.plot._shown(9e-9, "m", 2) == (pytest.approx(1e12), "µm²")
     wave = asp.Surface.wave(cells=(64, 16), size=(4e-3, 1e-3), amplitude=1e-6, wavelength=(1e-3, 1e-3))
     ax = wave.plot.heights()
     ax.figure.canvas.draw()
@@ -164,3 +164,69 @@ def test_limits_take_units(result):
             return 2e5
 
     assert result.plot.pressure(vmin=0, vmax=Quantity()).images[0].get_clim() == (0, 2e5)
+
+
+def test_a_constant_load_is_not_zoomed_into():
+    ball = asp.Surface.sphere(cells=(32, 32), size=(1e-3, 1e-3), radius=20e-3)
+    zener = asp.Zener(shear=1e6, shear_kelvin=1e6, retardation_time=1.0, poisson=0.5)
+    runs = [asp.solve(ball, zener, load=load, times=asp.log(100.0, 20, first=1e-3), fields=[]) for load in (1e-3, 4e-3)]
+    assert np.ptp(runs[0].load) > 0.0, "rounding errors are what the axes must not show"
+    axes = runs[0].plot.evolution()
+    low, high = axes.flat[2].get_ylim()
+    assert low < 0.96 and high > 1.04
+    runs[1].plot.evolution(axes=axes)
+    axes.flat[2].figure.canvas.draw()
+    assert axes.flat[2].get_ylim()[1] > 4.0
+
+
+def test_a_sweep_shows_its_friction():
+    wave = asp.Surface.wave(cells=(32, 4), size=(1e-3, 125e-6), amplitude=1e-6, wavelength=(1e-3, float("inf")))
+    rubber = asp.Zener(shear=1e6, shear_kelvin=0.2e6, retardation_time=0.01, poisson=0.5)
+    for shear, curves in ((None, ["friction_coefficient"]), (1e4, ["friction_coefficient", "friction_coefficient_total"])):
+        held = asp.steady(wave, rubber, pressure=20e3, velocities=[0.01, 0.1], boundary="periodic", shear_stress=shear)
+        ax = held.plot.evolution().flat[2]
+        assert ax.get_ylabel() == "friction coefficient"
+        assert [line.get_ydata().tolist() for line in ax.lines] == [getattr(held, name).tolist() for name in curves]
+
+
+def test_one_contact_is_a_point(rough):
+    contact = asp.elastic(rough, 4e6, pressure=1e4, boundary="periodic")
+    for ax in [*contact.plot.evolution().flat, contact.plot.load_displacement()]:
+        assert all(line.get_marker() == "o" for line in ax.lines) and ax.lines
+    assert "flattening" not in repr(contact.plot) and "pressure()" in repr(contact.plot)
+    assert "pressure()" not in repr(asp.solve(rough, asp.Elastic(young=1e6, poisson=0.5), pressure=1e4, times=[1.0], fields=[], boundary="periodic").plot)
+    curve = asp.elastic(rough, 4e6, pressure=[1e3, 1e4], boundary="periodic")
+    assert curve.plot.area().get_ylabel().startswith("corrected") and curve.plot.area(corrected=False).get_ylabel().startswith("contact area")
+
+
+def test_a_map_of_zeros_has_the_lowest_colour():
+    ball = asp.Surface.sphere(cells=(16, 16), size=(1e-3, 1e-3), radius=20e-3)
+    result = asp.solve(ball, asp.Elastic(young=1e6, poisson=0.5), load=asp.ramp(1e-3, duration=1.0), times=[1.0], every=1)
+    for style in ({}, {"norm": matplotlib.colors.Normalize()}):
+        image = result.plot.pressure(index=0, **style).images[0]
+        image.figure.canvas.draw()
+        assert image.get_clim()[0] == 0.0 and np.all(image.to_rgba(image.get_array()) == image.get_cmap()(0.0))
+
+
+def test_maps_keep_their_places(result, rough):
+    upper = result.plot.pressure(origin="upper")
+    # The first row of the image is that of the least y, which is above then.
+    assert upper.get_ylim()[0] > upper.get_ylim()[1] and upper.images[0].get_extent()[2:] == [0.8, 0.0]
+    wide = asp.Surface.wave(cells=(64, 16), size=(4e-3, 1e-3), amplitude=1e-6, wavelength=(1e-3, 1e-3))
+    ax = asp.elastic(wide, 4e6, pressure=1e3, boundary="periodic").plot.contact()
+    ax.figure.canvas.draw()
+    legend, label = ax.get_legend().get_window_extent(), ax.xaxis.label.get_window_extent()
+    assert not legend.overlaps(label)
+    assert result.plot.profile(y=9e-5).get_title() == "y = 0.0875 mm, t = 5 s"
+
+
+def test_misspelt_arguments_are_told(result, rough):
+    for wrong, told in (
+        (lambda: result.plot.pressure(cmpa="Greys"), "'cmap'"),
+        (lambda: result.plot.load_displacement(colr="r"), "'color'"),
+        (lambda: result.plot.evolution(ax=plt.gca()), "axes="),
+        (lambda: rough.plot.bearing_curve(linestle="--"), "'linestyle'"),
+    ):
+        with pytest.raises(TypeError, match=told):
+            wrong()
+    assert result.plot.evolution(label=5).flat[0].lines[0].get_label() == "5, counted"

@@ -12,6 +12,7 @@ import numpy.typing as npt
 
 from ._arrays import number
 from ._core import CaseError
+from ._drawing import _axes, _bar, _beside, _check_style, _image, _in_si, _legend, _placed, _scale, _settle, _shown
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes  # type: ignore[import-not-found,import-untyped,unused-ignore]
@@ -22,23 +23,9 @@ if TYPE_CHECKING:
     from ._surface import Surface
     from ._words import Field
 
-#: Prefixes by power of a thousand.
-_PREFIXES = {-4: "p", -3: "n", -2: "µ", -1: "m", 0: "", 1: "k", 2: "M", 3: "G"}
-
-
-def _shown(largest: float, unit: str, power: int = 1) -> tuple[float, str]:
-    """Factor and text of the unit that makes the largest number lie between 1 and 1000, of areas between 0.1 and 100000."""
-    k = 0
-    if np.isfinite(largest) and largest > 0:
-        # Areas change by a million from unit to unit: from 0.1 mm² on they are in mm².
-        shift = 0 if power == 1 else 1
-        k = int(np.clip(np.floor((np.log10(largest) + shift + 1e-9) / (3 * power)), -4, 0 if unit == "m" else 3))
-    return 10.0 ** (-3 * k * power), f"{_PREFIXES[k]}{unit}{'²' if power == 2 else ''}"
-
-
-def _told(plots: Any) -> str:
+def _told(plots: Any, missing: frozenset[str] = frozenset()) -> str:
     """Which figures there are."""
-    names = [name for name, value in vars(type(plots)).items() if name[0] != "_" and callable(value)]
+    names = [name for name, value in vars(type(plots)).items() if name[0] != "_" and callable(value) and name not in missing]
     return f"<plots: {', '.join(f'{name}()' for name in names)}>"
 
 
@@ -57,13 +44,19 @@ class Plots:
         self._result = result
 
     def __repr__(self) -> str:
-        return _told(self)
+        fields = self._result.fields
+        missing = {name for name in ("pressure", "gap", "displacement", "flattening") if name not in fields}
+        touching = {"pressure", "contact"} & {*fields}
+        return _told(self, frozenset(missing | ({"contact", "spots"} if not touching else set()) | ({"profile"} if not fields else set())))
 
     def evolution(self, *, axes: Any = None, log_time: bool | None = None, label: str | None = None, **style: Any) -> npt.NDArray[Any]:
-        """Contact area, approach, load and pressure over time (of a sweep over the velocity): four axes, in a new figure or the `axes`
-        that another evolution returned. Time is logarithmic where half of the rows lie in the first tenth of the run, and where
+        """Contact area, approach, load and pressure over time (of a sweep: friction in place of the load, over the velocity): four axes,
+        in a new figure or the `axes` that another evolution returned. Time is logarithmic where half of the rows lie in the first tenth of the run, and where
         `log_time` says so; the row at the time 0 is not shown then."""
         result = self._result
+        if "ax" in style:
+            raise TypeError("evolution draws into four axes: give axes=, as plt.subplots(2, 2) returns them")
+        _check_style(style)
         if axes is None:
             import matplotlib.pyplot as plt
 
@@ -72,10 +65,15 @@ class Plots:
             raise CaseError(f"axes holds {np.size(axes)} axes, but must hold four, as plt.subplots(2, 2) returns them")
         area = ("contact area", "m", 2, [("counted", "contact_area"), ("corrected", "contact_area_corrected")])
         length = ("contact length", "m", 1, [("", "contact_area")])
+        load = ("load", result.units("load"), 1, [("", "load")])
+        # Of a sweep, whose load is constant, the friction.
+        friction = ("friction coefficient", "1", 1, [("", "friction_coefficient")])
+        if "friction_coefficient_total" in result._table:
+            friction[-1][:] = [("of the bulk", "friction_coefficient"), ("in total", "friction_coefficient_total")]
         panels = [
             length if result.is_line else area,
             ("approach", "m", 1, [("", "approach")]),
-            ("load", result.units("load"), 1, [("", "load")]),
+            friction if result.is_sweep and "friction_coefficient" in result._table else load,
             ("pressure", "Pa", 1, [("mean", "mean_pressure"), ("largest", "max_pressure")]),
         ]
         over = result._table["time"]
@@ -90,11 +88,12 @@ class Plots:
             largest = max(float(np.max(np.abs(getattr(result, key)), initial=0.0)) for _, key in names)
             factor, text = _scale(ax, title, largest, unit, power)
             for n, (words, key) in enumerate(names):
-                told = ", ".join(part for part in (label, words) if part)
-                given = style if n == 0 else _second(style, label)
+                told = ", ".join(str(part) for part in (label, words) if part not in (None, ""))
+                given = _marked(style if n == 0 else _second(style, label), len(over[rows]))
                 ax.plot(over[rows], getattr(result, key)[rows] * factor, label=told or None, **given)
+            _settle(ax)
             ax.set_xlabel("velocity [m/s]" if result.is_sweep else "time [s]")
-            ax.set_ylabel(f"{title} [{text}]")
+            ax.set_ylabel(title if unit == "1" else f"{title} [{text}]")
             if log_time:
                 # What another evolution has at the time 0 has no place here either.
                 ax.set_xscale("log", nonpositive="mask")
@@ -138,7 +137,7 @@ class Plots:
             states = self._field("contact", at)
         else:
             states = (self._field("pressure", at) > 0).astype(float)
-        ax = _axes(ax)
+        ax = _axes(ax, style, "curve" if result.is_line else "map")
         self._tell(ax, at)
         if result.is_line:
             along = _shown(result.size[0], "m")
@@ -151,7 +150,7 @@ class Plots:
         if not style:
             held = list(_STATES.values())[: int(np.max(states, initial=0)) + 1]
             handles = [Patch(facecolor=colour, edgecolor="k", linewidth=0.4, label=name) for name, colour in held]
-            ax.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncols=3, frameon=False)
+            ax.legend(handles=handles, loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
         return ax
 
     def spots(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Axes | None = None, **style: Any) -> Axes:
@@ -160,7 +159,7 @@ class Plots:
         labels = self._result.spots(time=time, velocity=velocity, index=index)
         if self._result.is_line:
             raise CaseError("a map of the spots needs a contact over a plane; result.spots() has the numbers")
-        ax = _axes(ax)
+        ax = _axes(ax, style, "map")
         self._tell(ax, at)
         number_ = int(labels.max(initial=0))
         # Neighbouring numbers get colours that differ, the same in each figure.
@@ -189,17 +188,18 @@ class Plots:
             return self._curve(field, unit, at, ax, style)
         values = self._field(field, at)
         place = 0.5 * result.size[1] if y is None else number("y", y)
-        values = values[:, int(np.argmin(np.abs(result.y - place)))]
-        return self._line(field, unit, values, at, ax, style)
+        row = int(np.argmin(np.abs(result.y - place)))
+        factor, text = _shown(max(result.size), "m")
+        return self._line(field, unit, values[:, row], at, ax, style, f"y = {result.y[row] * factor:.4g} {text}")
 
     def _curve(self, name: str, unit: str, at: Any, ax: Axes | None, style: dict[str, Any]) -> Axes:
         """A field of a line contact over x."""
         values = self._field(name, at)
         return self._line(name, unit, np.where(np.isfinite(values), values, np.nan), at, ax, style)
 
-    def _line(self, name: str, unit: str, values: Any, at: Any, ax: Axes | None, style: dict[str, Any]) -> Axes:
+    def _line(self, name: str, unit: str, values: Any, at: Any, ax: Axes | None, style: dict[str, Any], place: str = "") -> Axes:
         result = self._result
-        ax = _axes(ax)
+        ax = _axes(ax, style)
         along = _shown(result.size[0], "m")
         factor, text = _scale(ax, name, float(np.nanmax(np.abs(values), initial=0.0)), unit)
         ax.plot(result.x * along[0], values * factor, **style)
@@ -208,14 +208,14 @@ class Plots:
         if "label" in style:
             _legend(ax)
         else:
-            self._tell(ax, at)
+            self._tell(ax, at, place)
         return ax
 
     def _map(self, name: str, words: str, unit: str, colours: str, at: Any, ax: Axes | None, style: dict[str, Any]) -> Axes:
         if self._result.is_line:
             return self._curve(name, unit, at, ax, style)
         values = self._field(name, at)
-        ax = _axes(ax)
+        ax = _axes(ax, style, "map")
         self._tell(ax, at)
         style = _in_si(style, unit)
         image = _image(ax, np.where(np.isfinite(values), values, np.nan), self._result.size, {"cmap": colours, **style})
@@ -226,14 +226,20 @@ class Plots:
         time, velocity, index = at
         return self._result.field(name, time=time, velocity=velocity, index=index)
 
-    def _tell(self, ax: Any, at: Any) -> None:
-        """The time, where there is more than one."""
-        result = self._result
-        if len(result.field_times) < 2:
-            return
-        time, velocity, index = at
-        n = result._index(time if velocity is None else velocity, index)
-        ax.set_title(f"v = {result.field_times[n]:.4g} m/s" if result.is_sweep else f"t = {result.field_times[n]:.4g} s")
+    def _tell(self, ax: Any, at: Any, place: str = "") -> None:
+        """The place, and the time where there is more than one."""
+        result, when = self._result, ""
+        if len(result.field_times) > 1:
+            time, velocity, index = at
+            n = result._index(time if velocity is None else velocity, index)
+            when = f"v = {result.field_times[n]:.4g} m/s" if result.is_sweep else f"t = {result.field_times[n]:.4g} s"
+        if told := ", ".join(part for part in (place, when) if part):
+            ax.set_title(told)
+
+
+def _marked(style: dict[str, Any], points: int) -> dict[str, Any]:
+    """The style of a curve; one of a single point is seen by its marker only."""
+    return style if points != 1 else {"marker": "o", **style}
 
 
 def _second(style: dict[str, Any], label: str | None) -> dict[str, Any]:
@@ -264,14 +270,14 @@ class CurvePlots:
 
     def area(self, *, corrected: bool = True, ax: Axes | None = None, **style: Any) -> Axes:
         """Contact fraction over mean pressure; with `corrected` that of the area less its perimeter's share."""
-        curve, ax = self._curve, _axes(ax)
+        curve, ax = self._curve, _axes(ax, style)
         factor, text = _scale(ax, "pressure", float(np.max(curve.mean_pressure)), "Pa")
         fraction = curve.contact_fraction
         if corrected:
             fraction = curve.contact_area_corrected / math.prod(curve[0].size)
         ax.plot(curve.mean_pressure * factor, 100 * fraction, **{"marker": ".", **style})
         ax.set_xlabel(f"mean pressure [{text}]")
-        ax.set_ylabel("contact area [% of nominal]")
+        ax.set_ylabel(f"{'corrected ' if corrected else ''}contact area [% of nominal]")
         if "label" in style:
             _legend(ax)
         return ax
@@ -297,7 +303,7 @@ class SurfacePlots:
         surface = self._surface
         z = np.where(np.isfinite(surface.heights), surface.heights, np.nan)
         z = z - np.nanmean(z)
-        ax = _axes(ax)
+        ax = _axes(ax, style, "curve" if surface.is_line else "map")
         if surface.is_line:
             along = _shown(max(surface.size), "m")
             factor, text = _scale(ax, "height", float(np.nanmax(np.abs(z), initial=0.0)), "m")
@@ -321,7 +327,7 @@ class SurfacePlots:
     def power_spectrum_2d(self, *, ax: Axes | None = None, **style: Any) -> Axes:
         """Map of the logarithm of the power spectrum over the wavenumbers along x and y."""
         qx, qy, c = self._surface.power_spectrum_2d()
-        ax = _axes(ax)
+        ax = _axes(ax, style, "map")
         # Below is the rounding of the transform, where a synthetic surface has no waves.
         shown = np.log10(np.where(c > 1e-20 * c.max(initial=0.0), c, np.nan))
         half = [0.5 * (q[1] - q[0]) if len(q) > 1 else 0.5 for q in (qx, qy)]
@@ -329,7 +335,7 @@ class SurfacePlots:
         longest = max(qx[-1] + half[0], qy[-1] + half[1])
         factor, text = (1e-6, "µm") if longest >= 1e6 else (1e-3, "mm") if longest >= 1e3 else (1.0, "m")
         extent = tuple(end * factor for end in (qx[0] - half[0], qx[-1] + half[0], qy[0] - half[1], qy[-1] + half[1]))
-        image = ax.imshow(shown.T, **{"origin": "lower", "extent": extent, "interpolation": "nearest", "cmap": "viridis", **style})
+        image = ax.imshow(shown.T, **_placed(extent, {"cmap": "viridis", **style}))
         ax.set_xlabel(f"qx [1/{text}]")
         ax.set_ylabel(f"qy [1/{text}]")
         _beside(ax, image, "log10 of the power spectrum C [m⁴]")
@@ -338,12 +344,11 @@ class SurfacePlots:
     def autocorrelation(self, *, periodic: bool | None = None, ax: Axes | None = None, **style: Any) -> Axes:
         """Map of the autocorrelation function over the lags."""
         found = self._surface.autocorrelation(periodic=periodic)
-        ax = _axes(ax)
+        ax = _axes(ax, style, "map")
         factor, text = _shown(float(max(np.abs(found.x).max(), np.abs(found.y).max())), "m")
         half = [0.5 * side / n for side, n in zip(self._surface.size, self._surface.cells)]
         extent = [end * factor for end in (found.x[0] - half[0], found.x[-1] + half[0], found.y[0] - half[1], found.y[-1] + half[1])]
-        settings = {"origin": "lower", "extent": extent, "interpolation": "nearest", "cmap": "RdBu_r", "vmin": -1.0, "vmax": 1.0}
-        image = ax.imshow(found.values.T, **{**settings, **style})
+        image = ax.imshow(found.values.T, **_placed(extent, {"cmap": "RdBu_r", "vmin": -1.0, "vmax": 1.0, **style}))
         ax.set_xlabel(f"lag along x [{text}]")
         ax.set_ylabel(f"lag along y [{text}]")
         _beside(ax, image, "autocorrelation")
@@ -352,7 +357,7 @@ class SurfacePlots:
     def height_distribution(self, *, bins: int = 100, ax: Axes | None = None, **style: Any) -> Axes:
         """Density of the points over height."""
         z, density = self._surface.height_distribution(bins)
-        ax = _axes(ax)
+        ax = _axes(ax, style)
         factor, text = _shown(float(np.max(np.abs(z), initial=0.0)), "m")
         ax.plot(z * factor, density / factor, **style)
         ax.set_xlabel(f"height [{text}]")
@@ -362,7 +367,7 @@ class SurfacePlots:
     def bearing_curve(self, *, ax: Axes | None = None, **style: Any) -> Axes:
         """Height over the share of the surface above it."""
         z, share = self._surface.bearing_curve()
-        ax = _axes(ax)
+        ax = _axes(ax, style)
         factor, text = _scale(ax, "height", float(np.max(np.abs(z), initial=0.0)), "m")
         ax.plot(100 * share, z * factor, **style)
         ax.set_xlabel("share of the surface above [%]")
@@ -372,10 +377,10 @@ class SurfacePlots:
 
 
 def _load_displacement(approach: Any, load: Any, unit: str, ax: Axes | None, style: dict[str, Any]) -> Axes:
-    ax = _axes(ax)
+    ax = _axes(ax, style)
     across = _scale(ax, "load", float(np.max(np.abs(load), initial=0.0)), unit)
     along = _scale(ax, "approach", float(np.max(np.abs(approach), initial=0.0)), "m", axis="x")
-    ax.plot(approach * along[0], load * across[0], **style)
+    ax.plot(approach * along[0], load * across[0], **_marked(style, len(load)))
     ax.set_xlabel(f"approach [{along[1]}]")
     ax.set_ylabel(f"load [{across[1]}]")
     if "label" in style:
@@ -393,7 +398,7 @@ def _two_or_five(value: float) -> str:
 def _spectrum(q: Any, c: Any, words: str, ax: Axes | None, style: dict[str, Any]) -> Axes:
     from matplotlib.ticker import FuncFormatter
 
-    ax = _axes(ax)
+    ax = _axes(ax, style)
     # Below is the rounding of the transform, where a synthetic surface has no waves.
     seen = c > 1e-20 * np.max(c, initial=0.0)
     ax.loglog(q[seen], c[seen], **{"marker": ".", **style})
@@ -406,65 +411,6 @@ def _spectrum(q: Any, c: Any, words: str, ax: Axes | None, style: dict[str, Any]
     if "label" in style:
         _legend(ax)
     return ax
-
-
-def _image(ax: Any, values: Any, size: tuple[float, ...], style: dict[str, Any]) -> Any:
-    """A map over the domain; its values are in SI units, so that those of norm, vmin and vmax are too."""
-    lx, ly = size
-    factor, text = _shown(max(lx, ly), "m")
-    settings = {"origin": "lower", "extent": (0, lx * factor, 0, ly * factor), "interpolation": "nearest"}
-    image = ax.imshow(values.T, **{**settings, **style})
-    ax.set_xlabel(f"x [{text}]")
-    ax.set_ylabel(f"y [{text}]")
-    return image
-
-
-def _bar(ax: Any, image: Any, words: str, unit: str, values: Any) -> None:
-    """A colour bar in a unit that suits the values."""
-    from matplotlib.ticker import FuncFormatter
-
-    finite = values[np.isfinite(values)]
-    factor, text = _shown(float(np.abs(finite).max(initial=0.0)), unit)
-    written = FuncFormatter(lambda value, _: f"{value * factor + 0.0:.6g}".replace("-", "\N{MINUS SIGN}"))
-    low, high = image.get_clim()
-    if finite.size and np.ptp(finite) == 0.0 and low == high:
-        # One value everywhere: the colours have no width of their own.
-        only = float(finite.flat[0])
-        image.set_clim(only - 1.0, only + 1.0)
-        _beside(ax, image, f"{words} [{text}]", format=written, ticks=[only])
-        return
-    _beside(ax, image, f"{words} [{text}]", format=written)
-
-
-def _beside(ax: Any, image: Any, label: str, **keys: Any) -> None:
-    """A colour bar, about as high as the map: a wide map fills a part of the height of its axes only."""
-    left, right, bottom, top = image.get_extent()
-    place = ax.get_window_extent()
-    # The bar takes a sixth of the width.
-    share = min(1.0, 0.83 * place.width / place.height * abs((top - bottom) / (right - left)))
-    ax.figure.colorbar(image, ax=ax, label=label, shrink=share, aspect=max(20.0 * share, 4.0), **keys)
-
-
-def _legend(ax: Any) -> None:
-    """A legend above the axes, where it covers no curve."""
-    ax.legend(frameon=False, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, borderaxespad=0.1, fontsize="small")
-
-
-def _in_si(style: dict[str, Any], unit: str) -> dict[str, Any]:
-    """Limits of a map in SI units, where they carry units."""
-    return {key: number(key, value, unit) if key in ("vmin", "vmax") and value is not None else value for key, value in style.items()}
-
-
-def _scale(ax: Any, words: str, largest: float, unit: str, power: int = 1, axis: str = "y") -> tuple[float, str]:
-    """Factor and text of the unit of an axis: that of a curve which is there already, else one that suits the numbers."""
-    if unit == "1":
-        return 1.0, "1"
-    label = ax.get_ylabel() if axis == "y" else ax.get_xlabel()
-    for k, prefix in _PREFIXES.items():
-        text = f"{prefix}{unit}{'²' if power == 2 else ''}"
-        if label == f"{words} [{text}]":
-            return 10.0 ** (-3 * k * power), text
-    return _shown(largest, unit, power)
 
 
 def fitted(fit: Fit, ax: Axes | None) -> Any:
@@ -482,12 +428,4 @@ def fitted(fit: Fit, ax: Axes | None) -> Any:
     names = {"relaxation": f"{letter}(t) [Pa]", "creep": f"{'D' if letter == 'E' else 'J'}(t) [1/Pa]"}
     ax.set_ylabel(names.get(fit.kind, f"{letter}′, {letter}″ [Pa]"))
     _legend(ax)
-    return ax
-
-
-def _axes(ax: Axes | None) -> Axes:
-    if ax is None:
-        import matplotlib.pyplot as plt
-
-        _, ax = plt.subplots(layout="constrained")
     return ax

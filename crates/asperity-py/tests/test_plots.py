@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import asperity as asp
+from asperity._drawing import _shown
 
 matplotlib = pytest.importorskip("matplotlib")
 matplotlib.use("Agg")
@@ -136,7 +137,7 @@ def test_decades_of_time_are_logarithmic(rough):
 
 
 def test_units_and_bars_suit_what_is_shown():
-    assert asp.plot._shown(9.5e-8, "m", 2) == (pytest.approx(1e6), "mm²") and asp.plot._shown(9e-9, "m", 2) == (pytest.approx(1e12), "µm²")
+    assert _shown(9.5e-8, "m", 2) == (pytest.approx(1e6), "mm²") and _shown(9e-9, "m", 2) == (pytest.approx(1e12), "µm²")
     wave = asp.Surface.wave(cells=(64, 16), size=(4e-3, 1e-3), amplitude=1e-6, wavelength=(1e-3, 1e-3))
     ax = wave.plot.heights()
     ax.figure.canvas.draw()

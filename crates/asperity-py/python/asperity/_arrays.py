@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import difflib
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -32,6 +33,20 @@ def number(what: str, value: Any, unit: str | None = None) -> float:
 def shown(value: Any) -> str:
     """A value in a message: a number of numpy as a plain one."""
     return repr(value.item() if isinstance(value, np.generic) else value)
+
+
+def choice(what: str, value: Any, words: Sequence[str]) -> Any:
+    """One of these words, or an error that names the nearest."""
+    if isinstance(value, str) and value in words:
+        return value
+    near = difflib.get_close_matches(value, words, 1) if isinstance(value, str) else []
+    hint = f"; did you mean {near[0]!r}?" if near else ""
+    raise CaseError(f"{what} is {value!r}, but must be {', '.join(map(repr, words[:-1]))} or {words[-1]!r}{hint}")
+
+
+def _gathered(value: Any) -> Any:
+    """The values of a generator as a list; anything else as it is."""
+    return list(value) if isinstance(value, Iterator) else value
 
 
 def in_hertz(what: str, value: Any) -> float:
@@ -118,7 +133,7 @@ def plain(array: Any) -> Floats:
 
 def array(what: str, value: Any, unit: str | None = None) -> Floats:
     """Real numbers of any shape in SI units."""
-    value = bare(what, value, unit)
+    value = bare(what, _gathered(value), unit)
     found = np.asarray(value)
     if found.dtype.kind not in "fiu":
         told = f"has dtype {found.dtype}" if found.ndim else f"is {value!r}"
@@ -233,7 +248,7 @@ def cells_of(array: Floats) -> str:
 
 def line(what: str, value: Any, unit: str | None = None) -> Floats:
     """A one-dimensional array of real numbers as float64 in SI units."""
-    array = np.asarray(bare(what, value, unit))
+    array = np.asarray(bare(what, _gathered(value), unit))
     if array.dtype.kind not in "fiu" or array.ndim != 1:
         raise CaseError(f"{what} has shape {array.shape} and dtype {array.dtype}, but must be a list of real numbers")
     return plain(array)
@@ -241,6 +256,7 @@ def line(what: str, value: Any, unit: str | None = None) -> Floats:
 
 def points(what: str, value: Any, units: tuple[str, str] = ("", "")) -> list[tuple[float, float]]:
     """A list of pairs, whose numbers have these units."""
+    value = _gathered(value)
     if isinstance(value, (list, tuple)) and all(isinstance(pair, (list, tuple)) and len(pair) == 2 for pair in value):
         value = [tuple(bare(what, one, unit) for one, unit in zip(pair, units)) for pair in value]
     else:

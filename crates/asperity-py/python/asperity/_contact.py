@@ -8,13 +8,13 @@ import os
 import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, get_args, overload
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, array, as_plane, cells_of, centres, check_places, count, field, frozen, number
+from ._arrays import Floats, array, as_plane, cells_of, centres, check_places, choice, count, field, frozen, number
 from ._columns import ROW, Column
 from ._core import CaseError
 from ._findings import Finding, findings_of, warn
@@ -147,8 +147,6 @@ class ElasticContact(Sealed):
     size: tuple[float, ...]
     #: "free" or "periodic".
     boundary: str
-    #: Where the numbers may be off (docs/findings.md).
-    findings: list[Finding]
     #: What the solver did, where it was asked for.
     history: ConvergenceHistory | None
 
@@ -174,9 +172,14 @@ class ElasticContact(Sealed):
             initial_gap=planned.gap,
             size=planned.size,
             boundary=planned.keys["boundary"],
-            findings=findings,
             history=history,
         )
+        self._findings = findings
+
+    @property
+    def findings(self) -> list[Finding]:
+        """Where the numbers may be off (docs/findings.md)."""
+        return findings_of(self._findings)
 
     def _whole(self, what: str) -> None:
         """Refuses to work with fields that were changed since the contact was solved."""
@@ -214,7 +217,7 @@ class ElasticContact(Sealed):
     def y(self) -> Floats:
         """Cell centres along y [m]."""
         if self.is_line:
-            raise CaseError("a line contact has no y: nothing changes along it")
+            raise AttributeError("a line contact has no y: nothing changes along it")
         return centres(self.cells[1], self.size[1])
 
     @property
@@ -224,7 +227,7 @@ class ElasticContact(Sealed):
         """
         if self._stiffness is None:
             if self._planned is None:
-                raise CaseError("the stiffness is computed where the contact was: ask for it before it is sent to another process")
+                raise CaseError("the stiffness is computed by the contact that was solved, and not by a copy: ask for it before the contact is copied or sent to another process")
             self._whole("the stiffness")
             self._stiffness = self._planned.core.stiffness(np.array(as_plane(self.pressure)))
         return self._stiffness
@@ -506,6 +509,7 @@ def elastic(
     >>> curve.contact_area.shape, curve[-1].pressure.shape
     ((3,), (128, 128))
     """
+    boundary, method = choice("boundary", boundary, get_args(Boundary)), choice("method", method, get_args(Method))
     shape = surface_of(surface, gap, size)
     if contact_modulus is None and kernel is None:
         raise CaseError("give contact_modulus, E* [Pa] in (1 - nu1^2)/E1 + (1 - nu2^2)/E2 = 1/E*")
@@ -525,7 +529,7 @@ def elastic(
     what, values = _prescribed(load, pressure, approach)
     unit = {"load": "N/m" if shape.is_line else "N", "pressure": "Pa", "approach": "m"}[what]
     scale = math.prod(shape.size) if what == "pressure" else 1.0
-    given = bare(what, values, unit)
+    given = bare(what, list(values) if isinstance(values, Iterator) else values, unit)
     several = np.ndim(given) > 0
     numbers = [number(what, one, unit) * scale for one in (given if several else [given])]
     if not numbers:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import count, in_hertz, line, number, points
+from ._arrays import choice, count, in_hertz, line, number, points
 from ._core import CaseError
 from ._units import has_unit, unit_among
 
@@ -147,7 +147,7 @@ class Stage:
     pressure: History | float | None = None
     approach: History | float | None = None
     duration: float | None = None
-    until: str | tuple[str, float] | None = None
+    until: Literal["contact-lost"] | tuple[Literal["approach", "load", "pressure"], Any] | None = None
     after_jump: bool = False
     times: Times | npt.ArrayLike | None = None
 
@@ -161,6 +161,12 @@ class Stage:
             object.__setattr__(self, "times", as_times(self.times))
         if isinstance(self.until, list):
             object.__setattr__(self, "until", tuple(self.until))
+        if isinstance(self.until, str) and self.until != "contact-lost":
+            raise CaseError(f"until is {self.until!r}, but must be 'contact-lost' or a pair as in ('load', 0.1)")
+        if isinstance(self.until, tuple):
+            if len(self.until) != 2:
+                raise CaseError(f"until is {self.until!r}, but must be 'contact-lost' or a pair as in ('load', 0.1)")
+            choice("the event of until", self.until[0], ("approach", "load", "pressure"))
 
     def _parts(self, load_unit: str) -> _core._Stage:
         """As the core takes it; the unit of a load is N, or N/m of a line contact."""
@@ -170,8 +176,6 @@ class Stage:
         until: tuple[str, float] | None = None
         if isinstance(self.until, str):
             until = (self.until, 0.0)
-            if self.until != "contact-lost":
-                raise CaseError(f"until is {self.until!r}, but must be 'contact-lost' or a pair as in ('load', 0.1)")
         elif self.until is not None:
             event, limit = self.until
             until = (str(event), number(f"until {event}", limit, {"approach": "m", "load": load_unit, "pressure": "Pa"}.get(str(event))))

@@ -18,6 +18,7 @@ from ._arrays import Floats, count, line, number
 from ._core import CaseError
 from ._materials import Prony
 from ._sealed import ReadOnlyArrays
+from ._words import Interface, LongTime
 
 #: A value, and the lower and upper end of its 95 % interval. The value is NaN where the record does not determine it: the ends
 #: are more than a factor of 10 apart.
@@ -84,10 +85,10 @@ def fit_indentation(
     poisson: float,
     given: str | None = None,
     terms: int | None = None,
-    long_time: str = "free",
+    long_time: LongTime = "free",
     fit_touch: bool = False,
     thickness: float | None = None,
-    interface: str = "bonded",
+    interface: Interface = "bonded",
     hardness: float | None = None,
     name: str | None = None,
     springs: int = 150,

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, array, line, number
+from ._arrays import Floats, array, choice, line, number
 from ._core import CaseError
 from ._materials import Material
+from ._words import Interface
 
 #: Thickness and interface of each layer, and whether a half-space lies below.
 Stack = tuple[list[tuple[float, str]], bool]
@@ -29,7 +30,7 @@ class Layer:
     thickness: float
     material: Material
     poisson: float | None = None
-    interface: str = "bonded"
+    interface: Interface = "bonded"
 
     def __post_init__(self) -> None:
         if not isinstance(self.material, Material):
@@ -40,8 +41,7 @@ class Layer:
         object.__setattr__(self, "thickness", thickness)
         if self.poisson is not None:
             object.__setattr__(self, "poisson", number("poisson", self.poisson))
-        if self.interface not in ("bonded", "slip"):
-            raise CaseError(f"interface is {self.interface!r}, but must be 'bonded' or 'slip'")
+        choice("interface", self.interface, get_args(Interface))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -82,7 +82,7 @@ class Body:
             materials[0] = type(materials[0])(**{**materials[0]._given, "hardness": self.hardness})
         if isinstance(self.base, Material):
             materials.append(_named(self.base, f"{prefix}base", None))
-        stack = [(float(layer.thickness), layer.interface) for layer in self.layers]
+        stack: list[tuple[float, str]] = [(float(layer.thickness), layer.interface) for layer in self.layers]
         return [material._body for material in materials], (stack, isinstance(self.base, Material))
 
 

@@ -5,15 +5,16 @@ from __future__ import annotations
 import json
 import warnings
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
 from . import _core
-from ._arrays import Floats, field, in_order, number, pair
+from ._arrays import Floats, choice, field, in_order, number, pair
 from ._findings import Finding, ResultWarning, findings_of
 from ._sealed import Sealed
 from ._surface import _parts
+from ._words import Flow, Sides
 
 if TYPE_CHECKING:
     import xarray
@@ -72,8 +73,6 @@ class Leakage(Sealed):
     pressure: Floats
     leak_resolved: bool
     cells: Any
-    #: What was found against the numbers.
-    findings: list[Finding]
     #: Effective conductance [m^3], where direction is "both".
     conductance: Floats | None
 
@@ -81,12 +80,17 @@ class Leakage(Sealed):
         # Leaks of a gas are computed later: the array of the caller may have changed until then.
         self._gap, self._contact, self._size, self._keys = np.array(gap), contact, size, keys
         found = self._solved({})
-        found["findings"] = findings_of(json.loads(found["findings"]))
+        self._findings = json.loads(found.pop("findings"))
         if found["conductance"] is not None:
             found["conductance"] = np.array(found["conductance"])
         for name in ("leak_rate", "leak_rate_standard", "leak_estimate_junction", "leak_estimate_medium", "knudsen_number"):
             found.pop(name)
         self._hold(**found)
+
+    @property
+    def findings(self) -> list[Finding]:
+        """What was found against the numbers."""
+        return findings_of(self._findings)
 
     def _solved(self, fluid: dict[str, Any]) -> dict[str, Any]:
         keys = json.dumps({**self._keys, **fluid})
@@ -141,8 +145,8 @@ def leakage(
     contact: Any = None,
     *,
     size: Sequence[float] | None = None,
-    direction: str = "x",
-    sides: str = "periodic",
+    direction: Flow = "x",
+    sides: Sides = "periodic",
     smallest_gap: float = 0.0,
 ) -> Leakage:
     """The flow of a fluid through a gap, between opposite borders of the domain, by Reynolds' equation.
@@ -182,7 +186,7 @@ def leakage(
     touches = None if held is None else np.ascontiguousarray(np.asarray(getattr(held, "magnitude", held)) != 0, dtype=np.uint8)
     if touches is not None and touches.shape != h.shape:
         raise _core.CaseError(f"contact has shape {touches.shape}, but gap has {h.shape}")
-    keys = {"direction": direction, "sides": sides, "smallest_gap": number("smallest_gap", smallest_gap)}
+    keys = {"direction": choice("direction", direction, get_args(Flow)), "sides": choice("sides", sides, get_args(Sides)), "smallest_gap": number("smallest_gap", smallest_gap)}
     return Leakage(h, touches, extent, keys)
 
 
@@ -195,6 +199,9 @@ def over_time(result: Result, keys: dict[str, Any]) -> xarray.Dataset:
     keys = {"sides": "periodic" if boundary == "periodic" else "closed", **{k: v for k, v in keys.items() if v is not None}}
     if keys.get("direction") == "both" and boundary != "periodic":
         raise _core.CaseError("direction is 'both', the conductance of a gap that repeats, but the domain is free: use 'x' or 'y'")
+    for name, words in (("direction", get_args(Flow)), ("sides", get_args(Sides))):
+        if name in keys:
+            choice(name, keys[name], words)
     temperatures = [(float(t), float(kelvin)) for t, kelvin in (setup.get("leakage") or {}).get("temperatures", [])]
     tolerance = float(setup.get("solver_tolerance", 1e-6))
     rows: list[dict[str, Any]] = []

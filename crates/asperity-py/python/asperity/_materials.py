@@ -322,6 +322,7 @@ class Prony(Material):
         shift: Shift | None = None,
         temperature: float | None = None,
     ) -> None:
+        terms = terms if hasattr(terms, "__len__") else list(terms)
         given = dict(locals())
         if (equilibrium is None) == (instantaneous is None):
             raise CaseError(
@@ -356,6 +357,7 @@ class Creep(Material):
         shift: Shift | None = None,
         temperature: float | None = None,
     ) -> None:
+        terms = terms if hasattr(terms, "__len__") else list(terms)
         given = dict(locals())
         pairs = points("terms", terms, ("1/Pa", "s")) if len(terms) else []
         given["terms"] = pairs

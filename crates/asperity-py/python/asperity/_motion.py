@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import difflib
+import inspect
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -10,12 +12,12 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, angle, line, number
+from ._arrays import Floats, angle, choice, line, number
 from ._core import CaseError
 from ._histories import History, Times, as_history
 
 if TYPE_CHECKING:
-    from ._words import Field
+    from ._words import Field, Movement
     from ._layers import Body
     from ._materials import Material
     from ._result import Result
@@ -82,9 +84,18 @@ def _direction(direction: str | float) -> tuple[str, float]:
 
 
 def _rolls(kind: str) -> bool:
-    if kind not in ("slide", "roll"):
-        raise CaseError(f"kind is {kind!r}, but must be 'slide' or 'roll'")
-    return kind == "roll"
+    return bool(choice("kind", kind, ("slide", "roll")) == "roll")
+
+
+def _check_options(function: Callable[..., Any], options: dict[str, Any]) -> None:
+    """Refuses options that :func:`solve` does not have, before anything is solved."""
+    from ._solve import solve
+
+    known = [name for name in inspect.signature(solve).parameters if name[0] != "_" and name != "approach" and name != "stages"]
+    for name in options:
+        if name not in known:
+            near = difflib.get_close_matches(name, [*known, *inspect.signature(function).parameters], 1)
+            raise TypeError(f"{function.__name__}() takes no argument {name!r}" + (f"; did you mean {near[0]!r}?" if near else ""))
 
 
 def slide(
@@ -98,7 +109,7 @@ def slide(
     path: History | None = None,
     start: float = 0.0,
     direction: str | float = "x",
-    kind: str = "slide",
+    kind: Movement = "slide",
     cells_per_step: float = 1.0,
     shear_stress: float | None = None,
     **options: Any,
@@ -138,6 +149,7 @@ def slide(
     """
     from ._solve import solve
 
+    _check_options(slide, options)
     if (velocity is None) == (path is None):
         raise CaseError("give velocity or path, exactly one of them")
     what, given = ("path", path) if velocity is None else ("velocity", velocity)
@@ -164,7 +176,7 @@ def steady(
     load: float | None = None,
     pressure: float | None = None,
     direction: str | float = "x",
-    kind: str = "slide",
+    kind: Movement = "slide",
     shear_stress: float | None = None,
     fields: Sequence[Field] = ("pressure",),
     every: int | None = None,
@@ -199,6 +211,7 @@ def steady(
     """
     from ._solve import solve
 
+    _check_options(steady, options)
     speeds = np.sort(line("velocities", velocities))
     motion = Motion(
         what="steady",

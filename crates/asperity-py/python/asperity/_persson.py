@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, angle, array, line, number
+from ._arrays import Floats, angle, array, choice, line, number
 from ._core import CaseError
 from ._materials import Material
 from ._sealed import ReadOnlyArrays, Sealed
 from ._surface import as_surface
+from ._words import Correction
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +67,7 @@ def persson_friction(
     *,
     pressure: float,
     velocities: npt.ArrayLike,
-    correction: str = "yang-persson",
+    correction: Correction = "yang-persson",
     direction: str | float = "x",
     temperature: float | None = None,
     size: Sequence[float] | None = None,
@@ -124,6 +125,6 @@ def persson_friction(
         number("pressure", pressure),
         along,
         turned,
-        correction,
+        choice("correction", correction, get_args(Correction)),
     )
     return PerssonFriction(theory, speeds)

@@ -14,6 +14,7 @@ import pickle
 import re
 import tempfile
 import types
+import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass
 from pathlib import Path
@@ -23,6 +24,7 @@ import numpy as np
 
 from . import _core
 from ._core import CaseError
+from ._findings import ResultWarning
 from ._materials import Material
 from ._result import Result, open as open_result
 from ._motion import slide, steady
@@ -140,7 +142,15 @@ def _feed(update: Callable[[bytes], None], value: Any) -> None:
 
 
 def solve_point(point: Point) -> Solved:
-    """Solves a point: ("complete", "", result) or ("failed", error, None). An interruption goes on to the caller."""
+    """Solves a point: ("complete", "", result) or ("failed", error, None). An interruption goes on to the caller.
+
+    The study warns of its findings, where the filters of the caller hold."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ResultWarning)
+        return _solve_point(point)
+
+
+def _solve_point(point: Point) -> Solved:
     if point.threads is not None:
         _core.set_threads(point.threads)
     try:

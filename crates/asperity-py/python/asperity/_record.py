@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._arrays import Floats, as_plane, count, line
+from ._arrays import Floats, as_plane, choice, count, line
 from ._columns import HISTOGRAMS, ROW
 from ._core import CaseError
 from ._result import FIELDS, Result, open
@@ -27,8 +27,8 @@ class Keep:
         if isinstance(fields, str):
             raise CaseError(f"fields is {fields!r}, but must be a list, as in fields=[{fields!r}]")
         self.fields = [str(name) for name in fields]
-        if unknown := [name for name in self.fields if name not in FIELDS]:
-            raise CaseError(f"fields holds {unknown[0]!r}, but may hold {', '.join(FIELDS)}")
+        for name in self.fields:
+            choice("an entry of fields", name, list(FIELDS))
         self.times = None if field_times is None else line("field_times", field_times)
         if self.times is not None and every is not None:
             raise CaseError("give every or field_times, exactly one of them")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import errno
 import html
 import json
@@ -12,12 +13,12 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, as_plane, cells_of, centres, frozen, in_hertz, number, plain
+from ._arrays import Floats, as_plane, cells_of, centres, choice, frozen, in_hertz, number, plain
 from ._columns import HISTOGRAMS, QUANTITIES, ROW, Column, units_of
 from ._core import CaseError
 from ._findings import Finding, findings_of
 from ._sealed import Sealed
-from ._words import Field
+from ._words import Field, Flow, Sides
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -190,6 +191,10 @@ class Result(Sealed):
             if table is not None and name in self.__dict__.get("_histograms", {}):
                 raise AttributeError(f"{name!r} has a number for each bin: use histogram({name!r})")
             raise AttributeError(f"the result has no {name!r}, because it was not requested: quantities=[{name!r}]")
+        if name == "y" and self.is_line:
+            raise AttributeError("a line contact has no y: nothing changes along it")
+        if name == "field_velocities":
+            raise AttributeError("the result is a run in time: its fields have field_times, and no field_velocities")
         raise AttributeError(f"a result has no {name!r}; it has {', '.join(ROW)}, field(name, time=...) and plot")
 
     if not TYPE_CHECKING:  # where it would hide misspelt names
@@ -227,7 +232,7 @@ class Result(Sealed):
     @property
     def attributes(self) -> dict[str, Any]:
         """Title, version, status, the case and the work."""
-        return dict(self._attributes)
+        return copy.deepcopy(self._attributes)
 
     @property
     def findings(self) -> list[Finding]:
@@ -265,7 +270,7 @@ class Result(Sealed):
     def field_velocities(self) -> Floats:
         """Velocities at which the fields of a sweep were kept [m/s]."""
         if not self._sweep:
-            raise CaseError("the result is a run in time: its fields have field_times")
+            return self._column("field_velocities")
         return self._field_times
 
     def cycles(self, frequency: float, *, start: float = 0.0) -> list[Cycle]:
@@ -323,7 +328,7 @@ class Result(Sealed):
     def y(self) -> Floats:
         """Cell centres along y [m]."""
         if self.is_line:
-            raise CaseError("a line contact has no y: nothing changes along it")
+            return self._column("y")
         return centres(self.cells[1], self._size[1])
 
     @property
@@ -345,6 +350,7 @@ class Result(Sealed):
         Read-only for a result in memory, a new array for one on disk.
         """
         if name not in self._fields:
+            choice("the field", name, list(FIELDS))
             raise CaseError(f"the field {name!r} was not kept; kept: {', '.join(self._fields) or 'none'}")
         if (velocity is not None and not self._sweep) or (time is not None and self._sweep):
             raise CaseError("velocity= is for a sweep over velocities, time= for a run in time")
@@ -457,7 +463,7 @@ class Result(Sealed):
     def leakage(
         self,
         *,
-        direction: str | None = None,
+        direction: Flow | None = None,
         pressure_drop: float | None = None,
         viscosity: float | None = None,
         gas: str | None = None,
@@ -466,7 +472,7 @@ class Result(Sealed):
         inlet: float | None = None,
         outlet: float | None = None,
         rarefaction: str | None = None,
-        sides: str | None = None,
+        sides: Sides | None = None,
         smallest_gap: float | None = None,
         field: bool | None = None,
     ) -> Any:

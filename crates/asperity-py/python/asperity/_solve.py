@@ -8,13 +8,13 @@ import json
 import os
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import as_plane, cells_of, check_places, count, field, in_order, number
+from ._arrays import as_plane, cells_of, check_places, choice, count, field, in_order, number
 from ._columns import HISTOGRAMS, ROW, Number
 from ._core import CaseError, ConvergenceError
 from ._findings import Finding, findings_of, warn
@@ -258,6 +258,15 @@ def march(
     0 0.0 (32, 32)
     1 1.0 (32, 32)
     """
+    for what, given_word, words in (
+        ("boundary", boundary, Boundary),
+        ("scheme", scheme, Scheme),
+        ("method", method, Method),
+        ("plasticity", plasticity, Plasticity),
+    ):
+        choice(what, given_word, get_args(words))
+    if isinstance(surface, (Material, Body)):
+        raise CaseError("the surface is a material: the surface comes first, as in solve(surface, material, ...)")
     keep = Keep(fields, every, field_times)
     shape = surface_of(surface, gap, size)
     check_places("hardness", hardness, surface if gap is None else gap)
@@ -284,7 +293,7 @@ def march(
     parts = [parts_of(body) for body in bodies]
     if isinstance(quantities, str):
         raise CaseError(f"quantities is {quantities!r}, but must be a list, as in quantities=[{quantities!r}]")
-    names = [str(name) for name in quantities]
+    names = [str(choice("an entry of quantities", str(name), get_args(Quantity))) for name in quantities]
     steady = _motion is not None and _motion.steady
     include = [] if keep.times is None or steady else [t for t in keep.times.tolist() if t > 0]
     of_motion = [] if _motion is None else _motion.quantities(shape, boundary)
@@ -479,6 +488,8 @@ def solve(
         _output=path_of(output),
         _force=force,
     )
+    if on_step is not None and not callable(on_step):
+        raise CaseError(f"on_step is {on_step!r}, but must be a function that takes a Step")
     teller = Progress(run._core.rows_expected, progress)
     status, message = "complete", None
     try:
@@ -598,10 +609,15 @@ def _keys(given: dict[str, Any] | Sequence[str] | None) -> list[str]:
     if given is None:
         return []
     if isinstance(given, dict):
-        return [f"{key}={value if _is_toml(value) else json.dumps(value)}" for key, value in given.items()]
+        return [f"{key}={_toml(key, value)}" for key, value in given.items()]
     return [str(key) for key in given]
 
 
-def _is_toml(value: Any) -> bool:
-    """Text goes as it is: the core takes it as TOML or as a word."""
-    return isinstance(value, str)
+def _toml(key: str, value: Any) -> str:
+    """A value as the core takes it: text as it is, which is TOML or a word."""
+    if isinstance(value, str):
+        return value
+    try:
+        return json.dumps(value.tolist() if isinstance(value, (np.ndarray, np.generic)) else value)
+    except TypeError:
+        raise CaseError(f"{key} is {value!r}, which a case file cannot hold; write quantities as text, as in '0.2 N'") from None

@@ -22,6 +22,7 @@ import numpy as np
 from . import _core
 from ._arrays import count, number
 from ._core import CaseError
+from ._findings import Finding, ResultWarning
 from ._leakage import LEAKS, units_of
 from ._points import Point, Solved, _toml, base_of, found, label, label_all, note, solve_point
 from ._processes import cores, shared, solved
@@ -157,7 +158,26 @@ def study(
                 raise
             finally:
                 tell.end()
-    return _dataset(plan, [done[n] for n in range(len(points))], points, tuple(fields), common.get("case"))
+    data = _dataset(plan, [done[n] for n in range(len(points))], points, tuple(fields), common.get("case"))
+    try:
+        _warn(points, done)
+    except ResultWarning as error:
+        error.result = data  # type: ignore[attr-defined]
+        raise
+    return data
+
+
+def _warn(points: list[Point], done: dict[int, Solved]) -> None:
+    """A warning for each kind of finding, which names the first of its points. Those of a case are in its results."""
+    held: dict[str, list[tuple[Any, Finding]]] = {}
+    for n, point in enumerate(points):
+        result = done[n][2]
+        for finding in [] if result is None or point.case is not None else result.findings:
+            if finding["severity"] == "warning":
+                held.setdefault(finding["code"], []).append((point.settings, finding))
+    for (settings, finding), *others in held.values():
+        place = ", ".join(f"{name} = {value}" for name, value in label_all(settings).items())
+        warnings.warn(f"point {place}{f' and {len(others)} others' if others else ''}: {finding}", ResultWarning, stacklevel=3)
 
 
 class _Plan:
@@ -279,6 +299,9 @@ def _check_names(common: dict[str, Any], plan: _Plan) -> None:
     if "case" in common:
         _check_keys(common, plan)
         return
+    for name in plan.names if "fixed" in common else ():
+        if name in UNITS and (text := [point[name] for point in plan.points if isinstance(point[name], str)]):
+            raise CaseError(f"the values of {name} hold the text {text[0]!r}, but must be numbers [{UNITS[name]}] or quantities with a unit")
     from ._solve import solve
 
     function = common.get("function") or solve
@@ -414,6 +437,9 @@ def _dataset(
     coordinates: dict[str, Any] = {}
     for name, column in plan.labels.items():
         values, attributes = _coordinate(column)
+        if points[0].fixed and name in UNITS and values.dtype.kind in "fiu":
+            known = [answer[2].units("load") for answer in answers if answer[2] is not None] if name == "load" else []
+            attributes = {"units": known[0] if known else UNITS[name]}
         coordinates[given[name]] = (given[name] if plan.product else "point", values, {"long_name": name, **attributes})
     results = [answer[2] for answer in answers]
     steps = np.array([0 if result is None else len(result) for result in results])

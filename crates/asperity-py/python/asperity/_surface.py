@@ -37,7 +37,7 @@ from ._core import CaseError
 from ._findings import ResultWarning, findings_of, warn
 from ._sealed import ReadOnlyArrays
 from ._units import carries, factor_of, is_labelled, variable_of
-from ._words import Form
+from ._words import Axis, Edge, Fill, Form, Resampling, Window
 
 if TYPE_CHECKING:
     from .plot import SurfacePlots
@@ -136,7 +136,7 @@ class Surface:
     def y(self) -> Floats:
         """Cell centres along y [m]."""
         if self.is_line:
-            raise CaseError("a line of cells has no y: nothing changes along it")
+            raise AttributeError("a line of cells has no y: nothing changes along it")
         return centres(self.cells[1], self.size[1])
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> npt.NDArray[Any]:
@@ -256,7 +256,7 @@ class Surface:
         robust standard deviations."""
         return self.process(f"outliers threshold={number('threshold of outliers', threshold)!r} radius={count('radius', radius)}")
 
-    def fill(self, method: str = "harmonic", *, share: float = 0.25) -> Surface:
+    def fill(self, method: Fill = "harmonic", *, share: float = 0.25) -> Surface:
         """Undefined points filled: "harmonic" (Laplace's equation) or "nearest"; refused above that share of them."""
         return self.process(f"fill method={method} share={number('share', share)!r}")
 
@@ -285,12 +285,12 @@ class Surface:
         words = "crop size={!r},{!r}".format(*pair("size", size))
         return self.process(words if corner is None else words + " corner={!r},{!r}".format(*pair("corner", corner)))
 
-    def resample(self, cells: Sequence[int], *, method: str = "band-limited") -> Surface:
+    def resample(self, cells: Sequence[int], *, method: Resampling = "band-limited") -> Surface:
         """Other cells over the same rectangle: "band-limited" (by waves; needs every point) or "bilinear"."""
         nx, ny = counts("cells", cells)
         return self.process(f"resample method={method} cells={nx},{ny}")
 
-    def filter(self, *, longest: float | None = None, shortest: float | None = None, edge: str = "sharp") -> Surface:
+    def filter(self, *, longest: float | None = None, shortest: float | None = None, edge: Edge = "sharp") -> Surface:
         """Only the wavelengths from `shortest` to `longest` [m]; the edge is "sharp" or "gaussian" (ISO 16610-61).
 
         The surface is taken as periodic: lay a :meth:`window` over one that is not.
@@ -301,7 +301,7 @@ class Surface:
                 words.append(f"{name}={number(name, value)!r}")
         return self.process(" ".join([*words, f"edge={edge}"]))
 
-    def flip(self, axis: str) -> Surface:
+    def flip(self, axis: Axis) -> Surface:
         """Mirrored along "x" or "y"."""
         return self.process(f"flip={axis}")
 
@@ -313,7 +313,7 @@ class Surface:
         """Heights of the other sign: a replica."""
         return self.process("invert")
 
-    def window(self, shape: str = "hann", *, share: float | None = None) -> Surface:
+    def window(self, shape: Window = "hann", *, share: float | None = None) -> Surface:
         """Faded to zero at the edges by a "hann" window, or a "tukey" one that rises over a `share` of the length (0.1)."""
         words = f"window shape={shape}"
         return self.process(words if share is None else f"{words} share={number('share', share)!r}")
@@ -371,7 +371,7 @@ class Surface:
             return self.power_spectrum_1d()
         return _core.power_spectrum(self.heights, list(self.size), count("per_decade", per_decade, 0, 1000))
 
-    def power_spectrum_1d(self, direction: str = "x") -> tuple[Floats, Floats]:
+    def power_spectrum_1d(self, direction: Axis = "x") -> tuple[Floats, Floats]:
         """Wavenumbers q > 0 [1/m] and power spectrum C1(q) [m^3] of the profiles along "x" or "y", their mean.
 
         Of profiles that are taken as periodic and about their own mean, so that the mean of their squares is the integral of
@@ -482,7 +482,7 @@ class Surface:
         height_unit: float | None = None,
         channel: str | int | None = None,
         level: Form | None = None,
-        fill: str | None = None,
+        fill: Fill | None = None,
         transpose: bool | None = None,
     ) -> Surface:
         """Reads a measured surface; the format is found from the content.

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from ._fit import Fit
     from ._result import Result
     from ._surface import Surface
-    from ._words import Field
+    from ._words import Axis, Field
 
 def _told(plots: Any, missing: frozenset[str] = frozenset()) -> str:
     """Which figures there are."""
@@ -320,7 +320,7 @@ class SurfacePlots:
         q, c = self._surface.power_spectrum(per_decade)
         return _spectrum(q, c, "C1 [m³]" if self._surface.is_line else "C [m⁴]", ax, style)
 
-    def power_spectrum_1d(self, *, direction: str = "x", ax: Axes | None = None, **style: Any) -> Axes:
+    def power_spectrum_1d(self, *, direction: Axis = "x", ax: Axes | None = None, **style: Any) -> Axes:
         """Mean power spectrum of the profiles along "x" or "y"."""
         return _spectrum(*self._surface.power_spectrum_1d(direction), "C1 [m³]", ax, style)
 

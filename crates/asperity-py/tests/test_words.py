@@ -1,0 +1,101 @@
+"""Misspelt words and values of the wrong kind are told at once, with what was meant."""
+
+import copy
+import inspect
+import warnings
+
+import numpy as np
+import pytest
+
+import asperity as asp
+
+SIZE = (1e-3, 1e-3)
+
+
+@pytest.fixture(scope="module")
+def ball():
+    return asp.Surface.sphere(cells=(16, 16), size=SIZE, radius=20e-3)
+
+
+@pytest.fixture(scope="module")
+def zener():
+    return asp.Zener(shear=1e6, shear_kelvin=1e6, retardation_time=1.0, poisson=0.5)
+
+
+def test_words_get_a_hint(ball, zener):
+    contact = asp.elastic(ball, 4e6, load=1e-3)
+    solve = dict(load=1e-3, times=[1.0])
+    for wrong, told in (
+        (lambda: asp.leakage(contact.gap, size=SIZE, sides="perodic"), "'periodic'"),
+        (lambda: asp.leakage(contact.gap, size=SIZE, direction="z"), "'x', 'y' or 'both'"),
+        (lambda: contact.to_result().leakage(sides="close"), "'closed'"),
+        (lambda: asp.solve(zener, ball, **solve), "the surface comes first"),
+        (lambda: asp.solve(ball, zener, boundary="perodic", **solve), "did you mean 'periodic'"),
+        (lambda: asp.elastic(ball, 4e6, load=1e-3, boundary="perodic"), "did you mean 'periodic'"),
+        (lambda: asp.solve(ball, zener, scheme="liner", **solve), "did you mean 'linear'"),
+        (lambda: asp.solve(ball, zener, fields=["presure"], **solve), "did you mean 'pressure'"),
+        (lambda: asp.solve(ball, zener, quantities=["contact_spot"], **solve), "did you mean 'contact_spots'"),
+        (lambda: contact.to_result().field("presure"), "did you mean 'pressure'"),
+        (lambda: asp.Stage(load=1.0, until="contact-los"), "'contact-lost'"),
+        (lambda: asp.Stage(load=1.0, until=("aproach", 1.0)), "did you mean 'approach'"),
+        (lambda: asp.Layer(thickness=1.0, material=zener, interface="glued"), "'bonded' or 'slip'"),
+        (lambda: asp.persson_friction(ball, zener, pressure=1.0, velocities=[1.0], correction="persn"), "'yang-persson' or 'none'"),
+        (lambda: asp.solve(ball, zener, on_step=5, **solve), "on_step is 5"),
+        (lambda: asp.run({}, set={"load.history.value": object()}), "load.history.value is .*as text"),
+        (lambda: copy.deepcopy(contact).stiffness, "not by a copy"),
+    ):
+        with pytest.raises(asp.CaseError, match=told):
+            wrong()
+    for call, more in ((asp.slide, dict(velocity=1.0, times=[1.0])), (asp.steady, dict(velocities=[1.0]))):
+        with pytest.raises(TypeError, match=f"{call.__name__}.*did you mean 'boundary'"):
+            call(ball, zener, load=1e-3, boundry="free", **more)
+
+
+def test_missing_attributes_are_missing(ball, zener):
+    strip = asp.Surface.cylinder(cells=(64,), size=(1e-3,), radius=20e-3)
+    contact = asp.elastic(strip, 4e6, load=10.0)
+    plane = asp.solve(ball, zener, load=1e-3, times=[1.0])
+    for holder, name, told in ((strip, "y", "no y"), (contact, "y", "no y"), (contact.to_result(), "y", "no y"), (plane, "field_velocities", "field_times")):
+        assert not hasattr(holder, name)
+        with pytest.raises(AttributeError, match=told):
+            getattr(holder, name)
+        assert inspect.getmembers(holder)
+
+
+def test_findings_and_attributes_are_copies(ball):
+    contact = asp.elastic(ball, 4e6, load=1e-3)
+    leak = asp.leakage(contact.gap + 1e-9, size=SIZE)
+    result = contact.to_result()
+    for holder in (contact, leak, result):
+        count = len(holder.findings)
+        holder.findings.append(1)
+        assert len(holder.findings) == count
+    result.attributes["findings"].append(1)
+    assert len(result.to_xarray().attrs["findings"]) == len(contact.to_xarray().attrs["findings"])
+
+
+def test_generators_are_lists(ball, zener):
+    assert asp.elastic(ball, 4e6, load=(n * 1e-3 for n in (1, 2))).load.tolist() == [1e-3, 2e-3]
+    assert asp.solve(ball, zener, load=asp.table((t, 1e-3) for t in (0.0, 1.0)), times=(float(n) for n in (1, 2))).time[-1] == 2.0
+    terms = [(1e6, 1.0), (2e6, 10.0)]
+    assert asp.Prony(equilibrium=1e6, terms=iter(terms), poisson=0.5) == asp.Prony(equilibrium=1e6, terms=terms, poisson=0.5)
+    assert asp.Creep(instantaneous=1e-6, terms=((1e-6, t) for t in (1.0, 2.0)), poisson=0.5).creep_terms[1] == [(1e-6, 1.0), (1e-6, 2.0)]
+
+
+def test_a_study_warns_once_in_the_words_of_its_caller(ball, zener):
+    pytest.importorskip("xarray")
+    given = dict(case=dict(surface=ball, material=zener, times=[1.0]), over={"load": [1e-3, 2e-3]}, progress=False, workers=1)
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        data = asp.study(**given)
+    ours = [one for one in told if issubclass(one.category, asp.ResultWarning)]
+    assert ours and len(ours) == len({str(one.message).rsplit("[", 1)[1] for one in ours})
+    assert all("load = 0.001" in str(one.message) and one.filename == __file__ for one in ours)
+    assert data.load_given.attrs["units"] == "N"
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", asp.ResultWarning)
+        with pytest.raises(asp.ResultWarning) as error:
+            asp.study(**given)
+    assert (error.value.result.status == "complete").all()
+    with pytest.raises(asp.CaseError, match="'1 mN'"):
+        asp.study(given["case"], over={"load": ["1 mN", "2 mN"]}, progress=False)

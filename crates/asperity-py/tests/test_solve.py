@@ -483,7 +483,6 @@ stages = [
         (dict(stages=[1.0]), "asperity.Stage"),
         (dict(stages=[asp.Stage(load=1.0)], load=1.0), "one of them"),
         (dict(stages=[asp.Stage(load=1.0, approach=1.0)]), "one of them"),
-        (dict(stages=[asp.Stage(load=1.0, until=("depth", 1.0))]), "'contact-lost'"),
         (dict(stages=[asp.Stage(load=1.0), asp.Stage(load=2.0)]), "stage 1"),
     ],
 )

@@ -22,6 +22,8 @@ code: str = result.findings[0].code
 asp.cite("bibtex")
 ball.level("plane")
 asp.elastic(ball, 1e6, load=1.0).stiffness
+asp.Stage(load=1.0, until=("approach", 2e-6))
+ball.level().fill("nearest").filter(shortest=2e-6, edge="gaussian").window().flip("x")
 """
 WRONG = [
     'asp.open("a.zarr").field("presure")',
@@ -32,6 +34,13 @@ WRONG = [
     'asp.open("a.zarr").findings[0].sevrity',
     'ball + "a"',
     'asp.elastic(ball, 1e6, load=1.0).stifness',
+    'ball.fill("harmonc")',
+    'ball.filter(edge="shrp")',
+    'ball.window("hanning")',
+    'ball.flip("z")',
+    'asp.leakage(np.ones((8, 8)), size=(1.0, 1.0), sides="perodic")',
+    'asp.Layer(thickness=1.0, material=asp.Elastic(young=1e6, poisson=0.5), interface="glued")',
+    'asp.Stage(load=1.0, until="contact-los")',
 ]
 
 

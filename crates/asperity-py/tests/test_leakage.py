@@ -91,7 +91,7 @@ def test_wrong_input_is_named() -> None:
     for wrong, words in [
         (lambda: asp.leakage(np.full((4, 4), np.nan), size=(1, 1)), "cell"),
         (lambda: asp.leakage(gap, np.zeros((3, 4)), size=(1, 1)), "shape"),
-        (lambda: asp.leakage(gap, size=(1, 1), direction="z"), "leakage"),
+        (lambda: asp.leakage(gap, size=(1, 1), direction="z"), "direction is 'z'"),
         (lambda: leak.gas_leak_rate(inlet=1e5, outlet=2e5, gas="air"), "outlet"),
         (lambda: leak.gas_leak_rate(inlet=2e5, outlet=1e5, gas="argon"), "argon"),
         (lambda: leak.gas_leak_rate(inlet=2e5, outlet=1e5), "gas"),

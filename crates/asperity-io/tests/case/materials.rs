@@ -709,3 +709,19 @@ fn a_body_without_instantaneous_compliance_refuses_a_jump() {
     assert_eq!(errors.errors[0].key, "load.history");
     assert!(errors.to_string().contains("no instantaneous compliance"), "{errors}");
 }
+
+#[test]
+fn a_bare_number_of_degrees_is_told() {
+    let of = |reference: &str, temperature: &str| {
+        let material = format!(
+            r#"{{ model = "zener", shear = "1 MPa", shear_kelvin = "1 MPa", retardation_time = "1 s", shift = {{ model = "wlf", c1 = 8.86, c2 = 101.6, reference = {reference} }} }}"#
+        );
+        let more = format!("[temperature]\nhistory = {{ kind = \"constant\", value = {temperature} }}\n");
+        let case = case_in(Path::new("."), &body(&material), &more);
+        case.findings.iter().filter(|finding| finding.code == "unlikely-unit").count()
+    };
+    assert_eq!(of("\"20 °C\"", "\"25 °C\""), 0);
+    assert_eq!(of("293.15", "298.15"), 0);
+    // Kelvins, where degrees are meant.
+    assert_eq!(of("20", "25"), 1);
+}

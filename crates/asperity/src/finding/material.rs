@@ -6,6 +6,8 @@ use crate::march::Simulation;
 
 /// Moduli of solids: from the softest gels to beyond diamond \[Pa\].
 const MODULI: [f64; 2] = [150.0, 3e12];
+/// Below this temperature polymers neither creep nor are measured \[K\].
+const COLD: f64 = 100.0;
 /// Rms misfit of a fit, and how many times the scatter of the data it may be.
 const MISFIT: f64 = 0.05;
 const SCATTER: f64 = 2.0;
@@ -23,6 +25,20 @@ pub fn unlikely_modulus(name: &str, modulus: f64) -> Option<Finding> {
             si(most, "Pa")
         );
         Finding::warning(UNLIKELY_UNIT, modulus, limit, text)
+    })
+}
+
+/// A temperature \[K\] at which curves of no polymer are shifted; `name` is the body that has it.
+pub fn unlikely_temperature(name: &str, kelvin: f64) -> Option<Finding> {
+    (kelvin < COLD).then(|| {
+        let text = format!(
+            "The material of {name} has a temperature of {} K, which is {} °C. A bare number is in kelvin: write \"{} °C\" if \
+             that is what it is.",
+            digits(kelvin),
+            digits(kelvin - 273.15),
+            digits(kelvin)
+        );
+        Finding::warning(UNLIKELY_UNIT, kelvin, COLD, text)
     })
 }
 

@@ -42,7 +42,9 @@ use std::borrow::Cow;
 pub use expected::{Contact, Expected};
 pub use judge::{Judge, Known};
 pub use leak::{LeakJudge, LeakState};
-pub use material::{beyond_data, contradiction, misfit, points_left_out, unlikely_modulus};
+pub use material::{
+    beyond_data, contradiction, misfit, points_left_out, unlikely_modulus, unlikely_temperature,
+};
 pub use motion::{friction_zero, own_track};
 pub use stress::{stress_at_deepest, stress_times_miss_peak, stress_unresolved, yield_exceeded};
 pub use surface::{hurst, of_heights};

@@ -99,7 +99,7 @@ pub fn pair(
     let made: Vec<_> = samples
         .into_iter()
         .zip(warmths)
-        .map(|((part, sample), warmth)| made(checks, part, sample.as_ref(), warmth, &plan, course.beyond))
+        .map(|((part, sample), warmth)| made(checks, part, sample.as_ref(), warmth, &plan, course))
         .collect();
     let made = made.into_iter().collect::<Option<Vec<Made>>>()?;
     let mut pair = Pair {
@@ -154,7 +154,7 @@ fn made(
     sample: Option<&Sample>,
     warmth: Option<Warmth>,
     plan: &Plan,
-    beyond: f64,
+    course: &Course<'_>,
 ) -> Option<Made> {
     let keys = [("poisson", part.poisson.is_some()), ("bulk_modulus", part.bulk_modulus.is_some())];
     checks.exactly_one(part.span, &keys)?;
@@ -166,8 +166,9 @@ fn made(
     };
     let (sample, warmth) = (sample?, warmth?);
     let window = warmth.window(plan);
-    let (reference, report, outside) = reference(checks, part.material, sample, window, beyond)?;
-    let findings = findings(&name, &report, window, outside);
+    let (reference, report, outside) = reference(checks, part.material, sample, window, course.beyond)?;
+    let mut findings = findings(&name, &report, window, outside);
+    findings.extend(finding::unlikely_temperature(&name, coldest(sample, course.temperatures)));
     let factors = warmth.constant();
     let material = match factors {
         Some(factors) => checks.core(&part.material.span, factors.of(reference))?,
@@ -190,6 +191,13 @@ fn made(
     let body = Body { name, material, lateral, hardness: part.hardness };
     let creep = checks.core(part.span, body.contact_creep())?;
     Some(Made { body, creep, clock, report, findings })
+}
+
+/// The lowest temperature that a material with a shift is told \[K\]; infinite without a shift.
+fn coldest(sample: &Sample, course: Option<&[(f64, f64)]>) -> f64 {
+    let Some(shift) = &sample.shift else { return f64::INFINITY };
+    let course = course.unwrap_or_default().iter().map(|point| point.1);
+    shift.reference().into_iter().chain(sample.temperature).chain(course).fold(f64::INFINITY, f64::min)
 }
 
 /// What is found about the material of the body `name`; `beyond` says where a run over `window` [s] leaves the data.

@@ -1,7 +1,7 @@
 //! Files that appear whole or not at all.
 
 use std::fs::File;
-use std::io::{BufWriter, Result, Write};
+use std::io::{BufWriter, Error, ErrorKind, Result, Write};
 use std::path::Path;
 
 /// Lets `fill` write the file that then appears at `path`; `AlreadyExists` where there is one that may not be
@@ -11,6 +11,14 @@ pub(crate) fn write(
     force: bool,
     fill: impl FnOnce(&mut BufWriter<&File>) -> Result<()>,
 ) -> Result<()> {
+    // Also at the end of a link: /dev/null stays what it is.
+    if std::fs::metadata(path).is_ok_and(|found| !found.is_file()) {
+        let kind = if path.is_dir() { ErrorKind::IsADirectory } else { ErrorKind::InvalidInput };
+        return Err(Error::new(
+            kind,
+            "it is a directory, a device or a pipe, and no file; choose another name",
+        ));
+    }
     let directory = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,
         _ => Path::new("."),
@@ -35,4 +43,21 @@ fn builder() -> tempfile::Builder<'static, 'static> {
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     builder
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_device_is_not_replaced() {
+        let directory = tempfile::tempdir().unwrap();
+        let null = directory.path().join("null");
+        std::os::unix::fs::symlink("/dev/null", &null).unwrap();
+        assert_eq!(
+            write(&null, true, |file| file.write_all(b"x")).unwrap_err().kind(),
+            ErrorKind::InvalidInput
+        );
+        assert!(null.is_symlink());
+    }
 }

@@ -42,8 +42,10 @@ pub(super) fn replace(
 pub(super) fn check(path: &Path, force: bool) -> Result<()> {
     match fs::symlink_metadata(path) {
         Err(_) => Ok(()),
-        Ok(found) if found.is_dir() => {
-            Err(ExportError::Foreign { path: path.to_owned(), found: "is a directory".into() })
+        // Also at the end of a link: /dev/null stays what it is.
+        Ok(_) if fs::metadata(path).is_ok_and(|found| !found.is_file()) => {
+            let found = if path.is_dir() { "is a directory" } else { "is a device or a pipe" };
+            Err(ExportError::Foreign { path: path.to_owned(), found: found.into() })
         }
         Ok(_) if force => Ok(()),
         Ok(_) => Err(ExportError::Exists { path: path.to_owned() }),
@@ -60,4 +62,18 @@ pub(super) fn partial(path: &Path) -> Result<PathBuf> {
     hidden.push(name);
     hidden.push(format!(".partial-{}", std::process::id()));
     Ok(path.with_file_name(hidden))
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_device_is_not_replaced() {
+        let directory = tempfile::tempdir().unwrap();
+        let null = directory.path().join("null");
+        std::os::unix::fs::symlink("/dev/null", &null).unwrap();
+        let refused = file(&null, true, |output| Ok(output.write_all(b"x")?));
+        assert!(matches!(refused, Err(ExportError::Foreign { .. })) && null.is_symlink());
+    }
 }

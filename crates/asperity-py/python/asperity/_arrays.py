@@ -236,8 +236,8 @@ def size_of(what: str, array: Floats, size: Any) -> list[float]:
         raise CaseError(f"size is {size!r}, but {what} has shape {array.shape}, which needs {words}")
     for length in found:
         # Squares of other lengths are no float.
-        if not 1e-150 < length < 1e150:
-            raise CaseError(f"size is {size!r} m, but must be finite and greater than 0 m (1e-150 m to 1e150 m)")
+        if not 1e-60 < length < 1e60:
+            raise CaseError(f"size is {size!r} m, but must be finite and greater than 0 m (1e-60 m to 1e60 m)")
     return list(found)
 
 

@@ -36,8 +36,8 @@ class Layer:
         if not isinstance(self.material, Material):
             raise CaseError(f"material of a layer is {self.material!r}, but must be a material, such as asperity.Elastic(...)")
         thickness = number("thickness of a layer", self.thickness)
-        if not 1e-150 < thickness < 1e150:
-            raise CaseError(f"thickness of a layer is {self.thickness!r} m, but must be finite and greater than 0 m (1e-150 m to 1e150 m)")
+        if not 1e-60 < thickness < 1e60:
+            raise CaseError(f"thickness of a layer is {self.thickness!r} m, but must be finite and greater than 0 m (1e-60 m to 1e60 m)")
         object.__setattr__(self, "thickness", thickness)
         if self.poisson is not None:
             object.__setattr__(self, "poisson", number("poisson", self.poisson))

@@ -6,7 +6,7 @@ use asperity::kernel::{HalfSpace, Kernel};
 use asperity::layer::{BodyLayer, Inseparable, Interface, LayeredBody, Response, response};
 use asperity::material::{
     self, Creep, CreepTerm, Fractional, Lateral, Material, Modulus, ReducedTime, Relaxation, Shift,
-    ThermalCreep, VerticalShift,
+    TemperatureFactors, ThermalCreep, VerticalShift,
 };
 use asperity_io::curve::VerticalRequest;
 use asperity_io::stress::Ratio;
@@ -191,12 +191,7 @@ fn at(body: &Body, temperatures: &[(f64, f64)]) -> asperity::Result<(material::B
     match (rest.iter().all(|point| point.1 == first.1), &body.vertical) {
         (true, vertical) => Ok((warmed(&body.inner, shift, vertical.as_ref(), first.1)?, None)),
         (false, None) => Ok((body.inner.clone(), Some(clock))),
-        (false, Some(_)) => Err(asperity::Error::invalid(
-            "temperature of a material with a vertical shift",
-            "changing during the run",
-            "constant: moduli that change during a run are not solved; hold the temperature, or leave vertical out of the shift \
-             (then only its times depend on temperature)",
-        )),
+        (false, Some(_)) => Err(TemperatureFactors::not_constant()),
     }
 }
 
@@ -233,10 +228,7 @@ fn warmed(
     vertical: Option<&VerticalShift>,
     kelvin: f64,
 ) -> asperity::Result<material::Body> {
-    let (times, moduli) =
-        (shift.factor(kelvin)?, vertical.map_or(Ok(1.0), |vertical| vertical.factor(kelvin))?);
-    let material = if times == 1.0 { body.material.clone() } else { body.material.stretched(times)? };
-    let material = if moduli == 1.0 { material } else { material.scaled(1.0 / moduli)? };
+    let material = TemperatureFactors::at(shift, vertical, kelvin)?.of(&body.material)?;
     Ok(material::Body { material, ..body.clone() })
 }
 

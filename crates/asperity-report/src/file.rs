@@ -4,6 +4,8 @@ use std::fs::File;
 use std::io::{BufWriter, Error, ErrorKind, Result, Write};
 use std::path::Path;
 
+use asperity_io::export::no_file;
+
 /// Lets `fill` write the file that then appears at `path`; `AlreadyExists` where there is one that may not be
 /// replaced.
 pub(crate) fn write(
@@ -11,13 +13,9 @@ pub(crate) fn write(
     force: bool,
     fill: impl FnOnce(&mut BufWriter<&File>) -> Result<()>,
 ) -> Result<()> {
-    // Also at the end of a link: /dev/null stays what it is.
-    if std::fs::metadata(path).is_ok_and(|found| !found.is_file()) {
+    if let Some(found) = no_file(path) {
         let kind = if path.is_dir() { ErrorKind::IsADirectory } else { ErrorKind::InvalidInput };
-        return Err(Error::new(
-            kind,
-            "it is a directory, a device or a pipe, and no file; choose another name",
-        ));
+        return Err(Error::new(kind, format!("it {found}; choose another name")));
     }
     let directory = match path.parent() {
         Some(parent) if !parent.as_os_str().is_empty() => parent,

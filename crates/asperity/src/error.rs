@@ -117,7 +117,7 @@ pub(crate) fn positive(what: &str, value: f64, unit: &str) -> Result<f64> {
     }
 }
 
-/// `Ok(value)` for a length that bodies may have: products of four of them are numbers.
+/// `Ok(value)` for a length that bodies may have: products of four of them do not overflow or vanish.
 pub(crate) fn length(what: &str, value: f64) -> Result<f64> {
     const LENGTHS: std::ops::RangeInclusive<f64> = 1e-60..=1e60;
     match LENGTHS.contains(&value) {

@@ -24,6 +24,7 @@ mod vtk;
 use std::path::{Path, PathBuf};
 
 pub use error::{ExportError, Result};
+pub use output::no_file;
 pub use volume::volume;
 
 use crate::store::{At, FieldKind, Leaks, Reader, StoreError};

@@ -42,14 +42,19 @@ pub(super) fn replace(
 pub(super) fn check(path: &Path, force: bool) -> Result<()> {
     match fs::symlink_metadata(path) {
         Err(_) => Ok(()),
-        // Also at the end of a link: /dev/null stays what it is.
-        Ok(_) if fs::metadata(path).is_ok_and(|found| !found.is_file()) => {
-            let found = if path.is_dir() { "is a directory" } else { "is a device or a pipe" };
-            Err(ExportError::Foreign { path: path.to_owned(), found: found.into() })
-        }
-        Ok(_) if force => Ok(()),
-        Ok(_) => Err(ExportError::Exists { path: path.to_owned() }),
+        Ok(_) => match (no_file(path), force) {
+            (Some(found), _) => Err(ExportError::Foreign { path: path.to_owned(), found: found.into() }),
+            (None, true) => Ok(()),
+            (None, false) => Err(ExportError::Exists { path: path.to_owned() }),
+        },
     }
+}
+
+/// What stands at `path` where it is no file, as the rest of a sentence. A link counts as what it leads to, so that /dev/null is
+/// never replaced by a file.
+pub fn no_file(path: &Path) -> Option<&'static str> {
+    let found = fs::metadata(path).ok().filter(|found| !found.is_file())?;
+    Some(if found.is_dir() { "is a directory" } else { "is a device or a pipe" })
 }
 
 /// A name beside `path` for what is not finished.

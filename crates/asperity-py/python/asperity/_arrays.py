@@ -235,10 +235,14 @@ def size_of(what: str, array: Floats, size: Any) -> list[float]:
         words = "two lengths, size=(Lx, Ly)" if array.ndim == 2 else "one length, size=(L,)"
         raise CaseError(f"size is {size!r}, but {what} has shape {array.shape}, which needs {words}")
     for length in found:
-        # Squares of other lengths are no float.
-        if not 1e-60 < length < 1e60:
-            raise CaseError(f"size is {size!r} m, but must be finite and greater than 0 m (1e-60 m to 1e60 m)")
+        check_length("size", length, size)
     return list(found)
+
+
+def check_length(what: str, length: float, given: Any) -> None:
+    """Refuses lengths [m] that the core does not take: products of four of them overflow or vanish."""
+    if not 1e-60 <= length <= 1e60:
+        raise CaseError(f"{what} is {given!r} m, but must be finite and greater than 0 m (1e-60 m to 1e60 m)")
 
 
 def cells_of(array: Floats) -> str:

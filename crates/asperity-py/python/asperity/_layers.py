@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._arrays import Floats, array, choice, line, number
+from ._arrays import Floats, array, check_length, choice, line, number
 from ._core import CaseError
 from ._materials import Material
 from ._words import Interface
@@ -36,8 +36,7 @@ class Layer:
         if not isinstance(self.material, Material):
             raise CaseError(f"material of a layer is {self.material!r}, but must be a material, such as asperity.Elastic(...)")
         thickness = number("thickness of a layer", self.thickness)
-        if not 1e-60 < thickness < 1e60:
-            raise CaseError(f"thickness of a layer is {self.thickness!r} m, but must be finite and greater than 0 m (1e-60 m to 1e60 m)")
+        check_length("thickness of a layer", thickness, self.thickness)
         object.__setattr__(self, "thickness", thickness)
         if self.poisson is not None:
             object.__setattr__(self, "poisson", number("poisson", self.poisson))

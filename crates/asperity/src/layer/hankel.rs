@@ -157,21 +157,10 @@ fn six_points(values: &[f64], t: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::samples::{half_space, layer, stack};
     use super::super::{Base, Interface, Layer};
     use super::*;
     use crate::layer::kernel::GAUSS_4;
-
-    fn layer(thickness: f64, shear: f64, poisson: f64) -> Layer {
-        Layer { thickness, shear, poisson, interface: Interface::Bonded }
-    }
-
-    fn stack(layers: &[Layer], base: Base) -> Stack {
-        Stack::new(layers.to_vec(), base).unwrap()
-    }
-
-    fn half_space(shear: f64) -> Base {
-        Base::HalfSpace { shear, poisson: 0.3 }
-    }
 
     /// (1/2 pi) int (q C - a) J0(q r) dq of a point; of a line (1/pi) int rest(q) cos(q x) dq and the logarithm of the image. By panels
     /// that resolve the layers and the oscillation.

@@ -25,6 +25,8 @@ mod compliance;
 mod hankel;
 mod inseparable;
 mod kernel;
+#[cfg(test)]
+mod samples;
 mod series;
 
 pub use body::{BodyLayer, LayeredBody, Response, response};

@@ -176,20 +176,9 @@ fn gamma_phase(s: f64, y: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Base, Interface, Layer};
+    use super::super::Base;
+    use super::super::samples::{half_space, layer, stack};
     use super::*;
-
-    fn layer(thickness: f64, shear: f64, poisson: f64) -> Layer {
-        Layer { thickness, shear, poisson, interface: Interface::Bonded }
-    }
-
-    fn stack(layers: &[Layer], base: Base) -> Stack {
-        Stack::new(layers.to_vec(), base).unwrap()
-    }
-
-    fn half_space(shear: f64) -> Base {
-        Base::HalfSpace { shear, poisson: 0.3 }
-    }
 
     #[test]
     fn layers_that_differ_by_many_decades_are_resolved() {

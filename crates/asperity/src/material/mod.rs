@@ -40,6 +40,7 @@ mod series;
 mod shift;
 mod spectrum;
 mod table;
+mod temperature;
 mod thermal;
 mod vertical;
 
@@ -57,5 +58,6 @@ pub use reduced_time::ReducedTime;
 pub use relaxation::{Relaxation, RelaxationTerm};
 pub use shift::{GAS_CONSTANT, Shift, ShiftFit, fit_arrhenius, fit_wlf};
 pub use table::CreepTable;
+pub use temperature::TemperatureFactors;
 pub use thermal::ThermalCreep;
 pub use vertical::VerticalShift;

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use asperity::finding::{self, Finding};
 use asperity::layer::{Inseparable, Layered};
 use asperity::material::{
-    Body, Creep, Lateral, Material, ReducedTime, Shift, ThermalCreep, VerticalShift, pair_hardness,
+    Body, Creep, Lateral, Material, ReducedTime, Shift, TemperatureFactors, ThermalCreep, VerticalShift,
+    pair_hardness,
 };
 use asperity::time::Plan;
 
@@ -171,7 +172,7 @@ fn made(
     findings.extend(finding::unlikely_temperature(&name, coldest(sample, course.temperatures)));
     let factors = warmth.constant();
     let material = match factors {
-        Some(factors) => checks.core(&part.material.span, factors.of(reference))?,
+        Some(factors) => checks.core(&part.material.span, factors.of(&reference))?,
         None => reference,
     };
     let clock = match warmth {
@@ -233,14 +234,15 @@ pub fn alone(
 ) -> Option<(Material, MaterialReport)> {
     let plan = |_: &[f64]| Plan { instants: Vec::new(), exact: true };
     let course = Course { end: None, plan: &plan, temperatures: None, beyond: 1.0 };
-    let factors = checks.core(&at.span, warmth(sample, &course))?.constant().unwrap_or(Factors::NONE);
+    let factors =
+        checks.core(&at.span, warmth(sample, &course))?.constant().unwrap_or(TemperatureFactors::NONE);
     let around = match &sample.model {
         Model::Fractional { time, .. } => Some([1e-4 * time, 1e4 * time]),
         _ => None,
     };
     let window = window.map(|window| window.map(|t| t / factors.times)).or(around);
     let (reference, report, _) = reference(checks, at, sample, window, 1.0)?;
-    let material = checks.core(&at.span, factors.of(reference))?;
+    let material = checks.core(&at.span, factors.of(&reference))?;
     let report = MaterialReport {
         terms: material.creep().terms.len(),
         shift_factor: sample.shift.is_some().then_some(factors.times),
@@ -256,52 +258,21 @@ pub fn alone(
 /// How warm a body is.
 enum Warmth {
     /// At a constant temperature.
-    Constant(Factors),
+    Constant(TemperatureFactors),
     Changing(ReducedTime),
 }
 
-/// What a constant temperature makes of a material: its times are multiplied by a_T, its moduli are divided by b_T.
-#[derive(Clone, Copy)]
-struct Factors {
-    times: f64,
-    moduli: f64,
-}
-
-impl Factors {
-    /// Those of the reference temperature.
-    const NONE: Factors = Factors { times: 1.0, moduli: 1.0 };
-
-    fn of(self, reference: Material) -> asperity::Result<Material> {
-        let stretched = if self.times == 1.0 { reference } else { reference.stretched(self.times)? };
-        if self.moduli == 1.0 { Ok(stretched) } else { stretched.scaled(1.0 / self.moduli) }
-    }
-}
-
 fn warmth(sample: &Sample, course: &Course<'_>) -> asperity::Result<Warmth> {
-    let Some(shift) = &sample.shift else { return Ok(Warmth::Constant(Factors::NONE)) };
-    let factor = |temperature: f64| -> asperity::Result<Warmth> {
-        let factor = shift.factor(temperature)?;
-        let moduli = sample.vertical.as_ref().map_or(Ok(1.0), |vertical| vertical.factor(temperature))?;
-        match factor.is_finite() && factor > 0.0 {
-            true => Ok(Warmth::Constant(Factors { times: factor, moduli })),
-            false => Err(asperity::Error::invalid(
-                format!("shift factor at {temperature:.2} K"),
-                factor,
-                "within the range of floating-point numbers: check the constants of the shift",
-            )),
-        }
+    let Some(shift) = &sample.shift else { return Ok(Warmth::Constant(TemperatureFactors::NONE)) };
+    let factors = |temperature: f64| {
+        TemperatureFactors::at(shift, sample.vertical.as_ref(), temperature).map(Warmth::Constant)
     };
     match (sample.temperature, course.temperatures) {
-        (Some(own), _) => factor(own),
-        (None, Some([first, rest @ ..])) if rest.iter().all(|point| point.1 == first.1) => factor(first.1),
-        (None, Some(_)) if sample.vertical.is_some() => Err(asperity::Error::invalid(
-            "temperature of a material with a vertical shift",
-            "changing during the run",
-            "constant: moduli that change during a run are not solved; hold the temperature, or leave `vertical` out of the \
-             material (then only its times depend on temperature)",
-        )),
+        (Some(own), _) => factors(own),
+        (None, Some([first, rest @ ..])) if rest.iter().all(|point| point.1 == first.1) => factors(first.1),
+        (None, Some(_)) if sample.vertical.is_some() => Err(TemperatureFactors::not_constant()),
         (None, Some(points)) => Ok(Warmth::Changing(ReducedTime::new(shift.clone(), points)?)),
-        (None, None) => Ok(Warmth::Constant(Factors::NONE)),
+        (None, None) => Ok(Warmth::Constant(TemperatureFactors::NONE)),
     }
 }
 
@@ -313,7 +284,7 @@ impl Warmth {
         }
     }
 
-    fn constant(&self) -> Option<Factors> {
+    fn constant(&self) -> Option<TemperatureFactors> {
         match self {
             Warmth::Constant(factors) => Some(*factors),
             Warmth::Changing(_) => None,

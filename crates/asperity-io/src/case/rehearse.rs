@@ -12,11 +12,11 @@ use ndarray::Array2;
 use super::Case;
 
 /// Cells along the longer side, of a plane and of a line.
-const CELLS: usize = 64;
+const CELLS: usize = 128;
 const CELLS_OF_LINE: usize = 256;
 /// Convolutions, and rows, after which the rest of the rows is taken to be like those before.
-const ENOUGH: usize = 1500;
-const ENOUGH_ROWS: usize = 3000;
+const ENOUGH: usize = 1200;
+const ENOUGH_ROWS: usize = 2000;
 
 /// What a rehearsal found.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,8 +2,6 @@
 
 mod work;
 
-use std::time::Instant;
-
 use asperity::Grid;
 use asperity_io::case::{Case, Examination, Inputs, SurfaceInput, Travel};
 use asperity_io::stress::StressDescription;
@@ -14,9 +12,6 @@ use crate::args::Check;
 use crate::failure::Failure;
 use crate::words::{bytes, counted, duration, quantity};
 
-/// Cells along a side on which the stress at a depth is timed.
-const TIMED: usize = 128;
-
 /// Validates the case, builds its gap, and says what will be solved.
 pub fn run(args: &Check) -> Result<(), Failure> {
     let case = Case::read(&args.case, &args.common.set)?;
@@ -25,7 +20,8 @@ pub fn run(args: &Check) -> Result<(), Failure> {
     let work = work::work(&case, &examined.description);
     if args.json {
         let mut object = serde_json::to_value(&examined).unwrap_or_default();
-        object["estimated_s"] = json!(work.as_ref().map(|work| work.seconds));
+        object["estimated_s"] =
+            json!(work.as_ref().map(|work| work.seconds + work::seconds_after(&case, &examined.description)));
         object["estimated_rows"] = json!(work.as_ref().map(|work| work.rehearsal.rows));
         object["estimated_convolutions"] = json!(work.as_ref().map(|work| work.rehearsal.convolutions));
         crate::print(&format!("{object}\n"))?;
@@ -149,22 +145,6 @@ fn motion_lines(case: &Case) -> Vec<[String; 2]> {
         ]);
     }
     lines
-}
-
-/// Times and depths times what the stress at a depth takes here, timed on a small grid and scaled as N log N.
-fn stress_seconds(case: &Case, description: &StressDescription) -> Option<f64> {
-    let cells = case.grid.cells().map(|n| n.min(TIMED));
-    let grid = case.grid.with_cells(cells).ok()?;
-    let mut stress = description.poisson.transforms(grid, case.boundary).ok()?;
-    stress.set_pressure(&vec![1.0; grid.len()]).ok()?;
-    let mut six = std::array::from_fn(|_| Vec::new());
-    let depth = grid.size()[0];
-    stress.at(depth, &mut six).ok()?;
-    let start = Instant::now();
-    stress.at(depth, &mut six).ok()?;
-    let timed = start.elapsed().as_secs_f64();
-    let cost = |n: f64| n * n.max(2.0).log2();
-    Some(description.evaluations? as f64 * timed * cost(case.grid.len() as f64) / cost(grid.len() as f64))
 }
 
 /// What will be computed of the stress below the surface, and what it takes.
@@ -328,7 +308,7 @@ fn tell(case: &Case, examined: &Examination, work: Option<&Work>) -> String {
         ),
     );
     if let Some(stress) = &d.stress {
-        stress_lines(stress, stress_seconds(case, stress))
+        stress_lines(stress, work::stress_seconds(case, stress))
             .into_iter()
             .for_each(|[name, value]| line(&name, value));
     }

@@ -5,6 +5,7 @@ use std::time::Instant;
 use asperity::operator::half_space;
 use asperity::{Method, Scheme};
 use asperity_io::case::{Case, Description, Rehearsal};
+use asperity_io::stress::StressDescription;
 
 /// Cells along a side on which a convolution is timed.
 const TIMED: usize = 512;
@@ -77,4 +78,29 @@ pub(super) fn leak_seconds(case: &Case, description: &Description) -> Option<f64
     leak.of_gap(&grid, gap.view(), None, 0.0).ok()?;
     let open = 0.5 * case.grid.len() as f64 / grid.len() as f64;
     Some(times * start.elapsed().as_secs_f64() * open.powf(1.3))
+}
+
+/// Cells along a side on which the stress at a depth is timed.
+const TIMED_STRESS: usize = 128;
+
+/// Times and depths times what the stress at a depth takes here, timed on a small grid and scaled as N log N.
+pub(super) fn stress_seconds(case: &Case, description: &StressDescription) -> Option<f64> {
+    let cells = case.grid.cells().map(|n| n.min(TIMED_STRESS));
+    let grid = case.grid.with_cells(cells).ok()?;
+    let mut stress = description.poisson.transforms(grid, case.boundary).ok()?;
+    stress.set_pressure(&vec![1.0; grid.len()]).ok()?;
+    let mut six = std::array::from_fn(|_| Vec::new());
+    let depth = grid.size()[0];
+    stress.at(depth, &mut six).ok()?;
+    let start = Instant::now();
+    stress.at(depth, &mut six).ok()?;
+    let timed = start.elapsed().as_secs_f64();
+    let cost = |n: f64| n * n.max(2.0).log2();
+    Some(description.evaluations? as f64 * timed * cost(case.grid.len() as f64) / cost(grid.len() as f64))
+}
+
+/// What is computed from the stored fields after the run takes \[s\].
+pub(super) fn seconds_after(case: &Case, description: &Description) -> f64 {
+    let stress = description.stress.as_ref().and_then(|stress| stress_seconds(case, stress));
+    leak_seconds(case, description).unwrap_or(0.0) + stress.unwrap_or(0.0)
 }

@@ -88,6 +88,10 @@ def test_hardness_and_pickles():
         (lambda: asp.layer_compliance(1.0, "rubber"), "asperity.Body"),
         (lambda: asp.layer_compliance(1.0, tread(base=asp.Maxwell(shear=1e6, relaxation_time=1.0, poisson=0.4))), "flows"),
         (lambda: asp.solve(sphere(), coated(), load=1.0, times=[1.0], scheme="constant"), "creep differently"),
+        (
+            lambda: asp.steady(sphere(), coated(), load=1.0, velocities=[0.1], boundary="periodic"),
+            "layers that creep differently",
+        ),
         (lambda: asp.solve(sphere(), tread(thickness=1e-6), load=1.0, times=[1.0]), "thickness of the top layer"),
     ],
 )

@@ -8,7 +8,7 @@ use super::Kind;
 use super::error::{Fault, Remedy, fault};
 use super::role::{self, Role};
 use super::table::Table;
-use super::units::{convert, tidy};
+use super::units::{convert, taken, tidy};
 use crate::case::quantity::unit::Unit;
 use crate::case::quantity::{Dimension, dimension};
 
@@ -144,11 +144,11 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read, 
             }
         })?;
         if unit.is_empty() && !matches!(role, Role::TanDelta | Role::Set) {
-            notes.push(format!("{} ({place}) names no unit and is taken in {}", role.name(), role.si()));
+            notes.push(format!("{} ({place}) names no unit and is taken in {}", role.name(), taken(role)));
         }
         values.insert(role, converted);
         let header = table.headers.get(column).cloned().unwrap_or_default();
-        let unit = if unit.is_empty() { role.si().to_owned() } else { unit };
+        let unit = if unit.is_empty() { taken(role).to_owned() } else { unit };
         used.push(Place { role, column: column + 1, header, unit });
     }
     let lines = kept.iter().map(|row| table.rows[*row].line).collect();

@@ -35,6 +35,7 @@ mod sweeps;
 mod table;
 mod units;
 mod vertical;
+mod wide;
 mod workbook;
 
 use std::io::Read;
@@ -176,9 +177,10 @@ impl Curves {
                 _ if columns.sheet.is_some() => factors::held(&workbook::sheets(bytes, None)?),
                 sheets => factors::held(sheets),
             };
-            let (sheet, table) = chosen(sheets, kind)?;
+            let (sheet, table, also) = chosen(sheets, kind)?;
             let columns::Read { values, places: used, lines, left_out, mut notes } =
                 columns::values(&table, kind.into(), columns)?;
+            notes.extend(also);
             let measure = columns::measure(&used, &table)?;
             let unused = (1..=table.columns).filter(|n| !used.iter().any(|place| place.column == *n));
             let unused =
@@ -246,26 +248,36 @@ fn kind_of(table: &Table) -> Option<Kind> {
     [Kind::Dma, Kind::Relaxation, Kind::Creep].into_iter().find(|kind| columns::named(table, *kind))
 }
 
-/// The first sheet whose header names a curve of the kind, or the only one with a table.
-fn chosen(sheets: Vec<Sheet>, kind: Kind) -> Result<(Option<String>, Table), Fault> {
-    let mut names = Vec::new();
-    let mut tables = Vec::new();
-    let mut refused = None;
+/// The first sheet whose header names a curve of the kind, or the only one with a table; and a note on others like it.
+fn chosen(sheets: Vec<Sheet>, kind: Kind) -> Result<(Option<String>, Table, Option<String>), Fault> {
+    let listed = |names: &[String]| {
+        let names: Vec<String> = names.iter().take(20).map(|name| format!("\"{name}\"")).collect();
+        names.join(", ")
+    };
+    let (mut named, mut other, mut refused, mut names) = (Vec::new(), Vec::new(), None, Vec::new());
     for sheet in sheets {
         names.extend(sheet.name.clone());
         match sheet.table {
-            Ok(table) if columns::named(&table, kind) => return Ok((sheet.name, table)),
-            Ok(table) => tables.push((sheet.name, table)),
+            Ok(table) if columns::named(&table, kind) => named.push((sheet.name, table)),
+            Ok(table) => other.push((sheet.name, table)),
             Err(fault) => refused = Some(fault),
         }
     }
-    match (tables.len(), tables.pop(), refused) {
-        (1, Some(only), _) => Ok(only),
+    if !named.is_empty() {
+        let more: Vec<String> = named.iter().skip(1).filter_map(|(name, _)| name.clone()).collect();
+        let (name, table) = named.swap_remove(0);
+        let note = (!more.is_empty()).then(|| {
+            let (first, more) = (name.as_deref().unwrap_or_default(), listed(&more));
+            format!("sheet \"{first}\" is read, and others like it are not: {more}; sheet = \"...\" (--sheet) says which")
+        });
+        return Ok((name, table, note));
+    }
+    match (other.len(), other.pop(), refused) {
+        (1, Some((name, table)), _) => Ok((name, table, None)),
         (0, _, Some(refused)) => Err(refused),
         _ => {
-            let names: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
             let message = format!("no sheet names the columns of a {} file", kind.name());
-            Err(fault(message).remedy(Remedy::Sheet(names.join(", "))))
+            Err(fault(message).remedy(Remedy::Sheet(listed(&names))))
         }
     }
 }

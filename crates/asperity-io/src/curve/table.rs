@@ -30,8 +30,8 @@ pub(super) struct Table {
     pub columns: usize,
     pub rows: Vec<Row>,
     text: String,
-    separator: Option<char>,
-    decimal_comma: bool,
+    pub separator: Option<char>,
+    pub decimal_comma: bool,
 }
 
 /// A line of numbers: its cells are cut out when they are asked for.
@@ -44,7 +44,7 @@ pub(super) struct Row {
 }
 
 /// Longer tables are no curves.
-const MOST_ROWS: usize = 2_000_000;
+pub(super) const MOST_ROWS: usize = 2_000_000;
 const MOST_COLUMNS: usize = 1000;
 
 impl Table {
@@ -58,6 +58,12 @@ impl Table {
             // Columns of text beside the numbers.
             None => guess(&lines),
         };
+        if decimal_comma && let Some(cell) = thousands(&lines, separator) {
+            return Err(fault(format!(
+                "numbers such as {cell:?} may have a decimal comma or a comma between thousands, and none in the file tells; write \
+                 them with a decimal point, or without commas"
+            )));
+        }
         drop(lines);
         Table::split(text, separator, decimal_comma)
     }
@@ -159,7 +165,8 @@ impl Table {
         self.rows.iter().map(sparse).collect()
     }
 
-    fn cell(&self, row: &Row, column: usize) -> &str {
+    /// A cell as it is written.
+    pub(super) fn cell(&self, row: &Row, column: usize) -> &str {
         let line = self.text.get(row.span.clone()).unwrap_or_default();
         cells(line, self.separator).get(column).copied().unwrap_or_default()
     }
@@ -196,6 +203,12 @@ impl Table {
             None | Some("") => String::new(),
             Some(header) => format!(", {header:?}"),
         }
+    }
+
+    /// The lines above the numbers.
+    pub(super) fn above(&self) -> impl DoubleEndedIterator<Item = &str> {
+        let first = self.rows.first().map_or(0, |row| row.line - 1);
+        self.text.lines().take(first).collect::<Vec<_>>().into_iter()
     }
 
     /// All columns, for messages: `1 "f [Hz]", 2 "E' [MPa]"`.
@@ -258,9 +271,12 @@ fn is_comment(line: &str) -> bool {
 /// A finite number, with the file's decimal mark.
 fn parse_number(cell: &str, decimal_comma: bool) -> Option<f64> {
     let cell = cell.trim_matches('"');
-    let number = match decimal_comma && cell.contains(',') {
-        true => cell.replacen(',', ".", 1).parse(),
-        false => cell.parse(),
+    // "7,874.1" between quotes; "7,874" may have a decimal comma.
+    let grouped = || is_grouped(cell) && (cell.contains('.') || cell.matches(',').count() > 1);
+    let number = match (cell.contains(','), decimal_comma) {
+        (true, true) => cell.replacen(',', ".", 1).parse(),
+        (true, false) if grouped() => cell.replace(',', "").parse(),
+        _ => cell.parse(),
     };
     number.ok().filter(|value: &f64| value.is_finite())
 }
@@ -272,10 +288,34 @@ fn is_undefined(cell: &str) -> bool {
 }
 
 /// Whether a cell says that there is no number.
-fn is_missing(cell: &str) -> bool {
+pub(super) fn is_missing(cell: &str) -> bool {
     const MARKS: [&str; 12] = ["", "-", "--", "---", "–", "—", "*", "n.a.", "null", "none", "inf", "-inf"];
     let bare = cell.trim_matches('"').trim();
     is_undefined(bare) || bare.starts_with('#') || MARKS.iter().any(|mark| bare.eq_ignore_ascii_case(mark))
+}
+
+/// A number with a comma, where all of them look like thousands: "24,070".
+fn thousands<'l>(lines: &[&'l str], separator: Option<char>) -> Option<&'l str> {
+    let mut found = None;
+    let numbers = lines.iter().filter(|line| !is_comment(line)).flat_map(|line| cells(line, separator));
+    for cell in numbers.filter(|cell| cell.contains(',') && parse_number(cell, true).is_some()) {
+        if !is_grouped(cell) {
+            return None;
+        }
+        found = Some(cell);
+    }
+    found
+}
+
+/// Whether all digits of a number stand in groups of three behind commas, as in "7,874" or "1,093,810.6".
+fn is_grouped(cell: &str) -> bool {
+    let whole = cell.split_once('.').map_or(cell, |(whole, _)| whole).trim_start_matches(['+', '-']);
+    let mut groups = whole.split(',');
+    let first = groups.next().unwrap_or_default();
+    let digits = |group: &str, count: std::ops::RangeInclusive<usize>| {
+        count.contains(&group.len()) && group.bytes().all(|b| b.is_ascii_digit())
+    };
+    digits(first, 1..=3) && !first.starts_with('0') && groups.all(|group| digits(group, 3..=3))
 }
 
 /// Separator and decimal mark of a file whose lines hold text as well.
@@ -289,20 +329,37 @@ fn guess(lines: &[&str]) -> (Option<char>, bool) {
     }
 }
 
-/// The cells of a line: at the separator, or at tabs where there are any, else at blanks.
-fn cells(line: &str, separator: Option<char>) -> Vec<&str> {
-    match separator {
-        Some(separator) => line.split(separator).map(str::trim).collect(),
-        None if line.contains('\t') => line.split('\t').map(str::trim).collect(),
-        None => line.split_whitespace().collect(),
-    }
+/// The cells of a line: at the separator, or at tabs where there are any, else at blanks. A separator between quotes is none; quotes
+/// begin with the cell, as that of E" is a double prime.
+pub(super) fn cells(line: &str, separator: Option<char>) -> Vec<&str> {
+    let Some(separator) = separator else {
+        return match line.contains('\t') {
+            true => line.split('\t').map(str::trim).collect(),
+            false => line.split_whitespace().collect(),
+        };
+    };
+    let (mut quoted, mut begins) = (false, true);
+    let outside = |c: char| {
+        let ends = c == separator && !quoted;
+        if c == '"' {
+            quoted = !quoted && begins;
+        }
+        begins = ends || (begins && c.is_whitespace());
+        ends
+    };
+    line.split(outside).map(str::trim).collect()
 }
 
 /// The header cells of the columns, and the units where a line of their own names them.
 fn header(lines: &[&str], separator: Option<char>, columns: usize) -> (Vec<String>, Option<Vec<String>>) {
-    let fitting = lines.iter().rev().filter(|line| !is_blank(line, separator)).take(2);
-    let mut found = fitting.map_while(|line| header_cells(line, separator, columns));
+    let fitting = lines.iter().rev().copied().filter(|line| !is_blank(line, separator)).take(2);
     let none = || vec![String::new(); columns];
+    if let (None, [units, names]) = (separator, fitting.clone().collect::<Vec<&str>>().as_slice())
+        && let Some(found) = counted(names, units, columns)
+    {
+        return found;
+    }
+    let mut found = fitting.map_while(|line| header_cells(line, separator, columns));
     let Some(last) = found.next() else { return (none(), None) };
     let before = found.next();
     let only_units = last.iter().any(|cell| !cell.is_empty()) && last.iter().all(|cell| is_unit(cell));
@@ -312,6 +369,22 @@ fn header(lines: &[&str], separator: Option<char>, columns: usize) -> (Vec<Strin
         (true, None) => (none(), Some(last.iter().map(|cell| bare_unit(cell).to_owned()).collect())),
         (false, _) => (last, None),
     }
+}
+
+/// Names and units where the first column counts the points, without a unit below it:
+///
+/// ```text
+///   Index          t          f
+///                [s]       [Hz]
+/// ```
+fn counted(names: &str, units: &str, columns: usize) -> Option<(Vec<String>, Option<Vec<String>>)> {
+    let names = header_cells(names, None, columns)?;
+    let units = cells(units, None);
+    let counts = ["index", "nr", "no", "point", "pt"].contains(&role::bare(&names[0]).as_str());
+    let bracketed = units.iter().all(|cell| cell.starts_with('[') && cell.ends_with(']'));
+    let units = std::iter::once("").chain(units.iter().map(|cell| bare_unit(cell)));
+    let units: Vec<String> = units.map(str::to_owned).collect();
+    (counts && bracketed && units.len() == columns).then_some((names, Some(units)))
 }
 
 /// Whether a line under a line of names holds their units, which may be single letters or unknown here: two of them at
@@ -336,7 +409,7 @@ fn header_cells(line: &str, separator: Option<char>, columns: usize) -> Option<V
     };
     let spaced = clean(line.split("  ").filter(|cell| !cell.trim().is_empty()).collect());
     let spaced = (separator.is_none() && spaced.len() == columns).then_some(spaced);
-    let mut plain = clean(quoted_cells(line, separator));
+    let mut plain = clean(cells(line, separator));
     if plain.len() == columns + 1 && plain.last().is_some_and(String::is_empty) {
         plain.pop();
     }
@@ -354,21 +427,6 @@ fn header_cells(line: &str, separator: Option<char>, columns: usize) -> Option<V
         return Some(plain);
     }
     spaced
-}
-
-/// The cells of a header line, where a separator between quotes is none. Quotes begin with the cell: that of E" is a double prime.
-fn quoted_cells(line: &str, separator: Option<char>) -> Vec<&str> {
-    let Some(separator) = separator.filter(|_| line.contains('"')) else { return cells(line, separator) };
-    let (mut quoted, mut begins) = (false, true);
-    let outside = |c: char| {
-        let ends = c == separator && !quoted;
-        if c == '"' {
-            quoted = !quoted && begins;
-        }
-        begins = ends || (begins && c.is_whitespace());
-        ends
-    };
-    line.split(outside).map(str::trim).collect()
 }
 
 /// A cell without the quotes around it.
@@ -399,12 +457,12 @@ fn bare_unit(cell: &str) -> &str {
 fn is_unit(cell: &str) -> bool {
     let unit = bare_unit(cell);
     // One letter is rather a name: t, T, f.
-    matches!(unit, "" | "-" | "1" | "s" | "K" | "h" | "°C" | "degC" | "rad/s")
+    matches!(unit, "" | "-" | "1" | "s" | "K" | "h" | "°C" | "degC" | "rad/s" | "°")
         || (unit.chars().count() > 1 && Unit::parse(unit).is_ok())
 }
 
 /// Name and unit of "load [mN]", "load (mN)", "load/mN", "load, mN", "load in mN", "load_mN" or "load mN".
-fn split_unit(header: &str) -> (&str, &str) {
+pub(super) fn split_unit(header: &str) -> (&str, &str) {
     for (open, close) in [('[', ']'), ('(', ')')] {
         // The last bracket: "E(t) (MPa)".
         if let Some((name, rest)) = header.rsplit_once(open)
@@ -549,5 +607,37 @@ mod tests {
         says("t;E\n1;2\n2;\n", Some(3), "empty");
         says("t,E\n1,2\n2,nan\n", Some(3), "not a finite number");
         says("\0\0\x01PNG", None, "binary");
+    }
+
+    #[test]
+    fn commas_between_thousands_are_told_from_decimal_commas() {
+        // All numbers may be thousands.
+        for text in ["t [s];E [kPa]\n1;24,070\n2;20,296\n", "t [s]\tE [kPa]\n1\t24,070\n2\t20,296\n"] {
+            let error = Table::parse(text.as_bytes()).unwrap_err();
+            assert!(error.message.contains("between thousands"), "{text}: {error:?}");
+        }
+        // One of them is not.
+        for text in ["t;E\n0,5;24,070\n2;20,296\n", "t;E\n1;1093,800\n2;20,296\n", "t;E\n1;0,720\n2;20,296\n"]
+        {
+            assert_eq!(Table::parse(text.as_bytes()).unwrap().numbers(1).unwrap()[1], 20.296, "{text}");
+        }
+        // Between quotes.
+        let quoted = Table::parse(b"f,E\n0.5,\"1,093,810.6\"\n1.5,\"7,874.1\"\n").unwrap();
+        assert_eq!(quoted.numbers(1).unwrap(), [1_093_810.6, 7874.1]);
+    }
+
+    #[test]
+    fn separators_between_quotes_are_none() {
+        let table =
+            Table::parse(b"Action,f (Hz),E' (Pa)\n\"sweep, first\",1,5\n\"sweep, first\",2,6\n").unwrap();
+        assert_eq!(table.numbers(2).unwrap(), [5.0, 6.0]);
+    }
+
+    #[test]
+    fn a_count_of_points_has_no_unit() {
+        let table =
+            Table::parse(b"Curve Values:\n Index   t   M'\n        [s]  [MPa]\n 0  0.5  2\n 1  1.5  1\n")
+                .unwrap();
+        assert_eq!((table.names.join(" "), table.units.join(" ")), ("Index t M'".into(), " s MPa".into()));
     }
 }

@@ -54,6 +54,12 @@ pub(super) fn convert(
     let whole = |why: String| (None, why);
     let factor = match role {
         Role::Temperature => {
+            let coldest = numbers.iter().copied().fold(f64::INFINITY, f64::min);
+            if unit.is_empty() && coldest < LEAST_KELVIN {
+                return Err(whole(format!(
+                    "has no unit, and {coldest} is hardly a temperature in K: give °C or K"
+                )));
+            }
             let kelvin = |(row, value): (usize, &f64)| {
                 let temperature = Temperature::from_unit(*value, unit);
                 temperature.map(Temperature::get).map_err(|error| {
@@ -81,6 +87,17 @@ pub(super) fn convert(
         Role::Depth => scale::<dimension::Length>(unit).map_err(whole)?,
     };
     Ok(numbers.into_iter().map(|value| factor * value).collect())
+}
+
+/// Nobody measures polymers at lower temperatures [K], but numbers in °C are mostly lower.
+const LEAST_KELVIN: f64 = 150.0;
+
+/// The unit in which numbers are taken that name none.
+pub(super) fn taken(role: Role) -> &'static str {
+    match role {
+        Role::Phase => "deg", // as `degrees` has it
+        _ => role.si(),
+    }
 }
 
 /// SI of one unit.

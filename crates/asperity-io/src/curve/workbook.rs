@@ -7,6 +7,7 @@ use calamine::{Data, Reader, Sheets, open_workbook_auto_from_rs};
 
 use super::error::{Fault, Remedy, fault};
 use super::table::Table;
+use super::wide;
 
 /// A table of a file.
 pub(super) struct Sheet {
@@ -30,7 +31,11 @@ pub(super) fn sheets(bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Sheet>, F
         if let Some(name) = wanted {
             return Err(fault(format!("the file is no spreadsheet, and has no sheet \"{name}\"")));
         }
-        return Ok(vec![Sheet { name: None, cells: Vec::new(), table: Ok(Table::parse(bytes)?) }]);
+        return Ok(vec![Sheet {
+            name: None,
+            cells: Vec::new(),
+            table: Ok(wide::long(Table::parse(bytes)?)?),
+        }]);
     }
     if bytes.len() > MOST_BYTES {
         return Err(fault(format!("the spreadsheet is larger than {} MB", MOST_BYTES >> 20)));
@@ -100,5 +105,5 @@ fn decimal(text: &str) -> String {
 
 fn table(cells: &Rows) -> Result<Table, Fault> {
     let lines: Vec<String> = cells.iter().map(|row| row.join(";")).collect();
-    Table::split(lines.join("\n"), Some(';'), false)
+    Table::split(lines.join("\n"), Some(';'), false).and_then(wide::long)
 }

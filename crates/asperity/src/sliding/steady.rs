@@ -635,6 +635,13 @@ fn validate(simulation: &Simulation, motion: &SteadyMotion) -> Result<()> {
     if simulation.grid.is_line() && motion.direction != Direction::X {
         return Err(Error::invalid("direction of motion of a line contact", "not x", "x"));
     }
+    if simulation.layers.is_some() {
+        return Err(Error::invalid(
+            "body of a steady state of motion",
+            "layers that creep differently",
+            "layers and bodies of one relative creep",
+        ));
+    }
     if simulation.boundary == Boundary::Free && !simulation.kernel.is_half_space() {
         return Err(Error::invalid(
             "body of a steady state of motion on a free domain",

@@ -183,6 +183,12 @@ impl Parser<'_> {
             }
             unit
         } else if self.characters.next_if_eq(&'1').is_some() {
+            // A number such as 1000 belongs before the unit.
+            if let Some(c) =
+                self.characters.peek().filter(|c| c.is_ascii_digit() || matches!(c, '.' | ',' | 'e' | 'E'))
+            {
+                return Err(format!("\"{c}\" is out of place in the unit: a unit holds no number but 1"));
+            }
             Unit::ONE
         } else {
             let mut name = String::new();
@@ -273,6 +279,10 @@ mod tests {
         assert_eq!(scale("/MPa"), scale("MPa^-1"));
         // left to right, as everywhere: (1/Pa) s
         assert_eq!(scale("1/Pa s").1, [1, -1, 3, 0, 0]);
+        // A number is no part of a unit.
+        for text in ["1000 Pa", "10*MPa", "1.5 Pa", "1e3 Pa", "m/10 s"] {
+            assert!(Unit::parse(text).is_err(), "{text}");
+        }
         assert_eq!(scale(""), (1.0, [0, 0, 0, 0, 0]));
     }
 

@@ -233,6 +233,7 @@ pub(super) fn of(role: Role) -> &'static [&'static str] {
             "sampletemperature",
             "sampletemp",
             "ts",
+            "tr",
             "tsample",
             "tprobe",
             "chambertemperature",

@@ -83,7 +83,7 @@ function cyclePanels(part) {
     series: [{ name: "", x: values.map((_, n) => n + 1), y: values.map((value) => value ?? NaN) }],
   });
   const line = state.grid.line ? "/m" : "";
-  return [panel("Loss angle", "loss angle", "°", part.loss_angle), panel("Energy lost in a cycle", "energy", `J${line}`, part.dissipated_energy),
+  return [panel("Loss angle", "loss angle", "°", part.loss_angle), panel("Work over a cycle", "work", `J${line}`, part.dissipated_energy),
     panel("Dynamic stiffness", "stiffness", `N/m${line ? "2" : ""}`, part.stiffness)];
 }
 

@@ -1,7 +1,8 @@
 //! Cyclic loading: what a period of load and approach tells of the contact.
 //!
 //! Over a period T = 1/f the external work is the area of the hysteresis loop, integral W dw, the energy dissipated
-//! where the cycle closes (J. D. Ferry, Viscoelastic Properties of Polymers, 3rd ed., Wiley 1980, chapter 1). The
+//! where the cycle closes (J. D. Ferry, Viscoelastic Properties of Polymers, 3rd ed., Wiley 1980, chapter 1). Where the approach
+//! drifts by dw over the period, the work of the mean load over this drift, mean(W) dw, is a part of it, and is not the loop's. The
 //! first harmonics W_1, w_1, complex amplitudes of exp(i 2 pi f t), give the dynamic stiffness K* = W_1/w_1 =
 //! |K*| exp(i delta) with the loss angle delta: the load leads the approach. In full contact tan delta is that of
 //! the material, E''/E'; where the contact area changes within the cycle it is not, and higher harmonics are left out.
@@ -16,6 +17,8 @@ pub struct Cycle {
     /// External work integral W dw over the period, on cubics through the rows \[J\]: the dissipated energy, and what a cycle that does not close
     /// stores besides.
     pub dissipated_energy: f64,
+    /// What of it the mean load does over the drift of the approach from start to end \[J\]: 0 where the cycle closes.
+    pub drift_work: f64,
     /// Dynamic stiffness |K*| of the first harmonics \[N/m\].
     pub stiffness: f64,
     /// Loss angle delta of the first harmonics \[rad\].
@@ -42,6 +45,7 @@ const FEWEST: usize = 8;
 /// assert!((cycles[1].stiffness - 100.0).abs() < 1e-6 && (cycles[1].loss_angle - 0.3).abs() < 1e-9);
 /// let energy = std::f64::consts::PI * 100.0 * 0.3_f64.sin() * 1e-12;
 /// assert!((cycles[1].dissipated_energy / energy - 1.0).abs() < 1e-3);
+/// assert!(cycles[1].drift_work.abs() < 1e-9 * energy);
 /// # Ok::<(), asperity::Error>(())
 /// ```
 ///
@@ -132,8 +136,13 @@ impl Rows<'_> {
         let phase = |[a, b]: [f64; 2]| libm::atan2(-b, a);
         let turn = phase(load) - phase(approach);
         let loss_angle = turn - std::f64::consts::TAU * libm::round(turn / std::f64::consts::TAU);
+        let (a, b) = (points.first()?, points.last()?);
+        let mean_load =
+            points.windows(2).map(|pair| 0.5 * (pair[0][1] + pair[1][1]) * (pair[1][0] - pair[0][0]));
+        let mean_load = mean_load.sum::<f64>() / (end - start);
         Some(Cycle {
             span: [start, end],
+            drift_work: mean_load * (b[2] - a[2]),
             dissipated_energy: (1..points.len()).map(|n| work(&points, n)).sum(),
             stiffness: size(load) / size(approach),
             loss_angle,

@@ -60,6 +60,7 @@ fn cycles_json(part: &cycles::Cyclic) -> serde_json::Value {
             "dissipated_energy": cycle.dissipated_energy,
             "stiffness": cycle.stiffness,
             "loss_angle": cycle.loss_angle,
+            "drift_work": cycle.drift_work,
         })
     };
     let list: Vec<_> = part.cycles.iter().map(cycle).collect();
@@ -204,12 +205,13 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
     for part in cyclic.iter().filter(|part| !part.cycles.is_empty()) {
         let stage = if cyclic.len() > 1 { format!(" of stage {}", part.stage + 1) } else { String::new() };
         text += &format!("\ncycles{stage} at {:.4} Hz\n", part.frequency);
-        text += "      end          energy       stiffness    loss angle   tan\n";
+        text += "      end          work         by drift     stiffness    loss angle   tan\n";
         for cycle in &part.cycles {
             text += &format!(
-                "      {:<13}{:<13}{:<13}{:<13}{:.4}\n",
+                "      {:<13}{:<13}{:<13}{:<13}{:<13}{:.4}\n",
                 quantity(cycle.span[1], "s"),
                 quantity(cycle.dissipated_energy, grid.units("J")),
+                quantity(cycle.drift_work, grid.units("J")),
                 quantity(cycle.stiffness, grid.units("N/m")),
                 format!("{:.3}°", cycle.loss_angle.to_degrees()),
                 cycle.loss_angle.tan()

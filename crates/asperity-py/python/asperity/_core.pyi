@@ -86,7 +86,7 @@ class ConvergenceError(RuntimeError):
 
 def cycles_of(
     time: list[float], load: list[float], approach: list[float], frequency: float, start: float
-) -> list[tuple[float, float, float, float, float]]: ...
+) -> list[tuple[float, float, float, float, float, float]]: ...
 @final
 class Body:
     def __new__(

@@ -42,12 +42,14 @@ class Cycle(NamedTuple):
     start: float
     #: Its end [s].
     end: float
-    #: External work over the period [J]: dissipated, where the cycle closes.
+    #: External work over the period [J]: dissipated, where the cycle closes (`drift_work` is small).
     dissipated_energy: float
     #: Dynamic stiffness of the first harmonics [N/m].
     stiffness: float
     #: Loss angle of the first harmonics [rad]: the load leads the approach.
     loss_angle: float
+    #: What of the work the mean load does over the drift of the approach from start to end [J]: 0 where the cycle closes.
+    drift_work: float
 
 
 class Result(Sealed):

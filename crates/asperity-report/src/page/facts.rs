@@ -137,10 +137,18 @@ fn last_cycles(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
     let grid = &reader.header().grid;
     let of_stage = |part: &cycles::Cyclic| {
         let cycle = part.cycles.last()?;
+        let energy = |value: f64| quantity(value, grid.units("J"));
+        let work = match cycle.drift_work.abs() > 0.01 * cycle.dissipated_energy.abs() {
+            true => format!(
+                "work {} ({} of it by drift)",
+                energy(cycle.dissipated_energy),
+                energy(cycle.drift_work)
+            ),
+            false => format!("{} lost", energy(cycle.dissipated_energy)),
+        };
         let words = format!(
-            "loss angle {:.2}°, {} lost, dynamic stiffness {}",
+            "loss angle {:.2}°, {work}, dynamic stiffness {}",
             cycle.loss_angle.to_degrees(),
-            quantity(cycle.dissipated_energy, grid.units("J")),
             quantity(cycle.stiffness, grid.units("N/m"))
         );
         Some([format!("Last of {} cycles at {}", part.cycles.len(), quantity(part.frequency, "Hz")), words])

@@ -4,7 +4,8 @@
 //! p_n is the last row; p' is the row before it, or the last trial of a row that is solved again. In a creep that fades the best
 //! f is less than one, and it is found for any programme and material. U = K p is linear, so all this needs no convolution, and
 //! U of the guess is known. Its rounding error grows with every row that takes its U this way; a bound of it goes along with the
-//! state, and where it could show, U is computed afresh.
+//! state, and where it could show, U is computed afresh. Where layers creep differently the operator is another one in each step:
+//! there the two U cost a convolution each, and save several iterations.
 
 use asperity_sweep::eights::{Eight, Mask, Work};
 
@@ -151,9 +152,12 @@ impl March {
     /// `linear` is the f of extrapolation in time.
     fn combine(&mut self, instant: Instant, linear: f64) -> Start {
         if let Past::Waves(_) = &self.past {
-            // The U of the rows before are those of other operators.
-            self.state.pressure.copy_from_slice(&self.previous.pressure);
-            return Start::Pressure;
+            // The operator is another one in each step, and so are the U of both rows.
+            for known in [&mut self.state, &mut self.previous] {
+                self.operator.apply_into(&known.pressure, &mut known.unit_displacement);
+                known.rounding = 1.0;
+                self.outcome.convolutions += 1;
+            }
         }
         let prescribed = self.prescribed(instant);
         let cell_area = self.simulation.grid.cell_area();

@@ -299,8 +299,7 @@ impl March {
             ));
         }
         if let Some((.., false)) = &motion
-            && bodies.len() == 2
-            && bodies.iter().filter(|body| body.inner.material.creep().remembers()).count() == 2
+            && crate::material::creeping(&bodies, &stacks) == 2
         {
             return Err(CaseError::new_err(
                 "both bodies are viscoelastic and slide over each other, so one memory moves over the other: give kind=\"roll\", or \

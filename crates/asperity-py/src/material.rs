@@ -149,6 +149,16 @@ pub fn pair(
     Ok(layered(&bodies, &clocks))
 }
 
+/// How many bodies creep.
+pub fn creeping(materials: &[PyRef<'_, Body>], stacks: &[StackParts]) -> usize {
+    let mut rest = materials.iter();
+    let mut creeps = |(layers, on_half_space): &StackParts| {
+        let own = rest.by_ref().take(layers.len() + usize::from(*on_half_space));
+        own.filter(|body| body.inner.material.creep().remembers()).count() > 0
+    };
+    stacks.iter().map(&mut creeps).filter(|creeps| *creeps).count()
+}
+
 fn half_spaces(made: Vec<(material::Body, Option<ReducedTime>)>) -> asperity::Result<Pair> {
     let mut pair =
         Pair { kernel: Arc::new(HalfSpace), waves: None, creep: Creep::default(), thermal: Vec::new() };

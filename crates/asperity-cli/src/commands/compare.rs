@@ -5,7 +5,7 @@ use asperity_io::store::Reader;
 
 use crate::args;
 use crate::failure::Failure;
-use crate::words::quantity;
+use crate::words::{counted, quantity};
 
 /// Prints the table.
 pub fn run(args: &args::Compare) -> Result<(), Failure> {
@@ -40,7 +40,8 @@ fn text(found: &Comparison, first: &Reader) -> String {
         let [a, b] = number.last;
         let change = match b / a - 1.0 {
             _ if a == b => "none".to_owned(),
-            change if change >= FACTOR => format!("{:.4} times", 1.0 + change),
+            _ if a == 0.0 => "from 0".to_owned(),
+            change if change >= FACTOR => format!("{:.4} times ", 1.0 + change),
             change if change.is_finite() => format!("{:+.3} %", 100.0 * change),
             _ => String::new(),
         };
@@ -52,13 +53,14 @@ fn text(found: &Comparison, first: &Reader) -> String {
     text += &match found.common_rows {
         0 => "\nThe results have no row at the same time: only their ends are compared.\n".to_owned(),
         rows => format!(
-            "\nLargest difference: over {rows} rows that both have at the same time, relative to the largest value of the first.\n"
+            "\nLargest difference: over {} that both have at the same time, relative to the largest value of the first.\n",
+            counted(rows, "row")
         ),
     };
     if let Some(share) = found.pressure {
         text += &match share {
             0.0 => "Pressures stored last: the same in every cell.\n".to_owned(),
-            share => format!("Pressures stored last: {share:.2e} of the largest one apart at most.\n"),
+            share => format!("Pressures stored last: {} of the largest one apart at most.\n", apart(share)),
         };
     }
     text
@@ -69,7 +71,12 @@ const FACTOR: f64 = 9.0;
 
 /// A relative difference.
 fn apart(share: f64) -> String {
-    if share == 0.0 { "none".to_owned() } else { format!("{share:.2e}") }
+    match share {
+        0.0 => "none".to_owned(),
+        share if share.is_infinite() => "the first is 0".to_owned(),
+        share if share < 1e-4 => format!("{:.1e}", share),
+        share => format!("{:.3} %", 100.0 * share),
+    }
 }
 
 /// The text, or its beginning and an ellipsis.

@@ -8,7 +8,7 @@ use asperity::material::Shift;
 use super::bytes;
 use super::error::{CurveError, Fault, Remedy, fault};
 use super::role::{Role, bare};
-use super::table::Table;
+use super::table::{Table, split_unit};
 use super::units::tidy;
 use super::workbook::{Sheet, sheets};
 use crate::case::quantity::Temperature;
@@ -55,7 +55,9 @@ pub(super) fn held(sheets: &[Sheet]) -> HeldShift {
     for sheet in sheets {
         let reference =
             labelled(&sheet.cells, &["reftemp", "referencetemperature", "tref", "referenztemperatur"]);
-        let reference = reference.and_then(|text| text.parse::<Temperature>().ok());
+        let reference = reference.and_then(|(value, unit)| {
+            Temperature::from_unit(value, &tidy(Role::Temperature, "", &unit)).ok()
+        });
         if let (Some(c1), Some(c2), Some(reference)) =
             (constant(&sheet.cells, "c1"), constant(&sheet.cells, "c2"), reference)
         {
@@ -70,29 +72,53 @@ pub(super) fn held(sheets: &[Sheet]) -> HeldShift {
     found
 }
 
-/// The cell behind the one with a label.
-fn labelled(cells: &[Vec<String>], labels: &[&str]) -> Option<String> {
-    let place = |row: &Vec<String>| {
-        let at = row.iter().position(|cell| labels.contains(&bare(cell).as_str()))?;
-        row[at + 1..].iter().find(|cell| !cell.is_empty()).cloned()
+/// The value with a label: in the next cell that is not empty, or below it under a line of units. A unit may stand behind the number, in
+/// the label ("Tref [°C]"), or between them.
+fn labelled(cells: &[Vec<String>], labels: &[&str]) -> Option<(f64, String)> {
+    let labels_it = |cell: &str| labels.contains(&bare(split_unit(cell).0).as_str());
+    let place = |(n, row): (usize, &Vec<String>)| {
+        let at = row.iter().position(|cell| labels_it(cell))?;
+        let mut unit = split_unit(&row[at]).1.to_owned();
+        if let Some(found) = row[at + 1..].iter().find(|cell| !cell.is_empty()).and_then(|cell| number(cell))
+        {
+            return Some((found.0, if found.1.is_empty() { unit } else { found.1 }));
+        }
+        for below in cells[n + 1..].iter().take(2).filter_map(|row| row.get(at)) {
+            match number(below) {
+                Some((value, own)) => return Some((value, if own.is_empty() { unit } else { own })),
+                None => unit = below.trim_matches(['[', ']', '(', ')', ' ']).to_owned(),
+            }
+        }
+        None
     };
-    cells.iter().find_map(place)
+    cells.iter().enumerate().find_map(place)
 }
 
-/// The number of "C1 : 13.50" or of "C1" and "13.50" in the next cell, with or without a unit of kelvin.
-fn constant(cells: &[Vec<String>], name: &str) -> Option<f64> {
-    let number = |text: &str| -> Option<f64> {
-        let text = text.trim_start_matches([':', '=', ' ']).trim_end_matches(['K', ' ']);
-        text.replacen(',', ".", 1).parse().ok().filter(|value: &f64| value.is_finite())
-    };
-    let in_row = |row: &Vec<String>| {
-        row.iter().enumerate().find_map(|(n, cell)| {
-            cell.get(..name.len()).filter(|start| start.eq_ignore_ascii_case(name))?;
-            number(&cell[name.len()..]).or_else(|| number(row.get(n + 1)?))
-        })
-    };
-    cells.iter().find_map(in_row)
+/// "25.0 °C" or "13,5": a number, and what follows it.
+fn number(text: &str) -> Option<(f64, String)> {
+    let text = text.trim_start_matches([':', '=', ' ']);
+    let end = text
+        .find(|c: char| !(c.is_ascii_digit() || matches!(c, '.' | ',' | '-' | '+')))
+        .unwrap_or(text.len());
+    let value: f64 = text[..end].replacen(',', ".", 1).parse().ok()?;
+    Some((value, text[end..].trim().to_owned()))
 }
+
+/// The number of "C1 : 13.50" or of "C1" and "13.50" in another cell.
+fn constant(cells: &[Vec<String>], name: &str) -> Option<f64> {
+    let joined = |cell: &String| {
+        let rest = cell
+            .get(..name.len())
+            .filter(|start| start.eq_ignore_ascii_case(name))
+            .map(|_| &cell[name.len()..])?;
+        number(rest)
+    };
+    let found = cells.iter().flatten().find_map(joined).or_else(|| labelled(cells, &[name]));
+    found.map(|(value, _)| value)
+}
+
+/// ln a_T at the reference temperature, at most.
+const SAME: f64 = 1e-9;
 
 /// How a column of factors is written.
 #[derive(Clone, Copy)]
@@ -162,6 +188,14 @@ fn factors(table: &Table, unit: Option<&str>) -> Result<Shift, Fault> {
              reference, and falls (give one over it, or the logarithm with the other sign)",
         ));
     }
+    let signs = points.iter().map(|(_, ln)| ln.signum() * f64::from(u8::from(ln.abs() > SAME)));
+    if let Some(sign) = signs.reduce(|a, b| if a == b { a } else { 0.0 }).filter(|sign| *sign != 0.0) {
+        let word = if sign > 0.0 { "above" } else { "below" };
+        return Err(fault(format!(
+            "all shift factors are {word} 1: none of the temperatures is the reference, where a_T = 1 (log_aT = 0), nor lies it between \
+             them; add it to the table"
+        )));
+    }
     let shift = Shift::Table { points };
     shift.validate().map_err(|error| fault(error.to_string()))?;
     Ok(shift)
@@ -199,6 +233,7 @@ mod tests {
             ("T [°C], factor\n0,1\n20,0\n", "log_aT, ln_aT or aT"),
             ("T [°C], aT\n0,10\n20,0\n", "greater than 0"),
             ("T, log_aT\n-20,1\n20,0\n", "temperature"),
+            ("T [°C], log_aT\n0,4\n20,3\n", "all shift factors are above 1"),
         ] {
             let fault = read(text).unwrap_err();
             assert!(fault.message.contains(words), "{text}: {fault:?}");
@@ -213,6 +248,8 @@ mod tests {
         for rows in [
             cells(&[&["Ref.Temp.", "25.0 °C"], &["WLF", "C1 : 13.50", "C2 : 141.19 K"]]),
             cells(&[&["Ref. Temp.", "25.0 °C"], &["C1", "13,5"], &["C2", "141.19"]]),
+            cells(&[&["C1", "13.5"], &["C2", "141.19"], &["Tref [°C]", "25"]]),
+            cells(&[&["C1", "C2", "Reference temperature"], &["", "K", "°C"], &["13.5", "141.19", "25"]]),
         ] {
             let sheet = Sheet { name: None, cells: rows, table: Err(fault("")) };
             let wlf = held(&[sheet]).wlf.unwrap();

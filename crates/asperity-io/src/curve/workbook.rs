@@ -3,7 +3,7 @@
 use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use calamine::{Data, Reader, Sheets, open_workbook_auto_from_rs};
+use calamine::{Data, Reader, SheetVisible, Sheets, open_workbook_auto_from_rs};
 
 use super::error::{Fault, Remedy, fault};
 use super::table::Table;
@@ -61,7 +61,10 @@ fn rows(bytes: &[u8], wanted: Option<&str>) -> Result<Vec<(String, Rows)>, Fault
     let unreadable = |error: calamine::Error| fault(format!("cannot be read as a spreadsheet: {error}"));
     let mut book: Sheets<Cursor<&[u8]>> =
         open_workbook_auto_from_rs(Cursor::new(bytes)).map_err(unreadable)?;
-    let names = book.sheet_names();
+    // Hidden sheets come last.
+    let mut listed: Vec<_> = book.sheets_metadata().to_vec();
+    listed.sort_by_key(|sheet| sheet.visible != SheetVisible::Visible);
+    let names: Vec<String> = listed.into_iter().map(|sheet| sheet.name).collect();
     let listed =
         || names.iter().take(20).map(|name| format!("\"{name}\"")).collect::<Vec<String>>().join(", ");
     if let Some(name) = wanted

@@ -204,15 +204,16 @@ impl Reader {
         &self.field_steps
     }
 
-    /// Number of the stored instant that `at` means.
+    /// Number of the stored instant that `at` means; of a time within the run the nearest one.
     ///
     /// # Errors
-    /// [`StoreError::Missing`] where there is none.
+    /// [`StoreError::Missing`] where there is none, and for a time outside of the run.
     pub fn index(&self, at: At) -> Result<usize> {
         let times = &self.field_times;
         let found = match at {
             At::Index(index) => (index < times.len()).then_some(index),
             At::Last => times.len().checked_sub(1),
+            At::Time(time) if !self.is_within(time)? => None,
             At::Time(time) => {
                 let distance = |t: &f64| (t - time).abs();
                 let mut candidates = times.iter().enumerate().filter(|(_, t)| distance(t).is_finite());
@@ -239,6 +240,15 @@ impl Reader {
             };
             self.missing(what, available)
         })
+    }
+
+    /// Whether a time is one of the run, from 0 to its last row.
+    fn is_within(&self, time: f64) -> Result<bool> {
+        /// Times that are written with 12 digits are those of rows.
+        const DIGITS: f64 = 1e-12;
+        let rows = self.series("time")?;
+        let end = rows.iter().chain(&self.field_times).copied().fold(0.0, f64::max);
+        Ok((-DIGITS * end..=(1.0 + DIGITS) * end).contains(&time))
     }
 
     /// A field at a stored instant, in the unit of its kind (shape of the grid, axes x and y).

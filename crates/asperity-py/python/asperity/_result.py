@@ -628,7 +628,13 @@ class Result(Sealed):
         if time is not None and index is not None:
             raise CaseError("give time or index, exactly one of them")
         if time is not None:
-            distance = np.abs(self.field_times - number("velocity" if self._sweep else "time", time))
+            what, unit = ("velocity", "m/s") if self._sweep else ("time", "s")
+            wanted = number(what, time)
+            end = max(np.max(self._table["time"]), np.max(self.field_times))
+            # Times that are written with 12 digits are those of rows.
+            if not -1e-12 * end <= wanted <= (1 + 1e-12) * end:
+                raise CaseError(f"{what} is {wanted:g} {unit}, but must be one of the run, 0 {unit} to {end:g} {unit}")
+            distance = np.abs(self.field_times - wanted)
             # Of two at the same time, before and after a jump, the later.
             return int(kept - 1 - np.argmin(distance[::-1]))
         if index is None:

@@ -188,6 +188,8 @@ class Plots:
             return self._curve(field, unit, at, ax, style)
         values = self._field(field, at)
         place = 0.5 * result.size[1] if y is None else number("y", y)
+        if not 0 <= place <= result.size[1]:
+            raise CaseError(f"y is {place:g} m, but must lie in the domain, 0 m to {result.size[1]:g} m")
         row = int(np.argmin(np.abs(result.y - place)))
         factor, text = _shown(max(result.size), "m")
         return self._line(field, unit, values[:, row], at, ax, style, f"y = {result.y[row] * factor:.4g} {text}")

@@ -273,6 +273,7 @@ pub fn fit_indentation(
         notes: vec![],
     };
     fit.notes = notes::notes(&fit, options);
+    fit.notes.extend(notes::unlikely_radius(&profile));
     Ok(fit)
 }
 

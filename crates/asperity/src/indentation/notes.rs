@@ -1,6 +1,7 @@
 //! What should be known before the numbers of a fit are believed.
 
 use super::{IndentationFit, IndentationOptions, Interval};
+use crate::reference::MdrProfile;
 
 /// Durbin-Watson number below which residuals follow each other.
 const ALIKE: f64 = 1.5;
@@ -8,6 +9,19 @@ const ALIKE: f64 = 1.5;
 const SURE: f64 = 0.5;
 /// Least probability of another number that is told.
 const LIKELY: f64 = 0.1;
+
+/// Radii that nobody indents with [m]: a unit is missing.
+const RADII: std::ops::Range<f64> = 1e-9..1.0;
+
+/// A radius that looks like one in another unit.
+pub(super) fn unlikely_radius(profile: &MdrProfile) -> Option<String> {
+    match profile {
+        MdrProfile::Sphere { radius } if !RADII.contains(radius) => Some(format!(
+            "the radius is {radius:e} m, which is unlikely for an indenter: numbers without a unit are in metres"
+        )),
+        _ => None,
+    }
+}
 
 pub(super) fn notes(fit: &IndentationFit, options: &IndentationOptions) -> Vec<String> {
     let mut notes: Vec<String> = undetermined(fit)

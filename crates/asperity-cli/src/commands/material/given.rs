@@ -76,7 +76,7 @@ pub fn shift(args: &Fit) -> Result<ShiftRequest, Failure> {
         let shift = Shift::Wlf {
             c1: parsed::<Number<range::Positive>>("c1 of --wlf", c1)?.get(),
             c2: parsed::<TemperatureDifference<range::Positive>>("c2 of --wlf", c2)?.get(),
-            reference: parsed::<Temperature>("reference of --wlf", reference)?.get(),
+            reference: temperature("reference of --wlf", reference)?,
         };
         return Ok(ShiftRequest::Given(shift));
     }
@@ -85,7 +85,7 @@ pub fn shift(args: &Fit) -> Result<ShiftRequest, Failure> {
         let [energy, reference] = split(text, "--arrhenius", wanted)?;
         let shift = Shift::Arrhenius {
             activation_energy: parsed::<MolarEnergy<range::Positive>>("energy of --arrhenius", energy)?.get(),
-            reference: parsed::<Temperature>("reference of --arrhenius", reference)?.get(),
+            reference: temperature("reference of --arrhenius", reference)?,
         };
         return Ok(ShiftRequest::Given(shift));
     }
@@ -93,7 +93,7 @@ pub fn shift(args: &Fit) -> Result<ShiftRequest, Failure> {
         return Ok(ShiftRequest::Given(read_shift_table(path).map_err(refused)?));
     }
     match &args.estimate_shift {
-        Some(text) => Ok(ShiftRequest::Estimate(parsed::<Temperature>("--estimate-shift", text)?.get())),
+        Some(text) => Ok(ShiftRequest::Estimate(temperature("--estimate-shift", text)?)),
         None => Ok(ShiftRequest::None),
     }
 }
@@ -136,6 +136,18 @@ fn split<'t, const N: usize>(text: &'t str, option: &str, wanted: &str) -> Resul
     let parts: Vec<&str> = text.split(',').map(str::trim).collect();
     <[&str; N]>::try_from(parts)
         .map_err(|_| Failure::input(format!("{option} is \"{text}\", but must be {wanted}")))
+}
+
+/// A temperature \[K\]. A number without a unit is in kelvin, and hardly one where that is colder than nitrogen boils.
+fn temperature(what: &str, text: &str) -> Result<f64, Failure> {
+    const LEAST: f64 = 77.0;
+    let kelvin = parsed::<Temperature>(what, text)?.get();
+    match kelvin < LEAST && text.trim().parse::<f64>().is_ok() {
+        true => Err(Failure::input(format!(
+            "{what} is \"{text}\", but must have a unit: \"{text} °C\" or \"{text} K\""
+        ))),
+        false => Ok(kelvin),
+    }
 }
 
 pub fn parsed<T: std::str::FromStr>(what: &str, text: &str) -> Result<T, Failure>

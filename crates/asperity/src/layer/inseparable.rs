@@ -23,12 +23,13 @@ use crate::material::{Body, Creep, CreepTerm, Lateral, least_squares};
 
 /// Largest relative error of C~(q, s) that is accepted.
 pub(crate) const TOLERANCE: f64 = 1e-3;
-/// Error at which the spacing of the nodes is not refined any more.
-const WANTED: f64 = 3e-5;
+/// Error at which the spacing of the nodes is not refined any more: of the first three spacings, and of the narrow ones, which take
+/// longer to plan.
+const WANTED: [f64; 2] = [3e-5, 3e-4];
 /// Spacings of ln λ that are tried.
-const SPACINGS: [f64; 3] = [0.4, 0.3, 0.2];
+const SPACINGS: [f64; 5] = [0.4, 0.3, 0.2, 0.1, 0.06];
 /// Most nodes: more of them take a wider spacing.
-const MOST: usize = 48;
+const MOST: usize = 96;
 /// Weight of the row that sets the relaxed compliance, over the other rows.
 const EXACT: f64 = 1e3;
 /// A wave whose compliance rises by less than this share does not creep.
@@ -69,7 +70,8 @@ impl Inseparable {
             if best.as_ref().is_none_or(|best| tried.misfit < best.misfit) {
                 best = Some(tried);
             }
-            if best.as_ref().is_some_and(|best| best.misfit < WANTED) {
+            let wanted = WANTED[usize::from(spacing <= SPACINGS[2])];
+            if best.as_ref().is_some_and(|best| best.misfit < wanted) {
                 break;
             }
         }

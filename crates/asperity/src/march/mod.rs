@@ -304,7 +304,6 @@ impl March {
     /// The first half of a step of given length, where the error of such steps is estimated and no third state is known: the error
     /// of layers that creep differently. Returns its length.
     fn solve_half(&mut self, instant: Instant) -> Result<Option<f64>> {
-        let moves = !matches!(self.drive(instant), Drive::Apart | Drive::Held);
         let Past::Waves(waves) = &mut self.past else { return Ok(None) };
         if self.timeline.pace().is_some() || instant.jump || instant.dt == 0.0 {
             return Ok(None);
@@ -313,7 +312,7 @@ impl March {
         if !self.timeline.smooth() {
             waves.first_step(instant.dt, None, false);
         }
-        if known || !moves {
+        if known {
             return Ok(None);
         }
         let mut half = self.timeline.inside(&self.simulation, 0.5 * instant.dt);

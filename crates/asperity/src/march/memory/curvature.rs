@@ -12,7 +12,7 @@
 
 use rustfft::num_complex::Complex64;
 
-use super::estimate::{FLOOR, LATE, ROUNDING, remembered_defect};
+use super::estimate::{FLOOR, LATE, remembered_defect};
 use super::rules::{Course, Share};
 use super::spectral::Spectral;
 use super::{Ends, Reference, UnderWay};
@@ -98,9 +98,9 @@ impl Spectral {
                 u.iter().zip(&self.displacement).map(|(now, start)| now - start).collect();
             self.field(&waves)
         });
-        // What rounding errors of u make of it.
+        // What the errors of the solves make of it.
         let spread = ((1.0 / third).abs() + (1.0 / step).abs()) / (third - step).abs();
-        let rounding = weight * ROUNDING * ends.approach.abs() * spread * step * step;
+        let rounding = weight * self.noise * ends.approach.abs() * spread * step * step;
         let mut error = 0.0;
         for (k, (p, p_now)) in ends.before.0.iter().zip(ends.now.0).enumerate() {
             let presses = *p > 0.0 || *p_now > 0.0;

@@ -10,6 +10,7 @@ use std::sync::Arc;
 use ndarray::Array2;
 use rustfft::num_complex::Complex64;
 
+use super::estimate::ROUNDING;
 use super::mean::{Mean, Run, linear};
 use super::rules::Course;
 use super::waves::{Room, Table, Waves};
@@ -54,6 +55,8 @@ pub(in crate::march) struct Spectral {
     pub(super) compliance: Array2<f64>,
     pub(super) recalled: Vec<Complex64>,
     past: Vec<f64>,
+    /// The error of u that a solve leaves, over the approach.
+    pub(super) noise: f64,
 }
 
 impl Spectral {
@@ -83,6 +86,7 @@ impl Spectral {
             steps: vec![still],
             recalled: vec![Complex64::ZERO; count],
             past: vec![0.0; simulation.grid.len()],
+            noise: simulation.solver.tolerance.max(ROUNDING),
             waves,
         })
     }

@@ -9,7 +9,7 @@ use super::font;
 use super::legend::Legend;
 use super::scale::{Bar, ColourScale};
 use super::series::{Series, Style, sign, spacing};
-use super::{Margins, Place, SMALL, TEXT};
+use super::{EDGE, Margins, Place, SMALL, TEXT};
 
 /// Colours that people with any kind of colour vision tell apart (Okabe & Ito 2008), dark ones first.
 pub(crate) const COLOURS: [&str; 7] =
@@ -193,8 +193,27 @@ impl Curves {
         match corner {
             _ if legend.is_empty() => {}
             Some(corner) => legend.draw_inside(drawing, corner),
-            None => legend.draw_above(drawing, [left, top - self.height_beside()], right - left),
+            None => legend.draw_above(drawing, [left, top - self.height_beside()], right, x0),
         }
+    }
+
+    /// Left, top, right and bottom of the frame \[points\].
+    pub(super) fn frame(&self, place: &Place) -> [f64; 4] {
+        self.layout(place).area
+    }
+
+    /// Whether titles and names end inside of the panel.
+    pub(super) fn has_room_for_words(&self, place: &Place) -> bool {
+        let layout = self.layout(place);
+        let [left, _, right, _] = layout.area;
+        let ([x0, _], [width, height]) = (place.corner, place.size);
+        let fits = |text: &str, room: f64| font::width(text, TEXT) <= room;
+        // The title of the horizontal axis stands below the middle of the frame.
+        let across = 2.0 * (x0 + width + EDGE - 0.5 * (left + right)).min(0.5 * (left + right) - x0);
+        fits(&self.title, x0 + width + EDGE - left)
+            && fits(&layout.x.title, across)
+            && fits(&layout.y.title, height)
+            && Legend::of(self).width() <= right - x0
     }
 
     /// Height of the other unit above the frame.
@@ -238,7 +257,11 @@ impl Curves {
         // A density over a length in µm is one per µm.
         let inverse = (self.y.unit == format!("1/{}", self.x.unit))
             .then(|| Shown { factor: 1.0 / x.unit.factor, text: format!("1/{}", x.unit.text) });
-        let y = Ruler::in_unit(&self.y, up, 0.06, (height - foot - head) / 32.0, inverse);
+        let wanted = (height - foot - head) / 32.0;
+        let y = match inverse {
+            Some(unit) => Ruler::in_unit(&self.y, up, 0.06, wanted, unit),
+            None => Ruler::new(&self.y, up, 0.06, wanted),
+        };
         (x, y, [head, foot])
     }
 

@@ -181,7 +181,7 @@ impl Map {
             drawing.circle(at, 5.0, Paint::outline(Pen::new("#fff", 3.0)));
             drawing.circle(at, 5.0, Paint::outline(Pen::new("#d62728", 1.5)));
         }
-        if h > 50.0 && !matches!(self.axes, Axes::Times { .. }) {
+        if h > 50.0 && !matches!(self.axes, Axes::Times { .. }) && self.stretched().is_none() {
             scale_bar(drawing, [left, bottom], w, self.size[0]);
         }
         // Values beyond the ends of the colours, below and above the bar.
@@ -198,6 +198,24 @@ impl Map {
         if let Some(states) = states {
             self.names(drawing, states, [left, top]);
         }
+    }
+
+    /// Left, top, right and bottom of the frame \[points\].
+    pub(super) fn frame(&self, place: &Place) -> [f64; 4] {
+        Layout::of(self, place).area
+    }
+
+    /// Whether titles and names end inside of the panel.
+    pub(super) fn has_room_for_words(&self, place: &Place) -> bool {
+        let layout = Layout::of(self, place);
+        let right = place.corner[0] + place.size[0];
+        let names: f64 = match &self.meaning {
+            Values::States(states) => states.iter().map(|(name, _)| 19.0 + font::width(name, SMALL)).sum(),
+            Values::Quantity { .. } => 0.0,
+        };
+        let room = right - layout.area[0];
+        let bar = layout.bar.as_ref().is_none_or(|bar| bar.has_room_for_words(place.size[1]));
+        font::width(&self.title, TEXT) <= room && names <= room && bar
     }
 
     /// The values in their colours.
@@ -226,7 +244,7 @@ impl Map {
     }
 }
 
-/// A round length, in black on white in the lower left corner.
+/// A round length, in black on white in the lower left corner of a map that has room for it.
 fn scale_bar(drawing: &mut Drawing, [left, bottom]: [f64; 2], width: f64, length: f64) {
     let rough = 0.27 * length;
     let tens = 10f64.powf((rough.log10() + 1e-9).floor());
@@ -236,6 +254,9 @@ fn scale_bar(drawing: &mut Drawing, [left, bottom]: [f64; 2], width: f64, length
     let text = format!("{} {}", (round * unit.factor * 1e6).round() / 1e6, unit.text);
     let bar = width * round / length;
     let wide = bar.max(font::width(&text, SMALL)) + 10.0;
+    if wide + 10.0 > width {
+        return;
+    }
     let (x, y) = (left + 5.0, bottom - 5.0);
     drawing.rounded([x, y - SMALL - 12.0], [wide, SMALL + 12.0], 2.0, Paint::fill("#fff", 0.8));
     drawing.rect([x + 0.5 * (wide - bar), y - 7.0], [bar, 3.0], Paint::fill(INK, 1.0));

@@ -17,12 +17,12 @@ const TYPEFACE: Name = Name(b"DejaVuSans");
 const FACE: Name = Name(b"F");
 const GLYPHS: SystemInfo = SystemInfo { registry: Str(b"Adobe"), ordering: Str(b"Identity"), supplement: 0 };
 
-/// The file, of a page of this width and height \[points\].
-pub(super) fn write(drawing: &Drawing, paper: [f64; 2], title: &str) -> std::io::Result<Vec<u8>> {
+/// The file, of a page of this width and height \[points\]; the drawing is so many times as large on it.
+pub(super) fn write(drawing: &Drawing, paper: [f64; 2], zoom: f64, title: &str) -> std::io::Result<Vec<u8>> {
     let mut page =
         Page { content: Content::new(), images: vec![], opacities: vec![], glyphs: BTreeMap::new() };
     // From here on y points downwards.
-    page.content.transform([1.0, 0.0, 0.0, -1.0, 0.0, paper[1] as f32]);
+    page.content.transform([zoom as f32, 0.0, 0.0, -zoom as f32, 0.0, paper[1] as f32]);
     page.marks(&drawing.marks);
     file(page, paper, title)
 }

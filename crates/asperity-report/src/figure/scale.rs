@@ -7,7 +7,7 @@ use super::colours::{Colours, OPEN, Palette};
 use super::drawing::{Anchor, Drawing, INK, Paint, Pen};
 use super::raster::{self, BLANK};
 
-use super::{Place, SMALL, TEXT};
+use super::{Place, SMALL, TEXT, font};
 
 /// How values become colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,6 +103,11 @@ impl Bar {
     /// Room that it takes beside the frame.
     pub(super) fn width(&self) -> f64 {
         8.0 + 10.0 + 6.0 + self.ruler.widest() + TEXT + 9.0
+    }
+
+    /// Whether its title is no longer than this height.
+    pub(super) fn has_room_for_words(&self, height: f64) -> bool {
+        font::width(&self.ruler.title, TEXT) <= height
     }
 
     /// Draws it from `left` on.

@@ -44,13 +44,13 @@ pub enum FigureError {
     },
     /// The panels do not fit on the paper asked for.
     #[error(
-        "{:.0} mm x {:.0} mm are too small for this figure; it needs {:.0} mm x {:.0} mm at least",
+        "{:.0} mm x {:.0} mm are too small for this figure; {:.0} mm x {:.0} mm are enough",
         millimetres(asked[0]), millimetres(asked[1]), millimetres(needed[0]).ceil(), millimetres(needed[1]).ceil()
     )]
     Size {
         /// Width and height asked for \[points\].
         asked: [f64; 2],
-        /// Width and height needed \[points\].
+        /// Width and height that are enough, in the same proportion \[points\].
         needed: [f64; 2],
     },
     /// The drawing could not be made into dots.
@@ -107,7 +107,7 @@ impl Figure {
         }
         let scale = dots / POINTS;
         let size = self.paper().map(|length| (length * scale).round() as u32);
-        dots::draw(&self.drawing(), size, scale).ok_or_else(|| undrawn("its paper has no area"))
+        dots::draw(&self.drawing(), size, scale * self.zoom).ok_or_else(|| undrawn("its paper has no area"))
     }
 
     /// The figure as a PDF of one page.
@@ -115,7 +115,7 @@ impl Figure {
     /// # Errors
     /// [`FigureError::Drawing`] where its data cannot be compressed.
     pub fn to_pdf(&self) -> Result<Vec<u8>, FigureError> {
-        pdf::write(&self.drawing(), self.paper(), &self.title).map_err(undrawn)
+        pdf::write(&self.drawing(), self.paper(), self.zoom, &self.title).map_err(undrawn)
     }
 }
 

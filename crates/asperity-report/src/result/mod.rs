@@ -265,9 +265,22 @@ fn finished(mut figure: Figure, options: &Options) -> Result<Figure, PlotError> 
     if figure.panels.iter().any(leaves_out) {
         figure.caption += " t = 0 is not shown: the time axis is logarithmic.";
     }
+    if let Some((axis, times)) = figure.panels.iter().find_map(stretched) {
+        let times = quantity(if times < 10.0 { times } else { times.round() }, "");
+        figure.caption += &format!(" The map is stretched {times} times along {axis}.");
+    }
+    figure.caption = figure.caption.trim_start().to_owned();
     match options.size {
         Some(size) => Ok(figure.sized(size)?),
         None => Ok(figure),
+    }
+}
+
+/// Which axis of a map is stretched, and how many times.
+fn stretched(panel: &Panel) -> Option<(&'static str, f64)> {
+    match panel {
+        Panel::Map(map) => map.stretched(),
+        Panel::Curves(_) => None,
     }
 }
 

@@ -10,7 +10,7 @@ use super::words::typeset;
 use super::{Margins, Place, SMALL, TEXT};
 
 /// The longer side of a frame is so many times the shorter one at most: a narrower area is stretched, so that it can be seen.
-const STRIP: f64 = 12.0;
+const STRIP: f64 = 8.0;
 /// Least length of a colour bar, where the panel has room for it \[points\].
 const BAR: f64 = 96.0;
 /// Height of the names of states above the frame \[points\].
@@ -134,12 +134,12 @@ fn axes(map: &Map) -> [(Axis, Shown); 2] {
     [(x, x_unit), (y, y_unit)]
 }
 
-/// The colour bar, and what lies beyond its ends; none for states, nor where all of the pressure is zero.
+/// The colour bar, and what lies beyond its ends; none for states, nor where all of the pressure or gap is zero.
 fn colours(map: &Map, place: &Place) -> (Option<Bar>, [Option<String>; 2]) {
     let (Values::Quantity { label, unit, .. }, Some(scale)) = (&map.meaning, map.scale()) else {
         return (None, [None, None]);
     };
-    if map.shows_no_pressure() {
+    if map.shows_nothing() {
         return (None, [None, None]);
     }
     let told = |value: Option<f64>| value.map(|value| typeset(&quantity(value, unit)).replace('-', "−"));

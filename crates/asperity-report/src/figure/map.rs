@@ -148,14 +148,18 @@ impl Map {
         Some(ColourScale::of(&self.values, *colours, self.palette, *range, self.log))
     }
 
-    /// The values at the ends of its colours; `None` for states, and for the pressure where nothing touches.
+    /// The values at the ends of its colours; `None` for states, for the pressure where nothing touches and the gap where everything does.
     pub(crate) fn ends(&self) -> Option<[f64; 2]> {
-        self.scale().filter(|_| !self.shows_no_pressure()).map(|scale| scale.ends)
+        self.scale().filter(|_| !self.shows_nothing()).map(|scale| scale.ends)
     }
 
-    /// Whether it is a map of the pressure where nothing touches, with no ends of its colours given.
-    pub(super) fn shows_no_pressure(&self) -> bool {
-        let own = matches!(self.meaning, Values::Quantity { colours: Colours::Pressure, range: None, .. });
+    /// Whether it is a map of the pressure where nothing touches, or of the gap where everything does, with no ends of its colours
+    /// given.
+    pub(super) fn shows_nothing(&self) -> bool {
+        let own = match self.meaning {
+            Values::Quantity { colours, range: None, .. } => colours.leave_out_zero(),
+            _ => false,
+        };
         own && !self.values.iter().any(|value| *value > 0.0)
     }
 
@@ -181,7 +185,7 @@ impl Map {
             drawing.circle(at, 5.0, Paint::outline(Pen::new("#fff", 3.0)));
             drawing.circle(at, 5.0, Paint::outline(Pen::new("#d62728", 1.5)));
         }
-        if h > 50.0 && !matches!(self.axes, Axes::Times { .. }) && self.stretched().is_none() {
+        if h > SCALED && !matches!(self.axes, Axes::Times { .. }) && self.stretched().is_none() {
             scale_bar(drawing, [left, bottom], w, self.size[0]);
         }
         // Values beyond the ends of the colours, below and above the bar.
@@ -243,6 +247,9 @@ impl Map {
         }
     }
 }
+
+/// Least height of a map with a scale bar \[points\]: of a lower one it hides too much.
+const SCALED: f64 = 100.0;
 
 /// A round length, in black on white in the lower left corner of a map that has room for it.
 fn scale_bar(drawing: &mut Drawing, [left, bottom]: [f64; 2], width: f64, length: f64) {

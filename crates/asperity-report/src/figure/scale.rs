@@ -39,7 +39,7 @@ impl ColourScale {
         let centred = if palette == Some(Palette::RedBlue) { Colours::Diverging } else { colours };
         let own = || match log {
             true => decades(values),
-            false if matches!(colours, Colours::Sequential | Colours::Diverging) => {
+            false if matches!(colours, Colours::Sequential | Colours::Gap | Colours::Diverging) => {
                 centred.ends(robust(values.iter().copied()).unwrap_or_else(whole))
             }
             false => centred.ends(whole()),
@@ -69,7 +69,7 @@ impl ColourScale {
     pub(super) fn at(&self, value: f64) -> [u8; 3] {
         if !value.is_finite() {
             BLANK
-        } else if value <= 0.0 && (self.log || self.colours == Colours::Pressure) {
+        } else if value <= 0.0 && (self.log || self.colours.leave_out_zero()) {
             OPEN
         } else {
             self.palette.at(self.share(value))

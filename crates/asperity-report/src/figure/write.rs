@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::{Figure, Pixels, dots, pdf, raster};
+use super::{Figure, Pixels, dots, font, pdf, raster};
 
 /// Points of paper per inch.
 const POINTS: f64 = 72.0;
@@ -90,6 +90,19 @@ impl Figure {
             _ => FigureError::Io { path: path.to_owned(), source },
         };
         crate::file::write(path, force, |file| file.write_all(&data)).map_err(failed)
+    }
+
+    /// The letters of its texts that its typeface lacks, each once: PNG and PDF have a box for each, and SVG leaves them to the
+    /// typefaces of the viewer.
+    pub fn missing_letters(&self) -> Vec<char> {
+        let drawing = self.drawing();
+        let mut missing = vec![];
+        for c in drawing.texts().flat_map(str::chars).filter(|c| font::glyph(*c).is_none()) {
+            if !missing.contains(&c) {
+                missing.push(c);
+            }
+        }
+        missing
     }
 
     /// The figure as PNG with `dots` to an inch.

@@ -122,7 +122,11 @@ pub(crate) fn over_time(reader: &Reader, kind: FieldKind) -> Result<Option<Map>,
             Map::states("", names, picture.view(), size)
         }
         kind => {
-            let colours = if kind == FieldKind::Pressure { Colours::Pressure } else { Colours::Sequential };
+            let colours = match kind {
+                FieldKind::Pressure => Colours::Pressure,
+                FieldKind::Gap => Colours::Gap,
+                _ => Colours::Sequential,
+            };
             Map::new("", [title(kind), kind.units()], colours, picture.view(), size)
         }
     };
@@ -138,6 +142,7 @@ pub(super) fn places(reader: &Reader) -> Vec<f64> {
 fn one(reader: &Reader, kind: FieldKind, at: At) -> Result<Array2<f64>, StoreError> {
     match kind {
         FieldKind::Contact => Ok(reader.contact_states(at)?.mapv(f64::from)),
+        FieldKind::Gap => super::fields::gap(reader, at),
         kind => reader.field(kind, at),
     }
 }

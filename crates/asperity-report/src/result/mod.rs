@@ -303,10 +303,10 @@ fn panels(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, Plot
         Plot::Quantities => evolution::quantities(reader, options)?,
         Plot::Leak => crate::leak::over_time(reader, options)?,
         Plot::Friction => friction::friction(reader, options)?,
-        Plot::Flattening => fields::map(reader, FieldKind::Flattening, options.at, options.log_values)?,
-        Plot::Pressure => fields::map(reader, FieldKind::Pressure, options.at, options.log_values)?,
-        Plot::Gap => fields::map(reader, FieldKind::Gap, options.at, options.log_values)?,
-        Plot::Displacement => fields::map(reader, FieldKind::Displacement, options.at, options.log_values)?,
+        Plot::Flattening => fields::map(reader, FieldKind::Flattening, options.at)?,
+        Plot::Pressure => fields::map(reader, FieldKind::Pressure, options.at)?,
+        Plot::Gap => fields::map(reader, FieldKind::Gap, options.at)?,
+        Plot::Displacement => fields::map(reader, FieldKind::Displacement, options.at)?,
         Plot::Contact => fields::contact(reader, options.at)?,
         Plot::InitialGap => fields::initial_gap(reader)?,
         Plot::Profile => profile::profile(reader, options)?,
@@ -319,10 +319,8 @@ fn panels(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, Plot
     for panel in &mut figure.panels {
         colour(panel, plot, options);
     }
-    let touches = matches!(plot, Plot::Gap | Plot::InitialGap | Plot::Displacement | Plot::Flattening);
-    if options.log_values && touches {
-        let light = if plot == Plot::Gap { "contact" } else { "not above 0" };
-        figure.caption = format!("{} Light: {light}.", figure.caption).trim_start().to_owned();
+    if options.log_values && matches!(plot, Plot::InitialGap | Plot::Displacement | Plot::Flattening) {
+        figure.caption += " Light: not above 0.";
     }
     Ok(figure)
 }

@@ -52,7 +52,10 @@ impl<'a> Legend<'a> {
         ];
         let free = |[x, y]: &[f64; 2]| {
             let under = |p: [f64; 2]| p[0] > *x && p[0] < x + width && p[1] > *y && p[1] < y + height;
-            *x > left && *y > top && !panel.series.iter().any(|series| covers(series, layout, &under))
+            *x > left
+                && x + width < right
+                && *y > top
+                && !panel.series.iter().any(|series| covers(series, layout, &under))
         };
         corners.into_iter().find(free)
     }

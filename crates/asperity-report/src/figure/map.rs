@@ -185,7 +185,7 @@ impl Map {
             drawing.circle(at, 5.0, Paint::outline(Pen::new("#fff", 3.0)));
             drawing.circle(at, 5.0, Paint::outline(Pen::new("#d62728", 1.5)));
         }
-        if h > SCALED && !matches!(self.axes, Axes::Times { .. }) && self.stretched().is_none() {
+        if h > SCALED && self.keeps_its_shape() && self.stretched().is_none() {
             scale_bar(drawing, [left, bottom], w, self.size[0]);
         }
         // Values beyond the ends of the colours, below and above the bar.
@@ -202,6 +202,11 @@ impl Map {
         if let Some(states) = states {
             self.names(drawing, states, [left, top]);
         }
+    }
+
+    /// Whether both axes have one scale, but for a narrow area.
+    pub(super) fn keeps_its_shape(&self) -> bool {
+        !matches!(self.axes, Axes::Times { .. })
     }
 
     /// Left, top, right and bottom of the frame \[points\].

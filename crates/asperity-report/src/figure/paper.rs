@@ -1,11 +1,11 @@
 //! The paper of a figure: as large as its panels, or of a given size that its panels fill.
 //!
-//! Where panels would have no room for their frames or their words, fewer of them go in a row, or all is drawn smaller.
+//! Where panels would have no room for their frames or their words, fewer or more of them go in a row, or all is drawn smaller.
 
 use super::{EDGE, Figure, FigureError, LARGE, Panel, Place, SMALL, words};
 
-/// So many times as large as usual texts may be; the smallest ones have five points then, which is what journals ask for.
-const ZOOMS: [f64; 7] = [1.0, 0.94, 0.88, 0.82, 0.76, 0.7, 0.625];
+/// So many times as large as usual texts may be: titles of panels have 9 to 4.5 points then.
+const ZOOMS: [f64; 9] = [1.0, 0.94, 0.88, 0.82, 0.76, 0.7, 0.625, 0.56, 0.5];
 /// Largest paper that is told to be large enough, in sizes asked for.
 const MOST: f64 = 50.0;
 
@@ -26,25 +26,28 @@ impl Figure {
         }
     }
 
-    /// The figure that fills paper of this size and has its texts whole, or failing that its frames large enough, with as many
-    /// panels in a row and texts as large as can be.
+    /// The figure that fills paper of this size with as many panels as possible that have their words whole; of these the one whose
+    /// panels are most like those of the figure, with the largest texts.
     fn filling(&self, size: [f64; 2]) -> Option<Figure> {
-        let most = self.columns.min(self.panels.len().max(1));
-        let all = ZOOMS.into_iter().flat_map(|zoom| (1..=most).rev().map(move |columns| (columns, zoom)));
-        let fitting = all.filter_map(|(columns, zoom)| self.filled(size, columns, zoom));
-        let mut first = None;
-        for figure in fitting {
-            if figure
-                .panels
-                .iter()
-                .zip(figure.places())
-                .all(|(panel, place)| panel.has_room_for_words(&place))
-            {
+        let panels = self.panels.len().max(1);
+        let own = self.columns.min(panels);
+        let with = |columns: Vec<usize>| {
+            ZOOMS.into_iter().flat_map(move |zoom| columns.clone().into_iter().map(move |n| (n, zoom)))
+        };
+        // More panels in a row than usual come last: the figure is no longer what its caption may describe.
+        let all = with((1..=own).rev().collect()).chain(with((own + 1..=panels).collect()));
+        let mut best: Option<(usize, Figure)> = None;
+        for figure in all.filter_map(|(columns, zoom)| self.filled(size, columns, zoom)) {
+            let whole = |(panel, place): (&Panel, &Place)| panel.has_room_for_words(place);
+            let count = figure.panels.iter().zip(&figure.places()).filter(|pair| whole(*pair)).count();
+            if count == self.panels.len() {
                 return Some(figure);
             }
-            first = first.or(Some(figure));
+            if best.as_ref().is_none_or(|(most, _)| count > *most) {
+                best = Some((count, figure));
+            }
         }
-        first
+        best.map(|(_, figure)| figure)
     }
 
     /// With so many panels in a row and this zoom; `None` where its frames are too small.
@@ -100,10 +103,10 @@ impl Figure {
 
 /// Least height of a panel while its height is sought \[points\].
 const LOWEST: f64 = 40.0;
-/// Least width and height of a frame of curves \[points\]: less has no room for two numbers at each axis.
-const FRAME: [f64; 2] = [48.0, 30.0];
-/// Least length of the longer side of a map \[points\].
-const SIDE: f64 = 48.0;
+/// Least width and height of a frame \[points\]: less has no room for two numbers at each axis.
+const FRAME: [f64; 2] = [42.0, 26.0];
+/// Least length of the longer side of a map that keeps its shape \[points\].
+const SIDE: f64 = 42.0;
 
 impl Panel {
     fn has_room_for_frame(&self, place: &Place) -> bool {
@@ -113,8 +116,8 @@ impl Panel {
         };
         let [width, height] = [right - left, bottom - top];
         match self {
-            Panel::Curves(_) => width >= FRAME[0] && height >= FRAME[1],
-            Panel::Map(_) => width.max(height) >= SIDE,
+            Panel::Map(map) if map.keeps_its_shape() => width.max(height) >= SIDE,
+            _ => width >= FRAME[0] && height >= FRAME[1],
         }
     }
 

@@ -149,6 +149,12 @@ pub enum PlotError {
         /// What there is not, or what to do instead.
         what: &'static str,
     },
+    /// The bodies do not move along each other.
+    #[error("{} has no friction: its case has no motion; give it a table [motion]", path.display())]
+    AtRest {
+        /// The result.
+        path: std::path::PathBuf,
+    },
     /// The flow at the instant was not solved.
     #[error(transparent)]
     Flow(#[from] asperity::Error),
@@ -162,7 +168,10 @@ pub enum PlotError {
     #[error(transparent)]
     Figure(#[from] FigureError),
     /// The line of a profile is outside of the area.
-    #[error("the line at {axis} = {at:e} m is outside of the area, which goes from 0 to {length:e} m")]
+    #[error(
+        "the line at {axis} = {} is outside of the area, which goes from 0 to {}",
+        quantity(*at, "m"), quantity(*length, "m")
+    )]
     Outside {
         /// x or y.
         axis: char,

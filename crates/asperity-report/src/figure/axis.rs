@@ -157,7 +157,7 @@ fn ends(axis: &Axis, data: [f64; 2], margin: f64) -> [f64; 2] {
     let forward = |v: f64| if log { v.log10() } else { v };
     let [low, high] = axis.range.unwrap_or(data).map(forward);
     let largest = high.abs().max(low.abs());
-    if !largest.is_finite() || (!log && largest < NOTHING) {
+    if !(low.is_finite() && high.is_finite()) || (!log && largest < NOTHING) {
         return [0.0, 1.0];
     }
     if high - low <= 1e-9 * largest {

@@ -209,6 +209,23 @@ impl Map {
         !matches!(self.axes, Axes::Times { .. })
     }
 
+    /// A map of two values at most that takes the same room on the paper.
+    pub(super) fn thumbnail(&self) -> Map {
+        let mut meaning = self.meaning.clone();
+        let mut values = vec![0.0];
+        if let (Values::Quantity { range, .. }, Some(ends), Some(scale)) =
+            (&mut meaning, self.ends(), self.scale())
+        {
+            let beyond = scale.beyond(&self.values);
+            values = vec![beyond[0].unwrap_or(ends[0]), beyond[1].unwrap_or(ends[1])];
+            *range = Some(ends);
+        }
+        let values = Array2::from_shape_vec((values.len(), 1), values).unwrap_or_default();
+        let (title, marks) = (self.title.clone(), self.marks.clone());
+        let Map { size, axes, palette, log, .. } = *self;
+        Map { title, values, meaning, size, axes, marks, palette, log }
+    }
+
     /// Left, top, right and bottom of the frame \[points\].
     pub(super) fn frame(&self, place: &Place) -> [f64; 4] {
         Layout::of(self, place).area

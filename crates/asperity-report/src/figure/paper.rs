@@ -15,12 +15,25 @@ impl Figure {
     /// # Errors
     /// [`FigureError::Size`] where panels would be too small to read.
     pub fn sized(self, size: [f64; 2]) -> Result<Figure, FigureError> {
-        match self.filling(size) {
-            Some(figure) => Ok(figure),
+        // Many arrangements are tried, and of maps only the ends of their values matter.
+        let panels = self.panels.iter().map(|panel| match panel {
+            Panel::Map(map) => Panel::Map(map.thumbnail()),
+            Panel::Curves(curves) => Panel::Curves(curves.clone()),
+        });
+        let small = Figure {
+            panels: panels.collect(),
+            title: self.title.clone(),
+            caption: self.caption.clone(),
+            ..self
+        };
+        match small.filling(size) {
+            Some(Figure { columns, panel, size, zoom, .. }) => {
+                Ok(Figure { columns, panel, size, zoom, ..self })
+            }
             None => {
                 let larger = |by: &f64| size.map(|side| side * by);
                 let mut grown = (1..).map(|n| 1.05f64.powi(n)).take_while(|by| *by < MOST);
-                let by = grown.find(|by| self.filling(larger(by)).is_some()).unwrap_or(MOST);
+                let by = grown.find(|by| small.filling(larger(by)).is_some()).unwrap_or(MOST);
                 Err(FigureError::Size { asked: size, needed: larger(&by) })
             }
         }

@@ -90,7 +90,10 @@ fn evolution() -> Figure {
         let [x, y] = axes;
         names.iter().map(line).fold(Curves::new(title, x, y), Curves::with)
     };
-    ["a", "b", "c", "d"].map(panel).into_iter().fold(Figure::new("Rubber under a load"), Figure::with)
+    ["a", "b", "c", "d"]
+        .map(panel)
+        .into_iter()
+        .fold(Figure::new("Rubber under a load"), |figure, panel| figure.with(panel))
 }
 
 #[test]
@@ -110,6 +113,21 @@ fn a_column_of_a_journal_is_wide_enough_and_small_paper_has_smaller_texts() {
     let refused = evolution().sized([30.0, 30.0].map(points)).unwrap_err();
     let FigureError::Size { needed, .. } = refused else { panic!("{refused}") };
     assert!(evolution().sized(needed).is_ok());
+}
+
+#[test]
+fn a_thumbnail_takes_the_room_of_its_map() {
+    // Spikes lie beyond the ends of the colours and are told beside the bar.
+    let mut spiked = Array2::from_shape_fn((60, 60), |(i, j)| (i + j) as f64 * 1e-9);
+    spiked[[3, 4]] = 4.123e-5;
+    spiked[[5, 4]] = -3.2e-5;
+    let spiked = Map::new("", ["height", "m"], Colours::Sequential, spiked.view(), [1e-3, 1e-3]);
+    let none = Array2::zeros((9, 9));
+    let none = Map::new("", ["pressure", "Pa"], Colours::Pressure, none.view(), [1e-3, 1e-3]);
+    for map in [map(), spiked, none] {
+        let place = Place { corner: [0.0; 2], size: [200.0; 2], margins: Margins::default() };
+        assert_eq!(map.frame(&place), map.thumbnail().frame(&place));
+    }
 }
 
 #[test]

@@ -145,7 +145,7 @@ fn options_that_cannot_be_followed_are_refused_with_exit_code_2() {
     refused(&["evolution", "--from", "5 s", "--to", "2 s"], &["--from is \"5 s\"", "before --to"]);
     refused(&["evolution", "--from", "20 s"], &["no row", "t = 10 s"]);
     refused(&["evolution", "--size", "160 mm"], &["--size is \"160 mm\"", "160 mm,100 mm"]);
-    refused(&["evolution", "--size", "30 mm,30 mm"], &["too small", "mm at least"]);
+    refused(&["evolution", "--size", "30 mm,30 mm"], &["too small", "mm are enough"]);
     refused(&["evolution", "--animate", "a.png"], &["--animate does not apply"]);
     refused(&["pressure", "--animate", "a.mp4"], &["a.mp4", ".gif"]);
     refused(

@@ -96,8 +96,8 @@ pub fn quantity(value: f64, unit: &str) -> String {
         if number == 0.0 { 0 } else { (3.0 - number.abs().log10().floor()).clamp(0.0, 12.0) as usize };
     let text = format!("{number:.digits$}");
     let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
-    let text =
-        if number.is_finite() && number.abs() >= 1e6 { format!("{number:.3e}") } else { text.to_owned() };
+    let plain = number == 0.0 || !number.is_finite() || (1e-4..1e6).contains(&number.abs());
+    let text = if plain { text.to_owned() } else { format!("{number:.3e}") };
     if shown.text.is_empty() { text } else { format!("{text} {}", shown.text) }
 }
 
@@ -177,6 +177,7 @@ mod tests {
         assert_eq!(quantity(f64::NAN, "m"), "NaN m");
         assert_eq!(quantity(3e8, "s"), "3.000e8 s");
         assert_eq!(quantity(3e-4, "Pa"), "0.3 mPa");
+        assert_eq!(quantity(-1.567e-20, "m"), "-1.567e-8 pm");
     }
 
     #[test]

@@ -72,6 +72,7 @@ async function showMap() {
   else {
     const what = await coloured(kind, map, await contactOf(kind, index));
     if (stale()) return;
+    what.note += MapView.stretched();
     view.show(what, { along: chosen.along, share: chosen.share });
     showLimits(kind, what);
   }
@@ -97,7 +98,7 @@ function showNearest(at) {
 /** The ends of the colours as the controls tell them, and what lies beyond. */
 function showLimits(kind, { low, high, log, note }) {
   $("limits-part").hidden = kind.colours === "states";
-  if (kind.colours === "states") return ($("map-range").textContent = "");
+  if (kind.colours === "states") return ($("map-range").textContent = state.grid.line ? "" : MapView.stretched());
   const largest = Math.max(Math.abs(low), Math.abs(high)), shownUnit = shown(kind.unit, largest);
   $("limits").value = limitsOf(kind).ends;
   if (!state.grid.line) $("limits").querySelector("[value=all]").disabled = !canShare(kind);
@@ -215,6 +216,6 @@ async function showRelief(instant) {
   if (high - low <= rounding) return ($("relief-note").textContent = "The surface is not deformed.");
   const what = loaded ? { colours: "pressure", low: 0, high: pressure.max, unit: "Pa", label: "pressure" } : { colours: "sequential", low, high, unit: "m", label: "height" };
   relief.show(map.nx, map.ny, z, loaded ? pressure.values : z, what);
-  const stretched = `stretched ${digits(Number(relief.stretch().toPrecision(2)))} times against x and y`;
+  const stretched = `stretched ${digits(Number(relief.stretch().toPrecision(2)))} times against ${relief.sidesNote() ? "the longer side" : "x and y"}${relief.sidesNote()}`;
   $("relief-note").textContent = `Surface of the deformable half-space, heights from ${words(low, "m")} to ${words(high, "m")}, ${stretched}; coloured by ${loaded ? "pressure" : "height"}. Drag, or use the arrow keys, to turn it.`;
 }

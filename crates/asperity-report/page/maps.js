@@ -75,10 +75,23 @@ class MapView {
     this.render();
   }
 
+  /** Height over width of a map of the area, which is stretched where it would be too narrow to be seen. */
+  static ratio() {
+    const [lx, ly] = state.grid.size;
+    return Math.min(Math.max(ly / lx, 0.12), 2.5);
+  }
+
+  /** Along which axis the map is stretched, and how many times, as a sentence; empty where it is not. */
+  static stretched() {
+    const [lx, ly] = state.grid.size, times = MapView.ratio() / (ly / lx);
+    if (Math.abs(times - 1) < 1e-9) return "";
+    return ` The map is stretched ${digits(Number(Math.max(times, 1 / times).toPrecision(2)))} times along ${times > 1 ? "y" : "x"}.`;
+  }
+
   render() {
-    const { map, rows } = this.what, [lx, ly] = state.grid.size;
+    const { map, rows } = this.what, lx = state.grid.size[0];
     // Over x and time the height is free.
-    const ratio = rows ? 0.6 : Math.min(Math.max(ly / lx, 0.12), 2.5);
+    const ratio = rows ? 0.6 : MapView.ratio();
     const height = Math.round((this.canvas.clientWidth || 300) * ratio), [context, width] = sharp(this.canvas, height);
     context.imageSmoothingEnabled = map.nx > width;
     context.drawImage(this.image, 0, 0, width, height);

@@ -30,16 +30,16 @@ class Relief {
     requestAnimationFrame(() => this.render());
   }
 
-  /** Heights z and the values that colour them, of nx by ny cells, with the colours of a map; thinned to what a screen shows in good time. */
+  /** Heights z and the values that colour them, of nx by ny cells, with the colours of a map; each axis thinned to what a screen shows in good time. */
   show(nx, ny, z, values, what) {
-    const thin = Math.max(1, Math.ceil(Math.max(nx, ny) / 128));
-    this.nx = Math.floor((nx - 1) / thin) + 1;
-    this.ny = Math.floor((ny - 1) / thin) + 1;
+    const [thinX, thinY] = [nx, ny].map((cells) => Math.max(1, Math.ceil(cells / 128)));
+    this.nx = Math.floor((nx - 1) / thinX) + 1;
+    this.ny = Math.floor((ny - 1) / thinY) + 1;
     this.z = new Float32Array(this.nx * this.ny);
     this.entries = new Uint16Array(this.nx * this.ny);
     for (let i = 0; i < this.nx; i++) {
       for (let j = 0; j < this.ny; j++) {
-        const from = i * thin * ny + j * thin;
+        const from = i * thinX * ny + j * thinY;
         this.z[i * this.ny + j] = z[from];
         this.entries[i * this.ny + j] = entry(what, values[from], false);
       }
@@ -60,6 +60,22 @@ class Relief {
     return (Relief.height * Math.max(...state.grid.size)) / (this.high - this.low);
   }
 
+  /** The sides of the area as shares of the longer one, and how many times each is stretched: a narrow area would be a line. */
+  static narrowest = 1 / 6;
+  sides() {
+    const [lx, ly] = state.grid.size, long = Math.max(lx, ly);
+    return [lx, ly].map((length) => {
+      const side = Math.max(length / long, Relief.narrowest);
+      return { side, times: side / (length / long) };
+    });
+  }
+
+  /** "x stretched 12 times" for a narrow area; empty for others. */
+  sidesNote() {
+    const k = this.sides().findIndex(({ times }) => times > 1);
+    return k < 0 ? "" : `, ${"xy"[k]} ${digits(Number(this.sides()[k].times.toPrecision(2)))} times`;
+  }
+
   /** Turns a place, in shares of the longer side from the middle, into pixels and the distance from the viewer. */
   camera(width, height) {
     const [c, s, ct, st] = [Math.cos(this.turn), Math.sin(this.turn), Math.cos(this.tilt), Math.sin(this.tilt)];
@@ -73,9 +89,9 @@ class Relief {
   render() {
     const height = Math.round(Math.max((this.canvas.clientWidth || 300) * 0.55, 230)), [context, width] = sharp(this.canvas, height);
     context.clearRect(0, 0, width, height);
-    const { nx, ny, z, low, high } = this, [lx, ly] = state.grid.size, long = Math.max(lx, ly);
+    const { nx, ny, z, low, high } = this;
     const place = this.camera(width, height), lift = high > low ? Relief.height / (high - low) : 0;
-    const [halfX, halfY] = [0.5 * lx / long, 0.5 * ly / long];
+    const [halfX, halfY] = this.sides().map(({ side }) => 0.5 * side);
     const px = new Float32Array(nx * ny), py = new Float32Array(nx * ny);
     for (let i = 0, n = 0; i < nx; i++) {
       for (let j = 0; j < ny; j++, n++) {

@@ -3,11 +3,11 @@
 use asperity::leakage::{CellKind, flux};
 use asperity_io::leakage::words::{MBAR_LITRE, rate};
 use asperity_io::leakage::{Leak, Leakage, settings};
-use asperity_io::readable::{quantity, superscript};
+use asperity_io::readable::quantity;
 use asperity_io::store::{At, FieldKind, Reader};
 use ndarray::{Array2, ArrayView2, Zip};
 
-use crate::figure::{Axis, Colours, Curves, Figure, Map, Series, Style};
+use crate::figure::{Axis, Colours, Curves, Figure, Map, Series, Style, typeset};
 use crate::result::{Options, PlotError, Rows};
 
 /// Names and colours of the cells where the seal leaks.
@@ -88,19 +88,10 @@ fn flow(found: &Leakage, gap: ArrayView2<'_, f64>, size: [f64; 2]) -> Map {
 fn heading(found: &Leakage) -> String {
     match found.leak_rate {
         _ if !found.percolates => "Tight".to_owned(),
-        Some(leak_rate) => format!("Leak rate {}", printed(&rate(leak_rate, found.leak_rate_standard))),
+        Some(leak_rate) => {
+            format!("Leak rate {}", typeset(&rate(leak_rate, found.leak_rate_standard).replace("m3", "m³")))
+        }
         None => format!("Hydraulic gap {}", quantity(found.hydraulic_gap, "m")),
-    }
-}
-
-/// A number with its unit as it is printed: "4.9e-10 m3/s" as "4.9×10⁻¹⁰ m³/s".
-fn printed(text: &str) -> String {
-    let text = text.replace("m3", "m³");
-    let Some((digits, rest)) = text.split_once('e') else { return text };
-    let (power, unit) = rest.split_once(' ').unwrap_or((rest, ""));
-    match power.parse() {
-        Ok(power) => format!("{digits}×10{} {unit}", superscript(power)),
-        Err(_) => text,
     }
 }
 
@@ -253,16 +244,4 @@ pub(crate) fn last_leak(reader: &Reader) -> At {
         reader.field_times()[*index] == times[n] && reader.field_steps()[*index] as f64 == steps[n]
     };
     (0..reader.field_times().len()).rfind(same).map_or(At::Last, At::Index)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::printed;
-
-    #[test]
-    fn rates_are_printed_with_powers_of_ten() {
-        assert_eq!(printed("4.862e-10 mbar l/s"), "4.862×10⁻¹⁰ mbar l/s");
-        assert_eq!(printed("1.000e0 m3/s"), "1.000×10⁰ m³/s");
-        assert_eq!(printed("NaN m3/s"), "NaN m³/s");
-    }
 }

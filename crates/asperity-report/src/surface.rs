@@ -143,10 +143,10 @@ fn lags(surface: &Surface, correlation: &Autocorrelation) -> Map {
 }
 
 /// Whether the spectrum is that of a self-affine surface: a Hurst exponent between 0 and 1 within its uncertainty, and known to
-/// a quarter, and a spectrum within a factor of two of the fit.
+/// a quarter, and a spectrum within a factor of two of the fit, at the many short waves and at the few long ones.
 fn fits(fit: &SelfAffineFit) -> bool {
     let within = fit.hurst + fit.error > 0.0 && fit.hurst - fit.error < 1.0;
-    within && fit.error < 0.25 && fit.misfit < LN_2
+    within && fit.error < 0.25 && fit.misfit < LN_2 && fit.stray < LN_2
 }
 
 fn spectrum(waves: &asperity::surface::statistics::Waves) -> Curves {
@@ -220,7 +220,7 @@ fn caption(surface: &Surface, summary: &Summary) -> String {
     text += &format!(". Skewness {:.2}, kurtosis {:.2}.", h.ssk, h.sku);
     match summary.waves.as_ref().map(|waves| waves.fit.as_ref().is_some_and(fits)) {
         None => text += " No spectrum: more than a quarter of the points are undefined.",
-        Some(false) => text += " The spectrum is not that of a self-affine surface.",
+        Some(false) => text += " The spectrum is not one power law: no slope is drawn.",
         Some(true) => {}
     }
     text

@@ -37,7 +37,7 @@ pub struct SurfaceInfo {
     /// Of a profile: subtract a circle of this radius instead of a straight line, or "fit" for the one that fits best
     #[arg(long, value_name = "RADIUS")]
     pub circle: Option<String>,
-    /// Draw height map, power spectrum and height distribution (.png or .svg)
+    /// Draw height map, power spectrum and height distribution (.png, .svg or .pdf)
     #[arg(long, value_name = "PICTURE")]
     pub plot: Option<PathBuf>,
     /// Replace an existing picture
@@ -155,7 +155,7 @@ pub struct SurfaceOutput {
     /// The format, if the extension does not select it: npz, gwy, x3p, sdf, nc, asc
     #[arg(long, value_name = "FORMAT")]
     pub to: Option<String>,
-    /// Draw height map, power spectrum and height distribution (.png or .svg)
+    /// Draw height map, power spectrum and height distribution (.png, .svg or .pdf)
     #[arg(long, value_name = "PICTURE")]
     pub plot: Option<PathBuf>,
     /// Replace existing files

@@ -65,7 +65,7 @@ pub fn run(args: &FitIndentation) -> Result<(), Failure> {
     }
     if let Some(path) = &args.plot {
         let title = args.record.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
-        picture(&title, &record, &fit).write(path, args.force).map_err(told)?;
+        super::picture::write(&picture(&title, &record, &fit), path, args.force)?;
     }
     if args.json {
         let mut object = json_of(&fit, of);

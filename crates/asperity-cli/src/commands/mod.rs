@@ -10,6 +10,7 @@ pub mod leak;
 pub mod material;
 pub mod new;
 mod patience;
+pub mod picture;
 pub mod plot;
 pub mod report;
 pub mod reproduce;

@@ -383,7 +383,8 @@ impl Reader {
         } else {
             format!("the fields {}", names.join(", "))
         };
-        self.missing(format!("field `{kind}`"), available)
+        let how = format!("{available}; name it in output.fields of the case, and run that again");
+        self.missing(format!("field `{kind}`"), how)
     }
 
     /// The error of a result without leaks.

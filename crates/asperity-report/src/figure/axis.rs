@@ -32,6 +32,9 @@ pub struct Axis {
 /// case.
 const DECADES_WITHOUT_PREFIX: f64 = 6.0;
 
+/// Smaller numbers are 0 on a linear axis: the steps between their ticks have no digits left.
+const NOTHING: f64 = 1e-250;
+
 impl Axis {
     /// A linear axis over the range of the data.
     pub fn linear(label: impl Into<String>, unit: impl Into<String>) -> Axis {
@@ -64,7 +67,7 @@ pub(super) struct Ruler {
     ends: [f64; 2],
     /// Ends in points on paper.
     places: [f64; 2],
-    /// The unit of its numbers.
+    /// Its unit with the prefix, without a power of ten.
     pub(super) unit: Shown,
     /// SI values and texts of the labelled ticks.
     pub(super) ticks: Vec<(f64, String)>,
@@ -76,52 +79,43 @@ pub(super) struct Ruler {
 
 impl Ruler {
     /// Lays an axis over `data`, the least and the largest value that it must show, with room for
-    /// about `wanted` ticks. `margin` is the share of the range that stays free at each end.
+    /// about `wanted` ticks. `margin` is the share of the range that stays free at each end. Its numbers have the prefix and the
+    /// power of ten that suit them.
     pub(super) fn new(axis: &Axis, data: [f64; 2], margin: f64, wanted: f64) -> Ruler {
-        Ruler::in_unit(axis, data, margin, wanted, None)
+        let ends = ends(axis, data, margin);
+        let unit = prefixed(axis, ends);
+        Ruler::with_power(axis, ends, wanted, unit)
     }
 
-    /// The same with its numbers in a unit, or in the one that suits them.
-    pub(super) fn in_unit(
-        axis: &Axis,
-        data: [f64; 2],
-        margin: f64,
-        wanted: f64,
-        own: Option<Shown>,
-    ) -> Ruler {
-        let log = axis.scale == Scale::Log;
-        let forward = |v: f64| if log { v.log10() } else { v };
-        let [mut low, mut high] = axis.range.unwrap_or(data).map(forward);
-        if !(low.is_finite() && high.is_finite()) {
-            (low, high) = (0.0, 1.0);
-        }
-        if high - low <= 1e-9 * high.abs().max(low.abs()) {
-            let room = if log { 0.5 } else { (0.1 * high.abs()).max(f64::MIN_POSITIVE) };
-            (low, high) = if high == 0.0 && !log { (0.0, 1.0) } else { (low - room, high + room) };
-        } else if axis.range.is_none() {
-            let room = margin * (high - low);
-            // An axis that starts at zero stays there.
-            low = if !log && low == 0.0 { 0.0 } else { low - room };
-            high = if !log && high == 0.0 { 0.0 } else { high + room };
-        }
-        let ends = [low, high];
-        let largest = if log { 10f64.powf(high) } else { low.abs().max(high.abs()) };
-        let plain = log && high - low > DECADES_WITHOUT_PREFIX && low < 0.0 && high > 0.0;
-        let mut unit = own.unwrap_or_else(|| shown(&axis.unit, if plain { 1.0 } else { largest }));
-        if axis.unit.is_empty() && !log {
-            let power = 3 * ((largest.log10() + 1e-9) / 3.0).floor() as i32;
-            if largest > 0.0 && (power <= -6 || power >= 6) {
-                unit = Shown { factor: 10f64.powi(-power), text: format!("10{}", superscript(power)) };
-            }
-        }
-        let (ticks, minor) = match log {
+    /// The same with the prefix given, and the power of ten that suits it.
+    pub(super) fn in_unit(axis: &Axis, data: [f64; 2], margin: f64, wanted: f64, unit: Shown) -> Ruler {
+        Ruler::with_power(axis, ends(axis, data, margin), wanted, unit)
+    }
+
+    /// The same in this unit as it is.
+    pub(super) fn exactly(axis: &Axis, data: [f64; 2], margin: f64, wanted: f64, unit: Shown) -> Ruler {
+        Ruler::laid(axis, ends(axis, data, margin), wanted, unit.clone(), unit)
+    }
+
+    fn with_power(axis: &Axis, ends: [f64; 2], wanted: f64, unit: Shown) -> Ruler {
+        let numbers = if axis.scale == Scale::Log || !axis.names.is_empty() {
+            unit.clone()
+        } else {
+            with_power(&unit, ends[0].abs().max(ends[1].abs()))
+        };
+        Ruler::laid(axis, ends, wanted, unit, numbers)
+    }
+
+    /// `unit` is that of the axis, and `numbers` the same with a power of ten where the numbers need it.
+    fn laid(axis: &Axis, ends: [f64; 2], wanted: f64, unit: Shown, numbers: Shown) -> Ruler {
+        let (ticks, minor) = match axis.scale {
             _ if !axis.names.is_empty() => {
                 ((0u32..).map(f64::from).zip(axis.names.clone()).collect(), vec![])
             }
-            true => decades(ends, unit.factor, wanted),
-            false => steps(ends, unit.factor, wanted),
+            Scale::Log => decades(ends, numbers.factor, wanted),
+            Scale::Linear => steps(ends, numbers.factor, wanted),
         };
-        let title = match unit.text.as_str() {
+        let title = match numbers.text.as_str() {
             "" => axis.label.clone(),
             text => format!("{} [{text}]", axis.label),
         };
@@ -157,27 +151,92 @@ impl Ruler {
     }
 }
 
+/// Ends of an axis, after its scale.
+fn ends(axis: &Axis, data: [f64; 2], margin: f64) -> [f64; 2] {
+    let log = axis.scale == Scale::Log;
+    let forward = |v: f64| if log { v.log10() } else { v };
+    let [low, high] = axis.range.unwrap_or(data).map(forward);
+    let largest = high.abs().max(low.abs());
+    if !(low.is_finite() && high.is_finite()) || (!log && largest < NOTHING) {
+        return [0.0, 1.0];
+    }
+    if high - low <= 1e-9 * largest {
+        let room = if log { 0.5 } else { 0.1 * largest };
+        return [low - room, high + room];
+    }
+    if axis.range.is_some() {
+        return [low, high];
+    }
+    let room = margin * (high - low);
+    // An axis that starts at zero stays there.
+    let keeps_zero = |end: f64, moved: f64| if !log && end == 0.0 { 0.0 } else { moved };
+    [keeps_zero(low, low - room), keeps_zero(high, high + room)]
+}
+
+/// The unit of an axis with the prefix that suits its ends.
+fn prefixed(axis: &Axis, [low, high]: [f64; 2]) -> Shown {
+    let log = axis.scale == Scale::Log;
+    let plain = log && high - low > DECADES_WITHOUT_PREFIX && low < 0.0 && high > 0.0;
+    let largest = if log { 10f64.powf(high) } else { low.abs().max(high.abs()) };
+    shown(&axis.unit, if plain { 1.0 } else { largest })
+}
+
+/// A unit with a power of ten before it where numbers up to `largest` \[SI\] would have more than five digits.
+pub(super) fn with_power(unit: &Shown, largest: f64) -> Shown {
+    /// Numbers in the unit that need no power of ten.
+    const SHORT: std::ops::Range<f64> = 1e-3..1e5;
+    let number = largest * unit.factor;
+    if !number.is_finite() || number <= 0.0 || SHORT.contains(&number) {
+        return unit.clone();
+    }
+    let power = 3 * ((number.log10() + 1e-9) / 3.0).floor() as i32;
+    let text = format!("10{} {}", superscript(power), unit.text);
+    Shown { factor: unit.factor * 10f64.powi(-power), text: text.trim_end().to_owned() }
+}
+
 type Ticks = (Vec<(f64, String)>, Vec<f64>);
 
-/// Ticks at 1, 2 or 5 times a power of ten.
+/// Least ticks with a number on an axis: one alone gives no scale.
+const FEWEST: usize = 2;
+
+/// Ticks at 1, 2 or 5 times a power of ten, two at least.
 fn steps(ends: [f64; 2], factor: f64, wanted: f64) -> Ticks {
     let ends = ends.map(|v| v * factor);
     let rough = (ends[1] - ends[0]) / wanted.max(1.0);
-    let power = rough.log10().floor();
-    let tens = 10f64.powf(power);
-    let (step, parts) = match rough / tens {
-        r if r <= 1.0 => (tens, 5),
-        r if r <= 2.0 => (2.0 * tens, 4),
-        r if r <= 5.0 => (5.0 * tens, 5),
-        _ => (10.0 * tens, 5),
-    };
+    let (mut power, mut digit) = (rough.log10().floor() as i32, 10);
+    while digit > 1 && rough <= f64::from(finer(digit)) * 10f64.powi(power) {
+        digit = finer(digit);
+    }
+    loop {
+        let found = multiples(ends, factor, digit, power);
+        // Of the multiples of a tenth of the length there are nine at least inside.
+        if found.0.len() >= FEWEST || 10f64.powi(power) < 0.01 * (ends[1] - ends[0]) {
+            return found;
+        }
+        (power, digit) = if digit == 1 { (power - 1, 5) } else { (power, finer(digit)) };
+    }
+}
+
+/// The next finer step of 10, 5, 2 and 1.
+fn finer(digit: u32) -> u32 {
+    match digit {
+        10 => 5,
+        5 => 2,
+        _ => 1,
+    }
+}
+
+/// Ticks at the multiples of `digit` times a power of ten.
+fn multiples(ends: [f64; 2], factor: f64, digit: u32, power: i32) -> Ticks {
+    let step = f64::from(digit) * 10f64.powi(power);
+    let parts = if digit == 2 { 4 } else { 5 };
     let decimals = (-(step.log10() + 1e-9).floor()).max(0.0) as usize;
     let inside = |v: f64| v >= ends[0] - 1e-9 * step && v <= ends[1] + 1e-9 * step;
     let first = (ends[0] / step).floor() as i64;
     let last = (ends[1] / step).ceil() as i64;
     let mut ticks = Vec::new();
     let mut minor = Vec::new();
-    for n in first..=last.min(first + 1000) {
+    for n in first..=last.min(first.saturating_add(1000)) {
         let value = n as f64 * step;
         if inside(value) {
             ticks.push((value / factor, number(value, decimals)));
@@ -192,13 +251,31 @@ fn steps(ends: [f64; 2], factor: f64, wanted: f64) -> Ticks {
     (ticks, minor)
 }
 
-/// Ticks at powers of ten; over less than two decades also at 2 and 5 times them.
+/// Ticks at powers of ten, two at least; over less than two decades also at 2 and 5 times them.
 fn decades(ends: [f64; 2], factor: f64, wanted: f64) -> Ticks {
     let shift = factor.log10().round();
     let ends = [ends[0] + shift, ends[1] + shift];
+    let span = ends[1] - ends[0];
+    let coarsest = (span / wanted.max(1.0)).ceil().max(1.0) as i64;
+    let all = |every: i64| powers(ends, factor, every);
+    let (ticks, minor) =
+        (1..=coarsest).rev().map(all).find(|(ticks, _)| ticks.len() >= FEWEST).unwrap_or_else(|| all(1));
+    if ticks.len() < FEWEST && span < 1.0 {
+        let linear = ends.map(|v| 10f64.powf(v));
+        let (ticks, minor) = steps(linear, 1.0, wanted);
+        let back = |v: f64| v / factor;
+        return (
+            ticks.into_iter().map(|(v, text)| (back(v), text)).filter(|(v, _)| *v > 0.0).collect(),
+            minor.into_iter().map(back).filter(|v| *v > 0.0).collect(),
+        );
+    }
+    (ticks, minor)
+}
+
+/// Ticks at every so many powers of ten; over less than two decades also at 2 and 5 times them.
+fn powers(ends: [f64; 2], factor: f64, every: i64) -> Ticks {
     let inside = |v: f64| v >= ends[0] - 1e-9 && v <= ends[1] + 1e-9;
     let span = ends[1] - ends[0];
-    let every = (span / wanted.max(1.0)).ceil().max(1.0) as i64;
     let mut ticks = Vec::new();
     let mut minor = Vec::new();
     let first = ends[0].floor() as i64;
@@ -222,15 +299,6 @@ fn decades(ends: [f64; 2], factor: f64, wanted: f64) -> Ticks {
                 minor.push(value);
             }
         }
-    }
-    if ticks.len() < 2 && span < 1.0 {
-        let linear = ends.map(|v| 10f64.powf(v));
-        let (ticks, minor) = steps(linear, 1.0, wanted);
-        let back = |v: f64| v / factor;
-        return (
-            ticks.into_iter().map(|(v, text)| (back(v), text)).filter(|(v, _)| *v > 0.0).collect(),
-            minor.into_iter().map(back).filter(|v| *v > 0.0).collect(),
-        );
     }
     (ticks, minor)
 }
@@ -297,6 +365,35 @@ mod tests {
         let (title, ticks) = texts(&Axis::linear("misfit", ""), [0.0, 4e-7]);
         assert_eq!(title, "misfit [10⁻⁹]");
         assert_eq!(ticks, ["0", "100", "200", "300", "400"]);
+    }
+
+    #[test]
+    fn numbers_beyond_the_prefixes_of_their_unit_take_a_power_of_ten() {
+        let (title, ticks) = texts(&Axis::linear("area", "m2"), [0.0, 2.2e11]);
+        assert_eq!((title.as_str(), ticks), ("area [10⁹ m²]", vec!["0".into(), "100".into(), "200".into()]));
+        let (title, ticks) = texts(&Axis::linear("energy", "J"), [0.0, 4e-25]);
+        assert_eq!(title, "energy [10⁻¹⁵ pJ]");
+        assert_eq!(ticks, ["0", "100", "200", "300", "400"]);
+        // As long as five signs are enough there is none.
+        let (title, ticks) = texts(&Axis::linear("energy", "J"), [0.0, 4e-15]);
+        assert_eq!((title.as_str(), ticks[1].as_str()), ("energy [pJ]", "0.001"));
+    }
+
+    #[test]
+    fn every_axis_has_two_numbers_at_least() {
+        let count = |axis: Axis, data, wanted| Ruler::new(&axis, data, 0.0, wanted).ticks.len();
+        for wanted in [0.1, 1.0, 1.3, 2.0, 3.0] {
+            for data in
+                [[-3.9, 1.9], [0.0, 9.9], [0.11, 0.19], [3.0, 7.0], [1e-4, 3e4], [0.02, 0.3], [0.7, 70.0]]
+            {
+                for axis in [Axis::linear("x", "m"), Axis::log("x", "m"), Axis::log("x", "s")] {
+                    assert!(
+                        axis.scale == Scale::Log && data[0] < 0.0 || count(axis.clone(), data, wanted) >= 2,
+                        "{data:?} {axis:?} {wanted}"
+                    );
+                }
+            }
+        }
     }
 
     #[test]

@@ -11,9 +11,11 @@ pub enum Colours {
     Heat,
     /// The same from 0 on, but 0 itself light: where there is no pressure there is no contact.
     Pressure,
+    /// Dark violet to yellow, but 0 light: where there is no gap the bodies touch.
+    Gap,
 }
 
-/// Where bodies do not touch.
+/// Where bodies do not touch, in a map of the pressure; and where they do, in one of the gap.
 pub(crate) const OPEN: [u8; 3] = [240, 240, 238];
 
 /// A colour map that stands for the usual one.
@@ -94,13 +96,18 @@ fn rgb(colour: colorous::Color) -> [u8; 3] {
 impl Colours {
     /// The colour at a share of the range, 0 to 1: red, green, blue.
     pub fn at(self, share: f64) -> [u8; 3] {
-        if self == Colours::Pressure && share <= 0.0 { OPEN } else { self.palette().at(share) }
+        if self.leave_out_zero() && share <= 0.0 { OPEN } else { self.palette().at(share) }
+    }
+
+    /// Whether 0 has a colour of its own.
+    pub(super) fn leave_out_zero(self) -> bool {
+        matches!(self, Colours::Pressure | Colours::Gap)
     }
 
     /// The colour map that is usual for it.
     pub(super) fn palette(self) -> Palette {
         match self {
-            Colours::Sequential => Palette::Viridis,
+            Colours::Sequential | Colours::Gap => Palette::Viridis,
             Colours::Diverging => Palette::RedBlue,
             Colours::Heat | Colours::Pressure => Palette::Inferno,
         }
@@ -133,6 +140,8 @@ mod tests {
     fn high_values_are_light_or_warm() {
         assert_eq!(Colours::Pressure.at(0.0), OPEN);
         assert_eq!(Colours::Pressure.at(1e-9), Colours::Heat.at(0.0));
+        assert_eq!(Colours::Gap.at(0.0), OPEN);
+        assert_eq!(Colours::Gap.at(1e-9), Colours::Sequential.at(0.0));
         for colours in [Colours::Sequential, Colours::Heat] {
             let steps: Vec<u32> = (0..=10).map(|k| light(colours.at(f64::from(k) / 10.0))).collect();
             assert!(steps[10] > 2 * steps[0] && steps.windows(2).all(|pair| pair[1] >= pair[0]), "{steps:?}");

@@ -8,8 +8,8 @@ use super::drawing::{Anchor, Drawing, GRID, INK, Paint, Pen};
 use super::font;
 use super::legend::Legend;
 use super::scale::{Bar, ColourScale};
-use super::series::{Series, Style, sign, spacing};
-use super::{Margins, Place, SMALL, TEXT};
+use super::series::{Series, Style, dots, sign, spacing};
+use super::{EDGE, Margins, Place, SMALL, TEXT};
 
 /// Colours that people with any kind of colour vision tell apart (Okabe & Ito 2008), dark ones first.
 pub(crate) const COLOURS: [&str; 7] =
@@ -180,21 +180,45 @@ impl Curves {
             *x >= left - room && *x <= right + room && *y >= top - room && *y <= bottom + room
         };
         for (series, colour) in self.coloured() {
+            // A sign at the edge of the frame is drawn whole.
+            let mut signs = |style: Style, places: Vec<[f64; 2]>| {
+                places.into_iter().filter(inside).for_each(|place| sign(drawing, style, place, colour));
+            };
             if series.style.is_of_points() {
-                // A sign at the edge of the frame is drawn whole.
-                let places = series.points().filter_map(at).filter(inside);
-                places.for_each(|place| sign(drawing, series.style, place, colour));
-            } else {
-                drawing.clipped([left, top], [right - left, bottom - top], |drawing| {
-                    series.draw(drawing, colour, &at, bottom, layout.y.place(0.0));
-                });
+                signs(series.style, series.points().filter_map(at).collect());
+                continue;
             }
+            if series.style != Style::Bars {
+                signs(Style::Points, dots(series.points().map(at)));
+            }
+            drawing.clipped([left, top], [right - left, bottom - top], |drawing| {
+                series.draw(drawing, colour, &at, bottom, layout.y.place(0.0));
+            });
         }
         match corner {
             _ if legend.is_empty() => {}
             Some(corner) => legend.draw_inside(drawing, corner),
-            None => legend.draw_above(drawing, [left, top - self.height_beside()], right - left),
+            None => legend.draw_above(drawing, [left, top - self.height_beside()], right, x0),
         }
+    }
+
+    /// Left, top, right and bottom of the frame \[points\].
+    pub(super) fn frame(&self, place: &Place) -> [f64; 4] {
+        self.layout(place).area
+    }
+
+    /// Whether titles and names end inside of the panel.
+    pub(super) fn has_room_for_words(&self, place: &Place) -> bool {
+        let layout = self.layout(place);
+        let [left, _, right, _] = layout.area;
+        let ([x0, _], [width, height]) = (place.corner, place.size);
+        let fits = |text: &str, room: f64| font::width(text, TEXT) <= room;
+        // The title of the horizontal axis stands below the middle of the frame.
+        let across = 2.0 * (x0 + width + EDGE - 0.5 * (left + right)).min(0.5 * (left + right) - x0);
+        fits(&self.title, x0 + width + EDGE - left)
+            && fits(&layout.x.title, across)
+            && fits(&layout.y.title, height)
+            && Legend::of(self).width() <= right - x0
     }
 
     /// Height of the other unit above the frame.
@@ -238,7 +262,11 @@ impl Curves {
         // A density over a length in µm is one per µm.
         let inverse = (self.y.unit == format!("1/{}", self.x.unit))
             .then(|| Shown { factor: 1.0 / x.unit.factor, text: format!("1/{}", x.unit.text) });
-        let y = Ruler::in_unit(&self.y, up, 0.06, (height - foot - head) / 32.0, inverse);
+        let wanted = (height - foot - head) / 32.0;
+        let y = match inverse {
+            Some(unit) => Ruler::in_unit(&self.y, up, 0.06, wanted, unit),
+            None => Ruler::new(&self.y, up, 0.06, wanted),
+        };
         (x, y, [head, foot])
     }
 
@@ -280,18 +308,28 @@ impl Curves {
 /// Frame, ticks, grid and titles; `titles` holds the baseline of the vertical and of the horizontal title.
 pub(super) fn frame(drawing: &mut Drawing, x: &Ruler, y: &Ruler, area: [f64; 4], titles: [f64; 2]) {
     let [left, top, right, bottom] = area;
+    // A number that would touch the one before it is left out.
+    let mut free = f64::NEG_INFINITY;
     for (value, text) in &x.ticks {
         if let Some(at) = x.place(*value) {
             drawing.line([at, top], [at, bottom], Pen::new(GRID, 0.5));
             drawing.line([at, bottom], [at, bottom + 3.5], Pen::new(INK, 0.7));
-            drawing.text([at, bottom + 5.0 + SMALL], SMALL, Anchor::Middle, text);
+            let half = 0.5 * font::width(text, SMALL);
+            if at - half >= free {
+                drawing.text([at, bottom + 5.0 + SMALL], SMALL, Anchor::Middle, text);
+                free = at + half + 2.0;
+            }
         }
     }
+    let mut last = f64::INFINITY;
     for (value, text) in &y.ticks {
         if let Some(at) = y.place(*value) {
             drawing.line([left, at], [right, at], Pen::new(GRID, 0.5));
             drawing.line([left - 3.5, at], [left, at], Pen::new(INK, 0.7));
-            drawing.text([left - 5.5, at + 0.36 * SMALL], SMALL, Anchor::End, text);
+            if (last - at).abs() >= SMALL {
+                drawing.text([left - 5.5, at + 0.36 * SMALL], SMALL, Anchor::End, text);
+                last = at;
+            }
         }
     }
     for at in x.minor.iter().filter_map(|value| x.place(*value)) {

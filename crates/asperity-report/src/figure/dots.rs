@@ -5,7 +5,7 @@ use tiny_skia::{
     Stroke, StrokeDash, Transform,
 };
 
-use super::drawing::{Colour, Drawing, INK, Mark, Paint, Pen, Pixels, Shape};
+use super::drawing::{BOXES, Colour, Drawing, INK, Mark, Paint, Pen, Pixels, Shape, boxes};
 use super::font::{self, Step};
 use super::outline;
 
@@ -29,6 +29,9 @@ fn marks(paper: &mut Pixmap, list: &[Mark], scale: Transform, mask: Option<&Mask
             }
             Mark::Text { at, size, anchor, upward, text } => {
                 draw_text(paper, text, [*size, anchor.start(text, *size)], *at, *upward, scale, mask);
+                if let Some(path) = boxes(text, *at, *size, *anchor, *upward).and_then(|b| path_of(&b)) {
+                    draw_shape(paper, &path, &Paint::outline(BOXES), scale, mask);
+                }
             }
             Mark::Image { corner, size, pixels, smooth } => {
                 draw_image(paper, pixels, [*corner, *size], *smooth, scale, mask);
@@ -103,7 +106,7 @@ fn draw_text(
             [x as f32, y as f32]
         };
         let mut open = false;
-        for step in glyph.map_or_else(Vec::new, font::outline) {
+        for step in font::outline(glyph) {
             match step {
                 Step::Move(at) => {
                     if open {

@@ -96,6 +96,28 @@ pub(super) enum Mark {
     },
 }
 
+/// Boxes for the letters of a text that the typeface lacks.
+pub(super) fn boxes(text: &str, [x, y]: [f64; 2], size: f64, anchor: Anchor, upward: bool) -> Option<Shape> {
+    let mut right = anchor.start(text, size);
+    let mut lines = vec![];
+    for (glyph, advance) in font::letters(text) {
+        if glyph == font::LACKING {
+            let [left, top, end, foot] = font::BOX.map(|side| size * side);
+            let corners = [[left, foot], [end, foot], [end, top], [left, top], [left, foot]];
+            let to = |[along, down]: [f64; 2]| match upward {
+                true => [x + down, y - right - along],
+                false => [x + right + along, y + down],
+            };
+            lines.push(corners.map(to).to_vec());
+        }
+        right += size * advance;
+    }
+    (!lines.is_empty()).then_some(Shape::Lines(lines))
+}
+
+/// The pen of these boxes.
+pub(super) const BOXES: Pen = Pen { colour: [0x22; 3], width: 0.5, dashes: &[] };
+
 /// Marks on paper, the first below the others.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Drawing {
@@ -128,6 +150,14 @@ impl Drawing {
     pub(super) fn text(&mut self, at: [f64; 2], size: f64, anchor: Anchor, text: &str) {
         let at = at.map(finite);
         self.marks.push(Mark::Text { at, size, anchor, upward: false, text: text.into() });
+    }
+
+    /// All texts outside of clipped frames, where there are only curves.
+    pub(super) fn texts(&self) -> impl Iterator<Item = &str> {
+        self.marks.iter().filter_map(|mark| match mark {
+            Mark::Text { text, .. } => Some(text.as_str()),
+            _ => None,
+        })
     }
 
     /// A text that reads upwards, its middle at a point.
@@ -209,6 +239,18 @@ mod tests {
         drawing.path(points.into_iter(), Pen::new(INK, 1.0));
         let lines = vec![vec![[0.0, 0.0], [1.0, 2.0]], vec![[3.0, 4.0], [5.0, 6.0]]];
         assert!(matches!(&drawing.marks[..], [Mark::Shape(Shape::Lines(found), _)] if *found == lines));
+    }
+
+    #[test]
+    fn a_letter_that_the_typeface_lacks_is_a_box() {
+        assert_eq!(boxes("contact", [0.0; 2], 10.0, Anchor::Start, false), None);
+        let Some(Shape::Lines(found)) = boxes("a接b触", [5.0, 20.0], 10.0, Anchor::Start, false) else {
+            panic!("no box")
+        };
+        assert_eq!(found.len(), 2);
+        let before = font::width("a接b", 10.0);
+        assert!((found[1][0][0] - (5.0 + before + 10.0 * font::BOX[0])).abs() < 1e-12, "{found:?}");
+        assert!(found.iter().flatten().all(|[_, y]| (13.0..=20.0).contains(y)));
     }
 
     #[test]

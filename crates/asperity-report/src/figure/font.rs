@@ -12,7 +12,11 @@ pub(super) const FAMILY: &str = "DejaVu Sans, Verdana, Helvetica, Arial, sans-se
 
 /// Units of the design to an em.
 pub(super) const EM: f64 = 2048.0;
-/// Width of a sign that the typeface lacks \[em\].
+/// The glyph in place of a sign that the typeface lacks. It has a width and no outline; [`BOX`] is drawn for it.
+pub(super) const LACKING: u16 = 0;
+/// Left, top, right and bottom of the box for a sign that the typeface lacks \[em\], y downwards from the line.
+pub(super) const BOX: [f64; 4] = [0.07, -0.7, 0.53, 0.0];
+/// Width of a glyph that the file does not tell \[em\].
 const MISSING: f64 = 0.6;
 /// Parts of a glyph are glyphs themselves, of one level in this typeface.
 const DEEPEST: usize = 4;
@@ -22,9 +26,9 @@ pub(super) fn width(text: &str, size: f64) -> f64 {
     size * letters(text).map(|(_, advance)| advance).sum::<f64>()
 }
 
-/// The glyphs of a text, `None` for a sign that the typeface lacks, and their widths \[em\].
-pub(super) fn letters(text: &str) -> impl Iterator<Item = (Option<u16>, f64)> + '_ {
-    text.chars().map(glyph).map(|glyph| (glyph, glyph.map_or(MISSING, advance)))
+/// The glyphs of a text, with a box for a sign that the typeface lacks, and their widths \[em\].
+pub(super) fn letters(text: &str) -> impl Iterator<Item = (u16, f64)> + '_ {
+    text.chars().map(|c| glyph(c).unwrap_or(LACKING)).map(|glyph| (glyph, advance(glyph)))
 }
 
 /// The glyph of a sign; `None` where the typeface lacks it.
@@ -225,6 +229,8 @@ mod tests {
         }
         assert_eq!(glyph('漢'), None);
         assert_eq!(glyph('😀'), None);
+        // The box lies inside of the width that it is given.
+        assert!(outline(LACKING).is_empty() && advance(LACKING) > BOX[2]);
     }
 
     #[test]

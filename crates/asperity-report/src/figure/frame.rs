@@ -1,15 +1,16 @@
 //! Where the frame of a map lies on paper: both axes in one unit and as long as they are in truth, the colour bar beside it.
 
-use asperity_io::readable::{quantity, shown};
+use asperity_io::readable::{Shown, quantity, shown};
 
-use super::axis::{Axis, Ruler};
+use super::axis::{Axis, Ruler, with_power};
 use super::font;
 use super::map::{Axes, Map, Values};
 use super::scale::Bar;
+use super::words::typeset;
 use super::{Margins, Place, SMALL, TEXT};
 
-/// Least length of a side of a frame \[points\]: a strip keeps a visible breadth.
-const STRIP: f64 = 12.0;
+/// The longer side of a frame is so many times the shorter one at most: a narrower area is stretched, so that it can be seen.
+const STRIP: f64 = 8.0;
 /// Least length of a colour bar, where the panel has room for it \[points\].
 const BAR: f64 = 96.0;
 /// Height of the names of states above the frame \[points\].
@@ -36,7 +37,6 @@ impl Layout {
         let (bar, beyond) = colours(map, place);
         let arrows = beyond.iter().flatten().map(|text| 8.0 + SMALL + font::width(text, SMALL));
         let beside = arrows.fold(bar.as_ref().map_or(0.0, Bar::width), f64::max);
-        let [across, up] = axes(map);
         let foot = TEXT + SMALL + 12.0;
         let head = place.margins.head + place.margins.legend;
         let left = x0 + TEXT + place.margins.labels + 13.0;
@@ -44,14 +44,16 @@ impl Layout {
         let [w, h] = match map.axes {
             Axes::Times { .. } => room,
             _ => {
-                let points = (room[0] / map.size[0]).min(room[1] / map.size[1]);
-                [0, 1].map(|axis| (map.size[axis] * points).max(STRIP).min(room[axis]))
+                let sides = drawn(map.size);
+                let points = (room[0] / sides[0]).min(room[1] / sides[1]);
+                sides.map(|side| side * points)
             }
         };
         let top = y0 + head;
         let (right, bottom) = (left + w, top + h);
-        let x = Ruler::new(&across, [0.0, 1.0], 0.0, w / 42.0).placed(left, right);
-        let y = Ruler::new(&up, [0.0, 1.0], 0.0, h / 32.0);
+        let [(across, x_unit), (up, y_unit)] = axes(map);
+        let x = Ruler::exactly(&across, [0.0, 1.0], 0.0, w / 42.0, x_unit).placed(left, right);
+        let y = Ruler::exactly(&up, [0.0, 1.0], 0.0, h / 32.0, y_unit);
         let y = if map.goes_down() { y.placed(top, bottom) } else { y.placed(bottom, top) };
         let titles = [left - y.widest() - 10.0, bottom + foot - 5.0];
         Layout { x, y, area: [left, top, right, bottom], titles, bar, beyond, room: room[1] }
@@ -74,8 +76,8 @@ impl Layout {
 impl Map {
     /// What the map needs of its margins.
     pub(crate) fn needs(&self, size: [f64; 2]) -> Margins {
-        let [_, up] = axes(self);
-        let labels = Ruler::new(&up, [0.0, 1.0], 0.0, size[1] / 32.0).widest();
+        let [_, (up, unit)] = axes(self);
+        let labels = Ruler::exactly(&up, [0.0, 1.0], 0.0, size[1] / 32.0, unit).widest();
         let legend = if matches!(self.meaning, Values::States(_)) { NAMES } else { 0.0 };
         Margins { labels, legend, head: super::head(&self.title) }
     }
@@ -86,40 +88,60 @@ impl Map {
         size[1] - layout.room + (layout.foot() - layout.area[1])
     }
 
+    /// Which axis is stretched, and how many times, of an area that is too narrow to be seen.
+    pub(crate) fn stretched(&self) -> Option<(&'static str, f64)> {
+        let sides = drawn(self.size);
+        let names = match self.axes {
+            Axes::Area => ["x", "y"],
+            Axes::Lags => ["the lag x", "the lag y"],
+            Axes::Section { along, .. } => [along, "the depth"],
+            Axes::Times { .. } => return None,
+        };
+        (0..2)
+            .find(|axis| sides[*axis] > self.size[*axis])
+            .map(|axis| (names[axis], sides[axis] / self.size[axis]))
+    }
+
     /// Whether the second axis points downwards.
     pub(super) fn goes_down(&self) -> bool {
         matches!(self.axes, Axes::Section { .. })
     }
 }
 
-/// Both axes in their units, which are the same but for time.
-fn axes(map: &Map) -> [Axis; 2] {
+/// The sides of an area as they are drawn.
+fn drawn(size: [f64; 2]) -> [f64; 2] {
+    let least = size[0].max(size[1]) / STRIP;
+    size.map(|side| side.max(least))
+}
+
+/// Both axes with their units, which are the same but for time.
+fn axes(map: &Map) -> [(Axis, Shown); 2] {
     let (names, starts) = match map.axes {
         Axes::Area => (["x", "y"], [0.0; 2]),
         Axes::Lags => (["lag x", "lag y"], map.size.map(|side| -0.5 * side)),
         Axes::Section { along, start } => ([along, "depth"], [start, 0.0]),
         Axes::Times { start } => (["x", "time"], [0.0, start]),
     };
-    let [over_x, over_y] = [0, 1].map(|axis| (starts[axis] + map.size[axis]).abs());
+    let ends = [0, 1].map(|axis| [starts[axis], starts[axis] + map.size[axis]]);
+    let [over_x, over_y] = ends.map(|[_, end]| end.abs());
+    let unit = |unit: &str, largest: f64| with_power(&shown(unit, largest), largest);
     let units = match map.axes {
-        Axes::Times { .. } => [shown("m", over_x), shown("s", over_y)],
-        _ => [(); 2].map(|()| shown("m", over_x.max(over_y))),
+        Axes::Times { .. } => [unit("m", over_x), unit("s", over_y)],
+        _ => [(); 2].map(|()| unit("m", over_x.max(over_y))),
     };
-    [0, 1].map(|axis| {
-        let (unit, start) = (&units[axis], starts[axis]);
-        let label = format!("{} [{}]", names[axis], unit.text);
-        Axis::linear(label, "").between(start * unit.factor, (start + map.size[axis]) * unit.factor)
-    })
+    let [x, y] = [0, 1].map(|axis| Axis::linear(names[axis], "").between(ends[axis][0], ends[axis][1]));
+    let [x_unit, y_unit] = units;
+    [(x, x_unit), (y, y_unit)]
 }
 
-/// The colour bar, and what lies beyond its ends; none for states, nor where all of the pressure is zero.
+/// The colour bar, and what lies beyond its ends; none for states, nor where all of the pressure or gap is zero.
 fn colours(map: &Map, place: &Place) -> (Option<Bar>, [Option<String>; 2]) {
     let (Values::Quantity { label, unit, .. }, Some(scale)) = (&map.meaning, map.scale()) else {
         return (None, [None, None]);
     };
-    if map.shows_no_pressure() {
+    if map.shows_nothing() {
         return (None, [None, None]);
     }
-    let told = |value: Option<f64>| value.map(|value| quantity(value, unit).replace('-', "−"));
+    let told = |value: Option<f64>| value.map(|value| typeset(&quantity(value, unit)).replace('-', "−"));
     (Some(Bar::new(scale, label, unit, place)), scale.beyond(&map.values).map(told))
 }

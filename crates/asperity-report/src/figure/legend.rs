@@ -5,6 +5,7 @@ use super::curves::{Curves, Layout};
 use super::drawing::{Anchor, Drawing, Paint};
 use super::font;
 use super::series::{Series, Style, pen, sign};
+use super::words;
 
 /// Room of the sign before a name \[points\].
 const SIGN: f64 = 26.0;
@@ -28,6 +29,11 @@ impl<'a> Legend<'a> {
         self.named.is_empty()
     }
 
+    /// Width of the longest name with its sign \[points\].
+    pub(super) fn width(&self) -> f64 {
+        self.named.iter().map(|(series, _)| wide(&series.name)).fold(0.0, f64::max)
+    }
+
     /// Width and height as a column of names.
     fn size(&self) -> [f64; 2] {
         let text = self.named.iter().map(|(s, _)| font::width(&s.name, SMALL)).fold(0.0, f64::max);
@@ -46,7 +52,10 @@ impl<'a> Legend<'a> {
         ];
         let free = |[x, y]: &[f64; 2]| {
             let under = |p: [f64; 2]| p[0] > *x && p[0] < x + width && p[1] > *y && p[1] < y + height;
-            *x > left && *y > top && !panel.series.iter().any(|series| covers(series, layout, &under))
+            *x > left
+                && x + width < right
+                && *y > top
+                && !panel.series.iter().any(|series| covers(series, layout, &under))
         };
         corners.into_iter().find(free)
     }
@@ -61,7 +70,7 @@ impl<'a> Legend<'a> {
         let mut rows: Vec<Vec<_>> = vec![];
         let mut used = f64::INFINITY;
         for entry in &self.named {
-            let own = SIGN + font::width(&entry.0.name, SMALL) + 3.0;
+            let own = wide(&entry.0.name);
             if used + own > width {
                 rows.push(vec![]);
                 used = 0.0;
@@ -77,22 +86,28 @@ impl<'a> Legend<'a> {
     pub(super) fn draw_inside(&self, drawing: &mut Drawing, [x, y]: [f64; 2]) {
         drawing.rounded([x, y], self.size(), 2.0, Paint::fill("#fff", 0.85));
         for (n, entry) in self.named.iter().enumerate() {
-            draw(drawing, *entry, [x, y + Self::ROW * (n as f64 + 0.5) + 2.5]);
+            draw(drawing, *entry, [x, y + Self::ROW * (n as f64 + 0.5) + 2.5], f64::INFINITY);
         }
     }
 
-    /// Above a frame with this upper left corner and width.
-    pub(super) fn draw_above(&self, drawing: &mut Drawing, [left, top]: [f64; 2], width: f64) {
-        let rows = self.rows(width);
+    /// Above a frame with this upper left corner and right side; a row that is longer begins before it, at `edge` at the earliest.
+    pub(super) fn draw_above(&self, drawing: &mut Drawing, [left, top]: [f64; 2], right: f64, edge: f64) {
+        let rows = self.rows(right - left);
         let first = top - 3.0 - Self::ROW * rows.len() as f64;
         for (n, row) in rows.iter().enumerate() {
-            let mut x = left - 5.0;
+            let whole: f64 = row.iter().map(|(series, _)| wide(&series.name)).sum();
+            let mut x = (left - 5.0).min(right - whole).max(edge);
             for entry in row {
-                draw(drawing, *entry, [x, first + Self::ROW * (n as f64 + 0.5)]);
-                x += SIGN + font::width(&entry.0.name, SMALL) + 3.0;
+                draw(drawing, *entry, [x, first + Self::ROW * (n as f64 + 0.5)], right);
+                x += wide(&entry.0.name);
             }
         }
     }
+}
+
+/// Width of a name with its sign \[points\].
+fn wide(name: &str) -> f64 {
+    SIGN + font::width(name, SMALL) + 3.0
 }
 
 /// Whether any of a series lies `under` something; of a line also between its points, of a bar all of it.
@@ -108,8 +123,8 @@ fn covers(series: &Series, layout: &Layout, under: &impl Fn([f64; 2]) -> bool) -
     }
 }
 
-/// The sign of a series and its name, from `x` on, in the `middle` of the row.
-fn draw(drawing: &mut Drawing, (series, colour): (&Series, &str), [x, middle]: [f64; 2]) {
+/// The sign of a series and its name, from `x` to `right` at most, in the `middle` of the row.
+fn draw(drawing: &mut Drawing, (series, colour): (&Series, &str), [x, middle]: [f64; 2], right: f64) {
     match series.style {
         Style::Bars => {
             drawing.rect([x + 7.0, middle - 3.5], [12.0, 7.0], Paint::fill(colour, 0.55));
@@ -117,5 +132,6 @@ fn draw(drawing: &mut Drawing, (series, colour): (&Series, &str), [x, middle]: [
         style if style.is_of_points() => sign(drawing, style, [x + 13.0, middle], colour),
         style => drawing.line([x + 5.0, middle], [x + 21.0, middle], pen(style, colour, 0.0)),
     }
-    drawing.text([x + SIGN, middle + 0.36 * SMALL], SMALL, Anchor::Start, &series.name);
+    let name = words::shortened(&series.name, SMALL, right + 4.0 - x - SIGN);
+    drawing.text([x + SIGN, middle + 0.36 * SMALL], SMALL, Anchor::Start, &name);
 }

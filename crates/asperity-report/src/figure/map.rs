@@ -148,14 +148,18 @@ impl Map {
         Some(ColourScale::of(&self.values, *colours, self.palette, *range, self.log))
     }
 
-    /// The values at the ends of its colours; `None` for states, and for the pressure where nothing touches.
+    /// The values at the ends of its colours; `None` for states, for the pressure where nothing touches and the gap where everything does.
     pub(crate) fn ends(&self) -> Option<[f64; 2]> {
-        self.scale().filter(|_| !self.shows_no_pressure()).map(|scale| scale.ends)
+        self.scale().filter(|_| !self.shows_nothing()).map(|scale| scale.ends)
     }
 
-    /// Whether it is a map of the pressure where nothing touches, with no ends of its colours given.
-    pub(super) fn shows_no_pressure(&self) -> bool {
-        let own = matches!(self.meaning, Values::Quantity { colours: Colours::Pressure, range: None, .. });
+    /// Whether it is a map of the pressure where nothing touches, or of the gap where everything does, with no ends of its colours
+    /// given.
+    pub(super) fn shows_nothing(&self) -> bool {
+        let own = match self.meaning {
+            Values::Quantity { colours, range: None, .. } => colours.leave_out_zero(),
+            _ => false,
+        };
         own && !self.values.iter().any(|value| *value > 0.0)
     }
 
@@ -181,7 +185,7 @@ impl Map {
             drawing.circle(at, 5.0, Paint::outline(Pen::new("#fff", 3.0)));
             drawing.circle(at, 5.0, Paint::outline(Pen::new("#d62728", 1.5)));
         }
-        if h > 50.0 && !matches!(self.axes, Axes::Times { .. }) {
+        if h > SCALED && self.keeps_its_shape() && self.stretched().is_none() {
             scale_bar(drawing, [left, bottom], w, self.size[0]);
         }
         // Values beyond the ends of the colours, below and above the bar.
@@ -198,6 +202,46 @@ impl Map {
         if let Some(states) = states {
             self.names(drawing, states, [left, top]);
         }
+    }
+
+    /// Whether both axes have one scale, but for a narrow area.
+    pub(super) fn keeps_its_shape(&self) -> bool {
+        !matches!(self.axes, Axes::Times { .. })
+    }
+
+    /// A map of two values at most that takes the same room on the paper.
+    pub(super) fn thumbnail(&self) -> Map {
+        let mut meaning = self.meaning.clone();
+        let mut values = vec![0.0];
+        if let (Values::Quantity { range, .. }, Some(ends), Some(scale)) =
+            (&mut meaning, self.ends(), self.scale())
+        {
+            let beyond = scale.beyond(&self.values);
+            values = vec![beyond[0].unwrap_or(ends[0]), beyond[1].unwrap_or(ends[1])];
+            *range = Some(ends);
+        }
+        let values = Array2::from_shape_vec((values.len(), 1), values).unwrap_or_default();
+        let (title, marks) = (self.title.clone(), self.marks.clone());
+        let Map { size, axes, palette, log, .. } = *self;
+        Map { title, values, meaning, size, axes, marks, palette, log }
+    }
+
+    /// Left, top, right and bottom of the frame \[points\].
+    pub(super) fn frame(&self, place: &Place) -> [f64; 4] {
+        Layout::of(self, place).area
+    }
+
+    /// Whether titles and names end inside of the panel.
+    pub(super) fn has_room_for_words(&self, place: &Place) -> bool {
+        let layout = Layout::of(self, place);
+        let right = place.corner[0] + place.size[0];
+        let names: f64 = match &self.meaning {
+            Values::States(states) => states.iter().map(|(name, _)| 19.0 + font::width(name, SMALL)).sum(),
+            Values::Quantity { .. } => 0.0,
+        };
+        let room = right - layout.area[0];
+        let bar = layout.bar.as_ref().is_none_or(|bar| bar.has_room_for_words(place.size[1]));
+        font::width(&self.title, TEXT) <= room && names <= room && bar
     }
 
     /// The values in their colours.
@@ -226,7 +270,10 @@ impl Map {
     }
 }
 
-/// A round length, in black on white in the lower left corner.
+/// Least height of a map with a scale bar \[points\]: of a lower one it hides too much.
+const SCALED: f64 = 100.0;
+
+/// A round length, in black on white in the lower left corner of a map that has room for it.
 fn scale_bar(drawing: &mut Drawing, [left, bottom]: [f64; 2], width: f64, length: f64) {
     let rough = 0.27 * length;
     let tens = 10f64.powf((rough.log10() + 1e-9).floor());
@@ -236,6 +283,9 @@ fn scale_bar(drawing: &mut Drawing, [left, bottom]: [f64; 2], width: f64, length
     let text = format!("{} {}", (round * unit.factor * 1e6).round() / 1e6, unit.text);
     let bar = width * round / length;
     let wide = bar.max(font::width(&text, SMALL)) + 10.0;
+    if wide + 10.0 > width {
+        return;
+    }
     let (x, y) = (left + 5.0, bottom - 5.0);
     drawing.rounded([x, y - SMALL - 12.0], [wide, SMALL + 12.0], 2.0, Paint::fill("#fff", 0.8));
     drawing.rect([x + 0.5 * (wide - bar), y - 7.0], [bar, 3.0], Paint::fill(INK, 1.0));

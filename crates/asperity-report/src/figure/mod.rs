@@ -21,11 +21,13 @@ mod frame;
 mod legend;
 mod map;
 mod outline;
+mod paper;
 mod pdf;
 mod raster;
 mod scale;
 mod series;
 mod svg;
+mod words;
 mod write;
 
 pub use axis::{Axis, Scale};
@@ -37,6 +39,7 @@ pub use map::{Axes, Map, UNDEFINED, Values};
 pub(crate) use raster::{block, means, states};
 pub(crate) use scale::robust;
 pub use series::{Series, Style};
+pub(crate) use words::typeset;
 pub use write::{FigureError, Form};
 
 pub(crate) use drawing::INK;
@@ -86,10 +89,9 @@ pub struct Figure {
     pub panel: [f64; 2],
     /// Width and height of the paper \[points\]; `None` for as much as the panels take.
     pub size: Option<[f64; 2]>,
+    /// Texts, lines and panels are drawn so many times as large as told: less than 1 on small paper.
+    pub zoom: f64,
 }
-
-/// The least width and height of a panel \[points\]: less has no room for its numbers.
-const LEAST: [f64; 2] = [120.0, 100.0];
 
 /// Where a panel lies on the paper \[points\].
 struct Place {
@@ -125,6 +127,7 @@ impl Figure {
             columns: 2,
             panel: [259.0, 202.0],
             size: None,
+            zoom: 1.0,
         }
     }
 
@@ -144,62 +147,43 @@ impl Figure {
         Figure { caption: caption.into(), ..self }
     }
 
-    /// The same figure on paper of this width and height \[points\], with panels that fill it.
-    ///
-    /// # Errors
-    /// [`FigureError::Size`] where panels would be too small to read.
-    pub fn sized(mut self, size: [f64; 2]) -> Result<Figure, FigureError> {
-        let columns = self.columns.min(self.panels.len().max(1)) as f64;
-        let rows = self.panels.len().div_ceil(self.columns).max(1) as f64;
-        self.size = Some(size);
-        self.panel[0] = (size[0] - 2.0 * EDGE) / columns;
-        // Where a legend stands depends on the height of its panel, and wide maps take less than they are given.
-        for _ in 0..16 {
-            self.panel[1] = (self.panel[1] + (size[1] - self.needed()[1]) / rows).max(LEAST[1]);
-        }
-        if self.panel[0] < LEAST[0] || self.needed()[1] > size[1] + 0.5 {
-            let needed = [LEAST[0] * columns + 2.0 * EDGE, self.needed()[1]];
-            return Err(FigureError::Size { asked: size, needed });
-        }
-        Ok(self)
-    }
-
     /// The figure as SVG.
     pub fn to_svg(&self) -> String {
         let title = if self.title.is_empty() { "Figure" } else { &self.title };
-        svg::write(&self.drawing(), self.paper(), title)
+        svg::write(&self.drawing(), self.paper(), self.zoom, title)
     }
 
-    /// What the figure consists of.
+    /// What the figure consists of, before the zoom.
     fn drawing(&self) -> Drawing {
         let mut drawing = Drawing::default();
-        let heights = self.heights();
-        let [width, _] = self.paper();
-        let top = self.top();
-        if !self.title.is_empty() {
-            // A long title is written smaller.
-            let room = (width - 2.0 * EDGE - 4.0) / font::width(&self.title, LARGE).max(1.0);
-            let size = LARGE * room.min(1.0);
-            drawing.text([EDGE + 4.0, EDGE + LARGE], size, Anchor::Start, &self.title);
-        }
-        for (n, panel) in self.panels.iter().enumerate() {
-            let (row, column) = (n / self.columns, n % self.columns);
-            let margins = self.margins(row, column);
-            let above: f64 = heights.iter().take(row).sum();
-            let corner = [EDGE + column as f64 * self.panel[0], top + above];
-            let place = Place { corner, size: [self.panel[0], heights[row]], margins };
+        let lines = |drawing: &mut Drawing, lines: Vec<String>, top: f64, size: f64| {
+            for (n, line) in lines.iter().enumerate() {
+                let at = [EDGE + 4.0, top + size + (size + 3.0) * n as f64];
+                drawing.text(at, size, Anchor::Start, line);
+            }
+        };
+        lines(&mut drawing, self.title_lines(), EDGE, LARGE);
+        let places = self.places();
+        for (panel, place) in self.panels.iter().zip(&places) {
             match panel {
-                Panel::Curves(curves) => curves.draw(&mut drawing, &place),
-                Panel::Map(map) => map.draw(&mut drawing, &place),
+                Panel::Curves(curves) => curves.draw(&mut drawing, place),
+                Panel::Map(map) => map.draw(&mut drawing, place),
             }
         }
-        let caption = self.wrapped();
-        let first = top + heights.iter().sum::<f64>() + SMALL;
-        for (n, line) in caption.iter().enumerate() {
-            let at = [EDGE + 4.0, first + (SMALL + 3.0) * n as f64];
-            drawing.text(at, SMALL, Anchor::Start, line);
-        }
+        lines(&mut drawing, self.caption_lines(), self.top() + self.heights().iter().sum::<f64>(), SMALL);
         drawing
+    }
+
+    /// Where each panel lies.
+    fn places(&self) -> Vec<Place> {
+        let heights = self.heights();
+        let place = |n: usize| {
+            let (row, column) = (n / self.columns, n % self.columns);
+            let above: f64 = heights.iter().take(row).sum();
+            let corner = [EDGE + column as f64 * self.panel[0], self.top() + above];
+            Place { corner, size: [self.panel[0], heights[row]], margins: self.margins(row, column) }
+        };
+        (0..self.panels.len()).map(place).collect()
     }
 
     /// The height of each row \[points\]: a legend above the frames adds to it, and a row of wide maps takes less.
@@ -235,40 +219,6 @@ impl Figure {
             }
         }
         margins
-    }
-
-    /// Width and height of the paper \[points\].
-    pub(crate) fn paper(&self) -> [f64; 2] {
-        self.size.unwrap_or_else(|| self.needed())
-    }
-
-    /// Width and height that title, panels and caption take \[points\].
-    fn needed(&self) -> [f64; 2] {
-        let columns = self.columns.min(self.panels.len().max(1));
-        let caption = self.wrapped().len() as f64 * (SMALL + 3.0);
-        let title = if self.title.is_empty() { 0.0 } else { font::width(&self.title, LARGE * 1.12) + 8.0 };
-        let width = (columns as f64 * self.panel[0]).max(title.min(columns as f64 * self.panel[0] * 1.5));
-        [width + 2.0 * EDGE, self.top() + self.heights().iter().sum::<f64>() + caption + EDGE]
-    }
-
-    fn top(&self) -> f64 {
-        if self.title.is_empty() { EDGE } else { EDGE + LARGE + 9.0 }
-    }
-
-    /// The caption in lines that fit.
-    fn wrapped(&self) -> Vec<String> {
-        let room = self.columns.min(self.panels.len().max(1)) as f64 * self.panel[0] - 8.0;
-        let mut lines: Vec<String> = Vec::new();
-        for word in self.caption.split_whitespace() {
-            match lines.last_mut() {
-                Some(line) if font::width(line, SMALL) + font::width(word, SMALL) + 3.0 <= room => {
-                    line.push(' ');
-                    line.push_str(word);
-                }
-                _ => lines.push(word.to_owned()),
-            }
-        }
-        lines
     }
 }
 

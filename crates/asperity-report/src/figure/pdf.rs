@@ -8,7 +8,7 @@ use flate2::write::ZlibEncoder;
 use pdf_writer::types::{CidFontType, FontFlags, LineJoinStyle, SystemInfo, UnicodeCmap};
 use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str, TextStr};
 
-use super::drawing::{Anchor, Colour, Drawing, INK, Mark, Paint, Pixels, Shape, rgb};
+use super::drawing::{Anchor, BOXES, Colour, Drawing, INK, Mark, Paint, Pixels, Shape, boxes, rgb};
 use super::font;
 use super::outline::Step;
 
@@ -17,12 +17,12 @@ const TYPEFACE: Name = Name(b"DejaVuSans");
 const FACE: Name = Name(b"F");
 const GLYPHS: SystemInfo = SystemInfo { registry: Str(b"Adobe"), ordering: Str(b"Identity"), supplement: 0 };
 
-/// The file, of a page of this width and height \[points\].
-pub(super) fn write(drawing: &Drawing, paper: [f64; 2], title: &str) -> std::io::Result<Vec<u8>> {
+/// The file, of a page of this width and height \[points\]; the drawing is so many times as large on it.
+pub(super) fn write(drawing: &Drawing, paper: [f64; 2], zoom: f64, title: &str) -> std::io::Result<Vec<u8>> {
     let mut page =
         Page { content: Content::new(), images: vec![], opacities: vec![], glyphs: BTreeMap::new() };
     // From here on y points downwards.
-    page.content.transform([1.0, 0.0, 0.0, -1.0, 0.0, paper[1] as f32]);
+    page.content.transform([zoom as f32, 0.0, 0.0, -zoom as f32, 0.0, paper[1] as f32]);
     page.marks(&drawing.marks);
     file(page, paper, title)
 }
@@ -44,6 +44,9 @@ impl<'a> Page<'a> {
                 Mark::Shape(shape, paint) => self.shape(shape, paint),
                 Mark::Text { at, size, anchor, upward, text } => {
                     self.text(text, *at, *size, *anchor, *upward);
+                    if let Some(shape) = boxes(text, *at, *size, *anchor, *upward) {
+                        self.shape(&shape, &Paint::outline(BOXES));
+                    }
                 }
                 Mark::Image { corner, size, pixels, smooth } => {
                     let [x, y, w, h] = [corner[0], corner[1] + size[1], size[0], size[1]].map(|v| v as f32);
@@ -97,7 +100,6 @@ impl<'a> Page<'a> {
     fn text(&mut self, text: &str, [x, y]: [f64; 2], size: f64, anchor: Anchor, upward: bool) {
         let mut codes = Vec::with_capacity(2 * text.len());
         for (c, (glyph, _)) in text.chars().zip(font::letters(text)) {
-            let glyph = glyph.unwrap_or(0);
             codes.extend(glyph.to_be_bytes());
             self.glyphs.insert(glyph, c);
         }
@@ -209,7 +211,10 @@ fn file(page: Page, paper: [f64; 2], title: &str) -> std::io::Result<Vec<u8>> {
         .filter(Filter::FlateDecode)
         .pair(Name(b"Length1"), i32::try_from(font::DATA.len()).unwrap_or(i32::MAX));
     let mut codes = UnicodeCmap::new(Name(b"Custom"), GLYPHS);
-    page.glyphs.iter().for_each(|(glyph, c)| codes.pair(*glyph, *c));
+    page.glyphs
+        .iter()
+        .filter(|(glyph, _)| **glyph != font::LACKING)
+        .for_each(|(glyph, c)| codes.pair(*glyph, *c));
     pdf.cmap(meaning, codes.finish().as_slice());
     Ok(pdf.finish())
 }

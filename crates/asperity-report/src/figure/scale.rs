@@ -7,7 +7,7 @@ use super::colours::{Colours, OPEN, Palette};
 use super::drawing::{Anchor, Drawing, INK, Paint, Pen};
 use super::raster::{self, BLANK};
 
-use super::{Place, SMALL, TEXT};
+use super::{Place, SMALL, TEXT, font};
 
 /// How values become colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,7 +39,7 @@ impl ColourScale {
         let centred = if palette == Some(Palette::RedBlue) { Colours::Diverging } else { colours };
         let own = || match log {
             true => decades(values),
-            false if matches!(colours, Colours::Sequential | Colours::Diverging) => {
+            false if matches!(colours, Colours::Sequential | Colours::Gap | Colours::Diverging) => {
                 centred.ends(robust(values.iter().copied()).unwrap_or_else(whole))
             }
             false => centred.ends(whole()),
@@ -69,7 +69,7 @@ impl ColourScale {
     pub(super) fn at(&self, value: f64) -> [u8; 3] {
         if !value.is_finite() {
             BLANK
-        } else if value <= 0.0 && (self.log || self.colours == Colours::Pressure) {
+        } else if value <= 0.0 && (self.log || self.colours.leave_out_zero()) {
             OPEN
         } else {
             self.palette.at(self.share(value))
@@ -103,6 +103,11 @@ impl Bar {
     /// Room that it takes beside the frame.
     pub(super) fn width(&self) -> f64 {
         8.0 + 10.0 + 6.0 + self.ruler.widest() + TEXT + 9.0
+    }
+
+    /// Whether its title is no longer than this height.
+    pub(super) fn has_room_for_words(&self, height: f64) -> bool {
+        font::width(&self.ruler.title, TEXT) <= height
     }
 
     /// Draws it from `left` on.

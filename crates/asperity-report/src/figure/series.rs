@@ -107,9 +107,23 @@ impl Series {
                     }
                 }
             }
-            style => drawing.path(points(), pen(style, colour, length(points()))),
+            style => {
+                let length = length(points());
+                if length > 0.0 {
+                    drawing.path(points(), pen(style, colour, length));
+                }
+            }
         }
     }
+}
+
+/// Places of the parts of a line that have no length: a line that stays at one place, or a point between gaps.
+pub(super) fn dots(points: impl Iterator<Item = Option<[f64; 2]>>) -> Vec<[f64; 2]> {
+    /// Shorter lines are hidden in their own width \[points\].
+    const SHORT: f64 = 0.5;
+    let places: Vec<Option<[f64; 2]>> = points.collect();
+    let parts = places.split(|place| place.is_none()).filter(|part| !part.is_empty());
+    parts.filter(|part| length(part.iter().copied()) < SHORT).filter_map(|part| part[0]).collect()
 }
 
 /// The sign of a series of points at a place.
@@ -159,4 +173,24 @@ fn length(points: impl Iterator<Item = Option<[f64; 2]>>) -> f64 {
 pub(super) fn spacing(x: &[f64]) -> f64 {
     let least = x.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(f64::INFINITY, f64::min);
     if least.is_finite() { least } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_without_length_is_a_dot() {
+        let line = [
+            Some([1.0, 1.0]),
+            Some([5.0, 1.0]),
+            None,
+            Some([7.0, 2.0]),
+            None,
+            Some([9.0, 3.0]),
+            Some([9.0, 3.0]),
+        ];
+        assert_eq!(dots(line.into_iter()), [[7.0, 2.0], [9.0, 3.0]]);
+        assert!(dots([None, None].into_iter()).is_empty());
+    }
 }

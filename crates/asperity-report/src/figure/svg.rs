@@ -9,12 +9,14 @@ use super::drawing::{Anchor, Colour, Drawing, INK, Mark, Paint, Shape};
 use super::font::FAMILY;
 use super::raster;
 
-/// The whole file, on paper of this width and height \[points\]; `title` is read out by screen readers.
-pub(super) fn write(drawing: &Drawing, paper: [f64; 2], title: &str) -> String {
+/// The whole file, on paper of this width and height \[points\], where the drawing is so many times as large; `title` is read out
+/// by screen readers.
+pub(super) fn write(drawing: &Drawing, paper: [f64; 2], zoom: f64, title: &str) -> String {
     let [width, height] = paper.map(short);
+    let [across, down] = paper.map(|side| short(side / zoom));
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}pt\" height=\"{height}pt\" \
-         viewBox=\"0 0 {width} {height}\" role=\"img\" font-family=\"{FAMILY}\" fill=\"{INK}\">\n\
+         viewBox=\"0 0 {across} {down}\" role=\"img\" font-family=\"{FAMILY}\" fill=\"{INK}\">\n\
          <title>{}</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n",
         escaped(title)
     );
@@ -157,7 +159,7 @@ mod tests {
         assert_eq!(escaped("a<b & c>\u{0}\u{1b}[0m\n"), "a&lt;b &amp; c&gt;[0m ");
         let mut drawing = Drawing::default();
         drawing.text([1.0, f64::NAN], 8.0, Anchor::Start, "</svg><script>");
-        let svg = write(&drawing, [10.0, 10.0], "<&>");
+        let svg = write(&drawing, [10.0, 10.0], 1.0, "<&>");
         assert_eq!(svg.matches("</svg>").count(), 1);
         assert!(!svg.contains("NaN") && !svg.contains("<script>"));
     }
@@ -167,7 +169,7 @@ mod tests {
         let mut drawing = Drawing::default();
         let pen = super::super::drawing::Pen::new("#d55e00", 0.9).dashed(&[5.0, 2.5]);
         drawing.path([Some([0.0, 0.004]), Some([1.006, 2.0])].into_iter(), pen);
-        let svg = write(&drawing, [10.0, 10.0], "");
+        let svg = write(&drawing, [10.0, 10.0], 1.0, "");
         let path = "<path d=\"M0 0L1.01 2\" stroke-linejoin=\"round\" fill=\"none\" stroke=\"#d55e00\" \
                     stroke-width=\"0.9\" stroke-dasharray=\"5 2.5\"/>";
         assert!(svg.contains(path), "{svg}");

@@ -54,9 +54,14 @@ fn the_same_figure_has_the_same_bytes() {
 
 #[test]
 fn nothing_of_a_panel_leaves_the_paper() {
-    let svg = figure().to_svg();
+    assert_all_inside(&figure());
+}
+
+/// Every text begins and ends on the paper.
+fn assert_all_inside(figure: &Figure) {
+    let svg = figure.to_svg();
     let document = Document::parse(&svg).unwrap();
-    let [width, height] = figure().paper();
+    let [width, height] = figure.paper().map(|side| side / figure.zoom);
     for node in document.descendants().filter(|n| n.has_tag_name("text")) {
         let number = |name| node.attribute(name).unwrap().parse::<f64>().unwrap();
         let (x, y, size) = (number("x"), number("y"), number("font-size"));
@@ -74,6 +79,94 @@ fn nothing_of_a_panel_leaves_the_paper() {
         };
         assert!(inside, "{:?} at {x}, {y}", node.text());
     }
+}
+
+/// Four panels like those of a result over time, with long names.
+fn evolution() -> Figure {
+    let panel = |title: &str| {
+        let names = ["nominal mean", "largest", "mean over the contact"];
+        let line = |name: &&str| Series::new(*name, Style::Line, vec![1.0, 1e8], vec![1e5, 3e6]);
+        let axes = [Axis::log("time", "s"), Axis::linear("pressure", "Pa")];
+        let [x, y] = axes;
+        names.iter().map(line).fold(Curves::new(title, x, y), Curves::with)
+    };
+    ["a", "b", "c", "d"]
+        .map(panel)
+        .into_iter()
+        .fold(Figure::new("Rubber under a load"), |figure, panel| figure.with(panel))
+}
+
+#[test]
+fn a_column_of_a_journal_is_wide_enough_and_small_paper_has_smaller_texts() {
+    let points = |mm: f64| mm * 72.0 / 25.4;
+    for size in [[84.0, 105.0], [80.0, 60.0], [90.0, 110.0], [160.0, 100.0]] {
+        let paper = size.map(points);
+        for figure in [figure(), evolution()] {
+            let sized = figure.sized(paper).unwrap();
+            assert_eq!(sized.paper(), paper);
+            assert_all_inside(&sized);
+        }
+    }
+    let usual = evolution().sized([160.0, 120.0].map(points)).unwrap();
+    assert_eq!((usual.zoom, usual.columns), (1.0, 2));
+    assert!(evolution().sized([80.0, 60.0].map(points)).unwrap().zoom < 1.0);
+    let refused = evolution().sized([30.0, 30.0].map(points)).unwrap_err();
+    let FigureError::Size { needed, .. } = refused else { panic!("{refused}") };
+    assert!(evolution().sized(needed).is_ok());
+}
+
+#[test]
+fn a_thumbnail_takes_the_room_of_its_map() {
+    // Spikes lie beyond the ends of the colours and are told beside the bar.
+    let mut spiked = Array2::from_shape_fn((60, 60), |(i, j)| (i + j) as f64 * 1e-9);
+    spiked[[3, 4]] = 4.123e-5;
+    spiked[[5, 4]] = -3.2e-5;
+    let spiked = Map::new("", ["height", "m"], Colours::Sequential, spiked.view(), [1e-3, 1e-3]);
+    let none = Array2::zeros((9, 9));
+    let none = Map::new("", ["pressure", "Pa"], Colours::Pressure, none.view(), [1e-3, 1e-3]);
+    for map in [map(), spiked, none] {
+        let place = Place { corner: [0.0; 2], size: [200.0; 2], margins: Margins::default() };
+        assert_eq!(map.frame(&place), map.thumbnail().frame(&place));
+    }
+}
+
+#[test]
+fn a_long_title_is_wrapped() {
+    let long = Figure { title: "a title of many words ".repeat(10), ..figure() };
+    assert_eq!(long.paper()[0], figure().paper()[0]);
+    assert!(long.paper()[1] > figure().paper()[1] + 2.0 * LARGE);
+    assert_all_inside(&long);
+}
+
+#[test]
+fn a_narrow_area_is_stretched_and_has_numbers_at_both_axes() {
+    for size in [[4e-5, 4e-3], [4e-3, 4e-5]] {
+        let narrow = Map { size, ..map() };
+        let (axis, times) = narrow.stretched().unwrap();
+        // A hundred times as long as broad, drawn eight times as long.
+        assert!((times - 12.5).abs() < 1e-9 && axis == if size[0] < size[1] { "x" } else { "y" });
+        let figure = Figure::new("").with(narrow);
+        assert_all_inside(&figure);
+        assert!(!figure.to_svg().contains(">1 mm<"), "a scale bar is longer than the map is broad");
+    }
+    assert_eq!(map().stretched(), None);
+}
+
+#[test]
+fn letters_that_the_typeface_lacks_are_told() {
+    let figure = Figure { title: "接触 of a 接 µm".into(), ..figure() };
+    assert_eq!(figure.missing_letters(), ['接', '触']);
+    assert!(figure.to_svg().contains("接触"));
+}
+
+#[test]
+fn a_map_of_the_gap_where_all_touches_has_no_colour_bar() {
+    let of = |value: f64| {
+        let values = Array2::from_elem((4, 4), value);
+        let map = Map::new("", ["gap", "m"], Colours::Gap, values.view(), [1e-3, 1e-3]);
+        Figure::new("").with(map).to_svg().matches("<image").count()
+    };
+    assert_eq!([of(0.0), of(1e-6)], [1, 2]);
 }
 
 #[test]

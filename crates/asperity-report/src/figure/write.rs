@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use super::{Figure, Pixels, dots, pdf, raster};
+use super::{Figure, Pixels, dots, font, pdf, raster};
 
 /// Points of paper per inch.
 const POINTS: f64 = 72.0;
@@ -44,13 +44,13 @@ pub enum FigureError {
     },
     /// The panels do not fit on the paper asked for.
     #[error(
-        "{:.0} mm x {:.0} mm are too small for this figure; it needs {:.0} mm x {:.0} mm at least",
+        "{:.0} mm x {:.0} mm are too small for this figure; {:.0} mm x {:.0} mm are enough",
         millimetres(asked[0]), millimetres(asked[1]), millimetres(needed[0]).ceil(), millimetres(needed[1]).ceil()
     )]
     Size {
         /// Width and height asked for \[points\].
         asked: [f64; 2],
-        /// Width and height needed \[points\].
+        /// Width and height that are enough, in the same proportion \[points\].
         needed: [f64; 2],
     },
     /// The drawing could not be made into dots.
@@ -92,6 +92,19 @@ impl Figure {
         crate::file::write(path, force, |file| file.write_all(&data)).map_err(failed)
     }
 
+    /// The letters of its texts that its typeface lacks, each once: PNG and PDF have a box for each, and SVG leaves them to the
+    /// typefaces of the viewer.
+    pub fn missing_letters(&self) -> Vec<char> {
+        let drawing = self.drawing();
+        let mut missing = vec![];
+        for c in drawing.texts().flat_map(str::chars).filter(|c| font::glyph(*c).is_none()) {
+            if !missing.contains(&c) {
+                missing.push(c);
+            }
+        }
+        missing
+    }
+
     /// The figure as PNG with `dots` to an inch.
     ///
     /// # Errors
@@ -107,7 +120,7 @@ impl Figure {
         }
         let scale = dots / POINTS;
         let size = self.paper().map(|length| (length * scale).round() as u32);
-        dots::draw(&self.drawing(), size, scale).ok_or_else(|| undrawn("its paper has no area"))
+        dots::draw(&self.drawing(), size, scale * self.zoom).ok_or_else(|| undrawn("its paper has no area"))
     }
 
     /// The figure as a PDF of one page.
@@ -115,7 +128,7 @@ impl Figure {
     /// # Errors
     /// [`FigureError::Drawing`] where its data cannot be compressed.
     pub fn to_pdf(&self) -> Result<Vec<u8>, FigureError> {
-        pdf::write(&self.drawing(), self.paper(), &self.title).map_err(undrawn)
+        pdf::write(&self.drawing(), self.paper(), self.zoom, &self.title).map_err(undrawn)
     }
 }
 

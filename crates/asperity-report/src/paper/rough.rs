@@ -154,6 +154,7 @@ fn plot_error(error: crate::result::PlotError) -> super::PaperError {
         crate::result::PlotError::Stress(StressError::Solve(error)) => error.into(),
         error @ (crate::result::PlotError::Stress(StressError::Refused { .. })
         | crate::result::PlotError::OnLine { .. }
+        | crate::result::PlotError::AtRest { .. }
         | crate::result::PlotError::Window { .. }
         | crate::result::PlotError::Figure(_)) => {
             asperity::Error::invalid("figure", error, "one of the paper's").into()

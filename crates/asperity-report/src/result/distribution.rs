@@ -9,6 +9,8 @@ use crate::figure::{Axis, Curves, Figure, Series, Style};
 use crate::histogram;
 
 const BINS: usize = 60;
+/// Values that differ by this share are the same but for rounding.
+const ROUNDING: f64 = 1e-9;
 
 pub(super) fn histogram(reader: &Reader, at: At) -> Result<Figure, StoreError> {
     let kept = &reader.header().fields;
@@ -17,14 +19,17 @@ pub(super) fn histogram(reader: &Reader, at: At) -> Result<Figure, StoreError> {
     if kept.contains(&FieldKind::Pressure) {
         let pressure = reader.field(FieldKind::Pressure, at)?;
         let inside: Vec<f64> = pressure.iter().copied().filter(|p| *p > 0.0).collect();
-        figure = figure.with(density("Pressure in contact", ["pressure", "Pa"], &inside, "nothing touches"));
+        let all = inside.len() == pressure.len();
+        let names = ["Pressure in contact", "pressure", "Pa"];
+        figure = figure.with(density(names, &inside, all, "nothing touches"));
     }
     if kept.contains(&FieldKind::Gap) {
         let gap = reader.field(FieldKind::Gap, at)?;
         let states = reader.contact_states(at)?;
         let open: Vec<f64> =
             gap.iter().zip(&states).filter(|(h, s)| **s == 0 && h.is_finite()).map(|(h, _)| *h).collect();
-        figure = figure.with(density("Gap out of contact", ["gap", "m"], &open, "no open cell"));
+        let all = open.len() == gap.len();
+        figure = figure.with(density(["Gap out of contact", "gap", "m"], &open, all, "no open cell"));
     }
     if figure.panels.is_empty() {
         return Err(reader.no_field(FieldKind::Pressure));
@@ -32,11 +37,17 @@ pub(super) fn histogram(reader: &Reader, at: At) -> Result<Figure, StoreError> {
     Ok(figure.caption(format!("Probability densities. {}", caption(reader, index)?)))
 }
 
-/// The share of values per unit, over bins from the least (or zero) to the greatest.
-fn density(title: &str, [label, unit]: [&str; 2], values: &[f64], none: &str) -> Curves {
-    let low = values.iter().copied().fold(f64::INFINITY, f64::min).min(0.0);
-    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+/// The share of values per unit, over bins from zero to the greatest; of `all` cells, or where zero is far from all of them, from
+/// the least.
+fn density([title, label, unit]: [&str; 3], values: &[f64], all: bool, none: &str) -> Curves {
+    let ends = [f64::INFINITY, f64::NEG_INFINITY];
+    let [least, high] = values.iter().fold(ends, |[a, b], value| [a.min(*value), b.max(*value)]);
+    let low = if all || least > 0.5 * high { least } else { least.min(0.0) };
     let panel = Curves::new(title, Axis::linear(label, unit), Axis::linear("density", format!("1/{unit}")));
+    // Differences of the last digits are no distribution.
+    if !values.is_empty() && high - least <= ROUNDING * high.abs() {
+        return panel.or_say(format!("everywhere {}", quantity(high, unit)));
+    }
     histogram::bars(panel.or_say(none), histogram::density(values, low..=high, BINS))
 }
 
@@ -65,4 +76,27 @@ pub(super) fn spots(reader: &Reader, at: At) -> Result<Figure, StoreError> {
     let mut figure = Figure::new("").with(panel).caption(sizes);
     figure.panel = [345.0, 260.0];
     Ok(figure)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bins_begin_at_zero_where_it_matters() {
+        let first = |values: &[f64], all: bool| {
+            let panel = density(["", "pressure", "Pa"], values, all, "none");
+            panel.series.first().map(|series| series.x[0])
+        };
+        let near = |found: Option<f64>, low: f64, high: f64| {
+            let middle = low + 0.5 * (high - low) / BINS as f64;
+            assert!((found.unwrap() - middle).abs() < 1e-9 * high, "{found:?}, expected {middle}");
+        };
+        // Some cells are open: the density at small pressure says how the contact ends.
+        near(first(&[0.4, 0.7, 1.0], false), 0.0, 1.0);
+        near(first(&[0.4, 0.7, 1.0], true), 0.4, 1.0);
+        near(first(&[0.997, 1.0, 1.009], false), 0.997, 1.009);
+        let same = density(["", "pressure", "Pa"], &[2e6, 2e6 * (1.0 + 1e-12)], true, "none");
+        assert_eq!((same.series.len(), same.empty.as_str()), (0, "everywhere 2 MPa"));
+    }
 }

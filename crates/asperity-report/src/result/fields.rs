@@ -1,6 +1,7 @@
 //! Maps of the fields.
 
 use asperity_io::store::{At, FieldKind, Reader, StoreError};
+use ndarray::Array2;
 
 use super::{caption, line, no_contact};
 use crate::figure::{Colours, Figure, Map, OPEN, Panel};
@@ -9,30 +10,51 @@ use crate::figure::{Colours, Figure, Map, OPEN, Panel};
 pub(super) const CONTACT_STATES: [(&str, [u8; 3]); 3] =
     [("open", OPEN), ("contact", [0, 114, 178]), ("at hardness", [213, 94, 0])];
 
-/// The map of a field at an instant, for colours by the logarithm where `log`.
-pub(super) fn map(reader: &Reader, kind: FieldKind, at: At, log: bool) -> Result<Figure, StoreError> {
+/// Gaps below this share of the largest undeformed gap or displacement are closed but for rounding errors.
+const ROUNDING: f64 = 1e-12;
+
+/// The gap at an instant, 0 in contact, where rounding errors remain.
+pub(super) fn gap(reader: &Reader, at: At) -> Result<Array2<f64>, StoreError> {
+    let mut gap = reader.field(FieldKind::Gap, at)?;
+    let states = reader.contact_states(at)?;
+    let approach = super::at_instant(reader, reader.index(at)?, "approach")?;
+    let finite = |values: Array2<f64>| values.into_iter().filter(|v| v.is_finite());
+    let largest = finite(reader.initial_gap()?).fold(approach.abs(), |most, v| most.max(v.abs()));
+    gap.zip_mut_with(&states, |gap, state| {
+        if *state > 0 || gap.abs() < ROUNDING * largest {
+            *gap = 0.0;
+        }
+    });
+    Ok(gap)
+}
+
+/// The map of a field at an instant.
+pub(super) fn map(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, StoreError> {
     if reader.header().grid.is_line() {
         return line::field(reader, kind, at);
     }
-    let mut values = reader.field(kind, at)?;
-    if kind == FieldKind::Gap && log && reader.contact_kind().is_some() {
-        // In contact the gap is closed to rounding errors, which have decades of their own.
-        let states = reader.contact_states(at)?;
-        values.zip_mut_with(&states, |gap, state| *gap = if *state > 0 { 0.0 } else { *gap });
-    }
-    let index = reader.index(at)?;
     let (title, colours) = match kind {
         FieldKind::Pressure => ("Pressure", Colours::Pressure),
-        FieldKind::Gap => ("Gap", Colours::Sequential),
+        FieldKind::Gap => ("Gap", Colours::Gap),
         FieldKind::Displacement => ("Displacement", Colours::Sequential),
         FieldKind::Flattening => ("Permanent flattening", Colours::Sequential),
         FieldKind::Contact => return contact(reader, at),
     };
+    let values = if kind == FieldKind::Gap { gap(reader, at)? } else { reader.field(kind, at)? };
+    let index = reader.index(at)?;
+    let touches = |value: &f64| *value == 0.0;
+    let (heading, light) = match kind {
+        FieldKind::Gap if values.iter().all(touches) => (
+            format!("The bodies touch everywhere at {}", super::moment(reader, reader.field_times()[index])),
+            "",
+        ),
+        FieldKind::Gap if values.iter().any(touches) => (String::new(), " Light: contact."),
+        FieldKind::Pressure => (no_contact(reader, index)?, " Light: no contact."),
+        _ => (no_contact(reader, index)?, ""),
+    };
     let size = reader.header().grid.size();
-    let label = [&title.to_lowercase(), kind.units()];
-    let map = Map::new(no_contact(reader, index)?, label, colours, values.view(), size);
-    let open = if kind == FieldKind::Pressure { " Light: no contact." } else { "" };
-    single(map, caption(reader, index)? + open)
+    let map = Map::new(heading, [&title.to_lowercase(), kind.units()], colours, values.view(), size);
+    single(map, caption(reader, index)? + light)
 }
 
 pub(super) fn contact(reader: &Reader, at: At) -> Result<Figure, StoreError> {

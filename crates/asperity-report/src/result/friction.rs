@@ -11,6 +11,9 @@ use super::{Options, PlotError, boundary, creep, nameless};
 use crate::figure::{Axis, Curves, Figure, Series, Style};
 
 pub(super) fn friction(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
+    if !reader.scalars().iter().any(|series| series.name == "friction_coefficient") {
+        return Err(PlotError::AtRest { path: reader.path().to_owned() });
+    }
     let x = times(reader)?;
     let rows = Rows::within(reader, options)?;
     let axis = || rows.axis(options.log);

@@ -5,7 +5,7 @@ use ndarray::Array2;
 
 use super::fields::CONTACT_STATES;
 use super::{caption, nameless, no_contact};
-use crate::figure::{Axis, Colours, Curves, Figure, Map, Series, Style, means, states};
+use crate::figure::{Axis, COLOURS, Colours, Curves, Figure, INK, Map, Series, Style, means, states};
 
 /// Rows of a picture over time, and most columns.
 const ROWS: usize = 256;
@@ -23,23 +23,28 @@ pub(super) fn field(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, 
     let mut figure = Figure::new("").columns(1).with(panel);
     figure.panel = [430.0, 180.0];
     let mut words = caption(reader, index)?;
+    if reader.header().is_sweep() && reader.field_times().len() > 1 {
+        words += " Solid: this velocity.";
+    }
     if let Some(map) = over_time(reader, kind)? {
         figure = figure.with(map);
-        words += " Below: over x and time, at each time the nearest stored instant.";
+        words += " The map: over x and time, at each time the nearest stored instant.";
     }
     Ok(figure.caption(words))
 }
 
-/// A field over x at some of the stored velocities of a sweep, that of number `index` among them.
+/// A field over x at some of the stored velocities of a sweep, that of number `index` as a solid line among dashed ones.
 fn of_sweep(reader: &Reader, kind: FieldKind, index: usize) -> Result<Curves, StoreError> {
     let count = reader.field_times().len();
     let every = count.div_ceil(MOST_CURVES).max(1);
-    let chosen = (0..count).filter(|n| n % every == index % every);
     let mut panel = Curves::new("", Axis::linear("x", "m"), axis(kind));
-    for n in chosen {
+    for n in (0..count).filter(|n| n % every == 0 || *n == index) {
         let name = super::moment(reader, reader.field_times()[n]);
         let values = one(reader, kind, At::Index(n))?.into_raw_vec_and_offset().0;
-        panel = panel.with(Series::new(name, Style::Line, places(reader), values));
+        let style = if n == index { Style::Line } else { Style::Dashed };
+        // A velocity keeps its colour whichever one is shown.
+        let colour = if n % every == 0 { COLOURS[n / every % COLOURS.len()] } else { INK };
+        panel = panel.with(Series::new(name, style, places(reader), values).in_colour(colour));
     }
     Ok(panel)
 }
@@ -122,7 +127,11 @@ pub(crate) fn over_time(reader: &Reader, kind: FieldKind) -> Result<Option<Map>,
             Map::states("", names, picture.view(), size)
         }
         kind => {
-            let colours = if kind == FieldKind::Pressure { Colours::Pressure } else { Colours::Sequential };
+            let colours = match kind {
+                FieldKind::Pressure => Colours::Pressure,
+                FieldKind::Gap => Colours::Gap,
+                _ => Colours::Sequential,
+            };
             Map::new("", [title(kind), kind.units()], colours, picture.view(), size)
         }
     };
@@ -138,6 +147,7 @@ pub(super) fn places(reader: &Reader) -> Vec<f64> {
 fn one(reader: &Reader, kind: FieldKind, at: At) -> Result<Array2<f64>, StoreError> {
     match kind {
         FieldKind::Contact => Ok(reader.contact_states(at)?.mapv(f64::from)),
+        FieldKind::Gap => super::fields::gap(reader, at),
         kind => reader.field(kind, at),
     }
 }

@@ -149,6 +149,12 @@ pub enum PlotError {
         /// What there is not, or what to do instead.
         what: &'static str,
     },
+    /// The bodies do not move along each other.
+    #[error("{} has no friction: its case has no motion; give it a table [motion]", path.display())]
+    AtRest {
+        /// The result.
+        path: std::path::PathBuf,
+    },
     /// The flow at the instant was not solved.
     #[error(transparent)]
     Flow(#[from] asperity::Error),
@@ -162,7 +168,10 @@ pub enum PlotError {
     #[error(transparent)]
     Figure(#[from] FigureError),
     /// The line of a profile is outside of the area.
-    #[error("the line at {axis} = {at:e} m is outside of the area, which goes from 0 to {length:e} m")]
+    #[error(
+        "the line at {axis} = {} is outside of the area, which goes from 0 to {}",
+        quantity(*at, "m"), quantity(*length, "m")
+    )]
     Outside {
         /// x or y.
         axis: char,
@@ -265,9 +274,22 @@ fn finished(mut figure: Figure, options: &Options) -> Result<Figure, PlotError> 
     if figure.panels.iter().any(leaves_out) {
         figure.caption += " t = 0 is not shown: the time axis is logarithmic.";
     }
+    if let Some((axis, times)) = figure.panels.iter().find_map(stretched) {
+        let times = quantity(if times < 10.0 { times } else { times.round() }, "");
+        figure.caption += &format!(" The map is stretched {times} times along {axis}.");
+    }
+    figure.caption = figure.caption.trim_start().to_owned();
     match options.size {
         Some(size) => Ok(figure.sized(size)?),
         None => Ok(figure),
+    }
+}
+
+/// Which axis of a map is stretched, and how many times.
+fn stretched(panel: &Panel) -> Option<(&'static str, f64)> {
+    match panel {
+        Panel::Map(map) => map.stretched(),
+        Panel::Curves(_) => None,
     }
 }
 
@@ -290,10 +312,10 @@ fn panels(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, Plot
         Plot::Quantities => evolution::quantities(reader, options)?,
         Plot::Leak => crate::leak::over_time(reader, options)?,
         Plot::Friction => friction::friction(reader, options)?,
-        Plot::Flattening => fields::map(reader, FieldKind::Flattening, options.at, options.log_values)?,
-        Plot::Pressure => fields::map(reader, FieldKind::Pressure, options.at, options.log_values)?,
-        Plot::Gap => fields::map(reader, FieldKind::Gap, options.at, options.log_values)?,
-        Plot::Displacement => fields::map(reader, FieldKind::Displacement, options.at, options.log_values)?,
+        Plot::Flattening => fields::map(reader, FieldKind::Flattening, options.at)?,
+        Plot::Pressure => fields::map(reader, FieldKind::Pressure, options.at)?,
+        Plot::Gap => fields::map(reader, FieldKind::Gap, options.at)?,
+        Plot::Displacement => fields::map(reader, FieldKind::Displacement, options.at)?,
         Plot::Contact => fields::contact(reader, options.at)?,
         Plot::InitialGap => fields::initial_gap(reader)?,
         Plot::Profile => profile::profile(reader, options)?,
@@ -306,10 +328,8 @@ fn panels(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, Plot
     for panel in &mut figure.panels {
         colour(panel, plot, options);
     }
-    let touches = matches!(plot, Plot::Gap | Plot::InitialGap | Plot::Displacement | Plot::Flattening);
-    if options.log_values && touches {
-        let light = if plot == Plot::Gap { "contact" } else { "not above 0" };
-        figure.caption = format!("{} Light: {light}.", figure.caption).trim_start().to_owned();
+    if options.log_values && matches!(plot, Plot::InitialGap | Plot::Displacement | Plot::Flattening) {
+        figure.caption += " Light: not above 0.";
     }
     Ok(figure)
 }

@@ -34,7 +34,7 @@ pub(super) fn profile(reader: &Reader, options: &Options) -> Result<Figure, Plot
         figure = figure.with(nameless(panel, &place, line(pressure.view(), along, row).to_vec()));
     }
     if kept.contains(&FieldKind::Gap) {
-        let gap = reader.field(FieldKind::Gap, options.at)?;
+        let gap = super::fields::gap(reader, options.at)?;
         let before = reader.initial_gap()?;
         let start = line(before.view(), along, row).to_vec();
         let panel = Curves::new(title.as_str(), axis(), Axis::linear("gap", "m"))

@@ -249,12 +249,11 @@ pub fn hurst(fit: &SelfAffineFit) -> Option<Finding> {
         let limit = if fit.hurst > 1.0 { 1.0 } else { 0.0 };
         return Some(Finding::warning(HURST_OUT_OF_RANGE, fit.hurst, limit, text(what)));
     }
-    let (value, limit, why) = match (fit.misfit > MISFIT, fit.hurst > END) {
-        (true, _) => (
-            fit.misfit,
-            MISFIT,
-            format!("the spectrum strays from the fit by {} in ln C", digits(fit.misfit)),
-        ),
+    let stray = fit.misfit.max(fit.stray);
+    let (value, limit, why) = match (stray > MISFIT, fit.hurst > END) {
+        (true, _) => {
+            (stray, MISFIT, format!("the spectrum strays from the fit by {} in ln C", digits(stray)))
+        }
         (_, true) => (fit.hurst, END, "near 1 levelling and window decide as much as the surface".to_owned()),
         _ => return None,
     };

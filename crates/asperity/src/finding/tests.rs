@@ -404,7 +404,8 @@ fn outliers_and_hurst_exponents_are_judged() {
     heights[[10, 10]] = 3e-4;
     assert!(codes(&of_heights("it", &Surface::new(grid, heights).unwrap())).contains(&OUTLIERS));
 
-    let fit = |hurst, misfit| SelfAffineFit { hurst, error: 0.1, roll_off: 1e-4, plateau: 1.0, misfit };
+    let fit =
+        |hurst, misfit| SelfAffineFit { hurst, error: 0.1, roll_off: 1e-4, plateau: 1.0, misfit, stray: 0.1 };
     let judged =
         |hurst, misfit| super::hurst(&fit(hurst, misfit)).map(|finding| (finding.code, finding.severity));
     assert_eq!(judged(-4.76, 0.2), Some((HURST_OUT_OF_RANGE.into(), Severity::Warning)));
@@ -412,6 +413,8 @@ fn outliers_and_hurst_exponents_are_judged() {
     assert_eq!(judged(f64::NAN, 0.2), Some((HURST_OUT_OF_RANGE.into(), Severity::Warning)));
     assert_eq!(judged(0.8, 0.2), None);
     assert_eq!(judged(0.8, 1.5), Some((HURST_UNCERTAIN.into(), Severity::Note)));
+    let bent = SelfAffineFit { stray: 1.2, ..fit(0.15, 0.4) };
+    assert_eq!(super::hurst(&bent).map(|finding| finding.code), Some(HURST_UNCERTAIN.into()));
 }
 
 #[test]

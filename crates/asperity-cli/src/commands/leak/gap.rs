@@ -49,7 +49,7 @@ pub fn run(args: &args::Leak, path: &Path) -> Result<(), Failure> {
     let findings = judge.findings();
     if let Some(plot) = &args.plot {
         let figure = asperity_report::leak::state(&leak, &state, gap.heights.view(), grid.size());
-        figure.write(plot, args.force).map_err(|error| Failure::input(error.to_string()))?;
+        crate::commands::picture::write(&figure, plot, args.force)?;
     }
     super::super::findings::tell(&findings);
     let text = if args.json {

@@ -41,7 +41,7 @@ pub fn fit(args: &Fit) -> Result<(), Failure> {
     if let Some(path) = &args.plot {
         let title = args.data.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
         let figure = pictures::fit(&title, &curves, &fitted).map_err(told)?;
-        figure.write(path, args.force).map_err(told)?;
+        crate::commands::picture::write(&figure, path, args.force)?;
     }
     if args.json {
         let mut object = json_of(&curves, &fitted);

@@ -6,7 +6,6 @@ use asperity_io::case::{Case, WaveReport};
 use asperity_report::material as pictures;
 use serde_json::json;
 
-use super::told;
 use crate::args::Show;
 use crate::failure::Failure;
 use crate::words::quantity;
@@ -34,7 +33,7 @@ pub fn show(args: &Show) -> Result<(), Failure> {
         let title = case.title.as_deref().unwrap_or(&case.name);
         let fine: Vec<WaveReport> =
             (0..=200).filter_map(|k| case.wave(first * (last / first).powf(f64::from(k) / 200.0))).collect();
-        pictures::layers(title, &fine).write(path, args.force).map_err(told)?;
+        crate::commands::picture::write(&pictures::layers(title, &fine), path, args.force)?;
     }
     if args.json {
         return crate::print(&format!("{}\n", json!(waves)));

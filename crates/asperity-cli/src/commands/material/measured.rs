@@ -8,7 +8,7 @@ use asperity_io::curve::{Curves, Kind, Sweep};
 use asperity_report::material as pictures;
 use serde_json::{Value, json};
 
-use super::{celsius, given, told};
+use super::{celsius, given};
 use crate::args::Show;
 use crate::failure::Failure;
 use crate::words::{counted, quantity};
@@ -30,7 +30,7 @@ pub fn show(args: &Show) -> Result<(), Failure> {
     let curves = given::curves(&args.file, &args.table)?;
     if let Some(path) = &args.plot {
         let title = args.file.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
-        pictures::isotherms(&title, &curves).write(path, args.force).map_err(told)?;
+        crate::commands::picture::write(&pictures::isotherms(&title, &curves), path, args.force)?;
     }
     let text = if args.json { format!("{}\n", object(&curves)) } else { text(&curves) };
     crate::print(&text)

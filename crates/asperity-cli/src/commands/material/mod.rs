@@ -71,7 +71,7 @@ fn show(args: &Show) -> Result<(), Failure> {
         let shifts: Vec<pictures::Factors> = specimens.iter().filter_map(shift_of).collect();
         let figure =
             pictures::shift_factors(&shifts).into_iter().fold(figure, |figure, panel| figure.with(panel));
-        figure.write(path, args.force).map_err(told)?;
+        crate::commands::picture::write(&figure, path, args.force)?;
     }
     let tables = specimens.iter().map(|specimen| Table::of(specimen, window, args.per_decade));
     let tables = tables.collect::<Result<Vec<Table>, Failure>>()?;

@@ -72,7 +72,7 @@ fn draw(args: &args::Plot, plot: Plot, all: Vec<(String, Reader)>) -> Result<(),
             together(&all.collect::<Result<Vec<_>, Failure>>()?, plot, &chosen)
         }
     };
-    drawn.map_err(told)?.write(&output, args.force).map_err(told)?;
+    super::picture::write(&drawn.map_err(told)?, &output, args.force)?;
     crate::print(&format!("{}\n", output.display()))
 }
 
@@ -91,7 +91,9 @@ fn animate(args: &args::Plot, plot: Plot, all: &[(String, Reader)], path: &Path)
         frames: args.frames.map_or(usual.frames, |frames| frames as usize),
     };
     let chosen = options::of(args, plot, reader)?;
-    match animation(reader, plot, &Options { at: At::Last, ..chosen }, course, path, args.force) {
+    let last = Options { at: At::Last, ..chosen };
+    super::picture::tell_missing(&figure(reader, plot, &last).map_err(told)?);
+    match animation(reader, plot, &last, course, path, args.force) {
         Ok(frames) => crate::print(&format!("{}: {frames} frames\n", path.display())),
         Err(AnimationError::Encoding { path, why }) => {
             Err(Failure::System(format!("cannot write {}: {why}", path.display())))

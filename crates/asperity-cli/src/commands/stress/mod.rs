@@ -57,7 +57,7 @@ pub fn run(args: &Stress) -> Result<(), Failure> {
             false => below_at(&one, &plan, at).map_err(ended)?,
         };
         let figure = stress_figure(&one, &shown, index).map_err(told)?;
-        figure.write(path, args.force).map_err(told)?;
+        crate::commands::picture::write(&figure, path, args.force)?;
         written.push(path.display().to_string());
     }
     if let Some(path) = &args.output {

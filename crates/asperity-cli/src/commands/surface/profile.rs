@@ -80,9 +80,7 @@ pub(super) fn info(args: &SurfaceInfo, profile: Profile) -> Result<(), Failure> 
         finite.iter().copied().fold(f64::NEG_INFINITY, f64::max),
     );
     if let Some(path) = &args.plot {
-        figure(&name, &heights, spacing, &spectrum)
-            .write(path, args.force)
-            .map_err(|error| Failure::input(error.to_string()))?;
+        crate::commands::picture::write(&figure(&name, &heights, spacing, &spectrum), path, args.force)?;
     }
     if args.json {
         let object = json!({

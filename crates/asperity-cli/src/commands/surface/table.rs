@@ -68,7 +68,7 @@ impl<'a> Portrait<'a> {
             let title =
                 Path::new(self.name).file_name().map_or(self.name.into(), |name| name.to_string_lossy());
             let figure = picture(&title, &self.map, self.extent, &self.summary, &self.bearing);
-            figure.write(plot, force).map_err(|error| Failure::input(error.to_string()))?;
+            crate::commands::picture::write(&figure, plot, force)?;
         }
         match json {
             true => crate::print(&format!("{}\n", self.object())),

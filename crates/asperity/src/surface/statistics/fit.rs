@@ -30,6 +30,9 @@ pub struct SelfAffineFit {
     pub plateau: f64,
     /// Weighted rms of ln C about the fit.
     pub misfit: f64,
+    /// Rms of ln C about the slope, with all of ln q alike, beyond what the scatter of rings of few waves explains. It is large
+    /// where the many short waves fit and the few long ones do not: the spectrum is no power law.
+    pub stray: f64,
 }
 
 impl SelfAffineFit {
@@ -98,6 +101,7 @@ impl SelfAffineFit {
             roll_off: TAU / best.bend.exp(),
             plateau: best.level.exp(),
             misfit: variance.sqrt(),
+            stray: stray(&points, best),
         })
     }
 }
@@ -105,6 +109,19 @@ impl SelfAffineFit {
 /// Variance of a slope over that from the scatter of independent rings, calibrated on synthetic surfaces: a window spreads
 /// each wave over neighbouring rings, so that they are alike.
 const ALIKE: f64 = 2.0;
+
+/// Rms distance of the points on the slope from a fit, each with the length of ln q that it stands for, less its own variance.
+fn stray(points: &[Point], fit: &Bend) -> f64 {
+    let slope: Vec<&Point> = points.iter().filter(|p| p.x >= fit.bend).collect();
+    let (mut squares, mut length) = (0.0, 0.0);
+    for (n, p) in slope.iter().enumerate() {
+        let own = 0.5 * (slope[(n + 1).min(slope.len() - 1)].x - slope[n.saturating_sub(1)].x);
+        let distance = p.y - fit.level + fit.slope * (p.x - fit.bend);
+        squares += own * (distance * distance - ALIKE / p.weight).max(0.0);
+        length += own;
+    }
+    if length > 0.0 { (squares / length).sqrt() } else { 0.0 }
+}
 
 struct Point {
     x: f64,
@@ -155,7 +172,18 @@ mod tests {
                 "{fit:?}"
             );
             assert!((fit.plateau / 3.0 - 1.0).abs() < 1e-9 && fit.misfit < 1e-10 && fit.error < 1e-10);
+            assert!(fit.stray < 1e-10);
         }
+    }
+
+    #[test]
+    fn a_floor_of_noise_takes_the_slope_and_is_told() {
+        let mut spectrum = exact(0.8, 1.0);
+        // Spikes, a few to a thousand points, have the same power at all waves; here that of the hundredth ring.
+        let floor = spectrum.power[99];
+        spectrum.power.iter_mut().for_each(|power| *power += 10.0 * floor);
+        let fit = SelfAffineFit::of(&spectrum, f64::INFINITY, 0.0).unwrap();
+        assert!(fit.hurst < 0.3 && fit.misfit < 0.5 && fit.stray > 0.7, "{fit:?}");
     }
 
     #[test]

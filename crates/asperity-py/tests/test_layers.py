@@ -60,6 +60,7 @@ def test_a_coating_on_an_elastic_base_creeps_differently_at_every_wave():
     # Long waves see the elastic base, short ones the rubber, which creeps by half.
     assert abs(rise[0] - 1) < 1e-3 and abs(rise[1] - 1.5) < 1e-9
     result = asp.solve(sphere(), coated(), load=asp.step(1.0), times=asp.uniform(8.0, 4))
+    assert result.attributes["layer_separable"] == 0 and 0 < result.attributes["layer_misfit"] < 1e-3
     assert (np.diff(result.approach) > 0).all()
     # The layer on a rigid base: a base some 400 times as stiff.
     rigid = asp.solve(sphere(), tread(), load=asp.step(1.0), times=asp.uniform(8.0, 4))

@@ -149,6 +149,12 @@ pub(super) fn attributes(header: &Header, form: u64) -> Map<String, Value> {
     put("version", json!(header.version));
     put("case", json!(header.case_text));
     put("setup", json!(Value::Object(header.setup.clone()).to_string()));
+    if let (Some(separable), Some(misfit)) =
+        (header.setup.get("layer_separable").and_then(Value::as_bool), header.setup.get("layer_misfit"))
+    {
+        put("layer_separable", json!(u8::from(separable)));
+        put("layer_misfit", misfit.clone());
+    }
     // One number each of a line.
     put("cells", json!(cells[..header.grid.dimensions()]));
     put("size", json!(size));

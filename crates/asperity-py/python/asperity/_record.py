@@ -126,9 +126,17 @@ class Record:
                 "version": _core.__version__,
                 "status": status,
                 "setup": json.dumps(self._march._setup),
+                **layers_of(self._march._setup),
                 "findings": [dict(finding) for finding in self._march.findings],
             },
         )
+
+
+def layers_of(setup: dict[str, Any]) -> dict[str, Any]:
+    """The attributes of a result on its layers: as a run of a case file has them."""
+    if "layer_separable" not in setup:
+        return {}
+    return {"layer_separable": int(setup["layer_separable"]), "layer_misfit": setup["layer_misfit"]}
 
 
 def path_of(output: str | os.PathLike[str] | None) -> str | None:

@@ -39,13 +39,26 @@ pub(super) fn facts(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
             .filter(|s| !s.is_empty())
     };
     let number = |key: &str, unit: &str| setup.get(key).and_then(Value::as_f64).map(|v| quantity(v, unit));
+    let bodies = match setup.get("layer_rigid_base").and_then(Value::as_bool) {
+        None => "half-space",
+        Some(true) => "domain, layers on a rigid base",
+        Some(false) => "domain, layers on a half-space",
+    };
     line(
         "Boundary",
         text("boundary").map(|word| match word {
-            "periodic" => "periodic half-space".to_owned(),
-            _ => "free half-space".to_owned(),
+            "periodic" => format!("periodic {bodies}"),
+            _ => format!("free {bodies}"),
         }),
     );
+    let layers = setup.get("layer_separable").and_then(Value::as_bool).map(|separable| match separable {
+        true => "all waves creep alike".to_owned(),
+        false => format!(
+            "waves of different lengths creep differently, described to {:.1e}",
+            setup.get("layer_misfit").and_then(Value::as_f64).unwrap_or_default()
+        ),
+    });
+    line("Layers", layers);
     line("Surfaces", names("surfaces"));
     line("Deformable bodies", names("bodies"));
     line("Instantaneous contact modulus, 1/C(0)", number("instantaneous_modulus", "Pa"));

@@ -245,11 +245,12 @@ fn intervals(bodies: &[LayeredBody]) -> Result<Vec<[f64; 2]>> {
         let creep = material.shear()?.tidy();
         let flows = creep.fluidity > 0.0;
         if flows || creep.instantaneous <= 0.0 {
-            let what = if flows { "flows without end" } else { "has no instantaneous compliance" };
+            let what =
+                if flows { "one that flows without end" } else { "one without an instantaneous compliance" };
             return Err(Error::invalid(
                 format!("creep function of {}", material.name),
                 what,
-                "an instantaneous compliance and a limit for long times, where layers creep differently: add an equilibrium \
+                "one with an instantaneous compliance and a limit for long times, where layers creep differently: add an equilibrium \
                  modulus, or a spring in series",
             ));
         }

@@ -59,7 +59,8 @@ fn repeated(table: &Table) -> Result<Option<Vec<Block>>, Fault> {
     let name = |column: usize| table.headers.get(column).map_or("", String::as_str);
     let repeats = |period: usize| {
         // The last block may lack the empty column that parts the blocks.
-        let whole = columns % period == 0 || (columns + 1) % period == 0 && name(period - 1).is_empty();
+        let whole = columns.is_multiple_of(period)
+            || (columns + 1).is_multiple_of(period) && name(period - 1).is_empty();
         let named = (0..period).filter(|column| !name(*column).is_empty()).count() >= 2;
         whole && named && (period..columns).all(|column| name(column) == name(column - period))
     };

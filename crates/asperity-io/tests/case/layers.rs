@@ -128,7 +128,7 @@ fn layers_that_creep_differently_are_described_by_their_waves() {
     );
     let errors = parse(&fluid).expect_err("it flows").errors;
     assert_eq!(errors[0].key, "body[0].layer[1]", "{}", errors[0]);
-    assert!(errors[0].to_string().contains("flows without end"), "{}", errors[0]);
+    assert!(errors[0].to_string().contains("one that flows without end"), "{}", errors[0]);
 }
 
 #[test]

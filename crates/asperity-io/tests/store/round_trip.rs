@@ -138,7 +138,7 @@ fn what_is_not_kept_is_said_with_what_is() {
     case.run(&mut writer, 0, 1);
     let reader = Reader::open(&path).unwrap();
     let message = reader.field(FieldKind::Pressure, At::Last).unwrap_err().to_string();
-    assert!(message.ends_with("holds no field `pressure`; it holds the fields gap, contact"), "{message}");
+    assert!(message.contains("holds no field `pressure`; it holds the fields gap, contact"), "{message}");
     let message = reader.series("laod").unwrap_err().to_string();
     assert!(message.contains("no series `laod`") && message.contains("approach"), "{message}");
 }

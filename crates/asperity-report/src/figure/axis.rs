@@ -370,7 +370,8 @@ mod tests {
     #[test]
     fn numbers_beyond_the_prefixes_of_their_unit_take_a_power_of_ten() {
         let (title, ticks) = texts(&Axis::linear("area", "m2"), [0.0, 2.2e11]);
-        assert_eq!((title.as_str(), ticks), ("area [10⁹ m²]", vec!["0".into(), "100".into(), "200".into()]));
+        assert_eq!(title, "area [10⁹ m²]");
+        assert_eq!(ticks, ["0", "50", "100", "150", "200"]);
         let (title, ticks) = texts(&Axis::linear("energy", "J"), [0.0, 4e-25]);
         assert_eq!(title, "energy [10⁻¹⁵ pJ]");
         assert_eq!(ticks, ["0", "100", "200", "300", "400"]);

@@ -113,8 +113,8 @@ fn limits_colours_window_and_size_are_as_asked_for() {
         "the colours of the whole run, not of a start without pressure"
     );
 
-    let log = svg(dir.path(), &["gap", "--log"]);
-    assert!(log.contains("Light"), "the caption says what is light; it may be wrapped");
+    let log = svg(dir.path(), &["gap", "--log", "--time", "2 s"]);
+    assert!(log.contains("Light: contact"));
 
     let late = svg(dir.path(), &["evolution", "--from", "4 s", "--to", "8 s"]);
     assert!(late.contains(">4<") && late.contains(">8<") && !late.contains(">10<"), "ticks from 4 s to 8 s");

@@ -124,14 +124,14 @@ pub struct Fit {
     /// Moduli of a dma to fit; measured ones often contradict each other, and then storage is usual
     #[arg(long, value_parser = choice::<Moduli>(), default_value = "both")]
     pub fit: Moduli,
-    /// Weight of a residual of the loss modulus over one of the storage modulus [default: 1]
+    /// Weight of the squared residuals of the loss modulus where both are fitted; those of the storage modulus have 1 [default: 1]
     #[arg(long, value_name = "WEIGHT")]
     pub loss_weight: Option<f64>,
-    /// Rms misfit to hold with as few terms as possible, e.g. 0.02 [default: the data justify the number of terms]
-    #[arg(long, value_name = "SHARE", conflicts_with = "max_terms")]
-    pub misfit: Option<f64>,
+    /// Rms misfit to hold with as few terms as possible, e.g. 0.02 or '2 %' [default: the data justify the number of terms]
+    #[arg(long, value_name = "SHARE", conflicts_with = "max_terms", allow_hyphen_values = true)]
+    pub misfit: Option<String>,
     /// Part of the curve to fit: --window '0.1 s, 100 s', for a dma --window '0.1 Hz, 100 Hz'
-    #[arg(long, value_name = "A,B")]
+    #[arg(long, value_name = "A,B", allow_hyphen_values = true)]
     pub window: Option<String>,
     /// Largest number of terms [default: as many as the data justify]
     #[arg(long, value_name = "N")]
@@ -149,10 +149,10 @@ pub struct Fit {
     #[arg(long, value_parser = choice::<LongTime>(), default_value = "free")]
     pub long_time: LongTime,
     /// Shift for data at several temperatures: --wlf 'C1, C2, REFERENCE', e.g. '8.86, 101.6 K, 20 °C'
-    #[arg(long, value_name = "C1,C2,REF", conflicts_with_all = ["arrhenius", "estimate_shift", "shift_table"])]
+    #[arg(long, value_name = "C1,C2,REF", allow_hyphen_values = true, conflicts_with_all = ["arrhenius", "estimate_shift", "shift_table"])]
     pub wlf: Option<String>,
     /// Shift for data at several temperatures: --arrhenius 'ENERGY, REFERENCE', e.g. '120 kJ/mol, 20 °C'
-    #[arg(long, value_name = "ENERGY,REF", conflicts_with_all = ["estimate_shift", "shift_table"])]
+    #[arg(long, value_name = "ENERGY,REF", allow_hyphen_values = true, conflicts_with_all = ["estimate_shift", "shift_table"])]
     pub arrhenius: Option<String>,
     /// Table of shift factors, with columns T and log_aT (or ln_aT, aT)
     #[arg(long, value_name = "PATH", conflicts_with = "estimate_shift")]

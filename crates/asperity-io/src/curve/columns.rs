@@ -6,7 +6,7 @@ use asperity::material::Modulus;
 
 use super::Kind;
 use super::error::{Fault, Remedy, fault};
-use super::role::{self, Role};
+use super::role::{self, Role, unnumbered};
 use super::table::Table;
 use super::units::{convert, taken, tidy};
 use crate::case::quantity::unit::Unit;
@@ -115,8 +115,8 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read, 
         let header_unit = if base.is_some() { role::logarithm(header_unit).1 } else { header_unit };
         let unit = match (said.units.get(&role), role) {
             (Some(unit), _) => tidy(role, name, unit.trim()),
-            // "tan(delta) [-]": a ratio whatever the brackets say, but for per cent.
-            (None, Role::TanDelta) if header_unit != "%" => String::new(),
+            // "tan(delta) [-]": a ratio whatever the brackets say, but for per cent and numbers.
+            (None, Role::TanDelta) if is_ratio(header_unit) => String::new(),
             (None, _) => tidy(role, name, header_unit),
         };
         let place = format!("column {}{}", column + 1, table.quoted(column));
@@ -153,6 +153,11 @@ pub(super) fn values(table: &Table, form: Form, said: &Columns) -> Result<Read, 
     }
     let lines = kept.iter().map(|row| table.rows[*row].line).collect();
     Ok(Read { values, places: used, lines, left_out: table.rows.len() - kept.len(), notes })
+}
+
+/// Whether the unit of a ratio says nothing.
+fn is_ratio(unit: &str) -> bool {
+    unit == "1" || !unit.contains(|c: char| matches!(c, '%' | '‰') || c.is_ascii_digit())
 }
 
 /// What the columns of a table hold.
@@ -255,13 +260,40 @@ pub(super) fn places(table: &Table, form: Form, said: &Columns) -> Result<BTreeM
     let missing = form.needed.iter().find(|role| !places.contains_key(role)).copied();
     let missing = missing.or_else(|| one_pair(&mut places, form, said));
     match missing {
-        None => Ok(places),
+        None => once(table, &places, said).map(|()| places),
         Some(role) => {
             let columns = table.listed();
             let message = format!("no column is recognised as {}; the file has {columns}", role.name());
             Err(fault(message).remedy(Remedy::Column(role)))
         }
     }
+}
+
+/// # Errors
+/// Where a column was found by a heading that another one has too, with other numbers.
+fn once(table: &Table, places: &BTreeMap<Role, usize>, said: &Columns) -> Result<(), Fault> {
+    let header = |column: usize| unnumbered(table.headers.get(column).map_or("", String::as_str));
+    let numbered = |role: &Role| matches!(said.columns.get(role), Some(Column::Number(_)));
+    for (role, column) in places.iter().filter(|(role, _)| **role != Role::Set && !numbered(role)) {
+        let differs =
+            |other: &usize| table.rows.iter().any(|row| table.cell(row, *column) != table.cell(row, *other));
+        let alike = |other: &usize| {
+            let name = header(*column);
+            other != column && !name.is_empty() && header(*other) == name
+        };
+        let others: Vec<String> =
+            (0..table.columns).filter(alike).filter(differs).map(|other| (other + 1).to_string()).collect();
+        if !others.is_empty() {
+            let (name, first, others) = (header(*column), column + 1, others.join(", "));
+            return Err(fault(format!(
+                "the heading {name:?} stands above column {first} and again above other numbers (column {others}): which is {}? sweeps \
+                 at several temperatures need a temperature above each, as in \"20 °C\", or a column of temperatures",
+                role.name()
+            ))
+            .remedy(Remedy::Column(*role)));
+        }
+    }
+    Ok(())
 }
 
 /// Keeps one pair of columns and drops those of all others: the pair with most columns that were said, the first of those

@@ -190,6 +190,21 @@ pub(super) fn bare(name: &str) -> String {
     text
 }
 
+/// A header without the number that programs add where it occurs twice: "f [Hz].1", "f.1 [Hz]".
+pub(super) fn unnumbered(header: &str) -> String {
+    let without = |text: &str| -> Option<String> {
+        let (start, digits) = text.trim_end().rsplit_once('.')?;
+        let counts = !digits.is_empty() && digits.bytes().all(|b| b.is_ascii_digit());
+        (counts && !start.ends_with(|c: char| c.is_ascii_digit())).then(|| start.trim_end().to_owned())
+    };
+    let (name, unit) = header.split_at(header.find(['[', '(']).unwrap_or(header.len()));
+    match (without(header), without(name)) {
+        (Some(whole), _) => whole,
+        (None, Some(name)) => format!("{name} {unit}").trim_end().to_owned(),
+        (None, None) => header.to_owned(),
+    }
+}
+
 /// What a name calls the modulus or compliance: E and D are Young's, G and J shear.
 pub(super) fn measure_of(name: &str) -> Option<Modulus> {
     /// What may follow the symbol.
@@ -311,6 +326,20 @@ mod tests {
             ("loss", (None, "loss")),
         ] {
             assert_eq!(logarithm(header), found, "{header}");
+        }
+    }
+
+    #[test]
+    fn numbers_of_repeated_headers_are_dropped() {
+        for (header, plain) in [
+            ("f [Hz].1", "f [Hz]"),
+            ("f.12 [Hz]", "f [Hz]"),
+            ("E'.1", "E'"),
+            ("E'(0.1 Hz)", "E'(0.1 Hz)"),
+            ("E' 10.5", "E' 10.5"),
+            ("f [Hz]", "f [Hz]"),
+        ] {
+            assert_eq!(unnumbered(header), plain, "{header}");
         }
     }
 

@@ -9,7 +9,7 @@
 use std::ops::Range;
 
 use super::error::{Fault, fault};
-use super::role;
+use super::{role, wide};
 use crate::case::quantity::unit::Unit;
 use crate::topography::{dialect, is_numbers, to_text};
 
@@ -59,10 +59,7 @@ impl Table {
             None => guess(&lines),
         };
         if decimal_comma && let Some(cell) = thousands(&lines, separator) {
-            return Err(fault(format!(
-                "numbers such as {cell:?} may have a decimal comma or a comma between thousands, and none in the file tells; write \
-                 them with a decimal point, or without commas"
-            )));
+            return Err(doubtful(cell));
         }
         drop(lines);
         Table::split(text, separator, decimal_comma)
@@ -99,7 +96,10 @@ impl Table {
                 .map(|line| (*line).to_owned()),
             false => None,
         };
-        let named: Vec<&str> = if unread.is_none() { heading(&lines[..first]) } else { vec![] };
+        let named = match unread.is_none() {
+            true => heading(&lines[..first], separator, if units.is_some() { 2 } else { 1 }),
+            false => vec![],
+        };
         let is_row = |line: &str| {
             let width = cells(line, separator).len();
             numbers(line) >= 2 && (width == columns || width == columns + 1)
@@ -108,7 +108,15 @@ impl Table {
         let mut rows = Vec::new();
         let mut skipped = first;
         for (n, line) in lines.iter().enumerate().skip(first) {
-            if n < skipped || is_blank(line, separator) || is_comment(line) {
+            if n < skipped || is_blank(line, separator) {
+                continue;
+            }
+            if is_comment(line) {
+                let differs = n < last && !lines[..first].contains(line);
+                let named = header_cells(line, separator, columns).filter(|_| differs);
+                if named.is_some_and(|cells| cells.iter().filter(|cell| names_column(cell)).count() >= 2) {
+                    return Err(another_heading(line).at(n + 1));
+                }
                 continue;
             }
             let mut cells = cells(line, separator);
@@ -117,9 +125,12 @@ impl Table {
                 if n > last && numbers(line) == 0 && cells.len() < columns {
                     break;
                 }
-                if let Some(next) = repeated_heading(&lines[..=last], n, &named, &is_row) {
+                if let Some(next) = repeated_heading(&lines[..=last], n, &named, separator, &is_row) {
                     skipped = next;
                     continue;
+                }
+                if n < last && numbers(line) == 0 && cells.iter().any(|cell| names_column(cell)) {
+                    return Err(another_heading(line).at(n + 1));
                 }
             }
             if cells.len() == columns + 1 && cells.last().is_some_and(|cell| cell.is_empty()) {
@@ -241,22 +252,50 @@ fn first_row(lines: &[&str], separator: Option<char>, numbers: &dyn Fn(&str) -> 
     pair.map(|pair| pair[0]).or_else(|| rows.first().copied())
 }
 
-/// The lines that name the columns and their units.
-fn heading<'a>(before: &[&'a str]) -> Vec<&'a str> {
-    before.iter().rev().filter(|line| !line.trim().is_empty()).take(2).copied().collect()
+/// The lines that name the columns and their units, the last one first.
+fn heading<'a>(before: &[&'a str], separator: Option<char>, count: usize) -> Vec<&'a str> {
+    before.iter().rev().filter(|line| !is_blank(line, separator)).take(count).copied().collect()
 }
 
-/// Where a file repeats its heading before the points of another sweep, the line on which they begin.
+/// Where a file repeats its whole heading before the points of another sweep, the line on which they begin.
 fn repeated_heading(
     lines: &[&str],
     from: usize,
     named: &[&str],
+    separator: Option<char>,
     is_row: &dyn Fn(&str) -> bool,
 ) -> Option<usize> {
     /// Lines between two sweeps.
     const MOST: usize = 50;
     let next = (from..lines.len().min(from + MOST)).find(|n| is_row(lines[*n]))?;
-    lines[from..next].iter().any(|line| named.contains(line)).then_some(next)
+    (!named.is_empty() && heading(&lines[from..next], separator, named.len()) == named).then_some(next)
+}
+
+/// Whether a cell of a line between the points names a column, a unit or a temperature.
+fn names_column(cell: &str) -> bool {
+    let cell = unquoted(cell);
+    let unit = split_unit(cell).1;
+    let is_called =
+        || role::Role::ALL.iter().any(|role| role.is_called(role::logarithm(split_unit(cell).0).1));
+    !is_missing(cell) && (is_called() || (!unit.is_empty() && is_unit(unit)) || wide::tells_value(cell))
+}
+
+/// What is said of a line between the points that is not the heading again.
+fn another_heading(line: &str) -> Fault {
+    let shown: String = line.chars().take(60).collect();
+    fault(format!(
+        "{shown:?} stands between the points: columns, units or temperatures change there, and all points would be read by the first \
+         heading; write the parts to files of their own, or below each other under one heading, with a column of temperatures where \
+         these differ"
+    ))
+}
+
+/// What is said of numbers whose comma nothing tells.
+pub(super) fn doubtful(cell: &str) -> Fault {
+    fault(format!(
+        "numbers such as {cell:?} may have a decimal comma or a comma between thousands, and none in the file tells; write them with a \
+         decimal point, or without commas"
+    ))
 }
 
 /// Whether a line holds separators only.
@@ -308,7 +347,7 @@ fn thousands<'l>(lines: &[&'l str], separator: Option<char>) -> Option<&'l str> 
 }
 
 /// Whether all digits of a number stand in groups of three behind commas, as in "7,874" or "1,093,810.6".
-fn is_grouped(cell: &str) -> bool {
+pub(super) fn is_grouped(cell: &str) -> bool {
     let whole = cell.split_once('.').map_or(cell, |(whole, _)| whole).trim_start_matches(['+', '-']);
     let mut groups = whole.split(',');
     let first = groups.next().unwrap_or_default();
@@ -471,7 +510,10 @@ pub(super) fn split_unit(header: &str) -> (&str, &str) {
         {
             return match unit.trim() {
                 // A part of a name: "Re(E*)".
-                part if !is_unit(part) && role::Role::ALL.iter().any(|role| role.is_called(header)) => {
+                part if !is_unit(part)
+                    && role::bare(header) != role::bare(name)
+                    && role::Role::ALL.iter().any(|role| role.is_called(header)) =>
+                {
                     (header.trim(), "")
                 }
                 // A function of something, not a quantity in a unit.

@@ -13,7 +13,7 @@
 use std::ops::Range;
 
 use super::error::{Fault, fault};
-use super::role::Role;
+use super::role::{Role, unnumbered};
 use super::table::{MOST_ROWS, Row, Table, cells, is_missing, split_unit};
 
 /// The columns that belong together, and the value that they were measured at.
@@ -56,7 +56,8 @@ pub(super) fn long(table: Table) -> Result<Table, Fault> {
 /// The blocks of a table whose columns are repeated, with the temperature above each.
 fn repeated(table: &Table) -> Result<Option<Vec<Block>>, Fault> {
     let columns = table.columns;
-    let name = |column: usize| table.headers.get(column).map_or("", String::as_str);
+    let plain: Vec<String> = table.headers.iter().map(|header| unnumbered(header)).collect();
+    let name = |column: usize| plain.get(column).map_or("", String::as_str);
     let repeats = |period: usize| {
         // The last block may lack the empty column that parts the blocks.
         let whole = columns.is_multiple_of(period)
@@ -186,6 +187,11 @@ fn line(cells: impl Iterator<Item = String>, value: Option<String>) -> String {
 fn number(value: f64, decimal_comma: bool) -> String {
     let text = format!("{value:?}");
     if decimal_comma { text.replace('.', ",") } else { text }
+}
+
+/// Whether a text holds a temperature or a frequency.
+pub(super) fn tells_value(text: &str) -> bool {
+    value_in(text).is_some()
 }
 
 /// The temperature or frequency in a text: "-20 °C", "E'(0.100 Hz)/MPa".

@@ -6,7 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use calamine::{Data, Reader, SheetVisible, Sheets, open_workbook_auto_from_rs};
 
 use super::error::{Fault, Remedy, fault};
-use super::table::Table;
+use super::table::{Table, doubtful, is_grouped};
 use super::wide;
 
 /// A table of a file.
@@ -91,22 +91,33 @@ fn cell(data: &Data) -> String {
     let text = match data {
         Data::Empty | Data::Error(_) => String::new(),
         Data::Float(value) => format!("{value:?}"),
-        Data::String(text) => decimal(text.trim()),
+        Data::String(text) => text.trim().to_owned(),
         other => other.to_string(),
     };
     text.replace([';', '\n', '\r'], " ")
 }
 
 /// A number that was entered as text with a decimal comma, with a point.
-fn decimal(text: &str) -> String {
+fn decimal(text: &str) -> Option<String> {
     let point = text.replacen(',', ".", 1);
-    match text.contains(',') && point.parse::<f64>().is_ok() {
-        true => point,
-        false => text.to_owned(),
-    }
+    (text.contains(',') && point.parse::<f64>().is_ok()).then_some(point)
+}
+
+/// A number of the rows that was entered as text with a comma, where all of them look like thousands: "24,070".
+fn thousands(cells: &Rows) -> Option<&str> {
+    let is_number = |cell: &&String| cell.parse::<f64>().is_ok() || decimal(cell).is_some();
+    let points = cells.iter().filter(|row| row.iter().filter(is_number).count() >= 2);
+    let mut commas = points.flatten().filter(|cell| decimal(cell).is_some()).peekable();
+    let first = commas.peek().copied()?;
+    commas.all(|cell| is_grouped(cell)).then_some(first)
 }
 
 fn table(cells: &Rows) -> Result<Table, Fault> {
-    let lines: Vec<String> = cells.iter().map(|row| row.join(";")).collect();
+    if let Some(cell) = thousands(cells) {
+        return Err(doubtful(cell));
+    }
+    let plain = |cell: &String| decimal(cell).unwrap_or_else(|| cell.clone());
+    let line = |row: &Vec<String>| row.iter().map(plain).collect::<Vec<String>>().join(";");
+    let lines: Vec<String> = cells.iter().map(line).collect();
     Table::split(lines.join("\n"), Some(';'), false).and_then(wide::long)
 }

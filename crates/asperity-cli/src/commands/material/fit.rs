@@ -23,7 +23,7 @@ pub fn fit(args: &Fit) -> Result<(), Failure> {
     for path in args.output.iter().chain(&args.plot) {
         crate::commands::free(path, args.force)?;
     }
-    let (shift, vertical, options) = (given::shift(args)?, given::vertical(args)?, given::options(args));
+    let (shift, vertical, options) = (given::shift(args)?, given::vertical(args)?, given::options(args)?);
     let mut curves = given::curves(&args.data, &args.table)?;
     let window = args.window.as_deref().map(|text| given::ends(curves.kind, text)).transpose()?;
     let measure = args.modulus.or(curves.measure).unwrap_or_else(|| {

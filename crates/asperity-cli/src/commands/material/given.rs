@@ -35,18 +35,19 @@ pub fn curves(path: &std::path::Path, data: &Data) -> Result<Curves, Failure> {
     Curves::read(path, kind, &said).map_err(refused)
 }
 
-pub fn options(args: &Fit) -> FitOptions {
+pub fn options(args: &Fit) -> Result<FitOptions, Failure> {
     let default = FitOptions::default();
-    FitOptions {
+    let misfit = args.misfit.as_deref().map(|text| parsed::<Number<range::Positive>>("--misfit", text));
+    Ok(FitOptions {
         per_decade: args.per_decade.unwrap_or(default.per_decade),
         margin: args.margin.unwrap_or(default.margin),
         limit: args.max_misfit.unwrap_or(default.limit),
         max_terms: args.max_terms.unwrap_or(default.max_terms),
         long_time: args.long_time,
-        misfit: args.misfit,
+        misfit: misfit.transpose()?.map(Number::get),
         moduli: args.fit,
         loss_weight: args.loss_weight.unwrap_or(default.loss_weight),
-    }
+    })
 }
 
 /// The columns and units that are told.

@@ -74,7 +74,7 @@ class Plots:
             length if result.is_line else area,
             ("approach", "m", 1, [("", "approach")]),
             friction if result.is_sweep and "friction_coefficient" in result._table else load,
-            ("pressure", "Pa", 1, [("mean", "mean_pressure"), ("largest", "max_pressure")]),
+            ("pressure", "Pa", 1, [("mean over the domain", "mean_pressure"), ("largest", "max_pressure")]),
         ]
         over = result._table["time"]
         drawn_before = [ax for ax in np.ravel(np.asarray(axes, dtype=object)) if ax.lines]
@@ -220,7 +220,15 @@ class Plots:
         ax = _axes(ax, style, "map")
         self._tell(ax, at)
         style = _in_si(style, unit)
-        image = _image(ax, np.where(np.isfinite(values), values, np.nan), self._result.size, {"cmap": colours, **style})
+        shown = np.where(np.isfinite(values), values, np.nan)
+        if name == "pressure" and np.any(values > 0):
+            # What is out of contact is no small pressure.
+            shown[values <= 0] = np.nan
+            ax.set_facecolor(_STATES[0][1])
+            style = style if {"norm", "vmin"} & style.keys() else {"vmin": 0.0, **style}
+        elif name == "pressure":
+            ax.set_title(", ".join(part for part in ("no contact", ax.get_title()) if part))
+        image = _image(ax, shown, self._result.size, {"cmap": colours, **style})
         _bar(ax, image, words, unit, values)
         return ax
 

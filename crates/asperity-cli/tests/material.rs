@@ -136,6 +136,15 @@ fn a_fit_becomes_a_block_that_a_case_takes() {
         let decades = (shift.ln_factor(kelvin).unwrap() - truth.ln_factor(kelvin).unwrap()) / 10f64.ln();
         assert!(decades.abs() < 0.25, "{kelvin}: {decades}");
     }
+    // The factors are about the reference, also where it lies between two sweeps.
+    let object = json(&fit(&["--estimate-shift", "2 °C", "--json"]));
+    for factor in object["shift_factors"].as_array().unwrap() {
+        let kelvin = factor["temperature"].as_f64().unwrap();
+        let exact = (truth.ln_factor(kelvin).unwrap() - truth.ln_factor(275.15).unwrap()) / 10f64.ln();
+        let decades = factor["log10_factor"].as_f64().unwrap() - exact;
+        // The warmest pair is known to 0.22 decades.
+        assert!(decades.abs() < 0.25, "{kelvin}: {decades}");
+    }
     // Without -o the block is printed after the report.
     let text = stdout(&fit(&[&wlf[..], &["--max-terms", "6", "--max-misfit", "0.9"]].concat()));
     assert!(

@@ -407,8 +407,8 @@ fn estimated(
     let Shift::Table { points } = &table else {
         return Ok(Found { shift: Some(table), rms: None, factors: Vec::new() });
     };
-    let factors = points.iter().zip(&estimate.uncertainty);
-    let factors = factors.map(|((kelvin, ln), u)| [*kelvin, ln / LN_10, *u]).collect();
+    let about_anchor: Vec<[f64; 3]> =
+        points.iter().zip(&estimate.uncertainty).map(|((kelvin, ln), u)| [*kelvin, ln / LN_10, *u]).collect();
     let laws = [fit_wlf(points, anchor), fit_arrhenius(points, anchor)];
     let best = laws.into_iter().flatten().filter(|law| law.rms <= LAW).min_by(|a, b| a.rms.total_cmp(&b.rms));
     let (shift, rms) = match best {
@@ -422,6 +422,9 @@ fn estimated(
         }
     };
     let moved = shift.about(reference).map_err(|error| fault(error.to_string()))?;
+    // The reference may lie between sweeps.
+    let zero = shift.ln_factor(reference).map_err(|error| fault(error.to_string()))? / LN_10;
+    let factors = about_anchor.into_iter().map(|[kelvin, log, u]| [kelvin, log - zero, u]).collect();
     Ok(Found { shift: Some(moved), rms, factors })
 }
 

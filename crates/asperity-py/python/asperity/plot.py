@@ -222,10 +222,9 @@ class Plots:
         style = _in_si(style, unit)
         shown = np.where(np.isfinite(values), values, np.nan)
         if name == "pressure" and np.any(values > 0):
-            # What is out of contact is no small pressure.
-            shown[values <= 0] = np.nan
-            ax.set_facecolor(_STATES[0][1])
-            style = style if {"norm", "vmin"} & style.keys() else {"vmin": 0.0, **style}
+            if not {"norm", "vmin"} & style.keys():
+                # What is out of contact is no small pressure: it lies below the scale.
+                style = {**style, "vmin": np.finfo(float).tiny, "cmap": _with_under(style.get("cmap", colours), _STATES[0][1])}
         elif name == "pressure":
             ax.set_title(", ".join(part for part in ("no contact", ax.get_title()) if part))
         image = _image(ax, shown, self._result.size, {"cmap": colours, **style})
@@ -245,6 +244,13 @@ class Plots:
             when = f"v = {result.field_times[n]:.4g} m/s" if result.is_sweep else f"t = {result.field_times[n]:.4g} s"
         if told := ", ".join(part for part in (place, when) if part):
             ax.set_title(told)
+
+
+def _with_under(colours: Any, under: str) -> Any:
+    """A colour map, or that of this name, with a colour of its own for what lies below its scale."""
+    from matplotlib import colormaps
+
+    return (colormaps[colours] if isinstance(colours, str) else colours).with_extremes(under=under)
 
 
 def _marked(style: dict[str, Any], points: int) -> dict[str, Any]:

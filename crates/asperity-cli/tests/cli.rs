@@ -722,6 +722,14 @@ fn two_results_are_compared_and_drawn_together() {
     assert!(stdout(&same).starts_with("The cases are the same."), "{}", stdout(&same));
     assert!(stdout(&same).lines().filter(|line| line.ends_with("none")).count() > 5, "{}", stdout(&same));
 
+    // Newtons are no newtons per metre.
+    assert!(asperity(&dir, &["new", "cylinder", "line.toml"]).status.success());
+    let line = asperity(&dir, &["run", "line.toml", "-q", "-o", "line.zarr", "--set", "domain.cells=[64]"]);
+    assert!(line.status.success(), "{}", stderr(&line));
+    let other = asperity(&dir, &["compare", "a.zarr", "line.zarr"]);
+    assert_eq!(other.status.code(), Some(2));
+    assert!(stderr(&other).contains("line.zarr is a line contact"), "{}", stderr(&other));
+
     let output = asperity(&dir, &["plot", "a.zarr", "b.zarr", "evolution", "-o", "both.svg"]);
     assert!(output.status.success(), "{}", stderr(&output));
     let figure = std::fs::read_to_string(dir.join("both.svg")).unwrap();

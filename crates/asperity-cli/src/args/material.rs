@@ -44,7 +44,7 @@ pub struct MaterialExport {
     #[arg(long, value_name = "NAME")]
     pub body: Option<String>,
     /// Poisson's ratio, where the file is no case
-    #[arg(long, value_name = "NU")]
+    #[arg(long, value_name = "NU", allow_hyphen_values = true)]
     pub poisson: Option<String>,
     /// Set a key of the case
     #[arg(long = "set", value_name = "KEY=VALUE")]
@@ -193,7 +193,7 @@ pub struct FitIndentation {
     #[arg(long, value_name = "SLOPE")]
     pub cone: Option<String>,
     /// Poisson's ratio of the body
-    #[arg(long, value_name = "NU", default_value = "0.5")]
+    #[arg(long, value_name = "NU", default_value = "0.5", allow_hyphen_values = true)]
     pub poisson: String,
     /// Thickness of a thin sample on a rigid base, e.g. '5 um' [default: much thicker than the contact is wide]
     #[arg(long, value_name = "LENGTH")]

@@ -12,6 +12,21 @@ pub fn run(args: &args::Compare) -> Result<(), Failure> {
     let told = |error: &dyn std::fmt::Display| Failure::input(error.to_string());
     let first = Reader::open(&args.first).map_err(|error| told(&error))?;
     let second = Reader::open(&args.second).map_err(|error| told(&error))?;
+    let kind = |reader: &Reader| (reader.header().grid.is_line(), reader.header().is_sweep());
+    if kind(&first) != kind(&second) {
+        let words = |reader: &Reader| match kind(reader) {
+            (_, true) => "a sweep over velocities",
+            (true, false) => "a line contact",
+            (false, false) => "a contact over an area",
+        };
+        return Err(Failure::input(format!(
+            "{} is {}, and {} is {}: their numbers have different units",
+            args.first.display(),
+            words(&first),
+            args.second.display(),
+            words(&second)
+        )));
+    }
     let found = compare(&first, &second).map_err(|error| told(&error))?;
     if args.json {
         let object = serde_json::to_string(&found).map_err(|error| told(&error))?;

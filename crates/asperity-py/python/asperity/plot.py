@@ -143,7 +143,8 @@ class Plots:
             along = _shown(result.size[0], "m")
             ax.step(result.x * along[0], states, **{"where": "mid", **style})
             ax.set_xlabel(f"x [{along[1]}]")
-            ax.set_yticks([0, 1, 2], [name for name, _ in _STATES.values()])
+            shown = range(max(2, int(np.max(states, initial=0)) + 1))
+            ax.set_yticks(list(shown), [_STATES[state][0] for state in shown])
             return ax
         colours = [colour for _, colour in _STATES.values()]
         _image(ax, states, result.size, {"cmap": ListedColormap(colours), "vmin": 0, "vmax": 2, **style})

@@ -48,11 +48,11 @@ fn marks(out: &mut String, list: &[Mark], clips: &mut usize) -> std::fmt::Result
             }
             Mark::Image { corner, size, pixels, smooth } => {
                 let ([x, y], [w, h]) = (corner.map(short), size.map(short));
-                let rendering = if *smooth { "optimizeQuality" } else { "optimizeSpeed" };
+                let rendering = if *smooth { "auto" } else { "pixelated" };
                 writeln!(
                     out,
                     "<image x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" preserveAspectRatio=\"none\" \
-                     image-rendering=\"{rendering}\" href=\"data:image/png;base64,{}\"/>",
+                     style=\"image-rendering:{rendering}\" href=\"data:image/png;base64,{}\"/>",
                     STANDARD.encode(raster::png(pixels).unwrap_or_default())
                 )?;
             }

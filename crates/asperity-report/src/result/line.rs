@@ -37,7 +37,7 @@ pub(super) fn field(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, 
 fn of_sweep(reader: &Reader, kind: FieldKind, index: usize) -> Result<Curves, StoreError> {
     let count = reader.field_times().len();
     let every = count.div_ceil(MOST_CURVES).max(1);
-    let mut panel = Curves::new("", Axis::linear("x", "m"), axis(kind));
+    let mut panel = Curves::new("", Axis::linear("x", "m"), axis(reader, kind));
     for n in (0..count).filter(|n| n % every == 0 || *n == index) {
         let name = super::moment(reader, reader.field_times()[n]);
         let values = one(reader, kind, At::Index(n))?.into_raw_vec_and_offset().0;
@@ -80,14 +80,18 @@ pub(super) fn surfaces(reader: &Reader, index: usize, gap: &Array2<f64>) -> Resu
 pub(crate) fn curve(reader: &Reader, kind: FieldKind, at: At) -> Result<Curves, StoreError> {
     let values = one(reader, kind, at)?.into_raw_vec_and_offset().0;
     let title = no_contact(reader, reader.index(at)?)?;
-    let panel = Curves::new(title, Axis::linear("x", "m"), axis(kind));
+    let panel = Curves::new(title, Axis::linear("x", "m"), axis(reader, kind));
     Ok(nameless(panel, &places(reader), values))
 }
 
 /// The vertical axis of a field.
-fn axis(kind: FieldKind) -> Axis {
+fn axis(reader: &Reader, kind: FieldKind) -> Axis {
     match kind {
-        FieldKind::Contact => Axis::states("", &CONTACT_STATES.map(|(name, _)| name)),
+        FieldKind::Contact => {
+            let names = CONTACT_STATES.map(|(name, _)| name);
+            let is_capped = reader.header().setup.keys().any(|key| key.starts_with("hardness"));
+            Axis::states("", if is_capped { &names } else { &names[..2] })
+        }
         kind => Axis::linear(title(kind), kind.units()),
     }
 }

@@ -124,7 +124,7 @@ pub struct Fit {
     /// Moduli of a dma to fit; measured ones often contradict each other, and then storage is usual
     #[arg(long, value_parser = choice::<Moduli>(), default_value = "both")]
     pub fit: Moduli,
-    /// Weight of the squared residuals of the loss modulus where both are fitted; those of the storage modulus have 1 [default: 1]
+    /// Factor of the residuals of the loss modulus, before they are squared, where both moduli are fitted; that of the storage modulus is 1 [default: 1]
     #[arg(long, value_name = "WEIGHT")]
     pub loss_weight: Option<f64>,
     /// Rms misfit to hold with as few terms as possible, e.g. 0.02 or '2 %' [default: the data justify the number of terms]

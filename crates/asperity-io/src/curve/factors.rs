@@ -192,8 +192,8 @@ fn factors(table: &Table, unit: Option<&str>) -> Result<Shift, Fault> {
     if let Some(sign) = signs.reduce(|a, b| if a == b { a } else { 0.0 }).filter(|sign| *sign != 0.0) {
         let word = if sign > 0.0 { "above" } else { "below" };
         return Err(fault(format!(
-            "all shift factors are {word} 1: none of the temperatures is the reference, where a_T = 1 (log_aT = 0), nor lies it between \
-             them; add it to the table"
+            "all shift factors are {word} 1: the reference temperature, where a_T = 1 (log_aT = 0), is neither in the table nor between \
+             its temperatures; add it"
         )));
     }
     let shift = Shift::Table { points };

@@ -293,8 +293,8 @@ fn another_heading(line: &str) -> Fault {
 /// What is said of numbers whose comma nothing tells.
 pub(super) fn doubtful(cell: &str) -> Fault {
     fault(format!(
-        "numbers such as {cell:?} may have a decimal comma or a comma between thousands, and none in the file tells; write them with a \
-         decimal point, or without commas"
+        "numbers such as {cell:?} may have a decimal comma or a comma between thousands, and nothing in the file tells which; write \
+         them with a decimal point, or without commas"
     ))
 }
 

@@ -95,8 +95,7 @@ fn repeated(table: &Table) -> Result<Option<Vec<Block>>, Fault> {
 fn by_name(table: &Table) -> Option<(Vec<String>, Vec<Block>)> {
     let values: Vec<Option<Value>> = table.headers.iter().map(|header| value_in(header)).collect();
     let shared: Vec<usize> = (0..table.columns).filter(|column| values[*column].is_none()).collect();
-    let (mut blocks, mut first): (Vec<Block>, Vec<String>) = (Vec::new(), Vec::new());
-    let mut names: Vec<Vec<String>> = Vec::new();
+    let (mut blocks, mut names): (Vec<Block>, Vec<Vec<String>>) = (Vec::new(), Vec::new());
     for (column, value) in values.iter().enumerate() {
         let Some(value) = value else { continue };
         let same = |block: &Block| {
@@ -121,9 +120,8 @@ fn by_name(table: &Table) -> Option<(Vec<String>, Vec<Block>)> {
     if !alike {
         return None;
     }
-    first.extend(shared.iter().map(|column| header(table, *column, None)));
-    first.extend(names.swap_remove(0));
-    Some((first, blocks))
+    let headers = shared.iter().map(|column| header(table, *column, None)).chain(names.swap_remove(0));
+    Some((headers.collect(), blocks))
 }
 
 /// The header of a column with its unit, without the value in it.
@@ -173,9 +171,9 @@ fn stacked(table: &Table, headers: Vec<String>, blocks: &[Block]) -> Result<Tabl
         }
     }
     let mut long = Table::split(lines.join("\n"), Some(';'), table.decimal_comma)?;
-    let skipped = lines.len() - places.len();
+    // The points follow the line of headers, line 1.
     for Row { line, .. } in &mut long.rows {
-        *line = places.get(line.saturating_sub(skipped + 1)).copied().unwrap_or(*line);
+        *line = places.get(line.saturating_sub(2)).copied().unwrap_or(*line);
     }
     Ok(long)
 }

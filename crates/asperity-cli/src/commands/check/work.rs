@@ -3,7 +3,7 @@
 use std::time::Instant;
 
 use asperity::operator::half_space;
-use asperity::{Method, Scheme};
+use asperity::{Grid, Method, Scheme};
 use asperity_io::case::{Case, Description, Rehearsal};
 use asperity_io::stress::StressDescription;
 
@@ -60,8 +60,13 @@ fn convolution(case: &Case) -> Option<f64> {
         operator.apply_into(&pressure, &mut displacement);
     }
     let timed = start.elapsed().as_secs_f64() / 3.0;
-    let cost = |n: f64| n * n.max(2.0).log2();
-    Some(timed * cost(case.grid.len() as f64) / cost(grid.len() as f64))
+    Some(timed * growth(&grid, &case.grid))
+}
+
+/// How much longer transforms take on the second grid: N log N.
+fn growth(small: &Grid, large: &Grid) -> f64 {
+    let cost = |grid: &Grid| grid.len() as f64 * (grid.len() as f64).max(2.0).log2();
+    cost(large) / cost(small)
 }
 
 /// Cells along a side on which the flow through a gap is timed.
@@ -95,8 +100,7 @@ pub(super) fn stress_seconds(case: &Case, description: &StressDescription) -> Op
     let start = Instant::now();
     stress.at(depth, &mut six).ok()?;
     let timed = start.elapsed().as_secs_f64();
-    let cost = |n: f64| n * n.max(2.0).log2();
-    Some(description.evaluations? as f64 * timed * cost(case.grid.len() as f64) / cost(grid.len() as f64))
+    Some(description.evaluations? as f64 * timed * growth(&grid, &case.grid))
 }
 
 /// What is computed from the stored fields after the run takes \[s\].

@@ -139,8 +139,9 @@ fn split<'t, const N: usize>(text: &'t str, option: &str, wanted: &str) -> Resul
         .map_err(|_| Failure::input(format!("{option} is \"{text}\", but must be {wanted}")))
 }
 
-/// A temperature \[K\]. A number without a unit is in kelvin, and hardly one where that is colder than nitrogen boils.
+/// A temperature \[K\]. A number without a unit is in kelvin; of a smaller one the unit was forgotten.
 fn temperature(what: &str, text: &str) -> Result<f64, Failure> {
+    /// Nitrogen boils here \[K\]: no shift is measured about a lower temperature.
     const LEAST: f64 = 77.0;
     let kelvin = parsed::<Temperature>(what, text)?.get();
     match kelvin < LEAST && text.trim().parse::<f64>().is_ok() {

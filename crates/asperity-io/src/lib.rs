@@ -11,6 +11,7 @@ pub mod finding;
 mod instants;
 pub mod leakage;
 pub mod material_export;
+pub mod output;
 pub mod preparation;
 pub mod readable;
 pub mod resources;

@@ -5,7 +5,7 @@
 //! is no limit but 64 GiB of memory.
 
 use std::fs::{self, File};
-use std::io;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use crate::readable::bytes as words;
@@ -52,6 +52,16 @@ pub fn open(path: &Path) -> io::Result<File> {
         io::ErrorKind::InvalidInput,
         format!("it is {found}, not a file; save it as a file first"),
     ))
+}
+
+/// The bytes of a file that has an end.
+///
+/// # Errors
+/// As [`open`].
+pub fn read(path: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    open(path)?.read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 #[cfg(unix)]

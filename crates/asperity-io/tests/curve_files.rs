@@ -366,3 +366,18 @@ fn moduli_that_grow_with_temperature_are_brought_to_the_reference() {
     let refused = one.fit(&Curves { sweeps: curves.sweeps[..1].to_vec(), ..curves }).unwrap_err().to_string();
     assert!(refused.contains("two temperatures"), "{refused}");
 }
+
+#[test]
+fn a_file_without_a_curve_is_told_by_its_columns() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("curve.csv");
+    for (text, words) in [
+        ("Zeit [s],Dehnung [%]\n1,2\n2,3\n", "the file has 1 \"Zeit [s]\", 2 \"Dehnung [%]\""),
+        ("T [°C],log_aT\n0,1\n20,0\n", "shift factors and no measured curve"),
+        ("t [s],E' [MPa],E'' [MPa]\n1,2,3\n2,3,4\n", "need a column of frequencies"),
+    ] {
+        std::fs::write(&path, text).unwrap();
+        let told = Curves::kind_of(&path, None).unwrap_err().to_string();
+        assert!(told.contains(words), "{told}");
+    }
+}

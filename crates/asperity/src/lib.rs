@@ -57,7 +57,8 @@ pub use load::{Control, Course, Event, History, Loading, Programme, Stage};
 pub use march::{March, Plasticity, Scheme, Simulation};
 pub use time::TimeGrid;
 
-/// The example of the README, compiled and run by the tests.
+/// The examples of the READMEs of the repository and of this crate, compiled and run by the tests.
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]
+#[doc = include_str!("../README.md")]
 struct Readme;

@@ -29,13 +29,24 @@ impl<'t> Text<'t> {
 
     fn grammar(&self, error: &toml::de::Error) -> CaseError {
         let span = error.span().map(|span| self.inside(span));
+        let found = error.message();
+        let help = match () {
+            () if found.contains("duplicate key") => Some(
+                "write each key and each table once; several bodies, surfaces or stages begin each with a line \
+                 in double brackets: [[body]]",
+            ),
+            () if found.contains("string values must be quoted") => {
+                Some("write texts and values with a unit between quotes: value = \"50 N\"")
+            }
+            () => None,
+        };
         CaseError {
             key: String::new(),
             line: span.as_ref().map(|span| self.line(span.start)),
             value: None,
             expected: "TOML".into(),
-            help: None,
-            message: format!("this is not TOML: {}", error.message().replace('\n', ", ")),
+            help: help.map(str::to_owned),
+            message: format!("this is not TOML: {}", found.replace('\n', ", ")),
             span,
         }
     }

@@ -175,7 +175,9 @@ pub fn nearest<'n>(name: &str, known: &[&'n str]) -> Option<&'n str> {
     if distance(near) <= 1 + near.len().min(name.len()) / 4 {
         return Some(near);
     }
-    known.iter().find(|known| name.len() > 2 && known.starts_with(name)).copied()
+    let is_part =
+        |known: &&&str| name.len() > 2 && known.starts_with(name) || name.len() > 3 && known.contains(name);
+    known.iter().find(is_part).copied()
 }
 
 fn backticked(list: &str) -> Vec<&str> {
@@ -228,6 +230,7 @@ mod tests {
         assert_eq!(nearest("poison", &known), Some("poisson"));
         assert_eq!(nearest("Hardness", &known), Some("hardness"));
         assert_eq!(nearest("bulk", &known), Some("bulk_modulus"));
+        assert_eq!(nearest("modulus", &known), Some("bulk_modulus"));
         assert_eq!(nearest("yield", &known), None);
         assert_eq!(nearest(&"x".repeat(100_000), &known), None);
     }

@@ -20,6 +20,8 @@ pub struct CurveError {
 /// What to do about a file, which is said in the words of a case file, of the command or of Python.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Remedy {
+    /// Say what was measured.
+    Kind,
     /// Say which column holds a quantity.
     Column(Role),
     /// Say the unit of a quantity.
@@ -40,6 +42,7 @@ impl Remedy {
     /// As keys of a material in a case file.
     pub fn in_case(&self) -> String {
         match self {
+            Remedy::Kind => "say kind = \"relaxation\", \"creep\" or \"dma\"".to_owned(),
             Remedy::Column(role) => {
                 format!("name it as in columns = {{ {} = 1 }}, by number or header", role.name())
             }
@@ -69,6 +72,7 @@ impl Remedy {
     /// As options of `asperity material fit` and `show`.
     pub fn in_command(&self) -> String {
         match self {
+            Remedy::Kind => "give --kind relaxation, creep or dma".to_owned(),
             Remedy::Column(role) => {
                 format!("name it as in --column {}=1, by number or header", role.name())
             }
@@ -97,6 +101,7 @@ impl Remedy {
     /// As arguments of Python's `fit_file`.
     pub fn in_python(&self) -> String {
         match self {
+            Remedy::Kind => "give kind=\"relaxation\", \"creep\" or \"dma\"".to_owned(),
             Remedy::Column(role) => {
                 format!("name it as in columns={{\"{}\": 1}}, by number or header", role.name())
             }

@@ -138,20 +138,30 @@ fn written(name: &str) -> Option<Written> {
     }
 }
 
-/// The factors of a table; temperatures without a unit are in `unit`, or kelvin.
-fn factors(table: &Table, unit: Option<&str>) -> Result<Shift, Fault> {
-    let named = |names: &[&str]| table.names.iter().position(|name| names.contains(&bare(name).as_str()));
-    let temperature = named(&["t", "temp", "temperature", "temperatur"]);
-    // The brackets of "log10(aT)" hold no unit.
-    let factor = (0..table.columns).find_map(|n| {
+/// The column of factors, and how they are written.
+fn column_of_factors(table: &Table) -> Option<(usize, Written)> {
+    (0..table.columns).find_map(|n| {
         let [name, header] = [table.names.get(n)?, table.headers.get(n)?];
         let by_name = || match (written(name)?, table.bases.get(n).copied().flatten()) {
             (Written::Plain, Some(10.0)) => Some(Written::Log10),
             (Written::Plain, Some(_)) => Some(Written::Ln),
             (how, _) => Some(how),
         };
+        // The brackets of "log10(aT)" hold no unit.
         Some((n, written(header).or_else(by_name)?))
-    });
+    })
+}
+
+/// Whether a table has a column of shift factors.
+pub(super) fn told_by(table: &Table) -> bool {
+    column_of_factors(table).is_some()
+}
+
+/// The factors of a table; temperatures without a unit are in `unit`, or kelvin.
+fn factors(table: &Table, unit: Option<&str>) -> Result<Shift, Fault> {
+    let named = |names: &[&str]| table.names.iter().position(|name| names.contains(&bare(name).as_str()));
+    let temperature = named(&["t", "temp", "temperature", "temperatur"]);
+    let factor = column_of_factors(table);
     let (Some(temperature), Some((column, how))) = (temperature, factor) else {
         return Err(fault(format!(
             "a table of shift factors has a column of temperatures (T) and one of log_aT, ln_aT or aT; the file has {}",
@@ -163,6 +173,7 @@ fn factors(table: &Table, unit: Option<&str>) -> Result<Shift, Fault> {
         none if none.is_empty() => unit.unwrap_or_default().to_owned(),
         unit => unit,
     };
+    vertical_free(table)?;
     let mut points = Vec::with_capacity(table.rows.len());
     let numbers = table.numbers(temperature)?.into_iter().zip(table.numbers(column)?);
     for ((value, factor), row) in numbers.zip(&table.rows) {
@@ -201,6 +212,30 @@ fn factors(table: &Table, unit: Option<&str>) -> Result<Shift, Fault> {
     Ok(shift)
 }
 
+/// Refuses a table whose moduli shift too, by a column of b_T that holds more than b_T = 1.
+fn vertical_free(table: &Table) -> Result<(), Fault> {
+    for (n, name) in table.names.iter().enumerate() {
+        let name_only = bare(name);
+        let plain = ["log10", "log", "lg", "ln"].iter().find_map(|prefix| name_only.strip_prefix(prefix));
+        if !["bt", "verticalshift", "verticalshiftfactor", "verticalfactor"]
+            .contains(&plain.unwrap_or(&name_only))
+        {
+            continue;
+        }
+        let logarithmic = plain.is_some() || table.bases.get(n).is_some_and(Option::is_some);
+        let same = if logarithmic { 0.0 } else { 1.0 };
+        if table.numbers(n).is_ok_and(|factors| factors.iter().all(|factor| (factor - same).abs() < SAME)) {
+            continue;
+        }
+        return Err(fault(format!(
+            "the table holds vertical factors too (\"{name}\"), which are not read from a file, and without them the moduli \
+             are wrong; take the column out and give --vertical (density or free), or a list in a case, as in \
+             vertical = [[\"0 °C\", 1.05], [\"20 °C\", 1.0]]"
+        )));
+    }
+    Ok(())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -218,6 +253,7 @@ mod tests {
             "\u{feff}T,log_aT\nC, -\n20,0\n0,1\n",
             "T [°C];log10(aT)\n0;1\n20;0\n",
             "Temperature (K), aT\n273.15, 10\n293.15, 1\n",
+            "T [°C], log_aT, b_T\n0,1,1\n20,0,1\n",
         ] {
             let Shift::Table { points: found } = read(text).unwrap() else { panic!("{text}") };
             for (found, wanted) in found.iter().zip(&points) {
@@ -234,6 +270,8 @@ mod tests {
             ("T [°C], aT\n0,10\n20,0\n", "greater than 0"),
             ("T, log_aT\n-20,1\n20,0\n", "temperature"),
             ("T [°C], log_aT\n0,4\n20,3\n", "all shift factors are above 1"),
+            ("T [°C], log_aT, b_T\n0,1,1.05\n20,0,1\n", "vertical factors too (\"b_T\")"),
+            ("T [°C], log_aT, log bT\n0,1,0.02\n20,0,0\n", "vertical factors too"),
         ] {
             let fault = read(text).unwrap_err();
             assert!(fault.message.contains(words), "{text}: {fault:?}");

@@ -4,8 +4,8 @@ use std::f64::consts::LN_10;
 
 use asperity::material::{
     Abscissa, Creep, Fit, FitOptions, Isotherm, MasterCurve, Material, Misfit, Moduli, Modulus,
-    ModulusChange, Relaxation, Shift, VerticalShift, estimate_shift, fit_arrhenius, fit_creep, fit_dma,
-    fit_relaxation, fit_wlf, master_curve,
+    ModulusChange, Relaxation, Shift, ShiftFit, VerticalShift, estimate_shift, fit_arrhenius, fit_creep,
+    fit_dma, fit_relaxation, fit_wlf, master_curve,
 };
 
 use super::error::{CurveError, Fault, Remedy, fault};
@@ -146,8 +146,12 @@ impl Fitted {
 /// What the contradiction of both moduli may also come from.
 const UNSURE: &str = "; wrong shift factors do the same: they were estimated from these sweeps, so give the shift where it is known";
 
-/// A law replaces estimated shift factors where it meets them within this \[decades\].
+/// A law replaces estimated shift factors where it meets them within this (rms) and twice the standard deviation of each
+/// \[decades\].
 const LAW: f64 = 0.1;
+
+/// No factor is taken to be known better \[decades\]: on the steepest slopes of a modulus this is 2 % of it.
+const FACTOR: f64 = 0.01;
 
 /// Says that the header names another modulus than the one asked for.
 fn contradiction(named: Modulus, taken: Modulus) -> String {
@@ -410,13 +414,20 @@ fn estimated(
     let about_anchor: Vec<[f64; 3]> =
         points.iter().zip(&estimate.uncertainty).map(|((kelvin, ln), u)| [*kelvin, ln / LN_10, *u]).collect();
     let laws = [fit_wlf(points, anchor), fit_arrhenius(points, anchor)];
-    let best = laws.into_iter().flatten().filter(|law| law.rms <= LAW).min_by(|a, b| a.rms.total_cmp(&b.rms));
+    let holds = |law: &ShiftFit| {
+        let near = |[kelvin, log, deviation]: &[f64; 3]| {
+            let of_law = law.shift.ln_factor(*kelvin).map(|ln| ln / LN_10);
+            of_law.is_ok_and(|found| (found - log).abs() <= 2.0 * deviation.max(FACTOR))
+        };
+        law.rms <= LAW && about_anchor.iter().all(near)
+    };
+    let best = laws.into_iter().flatten().filter(holds).min_by(|a, b| a.rms.total_cmp(&b.rms));
     let (shift, rms) = match best {
         Some(law) => (law.shift, Some(law.rms)),
         None => {
             notes.push(format!(
-                "neither the WLF nor the Arrhenius law fits the shift factors to within {LAW} decades; the factors \
-                 themselves are used, between the temperatures measured"
+                "neither the WLF nor the Arrhenius law describes the shift factors, to within {LAW} decades and twice the \
+                 standard deviation of each; the factors themselves are used, between the temperatures measured"
             ));
             (table, None)
         }

@@ -140,27 +140,42 @@ impl Curves {
         Curves::parse(path, &bytes(path)?, kind, columns)
     }
 
-    /// What a file (or the sheet of it) holds, where its header tells it.
+    /// What a file (or the sheet of it) holds, as its header tells.
     ///
     /// # Errors
-    /// [`CurveError`] where the file cannot be read or holds no table.
-    pub fn kind_of(path: &Path, sheet: Option<&str>) -> Result<Option<Kind>, CurveError> {
-        let kinds = |bytes: Vec<u8>| -> Result<Option<Kind>, Fault> {
-            let sheets = workbook::sheets(&bytes, sheet)?;
-            let found = sheets.iter().find_map(|sheet| kind_of(sheet.table.as_ref().ok()?));
-            let tables = || sheets.iter().filter_map(|sheet| sheet.table.as_ref().ok());
-            match (found, tables().find(|table| columns::is_dynamic(table))) {
-                (None, Some(table)) => {
-                    let listed = table.listed();
-                    let message = format!(
-                        "storage and loss modulus need a column of frequencies; the file has {listed}"
-                    );
-                    Err(fault(message).remedy(Remedy::Column(Role::Frequency)))
+    /// [`CurveError`] where the file cannot be read, holds no table, or its header does not tell.
+    pub fn kind_of(path: &Path, sheet: Option<&str>) -> Result<Kind, CurveError> {
+        let kind = |bytes: Vec<u8>| -> Result<Kind, Fault> {
+            let (mut tables, mut refused) = (Vec::new(), None);
+            for sheet in workbook::sheets(&bytes, sheet)? {
+                match sheet.table {
+                    Ok(table) => tables.push(table),
+                    Err(fault) => refused = refused.or(Some(fault)),
                 }
-                (found, _) => Ok(found),
             }
+            if let Some(kind) = tables.iter().find_map(kind_of) {
+                return Ok(kind);
+            }
+            let dynamic = tables.iter().find(|table| columns::is_dynamic(table));
+            Err(match (dynamic, tables.first(), refused) {
+                (Some(table), ..) => fault(format!(
+                    "storage and loss modulus need a column of frequencies; the file has {}",
+                    table.listed()
+                ))
+                .remedy(Remedy::Column(Role::Frequency)),
+                (None, Some(table), _) if factors::told_by(table) => {
+                    fault("the file holds shift factors and no measured curve; it is the shift table of one (--shift-table)")
+                }
+                (None, _, Some(fault)) => fault,
+                (None, table, None) => fault(format!(
+                    "the header does not state what was measured: a relaxation test has a modulus over time, a creep test a \
+                     compliance over time, a DMA storage and loss modulus over frequency; the file has {}",
+                    table.map_or_else(|| "no table".to_owned(), Table::listed)
+                ))
+                .remedy(Remedy::Kind),
+            })
         };
-        kinds(bytes(path)?).map_err(|fault| fault.of(path))
+        kind(bytes(path)?).map_err(|fault| fault.of(path))
     }
 
     /// From the bytes of a file that is called `path` in messages.

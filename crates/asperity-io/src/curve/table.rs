@@ -46,11 +46,20 @@ pub(super) struct Row {
 /// Longer tables are no curves.
 pub(super) const MOST_ROWS: usize = 2_000_000;
 const MOST_COLUMNS: usize = 1000;
+/// A table may have a blank line after each point.
+const MOST_LINES: usize = 2 * MOST_ROWS;
+const LONGEST_LINE: usize = 1 << 20;
 
 impl Table {
     /// From the bytes of a text file.
     pub(super) fn parse(bytes: &[u8]) -> Result<Table, Fault> {
         let text = to_text(bytes).ok_or_else(|| fault("the file is binary, not a text table"))?;
+        if text.lines().nth(MOST_LINES).is_some() {
+            return Err(fault(format!("the file has more than {MOST_LINES} lines")));
+        }
+        if let Some(n) = text.lines().position(|line| line.len() > LONGEST_LINE) {
+            return Err(fault(format!("the line is longer than {LONGEST_LINE} bytes")).at(n + 1));
+        }
         let lines: Vec<&str> = text.lines().map(trim).collect();
         let numeric = lines.iter().copied().filter(|line| !is_comment(line) && is_numbers(line));
         let (separator, decimal_comma) = match numeric.clone().next() {

@@ -9,11 +9,10 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use super::contents::{Contents, Data, Map, TIME, Variable};
-use super::error::{Result, WriteError};
-use super::output::{self, Output};
+use super::error::{ExportError, Result, WriteError};
+use crate::output::{Output, PartialFile};
 
 pub(super) fn export(contents: &Contents<'_>, path: &Path, force: bool) -> Result<Vec<PathBuf>> {
-    // Said before anything is written.
     let maps: Vec<_> = contents
         .variables
         .iter()
@@ -38,28 +37,37 @@ pub(super) fn export(contents: &Contents<'_>, path: &Path, force: bool) -> Resul
     let lists: Vec<_> = contents.dimensions.iter().enumerate().filter_map(lists).collect();
     let table = |v: &&Variable| v.dimensions.len() == 2 && matches!(v.data, Data::Reals(_));
     let tables: Vec<_> = contents.variables.iter().filter(table).map(|v| (v, beside(v.name))).collect();
-    let all = maps.iter().map(|(.., path)| path).chain(lists.iter().map(|list| &list.1));
-    all.chain(tables.iter().map(|table| &table.1)).try_for_each(|path| output::check(path, force))?;
-    let mut made = output::file(path, force, |file| series(contents, TIME, file))?;
+    // All are written before the first gets its name.
+    let mut made = Vec::new();
+    let mut make = |path: &Path, fill: &dyn Fn(&mut Output<'_>) -> Result<(), WriteError>| {
+        let partial = PartialFile::filled(path, force, fill).map_err(|error| error.at(path))?;
+        made.push((partial, path.to_owned()));
+        Ok::<(), ExportError>(())
+    };
+    make(path, &|file| series(contents, TIME, file))?;
     for (dimension, path) in &lists {
-        made.extend(output::file(path, force, |file| series(contents, *dimension, file))?);
+        make(path, &|file| series(contents, *dimension, file))?;
     }
     for (variable, path) in &tables {
-        made.extend(output::file(path, force, |file| by_two(contents, variable, file))?);
+        make(path, &|file| by_two(contents, variable, file))?;
     }
     for (variable, n, path) in &maps {
         let heading = named(variable);
-        made.extend(output::file(path, force, |file| match contents.map(&variable.data, *n)? {
+        make(path, &|file| match contents.map(&variable.data, *n)? {
             Some(Map::Real(map)) => matrix(contents, file, &heading, |i, j| number(map[(i, j)])),
             Some(Map::Byte(map)) => matrix(contents, file, &heading, |i, j| map[(i, j)].to_string()),
             None => Ok(()),
-        })?);
+        })?;
     }
-    Ok(made)
+    let finish = |(partial, path): (PartialFile, PathBuf)| match partial.finish() {
+        Ok(()) => Ok(path),
+        Err(error) => Err(WriteError::Io(error).at(&path)),
+    };
+    made.into_iter().map(finish).collect()
 }
 
 /// The numbers over one dimension; tensors over it with a column for each entry.
-fn series(contents: &Contents<'_>, dimension: usize, file: &mut Output) -> Result<(), WriteError> {
+fn series(contents: &Contents<'_>, dimension: usize, file: &mut Output<'_>) -> Result<(), WriteError> {
     let is_of = |v: &&Variable| {
         v.dimensions == [dimension] || v.dimensions.first() == Some(&dimension) && v.dimensions.len() == 3
     };
@@ -88,7 +96,7 @@ fn series(contents: &Contents<'_>, dimension: usize, file: &mut Output) -> Resul
 }
 
 /// The numbers of a variable over two dimensions.
-fn by_two(contents: &Contents<'_>, variable: &Variable, file: &mut Output) -> Result<(), WriteError> {
+fn by_two(contents: &Contents<'_>, variable: &Variable, file: &mut Output<'_>) -> Result<(), WriteError> {
     let Data::Reals(numbers) = &variable.data else { return Ok(()) };
     let [rows, columns] = [0, 1].map(|axis| contents.dimensions[variable.dimensions[axis]]);
     let coordinate = |(name, length): (&str, usize)| {
@@ -118,7 +126,7 @@ fn named(variable: &Variable) -> String {
 /// A map as a matrix; on a line a column of places and one of values.
 fn matrix(
     contents: &Contents<'_>,
-    file: &mut Output,
+    file: &mut Output<'_>,
     heading: &str,
     cell: impl Fn(usize, usize) -> String,
 ) -> Result<(), WriteError> {
@@ -136,7 +144,7 @@ fn matrix(
     Ok(())
 }
 
-fn line(file: &mut Output, cells: impl Iterator<Item = String>) -> Result<(), WriteError> {
+fn line(file: &mut Output<'_>, cells: impl Iterator<Item = String>) -> Result<(), WriteError> {
     for (n, cell) in cells.enumerate() {
         let comma = if n > 0 { "," } else { "" };
         write!(file, "{comma}{cell}")?;

@@ -1,6 +1,6 @@
 //! What can go wrong with an export.
 
-use std::io;
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use thiserror::Error;
@@ -99,7 +99,16 @@ impl From<ExportError> for WriteError {
 impl WriteError {
     pub(super) fn at(self, path: &Path) -> ExportError {
         match self {
-            WriteError::Io(source) => ExportError::Io { path: path.to_owned(), action: "write", source },
+            WriteError::Io(source) => {
+                let path = path.to_owned();
+                match (source.kind(), crate::output::no_file(&path)) {
+                    (ErrorKind::AlreadyExists, _) => ExportError::Exists { path },
+                    (ErrorKind::IsADirectory | ErrorKind::InvalidInput, Some(found)) => {
+                        ExportError::Foreign { path, found: found.into() }
+                    }
+                    _ => ExportError::Io { path, action: "write", source },
+                }
+            }
             WriteError::Other(error) => error,
         }
     }

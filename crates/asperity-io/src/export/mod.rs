@@ -17,18 +17,18 @@ mod error;
 mod hdf5;
 mod netcdf;
 mod npz;
-mod output;
 mod volume;
 mod vtk;
 
 use std::path::{Path, PathBuf};
 
 pub use error::{ExportError, Result};
-pub use output::no_file;
 pub use volume::volume;
 
+use crate::output::{self, PartialFile};
 use crate::store::{At, FieldKind, Leaks, Reader, StoreError};
 use contents::Contents;
+use error::WriteError;
 
 /// A format of an export.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -153,11 +153,19 @@ pub fn export(reader: &Reader, format: Format, path: &Path, options: &Options) -
     instants.dedup();
     let contents = Contents::new(reader, &fields, instants)?;
     let force = options.force;
-    match format {
-        Format::NetCdf => output::file(path, force, |file| netcdf::write(&contents, file)),
-        Format::Hdf5 => output::replace(path, force, |path| hdf5::write(&contents, path)),
-        Format::Npz => output::file(path, force, |file| npz::write(&contents, file)),
-        Format::Vtk => vtk::export(&contents, path, force),
-        Format::Csv => csv::export(&contents, path, force),
-    }
+    let written = match format {
+        Format::NetCdf => output::write(path, force, |file| netcdf::write(&contents, file)),
+        Format::Hdf5 => hdf5(&contents, path, force),
+        Format::Npz => output::write(path, force, |file| npz::write(&contents, file)),
+        Format::Vtk => return vtk::export(&contents, path, force),
+        Format::Csv => return csv::export(&contents, path, force),
+    };
+    written.map_err(|error| error.at(path))?;
+    Ok(vec![path.to_owned()])
+}
+
+fn hdf5(contents: &Contents<'_>, path: &Path, force: bool) -> Result<(), WriteError> {
+    let partial = PartialFile::new(path, force)?;
+    hdf5::write(contents, partial.place())?;
+    Ok(partial.finish()?)
 }

@@ -8,7 +8,7 @@ use std::io::Write;
 
 use super::contents::{Attribute, Contents, Data, FIELD_TIME, Map, Variable};
 use super::error::WriteError;
-use super::output::Output;
+use crate::output::Output;
 
 /// Types of the classic format.
 #[derive(Clone, Copy, PartialEq)]
@@ -43,7 +43,7 @@ struct Slab<'a> {
     bytes: u64,
 }
 
-pub(super) fn write(contents: &Contents<'_>, file: &mut Output) -> Result<(), WriteError> {
+pub(super) fn write(contents: &Contents<'_>, file: &mut Output<'_>) -> Result<(), WriteError> {
     let slabs: Vec<Slab<'_>> = contents.variables.iter().map(|v| slab(contents, v)).collect();
     let wide = slabs.iter().any(|slab| slab.bytes > LARGEST);
     write_slabs(contents, &slabs, wide, file)

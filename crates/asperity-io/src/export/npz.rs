@@ -11,10 +11,20 @@ use zip::{CompressionMethod, ZipWriter};
 
 use super::contents::{Contents, Data, Map};
 use super::error::WriteError;
-use super::output::Output;
+use crate::output::Output;
 
-pub(super) fn write(contents: &Contents<'_>, file: &mut Output) -> Result<(), WriteError> {
+pub(super) fn write(contents: &Contents<'_>, file: &mut Output<'_>) -> Result<(), WriteError> {
     let mut zip = ZipWriter::new(file);
+    if let Err(error) = members(contents, &mut zip) {
+        // Dropped, it would try to write again and print that it cannot.
+        std::mem::forget(zip);
+        return Err(error);
+    }
+    zip.finish().map_err(std::io::Error::from)?;
+    Ok(())
+}
+
+fn members(contents: &Contents<'_>, zip: &mut ZipWriter<&mut Output<'_>>) -> Result<(), WriteError> {
     for variable in &contents.variables {
         let shape = variable.shape(contents);
         let kind = match variable.data {
@@ -22,9 +32,9 @@ pub(super) fn write(contents: &Contents<'_>, file: &mut Output) -> Result<(), Wr
             Data::Field(crate::store::FieldKind::Contact) => "|u1",
             _ => "<f8",
         };
-        begin(&mut zip, variable.name, kind, &shape)?;
+        begin(zip, variable.name, kind, &shape)?;
         match &variable.data {
-            Data::Reals(reals) => put_reals(&mut zip, reals)?,
+            Data::Reals(reals) => put_reals(zip, reals)?,
             Data::Counts(counts) => {
                 let bytes: Vec<u8> = counts.iter().flat_map(|n| n.to_le_bytes()).collect();
                 zip.write_all(&bytes)?;
@@ -32,7 +42,7 @@ pub(super) fn write(contents: &Contents<'_>, file: &mut Output) -> Result<(), Wr
             data => {
                 for n in 0..contents.maps(data) {
                     match contents.map(data, n)? {
-                        Some(Map::Real(map)) => put_reals(&mut zip, map.as_slice().unwrap_or_default())?,
+                        Some(Map::Real(map)) => put_reals(zip, map.as_slice().unwrap_or_default())?,
                         Some(Map::Byte(map)) => zip.write_all(map.as_slice().unwrap_or_default())?,
                         None => {}
                     }
@@ -46,16 +56,14 @@ pub(super) fn write(contents: &Contents<'_>, file: &mut Output) -> Result<(), Wr
     attributes.insert("units".into(), Value::Object(units));
     // A scalar of numpy's text type: four bytes per character.
     let text = Value::Object(attributes).to_string();
-    begin(&mut zip, "attributes", &format!("<U{}", text.chars().count()), &[])?;
+    begin(zip, "attributes", &format!("<U{}", text.chars().count()), &[])?;
     let bytes: Vec<u8> = text.chars().flat_map(|c| u32::from(c).to_le_bytes()).collect();
-    zip.write_all(&bytes)?;
-    zip.finish().map_err(std::io::Error::from)?;
-    Ok(())
+    Ok(zip.write_all(&bytes)?)
 }
 
 /// Starts a member and writes the header of its `.npy` (version 1.0): padded to 64 bytes.
 fn begin(
-    zip: &mut ZipWriter<&mut Output>,
+    zip: &mut ZipWriter<&mut Output<'_>>,
     name: &str,
     kind: &str,
     shape: &[usize],

@@ -11,7 +11,7 @@ use asperity::Grid;
 use asperity::stress::{StressQuantity, automatic_depths, contact_box};
 
 use super::error::{ExportError, Result, WriteError};
-use super::output::{self, Output};
+use crate::output::{self, Output};
 use crate::store::{At, FieldKind, Reader};
 use crate::stress::{Depths, Pressures, StressPlan};
 
@@ -60,7 +60,7 @@ pub fn volume(
     };
     let depths = if form == Form::Image { even(&depths, &grid) } else { depths };
     let header = header(&grid, &depths, quantities, form);
-    output::file(path, force, |file| {
+    let written = output::write(path, force, |file| {
         file.write_all(header.text.as_bytes())?;
         let start = header.text.len() as u64;
         for (offset, line) in &header.lines {
@@ -91,7 +91,9 @@ pub fn volume(
         }
         file.seek(SeekFrom::End(0))?;
         Ok(write!(file, "\n  </AppendedData>\n</VTKFile>\n")?)
-    })
+    });
+    written.map_err(|error: WriteError| error.at(path))?;
+    Ok(vec![path.to_owned()])
 }
 
 /// Depths at equal distances from the surface to the last: the given ones where they are such, else up to [`SLICES`], none
@@ -171,7 +173,7 @@ fn header(grid: &Grid, depths: &[f64], quantities: &[StressQuantity], form: Form
     Header { text, lines, first }
 }
 
-fn write_array(file: &mut Output, at: u64, numbers: &[f64]) -> Result<(), WriteError> {
+fn write_array(file: &mut Output<'_>, at: u64, numbers: &[f64]) -> Result<(), WriteError> {
     file.seek(SeekFrom::Start(at))?;
     file.write_all(&(8 * numbers.len() as u64).to_le_bytes())?;
     Ok(numbers.iter().try_for_each(|x| file.write_all(&x.to_le_bytes()))?)

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use super::contents::{Contents, Data, Map, Variable};
 use super::error::{ExportError, Result, WriteError};
-use super::output::{self, Output};
+use crate::output::{Output, PartialDirectory, PartialFile};
 
 pub(super) fn export(contents: &Contents<'_>, path: &Path, force: bool) -> Result<Vec<PathBuf>> {
     let directory = path.with_extension("");
@@ -19,31 +19,28 @@ pub(super) fn export(contents: &Contents<'_>, path: &Path, force: bool) -> Resul
         let what = "a collection whose name has no ending, as its directory needs that name".to_owned();
         return Err(ExportError::Limit { format: "VTK", what, hint: "name it NAME.pvd" });
     }
-    output::check(path, force)?;
-    check_directory(&directory, force)?;
-    let partial = output::partial(&directory)?;
-    let made = fs::create_dir(&partial).map_err(|error| WriteError::Io(error).at(&directory));
-    let written = made.and_then(|()| {
-        let fields: Vec<&Variable> =
-            contents.variables.iter().filter(|v| matches!(v.data, Data::Field(_))).collect();
-        for n in 0..contents.instants.len() {
-            image(contents, &partial.join(state_name(n)), &fields, n)?;
-        }
-        let gap: Vec<&Variable> =
-            contents.variables.iter().filter(|v| matches!(v.data, Data::InitialGap)).collect();
-        image(contents, &partial.join("initial_gap.vti"), &gap, 0)?;
-        if directory.exists() {
-            fs::remove_dir_all(&directory).map_err(|error| WriteError::Io(error).at(&directory))?;
-        }
-        fs::rename(&partial, &directory).map_err(|error| WriteError::Io(error).at(&directory))
-    });
-    if let Err(error) = written {
-        let _ = fs::remove_dir_all(&partial);
-        return Err(error);
-    }
     let name = directory.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    output::file(path, force, |file| collection(contents, &name, file))?;
+    let list = PartialFile::filled(path, force, |file| collection(contents, &name, file))
+        .map_err(|error| error.at(path))?;
+    check_directory(&directory, force)?;
+    images(contents, &directory).map_err(|error| error.at(&directory))?;
+    list.finish().map_err(|error| WriteError::Io(error).at(path))?;
     Ok(vec![path.to_owned(), directory])
+}
+
+/// Makes the directory of the images.
+fn images(contents: &Contents<'_>, directory: &Path) -> Result<(), WriteError> {
+    let partial = PartialDirectory::new(directory)?;
+    let of = |kind: fn(&Data) -> bool| -> Vec<&Variable> {
+        contents.variables.iter().filter(|variable| kind(&variable.data)).collect()
+    };
+    let fields = of(|data| matches!(data, Data::Field(_)));
+    for n in 0..contents.instants.len() {
+        image(contents, &partial.place().join(state_name(n)), &fields, n)?;
+    }
+    let gap = of(|data| matches!(data, Data::InitialGap));
+    image(contents, &partial.place().join("initial_gap.vti"), &gap, 0)?;
+    Ok(partial.finish()?)
 }
 
 fn state_name(n: usize) -> String {
@@ -74,7 +71,7 @@ fn check_directory(directory: &Path, force: bool) -> Result<()> {
     Ok(())
 }
 
-fn collection(contents: &Contents<'_>, directory: &str, file: &mut Output) -> Result<(), WriteError> {
+fn collection(contents: &Contents<'_>, directory: &str, file: &mut Output<'_>) -> Result<(), WriteError> {
     writeln!(file, r#"<?xml version="1.0"?>"#)?;
     writeln!(file, r#"<VTKFile type="Collection" version="0.1" byte_order="LittleEndian">"#)?;
     writeln!(file, "  <Collection>")?;
@@ -92,9 +89,9 @@ fn collection(contents: &Contents<'_>, directory: &str, file: &mut Output) -> Re
     Ok(writeln!(file, "  </Collection>\n</VTKFile>")?)
 }
 
-fn image(contents: &Contents<'_>, path: &Path, variables: &[&Variable], n: usize) -> Result<()> {
+fn image(contents: &Contents<'_>, path: &Path, variables: &[&Variable], n: usize) -> Result<(), WriteError> {
     let grid = &contents.reader().header().grid;
-    let write = |file: &mut Output| {
+    crate::output::write(path, false, |file| {
         let [nx, ny] = grid.cells();
         let [dx, dy] = grid.spacing();
         let cells = (nx * ny) as u64;
@@ -151,8 +148,7 @@ fn image(contents: &Contents<'_>, path: &Path, variables: &[&Variable], n: usize
             }
         }
         Ok(write!(file, "\n  </AppendedData>\n</VTKFile>\n")?)
-    };
-    output::file(path, false, write).map(|_| ())
+    })
 }
 
 fn escape(text: &str) -> String {

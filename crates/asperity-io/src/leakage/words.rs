@@ -52,10 +52,10 @@ impl Leak {
     }
 }
 
-/// A leak rate with its unit: of a gas in mbar l/s, of a liquid in m³/s.
+/// A leak rate with its unit: of a gas in mbar l/s, which count it at 0 °C, of a liquid in m³/s.
 pub fn rate(leak_rate: f64, standard: Option<f64>) -> String {
     match standard {
-        Some(standard) => format!("{:.3e} mbar l/s", MBAR_LITRE * standard),
+        Some(standard) => format!("{:.3e} mbar l/s (at 0 °C)", MBAR_LITRE * standard),
         None => format!("{leak_rate:.3e} m3/s"),
     }
 }

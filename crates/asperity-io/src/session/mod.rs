@@ -111,7 +111,7 @@ pub enum RunError {
         summary: Box<Summary>,
     },
     /// The run is complete, its leakage is not.
-    #[error("{source}; the run itself is complete and stored, `asperity leak` computes its leakage")]
+    #[error("{source}; all rows are stored, and --resume or `asperity leak` computes the leakage")]
     Leakage {
         /// What failed.
         source: LeakError,
@@ -163,8 +163,10 @@ fn run_inside(
     let header = header(case, &simulation);
     let (writer, checkpoint, earlier) = if options.resume {
         let earlier = earlier(&path).map_err(RunError::Output)?;
-        let resumed = Writer::resume(&path, &header, simulation.gap.view());
-        let (writer, checkpoint) = resumed.map_err(RunError::Output)?;
+        let (writer, checkpoint) = match Writer::resume(&path, &header, simulation.gap.view()) {
+            Err(complete @ StoreError::Complete { .. }) => return ended(case, &complete, &path, options),
+            resumed => resumed.map_err(RunError::Output)?,
+        };
         (writer, checkpoint, earlier)
     } else {
         let writer = Writer::create(&path, &header, simulation.gap.view(), options.force);
@@ -254,24 +256,58 @@ fn run_inside(
                 return Err(record.stop_storing(Some(march.simulation()), source));
             }
             // The case would have been refused.
-            Err(StressError::Refused { why, .. }) => {
-                let source = Error::invalid("[stress]", why, "left out");
+            Err(error @ (StressError::Refused { .. } | StressError::NoContact { .. })) => {
+                let source = Error::invalid("[stress]", error, "left out");
                 return Err(record.fail(Some(march.simulation()), best(&march), source));
             }
         }
     }
-    let mut summary = record.end(Some(march.simulation()), Outcome::new(Status::Complete))?;
+    let summary = record.end(Some(march.simulation()), Outcome::new(Status::Complete))?;
     drop(march);
-    if let Some(leak) = &case.leakage {
-        match leakage::store(&path, leak, &options.interrupt, |_, _| {}) {
-            Ok(leaks) => {
-                summary.findings.extend(leaks.findings.iter().cloned());
-                summary.leak = Some(leaks.sentence());
-            }
-            Err(source) => return Err(RunError::Leakage { source, summary: Box::new(summary) }),
+    leakage(case, summary, options)
+}
+
+/// The leakage that a case asks for, computed and stored once all rows are.
+fn leakage(case: &Case, mut summary: Summary, options: &RunOptions) -> Result<Summary, RunError> {
+    let Some(leak) = &case.leakage else { return Ok(summary) };
+    match leakage::store(&summary.result, leak, &options.interrupt, |_, _| {}) {
+        Ok(leaks) => {
+            summary.findings.extend(leaks.findings.iter().cloned());
+            summary.leak = Some(leaks.sentence());
+            Ok(summary)
         }
+        Err(source) => Err(RunError::Leakage { source, summary: Box::new(summary) }),
     }
+}
+
+/// Resuming a complete result: its leakage is computed where it is asked for and missing, else nothing is left to do.
+fn ended(case: &Case, complete: &StoreError, path: &Path, options: &RunOptions) -> Result<Summary, RunError> {
+    let summary = stored(path).map_err(RunError::Output)?;
+    if Reader::open(path).is_ok_and(|reader| reader.lacks_leakage()) {
+        return leakage(case, summary, options);
+    }
+    tracing::warn!("{complete}");
     Ok(summary)
+}
+
+/// What the run did that stored the complete result at `path`.
+fn stored(path: &Path) -> Result<Summary, StoreError> {
+    let reader = Reader::open(path)?;
+    let work = reader.work();
+    Ok(Summary {
+        status: reader.status(),
+        rows: reader.len(),
+        iterations: work.iterations,
+        convolutions: work.convolutions,
+        wall_s: work.wall_s,
+        peak_memory_bytes: work.peak_memory_bytes,
+        result: path.to_owned(),
+        last: reader.rows()?.last().copied(),
+        friction: None,
+        findings: reader.findings().to_vec(),
+        stress: Below::of(&reader)?,
+        leak: None,
+    })
 }
 
 /// How much fields are compressed at best where contact is sparse: zeros take next to nothing.
@@ -279,7 +315,10 @@ const BEST_COMPRESSION: u64 = 10;
 
 /// Refuses a result that cannot fit on its disk, and warns of one that may not.
 fn check_disk(case: &Case, path: &Path) -> Result<(), StoreError> {
-    let (Some(needed), Some(free)) = (case.describe().result_bytes, free_disk(path)) else { return Ok(()) };
+    let description = case.describe();
+    let stress = description.stress.and_then(|stress| stress.result_bytes).unwrap_or(0);
+    let needed = description.result_bytes.map(|fields| fields.saturating_add(stress));
+    let (Some(needed), Some(free)) = (needed, free_disk(path)) else { return Ok(()) };
     let error = StoreError::NoSpace { path: path.to_owned(), needed, free };
     if needed / BEST_COMPRESSION > free {
         return Err(error);
@@ -518,6 +557,14 @@ fn header(case: &Case, simulation: &Simulation) -> Header {
     }
 }
 
+/// Points of a course for pictures: all of them, or of many every second one, every third one and so on, and the last.
+fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    const MOST: usize = 1000;
+    let every = points.len().div_ceil(MOST).max(1);
+    let is_kept = |n: usize| n.is_multiple_of(every) || n + 1 == points.len();
+    points.iter().enumerate().filter(|(n, _)| is_kept(*n)).map(|(_, point)| *point).collect()
+}
+
 /// The case in numbers, SI.
 fn setup(case: &Case) -> Map<String, Value> {
     let description = serde_json::to_value(case.describe()).unwrap_or_default();
@@ -529,6 +576,9 @@ fn setup(case: &Case) -> Map<String, Value> {
     if !case.thermal.is_empty() {
         let parts: Vec<Value> = case.thermal.iter().map(|body| creep(&body.creep)).collect();
         setup.insert("contact_creep_compliance_over_reduced_time".into(), json!(parts));
+    }
+    if let Some(points) = &case.temperatures {
+        setup.insert("temperature_course".into(), json!(thinned(points)));
     }
     if !case.files.is_empty() {
         let files: Map<String, Value> =

@@ -7,7 +7,7 @@ use asperity::sliding::{Steady, SteadyMotion};
 
 use super::{Earlier, Known, Maps, Progress, Record, RunError, RunOptions, Summary, header};
 use crate::case::Case;
-use crate::store::{Outcome, Status, Writer};
+use crate::store::{Outcome, Status, StoreError, Writer};
 use asperity::Simulation;
 use asperity::finding::Judge;
 use asperity::march::Checkpoint;
@@ -30,8 +30,12 @@ pub(super) fn run(
     let path = options.output.clone().unwrap_or_else(|| case.output.path.clone());
     let (writer, checkpoint, earlier) = if options.resume {
         let earlier = super::earlier(&path).map_err(RunError::Output)?;
-        let resumed = Writer::resume(&path, &header, simulation.gap.view());
-        let (writer, checkpoint) = resumed.map_err(RunError::Output)?;
+        let (writer, checkpoint) = match Writer::resume(&path, &header, simulation.gap.view()) {
+            Err(complete @ StoreError::Complete { .. }) => {
+                return super::ended(case, &complete, &path, options);
+            }
+            resumed => resumed.map_err(RunError::Output)?,
+        };
         (writer, checkpoint, earlier)
     } else {
         let writer = Writer::create(&path, &header, simulation.gap.view(), options.force);

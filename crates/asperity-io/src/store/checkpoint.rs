@@ -95,7 +95,7 @@ fn write_file(path: &Path, checkpoint: &Checkpoint, is_synced: bool) -> std::io:
 /// The checkpoint of the result at `root`, or `None` where none was written.
 pub(super) fn read(root: &Path) -> Result<Option<Checkpoint<'static>>> {
     let path = root.join(DIRECTORY).join(FILE);
-    let file = match File::open(&path) {
+    let file = match crate::resources::open(&path) {
         Ok(file) => file,
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
         Err(source) => return Err(StoreError::Io { path, action: "read", source }),

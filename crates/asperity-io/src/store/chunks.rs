@@ -15,6 +15,7 @@ use zarrs::array::{
 
 use super::error::{Result, StoreError, corrupt, io};
 use super::layout::{ArraySpec, LEVEL};
+use crate::resources;
 
 /// The chunks of one array.
 pub(super) struct Chunks {
@@ -137,7 +138,7 @@ impl Chunks {
     pub(super) fn bytes(&self, index: &[u64]) -> Result<Vec<u8>> {
         self.find(index)?;
         let path = self.path(index);
-        fs::read(&path).map_err(io("read", &path))
+        resources::read(&path).map_err(io("read", &path))
     }
 
     /// Checks that a chunk is there and no larger than its numbers can be, before memory is asked for.

@@ -19,8 +19,8 @@ use super::replace;
 use super::stress;
 use super::writer::lock;
 
-/// Lets `build` fill a new directory, which then appears at `path`; returns its lock. Of a result that was there only its
-/// own files are removed, once the new one is in its place.
+/// Lets `build` fill a new directory, which then appears at `path`; returns its lock. A complete result that was there is put by
+/// until the new one is complete.
 pub(super) fn publish(
     path: &Path,
     force: bool,
@@ -38,7 +38,7 @@ pub(super) fn publish(
         match &old {
             Some(_) => {
                 let aside = put_in_place(&partial, path)?;
-                leftovers::remove(&aside, path);
+                leftovers::put_by(&aside, path);
             }
             None => fs::rename(&partial, path).map_err(|error| taken(path, error))?,
         }

@@ -20,6 +20,7 @@ use super::replace::{Way, replace};
 use super::stress::StressSet;
 use super::sync;
 use crate::finding;
+use crate::resources;
 
 pub(super) const NAME: &str = "zarr.json";
 /// Where documents are written first; that of the group in an array's directory, where no reader of the
@@ -236,10 +237,10 @@ fn read_json(root: &Path) -> Result<(PathBuf, Value)> {
     if length > LARGEST {
         return Err(corrupt(&file, format_args!("{length} bytes, more than a result's document has")));
     }
-    let bytes = fs::read(&file).map_err(io("read", &file))?;
+    let bytes = resources::read(&file).map_err(io("read", &file))?;
     let document = serde_json::from_slice(&bytes).or_else(|error| {
         // A loss of power may leave less than the text that was written last.
-        let copy = fs::read(root.join(checkpoint::DIRECTORY).join(checkpoint::GROUP));
+        let copy = resources::read(&root.join(checkpoint::DIRECTORY).join(checkpoint::GROUP));
         copy.ok().and_then(|bytes| serde_json::from_slice(&bytes).ok()).ok_or(error)
     });
     Ok((file.clone(), document.map_err(|error| corrupt(&file, error))?))

@@ -48,6 +48,17 @@ impl Header {
             && self.setup.get("layer_rigid_base").and_then(Value::as_bool) != Some(true)
     }
 
+    /// Boundary and bodies in words: "periodic half-space", "free domain, layers on a rigid base".
+    pub fn boundary(&self) -> Option<String> {
+        let bodies = match self.setup.get("layer_rigid_base").and_then(Value::as_bool) {
+            None => "half-space",
+            Some(true) => "domain, layers on a rigid base",
+            Some(false) => "domain, layers on a half-space",
+        };
+        let word = self.setup.get("boundary").and_then(Value::as_str)?;
+        Some(format!("{} {bodies}", if word == "periodic" { "periodic" } else { "free" }))
+    }
+
     /// Whether its rows are steady states of motion: they have a velocity in place of a time.
     pub fn is_sweep(&self) -> bool {
         self.setup.get("motion").and_then(|motion| motion.get("steady")).and_then(Value::as_bool)

@@ -10,10 +10,42 @@ use std::time::Duration;
 use super::checkpoint;
 use super::create::is_part;
 use super::document::{GROUP_PARTIAL, NAME, PARTIAL};
+use super::header::Status;
+use super::reader::Reader;
 use super::writer::lock;
 
 /// Directories of unfinished results that are younger than this may belong to a process that is about to lock them.
 const YOUNG: Duration = Duration::from_secs(10);
+
+/// Where a complete result is kept that a run at `path` replaces, until that run is complete.
+fn replaced(path: &Path) -> PathBuf {
+    let mut name = std::ffi::OsString::from(".");
+    name.push(path.file_name().unwrap_or_default());
+    name.push(".replaced");
+    path.with_file_name(name)
+}
+
+/// The complete result that is kept until the one at `path` is complete, where there is one.
+pub(super) fn kept(path: &Path) -> Option<PathBuf> {
+    Some(replaced(path)).filter(|kept| kept.is_dir())
+}
+
+/// Keeps the replaced result at `aside` until the one at `path` is complete; it is removed at once where it is not complete
+/// itself, or another one is kept already.
+pub(super) fn put_by(aside: &Path, path: &Path) {
+    let is_complete = Reader::open(aside).is_ok_and(|reader| reader.status() == Status::Complete);
+    let is_kept = is_complete && kept(path).is_none() && fs::rename(aside, replaced(path)).is_ok();
+    if !is_kept {
+        remove(aside, path);
+    }
+}
+
+/// Removes the result that was kept until the one at `path` is complete.
+pub(super) fn remove_kept(path: &Path) {
+    if let Some(kept) = kept(path) {
+        remove(&kept, path);
+    }
+}
 
 /// Removes the files of the replaced result at `aside`. Where others are left, it is renamed so that its user finds
 /// them, and told.

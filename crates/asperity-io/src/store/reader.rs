@@ -16,6 +16,7 @@ use super::error::{Result, StoreError, corrupt};
 use super::header::{self, Header, Status, Work};
 use super::layout::{ArraySpec, DataType, Entry, FieldKind, SCALARS, Series};
 use super::leak::Leaks;
+use super::leftovers;
 
 /// A result as it is at the instant of opening; a run that goes on is seen by opening it again.
 #[derive(Clone, Debug)]
@@ -98,6 +99,17 @@ impl Reader {
     pub fn is_being_written(&self) -> bool {
         let shared = File::open(&self.root).map(|directory| directory.try_lock_shared());
         matches!(shared, Ok(Err(std::fs::TryLockError::WouldBlock)))
+    }
+
+    /// Where the complete result is that this one replaces, which is kept until this one is complete.
+    pub fn replaces(&self) -> Option<PathBuf> {
+        leftovers::kept(&self.root).filter(|_| self.status() != Status::Complete)
+    }
+
+    /// Whether all rows are stored, but not the leakage that its case asks for.
+    pub fn lacks_leakage(&self) -> bool {
+        let asked = self.header().setup.get("leakage").is_some_and(|leakage| !leakage.is_null());
+        self.status() == Status::Complete && asked && self.leaks().is_none()
     }
 
     /// How a run that stopped early goes on: empty, unless a case file is stored from which `run --resume` can continue.
@@ -394,7 +406,10 @@ impl Reader {
 
     /// The error of a result whose case asked for no quantities.
     pub fn no_quantities(&self) -> StoreError {
-        self.missing("quantities".into(), "none (its case has no output.quantities)".into())
+        self.missing(
+            "quantities".into(),
+            "none; name some in output.quantities of the case, and run that again".into(),
+        )
     }
 
     pub(super) fn spec(&self, name: &str) -> Result<ArraySpec> {

@@ -1,5 +1,6 @@
 //! Going on with a run that stopped.
 
+use std::fs;
 use std::path::Path;
 
 use asperity::march::Checkpoint;
@@ -10,7 +11,7 @@ use super::checksum::Sums;
 use super::chunks::Chunks;
 use super::column;
 use super::document::{Document, Pages};
-use super::error::{Result, StoreError};
+use super::error::{Result, StoreError, io};
 use super::header::{Header, Status};
 use super::layout::ArraySpec;
 use super::reader::Reader;
@@ -42,6 +43,7 @@ impl Writer {
             return Err(StoreError::Complete { path: path.to_owned(), rows: reader.len() });
         }
         compare_gap(path, reader.initial_gap()?.view(), initial_gap)?;
+        refuse_links(path)?;
 
         let checkpoint = checkpoint::read(path)?;
         let rows = checkpoint.as_ref().map_or(0, |checkpoint| checkpoint.step);
@@ -90,6 +92,25 @@ impl Writer {
         let last_time = all[..rows].last().map_or(f64::NEG_INFINITY, |row| row.time);
         Ok((Writer::attach(path, document, held, last_time)?, checkpoint))
     }
+}
+
+/// Refuses links below `directory`: what they lead to is not ours to write into.
+fn refuse_links(directory: &Path) -> Result<()> {
+    let read = io("read", directory);
+    for entry in fs::read_dir(directory).map_err(&read)? {
+        let entry = entry.map_err(&read)?;
+        let (kind, path) = (entry.file_type().map_err(&read)?, entry.path());
+        if kind.is_symlink() {
+            let why = "it is a link, and files outside of the result would change; copy the result with what its links lead to \
+                       (cp -rL) and resume the copy";
+            let source = std::io::Error::new(std::io::ErrorKind::InvalidInput, why);
+            return Err(StoreError::Io { path, action: "resume into", source });
+        }
+        if kind.is_dir() {
+            refuse_links(&path)?;
+        }
+    }
+    Ok(())
 }
 
 /// The checksums of the first rows and fields. All rows of each array are compared with their own first.

@@ -17,6 +17,7 @@ use super::document::{Document, Pages};
 use super::error::{Result, StoreError, input, io};
 use super::header::{Header, Progress, SCHEMA, Status, Work};
 use super::layout::{Entry, FieldKind, SCALARS};
+use super::leftovers;
 use super::replace::Way;
 use super::stress::{self, StressSet};
 use super::sync;
@@ -120,7 +121,23 @@ pub struct Writer {
     checkpoint: Option<(Instant, Duration)>,
     /// What has not been brought to the medium.
     unsynced: Unsynced,
+    /// The directory that is written: another one may take its path.
+    directory: Option<Identity>,
     _lock: Option<File>,
+}
+
+/// Device and number of a directory, where the system tells.
+type Identity = (u64, u64);
+
+#[cfg(unix)]
+fn identity(directory: &Path) -> Option<Identity> {
+    use std::os::unix::fs::MetadataExt;
+    fs::metadata(directory).ok().map(|found| (found.dev(), found.ino()))
+}
+
+#[cfg(not(unix))]
+fn identity(_: &Path) -> Option<Identity> {
+    None
 }
 
 impl std::fmt::Debug for Writer {
@@ -206,8 +223,18 @@ impl Writer {
             form: document.form,
             header: document.header,
             progress: document.progress,
+            directory: identity(root),
             _lock: lock,
         })
+    }
+
+    /// Refuses to write where the result was moved or removed: its path may be that of another one now.
+    fn check_place(&self) -> Result<()> {
+        if identity(&self.root) == self.directory {
+            return Ok(());
+        }
+        let source = std::io::Error::other("the result was moved or removed while it was written");
+        Err(StoreError::Io { path: self.root.clone(), action: "write into", source })
     }
 
     /// The directory of the result.
@@ -259,6 +286,7 @@ impl Writer {
             let expected = format!("not less than the time before it, {} s", self.last_time);
             return Err(input("time of the row", format!("{} s", row.time), expected));
         }
+        self.check_place()?;
         self.check_fields(fields)?;
         if self.staged > 0 && row.time < self.staged_time {
             let expected = format!("not less than that of the fields before it, {} s", self.staged_time);
@@ -320,6 +348,7 @@ impl Writer {
             let expected = format!("not less than the time before it, {last} s");
             return Err(input("time of the fields", format!("{time} s"), expected));
         }
+        self.check_place()?;
         self.check_fields(fields)?;
         if fields.is_empty() {
             return Ok(());
@@ -379,6 +408,7 @@ impl Writer {
     /// # Errors
     /// [`StoreError::Io`] where the system refuses.
     pub fn note(&mut self, findings: Vec<Finding>) -> Result<()> {
+        self.check_place()?;
         self.set_findings(findings);
         self.pages.commit(&self.root, &self.progress, Way::Quick)
     }
@@ -399,6 +429,7 @@ impl Writer {
             let expected = format!("{}, the rows stored", self.progress.rows);
             return Err(input("step of the checkpoint", checkpoint.step, expected));
         }
+        self.check_place()?;
         let start = Instant::now();
         let is_synced = self.unsynced.since.elapsed() >= SYNC_PAUSE;
         if is_synced {
@@ -439,12 +470,13 @@ impl Writer {
         sync::document(&self.root)
     }
 
-    /// Ends the result. Where the run is complete its checkpoint is removed, otherwise it is kept for
-    /// [`resume`](Self::resume).
+    /// Ends the result. Where the run is complete its checkpoint is removed, and so is the complete result that it replaces;
+    /// otherwise both are kept, the checkpoint for [`resume`](Self::resume).
     ///
     /// # Errors
     /// [`StoreError::Io`] where the system refuses.
     pub fn finish(mut self, outcome: &Outcome) -> Result<Work> {
+        self.check_place()?;
         let wall = self.wall();
         let Progress { status, work, .. } = &mut self.progress;
         *status = outcome.status;
@@ -460,6 +492,9 @@ impl Writer {
         }
         if outcome.status == Status::Complete {
             checkpoint::remove(&self.root)?;
+            leftovers::remove_kept(&self.root);
+        } else if let Some(kept) = leftovers::kept(&self.root) {
+            tracing::warn!("the complete result that this one replaces is kept in {}", kept.display());
         }
         Ok(self.progress.work.clone())
     }
@@ -496,7 +531,7 @@ impl Writer {
 
 impl Drop for Writer {
     fn drop(&mut self) {
-        if self.documents_behind {
+        if self.documents_behind && self.check_place().is_ok() {
             // Nobody is left to tell; readers of the group's document miss nothing.
             let _ = self.flush_documents(Way::Quick);
         }

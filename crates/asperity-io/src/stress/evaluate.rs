@@ -31,6 +31,14 @@ pub enum StressError {
         /// Why, as a sentence.
         why: &'static str,
     },
+    /// Nothing touches.
+    #[error("{}: nothing touches at {when}, so there is no stress to draw", .path.display())]
+    NoContact {
+        /// The result.
+        path: PathBuf,
+        /// The instant in words.
+        when: String,
+    },
 }
 
 /// Why there is no stress below layers.

@@ -148,6 +148,7 @@ fn keys_and_words() {
     );
     says("\"load\"", "\"force\"", "load.control", 32, &["one of \"load\", \"pressure\", \"approach\""]);
     says("\"free\"", "3", "domain.boundary", 5, &["one of \"free\", \"periodic\""]);
+    says("title = \"good\"", "title = 50 N", "", 1, &["between quotes"]);
     says("[\"pressure\"]", "[\"presure\"]", "output.fields[0]", 45, &["did you mean \"pressure\"?"]);
     says("poisson = 0.4\n", "", "body[0]", 16, &["needs `poisson` or `bulk_modulus`"]);
     says("radius = \"10 mm\"\n", "", "surface[0].radius", 6, &["is missing", "add radius = \"0.5 mm\""]);
@@ -155,7 +156,7 @@ fn keys_and_words() {
     says("control = \"load\"\n", "", "load.control", 31, &["is missing", "\"approach\""]);
     says("steps = 20\n", "", "time.steps", 38, &["is missing", "add steps = 100"]);
     says("title = \"good\"", "title = good", "", 1, &["this is not TOML"]);
-    says("title = \"good\"", "title = \"good\"\ntitle = \"twice\"", "", 2, &["duplicate key"]);
+    says("title = \"good\"", "title = \"good\"\ntitle = \"twice\"", "", 2, &["duplicate key", "[[body]]"]);
     says("poisson = 0.3", "poisson = 0.3\nbulk_modulus = \"4 GPa\"", "body[1]", 21, &["only one of them"]);
     says(
         "rms_gradient = 0.01",
@@ -245,6 +246,8 @@ fn sizes() {
     ] {
         assert!(shown.contains(words), "{shown}");
     }
+    let long = format!("title = \"{}\"", "ä".repeat(1001));
+    says("title = \"good\"", &long, "title", 1, &["1001 letters", "1000"]);
     says("\"0.2 mm\"", "\"0.1 mm\"", "surface[1].shortest", 14, &["at least two cells"]);
     says("\"0.5 mm\"", "\"3 mm\"", "surface[1].longest", 13, &["at most the size of the domain"]);
 }

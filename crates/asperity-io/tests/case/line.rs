@@ -165,6 +165,12 @@ fn what_a_line_contact_cannot_do_is_refused_where_it_stands() {
             "plane",
         ),
         ("[time]", "[stress]\nrolling = \"y\"\n[time]", "stress.rolling", "along x"),
+        (
+            "[time]",
+            "[output]\nquantities = [\"external_work\"]\n[time]",
+            "output.quantities[0]",
+            "depends on displacements",
+        ),
     ];
     for (from, to, key, words) in table {
         let error = fault(&edited(from, to));

@@ -418,3 +418,26 @@ fn a_result_is_the_same_for_any_number_of_threads() {
     }
     assert_eq!(all[0], all[1]);
 }
+
+/// A pipe would wait for its other end forever.
+#[cfg(unix)]
+#[test]
+fn a_pipe_in_place_of_a_file_is_refused() {
+    for (name, checkpoint) in
+        [("zarr.json", false), ("load/c/0", false), ("pressure/c/0/0/0", false), ("", true)]
+    {
+        let (_directory, path) = place();
+        write(&path);
+        let file = match checkpoint {
+            false => path.join(name),
+            true => files(&path).into_iter().find(|file| file.ends_with("checkpoint/state.bin")).unwrap(),
+        };
+        fs::remove_file(&file).unwrap();
+        assert!(std::process::Command::new("mkfifo").arg(&file).status().unwrap().success());
+        let refused = match checkpoint {
+            false => read_all(&path).map(drop),
+            true => Writer::resume(&path, &case().header, case().gap.view()).map(drop),
+        };
+        assert!(refused.unwrap_err().to_string().contains("a pipe, not a file"), "{}", file.display());
+    }
+}

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use asperity_io::store::{FieldKind, Reader, StoreError, Writer};
+use asperity_io::store::{FieldKind, Outcome, Reader, Status, StoreError, Writer, verify};
 
 use crate::{Case, place};
 
@@ -210,4 +210,47 @@ fn a_step_that_could_not_be_written_can_be_appended_again() {
     fs::remove_file(path.join("gap/c/1")).unwrap();
     case.append(&mut writer, 2, true).unwrap();
     assert_eq!(Reader::open(&path).unwrap().field_steps(), [0, 2]);
+}
+
+#[test]
+fn a_complete_result_is_kept_until_the_one_that_replaces_it_is_complete() {
+    let (directory, path) = place();
+    let case = Case::new([4, 3], &[]);
+    let written = |rows: usize, status: Option<Status>, force: bool| {
+        let mut writer = Writer::create(&path, &case.header, case.gap.view(), force).unwrap();
+        case.run(&mut writer, 0, rows);
+        if let Some(status) = status {
+            writer.finish(&Outcome::new(status)).unwrap();
+        }
+    };
+    written(5, Some(Status::Complete), false);
+    // Killed, then failed: the complete one stays.
+    for status in [None, Some(Status::Failed)] {
+        written(2, status, true);
+        let kept = Reader::open(&path).unwrap().replaces().unwrap();
+        let kept = Reader::open(&kept).unwrap();
+        assert_eq!((kept.len(), kept.status()), (5, Status::Complete));
+    }
+    assert_eq!(names(directory.path()).len(), 2);
+    written(3, Some(Status::Complete), true);
+    assert!(Reader::open(&path).unwrap().replaces().is_none());
+    assert_eq!(names(directory.path()).len(), 1);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_run_whose_result_is_moved_writes_nothing_into_another_one() {
+    let (directory, path) = place();
+    let case = Case::new([4, 3], &[]);
+    let mut first = Writer::create(&path, &case.header, case.gap.view(), false).unwrap();
+    case.run(&mut first, 0, 2);
+    std::fs::rename(&path, directory.path().join("elsewhere")).unwrap();
+    let mut second = Writer::create(&path, &case.header, case.gap.view(), false).unwrap();
+    case.run(&mut second, 0, 4);
+    second.finish(&Outcome::new(Status::Complete)).unwrap();
+    let refused = first.append(&case.row(2), &[]).unwrap_err().to_string();
+    assert!(refused.contains("moved or removed"), "{refused}");
+    assert!(first.finish(&Outcome::new(Status::Failed)).is_err());
+    assert!(verify(&path).unwrap().damage.is_empty());
+    assert_eq!(Reader::open(&path).unwrap().len(), 4);
 }

@@ -136,3 +136,22 @@ fn versions_that_had_a_part_are_named() {
     }
     assert_eq!(Reader::open(&path).unwrap().header().version, "0.1.0, 0.2.0");
 }
+
+#[cfg(unix)]
+#[test]
+fn a_result_with_links_is_not_resumed_into() {
+    let (directory, path) = place();
+    let case = Case::new([4, 3], &FIELDS);
+    let mut writer = Writer::create(&path, &case.header, case.gap.view(), false).unwrap();
+    case.run(&mut writer, 0, 2);
+    writer.checkpoint(&case.checkpoint(2)).unwrap();
+    writer.finish(&Outcome::new(Status::Interrupted)).unwrap();
+    // Rows elsewhere, as in a copy that is made of links.
+    let (rows, elsewhere) = (path.join("load/c/0"), directory.path().join("rows"));
+    std::fs::rename(&rows, &elsewhere).unwrap();
+    std::os::unix::fs::symlink(&elsewhere, &rows).unwrap();
+    let before = std::fs::read(&elsewhere).unwrap();
+    let refused = Writer::resume(&path, &case.header, case.gap.view()).map(drop).unwrap_err().to_string();
+    assert!(refused.contains("load/c/0") && refused.contains("it is a link"), "{refused}");
+    assert_eq!(std::fs::read(&elsewhere).unwrap(), before);
+}

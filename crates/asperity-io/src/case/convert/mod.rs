@@ -23,10 +23,11 @@ mod time;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use asperity::kernel::Kernel;
 use asperity::load::Course;
 use asperity::material::Material;
 use asperity::time::Plan;
-use asperity::{Grid, Scheme, TimeGrid};
+use asperity::{Boundary, Grid, Scheme, TimeGrid};
 
 use super::error::CaseError;
 use super::plan::{Output, Rows, Travel};
@@ -34,6 +35,9 @@ use super::quantity::QuantityError;
 use super::raw::{self, At, Document};
 use super::text::{MOST_ERRORS, Text};
 use super::{Case, MaterialReport};
+
+/// Most letters of a title.
+const TITLE: usize = 1000;
 
 /// The case that a document describes, or the faults found.
 ///
@@ -45,6 +49,13 @@ pub fn case(
     output: PathBuf,
 ) -> Result<Case, Vec<CaseError>> {
     let mut checks = Checks { text, dir, errors: Vec::new() };
+    if let Some(at) = &document.title {
+        let letters = at.value.chars().count();
+        if letters > TITLE {
+            let message = format!("the title has {letters} letters, but may have {TITLE}");
+            checks.fault(&at.span, message, &format!("{TITLE} letters at most"), None);
+        }
+    }
     let measured = surface::files(&mut checks, &document.surface);
     let of_grid: Vec<_> = measured.iter().flatten().map(Option::as_ref).collect();
     let grid = domain::grid(&mut checks, &document.domain, &of_grid);
@@ -168,6 +179,13 @@ pub fn case(
             Some("leave it out, or add [motion]: its rows have it"),
         );
     }
+    let free = document.domain.value.boundary.unwrap_or_default() == Boundary::Free;
+    if let (true, Some(grid), Some(pair)) = (free, &grid, &pair)
+        && grid.is_line()
+        && pair.layers.as_ref().is_none_or(|layers| layers.depth().is_none())
+    {
+        output::up_to_a_constant(&mut checks, &document.output);
+    }
     let scheme = document.time.value.scheme.unwrap_or_default();
     if let Some(pair) = &pair {
         let capped =
@@ -235,7 +253,7 @@ pub fn case(
             Some(times),
             Some(output),
         ) => Ok(Case {
-            title: document.title.clone(),
+            title: document.title.as_ref().map(|title| title.value.clone()),
             name: String::new(),
             source: text.source.to_owned(),
             grid,

@@ -28,6 +28,22 @@ pub fn plasticity(solver: &raw::Solver) -> Plasticity {
     solver.plasticity.as_ref().map(|at| at.value).unwrap_or_default()
 }
 
+/// Quantities that a free line contact does not have: its displacements are known up to a constant.
+pub fn up_to_a_constant(checks: &mut Checks<'_, '_>, output: &raw::Output) {
+    for at in output.quantities.iter().flatten() {
+        let raw::Quantities::One(quantity) = at.value else { continue };
+        let depends = quantity.is_energy() || quantity == Quantity::ContactStiffness;
+        if depends {
+            let message = format!(
+                "\"{}\" depends on displacements, which a line contact on a free domain knows up to a constant only",
+                quantity.name()
+            );
+            let help = "leave it out, or take a periodic domain: domain.boundary = \"periodic\"";
+            checks.fault(&at.span, message, "another quantity", Some(help));
+        }
+    }
+}
+
 /// What solver and output ask for, where the case does not allow it.
 pub fn possible(
     checks: &mut Checks<'_, '_>,

@@ -49,7 +49,8 @@ use super::quantity::{Length, Whole};
 pub struct Document {
     /// Title of the case, stored in the result.
     #[schemars(example = "PMMA rough sphere, step load")]
-    pub title: Option<String>,
+    #[schemars(length(max = 1000))]
+    pub title: Option<At<String>>,
     /// The computational domain: a rectangle of equal cells, or a line of them.
     pub domain: At<Domain>,
     /// The parts whose sum is the undeformed gap.

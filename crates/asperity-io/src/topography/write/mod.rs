@@ -10,20 +10,23 @@ mod sdf;
 mod text;
 mod x3p;
 
+use std::io::Write;
 use std::path::Path;
 
 use rayon::prelude::*;
 
+use crate::output;
+
 use super::{Format, Problem, Topography, TopographyError};
 
-/// Writes a topography into a file; an existing one is replaced.
+/// Writes a topography into a file; an existing one is replaced. It appears whole or not at all.
 ///
 /// # Errors
 /// As [`to_bytes`], and where the file cannot be written.
 pub fn write(path: &Path, topography: &Topography, format: Format) -> Result<(), TopographyError> {
     let in_file = |problem| TopographyError { path: Some(path.to_owned()), problem };
     let bytes = encode(topography, format).map_err(in_file)?;
-    std::fs::write(path, bytes).map_err(|e| in_file(Problem::Io(e)))
+    output::write(path, true, |file| file.write_all(&bytes)).map_err(|e| in_file(Problem::Io(e)))
 }
 
 /// The bytes of a file that holds a topography.

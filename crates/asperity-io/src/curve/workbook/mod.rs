@@ -1,10 +1,12 @@
-//! Sheets of spreadsheets (.xls, .xlsx, .xlsb, .ods) as tables of text, one line per row.
+//! Sheets of spreadsheets (.xls, .xlsx) as tables of text, one line per row.
 
-use std::io::Cursor;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+mod cells;
+mod xls;
+mod xlsx;
 
-use calamine::{Data, Reader, SheetVisible, Sheets, open_workbook_auto_from_rs};
-
+use self::cells::{Cells, MOST_CELLS};
+use self::xls::Excel;
+use self::xlsx::OfficeOpen;
 use super::error::{Fault, Remedy, fault};
 use super::table::{Table, doubtful, is_grouped};
 use super::wide;
@@ -19,11 +21,30 @@ pub(super) struct Sheet {
     pub table: Result<Table, Fault>,
 }
 
-/// Larger spreadsheets are no curves: a sheet of a few bytes can span all cells of a spreadsheet.
+/// A sheet by name.
+#[derive(Clone)]
+struct Named {
+    name: String,
+    hidden: bool,
+}
+
+/// A spreadsheet of any format.
+trait Book {
+    /// Its sheets, in order.
+    fn sheets(&self) -> Vec<Named>;
+    /// The cells of the sheet of this name.
+    fn cells(&mut self, name: &str) -> Result<Cells, Fault>;
+}
+
+/// Larger spreadsheets are no curves.
 const MOST_BYTES: usize = 32 << 20;
-/// Most cells of a sheet.
-const MOST_CELLS: usize = 4_000_000;
 const MOST_SHEETS: usize = 100;
+/// Characters of a text that are kept: longer ones are no names or numbers, and many cells may share one.
+const MOST_CHARACTERS: usize = 1000;
+
+fn damaged() -> Fault {
+    fault("the spreadsheet is damaged; save it again or as text (csv)")
+}
 
 /// The tables of a file: one of a text file, those of all sheets of a spreadsheet, or of the one that is named.
 pub(super) fn sheets(bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Sheet>, Fault> {
@@ -40,30 +61,32 @@ pub(super) fn sheets(bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Sheet>, F
     if bytes.len() > MOST_BYTES {
         return Err(fault(format!("the spreadsheet is larger than {} MB", MOST_BYTES >> 20)));
     }
-    // A damaged spreadsheet must not end the program, whatever the reader makes of it.
-    let read = catch_unwind(AssertUnwindSafe(|| rows(bytes, wanted)));
-    let rows =
-        read.unwrap_or_else(|_| Err(fault("the spreadsheet is damaged; save it again or as text (csv)")))?;
-    Ok(rows
+    Ok(rows(bytes, wanted)?
         .into_iter()
         .map(|(name, cells)| Sheet { table: table(&cells), name: Some(name), cells })
         .collect())
 }
 
-/// A compound document (.xls) or a zip archive (.xlsx, .ods).
+/// A compound document, as .xls files are.
+fn is_document(bytes: &[u8]) -> bool {
+    bytes.starts_with(&[0xd0, 0xcf, 0x11, 0xe0])
+}
+
+/// A compound document (.xls) or a zip archive (.xlsx).
 fn is_workbook(bytes: &[u8]) -> bool {
-    bytes.starts_with(&[0xd0, 0xcf, 0x11, 0xe0]) || bytes.starts_with(b"PK\x03\x04")
+    is_document(bytes) || bytes.starts_with(b"PK\x03\x04")
 }
 
 type Rows = Vec<Vec<String>>;
 
 fn rows(bytes: &[u8], wanted: Option<&str>) -> Result<Vec<(String, Rows)>, Fault> {
-    let unreadable = |error: calamine::Error| fault(format!("cannot be read as a spreadsheet: {error}"));
-    let mut book: Sheets<Cursor<&[u8]>> =
-        open_workbook_auto_from_rs(Cursor::new(bytes)).map_err(unreadable)?;
+    let mut book: Box<dyn Book + '_> = match is_document(bytes) {
+        true => Box::new(Excel::open(bytes)?),
+        false => Box::new(OfficeOpen::open(bytes)?),
+    };
     // Hidden sheets come last.
-    let mut listed: Vec<_> = book.sheets_metadata().to_vec();
-    listed.sort_by_key(|sheet| sheet.visible != SheetVisible::Visible);
+    let mut listed = book.sheets();
+    listed.sort_by_key(|sheet| sheet.hidden);
     let names: Vec<String> = listed.into_iter().map(|sheet| sheet.name).collect();
     let listed =
         || names.iter().take(20).map(|name| format!("\"{name}\"")).collect::<Vec<String>>().join(", ");
@@ -72,29 +95,9 @@ fn rows(bytes: &[u8], wanted: Option<&str>) -> Result<Vec<(String, Rows)>, Fault
     {
         return Err(fault(format!("there is no sheet \"{name}\"")).remedy(Remedy::Sheet(listed())));
     }
-    let mut found = Vec::new();
-    for name in names.iter().filter(|name| wanted.is_none_or(|wanted| wanted == *name)).take(MOST_SHEETS) {
-        let range = book.worksheet_range(name).map_err(unreadable)?;
-        let (height, width) = range.get_size();
-        if height.saturating_mul(width) > MOST_CELLS {
-            return Err(fault(format!("the sheet \"{name}\" has more than {MOST_CELLS} cells")));
-        }
-        // Rows are counted from the first of the sheet, as the program that made it does.
-        let above = range.start().map_or(0, |start| start.0 as usize).min(MOST_CELLS);
-        let rows = range.rows().map(|row| row.iter().map(cell).collect());
-        found.push((name.clone(), std::iter::repeat_n(Vec::new(), above).chain(rows).collect()));
-    }
-    Ok(found)
-}
-
-fn cell(data: &Data) -> String {
-    let text = match data {
-        Data::Empty | Data::Error(_) => String::new(),
-        Data::Float(value) => format!("{value:?}"),
-        Data::String(text) => text.trim().to_owned(),
-        other => other.to_string(),
-    };
-    text.replace([';', '\n', '\r'], " ")
+    let wanted = names.iter().filter(|name| wanted.is_none_or(|wanted| wanted == *name));
+    let mut left = MOST_CELLS;
+    wanted.take(MOST_SHEETS).map(|name| Ok((name.clone(), book.cells(name)?.rows(&mut left)?))).collect()
 }
 
 /// A number that was entered as text with a decimal comma, with a point.

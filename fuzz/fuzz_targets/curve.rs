@@ -1,0 +1,14 @@
+#![no_main]
+
+use asperity_io::curve::{Columns, Curves, Kind};
+
+// Text tables and spreadsheets (.xls, .xlsx), as each kind of measurement.
+libfuzzer_sys::fuzz_target!(|data: &[u8]| {
+    for kind in [Kind::Dma, Kind::Relaxation, Kind::Creep] {
+        if let Ok(curves) = Curves::parse("curve".as_ref(), data, kind, &Columns::default()) {
+            let numbers =
+                curves.sweeps.iter().flat_map(|sweep| sweep.curves.iter().flatten().chain(&sweep.x));
+            assert!(numbers.into_iter().all(|number| number.is_finite()));
+        }
+    }
+});

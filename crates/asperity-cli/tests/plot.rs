@@ -100,6 +100,41 @@ fn a_field_is_animated_over_the_stored_times() {
 }
 
 #[test]
+fn an_animation_of_the_stress_leaves_out_what_has_no_contact() {
+    let dir = result();
+    let stress = ["plot", "ball.zarr", "stress", "--animate", "s.png"];
+    let output = asperity(dir.path(), &stress);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("1 stored time without contact"));
+    // The load rises from 0: of six instants the first has no contact.
+    assert!(String::from_utf8_lossy(&output.stdout).contains("5 frames"));
+    let first = asperity(dir.path(), &["plot", "ball.zarr", "stress", "--time", "0 s"]);
+    assert!(String::from_utf8_lossy(&first.stderr).contains("nothing touches at t = 0 s"));
+}
+
+#[test]
+fn a_sine_has_its_last_period_and_a_temperature_its_curve() {
+    let dir = tempfile::tempdir().unwrap();
+    let sine =
+        "history = { kind = \"sine\", mean = \"0.2 N\", amplitude = \"0.1 N\", frequency = \"0.2 Hz\" }";
+    let case = CASE
+        .replace("history = { kind = \"ramp\", value = \"0.2 N\", duration = \"4 s\" }", sine)
+        .replace("steps = 10", "steps = 40")
+        .replace(
+            "retardation_time = \"3 s\" }",
+            "retardation_time = \"3 s\", shift = { model = \"wlf\", c1 = 8.86, c2 = \"101.6 K\", reference = \"20 °C\" } }",
+        )
+        + "[temperature]\nhistory = { kind = \"ramp\", from = \"20 °C\", to = \"30 °C\", duration = \"10 s\" }\n";
+    std::fs::write(dir.path().join("ball.toml"), case).unwrap();
+    let run = asperity(dir.path(), &["run", "ball.toml", "--quiet"]);
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    // Two periods of 5 s.
+    assert!(svg(dir.path(), &["load-displacement"]).contains("Last cycle, t = 5 s to 10 s"));
+    assert!(svg(dir.path(), &["load-displacement", "--to", "7 s"]).contains("Last cycle, t = 0 s to 5 s"));
+    assert!(svg(dir.path(), &["evolution"]).contains(">temperature [°C]<"));
+}
+
+#[test]
 fn limits_colours_window_and_size_are_as_asked_for() {
     let dir = result();
     let plain = svg(dir.path(), &["pressure"]);
@@ -135,11 +170,15 @@ fn options_that_cannot_be_followed_are_refused_with_exit_code_2() {
             assert!(told.contains(word), "{arguments:?}: {told:?} lacks {word:?}");
         }
     };
-    refused(&["pressure", "--limits", "1 MPa"], &["--limits is \"1 MPa\"", "two values", "0,20 MPa"]);
+    refused(&["pressure", "--limits", "1 MPa"], &["--limits is \"1 MPa\"", "two pressures", "0,20 MPa"]);
     refused(&["pressure", "--limits", "2,1 MPa"], &["must be less than"]);
-    refused(&["pressure", "--limits", "0,1 mm"], &["--limits", "a pressure"]);
+    refused(&["pressure", "--limits", "0,1 mm"], &["--limits is \"0,1 mm\"", "two pressures"]);
     refused(&["evolution", "--limits", "0,1 MPa"], &["--limits does not apply", "pressure, gap"]);
     refused(&["gap", "--log", "--limits", "0,1 um"], &["--log", "greater than 0"]);
+    refused(&["evolution", "--colours", "grey"], &["--colours does not apply", "pressure, gap"]);
+    refused(&["pressure", "--at", "0.1 mm"], &["--at does not apply", "a profile"]);
+    refused(&["evolution", "--time", "1 s"], &["--time does not apply"]);
+    refused(&["pressure", "-o", "none/a.png"], &["there is no folder none"]);
     refused(&["pressure", "--colours", "jet"], &["--colours is \"jet\"", "viridis", "red-blue"]);
     refused(&["pressure", "--from", "1 s"], &["--from does not apply", "--time"]);
     refused(&["evolution", "--from", "5 s", "--to", "2 s"], &["--from is \"5 s\"", "before --to"]);

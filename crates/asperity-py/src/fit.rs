@@ -143,14 +143,8 @@ pub fn fit_file<'py>(
         false => file(error),
     };
     let found = match kind {
-        Some(word) => Some(choose("kind", &word)?),
+        Some(word) => choose("kind", &word)?,
         None => Curves::kind_of(&path, said.sheet.as_deref()).map_err(unreadable)?,
-    };
-    let Some(found) = found else {
-        return Err(CaseError::new_err(format!(
-            "{}: its header does not state what was measured; give kind=\"relaxation\", \"creep\" or \"dma\"",
-            path.display()
-        )));
     };
     let mut curves = detached(py, || Curves::read(&path, found, &said))?.map_err(unreadable)?;
     let mut request = options.request(curves.measure)?;

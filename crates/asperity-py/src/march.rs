@@ -169,7 +169,7 @@ fn history(kind: &str, numbers: &[f64], points: Vec<(f64, f64)>) -> PyResult<His
 fn times(kind: &str, numbers: &[f64]) -> PyResult<TimeGrid> {
     // Counts come as numbers; what is no count is refused by the grid's own check.
     let count = |n: f64| if n.fract() == 0.0 && n >= 0.0 { n as usize } else { 0 };
-    Ok(match (kind, numbers) {
+    let grid = match (kind, numbers) {
         ("uniform", [end, steps]) => TimeGrid::Uniform { end: *end, steps: count(*steps) },
         ("log", [end, steps, first]) => {
             TimeGrid::Logarithmic { end: *end, steps: count(*steps), first: *first }
@@ -184,7 +184,10 @@ fn times(kind: &str, numbers: &[f64]) -> PyResult<TimeGrid> {
                 numbers.len()
             )));
         }
-    })
+    };
+    // Before anything is planned on it, which takes memory for each step.
+    grid.validate().map_err(|error| CaseError::new_err(error.to_string()))?;
+    Ok(grid)
 }
 
 /// A list of numbers with the word that says what they are.

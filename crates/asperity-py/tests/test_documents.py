@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[3]
-DOCUMENTS = ["README.md", "docs/python.md", "docs/compare.md", "docs/stress.md", "docs/sliding.md"]
+DOCUMENTS = ["README.md", "crates/asperity-py/README.md", "docs/python.md", "docs/compare.md", "docs/stress.md", "docs/sliding.md"]
 #: Of the README only this: the rest shows results that take long.
 README = "In Python"
 

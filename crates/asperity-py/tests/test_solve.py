@@ -503,3 +503,8 @@ def test_an_elastic_contact_takes_a_hardness_for_each_cell():
     for wrong, words in ((np.ones((3, 3)), r"\(3, 3\)"), (-soft, "greater than 0")):
         with pytest.raises(asp.CaseError, match=words):
             asp.elastic(sphere, 1e9, load=2.0, hardness=wrong)
+
+
+def test_more_steps_than_there_may_be_are_refused_before_memory_is_taken(sphere):
+    with pytest.raises(asp.CaseError, match="number of steps is 1000000000000"):
+        asp.solve(sphere, asp.Zener(**ZENER), load=1.0, times=asp.uniform(1.0, 10**12))

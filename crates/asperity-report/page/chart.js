@@ -110,14 +110,24 @@ class Chart {
     return !this.spec[key].linear && this.spec.series.some((series) => series[key].some((value) => value > 0));
   }
 
-  /** What the axes are; a zoom means the same as long as this is the same. */
+  /** What the axes are. */
   axes() {
-    return ["x", "y"].map((key) => [this.spec[key].label, this.spec[key].unit, this.isLog(key), this.canLog(key)].join()).join();
+    const words = (key) => [this.spec[key].label, this.spec[key].unit, this.isLog(key), this.canLog(key)].join();
+    return { x: words("x"), y: words("y") };
   }
 
   /** All that decides how the chart is built, besides its numbers. */
   form() {
-    return [this.axes(), ...this.spec.series.map((series) => series.name)].join();
+    const { x, y } = this.axes();
+    return [x, y, ...this.spec.series.map((series) => series.name)].join();
+  }
+
+  /** The ends of the zoomed axes that the chart still has once it is built again. */
+  zoom() {
+    if (!this.uplot) return {};
+    const now = this.axes(), whole = { x: this.whole, y: this.up };
+    const isKept = ([key, { min, max }]) => now[key] === this.drawnAxes[key] && (min !== whole[key][0] || max !== whole[key][1]);
+    return Object.fromEntries(["x", "y"].map((key) => [key, this.uplot.scales[key]]).filter(isKept).map(([key, { min, max }]) => [key, { min, max }]));
   }
 
   /** What stands in place of the curves: null where there is something to draw. */
@@ -229,7 +239,7 @@ class Chart {
   }
 
   build() {
-    const zoom = this.uplot && this.drawnAxes === this.axes() && this.zoomed() ? { ...this.uplot.scales } : null;
+    const zoom = this.zoom();
     this.uplot?.destroy();
     this.uplot = null;
     [this.drawn, this.drawnAxes] = [this.form(), this.axes()];
@@ -240,7 +250,7 @@ class Chart {
     if (words) return this.legend.replaceChildren();
     this.uplot = new uPlot(this.options(), this.data(), this.plot);
     this.reserve();
-    if (zoom) for (const key of ["x", "y"]) this.uplot.setScale(key, { min: zoom[key].min, max: zoom[key].max });
+    for (const [key, ends] of Object.entries(zoom)) this.uplot.setScale(key, ends);
     this.uplot.over.addEventListener("click", () => this.pick?.(this.uplot.posToVal(this.uplot.cursor.left, "x")));
     for (const name of this.legend.querySelectorAll("tr:not(:first-child) th, .u-series:only-child th")) {
       name.tabIndex = 0;

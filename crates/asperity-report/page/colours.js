@@ -9,11 +9,14 @@ const DECADES = 6;
 /** Share of the finite values of a map that may lie outside of its colours at each end. */
 const OUTLIERS = 1e-3;
 
+/** Whether a gap is that of contact, zero but for rounding; at the hardness the surfaces may overlap, which is a negative gap. */
+const isClosed = (map, contact, n) => Boolean(contact) && (contact.values[n] === 1 || (contact.values[n] === 2 && map.values[n] >= 0));
+
 /** Finite values of a map in rising order, without those of contact where its states are given; of the largest maps a sample. */
 function sorted(map, contact) {
   if (map.sorted) return map.sorted;
   const every = Math.max(1, Math.floor(map.values.length / 250000));
-  map.sorted = map.values.filter((value, n) => n % every === 0 && isFinite(value) && !(contact && contact.values[n] > 0)).sort();
+  map.sorted = map.values.filter((value, n) => n % every === 0 && isFinite(value) && !isClosed(map, contact, n)).sort();
   return map.sorted;
 }
 

@@ -39,6 +39,7 @@ const ALWAYS = [
   ["Approach", "approach", [["", "approach"]]],
   ["Load", "load", [["", "load"]]],
   ["Pressure", "pressure", [["nominal mean", "mean_pressure"], ["largest", "max_pressure"], ["mean over the contact", "contact_pressure"]]],
+  ...(state.series.temperature ? [["Temperature", "temperature", [["", "temperature"]]]] : []),
 ];
 /** Words in place of curves that are zero at all times. */
 const ZERO = { contact_area: "Nothing touches at any time.", mean_pressure: "No pressure: nothing touches at any time.",
@@ -57,7 +58,7 @@ function evolutionPart() {
   evolution.set([...ALWAYS, ...state.quantities].map(([title, label, names, states]) => ({
     title,
     x: rowsAxis(),
-    y: { label, unit: plain(state.units[names[0][1]]), states: states?.length ? states : null, linear: Boolean(states?.length) },
+    y: { label, unit: plain(state.units[names[0][1]]), states: states?.length ? states : null, linear: Boolean(states?.length) || label === "temperature" },
     zero: ZERO[names[0][1]],
     none: names[0][1] in ZERO ? ZERO[names[0][1]] : undefined,
     events,
@@ -101,6 +102,7 @@ function materialPart() {
   const m = state.material;
   $("material").hidden = !m;
   if (!m) return;
+  $("material-words").textContent = m.reduced ? "At the reference temperature of the shift; at another temperature, times are longer by its factor a_T." : "";
   const time = { label: "time", unit: "s", log: true }, frequency = { label: "frequency", unit: "Hz", log: true };
   materials.set([
     { title: "Contact creep compliance C(t)", x: time, y: { label: "compliance", unit: "1/Pa" }, series: [{ name: "", x: m.time, y: m.creep }] },
@@ -144,7 +146,7 @@ function leakPart() {
   const line = (name, key, dashed, factor) => ({ name, x, y: values(key, factor), dashed });
   const none = `The seal is tight at all ${state.rows.label === "time" ? "times" : "velocities"}: no open path from inlet to outlet.`;
   const specs = [
-    { title: "Gaps", note, none, zero: none, events, x: rowsAxis(), y: { label: "gap", unit: "m", log: true }, series: [line("hydraulic: even gap, same leak", "hydraulic_gap"), line("critical: narrowest on best path", "critical_gap", true)] },
+    { title: "Gaps", none, zero: none, events, x: rowsAxis(), y: { label: "gap", unit: "m", log: true }, series: [line("hydraulic: even gap, same leak", "hydraulic_gap"), line("critical: narrowest on best path", "critical_gap", true)] },
     { title: "Open cells", events, x: rowsAxis(), y: { label: "share of the domain", unit: "" }, zero: "No cell is open.", series: [{ name: "", x, y: leak.open_fraction.values }] },
   ];
   if (leak.leak_rate) {
@@ -152,10 +154,12 @@ function leakPart() {
     // kg/s of a gas to mbar l/s: a factor that the gas alone decides.
     const ratios = gas ? gas.values.map((standard, n) => (10 * standard) / leak.leak_rate.values[n]).filter(isFinite) : [];
     const factor = ratios.length ? ratios[0] : 1;
-    specs.unshift({ title: "Leak rate", note, none, zero: none, events, x: rowsAxis(), y: { label: "leak rate", unit: gas ? "mbar l/s" : "m3/s", log: true },
+    specs.unshift({ title: "Leak rate", none, zero: none, events, x: rowsAxis(), y: { label: gas ? "leak rate, at 0 °C" : "leak rate", unit: gas ? "mbar l/s" : "m3/s", log: true },
       series: [line("solved on the grid", "leak_rate", false, factor), line("estimate from the critical constriction", "leak_estimate_junction", true, factor),
         line("estimate from all gaps (effective medium)", "leak_estimate_medium", true, factor)] });
   }
+  // Once is enough.
+  specs[0].note = note;
   leaks.set(specs);
   $("leak-asked").textContent = leak.asked;
   $("leak-words").textContent = leak.found;

@@ -56,7 +56,8 @@ async function coloured(kind, map, contact) {
   const beyond = [!states && kind.colours !== "pressure" && least < low && !(log && least <= 0) && past(least), !states && most > high && past(most)];
   const none = kind.colours === "pressure" && map.max <= 0 && chosenLimits.ends === "each";
   const note = none ? " Nothing touches." : inside ? outside(beyond[0] ? least : null, beyond[1] ? most : null, kind.unit) : " All cells that can touch do.";
-  return { map, contact, colours: kind.colours, low, high, log, unit: kind.unit, label: kind.label, swatches, beyond, note, closed: !inside || none };
+  const overlap = contact && least < 0 ? " Negative: the surfaces overlap at the hardness, where the pressure is cut off; the overlap is plastic flattening." : "";
+  return { map, contact, colours: kind.colours, low, high, log, unit: kind.unit, label: kind.label, swatches, beyond, note: note + overlap, closed: !inside || none };
 }
 
 async function showMap() {
@@ -217,5 +218,5 @@ async function showRelief(instant) {
   const what = loaded ? { colours: "pressure", low: 0, high: pressure.max, unit: "Pa", label: "pressure" } : { colours: "sequential", low, high, unit: "m", label: "height" };
   relief.show(map.nx, map.ny, z, loaded ? pressure.values : z, what);
   const stretched = `stretched ${digits(Number(relief.stretch().toPrecision(2)))} times against ${relief.sidesNote() ? "the longer side" : "x and y"}${relief.sidesNote()}`;
-  $("relief-note").textContent = `Surface of the deformable half-space, heights from ${words(low, "m")} to ${words(high, "m")}, ${stretched}; coloured by ${loaded ? "pressure" : "height"}. Drag, or use the arrow keys, to turn it.`;
+  $("relief-note").textContent = `Surface of the deformable body, heights from ${words(low, "m")} to ${words(high, "m")}, ${stretched}; coloured by ${loaded ? "pressure" : "height"}. Drag, or use the arrow keys, to turn it.`;
 }

@@ -42,7 +42,7 @@ function picture(what) {
   const fills = palette(what.colours);
   for (let i = 0, n = 0; i < map.nx; i++) {
     for (let j = 0; j < map.ny; j++, n++) {
-      const from = 3 * entry(what, map.values[n], contact && contact.values[n] > 0), to = 4 * ((map.ny - 1 - j) * map.nx + i);
+      const from = 3 * entry(what, map.values[n], isClosed(map, contact, n)), to = 4 * ((map.ny - 1 - j) * map.nx + i);
       for (let k = 0; k < 3; k++) image.data[to + k] = fills[from + k];
       image.data[to + 3] = 255;
     }

@@ -1,12 +1,14 @@
 //! A figure of an instant as an animation over the stored ones: APNG or GIF.
 //!
 //! All frames have the axes and colours that hold every one of them, found in a first pass, so that colours can be compared
-//! from frame to frame. One field at a time is in memory.
+//! from frame to frame. One field at a time is in memory. Of the stress below the surface, instants without contact are left out.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use asperity_io::store::{At, Reader};
+
+use asperity_io::stress::StressError;
 
 use crate::figure::{FigureError, Pixels};
 use crate::result::{Common, Options, Plot, PlotError, figure};
@@ -35,6 +37,15 @@ impl Default for Course {
     }
 }
 
+/// What an animation shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Frames {
+    /// Number of frames.
+    pub shown: usize,
+    /// Instants at which nothing touches, so that they have no figure.
+    pub without_contact: usize,
+}
+
 /// Why an animation cannot be written.
 #[derive(Debug, thiserror::Error)]
 pub enum AnimationError {
@@ -51,7 +62,7 @@ pub enum AnimationError {
         path: PathBuf,
     },
     /// There are not two instants to show.
-    #[error("an animation needs two stored times at least, but {found} {stored}")]
+    #[error("an animation needs two stored times at least, but has {found} {stored}")]
     Few {
         /// How many there are.
         found: usize,
@@ -89,7 +100,7 @@ impl Motion {
 }
 
 /// Writes the figure at the stored instants within the window of the options as an animation that repeats, and says how many
-/// frames it has. The file appears whole or not at all.
+/// frames it has and how many instants it leaves out. The file appears whole or not at all.
 ///
 /// # Errors
 /// [`AnimationError`].
@@ -100,13 +111,23 @@ pub fn animation(
     course: Course,
     path: &Path,
     force: bool,
-) -> Result<usize, AnimationError> {
+) -> Result<Frames, AnimationError> {
     let form = Motion::of(path)?;
     let chosen = instants(reader, options, course.frames)?;
     let frame = |n: usize| figure(reader, plot, &Options { at: At::Index(n), ..options.clone() });
     let mut common = Common::default();
+    let mut with_contact = vec![];
     for n in &chosen {
-        common.add(&frame(*n)?);
+        match frame(*n) {
+            Err(PlotError::Stress(StressError::NoContact { .. })) => continue,
+            drawn => common.add(&drawn?),
+        }
+        with_contact.push(*n);
+    }
+    let without_contact = chosen.len() - with_contact.len();
+    let chosen = with_contact;
+    if chosen.len() < 2 {
+        return Err(AnimationError::Few { found: chosen.len(), stored: "with contact" });
     }
     let whole = course.duration.unwrap_or((FRAME * chosen.len() as f64).min(WHOLE));
     let each = whole / chosen.len() as f64;
@@ -116,7 +137,7 @@ pub fn animation(
         Ok(figure.dots(DOTS)?)
     });
     let mut stopped = None;
-    let written = crate::file::write(path, force, |file| {
+    let written = asperity_io::output::write(path, force, |file| {
         let result = match form {
             Motion::Apng => apng(file, chosen.len(), each, pictures),
             Motion::Gif => gif(file, each, pictures),
@@ -133,7 +154,7 @@ pub fn animation(
             Err(FigureError::Exists { path: path.to_owned() }.into())
         }
         (None, Err(source)) => Err(FigureError::Io { path: path.to_owned(), source }.into()),
-        (None, Ok(())) => Ok(chosen.len()),
+        (None, Ok(())) => Ok(Frames { shown: chosen.len(), without_contact }),
     }
 }
 
@@ -142,7 +163,8 @@ fn instants(reader: &Reader, options: &Options, most: usize) -> Result<Vec<usize
     let times = reader.field_times();
     let inside: Vec<usize> = (0..times.len()).filter(|n| options.shows(times[*n])).collect();
     if inside.len() < 2 {
-        let stored = if times.len() < 2 { "stored in the result (output.every)" } else { "in this window" };
+        let stored =
+            if times.len() < 2 { "in the result (output.every stores more)" } else { "in this window" };
         return Err(AnimationError::Few { found: inside.len(), stored });
     }
     let most = most.clamp(2, inside.len());

@@ -31,7 +31,7 @@ const DECADES: f64 = 4.0;
 
 /// The leak of one state: passages and pockets, and the flow with its critical constriction; where it is tight the open gap.
 pub fn state(leak: &Leak, found: &Leakage, gap: ArrayView2<'_, f64>, size: [f64; 2]) -> Figure {
-    let caption = format!("{}: {}. {}", heading(found), leak.words(), words(found));
+    let caption = format!("{}. {}", sentence(&leak.words()), words(found));
     let maps = maps(found, gap, size);
     let mut figure =
         maps.into_iter().fold(Figure::new(heading(found)), |figure, map| figure.with(map)).caption(caption);
@@ -82,6 +82,12 @@ fn flow(found: &Leakage, gap: ArrayView2<'_, f64>, size: [f64; 2]) -> Map {
     });
     let map = Map::new("Flow", ["flow over its largest", ""], Colours::Sequential, share.view(), size);
     Map { log: true, ..map.between([least, 1.0]) }
+}
+
+/// The same with a capital.
+fn sentence(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
 /// The leak in a few words.
@@ -142,7 +148,8 @@ pub(crate) fn curves(reader: &Reader, log: Option<bool>) -> Result<Vec<Curves>, 
         return Ok(all);
     }
     if reader.leak("leak_rate").is_ok() {
-        let label = if gas { Axis::log("leak rate", "mbar l/s") } else { Axis::log("leak rate", "m3/s") };
+        let label =
+            if gas { Axis::log("leak rate, at 0 °C", "mbar l/s") } else { Axis::log("leak rate", "m3/s") };
         let standard = if gas { reader.leak("leak_rate_standard")? } else { vec![] };
         let rate = reader.leak("leak_rate")?;
         // Of a gas every rate in kg/s has the same factor to mbar l/s.
@@ -201,7 +208,10 @@ pub(crate) fn over_time(reader: &Reader, options: &Options) -> Result<Figure, Pl
     }
     // The last state of a seal that has become tight shows no flow.
     let instant = if options.at == At::Last { last_leak(reader) } else { options.at };
-    let (maps, caption) = at(reader, instant)?;
+    let (maps, mut caption) = at(reader, instant)?;
+    if reader.index(instant)? != reader.index(options.at)? {
+        caption += " The maps are of the last stored time at which it leaks.";
+    }
     for map in maps {
         figure = figure.with(map);
     }
@@ -209,9 +219,13 @@ pub(crate) fn over_time(reader: &Reader, options: &Options) -> Result<Figure, Pl
     Ok(figure.caption(caption))
 }
 
-/// The flow at an instant alone, for pages.
-pub(crate) fn map_of(reader: &Reader, at_instant: At) -> Result<Figure, PlotError> {
-    let (maps, caption) = at(reader, at_instant)?;
+/// The flow alone, for pages: at the last instant at which the seal leaks.
+pub(crate) fn last_map(reader: &Reader) -> Result<Figure, PlotError> {
+    let instant = last_leak(reader);
+    let (maps, mut caption) = at(reader, instant)?;
+    if reader.index(instant)? != reader.index(At::Last)? {
+        caption += " This is the last stored time at which it leaks.";
+    }
     let mut figure = maps.into_iter().fold(Figure::new(""), |figure, map| figure.with(map)).caption(caption);
     figure.panel = [300.0, 260.0];
     Ok(figure)
@@ -234,7 +248,7 @@ fn at(reader: &Reader, at: At) -> Result<(Vec<Map>, String), PlotError> {
 }
 
 /// The last instant at which the seal leaks, else the last one with a leakage.
-pub(crate) fn last_leak(reader: &Reader) -> At {
+fn last_leak(reader: &Reader) -> At {
     let column = |name: &str| reader.leak(name).unwrap_or_default();
     let (open, times, steps) = (column("percolates"), column("leak_time"), column("leak_step"));
     let Some(n) = open.iter().rposition(|open| *open > 0.0).or(open.len().checked_sub(1)) else {

@@ -11,7 +11,6 @@
 
 pub mod animation;
 pub mod figure;
-mod file;
 mod histogram;
 pub mod leak;
 pub mod material;

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use asperity_io::output::PartialDirectory;
 use asperity_io::store::{At, FieldKind, Reader, StoreError};
 use asperity_io::stress::StressError;
 
@@ -59,23 +60,24 @@ pub fn pictures(
 ) -> Result<(), PicturesError> {
     check(directory, force)?;
     let failed = |source| PicturesError::Io { path: directory.to_owned(), source };
-    let parent = match directory.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
+    let partial = PartialDirectory::new(directory).map_err(failed)?;
+    let place = |name: String| partial.place().join(name);
+    // Messages name the directory asked for.
+    let write = |picture: &Figure, name: &str| match picture.write(&place(name.into()), false) {
+        Err(FigureError::Io { source, .. }) => Err(failed(source)),
+        other => other.map_err(PicturesError::Figure),
     };
-    let partial = tempfile::Builder::new().prefix(".pictures").tempdir_in(parent).map_err(failed)?;
-    let place = |name: String| partial.path().join(name);
-    figure(reader, Plot::Evolution, &Options::default())?.write(&place("evolution.png".into()), false)?;
+    write(&figure(reader, Plot::Evolution, &Options::default())?, "evolution.png")?;
     if reader.stress().is_some_and(|set| !set.instants.is_empty()) {
         match figure(reader, Plot::Stress, &Options::default()) {
-            Ok(picture) => picture.write(&place("stress.png".into()), false)?,
+            Ok(picture) => write(&picture, "stress.png")?,
             // Nothing touches.
-            Err(PlotError::Stress(StressError::Store(StoreError::Missing { .. }))) => {}
+            Err(PlotError::Stress(StressError::NoContact { .. })) => {}
             Err(error) => return Err(error.into()),
         }
     }
     if reader.leaks().is_some() {
-        figure(reader, Plot::Leak, &Options::default())?.write(&place("leak.png".into()), false)?;
+        write(&figure(reader, Plot::Leak, &Options::default())?, "leak.png")?;
     }
     for kind in fields.unwrap_or(&reader.header().fields) {
         let plot = match kind {
@@ -113,11 +115,7 @@ pub fn pictures(
             fs::write(name, picture.to_png(150.0)?).map_err(failed)?;
         }
     }
-    if directory.exists() {
-        fs::remove_dir_all(directory).map_err(failed)?;
-    }
-    let partial = partial.keep();
-    readable(&partial).and_then(|()| fs::rename(&partial, directory)).map_err(failed)
+    partial.finish().map_err(failed)
 }
 
 /// Ends of the colours at all instants: zero to the largest value of any, or the least where that is below.
@@ -149,16 +147,4 @@ fn check(directory: &Path, force: bool) -> Result<(), PicturesError> {
         }
     }
     if force { Ok(()) } else { Err(taken("is there already", true)) }
-}
-
-/// A directory for everybody that the user's mask allows, as other directories are.
-#[cfg(unix)]
-fn readable(directory: &Path) -> std::io::Result<()> {
-    use std::os::unix::fs::PermissionsExt;
-    fs::set_permissions(directory, fs::Permissions::from_mode(0o755))
-}
-
-#[cfg(not(unix))]
-fn readable(_: &Path) -> std::io::Result<()> {
-    Ok(())
 }

@@ -253,3 +253,9 @@ def as_history(what: str, value: Any, unit: str | None = None) -> History:
 def as_times(value: Times | npt.ArrayLike) -> Times:
     """A time grid; a sequence or an array holds the times."""
     return value if isinstance(value, Times) else listed(value)
+
+
+def sines_of(programme: list[Stage]) -> list[dict[str, float]]:
+    """Number and frequency [Hz] of each stage whose history is a sine."""
+    histories = [(n, given) for n, stage in enumerate(programme) for given in (stage.load, stage.pressure, stage.approach)]
+    return [{"stage": n, "frequency": given.numbers[2]} for n, given in histories if isinstance(given, History) and given.kind == "sine"]

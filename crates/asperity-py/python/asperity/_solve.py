@@ -18,7 +18,7 @@ from ._arrays import as_plane, cells_of, check_places, choice, count, field, in_
 from ._columns import HISTOGRAMS, ROW, Number
 from ._core import CaseError, ConvergenceError
 from ._findings import Finding, findings_of, warn
-from ._histories import History, Stage, Times, as_history, as_stage, as_times, one_of
+from ._histories import History, Stage, Times, as_history, as_stage, as_times, one_of, sines_of
 from ._layers import Body, hardness_of, parts_of, with_hardness
 from ._materials import Material
 from ._motion import Motion
@@ -330,6 +330,7 @@ def march(
         "poisson": [ratio for ratio, _ in ratios],
         "control": control,
         "history": history,
+        "sines": sines_of(programme),
         "scheme": scheme,
         "method": method,
         "plasticity": plasticity,

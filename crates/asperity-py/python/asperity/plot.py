@@ -5,16 +5,37 @@ Units of axes are those that suit the numbers; a second curve in the same axes h
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from ._arrays import number
 from ._core import CaseError
-from ._drawing import _axes, _bar, _beside, _check_style, _image, _in_si, _legend, _placed, _scale, _settle, _shown
+from ._drawing import (
+    _axes,
+    _bar,
+    _beside,
+    _check_style,
+    _image,
+    _in_si,
+    _is_constant,
+    _largest,
+    _legend,
+    _letters,
+    _placed,
+    _robust,
+    _scale,
+    _settle,
+    _stretched,
+    _with,
+)
+from ._last_cycle import last_cycle as _last_cycle_of
+from ._prefixes import quantity, shown
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from matplotlib.axes import Axes  # type: ignore[import-not-found,import-untyped,unused-ignore]
 
     from ._contact import ElasticCurve
@@ -29,8 +50,29 @@ def _told(plots: Any, missing: frozenset[str] = frozenset()) -> str:
     return f"<plots: {', '.join(f'{name}()' for name in names)}>"
 
 
+#: Where bodies do not touch, in a map of the pressure; and where they do, in one of the gap.
+_LIGHT = "#f0f0ee"
 #: Labels of the contact states, by number.
-_STATES = {0: ("open", "#f0f0ee"), 1: ("contact", "#0072b2"), 2: ("at hardness", "#d55e00")}
+_STATES = {0: ("open", _LIGHT), 1: ("contact", "#0072b2"), 2: ("at hardness", "#d55e00")}
+#: Gaps below this share of the largest undeformed gap or approach are closed but for rounding errors.
+_ROUNDING = 1e-12
+
+
+#: What a negative gap is: the overlap where the pressure is cut off.
+_FLATTENED = "below 0: flattened at the hardness"
+#: Names of curves that an evolution has more than one of.
+_KINDS = ("counted", "corrected", "at the hardness", "nominal mean", "largest", "mean over the contact", "of the bulk", "in total")
+
+
+class _Panel(NamedTuple):
+    """What one of the axes of an evolution shows."""
+
+    title: str
+    unit: str
+    #: 2 for an area, whose unit is that of the length squared.
+    power: int
+    #: Names in the legend, and numbers of the rows.
+    curves: list[tuple[str, npt.NDArray[Any]]]
 
 
 class Plots:
@@ -51,8 +93,9 @@ class Plots:
 
     def evolution(self, *, axes: Any = None, log_time: bool | None = None, label: str | None = None, **style: Any) -> npt.NDArray[Any]:
         """Contact area, approach, load and pressure over time (of a sweep: friction in place of the load, over the velocity): four axes,
-        in a new figure or the `axes` that another evolution returned. Time is logarithmic where half of the rows lie in the first tenth of the run, and where
-        `log_time` says so; the row at the time 0 is not shown then."""
+        in a new figure or the `axes` that another evolution returned. The pressure is the nominal mean (load by the area of the
+        domain), the largest one and the mean over the contact. Time is logarithmic where half of the rows lie in the first tenth of
+        the run (velocities where they span a decade), and where `log_time` says so; the row at the time 0 is not shown then."""
         result = self._result
         if "ax" in style:
             raise TypeError("evolution draws into four axes: give axes=, as plt.subplots(2, 2) returns them")
@@ -63,68 +106,109 @@ class Plots:
             _, axes = plt.subplots(2, 2, figsize=(8, 5.4), layout="constrained")
         if np.size(axes) != 4:
             raise CaseError(f"axes holds {np.size(axes)} axes, but must hold four, as plt.subplots(2, 2) returns them")
-        area = ("contact area", "m", 2, [("counted", "contact_area"), ("corrected", "contact_area_corrected")])
-        length = ("contact length", "m", 1, [("", "contact_area")])
-        load = ("load", result.units("load"), 1, [("", "load")])
-        # Of a sweep, whose load is constant, the friction.
-        friction = ("friction coefficient", "1", 1, [("", "friction_coefficient")])
-        if "friction_coefficient_total" in result._table:
-            friction[-1][:] = [("of the bulk", "friction_coefficient"), ("in total", "friction_coefficient_total")]
-        panels = [
-            length if result.is_line else area,
-            ("approach", "m", 1, [("", "approach")]),
-            friction if result.is_sweep and "friction_coefficient" in result._table else load,
-            ("pressure", "Pa", 1, [("mean over the domain", "mean_pressure"), ("largest", "max_pressure")]),
-        ]
+        drawn: npt.NDArray[Any] = np.asarray(axes, dtype=object)
         over = result._table["time"]
-        drawn_before = [ax for ax in np.ravel(np.asarray(axes, dtype=object)) if ax.lines]
+        drawn_before = [ax for ax in drawn.flat if ax.lines]
         if log_time is None and drawn_before:
             log_time = drawn_before[0].get_xscale() == "log"
         elif log_time is None:
-            log_time = result.is_sweep or _crowds_the_start(over)
+            log_time = _spans_a_decade(over) if result.is_sweep else _crowds_the_start(over)
         # A logarithmic axis has no place for the row at the time 0.
         rows = over > 0 if log_time else np.full(over.shape, True)
-        for ax, (title, unit, power, names) in zip(np.ravel(np.asarray(axes, dtype=object)), panels):
-            largest = max(float(np.max(np.abs(getattr(result, key)), initial=0.0)) for _, key in names)
-            factor, text = _scale(ax, title, largest, unit, power)
-            for n, (words, key) in enumerate(names):
+        along = "velocity" if result.is_sweep else "time"
+        for ax, panel in zip(drawn.flat, self._panels()):
+            # Decades on both sides of a second, or of 1 m/s, are powers of ten of it.
+            wide = log_time and np.any(over[rows] < 1.0) and over[-1] > 1e6 * np.min(over[rows], initial=np.inf) and over[-1] > 1.0
+            shift, rows_unit = _scale(ax, along, 1.0 if wide else _largest(over), "m/s" if result.is_sweep else "s", axis="x", log=log_time)
+            factor, text = _scale(ax, panel.title, _largest(*(values for _, values in panel.curves)), panel.unit, panel.power)
+            first = None
+            for n, (words, values) in enumerate(panel.curves):
                 told = ", ".join(str(part) for part in (label, words) if part not in (None, ""))
-                given = _marked(style if n == 0 else _second(style, label), len(over[rows]))
-                ax.plot(over[rows], getattr(result, key)[rows] * factor, label=told or None, **given)
+                given = style if first is None else _another(style, n, first if label else None)
+                (line,) = ax.plot(over[rows] * shift, values[rows] * factor, label=told or None, **_marked(given, values[rows]))
+                first = first or line
             _settle(ax)
-            ax.set_xlabel("velocity [m/s]" if result.is_sweep else "time [s]")
-            ax.set_ylabel(title if unit == "1" else f"{title} [{text}]")
+            ax.set_xlabel(f"{along} [{rows_unit}]")
+            ax.set_ylabel(panel.title if panel.unit == "1" else f"{panel.title} [{text}]")
             if log_time:
                 # What another evolution has at the time 0 has no place here either.
                 ax.set_xscale("log", nonpositive="mask")
-            if len(names) > 1 or label:
-                _legend(ax)
-        drawn: npt.NDArray[Any] = np.asarray(axes, dtype=object)
+            if label or any(words for words, _ in panel.curves):
+                _legend(ax, _KINDS)
         return drawn
 
-    def load_displacement(self, *, ax: Axes | None = None, **style: Any) -> Axes:
-        """Load over approach."""
-        return _load_displacement(self._result.approach, self._result.load, self._result.units("load"), ax, style)
+    def _panels(self) -> list[_Panel]:
+        """The four panels of an evolution."""
+        result = self._result
+        area, load = result.contact_area, result.load
+        touches = bool(np.any(area > 0))
+        if result.is_line:
+            contact = _Panel("contact length", "m", 1, [("", area)])
+        else:
+            contact = _Panel("contact area", "m", 2, [("counted", area), ("corrected", result.contact_area_corrected)])
+        if np.any(result.capped_area > 0):
+            contact.curves.append(("at the hardness", result.capped_area))
+        over_contact = np.divide(load, area, out=np.full(area.shape, np.nan), where=area > 0)
+        pressures = [("nominal mean", result.mean_pressure), ("largest", result.max_pressure), ("mean over the contact", over_contact)]
+        third = _Panel("load", result.units("load"), 1, [("", load)])
+        if result.is_sweep and "friction_coefficient" in result._table:
+            # The load of a sweep is constant.
+            third = _Panel("friction coefficient", "1", 1, [("", result.friction_coefficient)])
+            if "friction_coefficient_total" in result._table:
+                third.curves[:] = [("of the bulk", result.friction_coefficient), ("in total", result.friction_coefficient_total)]
+        if not touches:
+            contact.curves[:] = [("nothing touches", area)]
+            pressures = [("nothing touches", result.mean_pressure)]
+        return [contact, _Panel("approach", "m", 1, [("", result.approach)]), third, _Panel("pressure", "Pa", 1, pressures)]
+
+    def load_displacement(self, *, last_cycle: bool | None = None, ax: Axes | None = None, **style: Any) -> Axes:
+        """Load over approach. A new figure of a cyclic run shows its last cycle beside, in axes of its own, ``ax.figure.axes[1]``: the
+        last full period of a load that is a sine, else from peak to peak, where there are three peaks or more. `last_cycle` draws that
+        alone (True), or leaves it out (False)."""
+        result = self._result
+        approach, load, unit = result.approach, result.load, result.units("load")
+        cycle = _last_cycle_of(result)
+        if last_cycle and cycle is None:
+            raise CaseError("the result has no last cycle: its load is no sine of a full period, and neither load nor approach has three peaks")
+        if cycle is None or last_cycle is False or (last_cycle is None and ax is not None):
+            return _load_displacement(approach, load, unit, ax, style)
+        if last_cycle:
+            return _load_displacement(approach[cycle], load[cycle], unit, ax, style)
+        import matplotlib.pyplot as plt
+
+        _check_style(style)
+        _, (whole, last) = plt.subplots(1, 2, figsize=(8, 3.6), layout="constrained")
+        _load_displacement(approach, load, unit, whole, style)
+        _load_displacement(approach[cycle], load[cycle], unit, last, style)
+        # The titles lie above the legend, where there is one.
+        pad = 2.0 * _letters() if "label" in style else None
+        from_, to = result.time[cycle][[0, -1]]
+        whole.set_title("all cycles", pad=pad)
+        last.set_title(f"last cycle, t = {quantity(from_, 's')} to {quantity(to, 's')}", pad=pad)
+        drawn: Axes = whole
+        return drawn
 
     def pressure(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Axes | None = None, **style: Any) -> Axes:
         """Map of the pressure at the stored time nearest to `time` [s] (of a sweep: velocity [m/s]), or with that index; default the
-        last. Of a line contact a curve over x."""
-        return self._map("pressure", "contact pressure", "Pa", "inferno", (time, velocity, index), ax, style)
+        last. Its colours begin at 0, and what is out of contact is light, unless `norm`, or a `vmin` other than 0, is given. A narrow domain is
+        stretched, as its title says, where `aspect` is not given. Of a line contact a curve over x."""
+        return self._map("pressure", "pressure", "Pa", "inferno", (time, velocity, index), ax, style)
 
     def gap(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Axes | None = None, **style: Any) -> Axes:
-        """Map of the gap, as :meth:`pressure`."""
+        """Map of the gap, as :meth:`pressure`, but what is in contact is light. Where a few pits take more than a third of the range of the
+        values, the colours end at the quantile of a thousandth, and an arrow of the bar points beyond."""
         return self._map("gap", "gap", "m", "viridis", (time, velocity, index), ax, style)
 
     def displacement(
         self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Axes | None = None, **style: Any
     ) -> Axes:
-        """Map of the displacement, as :meth:`pressure`."""
+        """Map of the displacement, as :meth:`gap`, with its own colours everywhere."""
         return self._map("displacement", "displacement", "m", "viridis", (time, velocity, index), ax, style)
 
     def flattening(
         self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Axes | None = None, **style: Any
     ) -> Axes:
-        """Map of the permanent flattening, as :meth:`pressure`."""
+        """Map of the permanent flattening, as :meth:`displacement`."""
         return self._map("flattening", "flattening", "m", "viridis", (time, velocity, index), ax, style)
 
     def contact(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Axes | None = None, **style: Any) -> Axes:
@@ -137,38 +221,36 @@ class Plots:
             states = self._field("contact", at)
         else:
             states = (self._field("pressure", at) > 0).astype(float)
-        ax = _axes(ax, style, "curve" if result.is_line else "map")
-        self._tell(ax, at)
+        ax = _axes(ax, style, "curve" if result.is_line else "map", result.size)
+        self._tell(ax, at, notes=[] if result.is_line else [_stretched(result.size, style)])
         if result.is_line:
-            along = _shown(result.size[0], "m")
+            along = _scale(ax, "x", result.size[0], "m", axis="x")
             ax.step(result.x * along[0], states, **{"where": "mid", **style})
             ax.set_xlabel(f"x [{along[1]}]")
-            shown = range(max(2, int(np.max(states, initial=0)) + 1))
-            ax.set_yticks(list(shown), [_STATES[state][0] for state in shown])
+            _name_states(ax, states)
             return ax
         colours = [colour for _, colour in _STATES.values()]
         _image(ax, states, result.size, {"cmap": ListedColormap(colours), "vmin": 0, "vmax": 2, **style})
-        if not style:
-            held = list(_STATES.values())[: int(np.max(states, initial=0)) + 1]
+        if not {"cmap", "norm"} & style.keys():
+            held = [_STATES[state] for state in _STATES if np.any(states == state)]
             handles = [Patch(facecolor=colour, edgecolor="k", linewidth=0.4, label=name) for name, colour in held]
             ax.legend(handles=handles, loc="center left", bbox_to_anchor=(1.0, 0.5), frameon=False)
         return ax
 
     def spots(self, *, time: float | None = None, velocity: float | None = None, index: int | None = None, ax: Axes | None = None, **style: Any) -> Axes:
-        """Map of the contact spots by their number, the largest first, what is open left white."""
+        """Map of the contact spots by their number, the largest first; what is open is light."""
         at = (time, velocity, index)
         labels = self._result.spots(time=time, velocity=velocity, index=index)
         if self._result.is_line:
             raise CaseError("a map of the spots needs a contact over a plane; result.spots() has the numbers")
-        ax = _axes(ax, style, "map")
-        self._tell(ax, at)
+        ax = _axes(ax, style, "map", self._result.size)
         number_ = int(labels.max(initial=0))
+        told = "1 contact spot" if number_ == 1 else f"{number_} contact spots" if number_ else ""
+        self._tell(ax, at, told, [_stretched(self._result.size, style)])
         # Neighbouring numbers get colours that differ, the same in each figure.
         shuffled = np.concatenate([[0], 1 + np.random.default_rng(0).permutation(number_)])
-        shown = np.where(labels > 0, shuffled[labels], np.nan)
-        _image(ax, shown, self._result.size, {"cmap": "turbo", "vmin": 1, "vmax": max(number_, 2), **style})
-        told = "1 contact spot" if number_ == 1 else f"{number_} contact spots"
-        ax.set_title(", ".join(part for part in (told, ax.get_title()) if part))
+        numbers = np.where(labels > 0, shuffled[labels], np.nan)
+        _image(ax, numbers, self._result.size, {"vmin": 1, "vmax": max(number_, 2), **style, "cmap": _with(style.get("cmap", "turbo"), bad=_LIGHT)})
         return ax
 
     def profile(
@@ -182,92 +264,153 @@ class Plots:
         ax: Axes | None = None,
         **style: Any,
     ) -> Axes:
-        """A field along x at `y` [m]; default the pressure through the middle."""
+        """A field along x at `y` [m]; default the pressure through the middle. In a new figure the gap has the undeformed one beside,
+        where no `label` is given."""
         result, at = self._result, (time, velocity, index)
         unit = "Pa" if field == "pressure" else "1" if field == "contact" else "m"
         if result.is_line:
             return self._curve(field, unit, at, ax, style)
-        values = self._field(field, at)
+        values = self._closed(self._field(field, at), at) if field == "gap" else self._field(field, at)
         place = 0.5 * result.size[1] if y is None else number("y", y)
         if not 0 <= place <= result.size[1]:
             raise CaseError(f"y is {place:g} m, but must lie in the domain, 0 m to {result.size[1]:g} m")
-        row = int(np.argmin(np.abs(result.y - place)))
-        factor, text = _shown(max(result.size), "m")
-        return self._line(field, unit, values[:, row], at, ax, style, f"y = {result.y[row] * factor:.4g} {text}")
+        # Of the two rows beside the middle the upper one.
+        row = min(int(place / result.size[1] * result.cells[1]), result.cells[1] - 1)
+        before = result.initial_gap[:, row] if field == "gap" else None
+        return self._line(field, unit, values[:, row], at, ax, style, f"y = {quantity(float(result.y[row]), 'm')}", before)
 
     def _curve(self, name: str, unit: str, at: Any, ax: Axes | None, style: dict[str, Any]) -> Axes:
         """A field of a line contact over x."""
-        values = self._field(name, at)
-        return self._line(name, unit, np.where(np.isfinite(values), values, np.nan), at, ax, style)
+        values = self._closed(self._field(name, at), at) if name == "gap" else self._field(name, at)
+        before = self._result.initial_gap if name == "gap" else None
+        return self._line(name, unit, np.where(np.isfinite(values), values, np.nan), at, ax, style, before=before)
 
-    def _line(self, name: str, unit: str, values: Any, at: Any, ax: Axes | None, style: dict[str, Any], place: str = "") -> Axes:
-        result = self._result
+    def _line(
+        self, name: str, unit: str, values: Any, at: Any, ax: Axes | None, style: dict[str, Any], place: str = "", before: Any = None
+    ) -> Axes:
+        """A field over x, and what it was `before` the bodies touched."""
+        curves = [(style, values)]
+        if before is not None and ax is None and "label" not in style:
+            curves = [({"label": "now", **style}, values), ({"label": "undeformed", "color": "0.5", "linestyle": "--"}, before)]
         ax = _axes(ax, style)
-        along = _shown(result.size[0], "m")
-        factor, text = _scale(ax, name, float(np.nanmax(np.abs(values), initial=0.0)), unit)
-        ax.plot(result.x * along[0], values * factor, **style)
-        ax.set_xlabel(f"x [{along[1]}]")
+        x, x_unit = _scale(ax, "x", self._result.size[0], "m", axis="x")
+        factor, text = _scale(ax, name, _largest(*(course for _, course in curves)), unit)
+        for given, course in curves:
+            ax.plot(self._result.x * x, course * factor, **_marked(given, course))
+        _settle(ax)
+        ax.set_xlabel(f"x [{x_unit}]")
         ax.set_ylabel(f"{name} [{text}]" if unit != "1" else name)
-        if "label" in style:
+        if name == "contact":
+            _name_states(ax, values)
+        if "label" not in style:
+            self._tell(ax, at, place, [_FLATTENED] if name == "gap" and np.any(values < 0) else [])
+        if "label" in curves[0][0]:
             _legend(ax)
-        else:
-            self._tell(ax, at, place)
+            # The title lies above the legend.
+            ax.set_title(ax.get_title(), pad=2.0 * _letters())
         return ax
 
     def _map(self, name: str, words: str, unit: str, colours: str, at: Any, ax: Axes | None, style: dict[str, Any]) -> Axes:
         if self._result.is_line:
             return self._curve(name, unit, at, ax, style)
-        values = self._field(name, at)
-        ax = _axes(ax, style, "map")
-        self._tell(ax, at)
-        style = _in_si(style, unit)
-        shown = np.where(np.isfinite(values), values, np.nan)
-        if name == "pressure" and np.any(values > 0):
-            if not {"norm", "vmin"} & style.keys():
-                # What is out of contact is no small pressure: it lies below the scale.
-                style = {**style, "vmin": np.finfo(float).tiny, "cmap": _with_under(style.get("cmap", colours), _STATES[0][1])}
-        elif name == "pressure":
-            ax.set_title(", ".join(part for part in ("no contact", ax.get_title()) if part))
-        image = _image(ax, shown, self._result.size, {"cmap": colours, **style})
-        _bar(ax, image, words, unit, values)
+        size, values = self._result.size, self._field(name, at)
+        values = np.where(np.isfinite(values), values, np.nan)
+        if name == "gap":
+            values = self._closed(values, at)
+        ax = _axes(ax, style, "map", size)
+        style = {"cmap": colours, **_in_si(style, unit)}
+        light, told = _light(name, values, style)
+        self._tell(ax, at, notes=[_stretched(size, style), told])
+        image = _image(ax, values, size, {**(style if name == "pressure" else _robust(values, style)), **light})
+        if not light or "vmax" in style or np.any(values > 0):
+            _bar(ax, image, words, unit)
         return ax
 
     def _field(self, name: Any, at: Any) -> Any:
         time, velocity, index = at
         return self._result.field(name, time=time, velocity=velocity, index=index)
 
-    def _tell(self, ax: Any, at: Any, place: str = "") -> None:
-        """The place, and the time where there is more than one."""
+    def _row(self, at: Any) -> int:
+        """The number of the stored instant."""
+        time, velocity, index = at
+        return self._result._index(time if velocity is None else velocity, index)
+
+    def _closed(self, gap: Any, at: Any) -> Any:
+        """The gap, 0 in contact, where rounding errors remain; at the hardness it may be negative."""
+        result, row = self._result, self._result._field_steps[self._row(at)]
+        closed = np.abs(gap) < _ROUNDING * max(_largest(result.initial_gap), abs(result.approach[row]))
+        if "contact" in result.fields:
+            closed |= self._field("contact", at) == 1
+        elif "pressure" in result.fields and result.capped_area[row] == 0:
+            closed |= self._field("pressure", at) > 0
+        return np.where(closed, 0.0, gap)
+
+    def _touches(self, at: Any) -> bool:
+        """Whether the bodies touch at the stored instant."""
+        for name in ("contact", "pressure"):
+            if name in self._result.fields:
+                return bool(np.any(self._field(name, at) > 0))
+        return bool(self._result.contact_area[self._result._field_steps[self._row(at)]] > 0)
+
+    def _tell(self, ax: Any, at: Any, place: str = "", notes: Sequence[str] = ()) -> None:
+        """The place and the time, where there is more than one, as the title of the axes, and below it what there is to note, in lines of
+        their own."""
         result, when = self._result, ""
         if len(result.field_times) > 1:
-            time, velocity, index = at
-            n = result._index(time if velocity is None else velocity, index)
-            when = f"v = {result.field_times[n]:.4g} m/s" if result.is_sweep else f"t = {result.field_times[n]:.4g} s"
-        if told := ", ".join(part for part in (place, when) if part):
+            moment = float(result.field_times[self._row(at)])
+            when = f"v = {quantity(moment, 'm/s')}" if result.is_sweep else f"t = {quantity(moment, 's')}"
+        notes = notes if self._touches(at) else ["no contact", *notes]
+        lines = [", ".join(part for part in (place, when) if part), *notes]
+        if told := "\n".join(line for line in lines if line):
             ax.set_title(told)
 
 
-def _with_under(colours: Any, under: str) -> Any:
-    """A colour map, or that of this name, with a colour of its own for what lies below its scale."""
-    from matplotlib import colormaps
+def _light(name: str, values: Any, style: dict[str, Any]) -> tuple[dict[str, Any], str]:
+    """What is added to the style of a map so that 0 is light, and words on it: what is out of contact is no small pressure, and contact
+    is no small gap. Zeros lie below the scale, which begins at the smallest number above 0."""
+    if name not in ("pressure", "gap"):
+        return {}, ""
+    if np.any(values < 0):
+        return {}, _FLATTENED if name == "gap" else ""
+    zeros, nothing = bool(np.any(values == 0)), not np.any(values > 0)
+    other_ends = "norm" in style or style.get("vmin") not in (None, 0.0)
+    if other_ends or (name == "gap" and not zeros):
+        return {}, ""
+    added = {"vmin": np.finfo(float).tiny, "cmap": _with(style["cmap"], under=_LIGHT)}
+    if nothing:
+        return {**added, "vmax": style.get("vmax", 1.0)}, "the bodies touch everywhere" if name == "gap" else ""
+    return added, "" if not zeros else "light: no contact" if name == "pressure" else "light: contact"
 
-    return (colormaps[colours] if isinstance(colours, str) else colours).with_extremes(under=under)
+
+def _name_states(ax: Any, states: Any) -> None:
+    """The names of the contact states on the vertical axis."""
+    told = range(max(2, int(np.max(states, initial=0)) + 1))
+    ax.set_yticks(list(told), [_STATES[state][0] for state in told])
 
 
-def _marked(style: dict[str, Any], points: int) -> dict[str, Any]:
-    """The style of a curve; one of a single point is seen by its marker only."""
-    return style if points != 1 else {"marker": "o", **style}
+def _marked(style: dict[str, Any], *courses: Any) -> dict[str, Any]:
+    """The style of a curve over these courses; one of a single point is seen by its marker only."""
+    single = np.count_nonzero(np.isfinite(courses[-1])) == 1 or (len(courses) > 1 and all(map(_is_constant, courses)))
+    return {"marker": "o", **style} if single else style
 
 
-def _second(style: dict[str, Any], label: str | None) -> dict[str, Any]:
-    """The style of the second curve of axes, which must differ from the first: by its line where colours are given or count the runs."""
-    if not label and "color" not in style and "c" not in style:
+def _another(style: dict[str, Any], n: int, first: Any = None) -> dict[str, Any]:
+    """The style of the second curve of axes, and of further ones, which must differ from the first: by its line where it has the colour
+    of that curve, because colours are given or count the runs, else by the next colour."""
+    if first is None and "color" not in style and "c" not in style:
         return style
     line = style.get("linestyle", style.get("ls", "-"))
     rest = {key: value for key, value in style.items() if key not in ("linestyle", "ls")}
+    if first is not None and "c" not in style:
+        rest = {"color": first.get_color(), **rest}
     if line in ("", " ", "none", "None"):
-        return {**style, "markerfacecolor": "none"}
-    return {**rest, "linestyle": ":" if line in ("--", "dashed") else "--"}
+        return {**rest, "linestyle": "none", "fillstyle": ("none", "bottom")[n - 1]}
+    named = {"solid": "-", "dashed": "--", "dotted": ":", "dashdot": "-."}
+    return {**rest, "linestyle": [other for other in ("-", "--", ":", "-.") if other != named.get(line, line)][n - (line in ("-", "solid"))]}
+
+
+def _spans_a_decade(velocities: Any) -> bool:
+    return bool(len(velocities) and velocities[0] > 0 and velocities[-1] >= 10.0 * velocities[0])
 
 
 def _crowds_the_start(times: Any) -> bool:
@@ -286,15 +429,16 @@ class CurvePlots:
         return _told(self)
 
     def area(self, *, corrected: bool = True, ax: Axes | None = None, **style: Any) -> Axes:
-        """Contact fraction over mean pressure; with `corrected` that of the area less its perimeter's share."""
+        """Contact fraction over mean pressure; with `corrected` that of the area less its perimeter's share, of a line contact of the length
+        less the share of its ends."""
         curve, ax = self._curve, _axes(ax, style)
-        factor, text = _scale(ax, "pressure", float(np.max(curve.mean_pressure)), "Pa")
-        fraction = curve.contact_fraction
+        factor, text = _scale(ax, "mean pressure", _largest(curve.mean_pressure), "Pa", axis="x")
+        fraction, share = curve.contact_fraction, "contact length [% of the domain]" if curve[0].is_line else "contact area [% of nominal]"
         if corrected:
             fraction = curve.contact_area_corrected / math.prod(curve[0].size)
         ax.plot(curve.mean_pressure * factor, 100 * fraction, **{"marker": ".", **style})
         ax.set_xlabel(f"mean pressure [{text}]")
-        ax.set_ylabel(f"{'corrected ' if corrected else ''}contact area [% of nominal]")
+        ax.set_ylabel(f"{'corrected ' if corrected else ''}{share}")
         if "label" in style:
             _legend(ax)
         return ax
@@ -316,20 +460,24 @@ class SurfacePlots:
         return _told(self)
 
     def heights(self, *, ax: Axes | None = None, **style: Any) -> Axes:
-        """Map of the heights about their mean, undefined points left white; of a profile a curve."""
+        """Map of the heights about their mean, undefined points left blank; of a profile a curve. Where a few pits or spikes take more
+        than a third of the range, the colours end at the quantiles of a thousandth and of all but a thousandth, and arrows of the bar
+        point beyond."""
         surface = self._surface
         z = np.where(np.isfinite(surface.heights), surface.heights, np.nan)
         z = z - np.nanmean(z)
-        ax = _axes(ax, style, "curve" if surface.is_line else "map")
+        ax = _axes(ax, style, "curve" if surface.is_line else "map", surface.size)
         if surface.is_line:
-            along = _shown(max(surface.size), "m")
-            factor, text = _scale(ax, "height", float(np.nanmax(np.abs(z), initial=0.0)), "m")
+            along = _scale(ax, "x", max(surface.size), "m", axis="x")
+            factor, text = _scale(ax, "height", _largest(z), "m")
             ax.plot(surface.x * along[0], z * factor, **style)
             ax.set_xlabel(f"x [{along[1]}]")
             ax.set_ylabel(f"height [{text}]")
             return ax
-        image = _image(ax, z, surface.size, {"cmap": "viridis", **_in_si(style, "m")})
-        _bar(ax, image, "height", "m", z)
+        if told := _stretched(surface.size, style):
+            ax.set_title(told)
+        image = _image(ax, z, surface.size, {"cmap": "viridis", **_robust(z, _in_si(style, "m"))})
+        _bar(ax, image, "height", "m")
         return ax
 
     def power_spectrum(self, *, per_decade: int = 16, ax: Axes | None = None, **style: Any) -> Axes:
@@ -346,13 +494,13 @@ class SurfacePlots:
         qx, qy, c = self._surface.power_spectrum_2d()
         ax = _axes(ax, style, "map")
         # Below is the rounding of the transform, where a synthetic surface has no waves.
-        shown = np.log10(np.where(c > 1e-20 * c.max(initial=0.0), c, np.nan))
+        powers = np.log10(np.where(c > 1e-20 * c.max(initial=0.0), c, np.nan))
         half = [0.5 * (q[1] - q[0]) if len(q) > 1 else 0.5 for q in (qx, qy)]
         # Wave numbers of 1/µm, 1/mm or 1/m.
         longest = max(qx[-1] + half[0], qy[-1] + half[1])
         factor, text = (1e-6, "µm") if longest >= 1e6 else (1e-3, "mm") if longest >= 1e3 else (1.0, "m")
         extent = tuple(end * factor for end in (qx[0] - half[0], qx[-1] + half[0], qy[0] - half[1], qy[-1] + half[1]))
-        image = ax.imshow(shown.T, **_placed(extent, {"cmap": "viridis", **style}))
+        image = _placed(ax, powers, extent, (extent[1] - extent[0], extent[3] - extent[2]), {"cmap": "viridis", **style})
         ax.set_xlabel(f"qx [1/{text}]")
         ax.set_ylabel(f"qy [1/{text}]")
         _beside(ax, image, "log10 of the power spectrum C [m⁴]")
@@ -361,11 +509,13 @@ class SurfacePlots:
     def autocorrelation(self, *, periodic: bool | None = None, ax: Axes | None = None, **style: Any) -> Axes:
         """Map of the autocorrelation function over the lags."""
         found = self._surface.autocorrelation(periodic=periodic)
-        ax = _axes(ax, style, "map")
-        factor, text = _shown(float(max(np.abs(found.x).max(), np.abs(found.y).max())), "m")
+        ax = _axes(ax, style, "map", self._surface.size)
+        if told := _stretched(self._surface.size, style):
+            ax.set_title(told)
+        factor, text = shown(float(max(np.abs(found.x).max(), np.abs(found.y).max())), "m")
         half = [0.5 * side / n for side, n in zip(self._surface.size, self._surface.cells)]
         extent = [end * factor for end in (found.x[0] - half[0], found.x[-1] + half[0], found.y[0] - half[1], found.y[-1] + half[1])]
-        image = ax.imshow(found.values.T, **_placed(extent, {"cmap": "RdBu_r", "vmin": -1.0, "vmax": 1.0, **style}))
+        image = _placed(ax, found.values, extent, self._surface.size, {"cmap": "RdBu_r", "vmin": -1.0, "vmax": 1.0, **style})
         ax.set_xlabel(f"lag along x [{text}]")
         ax.set_ylabel(f"lag along y [{text}]")
         _beside(ax, image, "autocorrelation")
@@ -375,7 +525,7 @@ class SurfacePlots:
         """Density of the points over height."""
         z, density = self._surface.height_distribution(bins)
         ax = _axes(ax, style)
-        factor, text = _shown(float(np.max(np.abs(z), initial=0.0)), "m")
+        factor, text = shown(_largest(z), "m")
         ax.plot(z * factor, density / factor, **style)
         ax.set_xlabel(f"height [{text}]")
         ax.set_ylabel(f"density [1/{text}]")
@@ -385,7 +535,7 @@ class SurfacePlots:
         """Height over the share of the surface above it."""
         z, share = self._surface.bearing_curve()
         ax = _axes(ax, style)
-        factor, text = _scale(ax, "height", float(np.max(np.abs(z), initial=0.0)), "m")
+        factor, text = _scale(ax, "height", _largest(z), "m")
         ax.plot(100 * share, z * factor, **style)
         ax.set_xlabel("share of the surface above [%]")
         ax.set_ylabel(f"height [{text}]")
@@ -395,9 +545,13 @@ class SurfacePlots:
 
 def _load_displacement(approach: Any, load: Any, unit: str, ax: Axes | None, style: dict[str, Any]) -> Axes:
     ax = _axes(ax, style)
-    across = _scale(ax, "load", float(np.max(np.abs(load), initial=0.0)), unit)
-    along = _scale(ax, "approach", float(np.max(np.abs(approach), initial=0.0)), "m", axis="x")
-    ax.plot(approach * along[0], load * across[0], **_marked(style, len(load)))
+    across = _scale(ax, "load", _largest(load), unit)
+    along = _scale(ax, "approach", _largest(approach), "m", axis="x")
+    if not np.any(load) and not ax.lines and "label" not in style:
+        style = {**style, "label": "nothing touches"}
+    ax.plot(approach * along[0], load * across[0], **_marked(style, approach, load))
+    _settle(ax)
+    _settle(ax, "x")
     ax.set_xlabel(f"approach [{along[1]}]")
     ax.set_ylabel(f"load [{across[1]}]")
     if "label" in style:
@@ -412,17 +566,24 @@ def _two_or_five(value: float) -> str:
     return f"${first}\\times10^{{{power}}}$" if first in (2, 5) else ""
 
 
-def _spectrum(q: Any, c: Any, words: str, ax: Axes | None, style: dict[str, Any]) -> Axes:
+def _few_numbers(axis: Any, ends: tuple[float, float]) -> None:
+    """Numbers at 2 and 5 times the powers of ten of a logarithmic axis of a decade or two, where powers of ten are few; all numbers
+    between them would overlap."""
     from matplotlib.ticker import FuncFormatter
 
+    # Of 1, 2 and 5 times the powers of ten two at least lie in a range of 2.5 * 2.5; a shorter one keeps all numbers.
+    if ends[1] < 6.25 * ends[0]:
+        return
+    few = ends[1] < 300.0 * ends[0]
+    axis.set_minor_formatter(FuncFormatter(lambda value, _: _two_or_five(value) if few else ""))
+
+
+def _spectrum(q: Any, c: Any, words: str, ax: Axes | None, style: dict[str, Any]) -> Axes:
     ax = _axes(ax, style)
     # Below is the rounding of the transform, where a synthetic surface has no waves.
     seen = c > 1e-20 * np.max(c, initial=0.0)
     ax.loglog(q[seen], c[seen], **{"marker": ".", **style})
-    ends = ax.get_xlim()
-    few = ends[1] < 300.0 * ends[0]
-    # Within a decade or two there are few powers of ten; all numbers between them would overlap.
-    ax.xaxis.set_minor_formatter(FuncFormatter(lambda value, _: _two_or_five(value) if few else ""))
+    _few_numbers(ax.xaxis, ax.get_xlim())
     ax.set_xlabel("wavenumber q [1/m]")
     ax.set_ylabel(f"power spectrum {words}")
     if "label" in style:
@@ -439,6 +600,8 @@ def fitted(fit: Fit, ax: Axes | None) -> Any:
     for k, (label, data, curve) in enumerate(zip(labels, fit.curves, fit.curve(fine))):
         ax.loglog(fit.x, data, "o^"[k], color=f"C{k}", markersize=3, alpha=0.6, label=f"{label}, measured")
         ax.loglog(fine, curve, color=f"C{k}", label=f"{label}, fitted")
+    _few_numbers(ax.xaxis, ax.get_xlim())
+    _few_numbers(ax.yaxis, ax.get_ylim())
     reduced = "reduced " if fit.shift is not None else ""
     ax.set_xlabel(f"{reduced}angular frequency [rad/s]" if dma else f"{reduced}time [s]")
     letter = "E" if fit.modulus == "young" else "G"

@@ -26,6 +26,8 @@ pub struct Axis {
     pub range: Option<[f64; 2]>,
     /// Names of the values 0, 1, 2 ... in place of numbers; empty for numbers.
     pub names: Vec<String>,
+    /// Whether it counts something: its ticks are whole numbers then.
+    pub counts: bool,
 }
 
 /// A logarithmic axis of more decades on both sides of 1 keeps the unit without a prefix: its numbers are powers of ten in any
@@ -38,7 +40,8 @@ const NOTHING: f64 = 1e-250;
 impl Axis {
     /// A linear axis over the range of the data.
     pub fn linear(label: impl Into<String>, unit: impl Into<String>) -> Axis {
-        Axis { label: label.into(), unit: unit.into(), scale: Scale::Linear, range: None, names: vec![] }
+        let (scale, range, names, counts) = (Scale::Linear, None, vec![], false);
+        Axis { label: label.into(), unit: unit.into(), scale, range, names, counts }
     }
 
     /// A logarithmic axis over the range of the data.
@@ -51,6 +54,11 @@ impl Axis {
         let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
         let last = names.len() as f64 - 1.0;
         Axis { names, ..Axis::linear(label, "").between(-0.2, last + 0.2) }
+    }
+
+    /// The same axis for a number of things, without ticks between whole numbers.
+    pub fn counting(self) -> Axis {
+        Axis { counts: true, ..self }
     }
 
     /// The same axis between two ends \[SI\].
@@ -108,13 +116,18 @@ impl Ruler {
 
     /// `unit` is that of the axis, and `numbers` the same with a power of ten where the numbers need it.
     fn laid(axis: &Axis, ends: [f64; 2], wanted: f64, unit: Shown, numbers: Shown) -> Ruler {
-        let (ticks, minor) = match axis.scale {
+        let (mut ticks, mut minor) = match axis.scale {
             _ if !axis.names.is_empty() => {
                 ((0u32..).map(f64::from).zip(axis.names.clone()).collect(), vec![])
             }
             Scale::Log => decades(ends, numbers.factor, wanted),
             Scale::Linear => steps(ends, numbers.factor, wanted),
         };
+        if axis.counts && numbers.text.is_empty() {
+            ticks.retain(|(value, _)| is_whole(*value));
+            ticks.iter_mut().for_each(|(value, text)| *text = format!("{:.0}", value.abs()));
+            minor.retain(|value| is_whole(*value));
+        }
         let title = match numbers.text.as_str() {
             "" => axis.label.clone(),
             text => format!("{} [{text}]", axis.label),
@@ -161,7 +174,11 @@ fn ends(axis: &Axis, data: [f64; 2], margin: f64) -> [f64; 2] {
         return [0.0, 1.0];
     }
     if high - low <= 1e-9 * largest {
-        let room = if log { 0.5 } else { 0.1 * largest };
+        let room = match (log, axis.counts) {
+            (true, _) => 0.5,
+            (false, true) => f64::max(1.0, 0.1 * largest),
+            (false, false) => 0.1 * largest,
+        };
         return [low - room, high + room];
     }
     if axis.range.is_some() {
@@ -171,6 +188,11 @@ fn ends(axis: &Axis, data: [f64; 2], margin: f64) -> [f64; 2] {
     // An axis that starts at zero stays there.
     let keeps_zero = |end: f64, moved: f64| if !log && end == 0.0 { 0.0 } else { moved };
     [keeps_zero(low, low - room), keeps_zero(high, high + room)]
+}
+
+/// Whether a tick is a whole number but for rounding.
+fn is_whole(value: f64) -> bool {
+    (value - value.round()).abs() < 1e-9 * value.abs().max(1.0)
 }
 
 /// The unit of an axis with the prefix that suits its ends.
@@ -417,5 +439,16 @@ mod tests {
         let log = Ruler::new(&Axis::log("x", ""), [1.0, 100.0], 0.0, 5.0).placed(100.0, 0.0);
         assert!((log.place(10.0).unwrap() - 50.0).abs() < 1e-12);
         assert_eq!(log.place(0.0), None);
+    }
+
+    #[test]
+    fn an_axis_that_counts_has_whole_numbers() {
+        let texts = |axis: Axis, ends: [f64; 2]| -> Vec<String> {
+            Ruler::new(&axis.counting(), ends, 0.0, 6.0).ticks.into_iter().map(|(_, text)| text).collect()
+        };
+        assert_eq!(texts(Axis::linear("row", ""), [1.0, 3.0]), ["1", "2", "3"]);
+        // One value, of one thing: from none to two.
+        assert_eq!(texts(Axis::linear("number", ""), [1.0, 1.0]), ["0", "1", "2"]);
+        assert!(!texts(Axis::log("number", ""), [1.0, 1.0]).contains(&"0.5".to_owned()));
     }
 }

@@ -8,7 +8,7 @@ use super::drawing::{Anchor, Drawing, GRID, INK, Paint, Pen};
 use super::font;
 use super::legend::Legend;
 use super::scale::{Bar, ColourScale};
-use super::series::{Series, Style, dots, sign, spacing};
+use super::series::{Series, Style, dots, marks, sign, spacing};
 use super::{EDGE, Margins, Place, SMALL, TEXT};
 
 /// Colours that people with any kind of colour vision tell apart (Okabe & Ito 2008), dark ones first.
@@ -113,7 +113,7 @@ impl Curves {
     /// where no corner inside is free of curves.
     pub(crate) fn needs(&self, size: [f64; 2]) -> Margins {
         let labels = self.rulers(size, Margins::default()).1.widest();
-        let own = Margins { labels, legend: 0.0, head: super::head(&self.title) };
+        let own = Margins { labels, beside: 0.0, legend: 0.0, head: super::head(&self.title) };
         let layout = self.layout(&Place { corner: [0.0, 0.0], size, margins: own });
         let legend = Legend::of(self);
         if legend.is_empty() || self.corner(&legend, &layout).is_some() {
@@ -193,6 +193,10 @@ impl Curves {
             }
             drawing.clipped([left, top], [right - left, bottom - top], |drawing| {
                 series.draw(drawing, colour, &at, bottom, layout.y.place(0.0));
+                if let Some(mark) = series.mark {
+                    let places = marks(series.points().map(at));
+                    places.into_iter().for_each(|place| sign(drawing, mark, place, colour));
+                }
             });
         }
         match corner {
@@ -275,7 +279,8 @@ impl Curves {
         let (x, y, [head, foot]) = self.rulers(place.size, place.margins);
         let left = x0 + TEXT + place.margins.labels + 13.0;
         let key = self.key.as_ref().map_or(0.0, |key| key.bar(place).width());
-        let (right, top, bottom) = (x0 + width - 12.0 - key, y0 + head, y0 + height - foot);
+        let (right, top, bottom) =
+            (x0 + width - (12.0 + key).max(place.margins.beside), y0 + head, y0 + height - foot);
         Layout { x: x.placed(left, right), y: y.placed(bottom, top), area: [left, top, right, bottom] }
     }
 

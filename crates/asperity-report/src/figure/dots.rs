@@ -78,7 +78,9 @@ fn draw_shape(paper: &mut Pixmap, path: &Path, paint: &Paint, scale: Transform, 
     if let Some((colour, opacity)) = paint.fill {
         paper.fill_path(path, &brush(colour, opacity), FillRule::Winding, scale, mask);
     }
-    if let Some(Pen { colour, width, dashes }) = paint.pen {
+    // A path whose points are all the same has no line.
+    let is_point = path.bounds().width() == 0.0 && path.bounds().height() == 0.0;
+    if let Some(Pen { colour, width, dashes }) = paint.pen.filter(|_| !is_point) {
         let dash = StrokeDash::new(dashes.iter().map(|length| *length as f32).collect(), 0.0);
         let stroke = Stroke { width: width as f32, line_join: LineJoin::Round, dash, ..Stroke::default() };
         paper.stroke_path(path, &brush(colour, 1.0), &stroke, scale, mask);

@@ -35,12 +35,11 @@ impl Layout {
     pub(super) fn of(map: &Map, place: &Place) -> Layout {
         let ([x0, y0], [width, height]) = (place.corner, place.size);
         let (bar, beyond) = colours(map, place);
-        let arrows = beyond.iter().flatten().map(|text| 8.0 + SMALL + font::width(text, SMALL));
-        let beside = arrows.fold(bar.as_ref().map_or(0.0, Bar::width), f64::max);
+        let beside = beside(bar.as_ref(), &beyond);
         let foot = TEXT + SMALL + 12.0;
         let head = place.margins.head + place.margins.legend;
         let left = x0 + TEXT + place.margins.labels + 13.0;
-        let room = [x0 + width - 8.0 - beside - left, height - foot - head];
+        let room = [x0 + width - beside - left, height - foot - head];
         let [w, h] = match map.axes {
             Axes::Times { .. } => room,
             _ => {
@@ -73,13 +72,23 @@ impl Layout {
     }
 }
 
+/// Width of what is to the right of the frame: the colour bar, and the words about values beyond its colours.
+fn beside(bar: Option<&Bar>, beyond: &[Option<String>; 2]) -> f64 {
+    let arrows = beyond.iter().flatten().map(|text| 8.0 + SMALL + font::width(text, SMALL));
+    // No less than curves have there.
+    (8.0 + arrows.fold(bar.map_or(0.0, Bar::width), f64::max)).max(12.0)
+}
+
 impl Map {
     /// What the map needs of its margins.
     pub(crate) fn needs(&self, size: [f64; 2]) -> Margins {
         let [_, (up, unit)] = axes(self);
         let labels = Ruler::exactly(&up, [0.0, 1.0], 0.0, size[1] / 32.0, unit).widest();
         let legend = if matches!(self.meaning, Values::States(_)) { NAMES } else { 0.0 };
-        Margins { labels, legend, head: super::head(&self.title) }
+        let (bar, beyond) = colours(self, &Place { corner: [0.0; 2], size, margins: Margins::default() });
+        // An area is as wide as its height lets it.
+        let beside = if let Axes::Times { .. } = self.axes { beside(bar.as_ref(), &beyond) } else { 0.0 };
+        Margins { labels, beside, legend, head: super::head(&self.title) }
     }
 
     /// The height that it takes of a panel of this size \[points\]: less than there is where the area is wide.

@@ -130,7 +130,12 @@ fn draw(drawing: &mut Drawing, (series, colour): (&Series, &str), [x, middle]: [
             drawing.rect([x + 7.0, middle - 3.5], [12.0, 7.0], Paint::fill(colour, 0.55));
         }
         style if style.is_of_points() => sign(drawing, style, [x + 13.0, middle], colour),
-        style => drawing.line([x + 5.0, middle], [x + 21.0, middle], pen(style, colour, 0.0)),
+        style => {
+            drawing.line([x + 5.0, middle], [x + 21.0, middle], pen(style, colour, 0.0));
+            if let Some(mark) = series.mark {
+                sign(drawing, mark, [x + 13.0, middle], colour);
+            }
+        }
     }
     let name = words::shortened(&series.name, SMALL, right + 4.0 - x - SIGN);
     drawing.text([x + SIGN, middle + 0.36 * SMALL], SMALL, Anchor::Start, &name);

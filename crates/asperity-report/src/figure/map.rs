@@ -45,6 +45,8 @@ pub struct Map {
     pub axes: Axes,
     /// Places x, y that a circle marks \[m\].
     pub marks: Vec<[f64; 2]>,
+    /// Where a line crosses it, along its second axis \[m, of a map over time s\].
+    pub line: Option<f64>,
     /// Colours instead of the usual ones of the quantity.
     pub palette: Option<Palette>,
     /// Whether the colours go by the logarithm of the values; values that are not positive are light then.
@@ -89,6 +91,7 @@ impl Map {
             size,
             axes: Axes::Area,
             marks: vec![],
+            line: None,
             palette: None,
             log: false,
         }
@@ -123,6 +126,7 @@ impl Map {
             size,
             axes: Axes::Area,
             marks: vec![],
+            line: None,
             palette: None,
             log: false,
         }
@@ -132,6 +136,11 @@ impl Map {
     pub fn marked(mut self, place: [f64; 2]) -> Map {
         self.marks.push(place);
         self
+    }
+
+    /// The same map with a line across it at this place of its second axis.
+    pub fn with_line(self, place: f64) -> Map {
+        Map { line: Some(place), ..self }
     }
 
     /// The same map with these values at the ends of its colours.
@@ -160,7 +169,7 @@ impl Map {
             Values::Quantity { colours, range: None, .. } => colours.leave_out_zero(),
             _ => false,
         };
-        own && !self.values.iter().any(|value| *value > 0.0)
+        own && !self.values.iter().any(|value| *value > 0.0 || (*value < 0.0 && !self.log))
     }
 
     pub(super) fn draw(&self, drawing: &mut Drawing, place: &Place) {
@@ -180,6 +189,12 @@ impl Map {
         let smooth = self.goes_down() || self.values.dim().0 > w as usize;
         drawing.image([left, top], [w, h], self.picture(), smooth);
         drawing.rect([left, top], [w, h], Paint::outline(Pen::new(INK, 0.8)));
+        if let Some(place) = self.line {
+            let start = if let Axes::Times { start } = self.axes { start } else { 0.0 };
+            let y = bottom - h * (place - start) / self.size[1];
+            drawing.line([left, y], [right, y], Pen::new("#fff", 2.4));
+            drawing.line([left, y], [right, y], Pen::new(INK, 1.0));
+        }
         for [x, y] in &self.marks {
             let at = [left + w * x / self.size[0], bottom - h * y / self.size[1]];
             drawing.circle(at, 5.0, Paint::outline(Pen::new("#fff", 3.0)));
@@ -222,8 +237,8 @@ impl Map {
         }
         let values = Array2::from_shape_vec((values.len(), 1), values).unwrap_or_default();
         let (title, marks) = (self.title.clone(), self.marks.clone());
-        let Map { size, axes, palette, log, .. } = *self;
-        Map { title, values, meaning, size, axes, marks, palette, log }
+        let Map { size, axes, line, palette, log, .. } = *self;
+        Map { title, values, meaning, size, axes, marks, line, palette, log }
     }
 
     /// Left, top, right and bottom of the frame \[points\].

@@ -40,6 +40,7 @@ pub(crate) use raster::{block, means, states};
 pub(crate) use scale::robust;
 pub use series::{Series, Style};
 pub(crate) use words::typeset;
+pub(crate) use write::PANELS;
 pub use write::{FigureError, Form};
 
 pub(crate) use drawing::INK;
@@ -100,12 +101,14 @@ struct Place {
     margins: Margins,
 }
 
-/// What panels need around their frames; those in a column share the width of the numbers, those in a row the height of titles and
-/// legends above the frames, so that the frames are aligned.
+/// What panels need around their frames; those in a column share the width of the numbers and of what is beside them, those in a
+/// row the height of titles and legends above the frames, so that the frames are aligned.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Margins {
     /// Width of the numbers at the vertical axis \[points\].
     pub(crate) labels: f64,
+    /// Width of what is to the right of the frame, where curves below or above are to end with it \[points\].
+    pub(crate) beside: f64,
     /// Height of a legend above the frame \[points\].
     pub(crate) legend: f64,
     /// Height of the title above the frame \[points\].
@@ -176,49 +179,54 @@ impl Figure {
 
     /// Where each panel lies.
     fn places(&self) -> Vec<Place> {
-        let heights = self.heights();
+        let (heights, margins) = (self.heights(), self.margins());
         let place = |n: usize| {
             let (row, column) = (n / self.columns, n % self.columns);
             let above: f64 = heights.iter().take(row).sum();
             let corner = [EDGE + column as f64 * self.panel[0], self.top() + above];
-            Place { corner, size: [self.panel[0], heights[row]], margins: self.margins(row, column) }
+            Place { corner, size: [self.panel[0], heights[row]], margins: margins[n] }
         };
         (0..self.panels.len()).map(place).collect()
     }
 
     /// The height of each row \[points\]: a legend above the frames adds to it, and a row of wide maps takes less.
     fn heights(&self) -> Vec<f64> {
-        let rows = self.panels.chunks(self.columns).enumerate().map(|(row, panels)| {
-            let each = panels.iter().enumerate().map(|(column, panel)| {
-                let margins = self.margins(row, column);
-                let size = [self.panel[0], self.panel[1] + margins.legend];
-                match panel {
-                    Panel::Curves(_) => size[1],
-                    Panel::Map(map) => map.height(size, margins),
-                }
+        let margins = self.margins();
+        let rows =
+            self.panels.chunks(self.columns).zip(margins.chunks(self.columns)).map(|(panels, margins)| {
+                let each = panels.iter().zip(margins).map(|(panel, margins)| {
+                    let size = [self.panel[0], self.panel[1] + margins.legend];
+                    match panel {
+                        Panel::Curves(_) => size[1],
+                        Panel::Map(map) => map.height(size, *margins),
+                    }
+                });
+                each.fold(0.0, f64::max)
             });
-            each.fold(0.0, f64::max)
-        });
         rows.collect()
     }
 
-    /// The margins of the panels in this row and column.
-    fn margins(&self, row: usize, column: usize) -> Margins {
-        let mut margins = Margins::default();
-        for (n, panel) in self.panels.iter().enumerate() {
-            let own = match panel {
-                Panel::Curves(curves) => curves.needs(self.panel),
-                Panel::Map(map) => map.needs(self.panel),
-            };
-            if n % self.columns == column {
-                margins.labels = margins.labels.max(own.labels);
-            }
-            if n / self.columns == row {
-                margins.legend = margins.legend.max(own.legend);
-                margins.head = margins.head.max(own.head);
-            }
+    /// The margins of each panel: what its column and its row need.
+    fn margins(&self) -> Vec<Margins> {
+        let needs = self.panels.iter().map(|panel| match panel {
+            Panel::Curves(curves) => curves.needs(self.panel),
+            Panel::Map(map) => map.needs(self.panel),
+        });
+        let count = self.panels.len();
+        let mut columns = vec![Margins::default(); self.columns.min(count)];
+        let mut rows = vec![Margins::default(); count.div_ceil(self.columns)];
+        for (n, own) in needs.enumerate() {
+            let (row, column) = (&mut rows[n / self.columns], &mut columns[n % self.columns]);
+            column.labels = column.labels.max(own.labels);
+            column.beside = column.beside.max(own.beside);
+            row.legend = row.legend.max(own.legend);
+            row.head = row.head.max(own.head);
         }
-        margins
+        let of = |n: usize| {
+            let Margins { labels, beside, .. } = columns[n % self.columns];
+            Margins { labels, beside, ..rows[n / self.columns] }
+        };
+        (0..count).map(of).collect()
     }
 }
 

@@ -13,8 +13,10 @@ impl Figure {
     /// The same figure on paper of this width and height \[points\], with panels that fill it.
     ///
     /// # Errors
-    /// [`FigureError::Size`] where panels would be too small to read.
+    /// [`FigureError::Size`] where panels would be too small to read; [`FigureError::Panels`] and [`FigureError::Title`] where there
+    /// are too many panels or letters.
     pub fn sized(self, size: [f64; 2]) -> Result<Figure, FigureError> {
+        self.check()?;
         // Many arrangements are tried, and of maps only the ends of their values matter.
         let panels = self.panels.iter().map(|panel| match panel {
             Panel::Map(map) => Panel::Map(map.thumbnail()),
@@ -32,9 +34,10 @@ impl Figure {
             }
             None => {
                 let larger = |by: &f64| size.map(|side| side * by);
-                let mut grown = (1..).map(|n| 1.05f64.powi(n)).take_while(|by| *by < MOST);
-                let by = grown.find(|by| small.filling(larger(by)).is_some()).unwrap_or(MOST);
-                Err(FigureError::Size { asked: size, needed: larger(&by) })
+                let grown: Vec<f64> = (1..).map(|n| 1.05f64.powi(n)).take_while(|by| *by < MOST).collect();
+                let first = grown.partition_point(|by| small.filling(larger(by)).is_none());
+                let by = grown.get(first).unwrap_or(&MOST);
+                Err(FigureError::Size { asked: size, needed: larger(by) })
             }
         }
     }
@@ -71,7 +74,11 @@ impl Figure {
         figure.panel[0] = (width - 2.0 * EDGE) / columns as f64;
         // Where a legend stands depends on the height of its panel, and wide maps take less than they are given.
         for _ in 0..16 {
-            figure.panel[1] = (figure.panel[1] + (height - figure.needed()[1]) / rows).max(LOWEST);
+            let before = figure.panel[1];
+            figure.panel[1] = (before + (height - figure.needed()[1]) / rows).max(LOWEST);
+            if figure.panel[1] == before {
+                break;
+            }
         }
         let fits = figure.needed()[1] <= height + 0.5;
         let frames = || figure.panels.iter().zip(figure.places());

@@ -69,7 +69,7 @@ impl ColourScale {
     pub(super) fn at(&self, value: f64) -> [u8; 3] {
         if !value.is_finite() {
             BLANK
-        } else if value <= 0.0 && (self.log || self.colours.leave_out_zero()) {
+        } else if (value <= 0.0 && self.log) || (value == 0.0 && self.colours.leave_out_zero()) {
             OPEN
         } else {
             self.palette.at(self.share(value))

@@ -166,7 +166,8 @@ fn a_map_of_the_gap_where_all_touches_has_no_colour_bar() {
         let map = Map::new("", ["gap", "m"], Colours::Gap, values.view(), [1e-3, 1e-3]);
         Figure::new("").with(map).to_svg().matches("<image").count()
     };
-    assert_eq!([of(0.0), of(1e-6)], [1, 2]);
+    // A negative gap is an overlap at the hardness.
+    assert_eq!([of(0.0), of(1e-6), of(-1e-6)], [1, 2, 2]);
 }
 
 #[test]
@@ -255,6 +256,28 @@ fn a_figure_replaces_nothing_unless_told() {
     assert!(matches!(figure().write(&nowhere, true), Err(FigureError::Io { .. })));
 }
 
+#[test]
+fn too_many_panels_and_endless_titles_are_refused() {
+    let many = |panels: usize| Figure { panels: vec![curve().into(); panels], ..Figure::new("") };
+    let titled = |letters: usize| Figure { title: "ä".repeat(letters), ..curve_figure() };
+    assert!(matches!(many(65).to_png(20.0), Err(FigureError::Panels { found: 65 })));
+    assert!(matches!(many(65).sized([500.0, 500.0]), Err(FigureError::Panels { .. })));
+    assert!(matches!(titled(1001).to_pdf(), Err(FigureError::Title { letters: 1001 })));
+    assert!(many(64).to_png(20.0).is_ok() && titled(1000).to_png(20.0).is_ok());
+}
+
 fn curve_figure() -> Figure {
     Figure::new("").with(curve())
+}
+
+#[test]
+fn curves_end_where_the_map_over_time_below_them_ends() {
+    let states = Values::States(vec![("open".to_owned(), [0; 3])]);
+    for map in [map().over_time(0.0), Map { meaning: states, ..map().over_time(0.0) }] {
+        let figure = Figure::new("").columns(1).with(curve()).with(map);
+        let places = figure.places();
+        let [Panel::Curves(curves), Panel::Map(map)] = &figure.panels[..] else { panic!("two panels") };
+        let (above, below) = (curves.frame(&places[0]), frame::Layout::of(map, &places[1]).area);
+        assert_eq!([above[0], above[2]], [below[0], below[2]]);
+    }
 }

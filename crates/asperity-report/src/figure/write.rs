@@ -8,6 +8,11 @@ use super::{Figure, Pixels, dots, font, pdf, raster};
 /// Points of paper per inch.
 const POINTS: f64 = 72.0;
 
+/// Most panels of a figure: in two columns they fill paper of 2.3 m, and take 0.8 GB while they are drawn as PNG.
+pub(crate) const PANELS: usize = 64;
+/// Most letters of a title.
+const TITLE: usize = 1000;
+
 /// A form that a figure is written in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
@@ -53,6 +58,18 @@ pub enum FigureError {
         /// Width and height that are enough, in the same proportion \[points\].
         needed: [f64; 2],
     },
+    /// The paper would grow without bound.
+    #[error("the figure would have {found} panels, but may have {PANELS}; draw fewer in one figure")]
+    Panels {
+        /// So many it would have.
+        found: usize,
+    },
+    /// The title would cover the figure.
+    #[error("the title has {letters} letters, but may have {TITLE}; give a shorter one (--title)")]
+    Title {
+        /// So many it has.
+        letters: usize,
+    },
     /// The drawing could not be made into dots.
     #[error("cannot draw the figure: {0}")]
     Drawing(String),
@@ -77,10 +94,13 @@ impl Figure {
     /// Writes the figure in the form that the ending of `path` asks for. The file appears whole or not at all.
     ///
     /// # Errors
-    /// [`FigureError::Ending`] for an unknown ending; [`FigureError::Exists`] where there is a file already and
+    /// [`FigureError::Ending`] for an unknown ending; [`FigureError::Panels`] and [`FigureError::Title`] where there are too many
+    /// panels or letters; [`FigureError::Exists`] where there is a file already and
     /// `force` does not allow to replace it; [`FigureError::Io`] where the system refuses.
     pub fn write(&self, path: &Path, force: bool) -> Result<(), FigureError> {
-        let data = match Form::of(path)? {
+        let form = Form::of(path)?;
+        self.check()?;
+        let data = match form {
             Form::Svg => self.to_svg().into_bytes(),
             Form::Png => self.to_png(300.0)?,
             Form::Pdf => self.to_pdf()?,
@@ -89,7 +109,16 @@ impl Figure {
             std::io::ErrorKind::AlreadyExists => FigureError::Exists { path: path.to_owned() },
             _ => FigureError::Io { path: path.to_owned(), source },
         };
-        crate::file::write(path, force, |file| file.write_all(&data)).map_err(failed)
+        asperity_io::output::write(path, force, |file| file.write_all(&data)).map_err(failed)
+    }
+
+    /// Refuses what would take much time and memory to draw.
+    pub(super) fn check(&self) -> Result<(), FigureError> {
+        let (found, letters) = (self.panels.len(), self.title.chars().count());
+        if found > PANELS {
+            return Err(FigureError::Panels { found });
+        }
+        if letters > TITLE { Err(FigureError::Title { letters }) } else { Ok(()) }
     }
 
     /// The letters of its texts that its typeface lacks, each once: PNG and PDF have a box for each, and SVG leaves them to the
@@ -108,7 +137,7 @@ impl Figure {
     /// The figure as PNG with `dots` to an inch.
     ///
     /// # Errors
-    /// [`FigureError::Drawing`] where `dots` is not within 20 to 2400.
+    /// [`FigureError::Drawing`] where `dots` is not within 20 to 2400; [`FigureError::Panels`] and [`FigureError::Title`].
     pub fn to_png(&self, dots: f64) -> Result<Vec<u8>, FigureError> {
         raster::png(&self.dots(dots)?).map_err(undrawn)
     }
@@ -118,6 +147,7 @@ impl Figure {
         if !(20.0..=2400.0).contains(&dots) {
             return Err(FigureError::Drawing(format!("{dots} dots per inch; expected 20 to 2400")));
         }
+        self.check()?;
         let scale = dots / POINTS;
         let size = self.paper().map(|length| (length * scale).round() as u32);
         dots::draw(&self.drawing(), size, scale * self.zoom).ok_or_else(|| undrawn("its paper has no area"))
@@ -126,8 +156,9 @@ impl Figure {
     /// The figure as a PDF of one page.
     ///
     /// # Errors
-    /// [`FigureError::Drawing`] where its data cannot be compressed.
+    /// [`FigureError::Drawing`] where its data cannot be compressed; [`FigureError::Panels`] and [`FigureError::Title`].
     pub fn to_pdf(&self) -> Result<Vec<u8>, FigureError> {
+        self.check()?;
         pdf::write(&self.drawing(), self.paper(), self.zoom, &self.title).map_err(undrawn)
     }
 }

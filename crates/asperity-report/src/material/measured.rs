@@ -2,12 +2,12 @@
 
 use std::f64::consts::TAU;
 
-use asperity::material::{Creep, MasterCurve, Relaxation};
+use asperity::material::{Creep, MasterCurve, Relaxation, Shift};
 use asperity_io::curve::{Curves as Measured, Fitted, Kind, Sweep};
 use asperity_io::readable::counted;
 
 use super::decades;
-use super::shift::{Factors, shift_factors, vertical_shift_factors};
+use super::shift::{self, Factors, shift_factors, vertical_shift_factors};
 use crate::figure::{Axis, Curves, Figure, Key, Palette, Series, Style};
 
 /// Measured curves in the colours of their temperatures, from the coldest (dark) to the warmest (bright).
@@ -124,7 +124,12 @@ pub fn fit(title: &str, measured: &Measured, fitted: &Fitted) -> asperity::Resul
     let dynamic = measured.kind == Kind::Dma;
     let hertz = |panel: Curves| if dynamic { panel.beside("Hz", 1.0 / TAU) } else { panel };
     let sweeps = shifted(measured, fitted);
-    let title_of = if sweeps.is_some() { "Master curve and fit" } else { "Data and fit" };
+    let reference = fitted.shift.as_ref().and_then(Shift::reference);
+    let title_of = match (&sweeps, reference) {
+        (Some(_), Some(kelvin)) => format!("Master curve at {} and fit", shift::celsius(kelvin)),
+        (Some(_), None) => "Master curve and fit".to_owned(),
+        (None, _) => "Data and fit".to_owned(),
+    };
     let mut panel = hertz(Curves::new(title_of, x.clone(), y));
     if let Some((sweeps, key)) = &sweeps {
         for (reduced, values, colour) in sweeps {

@@ -17,6 +17,11 @@ pub struct Factors<'a> {
     pub temperatures: &'a [f64],
 }
 
+/// "20.0 °C" of a temperature \[K\].
+pub(super) fn celsius(kelvin: f64) -> String {
+    format!("{:.1} °C", kelvin - 273.15)
+}
+
 /// How far a law without a measurement is drawn from its reference temperature \[K\].
 const AROUND: f64 = 40.0;
 
@@ -24,12 +29,19 @@ const AROUND: f64 = 40.0;
 /// nothing to draw.
 pub fn shift_factors(all: &[Factors]) -> Option<Curves> {
     let axis = Axis::log("shift factor a_T", "");
-    let mut panel = Curves::new("Shift factors", Axis::linear("temperature [°C]", ""), axis);
+    let references: Vec<Option<f64>> = all.iter().map(|factors| factors.law.reference()).collect();
+    let one = references.first().copied().flatten().filter(|one| references.iter().all(|r| *r == Some(*one)));
+    let title = one
+        .map_or("Shift factors".to_owned(), |kelvin| format!("Shift factors, reference {}", celsius(kelvin)));
+    let mut panel = Curves::new(title, Axis::linear("temperature [°C]", ""), axis);
     for (n, factors) in all.iter().enumerate() {
         let colour = ["#0072b2", "#d55e00", "#009e73", "#cc79a7"][n % 4];
+        // Several references stand in the legend.
+        let own = factors.law.reference().filter(|_| one.is_none());
+        let about = own.map_or(String::new(), |kelvin| format!(" about {}", celsius(kelvin)));
         let named = |what: &str| match factors.name {
-            "" => what.to_owned(),
-            name => format!("{name}: {what}"),
+            "" => format!("{what}{about}"),
+            name => format!("{name}: {what}{about}"),
         };
         let points: Vec<(f64, f64)> = match factors.law {
             _ if !factors.found.is_empty() => {
@@ -122,6 +134,7 @@ mod tests {
         let factors = Factors { name: "", law: &law, found: &found, temperatures: &[273.15, 313.15] };
         let panel = shift_factors(&[factors]).unwrap();
         let line = &panel.series[0];
+        assert_eq!(panel.title, "Shift factors, reference 20.0 °C");
         assert_eq!((line.x[0], *line.x.last().unwrap()), (0.0, 313.15 - 273.15));
         let points = panel.series.last().unwrap();
         assert_eq!(points.style, Style::Points);

@@ -39,18 +39,7 @@ pub(super) fn facts(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
             .filter(|s| !s.is_empty())
     };
     let number = |key: &str, unit: &str| setup.get(key).and_then(Value::as_f64).map(|v| quantity(v, unit));
-    let bodies = match setup.get("layer_rigid_base").and_then(Value::as_bool) {
-        None => "half-space",
-        Some(true) => "domain, layers on a rigid base",
-        Some(false) => "domain, layers on a half-space",
-    };
-    line(
-        "Boundary",
-        text("boundary").map(|word| match word {
-            "periodic" => format!("periodic {bodies}"),
-            _ => format!("free {bodies}"),
-        }),
-    );
+    line("Boundary", header.boundary());
     let layers = setup.get("layer_separable").and_then(Value::as_bool).map(|separable| match separable {
         true => "all waves creep alike".to_owned(),
         false => format!(
@@ -78,6 +67,7 @@ pub(super) fn facts(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
         line(&name, Some(words));
     }
     line("Temperature", temperature(setup));
+    line("Motion", motion(setup));
     line("Hardness", number("hardness", "Pa"));
     if header.is_sweep() {
         let rows = reader.series("time")?;
@@ -134,15 +124,24 @@ fn materials(setup: &Map<String, Value>) -> Vec<[String; 2]> {
     list.iter().map(words).collect()
 }
 
+/// "sliding; a positive velocity is along +x".
+fn motion(setup: &Map<String, Value>) -> Option<String> {
+    let motion = setup.get("motion")?.as_object()?;
+    let is = |key: &str| motion.get(key).and_then(Value::as_bool) == Some(true);
+    let kind = if is("rolls") { "rolling" } else { "sliding" };
+    let steady = if is("steady") { ", steady states" } else { "" };
+    let along = crate::result::along(motion.get("direction")?, 1.0)?;
+    Some(format!("{kind}{steady}; a positive velocity is {along}"))
+}
+
 /// The least and the greatest temperature.
 fn temperature(setup: &Map<String, Value>) -> Option<String> {
-    let ends: Vec<f64> = setup.get("temperature")?.as_array()?.iter().filter_map(Value::as_f64).collect();
-    let celsius = |kelvin: &f64| format!("{:.1} °C", kelvin - 273.15);
-    match ends[..] {
-        [low, high] if low < high => Some(format!("{} to {}", celsius(&low), celsius(&high))),
-        [first, ..] => Some(celsius(&first)),
-        [] => None,
-    }
+    // Kelvin, or points of time and kelvin.
+    let kelvin = |value: &Value| value.as_f64().or_else(|| value.get(1)?.as_f64());
+    let known: Vec<f64> = setup.get("temperature")?.as_array()?.iter().filter_map(kelvin).collect();
+    let [low, high] = [known.iter().copied().reduce(f64::min)?, known.iter().copied().reduce(f64::max)?];
+    let celsius = |kelvin: f64| format!("{:.1} °C", kelvin - 273.15);
+    Some(if low < high { format!("{} to {}", celsius(low), celsius(high)) } else { celsius(low) })
 }
 
 /// The last full cycle of each stage with a sine.
@@ -171,7 +170,20 @@ fn last_cycles(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
 
 #[cfg(test)]
 mod tests {
-    use super::time;
+    use super::{temperature, time};
+
+    #[test]
+    fn the_least_and_the_greatest_temperature_are_told_of_ends_and_of_points() {
+        let told = |stored: serde_json::Value| {
+            let setup = serde_json::json!({ "temperature": stored });
+            temperature(setup.as_object().unwrap())
+        };
+        let ends = Some("-15.0 °C to 20.0 °C".to_owned());
+        assert_eq!(told(serde_json::json!([258.15, 293.15])), ends);
+        assert_eq!(told(serde_json::json!([[0.0, 293.15], [60.0, 258.15]])), ends);
+        assert_eq!(told(serde_json::json!([293.15, 293.15])), Some("20.0 °C".to_owned()));
+        assert_eq!(told(serde_json::Value::Null), None);
+    }
 
     #[test]
     fn long_times_are_told_in_hours_and_days_too() {

@@ -5,15 +5,17 @@ use std::f64::consts::TAU;
 use asperity_io::store::Reader;
 use serde_json::{Value, json};
 
-use crate::result::creep;
+use crate::result::{creep, creep_over_reduced_time};
 
 /// Points to a decade of time.
 const FINE: i32 = 12;
 
-/// C(t), E*(t), E', E'' and tan delta, from a decade below the shortest time to one above the longest; `Null` for
+/// C(t), E*(t), E', E'' and tan delta, of bodies whose temperature changes at the reference of their shift, from a decade below the shortest time to one above the longest; `Null` for
 /// an elastic pair or where the result does not say.
 pub(super) fn curves(reader: &Reader) -> Value {
-    let Some(creep) = creep(reader) else { return Value::Null };
+    let reduced = creep_over_reduced_time(reader);
+    let parts = creep(reader).into_iter().chain(reduced.iter().cloned());
+    let Some(creep) = parts.reduce(|sum, part| sum.sum(&part)) else { return Value::Null };
     let mut times: Vec<f64> = creep.terms.iter().map(|term| term.retardation_time).collect();
     if creep.fluidity > 0.0 && creep.instantaneous > 0.0 {
         times.push(creep.instantaneous / creep.fluidity);
@@ -39,6 +41,7 @@ pub(super) fn curves(reader: &Reader) -> Value {
         _ => 0.0,
     });
     json!({
+        "reduced": !reduced.is_empty(),
         "time": time,
         "creep": time.iter().map(|t| creep.value(*t)).collect::<Vec<f64>>(),
         "relaxation": modulus,

@@ -87,12 +87,12 @@ pub fn write(reader: &Reader, path: &Path, options: &Options) -> Result<(), Repo
         return Err(ReportError::Exists(path.to_owned()));
     }
     let page = page(reader, options)?;
-    crate::file::write(path, options.force, |file| file.write_all(page.as_bytes())).map_err(|source| {
-        match source.kind() {
+    asperity_io::output::write(path, options.force, |file| file.write_all(page.as_bytes())).map_err(
+        |source| match source.kind() {
             std::io::ErrorKind::AlreadyExists => ReportError::Exists(path.to_owned()),
             _ => ReportError::Io { path: path.to_owned(), source },
-        }
-    })
+        },
+    )
 }
 
 /// The report of a result as HTML.
@@ -115,7 +115,7 @@ pub fn page(reader: &Reader, options: &Options) -> Result<String, StoreError> {
 /// The flow at the last instant at which the seal leaks. A page without this picture is still a page.
 fn leak_map(reader: &Reader) -> Option<String> {
     reader.leaks()?;
-    crate::leak::map_of(reader, crate::leak::last_leak(reader)).ok().map(|figure| figure.to_svg())
+    crate::leak::last_map(reader).ok().map(|figure| figure.to_svg())
 }
 
 /// The page with its state and its maps.
@@ -126,11 +126,23 @@ fn filled_page(reader: &Reader, state: &serde_json::Value, blobs: &str) -> Strin
         ("library", LIBRARY),
         ("library-style", LIBRARY_STYLE),
         ("library-license", &escaped(LIBRARY_LICENSE)),
-        // A text inside of a script must not end it.
-        ("state", &state.to_string().replace('<', "\\u003c")),
+        ("state", &embedded(state)),
         ("blobs", blobs),
         ("script", &SCRIPT.concat()),
     ])
+}
+
+/// JSON inside of a script, which no text of it may end. JSON leaves the last control characters as they are.
+fn embedded(state: &serde_json::Value) -> String {
+    let mut text = String::new();
+    for c in state.to_string().chars() {
+        if c == '<' || c.is_control() {
+            text += &format!("\\u{:04x}", u32::from(c));
+        } else {
+            text.push(c);
+        }
+    }
+    text
 }
 
 /// The page with its places filled, in one pass: what is filled in is not searched again.
@@ -151,7 +163,10 @@ fn element(name: &str, data: &[u8]) -> String {
     format!("<script type=\"application/base64\" id=\"blob-{name}\">{}</script>\n", STANDARD.encode(data))
 }
 
+/// A text as HTML, in which control characters are replacement characters: pages with them are not valid.
 fn escaped(text: &str) -> String {
+    let shown = |c: char| if c.is_control() && !matches!(c, '\n' | '\t') { '\u{fffd}' } else { c };
+    let text: String = text.chars().map(shown).collect();
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
 

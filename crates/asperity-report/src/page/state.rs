@@ -13,7 +13,7 @@ use super::facts::{facts, time};
 use super::maps::Maps;
 use super::{material, stress};
 use crate::figure::Colours;
-use crate::result::{Rows, persson};
+use crate::result::{Options, Rows, persson, temperature_at_rows};
 
 /// The result's title, or its file name.
 pub(super) fn title(reader: &Reader) -> String {
@@ -42,6 +42,10 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
         json!(contact.map(|(load, area)| load / area).collect::<Vec<_>>()),
     );
     units.insert("contact_pressure".into(), json!("Pa"));
+    if let Some(temperature) = temperature_at_rows(reader)? {
+        series.insert("temperature".into(), json!(temperature));
+        units.insert("temperature".into(), json!("°C"));
+    }
     let rows = Rows::of(reader)?;
     let theory = persson(reader)?;
     let grid = &reader.header().grid;
@@ -95,15 +99,9 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
     }))
 }
 
-/// Rows of the last full cycle: of the load or, where this is held, of the approach; null where there are not three peaks.
+/// Rows of the last cycle; null where there is none.
 fn last_cycle(reader: &Reader) -> Result<Value, StoreError> {
-    if reader.header().is_sweep() {
-        return Ok(Value::Null);
-    }
-    let rows = match crate::result::last_cycle(&reader.series("load")?) {
-        Some(rows) => Some(rows),
-        None => crate::result::last_cycle(&reader.series("approach")?),
-    };
+    let rows = crate::result::last_cycle(reader, &Options::default())?;
     Ok(rows.map_or(Value::Null, |rows| json!([rows.start(), rows.end()])))
 }
 
@@ -175,6 +173,7 @@ fn status(reader: &Reader) -> String {
     let rows = reader.len();
     let of = reader.header().rows_expected.map_or(String::new(), |total| format!(" of {total}"));
     let state = match reader.status() {
+        Status::Complete if reader.lacks_leakage() => format!("without its leakage{}", reader.continuation()),
         Status::Complete => return format!("complete, {rows} rows"),
         Status::Running if reader.is_being_written() => "running".to_owned(),
         Status::Running => format!("incomplete: its run was killed{}", reader.continuation()),

@@ -59,7 +59,7 @@ pub(super) fn picture(reader: &Reader) -> Result<Option<String>, StoreError> {
     match stress_figure(reader, &below, worst.index) {
         Ok(figure) => Ok(Some(figure.to_svg())),
         // Where nothing touches there is nothing to draw.
-        Err(PlotError::Stress(StressError::Store(StoreError::Missing { .. }))) => Ok(None),
+        Err(PlotError::Stress(StressError::NoContact { .. })) => Ok(None),
         Err(PlotError::Store(error) | PlotError::Stress(StressError::Store(error))) => Err(error),
         Err(_) => Ok(None),
     }

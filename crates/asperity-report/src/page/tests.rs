@@ -6,12 +6,21 @@ use super::*;
 fn texts_of_a_case_cannot_become_markup() {
     let page = filled(&[
         ("title", &escaped("</title><script>alert(1)</script>")),
-        ("state", &serde_json::json!({"case": "</script>{{blobs}}"}).to_string().replace('<', "\\u003c")),
+        ("state", &embedded(&serde_json::json!({"case": "</script>{{blobs}}"}))),
         ("blobs", "BLOBS"),
     ]);
     assert!(!page.contains("<script>alert"));
     assert!(!page.contains("</script>{{"));
     assert_eq!(page.matches("BLOBS").count(), 1, "what is filled in is not filled again");
+}
+
+#[test]
+fn a_page_holds_no_control_characters() {
+    let hostile = "a\0b\u{1b}[2Jc\u{7}d\u{7f}e\u{9b}f";
+    assert_eq!(escaped(&format!("{hostile}\n")), "a\u{fffd}b\u{fffd}[2Jc\u{fffd}d\u{fffd}e\u{fffd}f\n");
+    let state = embedded(&serde_json::json!({ "title": hostile }));
+    assert!(!state.contains(char::is_control));
+    assert_eq!(serde_json::from_str::<serde_json::Value>(&state).unwrap()["title"], hostile);
 }
 
 #[test]

@@ -152,10 +152,13 @@ fn plot_error(error: crate::result::PlotError) -> super::PaperError {
         }
         crate::result::PlotError::Stress(StressError::Store(error)) => error.into(),
         crate::result::PlotError::Stress(StressError::Solve(error)) => error.into(),
-        error @ (crate::result::PlotError::Stress(StressError::Refused { .. })
+        error @ (crate::result::PlotError::Stress(
+            StressError::Refused { .. } | StressError::NoContact { .. },
+        )
         | crate::result::PlotError::OnLine { .. }
         | crate::result::PlotError::AtRest { .. }
         | crate::result::PlotError::Window { .. }
+        | crate::result::PlotError::Many { .. }
         | crate::result::PlotError::Figure(_)) => {
             asperity::Error::invalid("figure", error, "one of the paper's").into()
         }

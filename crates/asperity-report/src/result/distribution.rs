@@ -51,20 +51,27 @@ fn density([title, label, unit]: [&str; 3], values: &[f64], all: bool, none: &st
     histogram::bars(panel.or_say(none), histogram::density(values, low..=high, BINS))
 }
 
+/// The sizes, which fall, each once, and how many are at least as large: a straight line for a power law, with no bins to choose.
+fn at_least(falling: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    // Sizes are whole numbers of cells.
+    const SAME: f64 = 1e-9;
+    let is_last = |n: usize| falling.get(n + 1).is_none_or(|next| *next < falling[n] * (1.0 - SAME));
+    (0..falling.len()).filter(|n| is_last(*n)).map(|n| (falling[n], (n + 1) as f64)).unzip()
+}
+
 pub(super) fn spots(reader: &Reader, at: At) -> Result<Figure, StoreError> {
     let states = reader.contact_states(at)?;
     let spots = Spots::of(&reader.header().grid, boundary(reader), states.view(), |state| *state > 0);
-    // How many spots are at least as large: a straight line for a power law, with no bins to choose.
-    let number: Vec<f64> = (1..=spots.len()).map(|n| n as f64).collect();
+    let (sizes, numbers) = at_least(&spots.areas);
     let grid = &reader.header().grid;
     let (size, units) = if grid.is_line() { ("length", "m") } else { ("area", "m2") };
     let panel = Curves::new(
         "",
         Axis::log(format!("{size} of a spot"), units),
-        Axis::log("spots at least as large", ""),
+        Axis::log("spots at least as large", "").counting(),
     )
     .or_say("nothing touches")
-    .with(Series::new("", Style::Points, spots.areas.clone(), number));
+    .with(Series::new("", Style::Points, sizes, numbers));
     let largest = spots.areas.first().copied().unwrap_or(0.0);
     let sizes = format!(
         "{}, mean {size} {}, largest {}. {}",
@@ -81,6 +88,12 @@ pub(super) fn spots(reader: &Reader, at: At) -> Result<Figure, StoreError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn equal_sizes_are_one_point_with_the_number_of_all_of_them() {
+        assert_eq!(at_least(&[5.0, 2.0, 2.0, 2.0, 1.0]), (vec![5.0, 2.0, 1.0], vec![1.0, 4.0, 5.0]));
+        assert_eq!(at_least(&[]), (vec![], vec![]));
+    }
 
     #[test]
     fn bins_begin_at_zero_where_it_matters() {

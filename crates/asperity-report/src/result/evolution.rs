@@ -1,6 +1,10 @@
 //! What changes over the rows.
 
+use std::ops::RangeInclusive;
+
 use asperity::quantities::Quantity;
+use asperity_io::cycles;
+use asperity_io::readable::quantity;
 use asperity_io::store::{Reader, StoreError};
 
 use super::rows::Rows;
@@ -34,11 +38,13 @@ pub(super) fn evolution(reader: &Reader, options: &Options) -> Result<Figure, Pl
         .with(line("nominal mean", "mean_pressure")?)
         .with(line("largest", "max_pressure")?)
         .with(Series::new("mean over the contact", Style::Line, time.clone(), over_contact));
-    Ok(Figure::new("")
+    let figure = Figure::new("")
         .with(area)
         .with(nameless(approach, &time, reader.series("approach")?))
         .with(nameless(load, &time, reader.series("load")?))
-        .with(pressure))
+        .with(pressure);
+    let temperature = super::temperature::panel(reader, rows, options.log)?;
+    Ok(temperature.into_iter().fold(figure, Figure::with))
 }
 
 /// A panel of quantities over time.
@@ -51,6 +57,9 @@ pub(crate) struct QuantityPanel {
     /// Names of the values 0, 1, 2 ... of a quantity that is a state; empty for a number.
     pub(crate) states: &'static [&'static str],
 }
+
+/// The label of counts.
+const NUMBER: &str = "number";
 
 /// Directions in which something percolates, by number.
 const DIRECTIONS: [&str; 4] = ["none", "x", "y", "x and y"];
@@ -73,9 +82,9 @@ pub(crate) fn quantity_panels(reader: &Reader) -> Vec<QuantityPanel> {
             Quantity::MeanSpot if line => ("Lengths of contact spots", "length", "mean"),
             Quantity::LargestSpot => ("Areas of contact spots", "area", "largest"),
             Quantity::MeanSpot => ("Areas of contact spots", "area", "mean"),
-            Quantity::ContactSpots => ("Contact spots", "number", ""),
+            Quantity::ContactSpots => ("Contact spots", NUMBER, ""),
             Quantity::ContactStiffness => ("Contact stiffness", "stiffness", ""),
-            Quantity::ContactPerimeter if line => ("Ends of the contact", "number", ""),
+            Quantity::ContactPerimeter if line => ("Ends of the contact", NUMBER, ""),
             Quantity::ContactPerimeter => ("Perimeter of the contact", "length", ""),
             Quantity::ContactPercolation => ("Percolation", "connected along", "contact"),
             Quantity::GapPercolation => ("Percolation", "connected along", "open gap"),
@@ -126,6 +135,7 @@ pub(super) fn quantities(reader: &Reader, options: &Options) -> Result<Figure, P
     let mut figure = Figure::new("");
     for panel in panels {
         let (up, steps) = match panel.states {
+            [] if panel.label == NUMBER => (Axis::linear(NUMBER, "").counting(), false),
             [] => (Axis::linear(panel.label, panel.units), false),
             names => (Axis::states(panel.label, names), true),
         };
@@ -147,16 +157,59 @@ pub(super) fn load_displacement(reader: &Reader, options: &Options) -> Result<Fi
         let values = reader.series(name)?;
         Ok(kept.iter().filter_map(|row| values.get(*row).copied()).collect())
     };
-    let [x, y] = [pick("approach")?, pick("load")?];
-    let figure = Figure::new("").with(nameless(panel.clone(), &x, y.clone()));
-    let Some(cycle) = last_cycle(&y).or_else(|| last_cycle(&x)) else { return Ok(figure) };
-    let last = Curves { title: "Last cycle".into(), ..panel };
-    Ok(figure.with(nameless(last, &x[cycle.clone()], y[cycle].to_vec())))
+    let figure = Figure::new("").with(nameless(panel.clone(), &pick("approach")?, pick("load")?));
+    let Some(cycle) = last_cycle(reader, options)? else { return Ok(figure) };
+    let ends = [*cycle.start(), *cycle.end()].map(|row| reader.series("time").map(|times| times[row]));
+    let [from, to] = ends;
+    let title = format!("Last cycle, {} to {}", super::moment(reader, from?), quantity(to?, "s"));
+    let [x, y] = ["approach", "load"].map(|name| reader.series(name));
+    Ok(figure.with(nameless(Curves { title, ..panel }, &x?[cycle.clone()], y?[cycle].to_vec())))
+}
+
+/// Rows of the last cycle within the window: the last full period of a load that is a sine; else from the last but one to the last
+/// peak of the load or, where this is held, of the approach. `None` where there is none.
+pub(crate) fn last_cycle(
+    reader: &Reader,
+    options: &Options,
+) -> Result<Option<RangeInclusive<usize>>, StoreError> {
+    let times = reader.series("time")?;
+    let shown = |time: &f64| options.shows(*time);
+    let (Some(first), Some(last)) = (times.iter().position(shown), times.iter().rposition(shown)) else {
+        return Ok(None);
+    };
+    if reader.header().is_sweep() {
+        return Ok(None);
+    }
+    let sines = cycles::of_result(reader)?;
+    let mut spans = sines.iter().rev().flat_map(|part| part.cycles.iter().rev().map(|cycle| cycle.span));
+    // Ends of periods and times of rows differ by rounding errors.
+    let rounding = |[from, to]: [f64; 2]| 1e-9 * (to - from);
+    let whole = |span: &[f64; 2]| {
+        span[0] >= times[first] - rounding(*span) && span[1] <= times[last] + rounding(*span)
+    };
+    if let Some(span) = spans.find(whole) {
+        return Ok(Some(rows_of(&times, span, rounding(span))));
+    }
+    let between = |name: &str| -> Result<_, StoreError> {
+        let peaks = between_peaks(&reader.series(name)?[first..=last]);
+        Ok(peaks.map(|rows| rows.start() + first..=rows.end() + first))
+    };
+    Ok(between("load")?.or(between("approach")?))
+}
+
+/// Rows within a span of time: of a jump at its start the row after it, of one at its end the row before.
+fn rows_of(times: &[f64], [start, end]: [f64; 2], rounding: f64) -> RangeInclusive<usize> {
+    let after = times.partition_point(|time| *time <= start + rounding);
+    let has_start = after > 0 && times[after - 1] >= start - rounding;
+    let first = if has_start { after - 1 } else { after };
+    let before = times.partition_point(|time| *time < end - rounding);
+    let has_end = times.get(before).is_some_and(|time| *time <= end + rounding);
+    first..=if has_end { before } else { before.saturating_sub(1) }
 }
 
 /// Rows from the last but one to the last peak of a course that has three of them or more. A peak is higher than the lowest value
 /// on both sides, back to the next higher one, by a tenth of the range.
-pub(crate) fn last_cycle(course: &[f64]) -> Option<std::ops::RangeInclusive<usize>> {
+fn between_peaks(course: &[f64]) -> Option<RangeInclusive<usize>> {
     let ends = course.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(*v), b.max(*v)]);
     // A held load differs from row to row by rounding errors.
     let moves = ends[1] - ends[0] > 1e-6 * ends[0].abs().max(ends[1].abs());
@@ -191,12 +244,17 @@ pub(super) fn work(reader: &Reader, options: &Options) -> Result<Figure, PlotErr
         let picked: Vec<f64> = kept.iter().filter_map(|row| values.get(*row).copied()).collect();
         Ok(Series::new(name, Style::Points, row.clone(), picked))
     };
-    let counts = Curves::new("Work of each row", Axis::linear("row", ""), Axis::linear("number", ""))
-        .with(points("iterations", "iterations")?)
-        .with(points("convolutions", "convolutions")?);
-    let errors = Curves::new("Error of each row", Axis::linear("row", ""), Axis::log("relative error", ""))
-        .with(points("contact conditions (residual)", "residual")?)
-        .with(points("pressure (certificate)", "certificate")?);
+    let counts = Curves::new(
+        "Work of each row",
+        Axis::linear("row", "").counting(),
+        Axis::linear("number", "").counting(),
+    )
+    .with(points("iterations", "iterations")?)
+    .with(points("convolutions", "convolutions")?);
+    let errors =
+        Curves::new("Error of each row", Axis::linear("row", "").counting(), Axis::log("relative error", ""))
+            .with(points("contact conditions (residual)", "residual")?)
+            .with(points("pressure (certificate)", "certificate")?);
     Ok(Figure::new("").with(counts).with(errors))
 }
 
@@ -211,4 +269,27 @@ fn shown(reader: &Reader, options: &Options) -> Result<Vec<usize>, PlotError> {
 pub(super) fn times(reader: &Reader) -> Result<Vec<f64>, StoreError> {
     let times = reader.series("time")?;
     if times.is_empty() { Err(reader.no_rows()) } else { Ok(times) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cycle_begins_after_a_jump_and_ends_before_the_next() {
+        let times = [0.0, 1.0, 1.0, 1.5, 2.0, 2.0, 3.0];
+        assert_eq!(rows_of(&times, [1.0, 2.0], 1e-9), 2..=4);
+        // No row at its ends: those inside.
+        assert_eq!(rows_of(&times, [1.2, 1.8], 1e-9), 3..=3);
+        assert_eq!(rows_of(&times, [2.0, 3.0], 1e-9), 5..=6);
+    }
+
+    #[test]
+    fn of_three_peaks_the_last_two_bound_a_cycle() {
+        let course: Vec<f64> =
+            (0..=60).map(|n| (f64::from(n) * std::f64::consts::TAU / 20.0).sin()).collect();
+        assert_eq!(between_peaks(&course), Some(25..=45));
+        assert_eq!(between_peaks(&course[..40]), None, "two peaks");
+        assert_eq!(between_peaks(&[1.0; 40]), None);
+    }
 }

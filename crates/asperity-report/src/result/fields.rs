@@ -10,10 +10,16 @@ use crate::figure::{Colours, Figure, Map, OPEN, Panel};
 pub(super) const CONTACT_STATES: [(&str, [u8; 3]); 3] =
     [("open", OPEN), ("contact", [0, 114, 178]), ("at hardness", [213, 94, 0])];
 
+/// The state of a cell whose pressure is the hardness.
+const AT_HARDNESS: u8 = 2;
+
 /// Gaps below this share of the largest undeformed gap or displacement are closed but for rounding errors.
 const ROUNDING: f64 = 1e-12;
 
-/// The gap at an instant, 0 in contact, where rounding errors remain.
+/// Words for captions of the gap where cells are at the hardness.
+pub(super) const OVERLAP: &str = " Negative: the surfaces overlap at the hardness, where the pressure is cut off; the overlap is plastic flattening.";
+
+/// The gap at an instant, 0 in contact, where rounding errors remain; at the hardness the overlap, which is negative.
 pub(super) fn gap(reader: &Reader, at: At) -> Result<Array2<f64>, StoreError> {
     let mut gap = reader.field(FieldKind::Gap, at)?;
     let states = reader.contact_states(at)?;
@@ -21,7 +27,8 @@ pub(super) fn gap(reader: &Reader, at: At) -> Result<Array2<f64>, StoreError> {
     let finite = |values: Array2<f64>| values.into_iter().filter(|v| v.is_finite());
     let largest = finite(reader.initial_gap()?).fold(approach.abs(), |most, v| most.max(v.abs()));
     gap.zip_mut_with(&states, |gap, state| {
-        if *state > 0 || gap.abs() < ROUNDING * largest {
+        let overlaps = *state == AT_HARDNESS && *gap < 0.0;
+        if (*state > 0 && !overlaps) || gap.abs() < ROUNDING * largest {
             *gap = 0.0;
         }
     });
@@ -49,12 +56,15 @@ pub(super) fn map(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, St
             "",
         ),
         FieldKind::Gap if values.iter().any(touches) => (String::new(), " Light: contact."),
-        FieldKind::Pressure => (no_contact(reader, index)?, " Light: no contact."),
+        FieldKind::Pressure if values.iter().any(|pressure| *pressure <= 0.0) => {
+            (no_contact(reader, index)?, " Light: no contact.")
+        }
         _ => (no_contact(reader, index)?, ""),
     };
     let size = reader.header().grid.size();
     let map = Map::new(heading, [&title.to_lowercase(), kind.units()], colours, values.view(), size);
-    single(map, caption(reader, index)? + light)
+    let overlap = if kind == FieldKind::Gap && values.iter().any(|gap| *gap < 0.0) { OVERLAP } else { "" };
+    single(map, caption(reader, index)? + light + overlap)
 }
 
 pub(super) fn contact(reader: &Reader, at: At) -> Result<Figure, StoreError> {

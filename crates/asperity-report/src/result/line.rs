@@ -23,12 +23,15 @@ pub(super) fn field(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, 
     let mut figure = Figure::new("").columns(1).with(panel);
     figure.panel = [430.0, 180.0];
     let mut words = caption(reader, index)?;
+    if kind == FieldKind::Gap && one(reader, kind, At::Index(index))?.iter().any(|gap| *gap < 0.0) {
+        words += super::fields::OVERLAP;
+    }
     if reader.header().is_sweep() && reader.field_times().len() > 1 {
         words += " Solid: this velocity.";
     }
     if let Some(map) = over_time(reader, kind)? {
-        figure = figure.with(map);
-        words += " The map: over x and time, at each time the nearest stored instant.";
+        figure = figure.with(map.with_line(reader.field_times()[index]));
+        words += " The map: over x and time, at each time the nearest stored instant; its line: this time.";
     }
     Ok(figure.caption(words))
 }
@@ -37,7 +40,7 @@ pub(super) fn field(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, 
 fn of_sweep(reader: &Reader, kind: FieldKind, index: usize) -> Result<Curves, StoreError> {
     let count = reader.field_times().len();
     let every = count.div_ceil(MOST_CURVES).max(1);
-    let mut panel = Curves::new("", Axis::linear("x", "m"), axis(reader, kind));
+    let mut panel = Curves::new("", along(reader), axis(reader, kind));
     for n in (0..count).filter(|n| n % every == 0 || *n == index) {
         let name = super::moment(reader, reader.field_times()[n]);
         let values = one(reader, kind, At::Index(n))?.into_raw_vec_and_offset().0;
@@ -80,8 +83,13 @@ pub(super) fn surfaces(reader: &Reader, index: usize, gap: &Array2<f64>) -> Resu
 pub(crate) fn curve(reader: &Reader, kind: FieldKind, at: At) -> Result<Curves, StoreError> {
     let values = one(reader, kind, at)?.into_raw_vec_and_offset().0;
     let title = no_contact(reader, reader.index(at)?)?;
-    let panel = Curves::new(title, Axis::linear("x", "m"), axis(reader, kind));
+    let panel = Curves::new(title, along(reader), axis(reader, kind));
     Ok(nameless(panel, &places(reader), values))
+}
+
+/// The horizontal axis: the whole domain, as maps show it.
+fn along(reader: &Reader) -> Axis {
+    Axis::linear("x", "m").between(0.0, reader.header().grid.size()[0])
 }
 
 /// The vertical axis of a field.
@@ -89,7 +97,11 @@ fn axis(reader: &Reader, kind: FieldKind) -> Axis {
     match kind {
         FieldKind::Contact => {
             let names = CONTACT_STATES.map(|(name, _)| name);
-            let is_capped = reader.header().setup.keys().any(|key| key.starts_with("hardness"));
+            let is_capped = reader
+                .header()
+                .setup
+                .iter()
+                .any(|(key, value)| key.starts_with("hardness") && !value.is_null());
             Axis::states("", if is_capped { &names } else { &names[..2] })
         }
         kind => Axis::linear(title(kind), kind.units()),

@@ -19,6 +19,7 @@ pub(crate) mod line;
 mod profile;
 mod rows;
 mod stress;
+mod temperature;
 mod together;
 
 use asperity::Boundary;
@@ -36,6 +37,7 @@ pub(crate) use friction::persson;
 pub(crate) use rows::Rows;
 pub use rows::is_logarithmic;
 pub use stress::stress_figure;
+pub(crate) use temperature::at_rows as temperature_at_rows;
 pub use together::together;
 
 use crate::figure::{Colours, Curves, Figure, FigureError, Palette, Panel, Scale, Series, Values};
@@ -164,6 +166,16 @@ pub enum PlotError {
         /// First and last row in words.
         ends: [String; 2],
     },
+    /// More results than a figure can tell apart.
+    #[error("the figure {figure} of {given} results: {most} have colours and marks of their own; give fewer")]
+    Many {
+        /// Its name.
+        figure: &'static str,
+        /// Number of results.
+        given: usize,
+        /// Number of looks.
+        most: usize,
+    },
     /// The figure is too large or too small.
     #[error(transparent)]
     Figure(#[from] FigureError),
@@ -252,6 +264,11 @@ impl Plot {
         !self.is_of_an_instant() && self != Plot::InitialGap || self == Plot::Leak
     }
 
+    /// Whether it shows numbers over the rows that are zero where nothing touches.
+    fn is_of_the_load(self) -> bool {
+        matches!(self, Plot::Evolution | Plot::LoadDisplacement | Plot::Quantities | Plot::Friction)
+    }
+
     /// The plot of that name.
     pub fn from_name(name: &str) -> Option<Plot> {
         Plot::ALL.into_iter().find(|plot| plot.name() == name)
@@ -323,6 +340,12 @@ fn panels(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, Plot
         Plot::Spots => distribution::spots(reader, options.at)?,
         Plot::Stress => stress::stress(reader, options.at)?,
     };
+    if plot.is_of_the_load() && nothing_touches(reader, options)? {
+        figure.caption += match options.window {
+            [None, None] => " Nothing touches at any time.",
+            _ => " Nothing touches in this window.",
+        };
+    }
     let own = if figure.title.is_empty() { &reader.header().title } else { &figure.title };
     figure.title = options.title.clone().unwrap_or_else(|| own.clone());
     for panel in &mut figure.panels {
@@ -332,6 +355,12 @@ fn panels(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, Plot
         figure.caption += " Light: not above 0.";
     }
     Ok(figure)
+}
+
+/// Whether the contact area is zero in all rows of the window.
+fn nothing_touches(reader: &Reader, options: &Options) -> Result<bool, StoreError> {
+    let rows = reader.series("time")?.into_iter().zip(reader.series("contact_area")?);
+    Ok(rows.filter(|(time, _)| options.shows(*time)).all(|(_, area)| area == 0.0))
 }
 
 /// Limits, colours and scale of the values as they were asked for: of maps their colours, of a curve along a line contact its
@@ -396,8 +425,9 @@ fn caption(reader: &Reader, index: usize) -> Result<String, StoreError> {
     let at = |name: &str| at_instant(reader, index, name);
     let grid = &reader.header().grid;
     let [area, domain] = if grid.is_line() { ["length", "domain"] } else { ["area", "nominal area"] };
+    let motion = motion(reader, index)?;
     Ok(format!(
-        "{}: load {}, approach {}, contact {area} {} ({:.2} % of the {domain}).",
+        "{}: load {}, approach {}, contact {area} {} ({:.2} % of the {domain}).{motion}",
         moment(reader, reader.field_times()[index]),
         quantity(at("load")?, grid.units("N")),
         quantity(at("approach")?, "m"),
@@ -406,11 +436,41 @@ fn caption(reader: &Reader, index: usize) -> Result<String, StoreError> {
     ))
 }
 
+/// " The contact moves along +x." at a stored instant, for captions; empty at rest.
+fn motion(reader: &Reader, index: usize) -> Result<String, StoreError> {
+    let Some(motion) = reader.header().setup.get("motion") else { return Ok(String::new()) };
+    let velocity = match reader.header().is_sweep() {
+        true => reader.field_times()[index],
+        false => at_instant(reader, index, "velocity")?,
+    };
+    if velocity == 0.0 {
+        return Ok(" The contact is at rest.".to_owned());
+    }
+    Ok(along(&motion["direction"], velocity.signum())
+        .map_or(String::new(), |along| format!(" The contact moves {along}.")))
+}
+
+/// "along +x", "at 30 ° from +x": a stored direction, times a sign.
+pub(crate) fn along(direction: &Value, sign: f64) -> Option<String> {
+    // The cosine of 90° is not quite 0.
+    const NONE: f64 = 1e-12;
+    let [x, y] = [direction.get(0)?.as_f64()? * sign, direction.get(1)?.as_f64()? * sign];
+    let letter = |component: f64| if component < 0.0 { "−" } else { "+" };
+    Some(match (x.abs() < NONE, y.abs() < NONE) {
+        (_, true) => format!("along {}x", letter(x)),
+        (true, _) => format!("along {}y", letter(y)),
+        _ => format!("at {} from +x", quantity(y.atan2(x).to_degrees().round(), "°")),
+    })
+}
+
+/// How titles of panels begin where nothing touches.
+const NO_CONTACT: &str = "No contact at";
+
 /// "No contact at t = 70 s" where nothing touches at a stored instant, as the title of a panel; empty where something does.
 fn no_contact(reader: &Reader, index: usize) -> Result<String, StoreError> {
     let touches = at_instant(reader, index, "contact_area")? > 0.0;
     let moment = || moment(reader, reader.field_times()[index]);
-    Ok(if touches { String::new() } else { format!("No contact at {}", moment()) })
+    Ok(if touches { String::new() } else { format!("{NO_CONTACT} {}", moment()) })
 }
 
 /// "t = 500 s", or "v = 10 mm/s" of a sweep over velocities.
@@ -421,9 +481,19 @@ pub fn moment(reader: &Reader, time: f64) -> String {
     }
 }
 
-/// The contact creep function C(t) of the pair; `None` where the result does not say.
+/// The contact creep function C(t) of the pair, without bodies that creep by a clock of their own; `None` where the result does
+/// not say.
 pub(crate) fn creep(reader: &Reader) -> Option<Creep> {
-    let stored = reader.header().setup.get("contact_creep_compliance")?;
+    creep_of(reader.header().setup.get("contact_creep_compliance")?)
+}
+
+/// The parts of C of the bodies that creep by a clock of their own, as their temperature changes: over their reduced times.
+pub(crate) fn creep_over_reduced_time(reader: &Reader) -> Vec<Creep> {
+    let stored = reader.header().setup.get("contact_creep_compliance_over_reduced_time");
+    stored.and_then(Value::as_array).into_iter().flatten().filter_map(creep_of).collect()
+}
+
+fn creep_of(stored: &Value) -> Option<Creep> {
     let number = |name: &str| stored.get(name).and_then(Value::as_f64);
     let terms = stored.get("terms")?.as_array()?.iter().map(|term| {
         let pair = term.as_array()?;

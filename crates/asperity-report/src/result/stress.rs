@@ -17,7 +17,13 @@ pub(super) fn stress(reader: &Reader, at: At) -> Result<Figure, PlotError> {
     let plan = StressPlan::for_result(reader)?;
     let stored = Below::of(reader)?;
     let last = reader.index(at)?;
-    let index = if at == At::Last { last_with_contact(reader)?.unwrap_or(last) } else { last };
+    let index = match at {
+        At::Last => last_with_contact(reader)?.ok_or_else(|| StressError::NoContact {
+            path: reader.path().to_owned(),
+            when: "any stored time".to_owned(),
+        })?,
+        _ => last,
+    };
     let mut figure = match stored.filter(|below| below.instants.iter().any(|instant| instant.index == index))
     {
         Some(below) => stress_figure(reader, &below, index)?,
@@ -94,6 +100,16 @@ pub fn stress_figure(reader: &Reader, below: &Below, index: usize) -> Result<Fig
         figure = figure.with(mises(format!("Depth {}", length(*depth)), map, size));
     }
     figure = figure.with(profile(below, instant, &found));
+    if !shows_tension(below, instant, &found) {
+        let largest = highest(below.profile(instant, "tension_by_depth"));
+        figure.caption += &format!(
+            " The largest principal stress is not drawn: it is {} at most.",
+            quantity(largest, "Pa")
+        );
+    }
+    if below.set.line {
+        figure.columns = 1;
+    }
     figure.panel = if below.set.line { [430.0, 260.0] } else { [300.0, 230.0] };
     Ok(figure)
 }
@@ -104,15 +120,24 @@ fn title(reader: &Reader, instant: &Instant) -> String {
     if title.is_empty() { format!("S{what}") } else { format!("{title}: s{what}") }
 }
 
+/// Whether the largest principal stress is of the size of the others: under the pressure of a full contact it may be far below.
+fn shows_tension(below: &Below, instant: &Instant, found: &Section) -> bool {
+    highest(below.profile(instant, "tension_by_depth")) > -found.largest
+}
+
+fn highest<'v>(values: impl IntoIterator<Item = &'v f64>) -> f64 {
+    values.into_iter().copied().fold(f64::NEG_INFINITY, f64::max)
+}
+
 /// The largest stresses by depth.
 fn profile(below: &Below, instant: &Instant, found: &Section) -> Curves {
     let depths = &below.set.depths;
-    let lines = [
-        ("von Mises", "mises_by_depth"),
-        ("shear (s1 - s3)/2", "tresca_by_depth"),
-        ("largest principal", "tension_by_depth"),
-    ];
-    let least = below.profile(instant, "tension_by_depth").iter().copied().fold(0.0, f64::min);
+    let mut lines = vec![("von Mises", "mises_by_depth"), ("shear (s1 - s3)/2", "tresca_by_depth")];
+    let mut least = 0.0;
+    if shows_tension(below, instant, found) {
+        lines.push(("largest principal", "tension_by_depth"));
+        least = below.profile(instant, "tension_by_depth").iter().copied().fold(0.0, f64::min);
+    }
     // Room for the legend above the curves.
     let up = Axis::linear("stress", "Pa").between(least, 1.4 * found.largest);
     let mut panel = Curves::new("Largest at each depth", Axis::linear("depth", "m"), up);
@@ -133,5 +158,5 @@ fn profile(below: &Below, instant: &Instant, found: &Section) -> Curves {
         let ends = vec![0.0, depths.last().copied().unwrap_or(found.reach)];
         panel = panel.with(Series::new("yield stress", Style::Reference, ends, vec![limit; 2]));
     }
-    panel.with(Series::new("", Style::Points, vec![found.place[0]], vec![found.largest]))
+    panel.with(Series::new("largest von Mises", Style::Points, vec![found.place[0]], vec![found.largest]))
 }

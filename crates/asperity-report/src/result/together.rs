@@ -1,10 +1,13 @@
-//! One figure of several results: curves in the same panels, maps side by side in the same colours. Each result has a colour, each
-//! quantity of a panel a style of line.
+//! One figure of several results: curves in the same panels, maps side by side, in the same colours where one scale suits
+//! them. Each result has a colour, each quantity of a panel a style of line. Panels over time and panels over velocity are
+//! separate, each with an axis of its own.
 
 use asperity_io::store::{At, Reader};
 
-use super::{Options, Plot, PlotError, Rows, finished, panels};
-use crate::figure::{Axis, COLOURS, Curves, Figure, INK, Panel, Series, Style, Values};
+use super::{NO_CONTACT, Options, Plot, PlotError, finished, panels};
+use crate::figure::{
+    Axis, COLOURS, Curves, Figure, FigureError, INK, PANELS, Panel, Scale, Series, Style, Values,
+};
 
 /// The figure of each result with its name and instant, put together. Panels of curves with the same title become one, with a
 /// line of each result; maps stay panels of their own.
@@ -16,33 +19,39 @@ pub fn together(
     plot: Plot,
     options: &Options,
 ) -> Result<Figure, PlotError> {
-    let mut log = options.log;
-    for (_, reader, _) in results {
-        // One axis for all: logarithmic where one of them asks for it.
-        log = log.or(Rows::of(reader)?.log.then_some(true));
-    }
     let mut whole = Figure::new(options.title.clone().unwrap_or_default());
     let mut captions = vec![];
     let mut all: Vec<Together> = vec![];
-    for ((name, reader, at), colour) in results.iter().zip(COLOURS.iter().cycle()) {
-        let own = panels(reader, plot, &Options { at: *at, log, ..options.clone() })?;
+    for (n, (name, reader, at)) in results.iter().enumerate() {
+        let look = Look::of(n);
+        let own = panels(reader, plot, &Options { at: *at, ..options.clone() })?;
+        let maps = own.panels.iter().filter(|panel| matches!(panel, Panel::Map(_))).count() * results.len();
+        if maps > PANELS {
+            return Err(FigureError::Panels { found: maps }.into());
+        }
         if !own.caption.is_empty() {
             captions.push(format!("{name}: {}", own.caption));
         }
         (whole.panel, whole.columns) = (own.panel, own.columns);
         for panel in own.panels {
             match panel {
-                Panel::Curves(curves) => match all.iter_mut().find(|other| other.is_like(&curves)) {
-                    Some(other) => other.add(curves, name, colour),
-                    None => {
-                        // A place in the figure, which is filled when all results are in.
-                        let empty = Curves { series: vec![], ..curves.clone() };
-                        let mut new = Together::new(empty, whole.panels.len());
-                        whole.panels.push(new.panel.clone().into());
-                        new.add(curves, name, colour);
-                        all.push(new);
+                Panel::Curves(mut curves) => {
+                    // The caption says it, and the curves of all results stay in one panel.
+                    if curves.title.starts_with(NO_CONTACT) {
+                        curves.title.clear();
                     }
-                },
+                    match all.iter_mut().find(|other| other.is_like(&curves)) {
+                        Some(other) => other.add(curves, name, look),
+                        None => {
+                            // A place in the figure, which is filled when all results are in.
+                            let empty = Curves { series: vec![], ..curves.clone() };
+                            let mut new = Together::new(empty, whole.panels.len());
+                            whole.panels.push(new.panel.clone().into());
+                            new.add(curves, name, look);
+                            all.push(new);
+                        }
+                    }
+                }
                 Panel::Map(mut map) => {
                     map.title =
                         if map.title.is_empty() { name.clone() } else { format!("{name}: {}", map.title) };
@@ -52,15 +61,23 @@ pub fn together(
         }
     }
     for one in all {
+        let most = one.most();
+        if one.results.len() > most {
+            return Err(PlotError::Many { figure: plot.name(), given: one.results.len(), most });
+        }
         let place = one.place;
         whole.panels[place] = one.finished().into();
     }
-    alike(&mut whole);
-    finished(whole.caption(captions.join(" ")), options)
+    let colours = alike(&mut whole);
+    finished(whole.caption(captions.join(" ") + colours), options)
 }
 
-/// Gives the maps of a quantity the same colours.
-fn alike(whole: &mut Figure) {
+/// Ranges of maps that differ by more than this factor have no common colours: the smaller ones would be one colour.
+const COMMON: f64 = 10.0;
+
+/// Gives the maps of a quantity the same colours where their ranges are of one size, and says which it is; empty for one map and
+/// none.
+fn alike(whole: &mut Figure) -> &'static str {
     let ends = |panel: &Panel| match panel {
         Panel::Map(map) => match &map.meaning {
             Values::Quantity { label, .. } => map.ends().map(|ends| (label.clone(), ends)),
@@ -69,6 +86,13 @@ fn alike(whole: &mut Figure) {
         Panel::Curves(_) => None,
     };
     let all: Vec<(String, [f64; 2])> = whole.panels.iter().filter_map(ends).collect();
+    if all.len() < 2 {
+        return "";
+    }
+    let sizes = || all.iter().map(|(_, [low, high])| low.abs().max(high.abs())).filter(|size| *size > 0.0);
+    if sizes().fold(0.0, f64::max) > COMMON * sizes().fold(f64::INFINITY, f64::min) {
+        return " Each map has colours of its own.";
+    }
     for panel in &mut whole.panels {
         if let Panel::Map(map) = panel
             && let Values::Quantity { label, range, .. } = &mut map.meaning
@@ -77,6 +101,25 @@ fn alike(whole: &mut Figure) {
             *range = same.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]);
         }
     }
+    " The maps have the same colours."
+}
+
+/// What tells the curves of a result from those of others: a colour and, where all colours are taken, a mark on the lines.
+#[derive(Clone, Copy)]
+struct Look {
+    colour: &'static str,
+    mark: Option<Style>,
+}
+
+/// Results in one panel at most: so many have a look of their own.
+const MOST: usize = COLOURS.len() * (1 + Style::SIGNS.len());
+
+impl Look {
+    /// That of a result by its number.
+    fn of(n: usize) -> Look {
+        let mark = (n / COLOURS.len()).checked_sub(1).and_then(|round| Style::SIGNS.get(round)).copied();
+        Look { colour: COLOURS[n % COLOURS.len()], mark }
+    }
 }
 
 /// A panel of curves of several results.
@@ -84,8 +127,8 @@ struct Together {
     panel: Curves,
     /// Its number in the figure.
     place: usize,
-    /// Names and colours of the results in it.
-    results: Vec<(String, &'static str)>,
+    /// Names and looks of the results in it.
+    results: Vec<(String, Look)>,
     /// Names and styles of the quantities.
     quantities: Vec<(String, Style)>,
 }
@@ -101,15 +144,21 @@ impl Together {
         self.panel.title == curves.title && same(&self.panel.x, &curves.x) && same(&self.panel.y, &curves.y)
     }
 
+    /// How many results it can show: only lines carry marks.
+    fn most(&self) -> usize {
+        let is_line = |series: &Series| !series.style.is_of_points() && series.style != Style::Bars;
+        if self.panel.series.iter().all(is_line) { MOST } else { COLOURS.len() }
+    }
+
     /// Adds the curves of a result.
-    fn add(&mut self, curves: Curves, name: &str, colour: &'static str) {
-        for (own, new) in [(&mut self.panel.x, &curves.x), (&mut self.panel.y, &curves.y)] {
-            own.range = own.range.zip(new.range).map(|([a, b], [c, d])| [a.min(c), b.max(d)]);
-        }
-        self.results.push((name.to_owned(), colour));
+    fn add(&mut self, curves: Curves, name: &str, look: Look) {
+        join(&mut self.panel.x, &curves.x);
+        join(&mut self.panel.y, &curves.y);
+        self.results.push((name.to_owned(), look));
         for series in curves.series {
             let style = self.style(&series);
-            self.panel.series.push(Series { name: String::new(), style, ..series }.in_colour(colour));
+            let plain = Series { name: String::new(), style, mark: look.mark, ..series };
+            self.panel.series.push(plain.in_colour(look.colour));
         }
     }
 
@@ -136,17 +185,32 @@ impl Together {
 
     /// The panel with its legend: the results in their colours and, where there are several quantities, their styles in black.
     fn finished(self) -> Curves {
-        let entry =
-            |name: String, style, colour: &str| Series::new(name, style, vec![], vec![]).in_colour(colour);
+        let entry = |name: String, style, look: Look| {
+            Series { mark: look.mark, ..Series::new(name, style, vec![], vec![]) }.in_colour(look.colour)
+        };
         let several = self.quantities.len() > 1;
         let only = self.panel.series.first().map_or(Style::Line, |series| series.style);
         let of_result = if several { Style::Line } else { only };
-        let results = self.results.into_iter().map(|(name, colour)| entry(name, of_result, colour));
+        let results = self.results.into_iter().map(|(name, look)| entry(name, of_result, look));
         let quantities = self.quantities.into_iter().filter(|_| several);
-        let quantities = quantities.map(|(name, style)| entry(name, style, INK));
+        let black = Look { colour: INK, mark: None };
+        let quantities = quantities.map(|(name, style)| entry(name, style, black));
         let legend: Vec<Series> = results.chain(quantities).collect();
         legend.into_iter().fold(self.panel, Curves::with)
     }
+}
+
+/// Makes one axis of two: logarithmic where one of them is, from the first to the last of their ends.
+fn join(own: &mut Axis, new: &Axis) {
+    if new.scale == Scale::Log {
+        own.scale = Scale::Log;
+    }
+    let scale = own.scale;
+    let shows = |end: f64| scale == Scale::Linear || end > 0.0;
+    own.range = own.range.zip(new.range).map(|([a, b], [c, d])| {
+        let first = [a, c].into_iter().filter(|end| shows(*end)).fold(f64::INFINITY, f64::min);
+        [first, b.max(d)]
+    });
 }
 
 #[cfg(test)]
@@ -162,14 +226,14 @@ mod tests {
     #[test]
     fn a_result_has_one_colour_and_a_quantity_one_style() {
         let mut both = Together::new(panel(&[]), 0);
-        both.add(panel(&["mean", "largest"]), "a", "#111111");
-        both.add(panel(&["largest", "least"]), "b", "#222222");
+        both.add(panel(&["mean", "largest"]), "a", Look::of(0));
+        both.add(panel(&["largest", "least"]), "b", Look::of(1));
         assert!(both.is_like(&panel(&[])));
         let series = both.finished().series;
         let drawn: Vec<(&str, Style)> =
             series[..4].iter().map(|s| (s.colour.as_deref().unwrap(), s.style)).collect();
         let [line, dashed, dotted] = [Style::Line, Style::Dashed, Style::Dotted];
-        let expected = [("#111111", line), ("#111111", dashed), ("#222222", dashed), ("#222222", dotted)];
+        let expected = [(COLOURS[0], line), (COLOURS[0], dashed), (COLOURS[1], dashed), (COLOURS[1], dotted)];
         assert_eq!(drawn, expected);
         let names: Vec<&str> = series[4..].iter().map(|s| s.name.as_str()).collect();
         assert_eq!(names, ["a", "b", "mean", "largest", "least"]);
@@ -178,9 +242,28 @@ mod tests {
     #[test]
     fn results_with_one_quantity_have_no_styles_to_tell() {
         let mut both = Together::new(panel(&[]), 0);
-        both.add(panel(&[""]), "a", "#111111");
-        both.add(panel(&[""]), "b", "#222222");
+        both.add(panel(&[""]), "a", Look::of(0));
+        both.add(panel(&[""]), "b", Look::of(1));
         let names: Vec<String> = both.finished().series.into_iter().map(|s| s.name).collect();
         assert_eq!(names, ["", "", "a", "b"]);
+    }
+
+    #[test]
+    fn every_result_of_a_panel_looks_different() {
+        let mut all = Together::new(panel(&[]), 0);
+        (0..MOST).for_each(|n| all.add(panel(&["mean", "largest"]), &n.to_string(), Look::of(n)));
+        assert_eq!(all.most(), MOST);
+        let legend = all.finished().series.split_off(2 * MOST);
+        let looks: Vec<_> = legend[..MOST].iter().map(|s| (s.colour.clone(), s.mark)).collect();
+        assert!((1..MOST).all(|n| !looks[..n].contains(&looks[n])));
+    }
+
+    #[test]
+    fn an_axis_is_logarithmic_where_one_of_its_results_asks_for_it() {
+        let mut axis = Axis::linear("time", "s").between(0.0, 5.0);
+        join(&mut axis, &Axis::log("time", "s").between(1e-3, 2.0));
+        assert_eq!((axis.scale, axis.range), (Scale::Log, Some([1e-3, 5.0])));
+        let sweep = Curves::new("Pressure", Axis::log("velocity", "m/s"), Axis::linear("pressure", "Pa"));
+        assert!(!Together::new(panel(&[]), 0).is_like(&sweep));
     }
 }

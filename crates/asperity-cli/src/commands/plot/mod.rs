@@ -2,28 +2,56 @@
 
 mod options;
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use asperity_io::case::quantity::{Time, range};
 use asperity_io::store::{At, Reader};
-use asperity_report::animation::{AnimationError, Course, Motion, animation};
+use asperity_report::animation::{AnimationError, Course, Frames, Motion, animation};
 use asperity_report::figure::Form;
 use asperity_report::result::{Options, Plot, common_limits, figure, together};
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 
 use super::instant;
 use crate::args;
 use crate::failure::Failure;
-use crate::words::read;
+use crate::words::{counted, read};
+
+/// Whether a command line names a result but not what to draw of it: the one word of two that `asperity plot` needs is a path.
+pub fn lacks_figure(words: &[OsString], error: &clap::Error) -> bool {
+    let missing = match error.get(ContextKind::InvalidArg) {
+        Some(ContextValue::Strings(missing)) => missing.as_slice(),
+        _ => &[],
+    };
+    let is_figure = |word: &OsString| word.to_str().is_some_and(|word| Plot::from_name(word).is_some());
+    words.get(1).is_some_and(|word| word == "plot")
+        && error.kind() == ErrorKind::MissingRequiredArgument
+        && missing.len() == 1
+        && !words.iter().any(is_figure)
+}
+
+/// What to draw is missing.
+pub fn no_figure() -> Failure {
+    Failure::input(format!(
+        "what to draw is missing: asperity plot RESULT WHAT, with WHAT one of {}",
+        figures()
+    ))
+}
+
+/// The names of all figures.
+fn figures() -> String {
+    Plot::ALL.map(Plot::name).join(", ")
+}
 
 /// Draws the figure and prints where it is.
 pub fn run(args: &args::Plot) -> Result<(), Failure> {
     let Some(plot) = Plot::from_name(&args.what) else {
-        let names: Vec<_> = Plot::ALL.iter().map(|plot| plot.name()).collect();
-        return Err(Failure::input(format!(
-            "there is no figure \"{}\"; choose one of {}",
-            args.what,
-            names.join(", ")
-        )));
+        return Err(match Path::new(&args.what).exists() {
+            true => no_figure(),
+            false => {
+                Failure::input(format!("there is no figure \"{}\"; choose one of {}", args.what, figures()))
+            }
+        });
     };
     options::check(args, plot)?;
     let mut all = vec![];
@@ -94,7 +122,12 @@ fn animate(args: &args::Plot, plot: Plot, all: &[(String, Reader)], path: &Path)
     let last = Options { at: At::Last, ..chosen };
     super::picture::tell_missing(&figure(reader, plot, &last).map_err(told)?);
     match animation(reader, plot, &last, course, path, args.force) {
-        Ok(frames) => crate::print(&format!("{}: {frames} frames\n", path.display())),
+        Ok(Frames { shown, without_contact }) => {
+            if without_contact > 0 {
+                crate::talk::say!("{} without contact: left out", counted(without_contact, "stored time"));
+            }
+            crate::print(&format!("{}: {shown} frames\n", path.display()))
+        }
         Err(AnimationError::Encoding { path, why }) => {
             Err(Failure::System(format!("cannot write {}: {why}", path.display())))
         }

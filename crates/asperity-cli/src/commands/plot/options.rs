@@ -31,6 +31,17 @@ pub(super) fn check(args: &args::Plot, plot: Plot) -> Result<(), Failure> {
             return refused(option, format!("it is for the maps {}", with_maps()));
         }
     }
+    let has_colours = plot.unit().is_some() || plot == Plot::Leak;
+    if args.colours.is_some() && !has_colours {
+        return refused("--colours", format!("it is for the maps {} and leak", with_maps()));
+    }
+    let place = if args.at.is_some() { "--at" } else { "--along y" };
+    if (args.at.is_some() || args.along != "x") && plot != Plot::Profile {
+        return refused(place, "it is for a profile".to_owned());
+    }
+    if args.time.is_some() && !plot.is_of_an_instant() {
+        return refused("--time", "it does not show one time of the result".to_owned());
+    }
     if args.animate.is_some() && !plot.is_of_an_instant() {
         return refused("--animate", "it does not show one time of the result".to_owned());
     }
@@ -80,17 +91,16 @@ fn palette(name: &str) -> Result<Palette, Failure> {
 fn limits(text: &str, plot: Plot, log: bool) -> Result<[f64; 2], Failure> {
     let is_pressure = plot.unit() == Some("Pa");
     let example = if is_pressure { "0,20 MPa" } else { "0,2 um" };
-    let number = |text: &str| -> Result<f64, Failure> {
-        Ok(match is_pressure {
-            true => read::<Pressure>("--limits", text, example)?.get(),
-            false => read::<Length>("--limits", text, example)?.get(),
-        })
+    let kind = if is_pressure { "pressures" } else { "lengths" };
+    let refused = || {
+        let message = format!("--limits is \"{text}\", but must be two {kind}, e.g. --limits '{example}'");
+        Failure::input(message)
     };
-    let Some([low, high]) = two(text, &[',']) else {
-        return Err(Failure::input(format!(
-            "--limits is \"{text}\", but must be two values, e.g. --limits '{example}'"
-        )));
+    let number = |text: &str| match is_pressure {
+        true => text.parse::<Pressure>().map(|value| value.get()).map_err(|_| refused()),
+        false => text.parse::<Length>().map(|value| value.get()).map_err(|_| refused()),
     };
+    let Some([low, high]) = two(text, &[',']) else { return Err(refused()) };
     match [number(&low)?, number(&high)?] {
         [low, high] if low >= high => Err(Failure::input(format!(
             "--limits is \"{text}\", but the first value must be less than the second"

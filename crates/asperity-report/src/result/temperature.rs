@@ -1,0 +1,71 @@
+//! The temperature of a run over time.
+
+use asperity_io::store::{Reader, StoreError};
+
+use super::Rows;
+use crate::figure::{Axis, Curves, Series, Style};
+
+/// From K to °C.
+const ZERO: f64 = 273.15;
+
+/// The course of the temperature as the result holds it: (time \[s\], temperature \[K\]), straight in between and held after the
+/// last; `None` where there is none, or it is constant.
+fn course(reader: &Reader) -> Option<Vec<[f64; 2]>> {
+    let setup = &reader.header().setup;
+    // Results of Python have the points in place of the lowest and the highest temperature.
+    let stored = setup.get("temperature_course").or(setup.get("temperature"))?.as_array()?;
+    let pair = |point: &serde_json::Value| Some([point.get(0)?.as_f64()?, point.get(1)?.as_f64()?]);
+    let course: Vec<[f64; 2]> = stored.iter().map(pair).collect::<Option<_>>()?;
+    (!reader.header().is_sweep() && course.iter().any(|point| point[1] != course[0][1])).then_some(course)
+}
+
+/// The temperature \[K\] at a time; after a jump where one is there.
+fn at(course: &[[f64; 2]], time: f64) -> f64 {
+    let next = course.partition_point(|point| point[0] <= time);
+    match (next.checked_sub(1).map(|n| course[n]), course.get(next)) {
+        (Some([from, before]), Some([to, after])) => before + (after - before) * (time - from) / (to - from),
+        (Some([_, last]), None) => last,
+        (None, first) => first.map_or(f64::NAN, |point| point[1]),
+    }
+}
+
+/// The temperature \[°C\] at each row; `None` where it does not change.
+pub(crate) fn at_rows(reader: &Reader) -> Result<Option<Vec<f64>>, StoreError> {
+    let Some(course) = course(reader) else { return Ok(None) };
+    Ok(Some(reader.series("time")?.iter().map(|time| at(&course, *time) - ZERO).collect()))
+}
+
+/// The panel of the temperature at the rows and at the corners of its course between them; `None` where it does not change.
+pub(super) fn panel(reader: &Reader, rows: Rows, log: Option<bool>) -> Result<Option<Curves>, StoreError> {
+    let Some(course) = course(reader) else { return Ok(None) };
+    let points = through(&course, &reader.series("time")?);
+    let (x, y): (Vec<f64>, Vec<f64>) = points.into_iter().map(|[time, kelvin]| (time, kelvin - ZERO)).unzip();
+    let panel = Curves::new("Temperature", rows.axis(log), Axis::linear("temperature [°C]", ""));
+    Ok(Some(panel.with(Series::new("", Style::Line, x, y))))
+}
+
+/// The course at these times and at its own points up to the last of them.
+fn through(course: &[[f64; 2]], times: &[f64]) -> Vec<[f64; 2]> {
+    let last = times.last().copied().unwrap_or(0.0);
+    let own = course.iter().copied().filter(|point| point[0] <= last);
+    let is_new = |time: &f64| !course.iter().any(|point| point[0] == *time);
+    let rows = times.iter().copied().filter(is_new).map(|time| [time, at(course, time)]);
+    let mut points: Vec<[f64; 2]> = own.chain(rows).collect();
+    // The two points of a jump keep their order.
+    points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_course_is_straight_between_its_points_jumps_and_is_held_at_the_end() {
+        let course = [[0.0, 280.0], [10.0, 300.0], [10.0, 320.0], [20.0, 320.0]];
+        assert_eq!([0.0, 5.0, 10.0, 30.0].map(|time| at(&course, time)), [280.0, 290.0, 320.0, 320.0]);
+        let points = through(&course, &[0.0, 5.0, 15.0]);
+        let expected = [[0.0, 280.0], [5.0, 290.0], [10.0, 300.0], [10.0, 320.0], [15.0, 320.0]];
+        assert_eq!(points, expected);
+    }
+}

@@ -75,6 +75,9 @@ fn tell_case(errors: &CaseErrors) {
     }
 }
 
+/// Longer words below a place of a case file are left out \[bytes\].
+const LONGEST_LABEL: usize = 120;
+
 /// Lines of a case file that are longer \[bytes\] are not drawn: they would bury the message.
 const LONGEST_LINE: usize = 1000;
 
@@ -128,6 +131,8 @@ impl Diagnostic for Fault<'_> {
         let span = self.error.span.clone()?;
         let label = match self.error.expected.as_str() {
             "" => "here".to_owned(),
+            // The message says it.
+            expected if expected.len() > LONGEST_LABEL => "here".to_owned(),
             expected => format!("expected {expected}"),
         };
         Some(Box::new(std::iter::once(LabeledSpan::new(Some(label), span.start, span.len()))))

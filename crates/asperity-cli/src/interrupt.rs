@@ -11,6 +11,12 @@ pub fn flag() -> Arc<AtomicBool> {
     flag
 }
 
+/// Lets a write beyond the largest size of a file (`ulimit -f`) be an error, where the system would end the process.
+pub fn outlive_large_files() {
+    #[cfg(unix)]
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
+}
+
 #[cfg(unix)]
 fn listen(flag: &Arc<AtomicBool>) {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};

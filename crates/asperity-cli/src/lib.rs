@@ -4,6 +4,7 @@
 //! Data goes to stdout, talk to stderr. Exit codes: 0 done; 1 the solve or the system failed, or a result is damaged; 2 the
 //! input is wrong; 130 interrupted.
 
+mod apart;
 mod args;
 mod commands;
 mod failure;
@@ -17,6 +18,7 @@ mod words;
 
 use std::ffi::OsString;
 use std::io::Write;
+use std::thread::JoinHandle;
 
 use clap::Parser;
 
@@ -26,11 +28,36 @@ use failure::Failure;
 /// Runs a command line, whose first word is the name of the program, and returns the exit code. It starts the threads of
 /// the process and listens to its signals, so a process calls it once and ends with what it returns.
 pub fn command(words: impl IntoIterator<Item = OsString>) -> u8 {
+    let words: Vec<OsString> = words.into_iter().collect();
+    interrupt::outlive_large_files();
+    // The stack of the process may be as small as its user's limit.
+    let thread = std::thread::Builder::new().name("asperity".into()).stack_size(STACK);
+    let own = words.clone();
+    match thread.spawn(move || command_here(&own)).map(JoinHandle::join) {
+        Ok(Ok(code)) => code,
+        Ok(Err(panic)) => std::panic::resume_unwind(panic),
+        Err(_) => command_here(&words),
+    }
+}
+
+/// As much as the systems give a process.
+const STACK: usize = 8 << 20;
+
+fn command_here(words: &[OsString]) -> u8 {
     let code = match Args::try_parse_from(words) {
         Ok(args) => obey(args),
+        Err(error) if commands::plot::lacks_figure(words, &error) => {
+            let failure = commands::plot::no_figure();
+            failure.tell();
+            failure.code()
+        }
         Err(error) => {
-            // A reader that has gone needs no help text.
-            let _ = error.print();
+            if words.iter().any(|word| word.to_string_lossy().contains(talk::hidden)) {
+                talk::write(&talk::printable(&error.to_string()));
+            } else {
+                // A reader that has gone needs no help text.
+                let _ = error.print();
+            }
             u8::try_from(error.exit_code()).unwrap_or(2)
         }
     };
@@ -41,7 +68,8 @@ pub fn command(words: impl IntoIterator<Item = OsString>) -> u8 {
 
 fn obey(args: Args) -> u8 {
     trace::listen(if let Command::Run(run) = &args.command { run.verbose } else { 0 });
-    match threads::start(&args.command).and_then(|()| run(args.command)) {
+    let checked = apart::check(&args.command).and_then(|()| threads::start(&args.command));
+    match checked.and_then(|()| run(args.command)) {
         Ok(()) => 0,
         Err(failure) => {
             failure.tell();
@@ -81,7 +109,7 @@ fn print(text: &str) -> Result<(), Failure> {
         .and_then(|()| std::io::stdout().flush())
     {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Failure::input(format!("cannot write to standard output: {error}")))
+            Err(Failure::System(format!("cannot write to standard output: {error}")))
         }
         _ => Ok(()),
     }

@@ -85,9 +85,9 @@ impl Teller {
         let friction =
             progress.friction.map_or(String::new(), |f| format!(", friction {:.4}", f.coefficient));
         let state = format!(
-            "{moment}, contact {:.2} %{friction}, {} iterations",
+            "{moment}, contact {:.2} %{friction}, {}",
             100.0 * row.contact_fraction,
-            row.iterations
+            words::counted(row.iterations, "iteration")
         );
         match self {
             Teller::Bar(bar, [times, areas]) => {

@@ -1,8 +1,8 @@
 //! What is said on stderr. It is never worth a result: where it cannot be written (a closed terminal, a full disk), it is
 //! dropped.
 //!
-//! Titles, names and lines of files may hold control characters, which would move the cursor or change colours of a terminal.
-//! They are shown as escapes.
+//! Titles, names and lines of files may hold control characters, which would move the cursor, change colours of a terminal or
+//! turn the order of its letters. They are shown as escapes.
 
 use std::borrow::Cow;
 use std::fmt::Arguments;
@@ -25,9 +25,11 @@ pub fn write(text: &str) {
     let _ = std::io::stderr().write_all(text.as_bytes());
 }
 
-/// Whether a terminal would act on a character: control characters except line feed and tab.
+/// Whether a terminal would act on a character: control characters except line feed and tab, and marks of the direction of text.
 pub fn hidden(c: char) -> bool {
-    c.is_control() && c != '\n' && c != '\t'
+    let turns =
+        matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    turns || c.is_control() && c != '\n' && c != '\t'
 }
 
 /// A text whose [`hidden`] characters are written as escapes.
@@ -54,5 +56,6 @@ mod tests {
     fn control_characters_are_shown_as_escapes() {
         assert_eq!(printable("a\tb\n10 µm"), "a\tb\n10 µm");
         assert_eq!(printable("a\u{1b}[2Jb\rc\u{9b}"), "a\\u{1b}[2Jb\\u{d}c\\u{9b}");
+        assert_eq!(printable("a\u{202e}b\u{200f}c\u{2069}"), "a\\u{202e}b\\u{200f}c\\u{2069}");
     }
 }

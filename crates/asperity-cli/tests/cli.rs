@@ -238,8 +238,16 @@ fn a_killed_run_is_readable_and_resumes_to_the_same_bits() {
     whole.extend(["-o", "whole.zarr"]);
     assert!(asperity(&dir, &whole).status.success());
     assert_eq!(content(&dir.join("small.zarr")), content(&dir.join("whole.zarr")));
-    // Nothing is left to resume; another case does not resume it either.
-    assert_eq!(asperity(&dir, &arguments).status.code(), Some(2));
+    // A script may repeat the command: nothing is left to resume, and this is said. Another case does not resume it.
+    let again = asperity(&dir, &arguments);
+    assert!(
+        again.status.success() && stderr(&again).contains("nothing is left to resume"),
+        "{}",
+        stderr(&again)
+    );
+    let other: Vec<&str> =
+        arguments.iter().copied().chain(["--set", "load.history.value=\"0.7 N\""]).collect();
+    assert_eq!(asperity(&dir, &other).status.code(), Some(2));
 }
 
 #[cfg(unix)]
@@ -550,8 +558,12 @@ fn a_result_is_shown_plotted_and_reported() {
     let reader = Reader::open(&dir.path().join("small.zarr")).unwrap();
     assert_eq!(object["last"]["approach"].as_f64(), reader.series("approach").unwrap().last().copied());
 
-    for (what, file) in [("evolution", "a.svg"), ("pressure", "b.png"), ("spots", "c.pdf")] {
-        let plot = asperity(dir.path(), &["plot", "small.zarr", what, "-o", file, "--time", "4 s"]);
+    for (what, file, more) in [
+        ("evolution", "a.svg", &[][..]),
+        ("pressure", "b.png", &["--time", "4 s"]),
+        ("spots", "c.pdf", &["--time", "4 s"]),
+    ] {
+        let plot = asperity(dir.path(), &[&["plot", "small.zarr", what, "-o", file], more].concat());
         assert!(plot.status.success(), "{}", stderr(&plot));
         let starts: &[u8] = match &file[2..] {
             "svg" => b"<svg",
@@ -741,4 +753,10 @@ fn two_results_are_compared_and_drawn_together() {
     assert!(maps.status.success() && dir.join("a-b-pressure.png").is_file(), "{}", stderr(&maps));
     let none = asperity(&dir, &["plot", "evolution"]);
     assert_eq!(none.status.code(), Some(2));
+    assert!(stderr(&none).contains("<RESULT>"), "{}", stderr(&none));
+    for results in [&["a.zarr"][..], &["a.zarr", "b.zarr"]] {
+        let what = asperity(&dir, &[&["plot"], results].concat());
+        assert_eq!(what.status.code(), Some(2));
+        assert!(stderr(&what).contains("what to draw is missing"), "{}", stderr(&what));
+    }
 }

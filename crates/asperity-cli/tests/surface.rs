@@ -136,7 +136,7 @@ fn a_slip_in_the_recipe_is_told_by_its_option() {
     );
     for (option, value, words) in [
         ("--hurst", "1.5", ["--hurst", "at most 1"]),
-        ("--rms-gradient", "0.1", ["rms_gradient", "only one of them"]),
+        ("--rms-gradient", "0.1", ["--rms-gradient and --rms-height", "only one of them"]),
         ("--shortest", "1 um", ["--shortest", "two cells"]),
         ("--longest", "1 cm", ["--longest", "size of the domain"]),
         ("--roll-off", "0.6 mm", ["--roll-off", "between the shortest"]),

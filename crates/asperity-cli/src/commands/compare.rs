@@ -75,6 +75,7 @@ fn text(found: &Comparison, first: &Reader) -> String {
     if let Some(share) = found.pressure {
         text += &match share {
             0.0 => "Pressures stored last: the same in every cell.\n".to_owned(),
+            share if share.is_infinite() => "Pressures stored last: the first has none.\n".to_owned(),
             share => format!("Pressures stored last: {} of the largest one apart at most.\n", apart(share)),
         };
     }

@@ -32,11 +32,17 @@ use asperity_io::store::{At, Reader};
 use crate::failure::Failure;
 use crate::words::read;
 
-/// Refuses a path where there is something already that `force` does not allow to replace.
+/// Refuses a path where there is something already that `force` does not allow to replace, or in a folder that there is not.
 fn free(path: &Path, force: bool) -> Result<(), Failure> {
     if path.exists() && !force {
         let path = path.display();
         return Err(Failure::input(format!("{path} already exists; choose another file or use --force")));
+    }
+    if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.is_dir()) {
+        let [path, folder] = [path, folder].map(Path::display);
+        return Err(Failure::input(format!(
+            "cannot write {path}: there is no folder {folder}; make it first"
+        )));
     }
     Ok(())
 }

@@ -1,10 +1,10 @@
 //! `asperity new`: a starter case.
 
-use std::fs::OpenOptions;
 use std::io::{ErrorKind, Write};
 use std::path::PathBuf;
 
 use asperity_examples::{TEMPLATES, Template};
+use asperity_io::output;
 
 use crate::args::New;
 use crate::failure::Failure;
@@ -24,8 +24,7 @@ pub fn run(args: &New) -> Result<(), Failure> {
         )));
     };
     let path = args.path.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.toml")));
-    let file = OpenOptions::new().write(true).create(true).truncate(true).create_new(!args.force).open(&path);
-    let written = file.and_then(|mut file| file.write_all(template.text.as_bytes()));
+    let written = output::write(&path, args.force, |file| file.write_all(template.text.as_bytes()));
     written.map_err(|error| {
         Failure::input(match error.kind() {
             ErrorKind::AlreadyExists => {

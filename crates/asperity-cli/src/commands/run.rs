@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use crate::args::Run;
 use crate::failure::Failure;
 use crate::progress::Teller;
-use crate::words::{bytes, duration, quantity};
+use crate::words::{bytes, duration, in_contact, quantity};
 
 /// Runs the case, tells the progress on stderr and a summary on stdout.
 pub fn run(args: &Run) -> Result<(), Failure> {
@@ -140,8 +140,9 @@ fn tell(args: &Run, case: &Case, summary: &Summary, error: Option<&RunError>) ->
         line(
             "pressure",
             format!(
-                "mean {}, largest {}",
+                "nominal mean {}, in the contact {}, largest {}",
                 quantity(last.mean_pressure, "Pa"),
+                quantity(in_contact(last), "Pa"),
                 quantity(last.max_pressure, "Pa")
             ),
         );

@@ -13,7 +13,7 @@ use super::instant;
 use crate::args::ShowResult;
 use crate::failure::Failure;
 use crate::terminal::{shares, sparkline};
-use crate::words::{bytes, duration, quantity};
+use crate::words::{bytes, duration, in_contact, quantity};
 
 /// Letters of the map and of the curves.
 const COLUMNS: usize = 56;
@@ -36,6 +36,7 @@ fn object(reader: &Reader) -> Result<String, StoreError> {
     let object = json!({
         "title": reader.header().title,
         "status": reader.status().as_str(),
+        "lacks_leakage": reader.lacks_leakage(),
         "message": work.message,
         "rows": reader.len(),
         "rows_expected": reader.header().rows_expected,
@@ -85,6 +86,7 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
     let mut line = |name: &str, value: String| text += &format!("{name:<13}{value}\n");
     let of = header.rows_expected.map_or(String::new(), |total| format!(" of {total}"));
     let state = match reader.status() {
+        Status::Complete if reader.lacks_leakage() => format!("without its leakage{}", reader.continuation()),
         Status::Complete => "complete".to_owned(),
         Status::Running if reader.is_being_written() => "running now".to_owned(),
         Status::Running => format!("killed before its end{}", reader.continuation()),
@@ -95,11 +97,15 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
     if let Some(message) = &reader.work().message {
         line("", message.clone());
     }
+    if let Some(kept) = reader.replaces() {
+        line("", format!("the complete result that it replaces is kept in {}", kept.display()));
+    }
     for finding in reader.findings() {
         line(finding.severity.as_str(), format!("{} [{}]", finding.text, finding.code));
     }
     let grid = &header.grid;
-    line("domain", domain(grid));
+    let boundary = header.boundary().map_or(String::new(), |words| format!(", {words}"));
+    line("domain", domain(grid) + &boundary);
     let rows = reader.rows()?;
     let Some(last) = rows.last() else { return Ok(text) };
     // A curve over time or velocity, with its ends.
@@ -154,8 +160,9 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
     if last.capped_area > 0.0 {
         line("at hardness", quantity(last.capped_area, area));
     }
-    let pressure = [last.mean_pressure, last.max_pressure].map(|p| quantity(p, "Pa"));
-    line("pressure", format!("mean {}, largest {}", pressure[0], pressure[1]));
+    let [nominal, touching, largest] =
+        [last.mean_pressure, in_contact(last), last.max_pressure].map(|p| quantity(p, "Pa"));
+    line("pressure", format!("nominal mean {nominal}, in the contact {touching}, largest {largest}"));
     let asked = reader.scalars().into_iter().filter(|s| {
         let coordinate = header.is_sweep() && s.name == Quantity::Velocity.name();
         Quantity::from_name(s.name).is_some() && !coordinate

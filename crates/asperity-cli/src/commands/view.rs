@@ -3,10 +3,12 @@
 //! Whoever knows the address may read the result. Its first part is a random token, as other users of the machine can find
 //! the port. The header `Host` must name this machine, so that no page of another name that leads here reads results.
 
+use std::collections::VecDeque;
 use std::convert::Infallible;
 use std::net::{IpAddr, SocketAddr};
 use std::path::Path;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use asperity_io::store::Reader;
@@ -20,6 +22,7 @@ use hyper::{Method, Request, Response, StatusCode};
 use hyper_util::rt::{TokioIo, TokioTimer};
 use tokio::net::TcpListener;
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
+use tokio::task::AbortHandle;
 use tokio::time::timeout;
 
 use super::patience::Patient;
@@ -88,16 +91,25 @@ impl Server {
 async fn serve(listener: TcpListener, server: Server) {
     let server = Arc::new(server);
     let places = Arc::new(Semaphore::new(CONNECTIONS));
+    let mut open = Open::default();
     loop {
-        let Ok(place) = places.clone().acquire_owned().await else { return };
         let Ok((stream, _)) = listener.accept().await else {
             // Out of file handles, say: wait instead of asking again and again.
             tokio::time::sleep(Duration::from_millis(100)).await;
             continue;
         };
+        if places.available_permits() == 0 {
+            open.close_a_silent_one();
+        }
+        let Ok(place) = places.clone().acquire_owned().await else { return };
         let server = server.clone();
-        tokio::spawn(async move {
-            let service = service_fn(|request| answer(request, server.clone()));
+        let has_asked = Arc::new(AtomicBool::new(false));
+        let asks = has_asked.clone();
+        let task = tokio::spawn(async move {
+            let service = service_fn(|request| {
+                asks.store(true, Ordering::Relaxed);
+                answer(request, server.clone())
+            });
             let mut connection = http1::Builder::new();
             connection.timer(TokioTimer::new()).header_read_timeout(PATIENCE).keep_alive(false);
             let stream = Patient::new(TokioIo::new(stream), PATIENCE);
@@ -105,6 +117,28 @@ async fn serve(listener: TcpListener, server: Server) {
             let _ = timeout(LONGEST, connection.serve_connection(stream, service)).await;
             drop(place);
         });
+        open.add(task.abort_handle(), has_asked);
+    }
+}
+
+/// The open connections, the oldest first, each with whether its request has arrived.
+#[derive(Default)]
+struct Open(VecDeque<(AbortHandle, Arc<AtomicBool>)>);
+
+impl Open {
+    fn add(&mut self, task: AbortHandle, has_asked: Arc<AtomicBool>) {
+        self.0.retain(|(task, _)| !task.is_finished());
+        self.0.push_back((task, has_asked));
+    }
+
+    /// Closes the oldest connection whose request has not arrived: those who open many and ask nothing keep nobody out.
+    fn close_a_silent_one(&mut self) {
+        let is_silent = |(task, has_asked): &&(AbortHandle, Arc<AtomicBool>)| {
+            !task.is_finished() && !has_asked.load(Ordering::Relaxed)
+        };
+        if let Some((task, _)) = self.0.iter().find(is_silent) {
+            task.abort();
+        }
     }
 }
 
@@ -204,8 +238,29 @@ fn response(status: StatusCode, content_type: &'static str, content: Bytes) -> R
 
 #[cfg(test)]
 mod tests {
-    use super::{is_this_machine, same, token};
+    use super::{Open, is_this_machine, same, token};
     use std::net::IpAddr;
+    use std::sync::Arc;
+
+    #[test]
+    fn the_oldest_connection_without_a_request_is_closed() {
+        let runtime = tokio::runtime::Builder::new_current_thread().build().unwrap();
+        runtime.block_on(async {
+            let mut open = Open::default();
+            let [asked, first, second] = [true, false, false].map(|has_asked| {
+                let task = tokio::spawn(std::future::pending::<()>());
+                open.add(task.abort_handle(), Arc::new(has_asked.into()));
+                task
+            });
+            open.close_a_silent_one();
+            assert!(first.await.unwrap_err().is_cancelled());
+            assert!(!asked.is_finished() && !second.is_finished());
+            open.close_a_silent_one();
+            assert!(second.await.unwrap_err().is_cancelled());
+            open.close_a_silent_one();
+            assert!(!asked.is_finished());
+        });
+    }
 
     #[test]
     fn only_names_of_this_machine_are_answered() {

@@ -162,7 +162,7 @@ fn stress_lines(stress: &StressDescription, seconds: Option<f64>) -> Vec<[String
         format!("of {} (Poisson's ratio {}), {range}, at {times}", stress.body, stress.poisson),
     ]];
     let seconds =
-        seconds.map_or(String::new(), |seconds| format!(", roughly {} after the run", duration(seconds)));
+        seconds.map_or(String::new(), |seconds| format!(", roughly {} after the run", roughly(seconds)));
     lines.push([String::new(), format!("{} of memory{seconds}", bytes(stress.memory_bytes as f64))]);
     if !stress.fields.is_empty() {
         let size =
@@ -170,6 +170,15 @@ fn stress_lines(stress: &StressDescription, seconds: Option<f64>) -> Vec<[String
         lines.push([String::new(), format!("stored at each depth: {}{size}", stress.fields.join(", "))]);
     }
     lines
+}
+
+/// A duration with two digits.
+fn roughly(seconds: f64) -> String {
+    if seconds <= 0.0 {
+        return duration(0.0);
+    }
+    let unit = 10f64.powf(seconds.log10().floor() - 1.0);
+    duration((seconds / unit).round() * unit)
 }
 
 /// "1 mm x 2 mm".
@@ -319,7 +328,7 @@ fn tell(case: &Case, examined: &Examination, work: Option<&Work>) -> String {
             None => "the stored times".to_owned(),
         };
         let seconds = work::leak_seconds(case, d);
-        let seconds = seconds.map_or(String::new(), |s| format!(", roughly {} after the run", duration(s)));
+        let seconds = seconds.map_or(String::new(), |s| format!(", roughly {} after the run", roughly(s)));
         line("leakage", format!("{}, at {times}, up to {memory} of memory{seconds}", leak.words()));
     }
     line("memory", format!("about {}", bytes(d.memory_bytes as f64)));
@@ -330,7 +339,7 @@ fn tell(case: &Case, examined: &Examination, work: Option<&Work>) -> String {
             "run time",
             format!(
                 "roughly {} on {threads}: about {} and {} (rehearsed on a coarse grid)",
-                duration(work.seconds),
+                roughly(work.seconds),
                 counted(found.rows, "row"),
                 counted(found.convolutions, "convolution")
             ),

@@ -24,12 +24,7 @@ pub fn refused(error: CurveError) -> Failure {
 pub fn curves(path: &std::path::Path, data: &Data) -> Result<Curves, Failure> {
     let kind = match data.kind {
         Some(kind) => kind,
-        None => Curves::kind_of(path, data.sheet.as_deref()).map_err(refused)?.ok_or_else(|| {
-            let path = path.display();
-            Failure::input(format!(
-                "{path}: the header does not state what was measured; give --kind relaxation, creep or dma"
-            ))
-        })?,
+        None => Curves::kind_of(path, data.sheet.as_deref()).map_err(refused)?,
     };
     let said = Columns { sheet: data.sheet.clone(), ..columns(&data.column, &data.unit)? };
     Curves::read(path, kind, &said).map_err(refused)

@@ -6,6 +6,7 @@ mod given;
 mod layers;
 mod measured;
 
+use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
@@ -67,11 +68,14 @@ fn show(args: &Show) -> Result<(), Failure> {
     if let Some(path) = &args.plot {
         let materials: Vec<_> = specimens.iter().map(|s| (s.name.as_str(), &s.material)).collect();
         let title = args.file.file_stem().map_or(String::new(), |stem| stem.to_string_lossy().into_owned());
-        let figure = pictures::functions(&title, &materials, window).map_err(told)?;
+        let drawn = if from.is_none() && to.is_none() { covered(&specimens, window) } else { window };
+        let figure = pictures::functions(&title, &materials, drawn).map_err(told)?;
         let shifts: Vec<pictures::Factors> = specimens.iter().filter_map(shift_of).collect();
         let figure =
             pictures::shift_factors(&shifts).into_iter().fold(figure, |figure, panel| figure.with(panel));
-        crate::commands::picture::write(&figure, path, args.force)?;
+        let beyond = specimens.iter().filter_map(|specimen| extrapolated(specimen, drawn));
+        let words: Vec<String> = specimens.iter().filter_map(temperature_of).chain(beyond).collect();
+        crate::commands::picture::write(&figure.caption(words.join(" ")), path, args.force)?;
     }
     let tables = specimens.iter().map(|specimen| Table::of(specimen, window, args.per_decade));
     let tables = tables.collect::<Result<Vec<Table>, Failure>>()?;
@@ -91,6 +95,19 @@ fn shift_of(specimen: &Specimen) -> Option<pictures::Factors<'_>> {
     Some(pictures::Factors { name: &specimen.name, law: law.as_ref()?, found: &[], temperatures })
 }
 
+/// At which temperature a material is shown, for captions; `None` where it does not depend on it.
+fn temperature_of(specimen: &Specimen) -> Option<String> {
+    let reference = specimen.report.law.as_ref()?.reference()?;
+    let (name, celsius) = (&specimen.name, format!("{:.1} °C", reference - 273.15));
+    Some(match specimen.report.shift_factor {
+        Some(factor) if factor != 1.0 => {
+            let factor = crate::words::quantity(factor, "");
+            format!("{name}: at its own temperature, a_T = {factor} of the reference {celsius}.")
+        }
+        _ => format!("{name}: at the reference temperature, {celsius}."),
+    })
+}
+
 /// One decade beyond all times of the materials; six decades about 1 s where they have none.
 fn window(specimens: &[Specimen]) -> [f64; 2] {
     let times = specimens.iter().flat_map(|specimen| {
@@ -104,6 +121,27 @@ fn window(specimens: &[Specimen]) -> [f64; 2] {
         (first, last) = (1e-2, 1e2);
     }
     [10f64.powf((0.1 * first).log10().floor()), 10f64.powf((10.0 * last).log10().ceil())]
+}
+
+/// The times of a window for which some material stands; all of it where one stands for any time.
+fn covered(specimens: &[Specimen], window: [f64; 2]) -> [f64; 2] {
+    let stands = specimens.iter().map(|specimen| specimen.report.window.unwrap_or([0.0, f64::INFINITY]));
+    let [first, last] = stands.fold([f64::INFINITY, 0.0_f64], |[a, b], [from, to]| [a.min(from), b.max(to)]);
+    let inside = [window[0].max(first), window[1].min(last)];
+    if inside[0] < inside[1] { inside } else { window }
+}
+
+/// Says that the drawn times go beyond those for which a material stands.
+fn extrapolated(specimen: &Specimen, drawn: [f64; 2]) -> Option<String> {
+    let stands = specimen.report.window?;
+    let is_beyond = drawn[0] < stands[0] * 0.999 || drawn[1] > stands[1] * 1.001;
+    let [first, last] = stands.map(|t| quantity(t, "s"));
+    is_beyond.then(|| {
+        format!(
+            "{}: extrapolated before {first} and after {last}, and at the frequencies beyond one over these.",
+            specimen.name
+        )
+    })
 }
 
 /// The functions of a material at times and frequencies.
@@ -153,17 +191,18 @@ impl Table {
         }
         let _ = writeln!(
             text,
-            "\n  {:>12} {:>14} {:>14} {:>12}",
+            "\n  {:>12} {:>12} {:>14} {:>14} {:>12}",
             "ω [rad/s]",
+            "f [Hz]",
             format!("{modulus}' [Pa]"),
             format!("{modulus}'' [Pa]"),
             "tan delta"
         );
         for ((w, storage), loss) in self.frequencies.iter().zip(&self.storage).zip(&self.loss) {
-            let tan_delta = loss / storage;
+            let (hertz, tan_delta) = (w / TAU, loss / storage);
             let _ = writeln!(
                 text,
-                "  {w:>12.4e} {storage:>14.6e} {loss:>14.6e} {tan_delta:>12.4e}{}",
+                "  {w:>12.4e} {hertz:>12.4e} {storage:>14.6e} {loss:>14.6e} {tan_delta:>12.4e}{}",
                 mark(1.0 / w)
             );
         }
@@ -278,11 +317,6 @@ pub(super) fn told(error: impl std::fmt::Display) -> Failure {
 }
 
 pub(super) fn write(path: &Path, text: &str, force: bool) -> Result<(), Failure> {
-    let mut options = std::fs::OpenOptions::new();
-    match force {
-        true => options.write(true).create(true).truncate(true),
-        false => options.write(true).create_new(true),
-    };
-    let written = options.open(path).and_then(|mut file| file.write_all(text.as_bytes()));
+    let written = asperity_io::output::write(path, force, |file| file.write_all(text.as_bytes()));
     written.map_err(|error| Failure::input(format!("cannot write {}: {error}", path.display())))
 }

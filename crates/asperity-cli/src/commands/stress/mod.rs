@@ -2,6 +2,8 @@
 
 mod tell;
 
+use std::time::{Duration, Instant};
+
 use asperity::stress::StressQuantity;
 use asperity_io::case::fragment::{self, Fault};
 use asperity_io::case::quantity::range::NonNegative;
@@ -92,8 +94,12 @@ fn ended(error: StressError) -> Failure {
 /// Computes the stress and adds it to the result.
 fn store(args: &Stress, plan: &StressPlan) -> Result<Below, Failure> {
     let mut writer = Writer::amend(&args.result).map_err(told)?;
+    /// Time between two messages.
+    const OFTEN: Duration = Duration::from_secs(2);
+    let mut told_at = Instant::now();
     let tell = |done: usize, of: usize| {
-        if of > 1 && !args.json && done < of {
+        if of > 1 && !args.json && done < of && told_at.elapsed() > OFTEN {
+            told_at = Instant::now();
             say!("stress below the surface: time {} of {of}", done + 1);
         }
     };

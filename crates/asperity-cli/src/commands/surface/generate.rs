@@ -35,8 +35,14 @@ pub fn run(args: &SurfaceGenerate) -> Result<(), Failure> {
     let keys: Vec<(&str, &str)> = given.into_iter().filter_map(|(key, text)| Some((key, text?))).collect();
     let (grid, part) = fragment::roughness(&keys).map_err(|faults| {
         let told = |fault: &fragment::Fault| {
-            let help = fault.help.as_ref().map_or(String::new(), |help| format!("; {help}"));
-            format!("{}: {}{help}", flag(&fault.key), fault.message)
+            // A path of the command line is relative to where the command runs.
+            let help = fault.help.as_ref().filter(|_| fault.key != "distribution.path");
+            let help = help.map_or(String::new(), |help| format!("; {}", with_options(help)));
+            let message = with_options(&fault.message);
+            match fault.key.as_str() {
+                "" => format!("the surface {message}{help}"),
+                key => format!("{} {message}{help}", flag(key)),
+            }
         };
         Failure::input(faults.iter().map(told).collect::<Vec<_>>().join("\n"))
     })?;
@@ -68,11 +74,20 @@ pub fn run(args: &SurfaceGenerate) -> Result<(), Failure> {
     )
 }
 
+/// The words of a case file's message with its keys replaced by the options that give them.
+fn with_options(message: &str) -> String {
+    const KEYS: [&str; 6] =
+        ["rms_gradient", "rms_height", "roll_off", "lay.angle", "lay.ratio", "distribution.path"];
+    const WORDS: [&str; 7] = ["cells", "size", "preset", "hurst", "longest", "shortest", "seed"];
+    let words = WORDS.iter().map(|key| (format!("`{key}`"), flag(key)));
+    let keys = KEYS.iter().flat_map(|key| [(format!("`{key}`"), flag(key)), ((*key).to_owned(), flag(key))]);
+    words.chain(keys).fold(message.to_owned(), |text, (key, option)| text.replace(&key, &option))
+}
+
 /// The option that gives a key.
 fn flag(key: &str) -> String {
     match key {
         "distribution.path" => "--distribution".to_owned(),
-        "" => "surface".to_owned(),
         _ => {
             let key = key.strip_prefix("distribution.").unwrap_or(key);
             // An element of a list: "cells[1]".

@@ -158,7 +158,9 @@ impl<'a> Portrait<'a> {
             line("channels", channels.collect::<Vec<_>>().join(", "), "");
         }
         let h = &summary.heights;
-        line("heights", format!("{} to {}, mean {}", metres(h.min), metres(h.max), metres(h.mean)), "");
+        // A mean of rounding errors is none.
+        let mean = if h.mean.abs() < 1e-12 * h.sq { 0.0 } else { h.mean };
+        line("heights", format!("{} to {}, mean {}", metres(h.min), metres(h.max), metres(mean)), "");
         line("Sa", metres(h.sa), "mean deviation from the mean height");
         line("Sq", metres(h.sq), "rms deviation from the mean height");
         line("Sz", metres(h.sz), "highest peak to deepest pit");
@@ -174,7 +176,13 @@ impl<'a> Portrait<'a> {
         }
         if let Some(waves) = &summary.waves {
             let m = &waves.moments;
-            line("m0", format!("{:.4e} m\u{b2}", m.m0), "spectral moment: mean square height");
+            let of = match self.extent {
+                Extent::Periodic => "spectral moment: mean square height",
+                Extent::Finite => {
+                    "spectral moment: mean square height under a window, as m2, m4, alpha (--periodic: without)"
+                }
+            };
+            line("m0", format!("{:.4e} m\u{b2}", m.m0), of);
             line("m2", format!("{:.4e}", m.m2), "mean square slope of a profile");
             line("m4", format!("{:.4e} 1/m\u{b2}", m.m4), "mean square curvature of a profile");
             line("alpha", format!("{:.2}", m.bandwidth()), "m0 m4/m2\u{b2}, Nayak's bandwidth");

@@ -1,6 +1,8 @@
-//! Tasks of the project: `cargo xtask test | bench | peers | sanitize | miri | figures | verification | package |
-//! site | workflows`.
+//! Tasks of the project: `cargo xtask test | bench | peers | sanitize | miri | figures | verification | notices |
+//! package | site | workflows`.
 
+mod lock;
+mod notices;
 mod package;
 mod peers;
 mod site;
@@ -24,6 +26,8 @@ cargo xtask TASK
                 undefined behaviour (needs: rustup +nightly component add miri rust-src); hours
   figures       draws the pictures of the documentation
   verification  writes docs/verification.md from `asperity verify`
+  notices       writes THIRD-PARTY-LICENSES.txt: the packages that the command and the Python package are linked with, and
+                their licences; after every change of Cargo.lock
   package       makes the crates, the wheel, the source archive and the zipped program in target/packages, and tries them;
                 with names, only these (crates, python, program); with --tag v1.2.3, first or only, asks whether the
                 sources may be released under this tag
@@ -65,6 +69,7 @@ fn main() -> ExitCode {
         Some("miri") => miri(),
         Some("figures") => figures(),
         Some("verification") => verification(),
+        Some("notices") => notices::notices(),
         Some("package") => package::package(&std::env::args().skip(2).collect::<Vec<_>>()),
         Some("workflows") => workflows::workflows(),
         Some("site") => site::site(std::env::args().any(|a| a == "--check")),

@@ -57,22 +57,80 @@ fn folder() -> Result<PathBuf, String> {
     std::path::absolute(folder).map_err(|error| error.to_string())
 }
 
-/// The tag is the version's, the address of the repository is filled in, and the changelog has a date.
+/// The tag is the version's, the address of the repository is filled in everywhere, and the changelog has a date.
 fn releasable(tag: &str) -> Done {
     let version = env!("CARGO_PKG_VERSION");
     if tag != format!("v{version}") {
         return Err(format!("the tag is {tag}, the version in Cargo.toml {version}"));
     }
     let read = |name| std::fs::read_to_string(root().join(name)).map_err(|error| format!("{name}: {error}"));
-    if !read("Cargo.toml")?.contains("\nrepository = \"https://") {
-        return Err("Cargo.toml: `repository` needs the address of the repository".into());
+    let manifest = read("Cargo.toml")?;
+    let address = manifest.lines().find_map(|line| line.strip_prefix("repository = \"")?.strip_suffix('"'));
+    let address = address.filter(|address| address.starts_with("https://"));
+    let address = address.ok_or("Cargo.toml: `repository` needs the address of the repository")?;
+    for (file, key) in [
+        ("pyproject.toml", format!("\nSource = \"{address}\"")),
+        ("CITATION.cff", format!("\nrepository-code: {address}\n")),
+        ("codemeta.json", format!("\"codeRepository\": \"{address}\"")),
+        ("packaging/conda/recipe.yaml", format!("\n  repository: {address}\n")),
+    ] {
+        if !read(file)?.contains(&key) {
+            return Err(format!("{file} needs the address of the repository: {}", key.trim()));
+        }
     }
     let heading = format!("## [{version}] - ");
     let changelog = read("CHANGELOG.md")?;
     let date = changelog.lines().find_map(|line| line.strip_prefix(&heading));
-    match date {
-        Some(date) if date.starts_with(|c: char| c.is_ascii_digit()) => Ok(()),
-        _ => Err(format!("CHANGELOG.md: version {version} needs its date, as in `{heading}2030-01-31`")),
+    let date = date.filter(|date| date.starts_with(|c: char| c.is_ascii_digit()));
+    let date = date.ok_or_else(|| {
+        format!("CHANGELOG.md: version {version} needs its date, as in `{heading}2030-01-31`")
+    })?;
+    if !read("CITATION.cff")?.contains(&format!("\ndate-released: {date}\n")) {
+        return Err(format!("CITATION.cff needs the date: date-released: {date}"));
+    }
+    Ok(())
+}
+
+/// Folders of this machine, and what stands for them in what is handed out: a later one counts where two fit.
+fn folders() -> Result<Vec<(String, &'static str)>, String> {
+    let output = Command::new("rustc").args(["--print", "sysroot"]).output();
+    let output = output.map_err(|error| format!("rustc: {error}"))?;
+    let compiler = PathBuf::from(String::from_utf8_lossy(&output.stdout).trim());
+    let sources = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("a folder");
+    let home = std::env::var_os("CARGO_HOME").map(PathBuf::from);
+    let home = home.or_else(|| Some(std::env::home_dir()?.join(".cargo"))).ok_or("no home folder")?;
+    // Their names say which registry the packages came from.
+    let registries = std::fs::read_dir(home.join("registry/src")).into_iter().flatten().flatten();
+    let registries: Vec<PathBuf> = registries.map(|entry| entry.path()).collect();
+    let mut folders = vec![(compiler, "/rust"), (sources.to_owned(), "/asperity"), (home, "/cargo")];
+    folders.extend(registries.into_iter().map(|folder| (folder, "/cargo")));
+    let folders = folders.into_iter().map(|(folder, name)| (folder.to_string_lossy().into_owned(), name));
+    // A space would end the option.
+    Ok(folders.filter(|(folder, _)| !folder.contains(' ')).collect())
+}
+
+/// Lets the compiler name no folder of this machine, as it does in messages of panics. The options are added to those that hold.
+fn portable(command: &mut Command) -> Result<&mut Command, String> {
+    run(&mut cargo(&["fetch", "--quiet", "--locked"]))?;
+    let variable =
+        if std::env::var_os("RUSTFLAGS").is_some() { "RUSTFLAGS" } else { "CARGO_BUILD_RUSTFLAGS" };
+    let mut options = std::env::var(variable).unwrap_or_default();
+    for (folder, name) in folders()? {
+        options += &format!(" --remap-path-prefix={folder}={name}");
+    }
+    Ok(command.env(variable, options.trim()))
+}
+
+/// What is handed out has no table of symbols and names no folder of this machine.
+fn presentable(program: &Path) -> Done {
+    let bytes = std::fs::read(program).map_err(|error| format!("{}: {error}", program.display()))?;
+    let has = |text: &str| bytes.windows(text.len()).any(|part| part == text.as_bytes());
+    if has("\0.symtab\0") {
+        return Err(format!("{}: it has a table of symbols", program.display()));
+    }
+    match folders()?.into_iter().find(|(folder, _)| has(folder)) {
+        Some((folder, _)) => Err(format!("{}: it names the folder {folder}", program.display())),
+        None => Ok(()),
     }
 }
 
@@ -107,12 +165,16 @@ fn python() -> Done {
     run(Command::new(&maker).args(["-m", "maturin", "sdist", "--out"]).arg(&folder))?;
     let mut pip = Command::new(&maker);
     pip.args(["-m", "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir"]).arg(&folder);
-    run(pip.args(files(&folder, "tar.gz")?).env("CARGO_TARGET_DIR", folder.join("build")))?;
+    run(portable(pip.args(files(&folder, "tar.gz")?))?.env("CARGO_TARGET_DIR", folder.join("build")))?;
     // An environment of its own: only what the wheel asks for is there.
     let environment = root().join("target/packages/user");
     let _ = std::fs::remove_dir_all(&environment);
     let user = python_in("target/packages/user", &["pytest"])?;
     run(Command::new(&user).args(["-m", "pip", "install", "--quiet"]).args(files(&folder, "whl")?))?;
+    let module = "import asperity._core as module; print(module.__file__)";
+    let module = Command::new(&user).args(["-c", module]).current_dir(&environment).output();
+    let module = module.map_err(|error| format!("{}: {error}", user.display()))?;
+    presentable(Path::new(String::from_utf8_lossy(&module.stdout).trim()))?;
     let tests = root().join("crates/asperity-py/tests/test_command.py");
     let test = std::path::absolute(tests).map_err(|error| error.to_string())?;
     let mut pytest = Command::new(&user);
@@ -123,23 +185,39 @@ fn python() -> Done {
     if status.success() { Ok(()) } else { Err(format!("the wheel fails its tests: {status}")) }
 }
 
-/// The program with its licences, zipped.
+/// The program with its licences, and the cases and data that the documentation uses, zipped.
 fn program() -> Done {
     let mut build = cargo(&["build", "--profile", "dist", "--locked", "-p", "asperity-cli", "--target-dir"]);
-    run(build.arg(folder()?.join("build")))?;
+    run(portable(build.arg(folder()?.join("build")))?)?;
     let name = format!("asperity-{}-{}", env!("CARGO_PKG_VERSION"), host()?);
     let folder = folder()?;
     let inside = folder.join(&name);
-    std::fs::create_dir_all(&inside).map_err(|error| format!("{}: {error}", inside.display()))?;
-    let copy = |from: PathBuf| -> Done {
-        let to = inside.join(from.file_name().expect("a file"));
+    let copy_to = |folder: &str, from: PathBuf| -> Done {
+        let to = inside.join(folder);
+        std::fs::create_dir_all(&to).map_err(|error| format!("{}: {error}", to.display()))?;
+        let to = to.join(from.file_name().expect("a file"));
         std::fs::copy(&from, &to).map(drop).map_err(|error| format!("{}: {error}", from.display()))
     };
-    copy(folder.join(format!("build/dist/asperity{}", std::env::consts::EXE_SUFFIX)))?;
-    for file in ["LICENSE-MIT", "LICENSE-APACHE", "README.md", "CHANGELOG.md"] {
+    let copy = |from: PathBuf| copy_to("", from);
+    let program = folder.join(format!("build/dist/asperity{}", std::env::consts::EXE_SUFFIX));
+    presentable(&program)?;
+    copy(program)?;
+    for file in [
+        "LICENSE-MIT",
+        "LICENSE-APACHE",
+        "THIRD-PARTY-LICENSES.txt",
+        "CHANGELOG.md",
+        "crates/asperity-cli/README.md",
+        "crates/asperity-report/fonts/LICENSE-DejaVu",
+        "crates/asperity-report/page/uplot/LICENSE-uPlot",
+    ] {
         copy(root().join(file))?;
     }
-    copy(root().join("crates/asperity-report/fonts/LICENSE-DejaVu"))?;
+    for (folder, ending) in [("examples", "toml"), ("examples/data", "csv"), ("examples/data", "x3p")] {
+        for file in files(&root().join(folder), ending)? {
+            copy_to(folder, file)?;
+        }
+    }
     let python = if cfg!(windows) { "python" } else { "python3" };
     let archive = folder.join(format!("{name}.zip"));
     run(Command::new(python).args(["-m", "zipfile", "-c"]).arg(&archive).arg(&inside))?;
@@ -171,4 +249,23 @@ pub fn host() -> Result<String, String> {
     let version = String::from_utf8_lossy(&version.stdout).into_owned();
     let host = version.lines().find_map(|line| line.strip_prefix("host: "));
     host.map(str::to_owned).ok_or_else(|| "rustc names no host".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn symbols_and_folders_of_the_machine_are_found() {
+        let place = std::env::temp_dir().join(format!("asperity-presentable-{}", std::process::id()));
+        let told = |bytes: &str| {
+            std::fs::write(&place, bytes).expect("a file");
+            presentable(&place)
+        };
+        let (folder, _) = folders().expect("folders").swap_remove(0);
+        assert!(told("\0.text\0 /rust/lib").is_ok());
+        assert!(told("\0.text\0.symtab\0").is_err());
+        assert!(told(&format!("{folder}/lib")).is_err());
+        std::fs::remove_file(&place).expect("the file");
+    }
 }

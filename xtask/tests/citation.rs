@@ -86,6 +86,15 @@ fn citation_codemeta_and_zenodo_agree() {
     let cargo = read("Cargo.toml");
     assert!(cargo.contains(&format!("license = \"{}\"", licences.join(" OR "))));
     assert!(cargo.contains(&format!("authors = [\"{author}\"]")));
+    assert!(read("pyproject.toml").contains(&format!("authors = [{{ name = \"{author}\" }}]")));
+
+    // The Python package and conda's hold the font and the plotting library of the figures too.
+    let report = read("crates/asperity-report/Cargo.toml");
+    let whole = report.lines().find_map(|line| line.strip_prefix("license = ")).unwrap();
+    assert!(whole.starts_with(&format!("\"({})", licences.join(" OR "))));
+    assert!(read("pyproject.toml").contains(&format!("\nlicense = {whole}\n")));
+    let recipe = read("packaging/conda/recipe.yaml");
+    assert!(recipe.contains(&format!("  license: {}\n", whole.trim_matches('"'))));
 
     let doi = citation.block("references").into_iter().find_map(|line| line.strip_prefix("doi: ")).unwrap();
     assert_eq!(zenodo["related_identifiers"][0]["identifier"], doi);

@@ -86,7 +86,11 @@ async function showMap() {
   await (state.grid.line ? showSurfaces(instant) : showRelief(instant));
 }
 
-const markInstant = () => state.instants.length && evolution.charts.forEach((chart) => chart.mark(state.instants[chosen.instant].time));
+/** A dashed line in the charts over the rows, where the maps are. */
+function markInstant() {
+  $("mark-note").hidden = !state.instants.length;
+  evolution.charts.forEach((chart) => chart.mark(state.instants[chosen.instant]?.time));
+}
 
 /** The stored instant nearest to a place along the axis of the rows. */
 function showNearest(at) {

@@ -1,12 +1,13 @@
 //! `asperity show`: a result in the terminal.
 
 use asperity::Grid;
+use asperity::march::Row;
 use asperity::quantities::Quantity;
 use asperity_io::cycles;
 use asperity_io::leakage::LeakHistory;
 use asperity_io::store::{At, Reader, Status, StoreError};
 use asperity_io::stress::{Below, first_yield};
-use asperity_report::result::{contact, moment};
+use asperity_report::result::{contact, moment, temperatures};
 use serde_json::json;
 
 use super::instant;
@@ -78,12 +79,36 @@ fn domain(grid: &Grid) -> String {
 }
 
 fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
+    let rows = reader.rows()?;
+    let mut text = state(reader);
+    if rows.is_empty() {
+        return Ok(text);
+    }
+    text += &course(reader, &rows)?;
+    text += &below_and_through(reader)?;
+    text += &work(reader, &rows);
+    text += &cycle_table(reader)?;
+    if let Some(states) = contact(reader, at)? {
+        let time = reader.field_times()[reader.index(at)?];
+        let size = reader.header().grid.size();
+        text += &format!("\ncontact at {}\n", moment(reader, time));
+        text += &shares(states.mapv(|state| state > 0).view(), COLUMNS, size[1] / size[0]);
+    }
+    Ok(text)
+}
+
+/// A line of the summary.
+fn line(name: &str, value: impl std::fmt::Display) -> String {
+    format!("{name:<13}{value}\n")
+}
+
+/// Title, status, findings and domain.
+fn state(reader: &Reader) -> String {
     let header = reader.header();
     let mut text = String::new();
     if !header.title.is_empty() {
         text += &format!("{}\n\n", header.title);
     }
-    let mut line = |name: &str, value: String| text += &format!("{name:<13}{value}\n");
     let of = header.rows_expected.map_or(String::new(), |total| format!(" of {total}"));
     let state = match reader.status() {
         Status::Complete if reader.lacks_leakage() => format!("without its leakage{}", reader.continuation()),
@@ -93,76 +118,72 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
         Status::Interrupted => format!("interrupted{}", reader.continuation()),
         Status::Failed => "failed".to_owned(),
     };
-    line("status", format!("{state}, {}{of} rows", reader.len()));
+    text += &line("status", format!("{state}, {}{of} rows", reader.len()));
     if let Some(message) = &reader.work().message {
-        line("", message.clone());
+        text += &line("", message);
     }
     if let Some(kept) = reader.replaces() {
-        line("", format!("the complete result that it replaces is kept in {}", kept.display()));
+        text += &line("", format!("the complete result that it replaces is kept in {}", kept.display()));
     }
     for finding in reader.findings() {
-        line(finding.severity.as_str(), format!("{} [{}]", finding.text, finding.code));
+        text += &line(finding.severity.as_str(), format!("{} [{}]", finding.text, finding.code));
     }
-    let grid = &header.grid;
     let boundary = header.boundary().map_or(String::new(), |words| format!(", {words}"));
-    line("domain", domain(grid) + &boundary);
-    let rows = reader.rows()?;
-    let Some(last) = rows.last() else { return Ok(text) };
-    // A curve over time or velocity, with its ends.
+    text += &line("domain", domain(&header.grid) + &boundary);
+    if let Some(temperatures) = temperatures(reader) {
+        text += &line("temperature", temperatures);
+    }
+    text
+}
+
+/// The least and the greatest.
+fn extremes(values: &[f64]) -> [f64; 2] {
+    values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(*v), b.max(*v)])
+}
+
+/// The last value of each quantity, with its curve over time or velocity.
+fn course(reader: &Reader, rows: &[Row]) -> Result<String, StoreError> {
+    let Some(last) = rows.last() else { return Ok(String::new()) };
+    let header = reader.header();
+    let grid = &header.grid;
+    let (force, area) = (grid.units("N"), grid.units("m2"));
     let times: Vec<f64> = rows.iter().map(|row| row.time).collect();
     let bars = |values: &[f64]| sparkline(&times, values, header.is_sweep(), SPARKS);
-    let curve = |value: fn(&asperity::march::Row) -> f64, words: &dyn Fn(f64) -> String| {
+    let curve = |name: &str, value: fn(&Row) -> f64, words: &dyn Fn(f64) -> String| {
         let values: Vec<f64> = rows.iter().map(value).collect();
-        let [low, high] =
-            values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(*v), b.max(*v)]);
-        let (low, high) = (words(low), words(high));
+        let [low, high] = extremes(&values).map(words);
         let ends = if low == high { "unchanged".to_owned() } else { format!("{low} to {high}") };
-        format!("{}  {ends}", bars(&values))
+        line(name, format!("{:<14}{}  {ends}", words(value(last)), bars(&values)))
     };
-    let (force, area) = (grid.units("N"), grid.units("m2"));
-    let percent = |share: f64| format!("{:.3} %", 100.0 * share);
-    match header.is_sweep() {
+    let mut text = match header.is_sweep() {
         true => {
-            let first = rows.first().map_or(last.time, |row| row.time);
-            line("velocity", format!("{} to {}", quantity(first, "m/s"), quantity(last.time, "m/s")));
+            let ends = [times[0], last.time].map(|velocity| quantity(velocity, "m/s"));
+            line("velocity", ends.join(" to "))
         }
         false => line("time", quantity(last.time, "s")),
-    }
+    };
     if reader.scalars().iter().any(|series| series.name == Quantity::FrictionCoefficient.name()) {
         let mu = reader.series(Quantity::FrictionCoefficient.name())?;
-        let [low, high] =
-            mu.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(*v), b.max(*v)]);
+        let [low, high] = extremes(&mu);
         let last = mu.last().copied().unwrap_or(f64::NAN);
-        line("friction", format!("{last:<14.4}{}  {low:.4} to {high:.4}", bars(&mu)));
+        text += &line("friction", format!("{last:<14.4}{}  {low:.4} to {high:.4}", bars(&mu)));
     }
-    line(
-        "load",
-        format!("{:<14}{}", quantity(last.load, force), curve(|row| row.load, &|v| quantity(v, force))),
-    );
-    line(
-        "approach",
-        format!("{:<14}{}", quantity(last.approach, "m"), curve(|row| row.approach, &|v| quantity(v, "m"))),
-    );
-    line(
-        "contact",
-        format!("{:<14}{}", percent(last.contact_fraction), curve(|row| row.contact_fraction, &percent)),
-    );
-    line(
-        "mean gap",
-        format!("{:<14}{}", quantity(last.mean_gap, "m"), curve(|row| row.mean_gap, &|v| quantity(v, "m"))),
-    );
-    if grid.is_line() {
-        line("length", quantity(last.contact_area, area));
-    } else {
-        line("area", quantity(last.contact_area, area));
-        line("corrected", quantity(last.contact_area_corrected, area));
+    let percent = |share: f64| format!("{:.3} %", 100.0 * share);
+    text += &curve("load", |row| row.load, &|v| quantity(v, force));
+    text += &curve("approach", |row| row.approach, &|v| quantity(v, "m"));
+    text += &curve("contact", |row| row.contact_fraction, &percent);
+    text += &curve("mean gap", |row| row.mean_gap, &|v| quantity(v, "m"));
+    text += &line(if grid.is_line() { "length" } else { "area" }, quantity(last.contact_area, area));
+    if !grid.is_line() {
+        text += &line("corrected", quantity(last.contact_area_corrected, area));
     }
     if last.capped_area > 0.0 {
-        line("at hardness", quantity(last.capped_area, area));
+        text += &line("at hardness", quantity(last.capped_area, area));
     }
     let [nominal, touching, largest] =
         [last.mean_pressure, in_contact(last), last.max_pressure].map(|p| quantity(p, "Pa"));
-    line("pressure", format!("nominal mean {nominal}, in the contact {touching}, largest {largest}"));
+    text +=
+        &line("pressure", format!("nominal mean {nominal}, in the contact {touching}, largest {largest}"));
     let asked = reader.scalars().into_iter().filter(|s| {
         let coordinate = header.is_sweep() && s.name == Quantity::Velocity.name();
         Quantity::from_name(s.name).is_some() && !coordinate
@@ -170,47 +191,66 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
     for (n, series) in asked.enumerate() {
         let values = reader.series(series.name)?;
         let value = values.last().copied().unwrap_or(f64::NAN);
-        let words = if series.units == "1" { quantity(value, "") } else { quantity(value, series.units) };
-        line(if n == 0 { "quantities" } else { "" }, format!("{:<27}{words}", series.name));
+        let words = quantity(value, if series.units == "1" { "" } else { series.units });
+        text += &line(if n == 0 { "quantities" } else { "" }, format!("{:<27}{words}", series.name));
     }
+    Ok(text)
+}
+
+/// The stress below the surface and the leakage, where the result has them.
+fn below_and_through(reader: &Reader) -> Result<String, StoreError> {
+    let mut text = String::new();
     if let Some(below) = Below::of(reader)?
         && let Some(worst) = below.worst()
     {
         let [mises, depth] = ["max_mises", "max_mises_depth"].map(|name| below.number(worst, name));
         let place =
             if depth.is_finite() { format!(" at depth {}", quantity(depth, "m")) } else { String::new() };
-        let time = quantity(worst.time, "s");
-        line(
-            "stress",
-            format!("largest von Mises {}{place} of {}, t = {time}", quantity(mises, "Pa"), below.set.body),
-        );
+        let (mises, time) = (quantity(mises, "Pa"), quantity(worst.time, "s"));
+        text +=
+            &line("stress", format!("largest von Mises {mises}{place} of {}, t = {time}", below.set.body));
         if let Some(first) = first_yield(&below) {
-            line("yield", first.sentence(&below.set));
+            text += &line("yield", first.sentence(&below.set));
         }
     }
     if let Some(leaks) = LeakHistory::of(reader)? {
-        line("leak", leaks.sentence());
+        text += &line("leak", leaks.sentence());
     }
+    Ok(text)
+}
+
+/// What the numbers cost, how well they hold, and which fields are stored.
+fn work(reader: &Reader, rows: &[Row]) -> String {
+    let header = reader.header();
     let worst = rows.iter().map(|row| row.certificate).fold(0.0, f64::max);
-    line("certificate", format!("{worst:.1e} at worst (relative error of the pressure)"));
     let work = reader.work();
     let memory = work.peak_memory_bytes.map_or(String::new(), |b| format!(", {}", bytes(b as f64)));
-    line(
-        "work",
-        format!(
-            "{} iterations, {} convolutions ({:.1} per row) in {}{memory}",
-            work.iterations,
-            work.convolutions,
-            work.convolutions as f64 / rows.len().max(1) as f64,
-            duration(work.wall_s)
-        ),
-    );
-    let cyclic = cycles::of_result(reader)?;
+    let per_row = work.convolutions as f64 / rows.len().max(1) as f64;
     let kept: Vec<_> = header.fields.iter().map(|kind| kind.name()).collect();
     let instants = if header.is_sweep() { "velocities" } else { "times" };
-    line("fields", format!("{} at {} {instants}", kept.join(", "), reader.field_times().len()));
-    for part in cyclic.iter().filter(|part| !part.cycles.is_empty()) {
-        let stage = if cyclic.len() > 1 { format!(" of stage {}", part.stage + 1) } else { String::new() };
+    [
+        line("certificate", format!("{worst:.1e} at worst (relative error of the pressure)")),
+        line(
+            "work",
+            format!(
+                "{} iterations, {} convolutions ({per_row:.1} per row) in {}{memory}",
+                work.iterations,
+                work.convolutions,
+                duration(work.wall_s)
+            ),
+        ),
+        line("fields", format!("{} at {} {instants}", kept.join(", "), reader.field_times().len())),
+    ]
+    .concat()
+}
+
+/// The cycles of each stage with a sine.
+fn cycle_table(reader: &Reader) -> Result<String, StoreError> {
+    let grid = &reader.header().grid;
+    let stages = cycles::of_result(reader)?;
+    let mut text = String::new();
+    for part in stages.iter().filter(|part| !part.cycles.is_empty()) {
+        let stage = if stages.len() > 1 { format!(" of stage {}", part.stage + 1) } else { String::new() };
         text += &format!("\ncycles{stage} at {:.4} Hz\n", part.frequency);
         text += "      end          work         by drift     stiffness    loss angle   tan\n";
         for cycle in &part.cycles {
@@ -224,11 +264,6 @@ fn text(reader: &Reader, at: At) -> Result<String, StoreError> {
                 cycle.loss_angle.tan()
             );
         }
-    }
-    if let Some(states) = contact(reader, at)? {
-        let time = reader.field_times()[reader.index(at)?];
-        text += &format!("\ncontact at {}\n", moment(reader, time));
-        text += &shares(states.mapv(|state| state > 0).view(), COLUMNS, grid.size()[1] / grid.size()[0]);
     }
     Ok(text)
 }

@@ -66,7 +66,7 @@ pub(super) fn facts(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
     for [name, words] in materials(setup) {
         line(&name, Some(words));
     }
-    line("Temperature", temperature(setup));
+    line("Temperature", crate::result::temperatures(reader));
     line("Motion", motion(setup));
     line("Hardness", number("hardness", "Pa"));
     if header.is_sweep() {
@@ -134,16 +134,6 @@ fn motion(setup: &Map<String, Value>) -> Option<String> {
     Some(format!("{kind}{steady}; a positive velocity is {along}"))
 }
 
-/// The least and the greatest temperature.
-fn temperature(setup: &Map<String, Value>) -> Option<String> {
-    // Kelvin, or points of time and kelvin.
-    let kelvin = |value: &Value| value.as_f64().or_else(|| value.get(1)?.as_f64());
-    let known: Vec<f64> = setup.get("temperature")?.as_array()?.iter().filter_map(kelvin).collect();
-    let [low, high] = [known.iter().copied().reduce(f64::min)?, known.iter().copied().reduce(f64::max)?];
-    let celsius = |kelvin: f64| format!("{:.1} °C", kelvin - 273.15);
-    Some(if low < high { format!("{} to {}", celsius(low), celsius(high)) } else { celsius(low) })
-}
-
 /// The last full cycle of each stage with a sine.
 fn last_cycles(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
     let grid = &reader.header().grid;
@@ -170,20 +160,7 @@ fn last_cycles(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
 
 #[cfg(test)]
 mod tests {
-    use super::{temperature, time};
-
-    #[test]
-    fn the_least_and_the_greatest_temperature_are_told_of_ends_and_of_points() {
-        let told = |stored: serde_json::Value| {
-            let setup = serde_json::json!({ "temperature": stored });
-            temperature(setup.as_object().unwrap())
-        };
-        let ends = Some("-15.0 °C to 20.0 °C".to_owned());
-        assert_eq!(told(serde_json::json!([258.15, 293.15])), ends);
-        assert_eq!(told(serde_json::json!([[0.0, 293.15], [60.0, 258.15]])), ends);
-        assert_eq!(told(serde_json::json!([293.15, 293.15])), Some("20.0 °C".to_owned()));
-        assert_eq!(told(serde_json::Value::Null), None);
-    }
+    use super::time;
 
     #[test]
     fn long_times_are_told_in_hours_and_days_too() {

@@ -38,6 +38,7 @@ pub(crate) use rows::Rows;
 pub use rows::is_logarithmic;
 pub use stress::stress_figure;
 pub(crate) use temperature::at_rows as temperature_at_rows;
+pub use temperature::temperatures;
 pub use together::together;
 
 use crate::figure::{Colours, Curves, Figure, FigureError, Palette, Panel, Scale, Series, Values};

@@ -1,6 +1,7 @@
 //! The temperature of a run over time.
 
 use asperity_io::store::{Reader, StoreError};
+use serde_json::Value;
 
 use super::Rows;
 use crate::figure::{Axis, Curves, Series, Style};
@@ -8,13 +9,27 @@ use crate::figure::{Axis, Curves, Series, Style};
 /// From K to °C.
 const ZERO: f64 = 273.15;
 
+/// The temperature of a run, or its lowest and its highest: "20.0 °C", "-15.0 °C to 20.0 °C"; `None` where the material has none.
+pub fn temperatures(reader: &Reader) -> Option<String> {
+    ends(&reader.header().setup)
+}
+
+fn ends(setup: &serde_json::Map<String, Value>) -> Option<String> {
+    // Kelvin, or points of time and kelvin.
+    let kelvin = |value: &Value| value.as_f64().or_else(|| value.get(1)?.as_f64());
+    let known: Vec<f64> = setup.get("temperature")?.as_array()?.iter().filter_map(kelvin).collect();
+    let [low, high] = [known.iter().copied().reduce(f64::min)?, known.iter().copied().reduce(f64::max)?];
+    let celsius = |kelvin: f64| format!("{:.1} °C", kelvin - ZERO);
+    Some(if low < high { format!("{} to {}", celsius(low), celsius(high)) } else { celsius(low) })
+}
+
 /// The course of the temperature as the result holds it: (time \[s\], temperature \[K\]), straight in between and held after the
 /// last; `None` where there is none, or it is constant.
 fn course(reader: &Reader) -> Option<Vec<[f64; 2]>> {
     let setup = &reader.header().setup;
     // Results of Python have the points in place of the lowest and the highest temperature.
     let stored = setup.get("temperature_course").or(setup.get("temperature"))?.as_array()?;
-    let pair = |point: &serde_json::Value| Some([point.get(0)?.as_f64()?, point.get(1)?.as_f64()?]);
+    let pair = |point: &Value| Some([point.get(0)?.as_f64()?, point.get(1)?.as_f64()?]);
     let course: Vec<[f64; 2]> = stored.iter().map(pair).collect::<Option<_>>()?;
     (!reader.header().is_sweep() && course.iter().any(|point| point[1] != course[0][1])).then_some(course)
 }
@@ -59,6 +74,16 @@ fn through(course: &[[f64; 2]], times: &[f64]) -> Vec<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_lowest_and_the_highest_temperature_are_told_of_ends_and_of_points() {
+        let told = |stored: Value| ends(serde_json::json!({ "temperature": stored }).as_object().unwrap());
+        let both = Some("-15.0 °C to 20.0 °C".to_owned());
+        assert_eq!(told(serde_json::json!([258.15, 293.15])), both);
+        assert_eq!(told(serde_json::json!([[0.0, 293.15], [60.0, 258.15]])), both);
+        assert_eq!(told(serde_json::json!([293.15, 293.15])), Some("20.0 °C".to_owned()));
+        assert_eq!(told(Value::Null), None);
+    }
 
     #[test]
     fn a_course_is_straight_between_its_points_jumps_and_is_held_at_the_end() {

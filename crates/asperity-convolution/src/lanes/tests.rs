@@ -13,7 +13,7 @@ use super::*;
 /// Domains and lengths: padded, periodic, wrapped, rectangles, one cell, more lanes than cells; the small
 /// ones in the interpreter Miri, which takes about a thousand times as long.
 fn shapes() -> impl Iterator<Item = ([usize; 2], [usize; 2])> {
-    SHAPES.into_iter().filter(|(_, [mx, my])| !cfg!(miri) || mx * my <= 320)
+    SHAPES.into_iter().filter(|(_, [mx, my])| !cfg!(miri) || mx * my <= 130)
 }
 
 const SHAPES: [([usize; 2], [usize; 2]); 25] = [

@@ -32,7 +32,7 @@ pub fn hidden(c: char) -> bool {
     turns || c.is_control() && c != '\n' && c != '\t'
 }
 
-/// A text whose [`hidden`] characters are written as escapes.
+/// A text whose [`hidden`] characters are written as escapes, in the form of JSON, so that JSON stays JSON.
 pub fn printable(text: &str) -> Cow<'_, str> {
     if !text.contains(hidden) {
         return Cow::Borrowed(text);
@@ -40,7 +40,7 @@ pub fn printable(text: &str) -> Cow<'_, str> {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {
         if hidden(c) {
-            shown.extend(c.escape_unicode());
+            shown += &format!("\\u{:04x}", u32::from(c));
         } else {
             shown.push(c);
         }
@@ -55,7 +55,7 @@ mod tests {
     #[test]
     fn control_characters_are_shown_as_escapes() {
         assert_eq!(printable("a\tb\n10 µm"), "a\tb\n10 µm");
-        assert_eq!(printable("a\u{1b}[2Jb\rc\u{9b}"), "a\\u{1b}[2Jb\\u{d}c\\u{9b}");
-        assert_eq!(printable("a\u{202e}b\u{200f}c\u{2069}"), "a\\u{202e}b\\u{200f}c\\u{2069}");
+        assert_eq!(printable("a\u{1b}[2Jb\rc\u{9b}"), "a\\u001b[2Jb\\u000dc\\u009b");
+        assert_eq!(printable("a\u{202e}b\u{200f}c\u{2069}"), "a\\u202eb\\u200fc\\u2069");
     }
 }

@@ -15,7 +15,7 @@ pub(crate) fn stored(reader: &Reader, times: Option<&[f64]>) -> Result<Vec<usize
     instants.sort_unstable();
     instants.dedup();
     if instants.is_empty() {
-        return Err(reader.missing("stored fields".into(), "none yet".into()));
+        return Err(reader.missing("fields".into(), "none is stored yet".into()));
     }
     Ok(instants)
 }
@@ -31,6 +31,6 @@ fn at(reader: &Reader, time: f64) -> Result<usize, StoreError> {
     let more = if times.len() > available.len() { ", ..." } else { "" };
     Err(reader.missing(
         format!("fields at t = {}", quantity(time, "s")),
-        format!("those at {}{more}", available.join(", ")),
+        format!("it holds those at {}{more}", available.join(", ")),
     ))
 }

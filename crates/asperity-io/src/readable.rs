@@ -58,7 +58,7 @@ pub fn shown(unit: &str, largest: f64) -> Shown {
     let power = if power == 1 { String::new() } else { superscript(power) };
     let text = match known {
         Some(_) => format!("{}{name}{}{power}", if inverse { "1/" } else { "" }, letters.replace("m2", "m²")),
-        None => unit.to_owned(),
+        None => unit.replace("m2", "m²").replace("m3", "m³"),
     };
     Shown { factor: 10f64.powi(-3 * prefix * exponent), text }
 }

@@ -41,17 +41,19 @@ pub fn free_disk(path: &Path) -> Option<u64> {
 /// Opens a file that has an end: not a pipe, a device or a directory, which may block or give bytes forever.
 ///
 /// # Errors
-/// Those of the system, and [`io::ErrorKind::InvalidInput`] for what is no file.
+/// Those of the system, [`io::ErrorKind::IsADirectory`], and [`io::ErrorKind::InvalidInput`] for what else is no file.
 pub fn open(path: &Path) -> io::Result<File> {
     let kind = fs::metadata(path)?.file_type();
     if kind.is_file() {
         return File::open(path);
     }
-    let found = if kind.is_dir() { "a directory" } else { special(kind) };
-    Err(io::Error::new(
-        io::ErrorKind::InvalidInput,
-        format!("it is {found}, not a file; save it as a file first"),
-    ))
+    Err(match kind.is_dir() {
+        true => io::Error::new(io::ErrorKind::IsADirectory, "it is a directory, not a file"),
+        false => io::Error::new(
+            io::ErrorKind::InvalidInput,
+            format!("it is {}, not a file; save it as a file first", special(kind)),
+        ),
+    })
 }
 
 /// The bytes of a file that has an end.

@@ -20,7 +20,7 @@ use pyo3::types::PyDict;
 
 use crate::error::{CaseError, ConvergenceError, raised};
 use crate::kernel::Table;
-use crate::march::{choose, fill, grid_of, solver as solver_of};
+use crate::march::{choose, fill, grid_of, memory, solver as solver_of};
 use crate::trace::{Iteration, traced};
 use crate::wait::without_python;
 
@@ -102,6 +102,9 @@ impl Elastic {
         let kernel = kernel.map(|values| Table::new(grid, boundary, values.as_array().to_owned()));
         let kernel = kernel.transpose().map_err(|error| raised(py, error))?;
         let half = kernel.is_none();
+        let bytes =
+            asperity::operator::bytes(&grid, boundary) + Solver::bytes(options.method, &grid, boundary);
+        memory(&grid, bytes)?;
         let planned = without_python(py, &AtomicBool::new(false), || {
             let operator = match kernel {
                 None => half_space(grid, boundary),

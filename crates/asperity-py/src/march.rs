@@ -12,6 +12,7 @@ use asperity::{
     material,
 };
 use asperity_io::choice::{self, Choice};
+use asperity_io::resources;
 use asperity_io::store::FieldKind;
 use numpy::{IntoPyArray, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -135,7 +136,17 @@ pub fn grid_of(py: Python<'_>, (nx, ny): (usize, usize), size: &[f64]) -> PyResu
             ));
         }
     };
-    grid.map_err(|error| raised(py, error))
+    let grid = grid.map_err(|error| raised(py, error))?;
+    // Heights, and a copy of them.
+    memory(&grid, 16 * grid.len())?;
+    Ok(grid)
+}
+
+/// Refuses work on a grid that takes more memory than there is.
+pub fn memory(grid: &Grid, bytes: usize) -> PyResult<()> {
+    let [nx, ny] = grid.cells();
+    let refused = |reason: String| CaseError::new_err(format!("{reason}; take fewer cells"));
+    resources::check_memory(&format!("{nx} x {ny} cells"), bytes as u64).map_err(refused)
 }
 
 /// (name, unit, meaning, whether it is a histogram) of all quantities.
@@ -333,6 +344,7 @@ impl March {
             quantities: Quantities { list, bins, largest_pressure, largest_gap },
             ..Simulation::new(grid, gap)
         };
+        memory(&simulation.grid, simulation.bytes())?;
         let moves =
             motion.map(|parts| self::motion(parts, &simulation.grid, simulation.boundary, &simulation.gap));
         let moves = moves.transpose()?.transpose().map_err(|error| raised(py, error))?;

@@ -181,6 +181,8 @@ pub struct Preparation {
 
 /// Memory of the program itself and of its threads, whatever the case \[bytes\].
 const PROGRAM: usize = 21 << 20;
+/// Bytes of a row until the run ends: its time, what the march keeps of it, its numbers in the result.
+const ROW: usize = 120;
 /// Fields that are copied while a checkpoint is stored: what is compressed.
 const KEPT: usize = 2;
 /// The same while a row with fields is stored: the gap too.
@@ -199,7 +201,8 @@ impl Case {
         let run = simulation.bytes() + copies * 8 * self.grid.len() + stress;
         // The run has given its memory back when the leakage is computed.
         let leak = self.leakage.as_ref().map_or(0, |leak| leak.bytes(self.grid.len()) as usize);
-        (run.max(leak) + PROGRAM) as u64
+        let rows = self.usual_rows.saturating_mul(ROW);
+        (run.max(leak).saturating_add(rows).saturating_add(PROGRAM)) as u64
     }
 
     /// What the case will do.

@@ -81,6 +81,7 @@ pub use raw::{LeakDirection, Leakage as LeakageKeys};
 pub use rehearse::Rehearsal;
 pub use schema::schema;
 pub use specimen::{Specimen, specimens};
+pub use words::nearest;
 
 use crate::leakage::Leak;
 use crate::stress::StressPlan;
@@ -432,11 +433,16 @@ fn file_text(path: &Path) -> Result<String, (String, String)> {
         std::io::ErrorKind::NotFound => {
             ("there is no such file".to_owned(), "`asperity new TEMPLATE` writes a starter case".to_owned())
         }
+        std::io::ErrorKind::IsADirectory if path.join("zarr.json").exists() => (
+            "it is a result, not a case file".to_owned(),
+            "asperity show and asperity report read it".to_owned(),
+        ),
+        std::io::ErrorKind::IsADirectory => (error.to_string(), "name a case file".to_owned()),
         _ => (format!("the file cannot be read: {error}"), "check the path and its permissions".to_owned()),
     })?;
     let mut bytes = Vec::new();
     file.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(|error| {
-        (format!("the file cannot be read: {error}"), "name a case file, not a directory".to_owned())
+        (format!("the file cannot be read: {error}"), "check the path and its permissions".to_owned())
     })?;
     if bytes.len() as u64 > MOST_BYTES {
         let reason = format!("the file is larger than {} MB, the limit for a case file", MOST_BYTES >> 20);

@@ -22,8 +22,9 @@ use thiserror::Error;
 
 use crate::case::{Case, CaseErrors, Travel};
 use crate::leakage::{self, LeakError};
+use crate::readable::counted;
 use crate::resources::free_disk;
-use crate::store::{Field, FieldKind, Header, Outcome, Reader, Status, StoreError, Work, Writer};
+use crate::store::{Field, FieldKind, Header, Outcome, Reader, SCALARS, Status, StoreError, Work, Writer};
 use crate::stress::{self, Below, Ratio, StressBody, StressError};
 
 pub use memory::peak_memory_bytes;
@@ -103,7 +104,7 @@ pub enum RunError {
     #[error(transparent)]
     Output(StoreError),
     /// The result cannot be continued; the steps before are stored.
-    #[error("{source}; the {rows} rows before are stored", rows = summary.rows)]
+    #[error("{source}; {} before are stored", counted(summary.rows, "row"))]
     Storage {
         /// What failed.
         source: StoreError,
@@ -317,10 +318,14 @@ const BEST_COMPRESSION: u64 = 10;
 fn check_disk(case: &Case, path: &Path) -> Result<(), StoreError> {
     let description = case.describe();
     let stress = description.stress.and_then(|stress| stress.result_bytes).unwrap_or(0);
-    let needed = description.result_bytes.map(|fields| fields.saturating_add(stress));
-    let (Some(needed), Some(free)) = (needed, free_disk(path)) else { return Ok(()) };
+    let fields = description.result_bytes.map(|fields| fields.saturating_add(stress));
+    let (Some(fields), Some(free)) = (fields, free_disk(path)) else { return Ok(()) };
+    // The numbers of rows are not compressed.
+    let columns = 8 * (SCALARS.len() + case.output.quantities.list.len()) as u64;
+    let rows = (description.usual_rows as u64).saturating_mul(columns);
+    let needed = fields.saturating_add(rows);
     let error = StoreError::NoSpace { path: path.to_owned(), needed, free };
-    if needed / BEST_COMPRESSION > free {
+    if rows.saturating_add(fields / BEST_COMPRESSION) > free {
         return Err(error);
     }
     if needed > free {

@@ -92,13 +92,9 @@ impl Chunks {
         decode().map_err(|error| corrupt(&path, error))
     }
 
-    /// Compares a chunk with its checksum; in results of form 1, that of its compression.
+    /// Compares a chunk with its checksum and its length; in results of form 1, with the checksum of its compression.
     pub(super) fn verify(&self, index: &[u64]) -> Result<()> {
-        let bytes = self.verified(index)?;
-        if !self.summed {
-            self.unpacked(&self.path(index), bytes)?;
-        }
-        Ok(())
+        self.unpacked(&self.path(index), self.verified(index)?).map(drop)
     }
 
     /// The bytes of a chunk before their checksum.
@@ -145,6 +141,7 @@ impl Chunks {
     fn find(&self, index: &[u64]) -> Result<()> {
         let path = self.path(index);
         let length = match fs::metadata(&path) {
+            Ok(file) if !file.is_file() => return Err(corrupt(&path, "it is no file")),
             Ok(file) => file.len(),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
                 return Err(corrupt(&path, "the chunk is missing"));

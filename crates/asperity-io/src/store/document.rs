@@ -222,7 +222,8 @@ pub(super) fn exchange_arrays(
     Ok(gone)
 }
 
-fn read_json(root: &Path) -> Result<(PathBuf, Value)> {
+/// The document of a group or an array, and its path.
+pub(super) fn read_json(root: &Path) -> Result<(PathBuf, Value)> {
     let absent = |why: String| StoreError::NotAResult { path: root.to_owned(), why };
     let file = root.join(NAME);
     let length = match fs::metadata(&file) {

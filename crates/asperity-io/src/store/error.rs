@@ -92,14 +92,14 @@ pub enum StoreError {
         path: PathBuf,
     },
     /// The result does not hold what was asked for.
-    #[error("{} holds no {what}; it holds {available}", .path.display())]
+    #[error("{} holds no {what}; {instead}", .path.display())]
     Missing {
         /// The result.
         path: PathBuf,
         /// What was asked for.
         what: String,
-        /// What is there instead.
-        available: String,
+        /// What it holds instead, or what to do, as a sentence.
+        instead: String,
     },
     /// The result would not fit on the disk.
     #[error("{} would take up to {} (numbers that repeat take less), but {} are free on its disk; keep fewer fields (output.fields, output.every) or choose another disk", .path.display(), bytes(*.needed as f64), bytes(*.free as f64))]

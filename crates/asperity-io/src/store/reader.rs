@@ -169,8 +169,11 @@ impl Reader {
         let Some(column) = column.filter(|_| quantity.is_histogram()) else {
             let kept = self.header().quantities.iter().map(|column| column.quantity);
             let names: Vec<_> = kept.filter(|q| q.is_histogram()).map(Quantity::name).collect();
-            let names = if names.is_empty() { "no histograms".to_owned() } else { names.join(", ") };
-            return Err(self.missing(format!("histogram `{quantity}`"), names));
+            let instead = match &names[..] {
+                [] => "name it in output.quantities of the case, and run that again".to_owned(),
+                names => format!("it holds {}", names.join(", ")),
+            };
+            return Err(self.missing(format!("histogram `{quantity}`"), instead));
         };
         let numbers = self.column(quantity.name(), self.len())?;
         let numbers: Vec<f64> = numbers.into_iter().map(f64::from_le_bytes).collect();
@@ -190,7 +193,7 @@ impl Reader {
         let known = self.scalars();
         if !known.iter().any(|series| series.name == name) {
             let names: Vec<_> = known.iter().map(|series| series.name).collect();
-            return Err(self.missing(format!("series `{name}`"), names.join(", ")));
+            return Err(self.missing(format!("series `{name}`"), format!("it holds {}", names.join(", "))));
         }
         let entry = SCALARS
             .iter()
@@ -245,12 +248,14 @@ impl Reader {
                 At::Time(time) => format!("fields at {time} s"),
                 At::Last => "fields".to_owned(),
             };
-            let available = match times[..] {
-                [] => "fields at no time yet".to_owned(),
-                [first, .., last] => format!("fields at {} times from {first} s to {last} s", times.len()),
-                [only] => format!("fields at {only} s"),
+            let instead = match times[..] {
+                [] => "no field is stored yet".to_owned(),
+                [first, .., last] => {
+                    format!("it holds fields at {} times from {first} s to {last} s", times.len())
+                }
+                [only] => format!("it holds fields at {only} s"),
             };
-            self.missing(what, available)
+            self.missing(what, instead)
         })
     }
 
@@ -324,9 +329,10 @@ impl Reader {
     /// [`StoreError::Missing`] where it is not stored, [`StoreError::Corrupt`] where a file is missing or damaged.
     pub fn leak(&self, name: &str) -> Result<Vec<f64>> {
         let Some(leaks) = self.leaks().filter(|leaks| leaks.names.contains(&name)) else {
-            return Err(
-                self.missing(format!("leakage `{name}`"), "none (`asperity leak RESULT` computes it)".into())
-            );
+            return Err(match self.leaks() {
+                Some(_) => self.missing(format!("leakage `{name}`"), "its leakage lacks this number".into()),
+                None => self.no_leaks(),
+            });
         };
         let spec = self.spec(name)?;
         let index = vec![0; spec.shape.len()];
@@ -346,8 +352,8 @@ impl Reader {
     /// As of [`leak`](Self::leak).
     pub fn fluid_pressure(&self, index: usize) -> Result<Array2<f64>> {
         if !self.leaks().is_some_and(|leaks| leaks.has_pressure() && index < leaks.rows) {
-            let available = "none (set leakage.field = true, or `asperity leak RESULT --field`)".to_owned();
-            return Err(self.missing(format!("fluid pressure {index}"), available));
+            let how = "set leakage.field = true in the case, or store it by `asperity leak RESULT --field`";
+            return Err(self.missing(format!("fluid pressure {index}"), how.into()));
         }
         Chunks::new(&self.root, &self.spec("fluid_pressure")?)?
             .read_map(&[index as u64], self.header().grid.shape())
@@ -384,31 +390,31 @@ impl Reader {
 
     /// The error of a result that has no row yet.
     pub fn no_rows(&self) -> StoreError {
-        self.missing("steps".into(), "none yet".into())
+        self.missing("steps".into(), "its run has not come to one yet".into())
     }
 
     /// The error of a field that was not kept.
     pub fn no_field(&self, kind: FieldKind) -> StoreError {
         let names: Vec<_> = self.header().fields.iter().map(|kind| kind.name()).collect();
         let available = if names.is_empty() {
-            "no fields".to_owned()
+            String::new()
         } else {
-            format!("the fields {}", names.join(", "))
+            format!("it holds the fields {}; ", names.join(", "))
         };
-        let how = format!("{available}; name it in output.fields of the case, and run that again");
+        let how = format!("{available}name it in output.fields of the case, and run that again");
         self.missing(format!("field `{kind}`"), how)
     }
 
     /// The error of a result without leaks.
     pub fn no_leaks(&self) -> StoreError {
-        self.missing("leakage".into(), "none (`asperity leak RESULT` computes it)".into())
+        self.missing("leakage".into(), "`asperity leak RESULT` computes it".into())
     }
 
     /// The error of a result whose case asked for no quantities.
     pub fn no_quantities(&self) -> StoreError {
         self.missing(
             "quantities".into(),
-            "none; name some in output.quantities of the case, and run that again".into(),
+            "name some in output.quantities of the case, and run that again".into(),
         )
     }
 
@@ -419,15 +425,15 @@ impl Reader {
             name => name,
         };
         let spec = self.document.arrays().into_iter().find(|spec| spec.name == name);
-        spec.ok_or_else(|| self.missing(format!("array `{name}`"), "the arrays of a result".into()))
+        spec.ok_or_else(|| self.missing(format!("array `{name}`"), "it is no array of a result".into()))
     }
 
     /// The error of a line contact that lacks what needs a plane.
     pub(crate) fn on_line(&self, what: &str) -> StoreError {
-        self.missing(what.into(), "a line contact".into())
+        self.missing(what.into(), "it is a line contact".into())
     }
 
-    pub(crate) fn missing(&self, what: String, available: String) -> StoreError {
-        StoreError::Missing { path: self.root.clone(), what, available }
+    pub(crate) fn missing(&self, what: String, instead: String) -> StoreError {
+        StoreError::Missing { path: self.root.clone(), what, instead }
     }
 }

@@ -42,6 +42,9 @@ pub struct StressSet {
     pub instants: Vec<usize>,
 }
 
+/// What to do where a result holds no stress.
+const COMPUTES: &str = "`asperity stress RESULT` computes the stress";
+
 const fn series(name: &'static str, units: &'static str, long_name: &'static str) -> Series {
     Series { name, units, long_name }
 }
@@ -222,7 +225,8 @@ impl StressWriter {
         let specs: Vec<ArraySpec> = specs.into_iter().map(|spec| spec.of_form(form)).collect();
         let chunks = |(quantity, series): &(StressQuantity, Series)| {
             let spec = specs.iter().find(|spec| spec.name == series.name);
-            let spec = spec.ok_or_else(|| reader.missing(series.name.into(), "no such array".into()))?;
+            let spec = spec
+                .ok_or_else(|| reader.missing(format!("array `{}`", series.name), "it is damaged".into()))?;
             Ok((*quantity, Chunks::new(root, spec)?))
         };
         Ok(StressWriter {
@@ -366,12 +370,11 @@ impl Reader {
     fn stress_column(&self, name: &str, known: &[Series]) -> Result<Vec<f64>> {
         if !known.iter().any(|series| series.name == name) {
             let names: Vec<_> = known.iter().map(|series| series.name).collect();
-            let available = if names.is_empty() {
-                "no stress (asperity stress computes it)".into()
-            } else {
-                names.join(", ")
+            let instead = match &names[..] {
+                [] => COMPUTES.to_owned(),
+                names => format!("it holds {}", names.join(", ")),
             };
-            return Err(self.missing(format!("`{name}`"), available));
+            return Err(self.missing(format!("`{name}`"), instead));
         }
         let numbers = self.column(name, self.field_times().len())?;
         Ok(numbers.into_iter().map(f64::from_le_bytes).collect())
@@ -385,16 +388,17 @@ impl Reader {
         let index = self.index(at)?;
         let set = self.stress().filter(|set| set.quantities.contains(&quantity) && depth < set.depths.len());
         let Some(set) = set else {
-            let available = match self.stress() {
-                None => "no stress (asperity stress computes it)".to_owned(),
-                Some(set) if set.quantities.is_empty() => "no fields of the stress".to_owned(),
+            let instead = match self.stress() {
+                None => COMPUTES.to_owned(),
+                Some(set) if set.quantities.is_empty() => "it holds no fields of the stress".to_owned(),
                 Some(set) => {
                     let names: Vec<_> = set.quantities.iter().map(|quantity| quantity.name()).collect();
-                    format!("the stress fields {} at {} depths", names.join(", "), set.depths.len())
+                    format!("it holds the stress fields {} at {} depths", names.join(", "), set.depths.len())
                 }
             };
-            return Err(self
-                .missing(format!("stress field `{}` of depth number {depth}", quantity.name()), available));
+            return Err(
+                self.missing(format!("stress field `{}` of depth number {depth}", quantity.name()), instead)
+            );
         };
         let shape = self.header().grid.shape();
         if !set.instants.contains(&index) {

@@ -2,11 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
+use serde_json::Value;
+
 use super::checkpoint;
 use super::chunks::Chunks;
-use super::error::{Result, StoreError};
-use super::layout::ArraySpec;
-use super::reader::Reader;
+use super::document::{NAME, read_json};
+use super::error::{Result, StoreError, corrupt};
+use super::layout::{ArraySpec, FieldKind};
+use super::reader::{At, Reader};
 
 /// What was found in a result.
 #[derive(Debug)]
@@ -21,7 +24,7 @@ pub struct Verification {
     pub damage: Vec<Damage>,
 }
 
-/// A file that is missing or does not have its checksum.
+/// A file that is missing, does not have its checksum, or is not the one that was written there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Damage {
     /// The file, or the directory of an array whose rows are damaged.
@@ -30,7 +33,8 @@ pub struct Damage {
     pub what: String,
 }
 
-/// Reads the result at `path` whole and compares all numbers, the documents and the checkpoint with their checksums.
+/// Reads the result at `path` whole and compares all numbers, the documents and the checkpoint with their checksums; the documents
+/// of the arrays with that of the group; and the fields with their rows, for a file that belongs elsewhere has its own checksum.
 ///
 /// # Errors
 /// [`StoreError::NotAResult`] and [`StoreError::Newer`] where it cannot be judged, [`StoreError::Io`] where the system
@@ -45,8 +49,10 @@ pub fn verify(path: &Path) -> Result<Verification> {
         }
     };
     found.has_checksums = reader.document().form > 1;
+    let (_, group) = read_json(path)?;
     for array in reader.document().arrays() {
         found.arrays += 1;
+        found.note(documents_agree(path, &group, &array))?;
         if array.grows() {
             let rows = if super::layout::is_of_rows(array.dimensions[0]) {
                 reader.len()
@@ -72,6 +78,11 @@ pub fn verify(path: &Path) -> Result<Verification> {
     if found.damage.is_empty() {
         found.note(reader.rows().map(drop))?;
     }
+    if found.damage.is_empty() {
+        for index in 0..reader.field_times().len() {
+            found.note(is_of_its_row(&reader, index))?;
+        }
+    }
     found.note(checkpoint::read(path).map(drop))?;
     Ok(found)
 }
@@ -84,6 +95,67 @@ impl Verification {
         }
         Ok(())
     }
+}
+
+/// Compares the document of an array with what the group's document says of it. Their numbers of rows may differ after a kill.
+fn documents_agree(root: &Path, group: &Value, array: &ArraySpec) -> Result<()> {
+    let path = root.join(array.name).join(NAME);
+    let Ok((_, mut own)) = read_json(&root.join(array.name)) else {
+        return Err(corrupt(&path, "it is missing or no document of an array"));
+    };
+    let of_group = &group["consolidated_metadata"]["metadata"][array.name];
+    if array.grows() {
+        own["shape"][0] = of_group["shape"][0].clone();
+    }
+    if own != *of_group {
+        return Err(corrupt(&path, format_args!("it is not what {NAME} of the result says of the array")));
+    }
+    if of_group["attributes"]["units"] != array.attributes["units"] {
+        let what = format!("it says another unit of `{}` than was written", array.name);
+        return Err(corrupt(&root.join(NAME), what));
+    }
+    Ok(())
+}
+
+/// Compares the fields of a stored instant with the numbers of its row.
+fn is_of_its_row(reader: &Reader, index: usize) -> Result<()> {
+    /// The numbers of a row are sums in another order.
+    const ROUNDING: f64 = 1e-9;
+    let at = At::Index(index);
+    let row = reader.rows()?[reader.field_steps()[index]];
+    if row.time != reader.field_times()[index] {
+        return Ok(());
+    }
+    let close = |a: f64, b: f64, size: f64| (a - b).abs() <= ROUNDING * size.abs();
+    for kind in &reader.header().fields {
+        let holds = match kind {
+            FieldKind::Pressure => {
+                let largest = reader.field(*kind, at)?.into_iter().fold(0.0, f64::max);
+                close(largest, row.max_pressure, row.max_pressure)
+            }
+            FieldKind::Gap => {
+                let gap = reader.field(*kind, at)?;
+                let finite = || gap.iter().filter(|gap| gap.is_finite());
+                let mean = finite().sum::<f64>() / finite().count().max(1) as f64;
+                close(mean, row.mean_gap, finite().fold(row.approach.abs(), |most, gap| most.max(gap.abs())))
+            }
+            FieldKind::Contact => {
+                let cells = reader.contact(at)?.into_iter().filter(|state| *state > 0).count();
+                close(
+                    cells as f64,
+                    row.contact_fraction * reader.header().grid.len() as f64,
+                    cells as f64 + 1.0,
+                )
+            }
+            FieldKind::Displacement | FieldKind::Flattening => true,
+        };
+        if !holds {
+            let what =
+                format!("field number {index} is not that of its row: it comes from another time or result");
+            return Err(corrupt(&reader.path().join(kind.name()), what));
+        }
+    }
+    Ok(())
 }
 
 /// The indices of the chunks of an array, the last one fastest.

@@ -67,7 +67,7 @@ pub fn evaluate(
     compute(&reader, plan, &set, interrupt, &mut observe, Some(&mut store))?;
     writer.add_stress(store)?;
     let below = Below::of(&Reader::open(writer.path())?)?;
-    below.ok_or_else(|| StressError::Store(reader.missing("stress".into(), "none".into())))
+    below.ok_or_else(|| StressError::Store(reader.missing("stress".into(), "it was not stored".into())))
 }
 
 /// The same for a result that is only read: nothing is stored.

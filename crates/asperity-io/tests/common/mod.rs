@@ -53,7 +53,11 @@ impl Case {
         Case { header: Header { grid, ..header }, gap }
     }
 
+    /// Numbers of no meaning, but for those that follow from the fields.
     pub(crate) fn row(&self, step: usize) -> Row {
+        let (pressure, gap) = (self.pressure(step), self.gap(step));
+        let touchable = gap.iter().filter(|gap| gap.is_finite());
+        let touching = pressure.iter().filter(|p| **p > 0.0).count();
         Row {
             // Steps 4 and 5 are the two sides of a jump.
             time: if step > 4 { step - 1 } else { step } as f64 / 3.0,
@@ -61,7 +65,9 @@ impl Case {
             approach: -noise(step),
             residual: if step == 2 { f64::NAN } else { 1e-7 * noise(step) },
             certificate: if step == 3 { f64::INFINITY } else { noise(step) },
-            max_pressure: 3e8 * noise(7 * step),
+            max_pressure: pressure.iter().copied().fold(0.0, f64::max),
+            mean_gap: touchable.clone().sum::<f64>() / touchable.count() as f64,
+            contact_fraction: touching as f64 / gap.len() as f64,
             iterations: step,
             convolutions: 2 * step + 1,
             ..Row::default()

@@ -201,7 +201,7 @@ fn what_the_result_does_not_hold_is_said_with_what_it_holds() {
     let output = directory.path().join("out.nc");
     let error =
         export(&Reader::open(&path).unwrap(), Format::NetCdf, &output, &Options::default()).unwrap_err();
-    assert!(error.to_string().ends_with("holds no steps; it holds none yet"), "{error}");
+    assert!(error.to_string().ends_with("holds no steps; its run has not come to one yet"), "{error}");
     case.append(&mut writer, 0, false).unwrap();
     let reader = Reader::open(&path).unwrap();
     let options = Options { fields: Some(vec![FieldKind::Pressure]), ..Options::default() };
@@ -214,7 +214,7 @@ fn what_the_result_does_not_hold_is_said_with_what_it_holds() {
     );
     let options = Options { instants: Some(vec![At::Time(3.0)]), ..Options::default() };
     let error = export(&reader, Format::NetCdf, &output, &options).unwrap_err();
-    assert!(error.to_string().ends_with("holds no fields at 3 s; it holds fields at no time yet"), "{error}");
+    assert!(error.to_string().ends_with("holds no fields at 3 s; no field is stored yet"), "{error}");
     // A run that has kept no fields yet exports as what it is.
     for format in Format::ALL {
         let output = directory.path().join(format!("empty.{}", format.extension()));

@@ -182,6 +182,35 @@ fn a_damaged_map_is_found_by_its_checksum() {
 }
 
 #[test]
+fn a_whole_file_of_another_place_is_found() {
+    let (_directory, path) = place();
+    write(&path);
+    let damage = || verify(&path).unwrap().damage.iter().map(|one| one.what.clone()).collect::<Vec<_>>();
+    assert!(damage().is_empty());
+    let [first, second] = ["0/0/0", "1/0/0"].map(|index| path.join("pressure/c").join(index));
+    let own = fs::read(&second).unwrap();
+    fs::copy(&first, &second).unwrap();
+    assert!(damage()[0].contains("comes from another time or result"), "{:?}", damage());
+    fs::remove_file(&second).unwrap();
+    fs::create_dir(&second).unwrap();
+    assert_eq!(damage(), ["it is no file"]);
+    fs::remove_dir(&second).unwrap();
+    fs::write(&second, own).unwrap();
+    // The documents of arrays, which readers without consolidated metadata use.
+    let file = path.join("load/zarr.json");
+    let own = fs::read_to_string(&file).unwrap();
+    for other in ["garbage".to_owned(), own.replace("\"N\"", "\"MN\"")] {
+        fs::write(&file, other).unwrap();
+        assert_eq!(damage().len(), 1);
+    }
+    fs::write(&file, own).unwrap();
+    edit(&path, |document| {
+        document["consolidated_metadata"]["metadata"]["load"]["attributes"]["units"] = "MN".into();
+    });
+    assert_eq!(damage().len(), 1);
+}
+
+#[test]
 fn a_flipped_bit_in_a_row_is_found_by_readers_and_before_a_run_goes_on() {
     let (_directory, path) = place();
     write(&path);

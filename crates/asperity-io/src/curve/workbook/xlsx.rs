@@ -225,20 +225,29 @@ enum Piece<'a> {
 /// Gives the pieces of a document to `on`, one after the other.
 fn walk(xml: &str, mut on: impl FnMut(Piece<'_>) -> Result<(), Fault>) -> Result<(), Fault> {
     let mut reader = Reader::from_str(xml.trim_start_matches('\u{feff}'));
+    let mut open = 0;
     loop {
         match reader.read_event().map_err(|_| damaged())? {
-            Event::Start(element) => on(Piece::Open(element.local_name().as_ref(), &element))?,
+            Event::Start(element) => {
+                open += 1;
+                on(Piece::Open(element.local_name().as_ref(), &element))?;
+            }
             Event::Empty(element) => {
                 on(Piece::Open(element.local_name().as_ref(), &element))?;
                 on(Piece::Close(element.local_name().as_ref()))?;
             }
-            Event::End(element) => on(Piece::Close(element.local_name().as_ref()))?,
+            Event::End(element) => {
+                open -= 1;
+                on(Piece::Close(element.local_name().as_ref()))?;
+            }
             Event::Text(text) => on(Piece::Text(&text.xml10_content()))?,
             Event::CData(text) => on(Piece::Text(&text))?,
             Event::GeneralRef(reference) => match reference.resolve_char_ref() {
                 Ok(Some(character)) => on(Piece::Text(character.encode_utf8(&mut [0; 4])))?,
                 _ => on(Piece::Text(resolve_predefined_entity(&reference).ok_or_else(damaged)?))?,
             },
+            // What is cut off between two cells reads well up to there.
+            Event::Eof if open > 0 => return Err(damaged()),
             Event::Eof => return Ok(()),
             _ => {}
         }
@@ -275,6 +284,12 @@ mod tests {
         for text in ["", "A", "1A", "é1", "AAAAAAAAAA1", "A99999999999"] {
             assert!(place(text).is_err(), "{text}");
         }
+    }
+
+    #[test]
+    fn a_document_that_ends_within_an_element_is_damaged() {
+        assert_eq!(strings("<sst><si><t>a</t></si></sst>").unwrap(), ["a"]);
+        assert!(strings("<sst><si><t>a</t></si>").is_err());
     }
 
     #[test]

@@ -5,7 +5,8 @@
 //! cone         a² = 2 W C / (π s),  w = π s a/2,  p_mean C = s/2         (Love, Sneddon)
 //! cylinder     a² = 4 R W C / π,  p_max C = a/(2R)                      (Hertz; W per length)
 //! wedge        a = W C / s,  p_mean C = s/2                             (Johnson, section 5.2; W per length)
-//! rough plane  A/A0 = 2 p C / h',  p_mean C = h'/2 inside the contact    (Persson; h' the rms slope)
+//! rough plane  A/A0 = erf(√π p C / h'),  p_mean = p A0/A               (Persson's form, with the slope 2 p C/h' that
+//!                                                                      computed contacts have under light loads; h' the rms slope)
 //! ```
 //!
 //! with the compliance C at once and at the end of the run; for half-spaces only. An estimate: it leaves out what the other parts of the gap
@@ -95,7 +96,7 @@ impl Expected {
             Expected { largest, contact: None, strain: None, width: None, room: room(grid, parts) };
         match (form, radii, largest) {
             (Some(Form::Rough { slope }), _, Prescribed::Load(load)) => {
-                let share = |c: f64| (2.0 * load / grid.area() * c / slope).min(1.0);
+                let share = |c: f64| libm::erf(PI.sqrt() * load / grid.area() * c / slope);
                 let shares = compliance.map(share);
                 expected.contact = Some(Contact::Share(shares));
                 expected.strain =

@@ -57,6 +57,23 @@ fn zener() -> Creep {
     }
 }
 
+#[test]
+fn the_expected_share_of_a_rough_contact_is_twice_the_pressure_over_modulus_and_slope_and_ends_below_one() {
+    let parts = [rough(1e-4, 0.1)];
+    let share = |load: f64| {
+        let loaded = Simulation { loading: step(load), ..simulation(&parts) };
+        match Expected::of(&loaded, &parts).unwrap().contact {
+            Some(Contact::Share([first, last])) if first == last => first,
+            other => panic!("{other:?}"),
+        }
+    };
+    // p C/h' = load/(1 mm)^2 / 1 MPa / h', with the slope h' of the cells near 0.1.
+    let light = share(1e-4);
+    assert!((light / 2e-3 - 1.0).abs() < 0.1, "{light}");
+    assert!((share(2e-4) / light - 2.0).abs() < 1e-4);
+    assert!(share(0.1) > 0.9 && share(0.1) < 1.0);
+}
+
 fn before(simulation: &Simulation, parts: &[Part]) -> Vec<Finding> {
     Judge::new(simulation, Known { parts, bodies: &[], thickness: None }).known().to_vec()
 }

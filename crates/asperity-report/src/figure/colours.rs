@@ -71,6 +71,14 @@ impl Palette {
         Palette::ALL.into_iter().find(|palette| palette.name() == name)
     }
 
+    /// The colour beside it, of what is left out: light, and none of its own.
+    pub(super) fn aside(self) -> [u8; 3] {
+        match self {
+            Palette::Grey | Palette::RedBlue => [190, 226, 170],
+            _ => OPEN,
+        }
+    }
+
     /// The colour at a share of the range, 0 to 1: red, green, blue.
     pub fn at(self, share: f64) -> [u8; 3] {
         let share = share.clamp(0.0, 1.0);

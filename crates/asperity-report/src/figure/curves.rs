@@ -110,10 +110,10 @@ impl Curves {
     }
 
     /// What the panel needs of its margins: width of the numbers at the vertical axis, and height of a legend above the frame,
-    /// where no corner inside is free of curves.
-    pub(crate) fn needs(&self, size: [f64; 2]) -> Margins {
-        let labels = self.rulers(size, Margins::default()).1.widest();
-        let own = Margins { labels, beside: 0.0, legend: 0.0, head: super::head(&self.title) };
+    /// where no corner inside is free of curves. Beside the frame are the `sides` at least: those of the panels above and below.
+    pub(crate) fn needs(&self, size: [f64; 2], sides: Margins) -> Margins {
+        let labels = self.rulers(size, Margins::default()).1.widest().max(sides.labels);
+        let own = Margins { labels, beside: sides.beside, legend: 0.0, head: super::head(&self.title) };
         let layout = self.layout(&Place { corner: [0.0, 0.0], size, margins: own });
         let legend = Legend::of(self);
         if legend.is_empty() || self.corner(&legend, &layout).is_some() {
@@ -214,14 +214,12 @@ impl Curves {
     /// Whether titles and names end inside of the panel.
     pub(super) fn has_room_for_words(&self, place: &Place) -> bool {
         let layout = self.layout(place);
-        let [left, _, right, _] = layout.area;
-        let ([x0, _], [width, height]) = (place.corner, place.size);
+        let [left, top, right, bottom] = layout.area;
+        let ([x0, y0], [width, height]) = (place.corner, place.size);
         let fits = |text: &str, room: f64| font::width(text, TEXT) <= room;
-        // The title of the horizontal axis stands below the middle of the frame.
-        let across = 2.0 * (x0 + width + EDGE - 0.5 * (left + right)).min(0.5 * (left + right) - x0);
         fits(&self.title, x0 + width + EDGE - left)
-            && fits(&layout.x.title, across)
-            && fits(&layout.y.title, height)
+            && fits(&layout.x.title, around([left, right], [x0, x0 + width + EDGE]))
+            && fits(&layout.y.title, around([top, bottom], [y0, y0 + height]))
             && Legend::of(self).width() <= right - x0
     }
 
@@ -308,6 +306,12 @@ impl Curves {
         }
         extent
     }
+}
+
+/// Room of a text at the middle of a side, between these limits.
+pub(super) fn around([from, to]: [f64; 2], [first, last]: [f64; 2]) -> f64 {
+    let middle = 0.5 * (from + to);
+    2.0 * (middle - first).min(last - middle)
 }
 
 /// Frame, ticks, grid and titles; `titles` holds the baseline of the vertical and of the horizontal title.

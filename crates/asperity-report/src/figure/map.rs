@@ -4,7 +4,7 @@ use asperity_io::readable::shown;
 use ndarray::{Array2, ArrayView2};
 
 use super::colours::{Colours, Palette};
-use super::curves::frame;
+use super::curves::{around, frame};
 use super::drawing::{Anchor, Drawing, INK, Paint, Pen, Pixels};
 use super::font;
 use super::frame::{Layout, NAMES};
@@ -249,14 +249,22 @@ impl Map {
     /// Whether titles and names end inside of the panel.
     pub(super) fn has_room_for_words(&self, place: &Place) -> bool {
         let layout = Layout::of(self, place);
-        let right = place.corner[0] + place.size[0];
+        let [left, top, right, bottom] = layout.area;
+        let ([x0, y0], [width, height]) = (place.corner, place.size);
+        let fits = |text: &str, room: f64| font::width(text, TEXT) <= room;
+        let room = x0 + width - left;
         let names: f64 = match &self.meaning {
             Values::States(states) => states.iter().map(|(name, _)| 19.0 + font::width(name, SMALL)).sum(),
             Values::Quantity { .. } => 0.0,
         };
-        let room = right - layout.area[0];
-        let bar = layout.bar.as_ref().is_none_or(|bar| bar.has_room_for_words(place.size[1]));
-        font::width(&self.title, TEXT) <= room && names <= room && bar
+        // The title of the map stands above the frame, and that of the bar must not touch it.
+        let first = if self.title.is_empty() { y0 } else { top - 4.0 };
+        let along = around(layout.bar_ends(), [first, y0 + height]);
+        fits(&self.title, room)
+            && names <= room
+            && fits(&layout.x.title, around([left, right], [x0, x0 + width]))
+            && fits(&layout.y.title, around([top, bottom], [y0, y0 + height]))
+            && layout.bar.is_none_or(|bar| fits(bar.title(), along))
     }
 
     /// The values in their colours.

@@ -208,17 +208,21 @@ impl Figure {
 
     /// The margins of each panel: what its column and its row need.
     fn margins(&self) -> Vec<Margins> {
-        let needs = self.panels.iter().map(|panel| match panel {
-            Panel::Curves(curves) => curves.needs(self.panel),
+        let needs = |n: usize, sides: Margins| match &self.panels[n] {
+            Panel::Curves(curves) => curves.needs(self.panel, sides),
             Panel::Map(map) => map.needs(self.panel),
-        });
+        };
         let count = self.panels.len();
         let mut columns = vec![Margins::default(); self.columns.min(count)];
         let mut rows = vec![Margins::default(); count.div_ceil(self.columns)];
-        for (n, own) in needs.enumerate() {
-            let (row, column) = (&mut rows[n / self.columns], &mut columns[n % self.columns]);
+        for n in 0..count {
+            let (own, column) = (needs(n, Margins::default()), &mut columns[n % self.columns]);
             column.labels = column.labels.max(own.labels);
             column.beside = column.beside.max(own.beside);
+        }
+        // How many rows a legend takes depends on the width that is left.
+        for n in 0..count {
+            let (own, row) = (needs(n, columns[n % self.columns]), &mut rows[n / self.columns]);
             row.legend = row.legend.max(own.legend);
             row.head = row.head.max(own.head);
         }

@@ -28,23 +28,29 @@ impl Figure {
             caption: self.caption.clone(),
             ..self
         };
-        match small.filling(size) {
+        let whole = small.whole(&small.places());
+        match small.filling(size, whole) {
             Some(Figure { columns, panel, size, zoom, .. }) => {
                 Ok(Figure { columns, panel, size, zoom, ..self })
             }
             None => {
                 let larger = |by: &f64| size.map(|side| side * by);
                 let grown: Vec<f64> = (1..).map(|n| 1.05f64.powi(n)).take_while(|by| *by < MOST).collect();
-                let first = grown.partition_point(|by| small.filling(larger(by)).is_none());
+                let first = grown.partition_point(|by| small.filling(larger(by), whole).is_none());
                 let by = grown.get(first).unwrap_or(&MOST);
                 Err(FigureError::Size { asked: size, needed: larger(by) })
             }
         }
     }
 
-    /// The figure that fills paper of this size with as many panels as possible that have their words whole; of these the one whose
+    /// Number of panels at these places that have their words whole.
+    pub(super) fn whole(&self, places: &[Place]) -> usize {
+        self.panels.iter().zip(places).filter(|(panel, place)| panel.has_room_for_words(place)).count()
+    }
+
+    /// The figure that fills paper of this size with so many panels that have their words whole, or more; of these the one whose
     /// panels are most like those of the figure, with the largest texts.
-    fn filling(&self, size: [f64; 2]) -> Option<Figure> {
+    fn filling(&self, size: [f64; 2], whole: usize) -> Option<Figure> {
         let panels = self.panels.len().max(1);
         let own = self.columns.min(panels);
         let with = |columns: Vec<usize>| {
@@ -52,18 +58,8 @@ impl Figure {
         };
         // More panels in a row than usual come last: the figure is no longer what its caption may describe.
         let all = with((1..=own).rev().collect()).chain(with((own + 1..=panels).collect()));
-        let mut best: Option<(usize, Figure)> = None;
-        for figure in all.filter_map(|(columns, zoom)| self.filled(size, columns, zoom)) {
-            let whole = |(panel, place): (&Panel, &Place)| panel.has_room_for_words(place);
-            let count = figure.panels.iter().zip(&figure.places()).filter(|pair| whole(*pair)).count();
-            if count == self.panels.len() {
-                return Some(figure);
-            }
-            if best.as_ref().is_none_or(|(most, _)| count > *most) {
-                best = Some((count, figure));
-            }
-        }
-        best.map(|(_, figure)| figure)
+        let mut filled = all.filter_map(|(columns, zoom)| self.filled(size, columns, zoom));
+        filled.find(|figure| figure.whole(&figure.places()) >= whole)
     }
 
     /// With so many panels in a row and this zoom; `None` where its frames are too small.

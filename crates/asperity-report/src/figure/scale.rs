@@ -3,11 +3,11 @@
 use ndarray::Array2;
 
 use super::axis::{Axis, Ruler};
-use super::colours::{Colours, OPEN, Palette};
+use super::colours::{Colours, Palette};
 use super::drawing::{Anchor, Drawing, INK, Paint, Pen};
 use super::raster::{self, BLANK};
 
-use super::{Place, SMALL, TEXT, font};
+use super::{Place, SMALL, TEXT};
 
 /// How values become colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,7 +59,7 @@ impl ColourScale {
     /// more; less than that nobody sees.
     pub(super) fn beyond(&self, values: &Array2<f64>) -> [Option<f64>; 2] {
         const HALF: f64 = 0.5 / 256.0;
-        let coloured = values.iter().copied().filter(|value| self.at(*value) != OPEN);
+        let coloured = values.iter().copied().filter(|value| self.at(*value) != self.palette.aside());
         let [least, most] = extent(coloured);
         let found = [(least, -self.share(least)), (most, self.share(most) - 1.0)];
         found.map(|(value, beyond)| (value.is_finite() && beyond > HALF).then_some(value))
@@ -70,7 +70,7 @@ impl ColourScale {
         if !value.is_finite() {
             BLANK
         } else if (value <= 0.0 && self.log) || (value == 0.0 && self.colours.leave_out_zero()) {
-            OPEN
+            self.palette.aside()
         } else {
             self.palette.at(self.share(value))
         }
@@ -105,9 +105,9 @@ impl Bar {
         8.0 + 10.0 + 6.0 + self.ruler.widest() + TEXT + 9.0
     }
 
-    /// Whether its title is no longer than this height.
-    pub(super) fn has_room_for_words(&self, height: f64) -> bool {
-        font::width(&self.ruler.title, TEXT) <= height
+    /// What it shows, beside its numbers.
+    pub(super) fn title(&self) -> &str {
+        &self.ruler.title
     }
 
     /// Draws it from `left` on.
@@ -178,7 +178,7 @@ mod tests {
         // Of the 90 positive values in each column the rounding error is the least one, the hundredth quantile.
         assert!(scale.ends[0] >= 1e-12 && scale.ends[0] < 3e-9, "{:?}", scale.ends);
         assert_eq!(scale.ends[1], values[[99, 0]]);
-        assert_eq!(scale.at(0.0), OPEN);
+        assert_eq!(scale.at(0.0), Palette::Viridis.aside());
         let middle = scale.value(0.5);
         assert!((middle / (scale.ends[0] * scale.ends[1]).sqrt() - 1.0).abs() < 1e-12);
         assert_eq!(scale.at(middle), Palette::Viridis.at(0.5));
@@ -211,6 +211,6 @@ mod tests {
             ColourScale::of(&values, Colours::Pressure, Some(Palette::Grey), Some([100.0, 200.0]), false);
         assert_eq!([scale.at(100.0), scale.at(150.0)], [Palette::Grey.at(0.0), Palette::Grey.at(0.5)]);
         // Small pressure is still contact; none is not.
-        assert_eq!([scale.at(1.0), scale.at(0.0)], [Palette::Grey.at(0.0), OPEN]);
+        assert_eq!([scale.at(1.0), scale.at(0.0)], [Palette::Grey.at(0.0), Palette::Grey.aside()]);
     }
 }

@@ -116,6 +116,24 @@ fn a_column_of_a_journal_is_wide_enough_and_small_paper_has_smaller_texts() {
 }
 
 #[test]
+fn words_that_would_overlap_on_small_paper_are_refused() {
+    let points = |mm: f64| mm * 72.0 / 25.4;
+    let stress = Map::new(
+        "Section y = 352.7 µm",
+        ["von Mises stress", "Pa"],
+        Colours::Sequential,
+        Array2::from_shape_fn((8, 8), |(i, j)| 1e9 * (i + j) as f64).view(),
+        [7e-4; 2],
+    );
+    let six = (0..6).fold(Figure::new(""), |figure, _| figure.with(stress.clone())).columns(3);
+    let Err(FigureError::Size { needed, .. }) = six.clone().sized([80.0, 60.0].map(points)) else {
+        panic!("six maps with long words fit on 80 mm x 60 mm")
+    };
+    let enough = six.sized(needed).unwrap();
+    assert_eq!(enough.whole(&enough.places()), 6);
+}
+
+#[test]
 fn a_thumbnail_takes_the_room_of_its_map() {
     // Spikes lie beyond the ends of the colours and are told beside the bar.
     let mut spiked = Array2::from_shape_fn((60, 60), |(i, j)| (i + j) as f64 * 1e-9);

@@ -14,14 +14,20 @@ use crate::result::boundary;
 /// Roughness below this share of the gap's range is rounding.
 const SMOOTH: f64 = 1e-9;
 
-/// Heights without their quadratic form, and what is said of them; `None` for smooth or mostly undefined surfaces.
+/// Heights without their form, and what is said of them; `None` for smooth or mostly undefined surfaces. A surface that repeats has
+/// no form but its mean; of any other it is the best-fitting paraboloid.
 pub(super) fn surface(reader: &Reader) -> Result<Option<(Array2<f64>, Value)>, StoreError> {
     if reader.header().grid.is_line() {
         return Ok(None);
     }
     // Heights of one rough surface against a plane: the gap upside down.
     let gap = reader.initial_gap()?;
-    let Ok(heights) = level(gap.mapv(|h| -h).view(), Level::Quadratic) else { return Ok(None) };
+    let periodic = boundary(reader) == Boundary::Periodic;
+    let (form, words) = match periodic {
+        true => (Level::Mean, "mean"),
+        false => (Level::Quadratic, "best-fitting paraboloid"),
+    };
+    let Ok(heights) = level(gap.mapv(|h| -h).view(), form) else { return Ok(None) };
     let Ok(map) = Surface::new(reader.header().grid, heights.clone()) else { return Ok(None) };
     let Ok(statistics) = HeightStatistics::of(&map) else { return Ok(None) };
     let highest = gap.iter().copied().filter(|h| h.is_finite()).fold(0.0, f64::max);
@@ -39,7 +45,6 @@ pub(super) fn surface(reader: &Reader) -> Result<Option<(Array2<f64>, Value)>, S
         lines.push(("Sdq, rms slope", quantity(slopes.sdq, "")));
         lines.push(("Sdr, developed area ratio", format!("{} %", quantity(100.0 * slopes.sdr, ""))));
     }
-    let periodic = boundary(reader) == Boundary::Periodic;
     let spectrum = match (map.undefined(), periodic) {
         (0, true) => RadialSpectrum::of(&map, Rings::PerDecade(16)).ok(),
         (0, false) => {
@@ -48,7 +53,7 @@ pub(super) fn surface(reader: &Reader) -> Result<Option<(Array2<f64>, Value)>, S
         _ => None,
     };
     let note = format!(
-        "Heights: the undeformed gap upside down, less its best-fitting paraboloid.{}",
+        "Heights: the undeformed gap upside down, less its {words}.{}",
         if spectrum.is_some() && !periodic {
             " The spectrum is of the heights under a Hann window."
         } else {

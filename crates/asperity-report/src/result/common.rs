@@ -3,18 +3,20 @@
 use asperity_io::store::{At, Reader};
 
 use super::{Options, Plot, PlotError, figure};
-use crate::figure::{Curves, Figure, Map, Panel, Scale, Values};
+use crate::figure::{Curves, Figure, Map, Margins, Panel, Scale, Values};
 
 /// What figures of the same panels have in common.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Common {
-    panels: Vec<Shared>,
+    /// By the place of the panel; at one place different figures may show different quantities.
+    panels: Vec<Vec<Shared>>,
     paper: [f64; 2],
 }
 
-/// Of a panel: ends of its axes, or of its colours, and what any of the figures has above the frame.
-#[derive(Clone, Copy, Debug)]
+/// Of a panel: what it shows, the ends of its axes or of its colours, and what any of the figures has above the frame.
+#[derive(Clone, Debug)]
 struct Shared {
+    label: String,
     across: [f64; 2],
     up: [f64; 2],
     names_above: bool,
@@ -27,9 +29,12 @@ const NOTHING: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
 impl Common {
     /// Takes in one more figure.
     pub(crate) fn add(&mut self, figure: &Figure) {
-        for (n, panel) in figure.panels.iter().enumerate() {
+        self.panels.resize(self.panels.len().max(figure.panels.len()), vec![]);
+        for (panel, known) in figure.panels.iter().zip(&mut self.panels) {
+            let label = label(panel).to_owned();
             let own = match panel {
                 Panel::Map(map) => Shared {
+                    label,
                     across: NOTHING,
                     up: map.ends().unwrap_or(NOTHING),
                     names_above: false,
@@ -37,13 +42,13 @@ impl Common {
                 },
                 Panel::Curves(curves) => {
                     let [across, up] = curves.ends();
-                    let names_above = curves.needs(figure.panel).legend > 0.0;
-                    Shared { across, up, names_above, titled: !curves.title.is_empty() }
+                    let names_above = curves.needs(figure.panel, Margins::default()).legend > 0.0;
+                    Shared { label, across, up, names_above, titled: !curves.title.is_empty() }
                 }
             };
-            match self.panels.get_mut(n) {
+            match known.iter_mut().find(|shared| shared.label == own.label) {
                 Some(shared) => shared.join(own),
-                None => self.panels.push(own),
+                None => known.push(own),
             }
         }
         let paper = figure.paper();
@@ -52,10 +57,11 @@ impl Common {
 
     /// Gives a figure the common axes, colours and paper.
     pub(crate) fn apply(&self, figure: &mut Figure) {
-        for (panel, shared) in figure.panels.iter_mut().zip(&self.panels) {
+        for (panel, known) in figure.panels.iter_mut().zip(&self.panels) {
+            let Some(shared) = known.iter().find(|shared| shared.label == label(panel)) else { continue };
             // A blank title keeps the frame where that of the others is.
             let (Panel::Map(Map { title, .. }) | Panel::Curves(Curves { title, .. })) = panel;
-            if title.is_empty() && shared.titled {
+            if title.is_empty() && known.iter().any(|shared| shared.titled) {
                 title.push(' ');
             }
             match panel {
@@ -66,9 +72,11 @@ impl Common {
                 }
                 Panel::Curves(curves) => {
                     curves.names_above |= shared.names_above;
-                    curves.x.range = curves.x.range.or(range_of(shared.across));
-                    let room = if curves.y.scale == Scale::Linear { 0.06 } else { 0.0 };
-                    curves.y.range = curves.y.range.or(range_of(shared.up).map(|ends| with_room(ends, room)));
+                    curves.x.range = range_of(shared.across).or(curves.x.range);
+                    // Ends that the figures set have their room already.
+                    let own = curves.y.range.is_some() || curves.y.scale != Scale::Linear;
+                    let room = if own { 0.0 } else { 0.06 };
+                    curves.y.range = range_of(shared.up).map(|ends| with_room(ends, room)).or(curves.y.range);
                 }
             }
         }
@@ -79,12 +87,19 @@ impl Common {
 impl Shared {
     fn join(&mut self, other: Shared) {
         let join = |a: [f64; 2], b: [f64; 2]| [a[0].min(b[0]), a[1].max(b[1])];
-        *self = Shared {
-            across: join(self.across, other.across),
-            up: join(self.up, other.up),
-            names_above: self.names_above || other.names_above,
-            titled: self.titled || other.titled,
-        };
+        self.across = join(self.across, other.across);
+        self.up = join(self.up, other.up);
+        self.names_above |= other.names_above;
+        self.titled |= other.titled;
+    }
+}
+
+/// The quantity that a panel shows; of states nothing.
+fn label(panel: &Panel) -> &str {
+    match panel {
+        Panel::Curves(curves) => &curves.y.label,
+        Panel::Map(Map { meaning: Values::Quantity { label, .. }, .. }) => label,
+        Panel::Map(_) => "",
     }
 }
 

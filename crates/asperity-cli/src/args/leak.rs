@@ -63,7 +63,7 @@ pub struct FluidOptions {
     #[arg(long, value_name = "M")]
     pub molar_mass: Option<String>,
     /// Temperature of the gas, e.g. '20 degC'
-    #[arg(long, value_name = "T")]
+    #[arg(long, value_name = "T", allow_hyphen_values = true)]
     pub temperature: Option<String>,
     /// Absolute pressure of the gas at the inlet, e.g. '3 bar'
     #[arg(long, value_name = "P")]

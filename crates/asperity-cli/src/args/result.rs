@@ -91,7 +91,7 @@ pub struct Plot {
     #[arg(long, value_name = "AXIS", default_value = "x", value_parser = ["x", "y"])]
     pub along: String,
     /// Position of a profile on the other axis, e.g. '20 um' [default: the middle]
-    #[arg(long, value_name = "PLACE")]
+    #[arg(long, value_name = "PLACE", allow_hyphen_values = true)]
     pub at: Option<String>,
     /// Time on a logarithmic axis [default: where most rows lie in the first tenth of the run]
     #[arg(long, conflicts_with = "linear_time")]

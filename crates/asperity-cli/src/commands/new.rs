@@ -8,6 +8,7 @@ use asperity_io::output;
 
 use crate::args::New;
 use crate::failure::Failure;
+use crate::words;
 
 /// Writes the starter case, or lists them.
 pub fn run(args: &New) -> Result<(), Failure> {
@@ -19,7 +20,8 @@ pub fn run(args: &New) -> Result<(), Failure> {
     let Some(template) = Template::find(name) else {
         let names: Vec<_> = TEMPLATES.iter().map(|t| t.name).collect();
         return Err(Failure::input(format!(
-            "there is no starter case \"{name}\"; choose one of {}",
+            "there is no starter case \"{name}\"{}; choose one of {}",
+            words::meant(name, &names),
             names.join(", ")
         )));
     };

@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use crate::args::Run;
 use crate::failure::Failure;
 use crate::progress::Teller;
-use crate::words::{bytes, duration, in_contact, quantity};
+use crate::words::{bytes, duration, in_contact, mean_gap, quantity};
 
 /// Runs the case, tells the progress on stderr and a summary on stdout.
 pub fn run(args: &Run) -> Result<(), Failure> {
@@ -133,7 +133,7 @@ fn tell(args: &Run, case: &Case, summary: &Summary, error: Option<&RunError>) ->
             let (mu, force) = (friction.coefficient, quantity(friction.force, grid.units("N")));
             line("friction", format!("coefficient {}, force {force}", quantity(mu, "")));
         }
-        line("mean gap", quantity(last.mean_gap, "m"));
+        line("mean gap", quantity(mean_gap(last), "m"));
         if last.capped_area > 0.0 {
             line("at hardness", quantity(last.capped_area, grid.units("m2")));
         }

@@ -14,7 +14,7 @@ use super::instant;
 use crate::args::ShowResult;
 use crate::failure::Failure;
 use crate::terminal::{shares, sparkline};
-use crate::words::{bytes, duration, in_contact, quantity};
+use crate::words::{bytes, duration, in_contact, mean_gap, quantity};
 
 /// Letters of the map and of the curves.
 const COLUMNS: usize = 56;
@@ -172,7 +172,7 @@ fn course(reader: &Reader, rows: &[Row]) -> Result<String, StoreError> {
     text += &curve("load", |row| row.load, &|v| quantity(v, force));
     text += &curve("approach", |row| row.approach, &|v| quantity(v, "m"));
     text += &curve("contact", |row| row.contact_fraction, &percent);
-    text += &curve("mean gap", |row| row.mean_gap, &|v| quantity(v, "m"));
+    text += &curve("mean gap", mean_gap, &|v| quantity(v, "m"));
     text += &line(if grid.is_line() { "length" } else { "area" }, quantity(last.contact_area, area));
     if !grid.is_line() {
         text += &line("corrected", quantity(last.contact_area_corrected, area));

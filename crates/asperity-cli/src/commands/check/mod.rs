@@ -57,14 +57,18 @@ fn shape(surface: &SurfaceInput) -> Option<String> {
     (!parts.is_empty()).then(|| format!("{}: {}", surface.name, parts.join(", ")))
 }
 
-/// "12.00 µm", or "12.00 µm right after the load, 15.00 µm at the end".
-fn range([first, last]: [f64; 2], words: impl Fn(f64) -> String) -> String {
+/// "12.00 µm", or "12.00 µm right after the load, 15.00 µm at the end"; of a sweep at the highest and the lowest velocities.
+fn range([first, last]: [f64; 2], is_sweep: bool, words: impl Fn(f64) -> String) -> String {
     let [first, last] = [first, last].map(words);
-    if first == last { first } else { format!("{first} right after the load, {last} at the end") }
+    match is_sweep {
+        _ if first == last => first,
+        false => format!("{first} right after the load, {last} at the end"),
+        true => format!("{first} at very high velocities, {last} at very low ones"),
+    }
 }
 
 /// What is prescribed at most, and the contact to be expected: lines of a name and a value.
-fn prospects(grid: &Grid, inputs: &Inputs) -> Vec<[String; 2]> {
+fn prospects(grid: &Grid, inputs: &Inputs, is_sweep: bool) -> Vec<[String; 2]> {
     let mut lines = vec![];
     let mut line = |name: &str, value: String| lines.push([name.to_owned(), value]);
     if let (Some(load), Some(pressure)) = (inputs.largest_load, inputs.largest_mean_pressure) {
@@ -76,12 +80,12 @@ fn prospects(grid: &Grid, inputs: &Inputs) -> Vec<[String; 2]> {
     }
     let strain = inputs.expected_pressure_over_modulus.map_or(String::new(), |p| format!(", p/E* {p:.2e}"));
     if let (Some(radii), Some(cells)) = (inputs.expected_contact_radius, inputs.expected_cells_across) {
-        let radius = range(radii, |radius| quantity(radius, "m"));
+        let radius = range(radii, is_sweep, |radius| quantity(radius, "m"));
         let of = if grid.is_line() { "half-width of the contact" } else { "contact radius" };
         line("expected", format!("{of} {radius}, {cells:.0} cells across{strain}"));
     } else if let Some(shares) = inputs.expected_contact_share {
-        let share = range(shares, |share| format!("{:.2} %", 100.0 * share));
-        line("expected", format!("contact of {share} of the domain{strain}"));
+        let share = range(shares, is_sweep, |share| format!("{:.2} %", 100.0 * share));
+        line("expected", format!("share of the domain in contact {share}{strain}"));
     }
     lines
 }
@@ -282,7 +286,7 @@ fn tell(case: &Case, examined: &Examination, work: Option<&Work>) -> String {
     if let Some([least, most]) = d.hardness_of_cells {
         line("hardness", format!("{} to {}, by cell", quantity(least, "Pa"), quantity(most, "Pa")));
     }
-    for [name, value] in prospects(&case.grid, inputs) {
+    for [name, value] in prospects(&case.grid, inputs, is_sweep(case)) {
         line(&name, value);
     }
     let end = quantity(d.end, "s");

@@ -124,7 +124,7 @@ fn text(history: &LeakHistory) -> String {
     let fluid = history.leak.fluid.is_some();
     let mut text = format!("Leakage of {}\n\n{:>12}", history.leak.words(), "time");
     if fluid {
-        text += &format!("{:>24}", "leak rate");
+        text += &format!("{:>34}", "leak rate");
     }
     text += &format!("{:>15}{:>15}{:>14}\n", "hydraulic gap", "critical gap", "trapped area");
     for n in 0..table.len() {
@@ -136,7 +136,7 @@ fn text(history: &LeakHistory) -> String {
                 true => "tight".to_owned(),
                 false => words::rate(column("leak_rate")[n], standard.map(|standard| standard[n])),
             };
-            text += &format!("{:>24}", words + mark);
+            text += &format!("{:>34}", words + mark);
         }
         let gap = |name: &str| match (tight, fluid, name) {
             (false, ..) => quantity(column(name)[n], "m"),

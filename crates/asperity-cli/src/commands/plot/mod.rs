@@ -15,7 +15,7 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use super::instant;
 use crate::args;
 use crate::failure::Failure;
-use crate::words::{counted, read};
+use crate::words::{self, counted, read};
 
 /// Whether a command line names a result but not what to draw of it: the one word of two that `asperity plot` needs is a path.
 pub fn lacks_figure(words: &[OsString], error: &clap::Error) -> bool {
@@ -49,7 +49,12 @@ pub fn run(args: &args::Plot) -> Result<(), Failure> {
         return Err(match Path::new(&args.what).exists() {
             true => no_figure(),
             false => {
-                Failure::input(format!("there is no figure \"{}\"; choose one of {}", args.what, figures()))
+                let meant = words::meant(&args.what, &Plot::ALL.map(Plot::name));
+                Failure::input(format!(
+                    "there is no figure \"{}\"{meant}; choose one of {}",
+                    args.what,
+                    figures()
+                ))
             }
         });
     };

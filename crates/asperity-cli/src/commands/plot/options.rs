@@ -125,7 +125,9 @@ fn size(text: &str) -> Result<[f64; 2], Failure> {
         let metres = read::<Length>("--size", side, example)?.get();
         if !(SIDES[0]..=SIDES[1]).contains(&metres) {
             let [least, most] = SIDES.map(|side| 1e3 * side);
-            let message = format!("--size is \"{text}\", but each side must be {least} mm to {most} mm");
+            let message = format!(
+                "--size is \"{text}\", but each side must be {least} mm to {most} mm, e.g. --size '{example}'"
+            );
             return Err(Failure::input(message));
         }
         *point = metres * POINTS;

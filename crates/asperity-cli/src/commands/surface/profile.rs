@@ -94,7 +94,7 @@ pub(super) fn info(args: &SurfaceInfo, profile: Profile) -> Result<(), Failure> 
     }
     let mut text = format!("{name}\n");
     let mut line =
-        |name: &str, value: String, words: &str| text += &format!("  {name:<12}{value:<14}{words}\n");
+        |name: &str, value: String, words: &str| text += &format!("  {name:<12}{value:<13} {words}\n");
     line(
         "profile",
         format!("{} points", heights.len()),

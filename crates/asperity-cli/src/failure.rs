@@ -26,6 +26,22 @@ impl Failure {
         Failure::Input(message.into())
     }
 
+    /// An error of something that reads and writes: wrong input, unless the disk is full or fails.
+    pub fn of(error: impl std::error::Error + 'static) -> Self {
+        use std::io::{Error, ErrorKind};
+        let causes =
+            std::iter::successors(Some(&error as &(dyn std::error::Error + 'static)), |cause| cause.source());
+        let mut of_system = causes.filter_map(|cause| cause.downcast_ref::<Error>());
+        let fails = |error: &Error| {
+            let full = [ErrorKind::StorageFull, ErrorKind::QuotaExceeded, ErrorKind::FileTooLarge];
+            full.contains(&error.kind())
+        };
+        match of_system.any(fails) {
+            true => Failure::System(error.to_string()),
+            false => Failure::Input(error.to_string()),
+        }
+    }
+
     /// 1 the solve or the system failed, or there are warnings under --strict; 2 the input is wrong; 130 interrupted.
     pub fn code(&self) -> u8 {
         match self {
@@ -136,5 +152,24 @@ impl Diagnostic for Fault<'_> {
             expected => format!("expected {expected}"),
         };
         Some(Box::new(std::iter::once(LabeledSpan::new(Some(label), span.start, span.len()))))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::{Error, ErrorKind};
+
+    use asperity_io::store::StoreError;
+
+    use super::*;
+
+    #[test]
+    fn a_full_disk_is_no_wrong_input() {
+        let code = |kind: ErrorKind| {
+            let (path, source) = ("a".into(), Error::from(kind));
+            Failure::of(StoreError::Io { path, action: "write", source }).code()
+        };
+        assert_eq!([ErrorKind::StorageFull, ErrorKind::NotFound].map(code), [1, 2]);
+        assert_eq!(Failure::of(Error::from(ErrorKind::FileTooLarge)).code(), 1);
     }
 }

@@ -24,7 +24,7 @@ pub fn run(args: &Export) -> Result<(), Failure> {
     let reader = Reader::open(&args.result).map_err(|error| Failure::input(error.to_string()))?;
     let output = args.output.clone().unwrap_or_else(|| args.result.with_extension(format.extension()));
     let written = export(&reader, format, &output, &options);
-    let written = written.map_err(|error| Failure::input(error.to_string()))?;
+    let written = written.map_err(Failure::of)?;
     if let Some(sentence) = format.left_out(&reader) {
         crate::talk::say!("{sentence}");
     }
@@ -37,7 +37,7 @@ fn png(args: &Export) -> Result<(), Failure> {
     let output = args.output.clone().unwrap_or_else(|| args.result.with_extension("pictures"));
     let fields = fields(args)?;
     let written = pictures(&reader, fields.as_deref(), &output, args.force);
-    written.map_err(|error| Failure::input(error.to_string()))?;
+    written.map_err(Failure::of)?;
     crate::print(&format!("{}\n", output.display()))
 }
 

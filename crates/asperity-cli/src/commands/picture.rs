@@ -8,7 +8,7 @@ use crate::failure::Failure;
 
 /// Writes a picture, and tells on stderr which letters it shows as boxes because its typeface lacks them.
 pub fn write(figure: &Figure, path: &Path, force: bool) -> Result<(), Failure> {
-    figure.write(path, force).map_err(|error| Failure::input(error.to_string()))?;
+    figure.write(path, force).map_err(Failure::of)?;
     if !matches!(Form::of(path), Ok(Form::Svg)) {
         tell_missing(figure);
     }

@@ -15,6 +15,6 @@ pub fn run(args: &Report) -> Result<(), Failure> {
         force: args.force,
     };
     let reader = Reader::open(&args.result).map_err(|error| Failure::input(error.to_string()))?;
-    write(&reader, &output, &options).map_err(|error| Failure::input(error.to_string()))?;
+    write(&reader, &output, &options).map_err(Failure::of)?;
     crate::print(&format!("{}\n", output.display()))
 }

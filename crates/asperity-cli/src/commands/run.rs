@@ -39,7 +39,7 @@ pub fn run(args: &Run) -> Result<(), Failure> {
             Err(Failure::Interrupted(format!("{rows} rows are in {result}; continue with --resume")))
         }
         Err(RunError::Case(errors)) => Err(Failure::Case(errors)),
-        Err(error @ RunError::Output(_)) => Err(Failure::input(error.to_string())),
+        Err(error @ RunError::Output(_)) => Err(Failure::of(error)),
         Err(error) => {
             let message = match &error {
                 RunError::Solve { best: Some(best), .. } => {

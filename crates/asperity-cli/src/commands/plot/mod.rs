@@ -140,6 +140,6 @@ fn animate(args: &args::Plot, plot: Plot, all: &[(String, Reader)], path: &Path)
     }
 }
 
-fn told(error: impl std::fmt::Display) -> Failure {
-    Failure::input(error.to_string())
+fn told(error: impl std::error::Error + 'static) -> Failure {
+    Failure::of(error)
 }

@@ -78,8 +78,8 @@ pub fn run(args: &Stress) -> Result<(), Failure> {
     crate::print(&text)
 }
 
-fn told(error: impl std::fmt::Display) -> Failure {
-    Failure::input(error.to_string())
+fn told(error: impl std::error::Error + 'static) -> Failure {
+    Failure::of(error)
 }
 
 fn ended(error: StressError) -> Failure {

@@ -9,5 +9,5 @@ use crate::failure::Failure;
 pub fn run(args: &SurfaceConvert) -> Result<(), Failure> {
     let format = super::target(&args.output, args.to.as_deref(), args.force)?;
     let topography = super::open(&args.file)?;
-    write(&args.output, &topography, format).map_err(|error| Failure::input(error.to_string()))
+    write(&args.output, &topography, format).map_err(Failure::of)
 }

@@ -73,7 +73,7 @@ fn targets(output: &SurfaceOutput) -> Result<Format, Failure> {
 
 /// Writes a surface where the command line says.
 fn save(output: &SurfaceOutput, topography: &Topography, format: Format) -> Result<(), Failure> {
-    write(&output.output, topography, format).map_err(|error| Failure::input(error.to_string()))
+    write(&output.output, topography, format).map_err(Failure::of)
 }
 
 /// "1 mm,2 mm" in metres.

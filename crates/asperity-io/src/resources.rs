@@ -44,16 +44,18 @@ pub fn free_disk(path: &Path) -> Option<u64> {
 /// Those of the system, [`io::ErrorKind::IsADirectory`], and [`io::ErrorKind::InvalidInput`] for what else is no file.
 pub fn open(path: &Path) -> io::Result<File> {
     let kind = fs::metadata(path)?.file_type();
-    if kind.is_file() {
-        return File::open(path);
-    }
-    Err(match kind.is_dir() {
+    if kind.is_file() { File::open(path) } else { Err(no_file(kind)) }
+}
+
+/// The error of what is no file.
+pub fn no_file(kind: fs::FileType) -> io::Error {
+    match kind.is_dir() {
         true => io::Error::new(io::ErrorKind::IsADirectory, "it is a directory, not a file"),
         false => io::Error::new(
             io::ErrorKind::InvalidInput,
             format!("it is {}, not a file; save it as a file first", special(kind)),
         ),
-    })
+    }
 }
 
 /// The bytes of a file that has an end.

@@ -141,7 +141,7 @@ impl Chunks {
     fn find(&self, index: &[u64]) -> Result<()> {
         let path = self.path(index);
         let length = match fs::metadata(&path) {
-            Ok(file) if !file.is_file() => return Err(corrupt(&path, "it is no file")),
+            Ok(file) if !file.is_file() => return Err(corrupt(&path, resources::no_file(file.file_type()))),
             Ok(file) => file.len(),
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
                 return Err(corrupt(&path, "the chunk is missing"));

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use asperity::march::Row;
 use serde_json::Value;
 
 use super::checkpoint;
@@ -74,13 +75,17 @@ pub fn verify(path: &Path) -> Result<Verification> {
             found.note(chunks.verify(&index))?;
         }
     }
-    // A complete result says of its rows what no checksum does: their order.
     if found.damage.is_empty() {
-        found.note(reader.rows().map(drop))?;
-    }
-    if found.damage.is_empty() {
-        for index in 0..reader.field_times().len() {
-            found.note(is_of_its_row(&reader, index))?;
+        // A complete result says of its rows what no checksum does: their order.
+        match reader.rows() {
+            Ok(rows) => {
+                for (index, row) in reader.field_steps().iter().map(|step| rows.get(*step)).enumerate() {
+                    let row = row
+                        .ok_or_else(|| corrupt(&path.join("field_step"), "it names a row that is not there"));
+                    found.note(row.and_then(|row| is_of_its_row(&reader, index, row)))?;
+                }
+            }
+            Err(error) => found.note(Err(error))?,
         }
     }
     found.note(checkpoint::read(path).map(drop))?;
@@ -118,11 +123,10 @@ fn documents_agree(root: &Path, group: &Value, array: &ArraySpec) -> Result<()> 
 }
 
 /// Compares the fields of a stored instant with the numbers of its row.
-fn is_of_its_row(reader: &Reader, index: usize) -> Result<()> {
+fn is_of_its_row(reader: &Reader, index: usize, row: &Row) -> Result<()> {
     /// The numbers of a row are sums in another order.
     const ROUNDING: f64 = 1e-9;
     let at = At::Index(index);
-    let row = reader.rows()?[reader.field_steps()[index]];
     if row.time != reader.field_times()[index] {
         return Ok(());
     }

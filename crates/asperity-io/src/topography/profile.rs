@@ -168,6 +168,9 @@ mod tests {
             "META DATA\nStylus, 2 um\nScan Length, 1000\n\nLateral um, Total Profile um\n0.0, 1\n500, 2\n1000, 0.5\n",
             "Lateral(um)\tRaw(A)\n0.0\t10000\n500.0\t20000\n1000.0\t5000\n",
             "x [mm]; z [um]\n1; 0,5\n0,5; 2\n0; 1\n",
+            "# x [mm]  z [um]\n0.0 1.0\n0.5 2.0\n1.0 0.5\n",
+            "x (mm) z (um)\n0 1\n0.5 2\n1 0.5\n",
+            "x[mm] z[um]\n0 1\n0.5 2\n1 0.5\n",
         ] {
             let profile = read(text);
             let (grid, z) = (profile.surface.grid(), profile.surface.heights());

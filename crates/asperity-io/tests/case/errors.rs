@@ -541,7 +541,7 @@ fn a_file_that_is_none_is_said() {
         }
     };
     says(&dir.path().join("none.toml"), &["none.toml: there is no such file", "asperity new"]);
-    says(dir.path(), &["cannot be read"]);
+    says(dir.path(), &["is a directory, not a file", "name a case file"]);
     let binary = dir.path().join("binary.toml");
     std::fs::write(&binary, b"title = 1\nx = \xff\xfe").unwrap();
     says(&binary, &["not UTF-8 text (line 2, byte 14)"]);

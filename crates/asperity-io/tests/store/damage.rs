@@ -193,7 +193,7 @@ fn a_whole_file_of_another_place_is_found() {
     assert!(damage()[0].contains("comes from another time or result"), "{:?}", damage());
     fs::remove_file(&second).unwrap();
     fs::create_dir(&second).unwrap();
-    assert_eq!(damage(), ["it is no file"]);
+    assert_eq!(damage(), ["it is a directory, not a file"]);
     fs::remove_dir(&second).unwrap();
     fs::write(&second, own).unwrap();
     // The documents of arrays, which readers without consolidated metadata use.
@@ -283,6 +283,13 @@ fn results_without_checksums_are_read_and_continued_as_before() {
         }
     }
     edit(&path, without_checksums);
+    for file in
+        files(&path).into_iter().filter(|file| file.ends_with("zarr.json") && file.parent() != Some(&path))
+    {
+        let mut array: serde_json::Value = serde_json::from_slice(&fs::read(&file).unwrap()).unwrap();
+        array["codecs"].as_array_mut().unwrap().retain(|codec| codec["name"] != "crc32c");
+        fs::write(&file, array.to_string()).unwrap();
+    }
     read_all(&path).unwrap();
     let found = verify(&path).unwrap();
     assert!(found.damage.is_empty() && !found.has_checksums, "{:?}", found.damage);

@@ -120,7 +120,7 @@ fn words_that_would_overlap_on_small_paper_are_refused() {
     let points = |mm: f64| mm * 72.0 / 25.4;
     let stress = Map::new(
         "Section y = 352.7 µm",
-        ["von Mises stress", "Pa"],
+        ["largest principal stress", "Pa"],
         Colours::Sequential,
         Array2::from_shape_fn((8, 8), |(i, j)| 1e9 * (i + j) as f64).view(),
         [7e-4; 2],

@@ -317,12 +317,17 @@ fn columns(text: &str, before: &[Column]) -> Vec<Column> {
         let units = fields.iter().map(|f| Some(bare(f)));
         return before.iter().zip(units).map(|(c, unit)| Column { name: c.name.clone(), unit }).collect();
     }
-    let column = |field: &&str| {
+    let mut columns: Vec<Column> = vec![];
+    for field in fields.into_iter().take(1000) {
         let (name, unit) = match field.split_once(['[', '(']) {
             Some((name, unit)) => (name.trim(), Some(unit.trim_end_matches([']', ')']).trim().to_owned())),
-            None => (*field, None),
+            None => (field, None),
         };
-        Column { name: name.to_owned(), unit }
-    };
-    fields.iter().take(1000).map(column).collect()
+        match columns.last_mut() {
+            // Blanks part the names of columns, and a name from its unit.
+            Some(last) if name.is_empty() && last.unit.is_none() => last.unit = unit,
+            _ => columns.push(Column { name: name.to_owned(), unit }),
+        }
+    }
+    columns
 }

@@ -9,7 +9,7 @@ use super::checkpoint;
 use super::chunks::Chunks;
 use super::document::{NAME, read_json};
 use super::error::{Result, StoreError, corrupt};
-use super::layout::{ArraySpec, FieldKind};
+use super::layout::{self, ArraySpec, FieldKind};
 use super::reader::{At, Reader};
 
 /// What was found in a result.
@@ -55,7 +55,7 @@ pub fn verify(path: &Path) -> Result<Verification> {
         found.arrays += 1;
         found.note(documents_agree(path, &group, &array))?;
         if array.grows() {
-            let rows = if super::layout::is_of_rows(array.dimensions[0]) {
+            let rows = if layout::is_of_rows(array.dimensions[0]) {
                 reader.len()
             } else {
                 reader.field_times().len()
@@ -109,7 +109,8 @@ fn documents_agree(root: &Path, group: &Value, array: &ArraySpec) -> Result<()> 
         return Err(corrupt(&path, "it is missing or no document of an array"));
     };
     let of_group = &group["consolidated_metadata"]["metadata"][array.name];
-    if array.grows() {
+    let along = array.dimensions[0];
+    if layout::is_of_rows(along) || layout::is_of_maps(along) {
         own["shape"][0] = of_group["shape"][0].clone();
     }
     if own != *of_group {

@@ -51,25 +51,25 @@ pub struct FluidOptions {
     #[arg(long, value_parser = super::choice::<LeakDirection>())]
     pub direction: Option<LeakDirection>,
     /// Pressure drop of a liquid, e.g. '2 bar'
-    #[arg(long, value_name = "P")]
+    #[arg(long, value_name = "P", allow_hyphen_values = true)]
     pub pressure_drop: Option<String>,
     /// Viscosity of a liquid, e.g. '1 mPa s', or of a gas that --gas does not name
-    #[arg(long, value_name = "MU")]
+    #[arg(long, value_name = "MU", allow_hyphen_values = true)]
     pub viscosity: Option<String>,
     /// A gas with known properties
     #[arg(long, value_parser = super::choice::<Species>())]
     pub gas: Option<Species>,
     /// Molar mass of a gas that --gas does not name, e.g. '44 g/mol'
-    #[arg(long, value_name = "M")]
+    #[arg(long, value_name = "M", allow_hyphen_values = true)]
     pub molar_mass: Option<String>,
     /// Temperature of the gas, e.g. '20 degC'
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     pub temperature: Option<String>,
     /// Absolute pressure of the gas at the inlet, e.g. '3 bar'
-    #[arg(long, value_name = "P")]
+    #[arg(long, value_name = "P", allow_hyphen_values = true)]
     pub inlet: Option<String>,
     /// Absolute pressure of the gas at the outlet, e.g. '1 bar'
-    #[arg(long, value_name = "P")]
+    #[arg(long, value_name = "P", allow_hyphen_values = true)]
     pub outlet: Option<String>,
     /// Law for the rarefaction of the gas [default: boltzmann]
     #[arg(long, value_parser = super::choice::<Rarefaction>())]
@@ -78,7 +78,7 @@ pub struct FluidOptions {
     #[arg(long, value_parser = super::choice::<Sides>())]
     pub sides: Option<Sides>,
     /// Cells with a smaller gap are closed, e.g. '0.3 nm'
-    #[arg(long, value_name = "H")]
+    #[arg(long, value_name = "H", allow_hyphen_values = true)]
     pub smallest_gap: Option<String>,
     /// Store the pressure of the fluid as a field of the result
     #[arg(long, conflicts_with = "gap")]

@@ -117,6 +117,18 @@ mod tests {
         assert!(lines > 30, "the documents have more than {lines} command lines");
     }
 
+    #[test]
+    fn values_may_begin_with_a_minus() {
+        for words in [
+            &["leak", "r.zarr", "--temperature", "-40 degC"][..],
+            &["plot", "r.zarr", "profile", "--at", "-20 um", "--time", "-1 s"],
+            &["plot", "r.zarr", "gap", "--limits", "-1,3 um"],
+        ] {
+            let parsed = super::Args::try_parse_from([&["asperity"][..], words].concat());
+            assert!(parsed.is_ok(), "{words:?}: {}", parsed.unwrap_err());
+        }
+    }
+
     /// The words of a line as a shell splits them: single and double quotes, up to a comment or redirection.
     fn words(line: &str) -> Vec<String> {
         let (mut words, mut word, mut quote) = (Vec::new(), String::new(), None);

@@ -7,7 +7,7 @@ pub struct ShowResult {
     /// The result (a Zarr directory)
     pub result: PathBuf,
     /// Time of the map, e.g. '500 s'; the nearest stored one is used [default: last]
-    #[arg(long, value_name = "T")]
+    #[arg(long, value_name = "T", allow_hyphen_values = true)]
     pub time: Option<String>,
     /// Print one JSON object: status, rows, work and every number of the last row
     #[arg(long)]
@@ -79,13 +79,13 @@ pub struct Plot {
     #[arg(long, value_name = "PATH", conflicts_with_all = ["output", "time", "same_colours"])]
     pub animate: Option<PathBuf>,
     /// Length of the animation, e.g. '6 s' [default: 0.2 s for each frame, at most 12 s]
-    #[arg(long, value_name = "T", requires = "animate")]
+    #[arg(long, value_name = "T", requires = "animate", allow_hyphen_values = true)]
     pub duration: Option<String>,
     /// Largest number of frames of the animation; of more stored times some are left out evenly [default: 200]
     #[arg(long, value_name = "N", requires = "animate", value_parser = clap::value_parser!(u32).range(2..=10000))]
     pub frames: Option<u32>,
     /// Time of maps, profiles, distributions and the stress, e.g. '500 s'; the nearest stored one is used [default: last]
-    #[arg(long, value_name = "T")]
+    #[arg(long, value_name = "T", allow_hyphen_values = true)]
     pub time: Option<String>,
     /// Direction of a profile
     #[arg(long, value_name = "AXIS", default_value = "x", value_parser = ["x", "y"])]
@@ -100,10 +100,10 @@ pub struct Plot {
     #[arg(long)]
     pub linear_time: bool,
     /// First time of figures over time, or of the animation, e.g. '1 s' (of a sweep a velocity) [default: the first]
-    #[arg(long, value_name = "T")]
+    #[arg(long, value_name = "T", allow_hyphen_values = true)]
     pub from: Option<String>,
     /// Last time likewise [default: the last]
-    #[arg(long, value_name = "T")]
+    #[arg(long, value_name = "T", allow_hyphen_values = true)]
     pub to: Option<String>,
     /// Values at the ends of the colours of a map, e.g. '0,20 MPa' [default: those of the map]
     #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true)]
@@ -119,7 +119,7 @@ pub struct Plot {
     #[arg(long)]
     pub log: bool,
     /// Width and height of the figure, e.g. '160 mm,100 mm' [default: what its panels take]
-    #[arg(long, value_name = "A,B")]
+    #[arg(long, value_name = "A,B", allow_hyphen_values = true)]
     pub size: Option<String>,
     /// The title [default: that of the case]
     #[arg(long)]

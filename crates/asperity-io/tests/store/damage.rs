@@ -199,7 +199,7 @@ fn a_whole_file_of_another_place_is_found() {
     // The documents of arrays, which readers without consolidated metadata use.
     let file = path.join("load/zarr.json");
     let own = fs::read_to_string(&file).unwrap();
-    for other in ["garbage".to_owned(), own.replace("\"N\"", "\"MN\"")] {
+    for other in ["garbage".to_owned(), "[]".into(), "{}".into(), own.replace("\"N\"", "\"MN\"")] {
         fs::write(&file, other).unwrap();
         assert_eq!(damage().len(), 1);
     }

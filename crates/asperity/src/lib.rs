@@ -27,6 +27,7 @@
 
 pub mod contact;
 pub mod cycles;
+pub mod drive;
 pub mod error;
 pub mod finding;
 pub mod grid;
@@ -51,6 +52,7 @@ pub mod verification;
 pub use asperity_convolution as convolution;
 
 pub use contact::{ContactState, Method, Outcome, Prescribed, Problem, Solver, SolverOptions};
+pub use drive::{Axis, Coordinate, Drive};
 pub use error::{Error, NotConverged, Result};
 pub use grid::{Boundary, Grid};
 pub use load::{Control, Course, Event, History, Loading, Programme, Stage};

@@ -229,7 +229,7 @@ fn a_separable_stack_creeps_like_its_law() {
     // Growing contact under a held load: the approach is that of the elastic contact of compliance C(t).
     let rows = run(&creep, 1e-4);
     for row in &rows {
-        let elastic = run(&Creep::elastic(creep.value(row.time)), 1e-4)[0].approach;
+        let elastic = run(&Creep::elastic(creep.value(row.time())), 1e-4)[0].approach;
         assert!((row.approach / elastic - 1.0).abs() < 1e-6, "{} {}", row.approach, elastic);
     }
 }

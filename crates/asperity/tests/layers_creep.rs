@@ -143,10 +143,10 @@ fn full_contact_relaxes_as_each_wave_does_at_any_length_of_the_steps() {
             let mut march = March::new(simulation).unwrap();
             while let Some(step) = march.advance().unwrap() {
                 let found = -amplitude_of(step.pressure().column(0).to_vec()) / given;
-                let exact = relaxation.value(step.row().time);
+                let exact = relaxation.value(step.row().time());
                 // The tolerance of the solver, in units of the mean pressure over that of the wave.
                 let error = (found - exact).abs() / relaxation.instantaneous();
-                assert!(error < 1e-5, "{r} {}: {found} {exact}", step.row().time);
+                assert!(error < 1e-5, "{r} {}: {found} {exact}", step.row().time());
             }
         }
     }

@@ -170,7 +170,7 @@ fn flow_along_the_valleys_of_a_creeping_wave() {
         step.gap_into(&mut deformed);
         step.contact_into(&mut contact);
         let (time, exact) = exact[seen];
-        assert_eq!(step.instant().time, time);
+        assert_eq!(step.coordinate().value(), time);
         // A cell more or less of contact, of 256.
         near(transmissivity(&grid, &deformed, Some(&contact), Direction::Y), exact, 0.01);
         assert_eq!(transmissivity(&grid, &deformed, Some(&contact), Direction::X), 0.0);

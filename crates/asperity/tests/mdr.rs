@@ -36,7 +36,7 @@ fn both(
     }
     assert_eq!(rows.len(), springs.len());
     for (row, state) in rows.iter().zip(&springs) {
-        assert!((row.time - state.time).abs() < 1e-9, "{} {}", row.time, state.time);
+        assert!((row.time() - state.time).abs() < 1e-9, "{} {}", row.time(), state.time);
     }
     rows.into_iter().zip(springs).collect()
 }
@@ -69,7 +69,7 @@ fn a_sphere_that_is_loaded_unloaded_opened_and_loaded_again() {
         }
     }
     // The body is open for a while, and the second contact is not the first.
-    assert!(pairs.iter().any(|(row, _)| row.time > 3.4 && row.contact_area == 0.0));
+    assert!(pairs.iter().any(|(row, _)| row.time() > 3.4 && row.contact_area == 0.0));
 }
 
 #[test]

@@ -89,7 +89,8 @@ fn the_start_of_sliding_in_full_contact_follows_its_closed_form_to_second_order(
         exact
             .iter()
             .map(|(t, stress)| {
-                let (_, friction) = rows.iter().find(|(row, _)| (row.time - start - t).abs() < 1e-9).unwrap();
+                let (_, friction) =
+                    rows.iter().find(|(row, _)| (row.time() - start - t).abs() < 1e-9).unwrap();
                 assert!(
                     (friction.distance - 0.1 * t).abs() < 1e-12 && (friction.velocity - 0.1).abs() < 1e-15
                 );
@@ -188,7 +189,7 @@ fn work_is_energy_stored_and_lost_over_start_stop_and_return() {
         let of = |q| step.quantity(q).unwrap()[0];
         last = [of(Quantity::ElasticEnergy), of(Quantity::DissipatedEnergy), of(Quantity::ExternalWork)];
         least = least.min(of(Quantity::DissipatedPower));
-        forces.push((step.row().time, step.friction().unwrap().force));
+        forces.push((step.row().time(), step.friction().unwrap().force));
     }
     let [elastic, dissipated, work] = last;
     // Steps of a cell, waves of eight of them.
@@ -271,8 +272,8 @@ fn friction_is_right_while_the_body_still_creeps_under_the_load() {
         at_speed(v, 0.0),
         TimeGrid::Uniform { end: 6.0, steps: 1 },
     ));
-    for (row, friction) in rows.iter().filter(|(row, _)| row.time > 0.9) {
+    for (row, friction) in rows.iter().filter(|(row, _)| row.time() > 0.9) {
         // A step of a cell is five retardation times.
-        assert!((friction.force / exact - 1.0).abs() < 0.03, "{}: {} {exact}", row.time, friction.force);
+        assert!((friction.force / exact - 1.0).abs() < 0.03, "{}: {} {exact}", row.time(), friction.force);
     }
 }

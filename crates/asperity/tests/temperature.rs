@@ -120,12 +120,12 @@ fn under_a_held_load_the_approach_follows_the_reduced_time_whatever_the_temperat
         ..base.clone()
     };
     let rows = run(simulation);
-    let times: Vec<f64> = rows.iter().map(|row| row.time).collect();
+    let times: Vec<f64> = rows.iter().map(|row| row.time()).collect();
     assert_eq!(times, [0.0, 0.4, 1.0, 1.7, 3.0, 4.0, 9.0], "breaks of the temperature are steps");
     for row in &rows {
-        let now = 0.03 + polymer().value(c1.value(row.time)) + second.value(c2.value(row.time));
+        let now = 0.03 + polymer().value(c1.value(row.time())) + second.value(c2.value(row.time()));
         let approach = elastic(&base, 0.28, 0.2 * now / 0.28);
-        assert!((row.approach / approach - 1.0).abs() < 1e-7, "t = {}", row.time);
+        assert!((row.approach / approach - 1.0).abs() < 1e-7, "t = {}", row.time());
     }
 }
 

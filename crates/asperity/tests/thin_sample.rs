@@ -33,7 +33,7 @@ fn record(thickness: f64, poisson: f64, interface: Interface) -> [Vec<f64>; 3] {
     let mut rows = [vec![], vec![], vec![]];
     while let Some(step) = march.advance().unwrap() {
         let row = step.row();
-        for (column, value) in rows.iter_mut().zip([row.time, row.load, row.approach]) {
+        for (column, value) in rows.iter_mut().zip([row.time(), row.load, row.approach]) {
             column.push(value);
         }
     }

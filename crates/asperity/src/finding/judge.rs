@@ -142,7 +142,7 @@ impl Judge {
     /// Looks at a row.
     pub fn see(&mut self, step: &Step<'_>, row: &Row) {
         let index = step.index();
-        let (control, compliance) = (step.instant().control, step.simulation().compliance(row.time));
+        let (control, compliance) = (step.control(), step.simulation().compliance(row.coordinate.value()));
         self.see_contact(index, row, step.pressure(), control, compliance);
         self.capped |= row.capped_area > 0.0 && control == Control::Approach;
         if let Some(friction) = step.friction() {

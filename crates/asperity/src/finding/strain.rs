@@ -81,13 +81,13 @@ impl Strain {
         }
     }
 
-    /// From now on rows are steady states of motion, their times velocities.
+    /// From now on rows are steady states of motion, at their velocities.
     pub(super) fn sweep(&mut self, streaming: Streaming, cell: f64) {
         self.sweep = Some((streaming, cell));
     }
 
     pub(super) fn see(&mut self, index: usize, row: &Row, contact: Counted) {
-        let start = std::mem::replace(&mut self.time, row.time);
+        let start = std::mem::replace(&mut self.time, row.coordinate.value());
         // Largest over mean pressure of Hertz's contact.
         let hertz = if contact.line { 4.0 / std::f64::consts::PI } else { 1.5 };
         let of_hertz = if row.contact_area > 0.0 { hertz * row.load / row.contact_area } else { 0.0 };
@@ -97,15 +97,15 @@ impl Strain {
         let strain: f64 = match &self.sweep {
             Some((streaming, cell)) if row.contact_area > 0.0 => {
                 let width = contact.width().min(contact.cells) * cell;
-                pressure * streaming.at(row.time * std::f64::consts::PI / width).norm()
+                pressure * streaming.at(row.coordinate.value() * std::f64::consts::PI / width).norm()
             }
             Some(_) => 0.0,
             None if creep.is_some() => {
                 // As if the pressure had been there from t = 0 on.
-                let creep = creep.map_or(0.0, |creep| creep.value(row.time));
+                let creep = creep.map_or(0.0, |creep| creep.value(row.time()));
                 row.max_pressure.min(of_hertz) * 0.5 * wave_of(row, contact) * creep
             }
-            None => self.bodies.iter_mut().map(|body| body.strain([start, row.time], pressure)).sum(),
+            None => self.bodies.iter_mut().map(|body| body.strain([start, row.time()], pressure)).sum(),
         };
         self.pressure.see(index, strain);
         if contact.line {

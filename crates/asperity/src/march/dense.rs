@@ -6,6 +6,7 @@
 //! pressure-weighted mean, sum p (h0 + u - w) = 0 over 0 < p < H. The steps themselves take no notice.
 
 use crate::contact::{ContactState, Hardness};
+use crate::drive::Coordinate;
 use crate::load::Control;
 use crate::march::record::{Remembered, Step};
 use crate::march::{March, Past, cap, datum, undeformed};
@@ -91,7 +92,9 @@ impl March {
     pub fn view<'a>(&'a self, between: &'a Between) -> Step<'a> {
         Step {
             index: self.done.saturating_sub(1),
-            instant: between.instant,
+            coordinate: Coordinate::Time(between.instant.time),
+            instant: Some(between.instant),
+            control: between.instant.control,
             simulation: &self.simulation,
             state: &between.state,
             gap: &between.gap,

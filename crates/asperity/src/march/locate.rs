@@ -7,7 +7,7 @@
 
 use super::March;
 use super::event::Enclosure;
-use super::memory::Drive;
+use super::memory::Imposed;
 use crate::error::Result;
 use crate::load::Control;
 use crate::time::Instant;
@@ -29,7 +29,7 @@ impl March {
             if overlap <= 0.0 {
                 return Ok(false);
             }
-            let drive = Drive::Apart;
+            let drive = Imposed::Apart;
             if locates {
                 let start = self.overlap_at(drive, 0.0)?;
                 if -start > TOUCHING * (overlap - start) {
@@ -42,18 +42,18 @@ impl March {
                 }
             }
             // Pressure from the start on.
-            self.reset(*instant, Drive::Approach)?;
+            self.reset(*instant, Imposed::Approach)?;
         } else if locates && overlap <= 0.0 {
             let mut enclosure = Enclosure::new(instant.dt, f64::NAN, overlap);
-            self.enclose(&mut enclosure, Drive::Approach, 1.0)?;
-            self.cut(instant, enclosure.far(), Drive::Approach)?;
+            self.enclose(&mut enclosure, Imposed::Approach, 1.0)?;
+            self.cut(instant, enclosure.far(), Imposed::Approach)?;
             return Ok(true);
         }
         Ok(false)
     }
 
     /// Narrows the moment at which the overlap, times `side`, turns from positive to negative.
-    fn enclose(&mut self, enclosure: &mut Enclosure, drive: Drive, side: f64) -> Result<()> {
+    fn enclose(&mut self, enclosure: &mut Enclosure, drive: Imposed, side: f64) -> Result<()> {
         while let Some(dt) = enclosure.guess() {
             let overlap = self.overlap_at(drive, dt)?;
             enclosure.narrow(dt, side * overlap);
@@ -61,13 +61,13 @@ impl March {
         Ok(())
     }
 
-    fn cut(&mut self, instant: &mut Instant, dt: f64, drive: Drive) -> Result<()> {
+    fn cut(&mut self, instant: &mut Instant, dt: f64, drive: Imposed) -> Result<()> {
         *instant = self.timeline.inside(&self.simulation, dt);
         self.reset(*instant, drive)
     }
 
     /// How far the prescribed approach goes beyond first touch at the end of a step of this length.
-    fn overlap_at(&mut self, drive: Drive, dt: f64) -> Result<f64> {
+    fn overlap_at(&mut self, drive: Imposed, dt: f64) -> Result<f64> {
         let instant = self.timeline.inside(&self.simulation, dt);
         self.reset(instant, drive)?;
         Ok(self.overlap(instant))

@@ -36,6 +36,7 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem, Solver, Start};
+use crate::drive::{Axis, Coordinate, Drive};
 use crate::error::{Error, Result};
 use crate::load::{Control, Event};
 use crate::operator::{Operator, plan};
@@ -47,7 +48,7 @@ use dents::Dents;
 use direct::Direct;
 use event::{Enclosure, MET};
 pub(crate) use measure::Meter;
-use memory::{Drive, Ends, Interval, Memory, Spectral};
+use memory::{Ends, Imposed, Interval, Memory, Spectral};
 use motion::{Moving, Slid};
 use record::Remembered;
 use timeline::{Accepted, Timeline};
@@ -365,7 +366,7 @@ impl March {
     }
 
     /// Sets the contact of the step under way at another length.
-    fn reset(&mut self, instant: Instant, drive: Drive) -> Result<()> {
+    fn reset(&mut self, instant: Instant, drive: Imposed) -> Result<()> {
         self.measure_step(instant);
         self.move_gap(instant.time)?;
         let rigid = undeformed(&self.simulation, &self.dents, &self.moving);
@@ -396,20 +397,20 @@ impl March {
     }
 
     /// What is known of the step to `instant` before it is solved.
-    fn drive(&self, instant: Instant) -> Drive {
+    fn drive(&self, instant: Instant) -> Imposed {
         let apart = match &self.past {
             Past::Memory(memory) => memory.load() == 0.0,
             Past::Waves(waves) => waves.load() == 0.0,
             Past::Constant(_) | Past::Direct(_) => false,
         };
         match self.prescribed(instant) {
-            Prescribed::Load(load) if apart && load == 0.0 => Drive::Apart,
+            Prescribed::Load(load) if apart && load == 0.0 => Imposed::Apart,
             // Where the gap moves, displacements run with it, in time, whatever the load does.
-            Prescribed::Load(_) if self.moves(instant) => Drive::Approach,
-            Prescribed::Load(load) => Drive::Load(load),
-            Prescribed::Approach(_) if apart => Drive::Apart,
-            Prescribed::Approach(w) if w == self.reached.approach => Drive::Held,
-            Prescribed::Approach(_) => Drive::Approach,
+            Prescribed::Load(_) if self.moves(instant) => Imposed::Approach,
+            Prescribed::Load(load) => Imposed::Load(load),
+            Prescribed::Approach(_) if apart => Imposed::Apart,
+            Prescribed::Approach(w) if w == self.reached.approach => Imposed::Held,
+            Prescribed::Approach(_) => Imposed::Approach,
         }
     }
 
@@ -649,7 +650,9 @@ impl March {
         let (index, instant) = self.current?;
         Some(Step {
             index,
-            instant,
+            coordinate: Coordinate::Time(instant.time),
+            instant: Some(instant),
+            control: instant.control,
             simulation: &self.simulation,
             hardness: cap(&self.simulation, &self.hardness),
             state: &self.state,
@@ -674,5 +677,55 @@ impl March {
         self.past.remembered(&mut u);
         u.iter_mut().zip(&self.state.unit_displacement).for_each(|(g, unit)| *g += self.compliance * unit);
         datum(&self.simulation, &u)
+    }
+}
+
+impl Drive for March {
+    fn advance(&mut self) -> Result<Option<Step<'_>>> {
+        March::advance(self)
+    }
+
+    fn last(&self) -> Option<Step<'_>> {
+        March::last(self)
+    }
+
+    fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+
+    fn axis(&self) -> Axis {
+        Axis::Time
+    }
+
+    fn planned(&self) -> Vec<f64> {
+        self.simulation.plan().instants.iter().map(|instant| instant.time).collect()
+    }
+
+    fn rows_expected(&self) -> Option<usize> {
+        March::rows_expected(self)
+    }
+
+    fn done(&self) -> usize {
+        self.done
+    }
+
+    fn finished(&self) -> bool {
+        March::finished(self)
+    }
+
+    fn interrupt_with(&mut self, flag: Arc<AtomicBool>) {
+        March::interrupt_with(self, flag);
+    }
+
+    fn checkpoint(&self) -> Checkpoint<'_> {
+        March::checkpoint(self)
+    }
+
+    fn between(&self, time: f64) -> Option<Between> {
+        March::between(self, time)
+    }
+
+    fn view<'a>(&'a self, between: &'a Between) -> Option<Step<'a>> {
+        Some(March::view(self, between))
     }
 }

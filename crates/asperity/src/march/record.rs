@@ -4,7 +4,9 @@ use asperity_sweep::eights::{Eight, Work, vectorize};
 use ndarray::{Array2, ArrayView2};
 
 use crate::contact::{ContactState, Hardness, Outcome};
+use crate::drive::Coordinate;
 use crate::grid::{Boundary, Grid};
+use crate::load::Control;
 use crate::march::dents::Dents;
 use crate::march::measure::Meter;
 use crate::march::{Past, Simulation};
@@ -16,8 +18,8 @@ use asperity_sweep::{Max, sweep};
 /// The numbers of one row.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Row {
-    /// t \[s\].
-    pub time: f64,
+    /// Where it stands among the rows of its run.
+    pub coordinate: Coordinate,
     /// W = cell area times sum p \[N\].
     pub load: f64,
     /// w \[m\], zero at first touch of the undeformed bodies. Of a free line contact of half-spaces it is measured from the end of the domain,
@@ -59,7 +61,10 @@ pub(crate) const PERIMETER_SHARE: f64 = (std::f64::consts::PI - 1.0 + std::f64::
 #[derive(Clone, Copy)]
 pub struct Step<'a> {
     pub(super) index: usize,
-    pub(super) instant: Instant,
+    pub(super) coordinate: Coordinate,
+    /// Of a row in time.
+    pub(super) instant: Option<Instant>,
+    pub(super) control: Control,
     pub(super) simulation: &'a Simulation,
     pub(super) hardness: Hardness<'a>,
     pub(super) state: &'a ContactState,
@@ -82,7 +87,8 @@ pub struct Step<'a> {
 /// A state that no march made, with the numbers of its solve.
 pub(crate) struct Lone<'a> {
     pub(crate) index: usize,
-    pub(crate) instant: Instant,
+    pub(crate) coordinate: Coordinate,
+    pub(crate) control: Control,
     pub(crate) simulation: &'a Simulation,
     pub(crate) state: &'a ContactState,
     /// Undeformed gap \[m\].
@@ -97,10 +103,13 @@ pub(crate) struct Lone<'a> {
 impl<'a> Lone<'a> {
     /// As a row, with the quantities in `meter` where they are taken.
     pub(crate) fn row(self, meter: Option<&'a Meter>) -> Step<'a> {
-        let Lone { index, instant, simulation, state, gap, compliance, outcome, friction, datum } = self;
+        let Lone { index, coordinate, control, simulation, state, gap, compliance, outcome, friction, datum } =
+            self;
         Step {
             index,
-            instant,
+            coordinate,
+            instant: None,
+            control,
             simulation,
             hardness: Hardness::Uniform(simulation.hardness),
             state,
@@ -145,9 +154,19 @@ impl<'a> Step<'a> {
         self.meter?.energy_balance()
     }
 
-    /// Time, length of the step, prescribed value.
-    pub fn instant(&self) -> Instant {
+    /// Time, length of the step, prescribed value; `None` of a steady state.
+    pub fn instant(&self) -> Option<Instant> {
         self.instant
+    }
+
+    /// Time or velocity.
+    pub fn coordinate(&self) -> Coordinate {
+        self.coordinate
+    }
+
+    /// What is prescribed.
+    pub fn control(&self) -> Control {
+        self.control
     }
 
     /// True where every touching cell is at the hardness: the approach is only bounded from below.
@@ -199,10 +218,10 @@ impl<'a> Step<'a> {
         let bodies = (self.gap, self.hardness, self.compliance);
         let contact = Row::of_contact(grid, *boundary, bodies, self.state, &self.outcome);
         Row {
-            time: self.instant.time,
+            coordinate: self.coordinate,
             approach: self.state.approach - self.datum,
             time_error: self.time_error,
-            stage: self.instant.stage,
+            stage: self.instant.map_or(0, |instant| instant.stage),
             ..contact
         }
     }
@@ -237,6 +256,14 @@ impl<'a> Step<'a> {
 }
 
 impl Row {
+    /// t \[s\]; NaN of a row that has no time.
+    pub fn time(&self) -> f64 {
+        match self.coordinate {
+            Coordinate::Time(t) => t,
+            _ => f64::NAN,
+        }
+    }
+
     /// The numbers of one elastic contact, at the time 0: of a state that solves the problem of this gap \[m\], hardness and
     /// compliance \[1/Pa\], each cell of the grid.
     pub fn of_contact(
@@ -261,7 +288,7 @@ impl Row {
         let cell = grid.cell_area();
         let contact_area = touching * cell;
         Row {
-            time: 0.0,
+            coordinate: Coordinate::None,
             load: pressure * cell,
             approach: w,
             contact_area,

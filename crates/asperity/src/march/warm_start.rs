@@ -334,7 +334,7 @@ mod tests {
                 let off = off.fold(0.0, f64::max);
                 // A convolution has some roundings itself.
                 let bound = 4.0 * f64::EPSILON * march.state.rounding;
-                assert!(off <= bound * largest, "{} s: {off} {bound}", row.time);
+                assert!(off <= bound * largest, "{} s: {off} {bound}", row.time());
             }
             // U is computed afresh in one row of ten or so.
             assert!(rows > 100, "{boundary:?}: {rows}");

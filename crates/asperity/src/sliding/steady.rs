@@ -24,13 +24,13 @@ use super::torus::{Spectrum, Torus};
 use super::{Direction, Forces, Friction, Slopes, Streaming, gap_force};
 use crate::contact::{self, ContactState, Hardness, Outcome, Prescribed, Problem, Solver, SolverOptions};
 use crate::convolution::Convolution;
+use crate::drive::Coordinate;
 use crate::error::{Error, NotConverged, Result};
 use crate::grid::Boundary;
 use crate::load::{Control, Course, History, Stage};
 use crate::march::{Lone, Meter, Simulation, Step, datum};
 use crate::operator::Operator;
 use crate::quantities::Quantity;
-use crate::time::Instant;
 
 /// What moves, and how fast.
 #[derive(Clone, Debug, PartialEq)]
@@ -224,18 +224,12 @@ impl Steady {
     }
 
     fn view<'a>(&'a self, velocity: f64, index: usize, meter: Option<&'a Meter>) -> Step<'a> {
-        let instant = Instant {
-            time: velocity,
-            dt: 0.0,
-            value: self.load,
-            jump: false,
-            control: Control::Load,
-            stage: 0,
-        };
+        let (coordinate, control) = (Coordinate::Velocity(velocity), Control::Load);
         let (simulation, state, gap) = (&self.simulation, &self.state, &self.gap[..]);
         let compliance = self.streaming.relaxed();
         let (outcome, friction, datum) = (self.outcome, self.friction, self.datum);
-        Lone { index, instant, simulation, state, gap, compliance, outcome, friction, datum }.row(meter)
+        Lone { index, coordinate, control, simulation, state, gap, compliance, outcome, friction, datum }
+            .row(meter)
     }
 
     fn displacement(&self) -> Vec<f64> {

@@ -64,10 +64,10 @@ pub(super) fn one_elastic_solve() -> Result<Vec<Check>> {
         })?;
         for row in &rows[1..] {
             let creep = zener();
-            let ramped = creep.integral(row.time) - creep.integral((row.time - 2.0).max(0.0));
+            let ramped = creep.integral(row.time()) - creep.integral((row.time() - 2.0).max(0.0));
             let effective = 0.15 * ramped / creep.instantaneous;
             let (equal, _) = elastic(&base, creep.instantaneous, step_load(effective))?;
-            let at = |what: &str| format!("{what} at t = {}, {}", row.time, name(boundary));
+            let at = |what: &str| format!("{what} at t = {}, {}", row.time(), name(boundary));
             checks.relative(at("approach"), row.approach, equal.approach, 100.0 * TOLERANCE);
             checks.relative(at("contact area"), row.contact_area, equal.contact_area, 0.0);
         }

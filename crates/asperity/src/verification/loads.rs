@@ -24,7 +24,7 @@ pub(super) fn press_and_hold() -> Result<Vec<Check>> {
     let rows = rows(Simulation { loading: Programme::new(vec![press, hold]), times, ..sphere()? })?;
     let exact = |t: f64| 0.2 * (1.0 - 0.5 * libm::exp(-1.0) + 0.5 * libm::exp(1.0 - 2.0 * t));
     let held = rows.iter().filter(|row| row.stage == 1);
-    let error = held.map(|row| (row.load / exact(row.time) - 1.0).abs()).fold(0.0, f64::max);
+    let error = held.map(|row| (row.load / exact(row.time()) - 1.0).abs()).fold(0.0, f64::max);
     // Exact in any steps but for the solver.
     checks.absolute("load while the approach is held, largest relative difference", error, 1e-5);
     Ok(checks.list)
@@ -48,7 +48,7 @@ pub(super) fn event() -> Result<Vec<Check>> {
     let times = TimeGrid::Uniform { end: 3.0, steps: 10 };
     let loading = Programme::new(vec![press]);
     let found = rows(Simulation { loading, times, ..sphere()? })?;
-    let time = found.last().map_or(0.0, |row| row.time);
+    let time = found.last().map_or(0.0, |row| row.time());
     // The load that an elastic contact of compliance C(0) needs for the target tells C(t) at the event.
     let history = History::Step { value: target };
     let elastic = rows(Simulation {
@@ -70,14 +70,14 @@ pub(super) fn pull_off() -> Result<Vec<Check>> {
     let loading = Loading { control: Control::Load, history: History::Table { points } };
     let times = TimeGrid::Uniform { end: 3.0, steps: 30 };
     let rows = rows(Simulation { loading: loading.into(), times, ..sphere()? })?;
-    let open: Vec<&Row> = rows.iter().filter(|row| row.time >= 1.0).collect();
+    let open: Vec<&Row> = rows.iter().filter(|row| row.time() >= 1.0).collect();
     let left = open.iter().map(|row| row.contact_area + row.load + row.max_pressure).fold(0.0, f64::max);
     checks.absolute("area, load and pressure left", left, 0.0);
     // The deepest point of the dent of a sphere stays below its apex: it touches there first.
     let start = open.first().map_or(0.0, |row| row.mean_gap + row.approach);
     let rest = rows.first().map_or(0.0, |row| row.mean_gap + row.approach);
     let error = open.iter().map(|row| {
-        let expected = (start - rest) * libm::exp(1.0 - row.time);
+        let expected = (start - rest) * libm::exp(1.0 - row.time());
         (row.mean_gap + row.approach - rest - expected).abs() / (start - rest).abs()
     });
     checks.absolute("mean displacement, relative difference", error.fold(0.0, f64::max), 1e-10);
@@ -102,7 +102,7 @@ pub(super) fn adaptive() -> Result<Vec<Check>> {
     let relaxation = creep.to_relaxation()?;
     let first = held.first().map_or(0.0, |row| row.load);
     let exact = |t: f64| first * relaxation.value(t) / relaxation.value(0.0);
-    let error = held.iter().map(|row| (row.load / exact(row.time) - 1.0).abs()).fold(0.0, f64::max);
+    let error = held.iter().map(|row| (row.load / exact(row.time()) - 1.0).abs()).fold(0.0, f64::max);
     checks.absolute(format!("load, {} steps, largest relative difference", held.len() - 1), error, tolerance);
     let crept = rows(Simulation { loading: step_load(0.01), ..base })?;
     checks.absolute("number of steps under a held load, over 80", (crept.len() - 1) as f64 / 80.0, 1.0);
@@ -129,12 +129,12 @@ pub(super) fn dense_output() -> Result<Vec<Check>> {
         let mut march = March::new(simulation)?;
         let (mut start, mut worst) = (0.0, 0.0_f64);
         while march.advance()?.is_some() {
-            let end = march.last().map_or(start, |step| step.instant().time);
+            let end = march.last().map_or(start, |step| step.coordinate().value());
             for t in at.into_iter().filter(|t| *t > start && *t <= end) {
                 let Some(between) = march.between(t) else { continue };
                 let found = march.view(&between).row().approach;
                 let exact =
-                    fine.iter().find(|row| (row.time - t).abs() < 1e-9).map_or(0.0, |row| row.approach);
+                    fine.iter().find(|row| (row.time() - t).abs() < 1e-9).map_or(0.0, |row| row.approach);
                 worst = worst.max((found / exact - 1.0).abs());
             }
             start = end;
@@ -162,7 +162,7 @@ pub(super) fn loss_angle() -> Result<Vec<Check>> {
     let found = |times: TimeGrid| -> Result<(f64, f64)> {
         let rows = rows(Simulation { loading: loading.clone(), times, ..base.clone() })?;
         let column = |value: fn(&Row) -> f64| rows.iter().map(value).collect::<Vec<f64>>();
-        let (time, load, approach) = (column(|r| r.time), column(|r| r.load), column(|r| r.approach));
+        let (time, load, approach) = (column(|r| r.time()), column(|r| r.load), column(|r| r.approach));
         let last = cycles(&time, &load, &approach, frequency, 0.0)?.pop();
         Ok(last.map_or((0.0, 0.0), |cycle| (cycle.loss_angle, cycle.dissipated_energy * cycle.stiffness)))
     };

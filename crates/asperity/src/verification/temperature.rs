@@ -41,11 +41,11 @@ pub(super) fn temperature_step_load() -> Result<Vec<Check>> {
         times: TimeGrid::Uniform { end: 2.5, steps: 25 },
         ..shape_on(n, size, Shape::Sphere { radius: 1.0 })?
     };
-    for row in rows(simulation)?.iter().filter(|row| [0.0, 0.5, 1.0, 1.5, 2.5].contains(&row.time)) {
-        let compliance = 0.4 * zener().value(row.time) + 0.6 * zener().value(reduced(row.time));
+    for row in rows(simulation)?.iter().filter(|row| [0.0, 0.5, 1.0, 1.5, 2.5].contains(&row.time())) {
+        let compliance = 0.4 * zener().value(row.time()) + 0.6 * zener().value(reduced(row.time()));
         let exact = HertzSphere::under_load(1.0, 1.0 / compliance, 1.0)?;
         let tolerance = (size / n as f64 / exact.contact_radius).powi(2);
-        checks.relative(format!("approach at t = {}", row.time), row.approach, exact.approach, tolerance);
+        checks.relative(format!("approach at t = {}", row.time()), row.approach, exact.approach, tolerance);
     }
     Ok(checks.list)
 }

@@ -58,11 +58,11 @@ fn sphere_follows(
     let mut march = March::new(simulation)?;
     while let Some(step) = march.advance()? {
         let row = step.row();
-        if !instants.iter().any(|t| (t - row.time).abs() < 1e-9) {
+        if !instants.iter().any(|t| (t - row.time()).abs() < 1e-9) {
             continue;
         }
-        let state = exact.at(row.time)?;
-        let at = |what: &str| format!("{what} at t = {}", row.time);
+        let state = exact.at(row.time())?;
+        let at = |what: &str| format!("{what} at t = {}", row.time());
         // Second order in space; the 80 steps per history add 1e-4 (their order is checked apart).
         let tolerance = (dx / state.contact_radius).powi(2) + 1e-4;
         checks.relative(at("approach"), row.approach, state.approach, tolerance);
@@ -97,8 +97,8 @@ pub(super) fn westergaard_creep() -> Result<Vec<Check>> {
     };
     let dx = 1.0 / n as f64;
     for row in rows(simulation)?.iter().step_by(20) {
-        let shape = exact.shape(row.time)?;
-        let at = |what: &str| format!("{what} at t = {}", row.time);
+        let shape = exact.shape(row.time())?;
+        let at = |what: &str| format!("{what} at t = {}", row.time());
         checks.absolute(
             at("contact fraction"),
             (row.contact_fraction - shape.contact_fraction()).abs(),
@@ -145,7 +145,7 @@ pub(super) fn stiff_held_approach() -> Result<Vec<Check>> {
                 ..shape_on(33, 0.6, Shape::Sphere { radius: 1.0 })?
             })?;
             let first = rows.first().map_or(f64::NAN, |row| row.load);
-            let off = |row: &Row| row.load / first / (modulus.value(row.time) / modulus.value(0.0)) - 1.0;
+            let off = |row: &Row| row.load / first / (modulus.value(row.time()) / modulus.value(0.0)) - 1.0;
             let worst = rows.iter().map(|row| off(row).abs()).fold(0.0, f64::max);
             checks.absolute(format!("load over load at t = 0, {name}, {steps}"), worst, HELD);
         }
@@ -205,11 +205,11 @@ pub(super) fn flat_punch_history() -> Result<Vec<Check>> {
     let depth = |t: f64| CircularPunch::viscoelastic(1.0, &zener(), &history, t).map(|p| p.approach);
     // The grid's punch differs from a circle by one factor, the same at all times.
     let factor = rows[0].approach / depth(0.0)?;
-    for row in rows.iter().filter(|r| r.time != 3.0) {
+    for row in rows.iter().filter(|r| r.time() != 3.0) {
         checks.relative(
-            format!("approach at t = {}", row.time),
+            format!("approach at t = {}", row.time()),
             row.approach / factor,
-            depth(row.time)?,
+            depth(row.time())?,
             1e-8,
         );
     }

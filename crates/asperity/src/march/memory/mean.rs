@@ -10,7 +10,7 @@
 use super::estimate::{growing, soon};
 use super::rules::{Course, Rules, Share};
 use super::shape::{Shape, fading_share, moment};
-use super::{Drive, Total};
+use super::{Imposed, Total};
 use crate::error::Result;
 use crate::material::{Creep, CreepTerm, Dual};
 
@@ -49,7 +49,7 @@ impl Mean {
             end: rest,
             dual,
         };
-        mean.run(Drive::Load(load), x);
+        mean.run(Imposed::Load(load), x);
         mean.settle(load);
         Ok(mean)
     }
@@ -60,11 +60,11 @@ impl Mean {
     }
 
     /// How u runs over a step of length `x`.
-    pub(super) fn run(&mut self, drive: Drive, x: f64) -> Run {
+    pub(super) fn run(&mut self, drive: Imposed, x: f64) -> Run {
         let load = match drive {
-            Drive::Load(load) => Some(load),
-            Drive::Apart => Some(0.0),
-            Drive::Approach | Drive::Held => None,
+            Imposed::Load(load) => Some(load),
+            Imposed::Apart => Some(0.0),
+            Imposed::Approach | Imposed::Held => None,
         };
         let course = match load {
             Some(load) if x > 0.0 => {
@@ -83,7 +83,7 @@ impl Mean {
         let relaxing: Vec<(f64, f64)> = relaxing.collect();
         let most = relaxing.iter().fold(0.0, |most: f64, (a, _)| most.max(*a));
         let one_way = most > 0.0 && relaxing.iter().all(|(a, _)| *a >= -ROUNDING * most);
-        match drive == Drive::Held && x > 0.0 && one_way {
+        match drive == Imposed::Held && x > 0.0 && one_way {
             true => Run::Relaxing(relaxing),
             false => Run::Driver(course),
         }

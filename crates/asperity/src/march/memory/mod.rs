@@ -100,12 +100,12 @@ struct Reference {
 pub(in crate::march) struct Interval<'a> {
     /// Its length in laboratory time and on the clock of each body with a temperature.
     pub(in crate::march) lengths: &'a [f64],
-    pub(in crate::march) drive: Drive,
+    pub(in crate::march) drive: Imposed,
 }
 
 /// What is known of a step before it is solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::march) enum Drive {
+pub(in crate::march) enum Imposed {
     /// There is no pressure at either end.
     Apart,
     /// The approach is prescribed.
@@ -243,7 +243,7 @@ impl Memory {
     fn plan(&mut self, step: Interval<'_>) {
         let x = self.clocks.length(step.lengths);
         self.elapsed.iter_mut().zip(self.clocks.own(step.lengths)).for_each(|(e, x)| *e = x);
-        if step.drive == Drive::Apart {
+        if step.drive == Imposed::Apart {
             self.under_way = UnderWay::Apart;
             let recalled = self.recovered(&self.elapsed);
             self.next.set(&self.dual, x, Course::Time, &self.shape);
@@ -255,7 +255,7 @@ impl Memory {
             self.recast(None);
         }
         let course = match step.drive {
-            Drive::Load(load) if x > 0.0 => {
+            Imposed::Load(load) if x > 0.0 => {
                 self.dual.to_strains(&self.total.states, self.total.driver, &mut self.strains);
                 let slope = (load - self.total.load) / x;
                 self.shape.set(&self.dual, self.total.load, slope, &self.strains);

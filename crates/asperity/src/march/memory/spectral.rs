@@ -14,7 +14,7 @@ use super::estimate::ROUNDING;
 use super::mean::{Mean, Run, linear};
 use super::rules::Course;
 use super::waves::{Room, Table, Waves};
-use super::{Drive, Interval, Reference, UnderWay};
+use super::{Imposed, Interval, Reference, UnderWay};
 use crate::error::Result;
 use crate::grid::{Boundary, Grid};
 use crate::kernel::Kernel;
@@ -137,7 +137,7 @@ impl Spectral {
     fn plan(&mut self, step: Interval<'_>) {
         let x = step.lengths[0];
         self.length = x;
-        self.under_way = if step.drive == Drive::Apart { UnderWay::Apart } else { UnderWay::Contact };
+        self.under_way = if step.drive == Imposed::Apart { UnderWay::Apart } else { UnderWay::Contact };
         self.course = Course::Time;
         self.steps.clear();
         if x <= 0.0 {
@@ -145,7 +145,7 @@ impl Spectral {
             self.steps.push(Table(vec![]));
             return;
         }
-        let (Drive::Apart, Some(mean)) = (step.drive, &mut self.mean) else {
+        let (Imposed::Apart, Some(mean)) = (step.drive, &mut self.mean) else {
             let table = match &mut self.mean {
                 None => self.waves.table(x, |tau| linear(x / tau)),
                 Some(mean) => {

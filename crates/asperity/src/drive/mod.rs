@@ -1,0 +1,101 @@
+//! The drives: loops that make rows.
+//!
+//! A row is one solved contact. In time ([`March`](crate::March)) one step follows another; over velocities
+//! ([`Steady`]) each row is a steady state of motion. Both lend their rows through [`Drive`], so that whoever stores, judges
+//! or shows rows needs one loop:
+//!
+//! ```text
+//! let mut drive = drive::of(simulation, None)?;
+//! while let Some(step) = drive.advance()? { record(step.row()) }
+//! ```
+
+mod coordinate;
+mod over_velocities;
+
+pub use coordinate::{Axis, Coordinate};
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use crate::error::Result;
+use crate::march::{Between, Checkpoint, March, Simulation, Step};
+use crate::sliding::{Steady, SteadyMotion, Streaming};
+
+/// What makes one row after the other.
+pub trait Drive: Send {
+    /// The next row, or `None` at the end.
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`](crate::Error::NotConverged) with the coordinate; [`last`](Self::last) then has the best state
+    /// reached. [`Error::Undetermined`](crate::Error::Undetermined), [`Error::Interrupted`](crate::Error::Interrupted),
+    /// [`Error::Missed`](crate::Error::Missed), [`Error::Invalid`](crate::Error::Invalid).
+    fn advance(&mut self) -> Result<Option<Step<'_>>>;
+
+    /// The last row; after an error the state that the failed solve reached. `None` before the first.
+    fn last(&self) -> Option<Step<'_>>;
+
+    /// What is simulated.
+    fn simulation(&self) -> &Simulation;
+
+    /// What its rows follow one another in.
+    fn axis(&self) -> Axis;
+
+    /// The coordinates of all rows, as far as they are known beforehand.
+    fn planned(&self) -> Vec<f64>;
+
+    /// Number of rows in all, where it is known beforehand.
+    fn rows_expected(&self) -> Option<usize>;
+
+    /// Rows done.
+    fn done(&self) -> usize;
+
+    /// Whether the last row is done.
+    fn finished(&self) -> bool;
+
+    /// Stops, within one iteration of the solver, when `flag` becomes true.
+    fn interrupt_with(&mut self, flag: Arc<AtomicBool>);
+
+    /// Everything that the rows to come depend on: resumed from it ([`resume`]), they have the same bits.
+    fn checkpoint(&self) -> Checkpoint<'_>;
+
+    /// The state at a coordinate within the last row's step; `None` where the drive has none.
+    fn between(&self, _coordinate: f64) -> Option<Between> {
+        None
+    }
+
+    /// A state between rows as a row.
+    fn view<'a>(&'a self, _between: &'a Between) -> Option<Step<'a>> {
+        None
+    }
+
+    /// The creep functions of the bodies that stream through a contact in steady motion.
+    fn streaming(&self) -> Option<&Streaming> {
+        None
+    }
+}
+
+/// The drive of a simulation: in time, or over the velocities of `steady`.
+///
+/// # Errors
+/// As [`March::new`] and [`Steady::new`].
+pub fn of(simulation: Simulation, steady: Option<SteadyMotion>) -> Result<Box<dyn Drive>> {
+    Ok(match steady {
+        None => Box::new(March::new(simulation)?),
+        Some(motion) => Box::new(Steady::new(simulation, motion)?),
+    })
+}
+
+/// Goes on where a checkpoint of the same simulation was taken.
+///
+/// # Errors
+/// As [`of`]; [`Error::Invalid`](crate::Error::Invalid) where the checkpoint belongs to another simulation.
+pub fn resume(
+    simulation: Simulation,
+    steady: Option<SteadyMotion>,
+    checkpoint: &Checkpoint,
+) -> Result<Box<dyn Drive>> {
+    Ok(match steady {
+        None => Box::new(March::resume(simulation, checkpoint)?),
+        Some(motion) => Box::new(Steady::resumed(simulation, motion, checkpoint)?),
+    })
+}

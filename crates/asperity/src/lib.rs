@@ -14,7 +14,9 @@
 //! - [`surface`]: shapes, roughness, measured heights to the undeformed gap;
 //! - [`material`]: models, conversion between creep and relaxation, contact compliance of a pair;
 //! - [`load`], [`time`]: what is prescribed, and when the state is computed;
-//! - [`march`]: the simulation; [`contact`]: the elastic contact inside every step;
+//! - [`simulation`], [`drive`]: what is simulated, and the loops that make rows; [`mod@step`]: one step in time;
+//! - [`history`]: what the bodies remember; [`process`]: motion, flattening, energies; [`traction`]: forces on the surfaces;
+//! - [`contact`]: the elastic contact inside every step;
 //! - [`quantities`], [`spots`]: what each row may be asked for besides;
 //! - [`finding`]: where the numbers of a run may be off;
 //! - [`sliding`]: bodies that slide and roll;
@@ -22,7 +24,7 @@
 //! - [`operator`], [`kernel`], [`convolution`]: u = Kp; [`layer`]: K of bodies of layers;
 //! - [`mod@reference`], [`verification`]: closed forms and the checks against them.
 //!
-//! The example of [`march::March`] is a whole simulation. Theory, conventions and verification are in `docs/` of
+//! The example of [`drive::March`] is a whole simulation. Theory, conventions and verification are in `docs/` of
 //! the repository. This crate touches no file and prints nothing.
 
 pub mod contact;
@@ -31,33 +33,46 @@ pub mod drive;
 pub mod error;
 pub mod finding;
 pub mod grid;
+pub mod history;
 pub mod indentation;
 pub mod kernel;
 pub mod layer;
 pub mod leakage;
 pub mod load;
-pub mod march;
 pub mod material;
 pub mod operator;
+pub mod process;
 pub mod quantities;
 pub mod reference;
 mod set;
+pub mod simulation;
 pub mod sliding;
 pub mod spots;
+pub mod step;
 pub mod stress;
 pub mod surface;
 pub mod time;
+pub mod traction;
 pub mod verification;
 
 pub use asperity_convolution as convolution;
 
 pub use contact::{ContactState, Method, Outcome, Prescribed, Problem, Solver, SolverOptions};
-pub use drive::{Axis, Coordinate, Drive};
+pub use drive::{Axis, Coordinate, Drive, March};
 pub use error::{Error, NotConverged, Result};
 pub use grid::{Boundary, Grid};
 pub use load::{Control, Course, Event, History, Loading, Programme, Stage};
-pub use march::{March, Plasticity, Scheme, Simulation};
+pub use simulation::{Plasticity, Scheme, Simulation};
 pub use time::TimeGrid;
+
+/// The march in time: what it takes and gives.
+pub mod march {
+    pub use crate::drive::March;
+    pub use crate::history::check_layers;
+    pub use crate::process::{Motion, in_contact_frame};
+    pub use crate::simulation::{Plasticity, Scheme, Simulation};
+    pub use crate::step::{Between, Checkpoint, Row, Step};
+}
 
 /// The examples of the READMEs of the repository and of this crate, compiled and run by the tests.
 #[cfg(doctest)]

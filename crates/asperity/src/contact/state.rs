@@ -29,6 +29,11 @@ impl ContactState {
         f64::EPSILON * self.rounding <= SPARE * tolerance
     }
 
+    /// Whether any cell is under pressure.
+    pub fn touches(&self) -> bool {
+        self.pressure.iter().any(|p| *p != 0.0)
+    }
+
     /// No contact, at the approach `approach`.
     pub(super) fn lift_off(&mut self, approach: f64) {
         self.pressure.fill(0.0);

@@ -1,6 +1,6 @@
 //! The drives: loops that make rows.
 //!
-//! A row is one solved contact. In time ([`March`](crate::March)) one step follows another; over velocities
+//! A row is one solved contact. In time ([`March`]) one step follows another; over velocities
 //! ([`Steady`]) each row is a steady state of motion. Both lend their rows through [`Drive`], so that whoever stores, judges
 //! or shows rows needs one loop:
 //!
@@ -10,16 +10,19 @@
 //! ```
 
 mod coordinate;
+mod in_time;
 mod over_velocities;
 
 pub use coordinate::{Axis, Coordinate};
+pub use in_time::March;
 
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use crate::error::Result;
-use crate::march::{Between, Checkpoint, March, Simulation, Step};
+use crate::simulation::Simulation;
 use crate::sliding::{Steady, SteadyMotion, Streaming};
+use crate::step::{Between, Checkpoint, Step};
 
 /// What makes one row after the other.
 pub trait Drive: Send {

@@ -69,7 +69,7 @@ impl Drive for Steady {
             Steady::last(self).map_or_else(|| Array2::zeros(shape), |step| step.pressure().to_owned());
         Checkpoint {
             step: Steady::done(self),
-            scalars: vec![],
+            numbers: vec![],
             fields: vec![("pressure".into(), pressure.into())],
         }
     }

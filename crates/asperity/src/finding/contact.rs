@@ -9,7 +9,7 @@ use ndarray::ArrayView2;
 use super::words::{digits, rows};
 use super::{FEW_CONTACT_CELLS, Finding, SPOTS_UNRESOLVED};
 use crate::grid::{Boundary, Grid};
-use crate::march::{PERIMETER_SHARE, Row};
+use crate::step::{PERIMETER_SHARE, Row};
 use crate::quantities::contact_edges;
 
 /// Cells across a spot, at least: below, the pressure inside it is a guess.

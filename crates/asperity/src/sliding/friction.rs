@@ -4,6 +4,7 @@ use ndarray::ArrayView2;
 
 use super::Slopes;
 use crate::grid::{Boundary, Grid};
+use crate::quantities::Quantity;
 
 /// Direction of motion: that of the contact over the body that the grid is fixed to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,6 +59,40 @@ pub struct Friction {
     pub power: f64,
     /// Coefficient with the share of a shear stress on the area in contact; NaN where none is given.
     pub total: f64,
+}
+
+impl Friction {
+    /// The quantity of a row that is one of these.
+    pub(crate) fn quantity(&self, quantity: Quantity) -> Option<f64> {
+        Some(match quantity {
+            Quantity::Velocity => self.velocity,
+            Quantity::SlidingDistance => self.distance,
+            Quantity::FrictionForce => self.force,
+            Quantity::SideForce => self.side,
+            Quantity::FrictionCoefficient => self.coefficient,
+            Quantity::FrictionCoefficientTotal => self.total,
+            Quantity::FrictionUncertainty => self.uncertainty,
+            Quantity::RollingMoment => self.moment,
+            Quantity::DissipatedPower => self.power,
+            _ => return None,
+        })
+    }
+
+    /// From the quantities of a row; `None` where nothing moves.
+    pub(crate) fn from_quantities(of: impl Fn(Quantity) -> Option<f64>) -> Option<Friction> {
+        let known = |quantity| of(quantity).unwrap_or(f64::NAN);
+        Some(Friction {
+            velocity: of(Quantity::Velocity)?,
+            distance: known(Quantity::SlidingDistance),
+            force: known(Quantity::FrictionForce),
+            side: known(Quantity::SideForce),
+            coefficient: known(Quantity::FrictionCoefficient),
+            total: known(Quantity::FrictionCoefficientTotal),
+            uncertainty: known(Quantity::FrictionUncertainty),
+            moment: known(Quantity::RollingMoment),
+            power: known(Quantity::DissipatedPower),
+        })
+    }
 }
 
 /// Sums over the pressure: load, force, side force and moment.

@@ -28,7 +28,8 @@ use crate::drive::Coordinate;
 use crate::error::{Error, NotConverged, Result};
 use crate::grid::Boundary;
 use crate::load::{Control, Course, History, Stage};
-use crate::march::{Lone, Meter, Simulation, Step, datum};
+use crate::simulation::Simulation;
+use crate::step::{Recalled, Recorder, Step};
 use crate::operator::Operator;
 use crate::quantities::Quantity;
 
@@ -105,8 +106,7 @@ pub struct Steady {
     state: ContactState,
     outcome: Outcome,
     friction: Friction,
-    datum: f64,
-    meter: Meter,
+    recorder: Recorder,
     done: usize,
     interrupt: Option<Arc<AtomicBool>>,
 }
@@ -138,21 +138,20 @@ impl Steady {
                 [even_length(2 * nx), if grid.is_line() { 1 } else { even_length(2 * ny) }]
             }
         };
-        let meter = Meter::of_state(simulation.columns()?);
+        let recorder = Recorder::new(simulation.columns()?);
         Ok(Steady {
             torus: Torus::new(grid.cells(), lengths),
             gap: simulation.gap.iter().copied().collect(),
             state: ContactState::new(grid.len()),
             outcome: Outcome::default(),
             friction: Friction::default(),
-            datum: 0.0,
             done: 0,
             interrupt: None,
             simulation,
             motion,
             streaming,
             load,
-            meter,
+            recorder,
         })
     }
 
@@ -203,37 +202,44 @@ impl Steady {
         let Some(velocity) = self.motion.velocities.get(self.done).copied() else { return Ok(None) };
         let solved = self.solve(velocity);
         self.friction = self.forces(velocity);
-        self.datum = datum(&self.simulation, &self.displacement());
         self.measure(velocity);
         self.outcome = solved?;
         self.done += 1;
-        Ok(Some(self.view(velocity, self.done - 1, Some(&self.meter))))
+        Ok(Some(self.view(velocity, self.done - 1, Some(&self.recorder))))
     }
 
     /// The last steady state; after an error the best one reached. `None` before the first.
     pub fn last(&self) -> Option<Step<'_>> {
         let index = self.done.max(1) - 1;
         let velocity = *self.motion.velocities.get(index)?;
-        (self.state.pressure.iter().any(|p| *p > 0.0)).then(|| self.view(velocity, index, Some(&self.meter)))
+        (self.state.pressure.iter().any(|p| *p > 0.0)).then(|| self.view(velocity, index, Some(&self.recorder)))
     }
 
     fn measure(&mut self, velocity: f64) {
-        let mut meter = std::mem::take(&mut self.meter);
-        self.view(velocity, self.done, None).fill(&mut meter, f64::NAN);
-        self.meter = meter;
+        let mut recorder = std::mem::take(&mut self.recorder);
+        self.view(velocity, self.done, None).record(&mut recorder);
+        self.recorder = recorder;
     }
 
-    fn view<'a>(&'a self, velocity: f64, index: usize, meter: Option<&'a Meter>) -> Step<'a> {
-        let (coordinate, control) = (Coordinate::Velocity(velocity), Control::Load);
-        let (simulation, state, gap) = (&self.simulation, &self.state, &self.gap[..]);
-        let compliance = self.streaming.relaxed();
-        let (outcome, friction, datum) = (self.outcome, self.friction, self.datum);
-        Lone { index, coordinate, control, simulation, state, gap, compliance, outcome, friction, datum }
-            .row(meter)
-    }
-
-    fn displacement(&self) -> Vec<f64> {
-        self.state.unit_displacement.iter().map(|u| self.streaming.relaxed() * u).collect()
+    fn view<'a>(&'a self, velocity: f64, index: usize, recorder: Option<&'a Recorder>) -> Step<'a> {
+        Step {
+            index,
+            coordinate: Coordinate::Velocity(velocity),
+            instant: None,
+            control: Control::Load,
+            simulation: &self.simulation,
+            hardness: Hardness::Uniform(self.simulation.hardness),
+            state: &self.state,
+            gap: &self.gap,
+            compliance: self.streaming.relaxed(),
+            outcome: self.outcome,
+            recalled: Recalled::Nothing,
+            time_error: None,
+            undeformed: None,
+            processes: &[],
+            recorder,
+            friction: Some(self.friction),
+        }
     }
 
     /// Solves for one velocity, from the pressure of the state.

@@ -1,0 +1,249 @@
+//! The march through time: one elastic contact per step.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use super::{Axis, Coordinate, Drive};
+use crate::error::{Error, Result};
+use crate::simulation::Simulation;
+use crate::step::{
+    Between, Checkpoint, Loader, Proposal, Recalled, Recorder, Saver, Schedule, Step, Stepper, Summary,
+    Verdict,
+};
+use crate::time::Instant;
+
+/// A simulation on its way through time.
+///
+/// ```
+/// use asperity::{drive::March, material::Creep, surface::{Part, Shape, undeformed_gap}, *};
+/// // A sphere of 10 mm on an incompressible Zener solid, 1 N held for 10 s.
+/// let grid = Grid::new([64, 64], [2e-3, 2e-3])?;
+/// let sphere = Part::Shape { shape: Shape::Sphere { radius: 10e-3 }, center: [0.0, 0.0] };
+/// let gap = undeformed_gap(&grid, &[sphere])?;
+/// let creep = Creep { instantaneous: 1e-8, terms: vec![asperity::material::CreepTerm { compliance: 1e-8, retardation_time: 1.0 }], fluidity: 0.0 };
+/// let loading = Loading { control: Control::Load, history: History::Step { value: 1.0 } };
+/// let mut march = March::new(Simulation {
+///     loading: loading.into(), creep,
+///     times: TimeGrid::Uniform { end: 10.0, steps: 10 },
+///     ..Simulation::new(grid, gap)
+/// })?;
+/// let mut approach = vec![];
+/// while let Some(step) = march.advance()? {
+///     approach.push(step.row().approach);
+/// }
+/// // Under a held load the approach grows as C(t)^(2/3): here by 2^(2/3).
+/// assert!((approach[10] / approach[0] - 2f64.powf(2.0 / 3.0)).abs() < 0.01);
+/// # Ok::<(), asperity::Error>(())
+/// ```
+pub struct March {
+    simulation: Arc<Simulation>,
+    schedule: Schedule,
+    stepper: Stepper,
+    recorder: Recorder,
+    /// Rows done.
+    done: usize,
+    /// The row that the state belongs to: its number, its instant, the estimated error of its step.
+    row: Option<(usize, Instant, Option<f64>)>,
+}
+
+impl March {
+    /// Checks the simulation and plans it: operator, solver, history, schedule.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] naming the quantity; [`Error::Infeasible`] where the load will exceed the
+    /// hardness times the area that can touch.
+    pub fn new(simulation: Simulation) -> Result<Self> {
+        simulation.validate()?;
+        let of_motion = simulation.quantities.list.iter().find(|quantity| quantity.is_of_motion());
+        if let (Some(quantity), None) = (of_motion, &simulation.motion) {
+            return Err(Error::invalid("quantity of a contact that does not move", quantity, "another one"));
+        }
+        let simulation = Arc::new(simulation);
+        Ok(March {
+            schedule: Schedule::new(&simulation),
+            recorder: Recorder::new(simulation.columns()?),
+            stepper: Stepper::new(simulation.clone())?,
+            done: 0,
+            row: None,
+            simulation,
+        })
+    }
+
+    /// Goes on where a checkpoint of the same simulation was taken.
+    ///
+    /// # Errors
+    /// As [`March::new`]; [`Error::Invalid`] where the checkpoint belongs to another simulation.
+    pub fn resume(simulation: Simulation, checkpoint: &Checkpoint) -> Result<Self> {
+        let mut march = March::new(simulation)?;
+        let from = &mut Loader::new(checkpoint, march.simulation.grid.shape());
+        from.within("schedule", |from| march.schedule.load(from))?;
+        from.within("step", |from| march.stepper.load(from))?;
+        march.done = checkpoint.step;
+        Ok(march)
+    }
+
+    /// Everything that the rest of the march depends on. A march resumed from it gives the same bits.
+    pub fn checkpoint(&self) -> Checkpoint<'_> {
+        let mut to = Saver::new(self.done, self.simulation.grid.shape());
+        to.within("schedule", |to| self.schedule.save(to));
+        to.within("step", |to| self.stepper.save(to));
+        to.finish()
+    }
+
+    /// Stops the march, within one iteration of the solver, when `flag` becomes true.
+    pub fn interrupt_with(&mut self, flag: Arc<AtomicBool>) {
+        self.stepper.interrupt_with(flag);
+    }
+
+    /// Number of rows in all, where it is known beforehand: without events and adaptive steps.
+    pub fn rows_expected(&self) -> Option<usize> {
+        let plan = self.simulation.plan();
+        plan.exact.then_some(plan.instants.len())
+    }
+
+    /// Whether the last row is done.
+    pub fn finished(&self) -> bool {
+        self.schedule.finished()
+    }
+
+    /// Rows done.
+    pub fn done(&self) -> usize {
+        self.done
+    }
+
+    /// What is simulated.
+    pub fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+
+    /// The next row, or `None` at the end.
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`] with the time; [`March::last`] then lends the best state reached.
+    /// [`Error::Undetermined`], [`Error::Interrupted`]; [`Error::Missed`] where an event did not come;
+    /// [`Error::Invalid`] where a stage begins with a jump that the material cannot follow.
+    pub fn advance(&mut self) -> Result<Option<Step<'_>>> {
+        if let Some(piece) = self.schedule.piece()
+            && let Some(first) = self.stepper.first_step(&piece)
+        {
+            self.schedule.restart(first);
+        }
+        let mut step = match self.schedule.propose()? {
+            Proposal::Try(step) => step,
+            Proposal::Done(reason) => return reason.outcome(self.simulation.times.end()).map(|()| None),
+        };
+        self.stepper.begin();
+        self.recorder.clear();
+        let attempt = loop {
+            self.row = Some((self.done, step.instant, None));
+            let attempt = self.stepper.attempt(&step)?;
+            match self.schedule.judge(&step, &attempt) {
+                Verdict::Try(next) => step = next,
+                Verdict::Accept => break attempt,
+            }
+        };
+        self.accept(&attempt)?;
+        Ok(self.last())
+    }
+
+    fn accept(&mut self, attempt: &Summary) -> Result<()> {
+        self.row = Some((self.done, attempt.instant, attempt.error));
+        self.stepper.accept()?;
+        let mut recorder = std::mem::take(&mut self.recorder);
+        if !recorder.is_empty() {
+            self.last().iter().for_each(|step| step.record(&mut recorder));
+        }
+        self.recorder = recorder;
+        self.schedule.accept(attempt);
+        self.done += 1;
+        Ok(())
+    }
+
+    /// The last row (after an error: the state that the failed solve reached); `None` before the first.
+    pub fn last(&self) -> Option<Step<'_>> {
+        let (index, instant, time_error) = self.row?;
+        let of_stepper = self.stepper.state();
+        Some(Step {
+            index,
+            coordinate: Coordinate::Time(instant.time),
+            instant: Some(instant),
+            control: instant.control,
+            time_error,
+            recorder: Some(&self.recorder),
+            ..of_stepper
+        })
+    }
+
+    /// The state at `time` within the last step: after the row before it, not after the last row. `None`
+    /// outside of it, and where the scheme is not [`Scheme::Linear`](crate::Scheme::Linear).
+    pub fn between(&self, time: f64) -> Option<Between> {
+        self.stepper.between(time)
+    }
+
+    /// A state between rows as a row: its fields and numbers. Its index is that of the last row; work, residual and
+    /// certificate are those of the last row's solve.
+    pub fn view<'a>(&'a self, between: &'a Between) -> Step<'a> {
+        Step {
+            index: self.done.saturating_sub(1),
+            coordinate: Coordinate::Time(between.instant.time),
+            instant: Some(between.instant),
+            control: between.instant.control,
+            state: &between.state,
+            gap: &between.gap,
+            compliance: 0.0,
+            recalled: Recalled::Field(&between.displacement),
+            processes: &[],
+            ..self.stepper.state()
+        }
+    }
+}
+
+impl Drive for March {
+    fn advance(&mut self) -> Result<Option<Step<'_>>> {
+        March::advance(self)
+    }
+
+    fn last(&self) -> Option<Step<'_>> {
+        March::last(self)
+    }
+
+    fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+
+    fn axis(&self) -> Axis {
+        Axis::Time
+    }
+
+    fn planned(&self) -> Vec<f64> {
+        self.simulation.plan().instants.iter().map(|instant| instant.time).collect()
+    }
+
+    fn rows_expected(&self) -> Option<usize> {
+        March::rows_expected(self)
+    }
+
+    fn done(&self) -> usize {
+        self.done
+    }
+
+    fn finished(&self) -> bool {
+        March::finished(self)
+    }
+
+    fn interrupt_with(&mut self, flag: Arc<AtomicBool>) {
+        March::interrupt_with(self, flag);
+    }
+
+    fn checkpoint(&self) -> Checkpoint<'_> {
+        March::checkpoint(self)
+    }
+
+    fn between(&self, time: f64) -> Option<Between> {
+        March::between(self, time)
+    }
+
+    fn view<'a>(&'a self, between: &'a Between) -> Option<Step<'a>> {
+        Some(March::view(self, between))
+    }
+}

@@ -1,0 +1,186 @@
+//! What the bodies remember: the seam between a time step and the material.
+//!
+//! A step from t_n to t_(n+1) leaves the displacement u_(n+1) = c U_(n+1) + g with U = K p. The number c and the field g are
+//! known before the solve; how they follow from the past is the history's own matter. Members, one room each:
+//!
+//! - [`Relaxation`]: branches of the relaxation form, u linear over each step (docs/theory.md, section 5);
+//! - [`Spectral`]: every wave of the displacement a body of its own, for layers that creep differently;
+//! - [`ConstantPressure`]: the pressure of a step is that of its end;
+//! - [`HereditarySum`]: the full sum over all steps before.
+//!
+//! A step is opened, solved, opened again at other lengths where its error or an event asks for it, and closed. What came
+//! before it is taken in once, when it is first opened.
+
+mod clocks;
+mod constant;
+mod hereditary;
+mod relaxation;
+mod spectral;
+
+pub use spectral::check_layers;
+
+use crate::contact::ContactState;
+use crate::error::Result;
+use crate::operator::Operator;
+use crate::simulation::{Scheme, Simulation};
+use crate::step::{Interval, Loader, Piece, Saver};
+use constant::ConstantPressure;
+use hereditary::HereditarySum;
+use relaxation::Relaxation;
+use spectral::Spectral;
+
+/// The memory of the bodies.
+pub(crate) trait History: Send {
+    /// Takes in the state at the end of the last step and opens the next one: writes `gap` = `rigid` + g.
+    fn open(&mut self, step: &Interval, last: &ContactState, rigid: &[f64], gap: &mut [f64]) -> Result<Law>;
+
+    /// Opens the step under way again, at another length or under another load.
+    fn reopen(&mut self, step: &Interval, rigid: &[f64], gap: &mut [f64]) -> Result<Law>;
+
+    /// The step under way has this end for good.
+    fn close(&mut self, _ends: &Ends<'_>) -> Result<()> {
+        Ok(())
+    }
+
+    /// g of the step under way.
+    fn recalled(&self, g: &mut [f64]);
+
+    /// Whether a step without pressure at either end has a law of its own, so that any time without contact is one step.
+    fn recovers_in_one_step(&self) -> bool {
+        false
+    }
+
+    /// The state that has to be solved first, before the step `step` is opened, for the error of the step to be known.
+    fn third_state(&self, _step: &Interval) -> Option<ThirdState> {
+        None
+    }
+
+    /// Keeps the state just solved as the third one, besides both ends of the step.
+    fn keep_as_third(&mut self, _ends: &Ends<'_>) {}
+
+    /// Estimated error of the stress at the end of the step just solved, relative; `None` where it is not estimated.
+    fn error(&mut self, _step: &Interval, _ends: &Ends<'_>) -> Option<f64> {
+        None
+    }
+
+    /// How long the first step of a smooth piece may be \[s\]; `None` where the history does not say.
+    fn first_step(&mut self, _piece: &Piece) -> Option<f64> {
+        None
+    }
+
+    /// Keeps account of the energy from now on; false where the history knows no springs and dashpots.
+    fn track_energy(&mut self) -> bool {
+        false
+    }
+
+    /// What the step just closed did; `None` where no account is kept.
+    fn exchange(&mut self, _ends: &Ends<'_>) -> Option<Exchange> {
+        None
+    }
+
+    /// The moment within the step just closed that lies `part` into it; writes u there. `None` where states between rows are not
+    /// known.
+    fn within(&self, _part: &Interval, _ends: &Ends<'_>, _u: &mut [f64]) -> Option<Moment> {
+        None
+    }
+
+    /// Saves what the rest of a run depends on.
+    fn save<'a>(&'a self, to: &mut Saver<'a>);
+
+    /// Takes back what [`save`](Self::save) gave.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`](crate::Error::Invalid) where it belongs to another material or scheme.
+    fn load(&mut self, from: &mut Loader<'_>) -> Result<()>;
+}
+
+/// The law of a step: u = compliance K p + g.
+pub(crate) struct Law {
+    pub(crate) compliance: f64,
+    /// K, where it is that of this step alone.
+    pub(crate) operator: Option<Box<dyn Operator>>,
+}
+
+impl Law {
+    fn of(compliance: f64) -> Law {
+        Law { compliance, operator: None }
+    }
+}
+
+/// Both ends of a step that was solved, and the gap that it was solved with.
+#[derive(Clone, Copy)]
+pub(crate) struct Ends<'a> {
+    pub(crate) before: &'a ContactState,
+    pub(crate) now: &'a ContactState,
+    /// Loads of both \[N\].
+    pub(crate) loads: [f64; 2],
+    /// h0 + g, and h0.
+    pub(crate) gap: &'a [f64],
+    pub(crate) rigid: &'a [f64],
+}
+
+impl Ends<'_> {
+    /// How far the bodies approach \[m\].
+    pub(crate) fn advance(&self) -> f64 {
+        self.now.approach - self.before.approach
+    }
+}
+
+/// A state solved first, as shares of the length proposed: that of the state, and that of the step after it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ThirdState {
+    pub(crate) at: f64,
+    pub(crate) step: f64,
+}
+
+/// What a step did to the energy of the bodies, per area of a cell.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Exchange {
+    /// Stored at its end.
+    pub(crate) stored: f64,
+    /// Work of the pressure on the bodies, and what of it became heat.
+    pub(crate) work: f64,
+    pub(crate) heat: f64,
+    /// The mean of the load while u ran from its start to its end \[N\].
+    pub(crate) mean_load: f64,
+}
+
+/// A moment within a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Moment {
+    /// How far u is from its value at the start (0) to that at the end (1).
+    pub(crate) share: f64,
+    /// The load then \[N\].
+    pub(crate) load: f64,
+}
+
+/// The history that a simulation asks for.
+///
+/// # Errors
+/// [`Error::Invalid`](crate::Error::Invalid) where the material has none.
+pub(crate) fn of(simulation: &Simulation) -> Result<Box<dyn History>> {
+    Ok(match (simulation.scheme, &simulation.layers) {
+        (Scheme::Direct, _) => Box::new(HereditarySum::new(&simulation.creep, &simulation.thermal)),
+        (Scheme::Constant, _) => Box::new(ConstantPressure::new(simulation)),
+        (Scheme::Linear, Some(layers)) => Box::new(Spectral::new(simulation, layers)?),
+        (Scheme::Linear, None) => Box::new(Relaxation::new(simulation, simulation.is_adaptive())?),
+    })
+}
+
+/// Bytes that the history of a simulation takes.
+pub(crate) fn bytes(simulation: &Simulation) -> usize {
+    let n = simulation.grid.len();
+    // the displacement of the history, and that of a third instant
+    let terms: usize =
+        simulation.parts().map(|creep| creep.terms.len() + usize::from(creep.fluidity > 0.0)).sum();
+    let fields = match simulation.scheme {
+        Scheme::Direct => simulation.plan().instants.len(),
+        _ if terms == 0 => 0,
+        _ => terms + 1 + usize::from(simulation.is_adaptive()),
+    };
+    let waves = simulation
+        .layers
+        .as_ref()
+        .map_or(0, |layers| spectral::bytes(&simulation.grid, simulation.boundary, layers));
+    8 * n * fields + waves
+}

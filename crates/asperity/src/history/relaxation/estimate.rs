@@ -1,0 +1,219 @@
+//! The error of a step, from three states of u: no solve of its own.
+//!
+//! Over a step of length x, u runs linearly in z (time, or L under load control). What that leaves out of the stress is, to
+//! leading order,
+//!
+//! ```text
+//! ε = 2 |u[z0, z1, z2]| Δz² [ Σ E_i b(x/τ_i) + ζ/(2x) ],    b(y) = [y - 2 + (y + 2) exp(-y)]/(2 y²)
+//! error = Σ ε / max( Σ U', 0.1 Σ U_n, 0.1 E_inf Σ |u'| )
+//! ```
+//!
+//! with b(y) taken (1 - exp(-(T + x)/τ_i))/(1 - exp(-y)) times: the errors of the steps before add up as long as the branch
+//! remembers them, and T is how long the smooth piece of the course has lasted, 15 steps at most. Here u\[z0, z1, z2\] is the second divided
+//! difference of three states, and the sums of the stress go over the cells in contact at either end: an error of the stress
+//! over the stress, not of the displacement over the approach. The second and third bound keep it finite
+//! where contact ends or begins.
+//!
+//! The sum of ε goes over those cells and over the cells apart whose undeformed surfaces would overlap, h0 < w: a surface that
+//! has recovered there touches again, and its error then is one of the pressure.
+//!
+//! A cell that comes into contact during the step moves with the approach w only from then on, and so faster than u' - u over
+//! the whole step says. Where u runs linearly in time, 1/4 of |Δw| - |Δu| stands in its place of |u\[z0, z1, z2\]| Δz² where it is
+//! larger. (A quarter, because this error does not add up over the steps.)
+
+use super::shape::{Shape, moment};
+use super::rules::Driver;
+use super::{Reference, Relaxation};
+use crate::history::Ends;
+use crate::material::Dual;
+use crate::step::Piece;
+use asperity_sweep::{strands, sweep};
+
+/// Share of the stress at the start, and of the relaxed one, that an error is measured by at the least.
+pub(crate) const FLOOR: f64 = 0.1;
+/// Errors of so many steps add up: the curvature of a longer course changes its sign.
+const ALIKE: f64 = 16.0;
+/// Relative rounding error of u, which a contact closes to some units in the last place of the approach.
+pub(crate) const ROUNDING: f64 = 64.0 * f64::EPSILON;
+/// Share of the error of a cell that comes into contact during the step: the others' errors add up over four steps and more.
+pub(crate) const LATE: f64 = 0.25;
+/// L may grow by this share in the first step of a smooth piece.
+const GROWTH: f64 = 0.2;
+/// The first step after a jump is this share of the mean relaxation time.
+const FIRST: f64 = 0.2;
+
+impl Relaxation {
+    /// Keeps the state just solved as the third one, for a shorter step from the same start.
+    pub(super) fn keep(&mut self, ends: &Ends<'_>) {
+        self.reference = Some(Reference { length: self.rules.length, driver: self.rules.driver });
+        let compliance = self.rules.compliance;
+        if self.third.is_empty() {
+            return;
+        }
+        let unit = &ends.now.unit_displacement[..];
+        sweep((&mut self.third[..], unit, ends.gap, ends.rigid), &|(third, unit, gap, rigid): (
+            &mut [f64],
+            &[f64],
+            &[f64],
+            &[f64],
+        )| {
+            for (k, third) in third.iter_mut().enumerate() {
+                // A cell that cannot touch has no finite gap, and no say.
+                let g = gap[k] - rigid[k];
+                *third = if g.is_finite() { compliance * unit[k] + g } else { 0.0 };
+            }
+        });
+    }
+
+    /// The estimated error of the step under way, which has just been solved; 0 where nothing is remembered.
+    pub(super) fn estimate(&self, ends: &Ends<'_>) -> f64 {
+        let Some(reference) = self.reference else { return 0.0 };
+        if self.third.is_empty() || self.rules.length <= 0.0 {
+            return 0.0;
+        }
+        let (step, third) = reference.clock(self.rules.length, self.rules.driver);
+        let weight = 2.0 * self.defect();
+        let advance = if self.rules.driver == Driver::Time { ends.advance().abs() } else { 0.0 };
+        let spread = ((1.0 / third).abs() + (1.0 / step).abs()) / (third - step).abs();
+        let compliance = self.rules.compliance;
+        let cells = (
+            (&self.displacement[..], &self.third[..]),
+            (&ends.before.pressure[..], &ends.before.unit_displacement[..]),
+            (&ends.now.pressure[..], &ends.now.unit_displacement[..]),
+            (ends.gap, ends.rigid),
+        );
+        let [curved, now, before, displaced] =
+            sweep(cells, &|((u, u_third), (p, unit), (p_now, unit_now), (gap, rigid)): (
+                (&[f64], &[f64]),
+                (&[f64], &[f64]),
+                (&[f64], &[f64]),
+                (&[f64], &[f64]),
+            )| {
+                strands(u.len(), |i| {
+                    let presses = p[i] > 0.0 || p_now[i] > 0.0;
+                    let overlaps = rigid[i] < ends.now.approach;
+                    if !(presses || overlaps) {
+                        return [0.0; 4];
+                    }
+                    let u_now = compliance * unit_now[i] + (gap[i] - rigid[i]);
+                    let (before, now) = (u_third[i] - u[i], u_now - u[i]);
+                    let second = (before / third - now / step) / (third - step);
+                    // What rounding errors of u make of it.
+                    let rounding = ROUNDING * u[i].abs().max(u_now.abs()) * spread;
+                    let curved = if second.abs() > rounding { second.abs() * step * step } else { 0.0 };
+                    if !presses {
+                        return [curved, 0.0, 0.0, 0.0];
+                    }
+                    let touched = if p[i] > 0.0 { 0.0 } else { LATE * (advance - now.abs()) };
+                    [curved.max(touched), unit_now[i], unit[i], u_now.abs()]
+                })
+            });
+        let relaxed = self.dual.relaxation.equilibrium * displaced;
+        let scale = now.max(FLOOR * before).max(FLOOR * relaxed);
+        if scale > 0.0 { weight * curved / scale } else { 0.0 }
+    }
+
+    /// Σ E_i b(x/τ_i) + ζ/(2x), with what is remembered of the steps before.
+    fn defect(&self) -> f64 {
+        let (x, relaxation) = (self.rules.length, &self.dual.relaxation);
+        let whole = x + self.since_kink;
+        let terms = relaxation.terms.iter();
+        let terms = terms.map(|e| e.modulus * remembered_defect(x, whole, e.relaxation_time));
+        terms.sum::<f64>() + 0.5 * relaxation.viscosity / x
+    }
+
+    /// How long the first step of a smooth piece may be \[s\]: a twentieth of the piece at most, or as the material and the load
+    /// say.
+    pub(super) fn longest_first_step(&mut self, piece: &Piece) -> f64 {
+        let longest = piece.length / 20.0;
+        let soon = 1e-3 * longest;
+        let rate = self.clocks.fastest(piece.start, soon, self.pair.laboratory());
+        if self.is_elastic() || rate.is_nan() || rate <= 0.0 {
+            return longest;
+        }
+        let relaxed = if piece.is_after_jump { self::soon(&self.dual, longest, rate) } else { longest };
+        let Some(slope) = piece.load_rate(soon) else { return relaxed };
+        self.dual.to_strains(&self.end.states, self.end.driver, &mut self.strains);
+        self.shape.set(&self.dual, self.end.load, slope / rate, &self.strains);
+        growing(&self.dual, &self.shape, self.end.driver, [relaxed, longest], rate)
+    }
+}
+
+impl Reference {
+    /// The end of the step under way and the third state on one clock: L where it ran one and the same way in both, else time.
+    pub(crate) fn clock(self, length: f64, driver: Driver) -> (f64, f64) {
+        match (driver, self.driver) {
+            (Driver::Load(step), Driver::Load(other)) if step * other > 0.0 => {
+                (step, if self.length < 0.0 { -other } else { other })
+            }
+            _ => (length, self.length),
+        }
+    }
+}
+
+/// The first step after a jump, as far as the material says \[s\].
+pub(crate) fn soon(dual: &Dual, longest: f64, rate: f64) -> f64 {
+    let relaxation = &dual.relaxation;
+    let decay: f64 = relaxation.terms.iter().map(|e| e.modulus / e.relaxation_time).sum();
+    match decay > 0.0 && relaxation.viscosity == 0.0 {
+        true => longest.min(FIRST * relaxation.instantaneous() / decay / rate),
+        false => longest,
+    }
+}
+
+/// The first step \[s\], at most `first`, in which L does not grow too much from `start`.
+pub(crate) fn growing(dual: &Dual, shape: &Shape, start: f64, [first, longest]: [f64; 2], rate: f64) -> f64 {
+    let grows = |dt: f64| shape.change(dual, dt * rate).abs() > GROWTH * start.abs();
+    let mut first = first;
+    while start != 0.0 && grows(first) && first > 1e-15 * longest {
+        first *= 0.5;
+    }
+    first
+}
+
+/// b(x/τ) of a step of length x, with what a branch remembers of the steps before: the smooth piece is `whole` long.
+pub(crate) fn remembered_defect(x: f64, whole: f64, tau: f64) -> f64 {
+    let y = x / tau;
+    chord_defect(y) * (moment(0, whole.min(ALIKE * x) / tau) / moment(0, y))
+}
+
+/// b(y) = \[y - 2 + (y + 2) exp(-y)\] / (2 y²), y/12 for small y.
+fn chord_defect(y: f64) -> f64 {
+    if y < 0.1 {
+        // sum over k >= 3 of (-1)^(k+1) (k - 2)/k! y^k, over 2 y²: six terms leave less than 1e-10 of the first.
+        let (mut sum, mut power, mut factorial) = (0.0, y, 6.0);
+        for k in 3..9_i32 {
+            let sign = if k % 2 == 1 { 1.0 } else { -1.0 };
+            sum += sign * f64::from(k - 2) / factorial * power;
+            power *= y;
+            factorial *= f64::from(k + 1);
+        }
+        0.5 * sum
+    } else {
+        (y - 2.0 + (y + 2.0) * libm::exp(-y)) / (2.0 * y * y)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_defect_of_a_chord_is_that_of_a_parabola() {
+        // u = t² on [0, 1] under its chord t: integral of (t - t²) exp(-(1 - t) y) y dt, over u'' = 2.
+        for y in [1e-6, 0.01, 0.0999999, 0.1, 0.7, 30.0, 1e6] {
+            let n = 20_000;
+            let f = |k: usize| {
+                let t = k as f64 / n as f64;
+                // graded towards the end, where the kernel is steep
+                let s = 1.0 - (1.0 - t) * (1.0 - t);
+                (s - s * s) * (-(1.0 - s) * y).exp() * y * 2.0 * (1.0 - t)
+            };
+            let sum: f64 = (1..n).map(|k| if k % 2 == 1 { 4.0 * f(k) } else { 2.0 * f(k) }).sum();
+            let exact = (sum + f(0) + f(n)) / (3.0 * n as f64) / 2.0;
+            // Simpson's rule at y = 1e6 has 14 panels over the kernel's width
+            let tolerance = if y > 1e5 { 1e-3 } else { 1e-6 };
+            assert!((chord_defect(y) / exact - 1.0).abs() < tolerance, "{y} {} {exact}", chord_defect(y));
+        }
+    }
+}

@@ -1,0 +1,338 @@
+//! The memory of the bodies: one field of relaxing displacements q_i for each relaxation time.
+//!
+//! ```text
+//! τ_i dq_i/dt + q_i = u,      U = Kp = E_inf u + Σ E_i (u - q_i) + ζ du/dt
+//! ```
+//!
+//! Over a step u runs linearly in time under approach control, and linearly in L = ∫ C dW under load control
+//! (see [`shape`]). Then u_(n+1) = c U_(n+1) + g with a number c and a field g that are known before the solve
+//! (see [`rules`]): positive and monotone for every spectrum and every length of the step, and exact for a held
+//! approach, a held load and a growing contact. The load W itself is one more cell, whose u is L.
+//!
+//! Without pressure the strains e_j of the creep form fade each by itself, so that any time without contact is one
+//! step: the states stay as they are when contact is lost, and are brought up to date when pressure comes back.
+//!
+//! The update of the last step and the g of the next are one sweep, which reads and writes each branch once. Until then
+//! the step can be taken again at another length.
+
+pub(super) mod branches;
+mod energy;
+mod estimate;
+mod pair;
+pub(super) mod rules;
+pub(super) mod shape;
+mod snapshot;
+mod within;
+
+pub(super) use estimate::{FLOOR, LATE, ROUNDING, growing, remembered_defect, soon};
+
+use branches::Branches;
+use energy::{Products, transition};
+use pair::Pair;
+use rules::{Driver, Rules};
+use shape::Shape;
+
+use super::clocks::Clocks;
+use super::{Ends, Exchange, History, Law, Moment, ThirdState};
+use crate::contact::ContactState;
+use crate::error::Result;
+use crate::material::Dual;
+use crate::simulation::Simulation;
+use crate::step::{Interval, Load, Loader, Piece, Saver};
+use asperity_sweep::zeros;
+
+/// The memory of a pair of bodies as branches that relax.
+pub(crate) struct Relaxation {
+    clocks: Clocks,
+    pair: Pair,
+    /// How fast the clocks go, over the fastest; the pair as one material at these rates.
+    rates: Vec<f64>,
+    dual: Dual,
+    /// q_i and u at the start of the step under way; no u where nothing remembers.
+    states: Branches,
+    displacement: Vec<f64>,
+    /// u of a third instant, where the error of steps is estimated.
+    third: Vec<f64>,
+    reference: Option<Reference>,
+    /// Time from the last kink of the course to the start of the step under way, on the fastest clock.
+    since_kink: f64,
+    /// How far the clocks have gone without pressure since the states were those of the cells.
+    gone: Vec<f64>,
+    /// The load as a cell at the start of the step under way, and at its end.
+    total: Total,
+    end: Total,
+    under_way: UnderWay,
+    rules: Rules,
+    /// How far the clocks go in the step under way.
+    elapsed: Vec<f64>,
+    /// The rules of the next step, while the last one ends.
+    next: Rules,
+    shape: Shape,
+    strains: Vec<f64>,
+    left: Vec<f64>,
+    /// The account of the energy, where it is kept.
+    products: Option<Products>,
+}
+
+/// The step whose end is not yet in the states.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum UnderWay {
+    Nothing,
+    Contact,
+    Apart,
+}
+
+/// The load W, its driver L and its states.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Total {
+    pub(crate) load: f64,
+    pub(crate) driver: f64,
+    pub(crate) states: Vec<f64>,
+}
+
+/// When the third state is, seen from the start of the step under way: before it (a negative length), or after it; and
+/// how u ran in between.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Reference {
+    pub(crate) length: f64,
+    pub(crate) driver: Driver,
+}
+
+impl Total {
+    pub(crate) fn set(&mut self, other: &Total) {
+        (self.load, self.driver) = (other.load, other.driver);
+        self.states.copy_from_slice(&other.states);
+    }
+}
+
+impl Relaxation {
+    /// At rest; `estimates` where the error of steps is estimated.
+    pub(super) fn new(simulation: &Simulation, estimates: bool) -> Result<Self> {
+        let pair = Pair::new(simulation);
+        let rates = vec![1.0; pair.count()];
+        let dual = Dual::of(pair.creep(&rates))?;
+        let (count, cells) = (dual.states(), simulation.grid.len());
+        let elastic = count == 0 && dual.relaxation.viscosity == 0.0;
+        let total = Total { load: 0.0, driver: 0.0, states: vec![0.0; count] };
+        Ok(Relaxation {
+            clocks: Clocks::new(simulation),
+            gone: vec![0.0; pair.count()],
+            elapsed: vec![0.0; pair.count()],
+            rates,
+            states: Branches::new(count, cells),
+            displacement: zeros(if elastic { 0 } else { cells }),
+            third: zeros(if elastic || !estimates { 0 } else { cells }),
+            reference: None,
+            since_kink: 0.0,
+            end: total.clone(),
+            total,
+            under_way: UnderWay::Nothing,
+            rules: Rules::new(count),
+            next: Rules::new(count),
+            shape: Shape::new(dual.creep.terms.len()),
+            strains: vec![0.0; dual.strains()],
+            left: Vec::with_capacity(dual.strains()),
+            products: None,
+            pair,
+            dual,
+        })
+    }
+
+    /// Whether nothing is remembered.
+    fn is_elastic(&self) -> bool {
+        self.displacement.is_empty()
+    }
+
+    /// Sets the rules of the step measured last, which starts from the states.
+    fn plan(&mut self, load: Load) {
+        let lengths = self.clocks.lengths();
+        let x = self.pair.length(lengths);
+        self.elapsed.iter_mut().zip(self.pair.own(lengths)).for_each(|(e, x)| *e = x);
+        if load == Load::Apart {
+            self.under_way = UnderWay::Apart;
+            let recalled = self.recovered(&self.elapsed);
+            self.next.set(&self.dual, x, Driver::Time, &self.shape);
+            self.next.set_apart(&recalled);
+            return;
+        }
+        self.under_way = UnderWay::Contact;
+        if self.gone.iter().any(|gone| *gone > 0.0) {
+            self.recast(None);
+        }
+        let driver = match load {
+            Load::Total(load) if x > 0.0 => {
+                self.dual.to_strains(&self.total.states, self.total.driver, &mut self.strains);
+                let slope = (load - self.total.load) / x;
+                self.shape.set(&self.dual, self.total.load, slope, &self.strains);
+                match self.shape.runs_one_way(&self.dual, self.total.driver, x) {
+                    true => Driver::Load(self.shape.change(&self.dual, x)),
+                    false => Driver::Time,
+                }
+            }
+            _ => Driver::Time,
+        };
+        self.next.set(&self.dual, x, driver, &self.shape);
+    }
+
+    /// Weights of (q, u) in the displacement that is left when a step without pressure, so long on the clocks, ends.
+    fn recovered(&self, elapsed: &[f64]) -> Vec<f64> {
+        let gone: Vec<f64> = self.gone.iter().zip(elapsed).map(|(gone, x)| gone + x).collect();
+        let rows = self.transition(&self.dual, &gone);
+        rows.last().cloned().unwrap_or_default()
+    }
+
+    /// What becomes of (q, u) without pressure while the clocks go so far, with the states of `new` after it.
+    fn transition(&self, new: &Dual, gone: &[f64]) -> Vec<Vec<f64>> {
+        let mut left = vec![];
+        self.pair.fading(gone, &mut left);
+        transition(&self.dual, new, &left)
+    }
+
+    /// Brings the states up to date after a time without pressure, and makes them those of another pair of rates.
+    fn recast(&mut self, dual: Option<Dual>) {
+        let new = dual.as_ref().unwrap_or(&self.dual);
+        let mut rows = self.transition(new, &self.gone);
+        if self.gone.iter().all(|gone| *gone == 0.0) {
+            rows.pop();
+        }
+        self.states.recast(&rows, &mut self.displacement);
+        // The load as a cell is up to date already.
+        self.dual.to_strains(&self.total.states, self.total.driver, &mut self.strains);
+        new.to_states(&self.strains, &mut self.total.states);
+        self.gone.fill(0.0);
+        if let Some(dual) = dual {
+            self.dual = dual;
+        }
+    }
+
+    /// `gap` = `rigid` + g of some rules.
+    fn recall(&self, rules: &Rules, rigid: Option<&[f64]>, gap: &mut [f64]) {
+        match rigid {
+            _ if !self.is_elastic() => self.states.combine(rules.recalled(), &self.displacement, rigid, gap),
+            Some(rigid) => gap.copy_from_slice(rigid),
+            None => gap.fill(0.0),
+        }
+    }
+}
+
+impl History for Relaxation {
+    fn open(&mut self, step: &Interval, last: &ContactState, rigid: &[f64], gap: &mut [f64]) -> Result<Law> {
+        self.clocks.measure(step);
+        self.total.set(&self.end);
+        self.since_kink = if step.is_smooth { self.since_kink + self.rules.length } else { 0.0 };
+        let ends = self.under_way == UnderWay::Contact;
+        let before = Reference { length: -self.rules.length, driver: self.rules.driver };
+        self.reference = (ends && step.is_smooth).then_some(before);
+        if self.under_way == UnderWay::Apart {
+            self.gone.iter_mut().zip(&self.elapsed).for_each(|(gone, x)| *gone += x);
+        }
+        self.under_way = UnderWay::Nothing;
+        let new_rates = self.pair.set_rates(self.clocks.lengths(), &mut self.rates);
+        let unit = &last.unit_displacement;
+        if self.is_elastic() {
+            self.plan(step.load);
+            gap.copy_from_slice(rigid);
+        } else if ends && !new_rates {
+            self.plan(step.load);
+            let third = Some(&mut self.third[..]).filter(|third| !third.is_empty());
+            let next = Some((self.next.recalled(), rigid, gap));
+            self.states.end(self.rules.ending(), unit, &mut self.displacement, third, next);
+        } else {
+            if ends {
+                let third = Some(&mut self.third[..]).filter(|third| !third.is_empty());
+                self.states.end(self.rules.ending(), unit, &mut self.displacement, third, None);
+            }
+            if new_rates {
+                self.recast(Some(Dual::of(self.pair.creep(&self.rates))?));
+            }
+            self.plan(step.load);
+            self.recall(&self.next, Some(rigid), gap);
+        }
+        std::mem::swap(&mut self.rules, &mut self.next);
+        Ok(Law::of(self.rules.compliance))
+    }
+
+    fn reopen(&mut self, step: &Interval, rigid: &[f64], gap: &mut [f64]) -> Result<Law> {
+        self.clocks.measure(step);
+        if self.pair.set_rates(self.clocks.lengths(), &mut self.rates) {
+            self.recast(Some(Dual::of(self.pair.creep(&self.rates))?));
+        }
+        self.plan(step.load);
+        std::mem::swap(&mut self.rules, &mut self.next);
+        self.recall(&self.rules, Some(rigid), gap);
+        Ok(Law::of(self.rules.compliance))
+    }
+
+    /// The load as a cell goes on to the end of the step.
+    fn close(&mut self, ends: &Ends<'_>) -> Result<()> {
+        let load = ends.loads[1];
+        self.end.set(&self.total);
+        self.end.load = load;
+        match self.under_way {
+            UnderWay::Contact => {
+                self.end.driver = self.rules.end(load, self.total.driver, &mut self.end.states);
+            }
+            UnderWay::Apart => {
+                self.dual.to_strains(&self.total.states, self.total.driver, &mut self.strains);
+                self.pair.fading(&self.elapsed, &mut self.left);
+                self.strains.iter_mut().zip(&self.left).for_each(|(e, left)| *e *= left);
+                self.dual.to_states(&self.strains, &mut self.end.states);
+                self.end.driver = self.strains.iter().sum();
+            }
+            UnderWay::Nothing => {}
+        }
+        Ok(())
+    }
+
+    fn recalled(&self, g: &mut [f64]) {
+        self.recall(&self.rules, None, g);
+    }
+
+    fn recovers_in_one_step(&self) -> bool {
+        true
+    }
+
+    fn third_state(&self, step: &Interval) -> Option<ThirdState> {
+        let is_known = step.is_smooth && self.under_way == UnderWay::Contact;
+        (step.is_adaptive && !step.instant.jump && !is_known).then_some(ThirdState { at: 1.0, step: 0.5 })
+    }
+
+    fn keep_as_third(&mut self, ends: &Ends<'_>) {
+        self.keep(ends);
+    }
+
+    fn error(&mut self, step: &Interval, ends: &Ends<'_>) -> Option<f64> {
+        step.is_adaptive.then(|| if step.instant.jump { 0.0 } else { self.estimate(ends) })
+    }
+
+    fn first_step(&mut self, piece: &Piece) -> Option<f64> {
+        Some(self.longest_first_step(piece))
+    }
+
+    fn track_energy(&mut self) -> bool {
+        self.products = Some(Products::at_rest(&self.rates, &self.dual));
+        true
+    }
+
+    fn exchange(&mut self, ends: &Ends<'_>) -> Option<Exchange> {
+        let mut products = self.products.take()?;
+        let exchange = self.exchanged(&mut products, ends);
+        self.products = Some(products);
+        Some(exchange)
+    }
+
+    fn within(&self, part: &Interval, ends: &Ends<'_>, u: &mut [f64]) -> Option<Moment> {
+        let lengths = self.clocks.lengths_of(part);
+        let moment = self.moment(&lengths);
+        self.displaced(&lengths, moment, ends, u);
+        Some(moment)
+    }
+
+    fn save<'a>(&'a self, to: &mut Saver<'a>) {
+        self.save_to(to);
+    }
+
+    fn load(&mut self, from: &mut Loader<'_>) -> Result<()> {
+        self.load_from(from)
+    }
+}

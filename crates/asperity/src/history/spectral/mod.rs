@@ -1,0 +1,318 @@
+//! The memory of layers that creep differently: the states of every wave of the displacement ([`super::waves`]).
+//!
+//! A step is the elastic contact with the operator 1/e of all waves and the undeformed gap h0 + g, where g is the displacement that
+//! the past leaves: one transform of the pressure and one back for each row, beside those of the solve. On a free domain the waves are
+//! those of the padded torus of the convolution, or of one twice as wide ([`crate::operator::wide`]). Its response to pressures on the
+//! domain is that of the body, so that nothing wraps around.
+
+mod estimate;
+mod mean;
+mod waves;
+
+use std::sync::Arc;
+
+use ndarray::Array2;
+use rustfft::num_complex::Complex64;
+
+use super::relaxation::rules::Driver;
+use super::relaxation::{ROUNDING, Reference, UnderWay};
+use super::{Ends, History, Law, Moment, ThirdState};
+use crate::contact::ContactState;
+use crate::error::Result;
+use crate::grid::{Boundary, Grid};
+use crate::kernel::Kernel;
+use crate::layer::Inseparable;
+use crate::operator::{self, Operator, of_eigenvalues, wide};
+use crate::simulation::Simulation;
+use crate::sliding::torus::{Spectrum, Torus};
+use crate::step::{Interval, Load, Loader, Piece, Saver};
+use mean::{Mean, Run, linear};
+pub use waves::check_layers;
+use waves::{Table, Waves, Width};
+
+/// A time without pressure is so many steps, each twice as long as the one before.
+const PARTS: i32 = 16;
+
+pub(super) struct Spectral {
+    grid: Grid,
+    boundary: Boundary,
+    kernel: Arc<dyn Kernel>,
+    layers: Arc<Inseparable>,
+    torus: Torus,
+    waves: Waves,
+    /// K00 of the kernel \[m\].
+    own: f64,
+    /// q_i and u at the start of the step under way.
+    states: Vec<Complex64>,
+    displacement: Vec<Complex64>,
+    /// u of a third instant, and when that is.
+    third: Vec<Complex64>,
+    reference: Option<Reference>,
+    /// Time from the last kink of the course to the start of the step under way \[s\].
+    since_kink: f64,
+    mean: Option<Mean>,
+    under_way: UnderWay,
+    /// Length of the step under way \[s\], how u runs over it, and its parts.
+    length: f64,
+    driver: Driver,
+    run: Run,
+    steps: Vec<Table>,
+    /// 1/e of the step under way, and g.
+    compliance: Array2<f64>,
+    recalled: Vec<Complex64>,
+    past: Vec<f64>,
+    /// The error of u that a solve leaves, over the approach.
+    noise: f64,
+}
+
+impl Spectral {
+    /// The memory of a simulation with these layers.
+    pub(super) fn new(simulation: &Simulation, layers: &Arc<Inseparable>) -> Result<Self> {
+        let (waves, own) = Waves::new(&simulation.grid, simulation.boundary, layers)?;
+        let count = waves.count();
+        let still = Table(vec![]);
+        Ok(Spectral {
+            grid: simulation.grid,
+            boundary: simulation.boundary,
+            kernel: simulation.kernel.clone(),
+            layers: layers.clone(),
+            torus: Torus::new(simulation.grid.cells(), waves.lengths()),
+            own,
+            states: vec![Complex64::ZERO; count * waves.terms],
+            displacement: vec![Complex64::ZERO; count],
+            third: vec![],
+            reference: None,
+            since_kink: 0.0,
+            mean: None,
+            under_way: UnderWay::Nothing,
+            length: 0.0,
+            driver: Driver::Time,
+            run: Run::Linear(Driver::Time),
+            compliance: waves.compliance(&still),
+            steps: vec![still],
+            recalled: vec![Complex64::ZERO; count],
+            past: vec![0.0; simulation.grid.len()],
+            noise: simulation.solver.tolerance.max(ROUNDING),
+            waves,
+        })
+    }
+
+    /// Sets the parts of a step that starts from the states.
+    fn plan(&mut self, step: &Interval) {
+        let x = step.length();
+        self.length = x;
+        self.under_way = if step.load == Load::Apart { UnderWay::Apart } else { UnderWay::Contact };
+        self.driver = Driver::Time;
+        self.steps.clear();
+        self.run = match &mut self.mean {
+            Some(mean) => mean.run(step.load, x),
+            None => Run::Linear(Driver::Time),
+        };
+        if x <= 0.0 {
+            self.steps.push(Table(vec![]));
+            return;
+        }
+        let (Load::Apart, Some(_)) = (step.load, &self.mean) else {
+            let table = match &self.mean {
+                None => self.waves.table(x, |tau| linear(x / tau)),
+                Some(mean) => {
+                    if let Run::Linear(driver) = self.run {
+                        self.driver = driver;
+                    }
+                    self.waves.table(x, |tau| mean.share(&self.run, tau, x))
+                }
+            };
+            return self.steps.push(table);
+        };
+        // Its parts are short against the times that matter when they pass: u is linear in each.
+        for part in (1..=PARTS).rev() {
+            let halves = if part == PARTS { part - 1 } else { part };
+            let x = x * libm::pow(0.5, f64::from(halves));
+            self.steps.push(self.waves.table(x, |tau| linear(x / tau)));
+        }
+    }
+
+    /// Finds the operator and g of the step under way.
+    fn prepare(&mut self) {
+        self.compliance = self.waves.compliance(&self.steps[self.steps.len() - 1]);
+        self.waves.recall(&self.steps, &self.displacement, &self.states, &mut self.recalled);
+        self.torus.back_of(&self.recalled, &mut self.past);
+    }
+
+    fn scale(&self) -> f64 {
+        operator::mean(self.waves.lengths(), self.compliance.view()) / self.own
+    }
+
+    /// The operator of the step under way, over the scalar compliance.
+    fn operator(&self) -> Box<dyn Operator> {
+        let unit = &self.compliance / self.scale();
+        let unit = match self.waves.width() {
+            Width::Narrow => unit,
+            Width::Wide => wide::narrowed(&self.grid, &unit),
+        };
+        of_eigenvalues(self.grid, self.boundary, self.kernel.clone(), &unit)
+    }
+
+    fn cells(&self) -> usize {
+        self.grid.len()
+    }
+
+    /// The law of the step that is set, with `gap` = `rigid` + g.
+    fn law(&mut self, rigid: &[f64], gap: &mut [f64]) -> Law {
+        self.prepare();
+        gap.iter_mut().zip(rigid).zip(&self.past).for_each(|((gap, rigid), g)| *gap = rigid + g);
+        Law { compliance: self.scale(), operator: Some(self.operator()) }
+    }
+}
+
+impl History for Spectral {
+    fn open(&mut self, step: &Interval, last: &ContactState, rigid: &[f64], gap: &mut [f64]) -> Result<Law> {
+        let ends = self.under_way == UnderWay::Contact;
+        self.since_kink = if step.is_smooth { self.since_kink + self.length } else { 0.0 };
+        let before = Reference { length: -self.length, driver: self.driver };
+        self.reference = (ends && step.is_smooth).then_some(before);
+        if ends {
+            self.third.clone_from(&self.displacement);
+        }
+        let transform = ends.then(|| self.torus.transform(&last.pressure));
+        if self.under_way != UnderWay::Nothing {
+            let p = transform.as_ref().map(|Spectrum(p)| &p[..]);
+            self.waves.end(&self.steps, p, &mut self.displacement, &mut self.states);
+        }
+        self.mean.iter_mut().for_each(Mean::begin);
+        self.reopen(step, rigid, gap)
+    }
+
+    fn reopen(&mut self, step: &Interval, rigid: &[f64], gap: &mut [f64]) -> Result<Law> {
+        self.plan(step);
+        Ok(self.law(rigid, gap))
+    }
+
+    /// The mean course goes on to the end of the step; the first load tells whose mean it is.
+    fn close(&mut self, ends: &Ends<'_>) -> Result<()> {
+        let load = ends.loads[1];
+        match &mut self.mean {
+            Some(mean) => mean.close(load),
+            None if load > 0.0 => {
+                let Spectrum(p) = self.torus.transform(&ends.now.pressure);
+                let values = self.waves.mean(&p, self.layers.frequencies());
+                // A mean of creep functions is one.
+                if let Some((creep, _)) = self.layers.fit(&values) {
+                    self.mean = Some(Mean::new(creep, self.length, load)?);
+                }
+            }
+            None => {}
+        }
+        Ok(())
+    }
+
+    fn recalled(&self, g: &mut [f64]) {
+        g.copy_from_slice(&self.past);
+    }
+
+    fn recovers_in_one_step(&self) -> bool {
+        true
+    }
+
+    /// Adaptive steps are solved at their full length first and taken at half of it, so that the next try is shorter; steps of a
+    /// given length the other way round.
+    fn third_state(&self, step: &Interval) -> Option<ThirdState> {
+        if step.instant.jump || step.length() == 0.0 {
+            return None;
+        }
+        let leaves_a_third = self.under_way == UnderWay::Contact && (step.is_adaptive || self.length > 0.0);
+        let third = match step.is_adaptive {
+            true => ThirdState { at: 1.0, step: 0.5 },
+            false => ThirdState { at: 0.5, step: 1.0 },
+        };
+        (!(step.is_smooth && leaves_a_third)).then_some(third)
+    }
+
+    fn keep_as_third(&mut self, ends: &Ends<'_>) {
+        self.keep(&ends.now.pressure);
+    }
+
+    fn error(&mut self, step: &Interval, ends: &Ends<'_>) -> Option<f64> {
+        Some(if step.instant.jump { 0.0 } else { self.estimate(ends) })
+    }
+
+    fn first_step(&mut self, piece: &Piece) -> Option<f64> {
+        let longest = piece.length / 20.0;
+        Some(self.mean.as_mut().map_or(longest, |mean| mean.first_step(piece, longest)))
+    }
+
+    /// u of every wave runs as the mean course does.
+    fn within(&self, part: &Interval, ends: &Ends<'_>, u: &mut [f64]) -> Option<Moment> {
+        let (x, whole) = (part.length(), self.length);
+        let moment = match &self.mean {
+            Some(mean) if self.under_way == UnderWay::Contact && x < whole => mean.moment(&self.run, x, whole),
+            _ => Moment { share: if whole > 0.0 { x / whole } else { 1.0 }, load: ends.loads[1] },
+        };
+        let mut start = vec![0.0; self.grid.len()];
+        let mut torus = Torus::new(self.grid.cells(), self.waves.lengths());
+        torus.back_of(&self.displacement, &mut start);
+        let mut end = vec![0.0; self.grid.len()];
+        let Spectrum(p) = torus.transform(&ends.now.pressure);
+        let waves: Vec<Complex64> = self.end_of(&p);
+        torus.back_of(&waves, &mut end);
+        for (u, (start, end)) in u.iter_mut().zip(start.iter().zip(&end)) {
+            *u = start + moment.share * (end - start);
+        }
+        Some(moment)
+    }
+
+    fn save<'a>(&'a self, to: &mut Saver<'a>) {
+        self.under_way.save(to);
+        let change = if let Driver::Load(change) = self.driver { change } else { f64::INFINITY };
+        to.numbers("step", vec![self.length, change, self.since_kink]);
+        to.number("steps", self.steps.len() as f64);
+        for (k, Table(rows)) in self.steps.iter().enumerate() {
+            to.numbers(&format!("step_{k}"), rows.as_flattened().to_vec());
+        }
+        if let Some(mean) = &self.mean {
+            to.within("mean", |to| mean.save(to));
+        }
+        let all: Vec<f64> = self.states.iter().chain(&self.displacement).flat_map(|z| [z.re, z.im]).collect();
+        // The complex numbers of the states and of u, in as many fields as hold them.
+        let cells = self.grid.len();
+        for (k, part) in all.chunks(cells).enumerate() {
+            let mut field = part.to_vec();
+            field.resize(cells, 0.0);
+            to.owned_field(&format!("waves_{k}"), field);
+        }
+    }
+
+    fn load(&mut self, from: &mut Loader<'_>) -> Result<()> {
+        self.under_way = UnderWay::load(from)?;
+        let [length, change, since_kink] = from.array("step")?;
+        (self.length, self.since_kink) = (length, since_kink);
+        self.driver = if change.is_finite() { Driver::Load(change) } else { Driver::Time };
+        let steps = from.number("steps")? as usize;
+        let table = |k: usize| Ok(Table(from.numbers(&format!("step_{k}"))?.as_chunks::<3>().0.to_vec()));
+        self.steps = (0..steps).map(table).collect::<Result<_>>()?;
+        if self.steps.is_empty() {
+            return Err(from.foreign("a history without a step"));
+        }
+        let mean = from.within("mean", |from| if from.is_empty() { Ok(None) } else { Mean::load(from).map(Some) });
+        self.mean = mean?;
+        let count = 2 * (self.states.len() + self.displacement.len());
+        let fields = (0..count.div_ceil(self.grid.len())).map(|k| from.field(&format!("waves_{k}")));
+        let fields = fields.collect::<Result<Vec<_>>>()?;
+        let mut all = fields.iter().flatten().copied();
+        for z in self.states.iter_mut().chain(&mut self.displacement) {
+            let [re, im] = [all.next().unwrap_or_default(), all.next().unwrap_or_default()];
+            *z = Complex64::new(re, im);
+        }
+        self.prepare();
+        Ok(())
+    }
+}
+
+/// Bytes that the states of the waves take.
+pub(super) fn bytes(grid: &Grid, boundary: Boundary, layers: &Inseparable) -> usize {
+    let is_wide = boundary == Boundary::Free && layers.creeps_far_away();
+    let [mx, my] = if is_wide { wide::lengths(grid) } else { operator::torus(grid, boundary) };
+    // Four terms to a wave are usual: their states and moduli, u, g, a third u and what its error takes, and one eigenvalue for
+    // each node while they are planned.
+    mx * (my / 2 + 1) * (16 * (4 + 8) + 8 * 4 + 4 * (layers.nodes() + 2))
+}

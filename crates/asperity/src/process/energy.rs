@@ -1,0 +1,114 @@
+//! The energy of the bodies: work of the load, springs, dashpots, flattening (docs/theory.md, "Energy and other quantities").
+//!
+//! ```text
+//! springs     (A/2) [ E_inf <u, u> + Σ E_i <u - q_i, u - q_i> ],     <a, b> = Σ a K⁻¹ b,  A the area of a cell
+//! dashpots    the work of the pressure on the bodies less what the springs take
+//! flattening  A Σ p |h| over the cells at the hardness
+//! work        ∫ W dw  =  the sum of the three
+//! ```
+//!
+//! Springs and dashpots are those of the scheme, exactly ([`History::exchange`]). The work is taken from load and approach
+//! alone: the mean of W over the step, on the clock in which u runs, times the change of w.
+
+use super::{Process, Solved};
+use crate::contact::Hardness;
+use crate::error::Result;
+use crate::history::History;
+use crate::quantities::Quantity;
+use crate::simulation::{Plasticity, Simulation};
+use crate::step::{Loader, Saver, UndeformedGap};
+use asperity_sweep::{strands, sweep};
+
+/// The energies at the end of the last row \[J\].
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Energy {
+    /// Of the springs.
+    elastic: f64,
+    /// Heat since t = 0.
+    dissipated: f64,
+    /// Work on the cells at the hardness: held there where the cut-off is reversible, spent where it stays.
+    flattening: f64,
+    /// ∫ W dw, and the work of friction, since t = 0.
+    work: f64,
+    /// w \[m\].
+    approach: f64,
+    /// Heat per time in the last step \[W\].
+    power: f64,
+}
+
+impl Energy {
+    /// `None` where no energy is asked for, or the history knows no springs and dashpots.
+    pub(super) fn of(simulation: &Simulation, history: &mut dyn History) -> Option<Self> {
+        let is_wanted = |q: &Quantity| q.is_energy() || *q == Quantity::DissipatedPower;
+        let wanted = simulation.quantities.list.iter().any(is_wanted);
+        (wanted && history.track_energy()).then(Energy::default)
+    }
+
+    fn numbers(&self) -> [f64; 5] {
+        [self.elastic, self.dissipated, self.flattening, self.work, self.approach]
+    }
+}
+
+impl Process for Energy {
+    fn accept(&mut self, row: &mut Solved<'_>) -> Result<()> {
+        let Some(step) = row.exchange else { return Ok(()) };
+        let cell_area = row.simulation.grid.cell_area();
+        let overlap = cell_area * overlap_work(row);
+        let flattened = match row.simulation.plasticity {
+            Plasticity::Cap => overlap - self.flattening,
+            Plasticity::Accumulate => overlap,
+        };
+        // A jump is elastic against what the bodies remember, and the course of W over w at a first touch is not known: there
+        // the work is what the bodies take.
+        let jump = row.step.length() == 0.0;
+        self.work += match jump || !row.before.touches() {
+            true => cell_area * step.work + flattened,
+            false => step.mean_load * (row.now.approach - self.approach),
+        };
+        let before = self.dissipated;
+        self.elastic = cell_area * step.stored;
+        self.dissipated += cell_area * step.heat;
+        self.flattening += flattened;
+        self.approach = row.now.approach;
+        self.work += row.other_work;
+        self.power = if jump { 0.0 } else { (self.dissipated - before) / row.step.length() };
+        Ok(())
+    }
+
+    fn quantity(&self, quantity: Quantity) -> Option<f64> {
+        match quantity {
+            Quantity::ElasticEnergy => Some(self.elastic),
+            Quantity::DissipatedEnergy => Some(self.dissipated),
+            Quantity::FlatteningWork => Some(self.flattening),
+            Quantity::ExternalWork => Some(self.work),
+            Quantity::DissipatedPower => Some(self.power),
+            _ => None,
+        }
+    }
+
+    fn name(&self) -> &'static str {
+        "energy"
+    }
+
+    fn save<'a>(&'a self, to: &mut Saver<'a>, _gap: &'a UndeformedGap) {
+        to.numbers("energies", self.numbers().to_vec());
+    }
+
+    fn load(&mut self, from: &mut Loader<'_>, _gap: &mut UndeformedGap) -> Result<()> {
+        let [elastic, dissipated, flattening, work, approach] = from.array("energies")?;
+        *self = Energy { elastic, dissipated, flattening, work, approach, power: f64::NAN };
+        Ok(())
+    }
+}
+
+/// Σ p |h| over the cells at the hardness \[m Pa\].
+fn overlap_work(row: &Solved<'_>) -> f64 {
+    let (c, w) = (row.compliance, row.now.approach);
+    let cells = (&row.now.pressure[..], &row.now.unit_displacement[..], &row.gap[..], row.hardness);
+    sweep(cells, &|(p, u, h, hardness): (&[f64], &[f64], &[f64], Hardness)| {
+        strands(p.len(), |i| {
+            let overlap = if p[i] >= hardness.at(i) { (w - c * u[i] - h[i]).max(0.0) } else { 0.0 };
+            [if overlap > 0.0 { p[i] * overlap } else { 0.0 }]
+        })
+    })[0]
+}

@@ -1,0 +1,69 @@
+//! Permanent flattening: the undeformed gap that changes with every row (docs/theory.md, "Permanent flattening").
+//!
+//! A cell at the hardness ends a row with an overlap, h < 0. That much of it was pushed aside for good: it is added to
+//! the undeformed gap, h0 <- h0 - h, so that the cell ends the row just closed, h = 0, at p = H. The state stays a
+//! solution of the contact conditions, now of the flattened surface.
+
+use super::{Process, Solved};
+use crate::contact::Hardness;
+use crate::error::Result;
+use crate::quantities::Quantity;
+use crate::simulation::{Plasticity, Simulation};
+use crate::step::{Loader, Saver, UndeformedGap};
+use asperity_sweep::sweep;
+
+pub(super) struct Flattening;
+
+impl Flattening {
+    /// `None` where the cut-off leaves no flattening.
+    pub(super) fn of(simulation: &Simulation) -> Option<Self> {
+        (simulation.plasticity == Plasticity::Accumulate).then_some(Flattening)
+    }
+}
+
+impl Process for Flattening {
+    /// Makes the overlap of the row a part of the undeformed gap.
+    fn accept(&mut self, row: &mut Solved<'_>) -> Result<()> {
+        let (c, w) = (row.compliance, row.now.approach);
+        let cells = (
+            &row.now.pressure[..],
+            &row.now.unit_displacement[..],
+            &mut row.gap[..],
+            row.undeformed.own_mut(),
+            row.hardness,
+        );
+        sweep(cells, &|(p, u, gap, flattened, hardness): (
+            &[f64],
+            &[f64],
+            &mut [f64],
+            &mut [f64],
+            Hardness,
+        )| {
+            for i in 0..p.len() {
+                let overlap = w - (c * u[i] + gap[i]);
+                if p[i] >= hardness.at(i) && overlap > 0.0 {
+                    gap[i] += overlap;
+                    flattened[i] += overlap;
+                }
+            }
+        });
+        Ok(())
+    }
+
+    fn quantity(&self, _quantity: Quantity) -> Option<f64> {
+        None
+    }
+
+    fn name(&self) -> &'static str {
+        "flattening"
+    }
+
+    /// Its state is the undeformed gap.
+    fn save<'a>(&'a self, to: &mut Saver<'a>, gap: &'a UndeformedGap) {
+        to.field("gap", gap.now());
+    }
+
+    fn load(&mut self, from: &mut Loader<'_>, gap: &mut UndeformedGap) -> Result<()> {
+        from.field_into("gap", gap.own_mut())
+    }
+}

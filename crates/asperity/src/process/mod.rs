@@ -1,0 +1,100 @@
+//! What changes the gap from step to step, or reads the state of each row.
+//!
+//! A process sees a step twice: before it is solved it may move the undeformed gap to where it is at the end of the step
+//! ([`Process::open`], repeatable at any length), and once the row stands it takes it in ([`Process::accept`]). The quantities and
+//! fields that it adds to a row it declares by answering for them. Members: [`motion`], [`flattening`], [`energy`],
+//! [`stiffness`].
+
+mod energy;
+mod flattening;
+mod motion;
+mod stiffness;
+
+pub use motion::{Motion, in_contact_frame};
+pub(crate) use motion::{cells, roll};
+
+use std::sync::atomic::AtomicBool;
+
+use crate::contact::{ContactState, Hardness};
+use crate::error::Result;
+use crate::history::{Exchange, History};
+use crate::operator::Operator;
+use crate::quantities::Quantity;
+use crate::simulation::Simulation;
+use crate::step::{Interval, Loader, Saver, UndeformedGap};
+
+/// What goes on beside the contact.
+pub(crate) trait Process: Send {
+    /// Moves the gap to where it is at the end of the step.
+    fn open(&mut self, _step: &Interval, _gap: &mut UndeformedGap) -> Result<()> {
+        Ok(())
+    }
+
+    /// Cells along x and y that the gap has moved since the last row; `None` where this process does not move it in this step.
+    fn shift(&self, _step: &Interval) -> Option<[isize; 2]> {
+        None
+    }
+
+    /// Takes in the row that was just solved.
+    fn accept(&mut self, row: &mut Solved<'_>) -> Result<()>;
+
+    /// A quantity of the last row, where it is one of this process.
+    fn quantity(&self, quantity: Quantity) -> Option<f64>;
+
+    /// Saves what the rest of a run depends on.
+    fn save<'a>(&'a self, to: &mut Saver<'a>, _gap: &'a UndeformedGap);
+
+    /// Takes back what [`save`](Self::save) gave; the gap is that of the last row afterwards.
+    fn load(&mut self, from: &mut Loader<'_>, gap: &mut UndeformedGap) -> Result<()>;
+
+    /// The name under which it saves its state.
+    fn name(&self) -> &'static str;
+}
+
+/// A row that was just solved, for the processes, one after the other.
+pub(crate) struct Solved<'a> {
+    pub(crate) simulation: &'a Simulation,
+    pub(crate) step: &'a Interval,
+    pub(crate) before: &'a ContactState,
+    pub(crate) now: &'a ContactState,
+    /// Loads of both \[N\].
+    pub(crate) loads: [f64; 2],
+    /// h0 + g that it was solved with, and h0.
+    pub(crate) gap: &'a mut [f64],
+    pub(crate) undeformed: &'a mut UndeformedGap,
+    pub(crate) compliance: f64,
+    pub(crate) hardness: Hardness<'a>,
+    pub(crate) operator: &'a mut dyn Operator,
+    pub(crate) interrupt: Option<&'a AtomicBool>,
+    /// What the step did to the energy of the bodies, where account is kept of it.
+    pub(crate) exchange: Option<Exchange>,
+    /// Work that was done on the bodies in the step besides that of the load \[J\].
+    pub(crate) other_work: f64,
+    /// Convolutions that the processes took.
+    pub(crate) convolutions: usize,
+}
+
+/// The processes that a simulation asks for, in the order in which they take in a row.
+///
+/// # Errors
+/// [`Error::Invalid`](crate::Error::Invalid) where a process cannot start.
+pub(crate) fn of(
+    simulation: &Simulation,
+    operator: &dyn Operator,
+    history: &mut dyn History,
+) -> Result<Vec<Box<dyn Process>>> {
+    let mut processes: Vec<Box<dyn Process>> = vec![];
+    if let Some(motion) = &simulation.motion {
+        processes.push(Box::new(motion::Moving::new(simulation, motion)?));
+    }
+    if let Some(stiffness) = stiffness::Stiffness::of(simulation, operator) {
+        processes.push(Box::new(stiffness));
+    }
+    if let Some(energy) = energy::Energy::of(simulation, history) {
+        processes.push(Box::new(energy));
+    }
+    if let Some(flattening) = flattening::Flattening::of(simulation) {
+        processes.push(Box::new(flattening));
+    }
+    Ok(processes)
+}

@@ -1,0 +1,245 @@
+//! A contact that moves over a body in time.
+//!
+//! The memory stays with the material, and the grid with it: the gap moves, h(x, t) = h(x - X(t)), and each step is the elastic
+//! contact that it would be anyway. Nothing is carried along, so nothing is lost on the way. Steps end where the gap has moved
+//! by whole cells: the contact patch only shifts, and just the history changes.
+
+use ndarray::{Array2, ArrayView2};
+
+use super::{Process, Solved};
+use crate::error::{Error, Result};
+use crate::grid::Boundary;
+use crate::quantities::Quantity;
+use crate::simulation::{Plasticity, Scheme, Simulation};
+use crate::sliding::{Direction, Forces, Friction, MovingGap, Path, Slopes, gap_force};
+use crate::step::{Interval, Loader, Saver, UndeformedGap, to_view};
+
+/// How a contact moves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Motion {
+    /// How far, over time.
+    pub path: Path,
+    /// Which way.
+    pub direction: Direction,
+    /// The gap, wherever its moving parts are; that of the simulation is its gap at the start.
+    pub gap: MovingGap,
+    /// Cells that the gap moves in a step, at most.
+    pub cells_per_step: f64,
+    /// A shear stress on the area in contact \[Pa\], for [`Friction::total`].
+    pub shear_stress: Option<f64>,
+}
+
+impl Motion {
+    /// Length of a step along the path, at most \[m\].
+    fn step(&self, simulation: &Simulation) -> f64 {
+        self.cells_per_step * self.direction.cell(&simulation.grid)
+    }
+
+    /// The instants at which steps end because of the motion, and those of them at which the velocity bends or jumps.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where the travel is too long.
+    pub(crate) fn stops(&self, simulation: &Simulation) -> Result<Vec<f64>> {
+        self.path.crossings(self.step(simulation), simulation.times.end())
+    }
+
+    /// Checks what can be known before the run.
+    pub(crate) fn validate(&self, simulation: &Simulation) -> Result<()> {
+        if !(self.cells_per_step.is_finite() && self.cells_per_step > 0.0 && self.cells_per_step <= 8.0) {
+            return Err(Error::invalid(
+                "cells_per_step",
+                self.cells_per_step,
+                "greater than 0 and at most 8",
+            ));
+        }
+        let stops = self.stops(simulation)?;
+        if simulation.scheme != Scheme::Linear {
+            return Err(Error::invalid(
+                "scheme of a contact in motion",
+                format!("{:?}", simulation.scheme).to_lowercase(),
+                "linear: with a pressure that is constant in each step friction is wrong by tens of per cent",
+            ));
+        }
+        if simulation.plasticity == Plasticity::Accumulate {
+            return Err(Error::invalid(
+                "plasticity of a contact in motion",
+                "accumulate",
+                "cap: which of the two bodies keeps the dents is not known",
+            ));
+        }
+        if simulation.grid.is_line() && self.direction != Direction::X {
+            return Err(Error::invalid("direction of motion of a line contact", "not x", "x"));
+        }
+        if simulation.boundary == Boundary::Free {
+            if let Direction::Angle(angle) = self.direction {
+                return Err(Error::invalid(
+                    "direction of motion on a free domain",
+                    format!("{} degrees", rounded(angle.to_degrees())),
+                    "x or y; other directions need a periodic domain",
+                ));
+            }
+            let axis = usize::from(self.direction == Direction::Y);
+            let (length, start) = (simulation.grid.size()[axis], self.gap.centre()[axis]);
+            let places = stops.iter().map(|t| start + self.path.position(*t));
+            let [least, most] = places.fold([start; 2], |[least, most], x| [least.min(x), most.max(x)]);
+            if least < 0.0 || most > length {
+                return Err(Error::invalid(
+                    "place of the moving body on a free domain",
+                    format!("{} m to {} m", rounded(least), rounded(most)),
+                    format!(
+                        "within 0 m and {length} m, its track: the grid does not go with the body. Take a domain that holds the travel of \
+                         {} m and the contact, let the body start elsewhere (center), or take a periodic domain or steady states \
+                         ([motion.steady])",
+                        rounded(most - least)
+                    ),
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// To four digits.
+fn rounded(x: f64) -> String {
+    format!("{x:.3e}").parse::<f64>().map_or_else(|_| x.to_string(), |x| x.to_string())
+}
+
+/// The contact in motion: where the gap is at the end of the step under way, and the forces of the last row.
+pub(super) struct Moving {
+    motion: Motion,
+    spacing: [f64; 2],
+    slopes: Slopes,
+    /// How far it has moved \[m\].
+    distance: f64,
+    /// How far it had at the end of the last row.
+    before: f64,
+    friction: Friction,
+}
+
+impl Moving {
+    pub(super) fn new(simulation: &Simulation, motion: &Motion) -> Result<Self> {
+        let (_, slopes) = motion.gap.at(0.0, motion.direction)?;
+        let (motion, spacing) = (motion.clone(), simulation.grid.spacing());
+        Ok(Moving { motion, spacing, slopes, distance: 0.0, before: 0.0, friction: Friction::default() })
+    }
+
+    fn move_to(&mut self, distance: f64, gap: &mut UndeformedGap) -> Result<()> {
+        if distance == self.distance {
+            return Ok(());
+        }
+        let (moved, slopes) = self.motion.gap.at(distance, self.motion.direction)?;
+        gap.own_mut().iter_mut().zip(&moved).for_each(|(to, h)| *to = *h);
+        (self.slopes, self.distance) = (slopes, distance);
+        Ok(())
+    }
+}
+
+impl Process for Moving {
+    fn open(&mut self, step: &Interval, gap: &mut UndeformedGap) -> Result<()> {
+        self.move_to(self.motion.path.position(step.instant.time), gap)
+    }
+
+    fn shift(&self, step: &Interval) -> Option<[isize; 2]> {
+        let gone = self.motion.path.position(step.instant.time) - self.before;
+        (gone != 0.0).then(|| cells(self.motion.direction, self.spacing, gone))
+    }
+
+    /// Finds the forces at the end of the row.
+    fn accept(&mut self, row: &mut Solved<'_>) -> Result<()> {
+        let Simulation { grid, boundary, .. } = row.simulation;
+        let direction = self.motion.direction;
+        let pressure = to_view(grid.shape(), &row.now.pressure);
+        let mut forces = Forces::of(grid, *boundary, pressure, &self.slopes, direction);
+        if row.simulation.parts().all(|creep| creep.terms.is_empty() && creep.fluidity == 0.0) {
+            // Bodies that remember nothing lose nothing: what the sums are is the error of the grid.
+            (forces.force, forces.side) = (0.0, 0.0);
+        }
+        let gap: Vec<f64> = (row.gap.iter().zip(&row.now.unit_displacement))
+            .map(|(h, u)| h + row.compliance * u)
+            .collect();
+        let off = gap_force(grid, *boundary, pressure, to_view(grid.shape(), &gap), direction);
+        let area = grid.cell_area() * row.now.pressure.iter().filter(|p| **p > 0.0).count() as f64;
+        let coefficient = if forces.load > 0.0 { forces.force / forces.load } else { 0.0 };
+        let seen = forces.force.abs() > 1e-13 * forces.load;
+        let before = std::mem::replace(&mut self.before, self.distance);
+        row.other_work += 0.5 * (self.friction.force + forces.force) * (self.distance - before);
+        self.friction = Friction {
+            velocity: self.motion.path.velocity(row.step.instant.time),
+            distance: self.distance,
+            force: forces.force,
+            side: forces.side,
+            coefficient,
+            uncertainty: if seen { (off / forces.force).abs() } else { 0.0 },
+            moment: forces.moment,
+            power: f64::NAN,
+            total: self.motion.shear_stress.map_or(f64::NAN, |stress| match forces.load > 0.0 {
+                true => coefficient + stress * area / forces.load,
+                false => 0.0,
+            }),
+        };
+        Ok(())
+    }
+
+    fn quantity(&self, quantity: Quantity) -> Option<f64> {
+        self.friction.quantity(quantity).filter(|_| quantity != Quantity::DissipatedPower)
+    }
+
+    fn name(&self) -> &'static str {
+        "motion"
+    }
+
+    fn save<'a>(&'a self, to: &mut Saver<'a>, _gap: &'a UndeformedGap) {
+        to.number("distance", self.before);
+        to.number("force", self.friction.force);
+    }
+
+    fn load(&mut self, from: &mut Loader<'_>, gap: &mut UndeformedGap) -> Result<()> {
+        self.move_to(from.number("distance")?, gap)?;
+        self.before = self.distance;
+        self.friction.force = from.number("force")?;
+        Ok(())
+    }
+}
+
+/// A distance in this direction, in cells along x and y, rounded.
+pub(crate) fn cells(direction: Direction, spacing: [f64; 2], distance: f64) -> [isize; 2] {
+    let unit = direction.unit();
+    [0, 1].map(|axis| (unit[axis] * distance / spacing[axis]).round() as isize)
+}
+
+/// A field of the body in the frame of the contact, which has moved by `shift` cells: (i, j) is the field's (i + shift x,
+/// j + shift y). What comes from beyond the ends of a free domain is `beyond`.
+pub fn in_contact_frame<T: Copy>(
+    field: ArrayView2<'_, T>,
+    boundary: Boundary,
+    shift: [isize; 2],
+    beyond: T,
+) -> Array2<T> {
+    let (nx, ny) = field.dim();
+    Array2::from_shape_fn((nx, ny), |(i, j)| {
+        let (a, b) = (source(i, -shift[0], nx, boundary), source(j, -shift[1], ny, boundary));
+        a.zip(b).map_or(beyond, |at| field[at])
+    })
+}
+
+/// The cell that cell n of a field moved by `shift` cells had been.
+fn source(n: usize, shift: isize, count: usize, boundary: Boundary) -> Option<usize> {
+    let m = n as isize - shift;
+    match boundary {
+        Boundary::Periodic => Some(m.rem_euclid(count as isize) as usize),
+        Boundary::Free => (0..count as isize).contains(&m).then_some(m as usize),
+    }
+}
+
+/// `to` = `from` moved by `shift` cells; beyond the ends of a free domain there is 0.
+pub(crate) fn roll((nx, ny): (usize, usize), boundary: Boundary, shift: [isize; 2], from: &[f64], to: &mut [f64]) {
+    for (i, row) in to.chunks_mut(ny).enumerate() {
+        let Some(a) = source(i, shift[0], nx, boundary) else {
+            row.fill(0.0);
+            continue;
+        };
+        for (j, to) in row.iter_mut().enumerate() {
+            *to = source(j, shift[1], ny, boundary).map_or(0.0, |b| from[a * ny + b]);
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! The stiffness dW/dw of the contact in each row ([`ContactStiffness`]).
+
+use super::{Process, Solved};
+use crate::contact::Hardness;
+use crate::error::Result;
+use crate::operator::Operator;
+use crate::quantities::{ContactStiffness, Quantity};
+use crate::simulation::{Plasticity, Simulation};
+use crate::step::{Loader, Saver, UndeformedGap};
+
+pub(super) struct Stiffness {
+    solver: ContactStiffness,
+    last: f64,
+}
+
+impl Stiffness {
+    pub(super) fn of(simulation: &Simulation, operator: &dyn Operator) -> Option<Self> {
+        let wanted = simulation.quantities.has(Quantity::ContactStiffness);
+        wanted.then(|| Stiffness { solver: ContactStiffness::new(operator), last: f64::NAN })
+    }
+}
+
+impl Process for Stiffness {
+    fn accept(&mut self, row: &mut Solved<'_>) -> Result<()> {
+        let pressure = &row.now.pressure;
+        // Cells at the hardness carry no more, unless they stay flat: then they respond to unloading.
+        let most = match row.simulation.plasticity {
+            Plasticity::Cap => row.hardness,
+            Plasticity::Accumulate => Hardness::Uniform(f64::INFINITY),
+        };
+        let bears = |k: usize| pressure[k] > 0.0 && pressure[k] < most.at(k);
+        let compliance = row.simulation.instantaneous();
+        let (stiffness, convolutions) = self.solver.of(row.operator, compliance, bears, row.interrupt)?;
+        self.last = stiffness;
+        row.convolutions += convolutions;
+        Ok(())
+    }
+
+    fn quantity(&self, quantity: Quantity) -> Option<f64> {
+        (quantity == Quantity::ContactStiffness).then_some(self.last)
+    }
+
+    fn name(&self) -> &'static str {
+        "stiffness"
+    }
+
+    fn save<'a>(&'a self, _to: &mut Saver<'a>, _gap: &'a UndeformedGap) {}
+
+    fn load(&mut self, _from: &mut Loader<'_>, _gap: &mut UndeformedGap) -> Result<()> {
+        Ok(())
+    }
+}

@@ -1,0 +1,101 @@
+//! The contact of a step: operator, solver, cut-off, and the tractions that act on the surfaces besides.
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use crate::contact::{
+    ContactState, Hardness, Outcome, Prescribed, Problem, Solver, SolverOptions, Start,
+};
+use crate::error::Result;
+use crate::operator::Operator;
+use crate::simulation::Simulation;
+use crate::traction::TractionSolver;
+
+pub(super) struct StepContact {
+    operator: Box<dyn Operator>,
+    /// Whether the operator is that of one step alone.
+    changes: bool,
+    solver: Solver,
+    options: SolverOptions,
+    hardness: f64,
+    /// Cut-off of each cell, where it is not the same everywhere.
+    of_cells: Option<Vec<f64>>,
+    traction: Option<TractionSolver>,
+    pub(super) interrupt: Option<Arc<AtomicBool>>,
+}
+
+impl StepContact {
+    pub(super) fn new(simulation: &Simulation, operator: Box<dyn Operator>) -> Self {
+        let law = simulation.traction.as_ref();
+        StepContact {
+            solver: Solver::new(simulation.solver.method, &*operator),
+            operator,
+            changes: false,
+            options: simulation.solver,
+            hardness: simulation.hardness,
+            of_cells: simulation.hardness_of_cells(),
+            traction: law.map(|law| TractionSolver::new(law.start(&simulation.grid), simulation.grid.len())),
+            interrupt: None,
+        }
+    }
+
+    pub(super) fn hardness(&self) -> Hardness<'_> {
+        self.of_cells.as_deref().map_or(Hardness::Uniform(self.hardness), Hardness::Cells)
+    }
+
+    pub(super) fn tolerance(&self) -> f64 {
+        self.options.tolerance
+    }
+
+    /// Whether a traction besides the contact acts on the surfaces.
+    pub(super) fn pulls(&self) -> bool {
+        self.traction.is_some()
+    }
+
+    /// Takes the operator of the step that was opened, where it has one of its own.
+    pub(super) fn take_operator(&mut self, operator: Option<Box<dyn Operator>>) {
+        if let Some(operator) = operator {
+            (self.operator, self.changes) = (operator, true);
+        }
+    }
+
+    /// Where the operator is another one in each step: U of a known state under the present one; the convolutions that it took.
+    pub(super) fn refresh(&mut self, known: &mut ContactState) -> usize {
+        if !self.changes {
+            return 0;
+        }
+        self.operator.apply_into(&known.pressure, &mut known.unit_displacement);
+        known.rounding = 1.0;
+        1
+    }
+
+    pub(super) fn solve(
+        &mut self,
+        start: Start,
+        gap: &[f64],
+        compliance: f64,
+        prescribed: Prescribed,
+        state: &mut ContactState,
+    ) -> Result<Outcome> {
+        let hardness = self.of_cells.as_deref().map_or(Hardness::Uniform(self.hardness), Hardness::Cells);
+        let problem = Problem { gap, compliance, hardness, prescribed };
+        let (operator, options, interrupt) = (&mut *self.operator, &self.options, self.interrupt.as_deref());
+        match &mut self.traction {
+            None => self.solver.solve_from(start, operator, &problem, options, state, interrupt),
+            Some(traction) => {
+                traction.solve(&mut self.solver, operator, &problem, options, state, interrupt)
+            }
+        }
+    }
+
+    /// The step stands.
+    pub(super) fn commit(&mut self) {
+        self.traction.iter_mut().for_each(TractionSolver::commit);
+    }
+
+    /// What processes may use after a row.
+    pub(super) fn parts(&mut self) -> (&mut dyn Operator, Hardness<'_>, Option<&AtomicBool>) {
+        let hardness = self.of_cells.as_deref().map_or(Hardness::Uniform(self.hardness), Hardness::Cells);
+        (&mut *self.operator, hardness, self.interrupt.as_deref())
+    }
+}

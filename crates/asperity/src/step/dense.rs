@@ -1,0 +1,79 @@
+//! The state between two rows, consistent with the scheme: dense output.
+//!
+//! Within a step u runs linearly in time, or in L = ∫ C dW under load control ([`super::memory`]). The load follows from the
+//! memory of the load as a cell, and the pressure is the mixture of those at both ends that has this load: exact while the
+//! contact set stands, of second order where it moves. The approach is the one at which the cells in contact are closed in the
+//! pressure-weighted mean, sum p (h0 + u - w) = 0 over 0 < p < H. The steps themselves take no notice.
+
+use super::Stepper;
+use crate::contact::{ContactState, Hardness};
+use crate::history::Moment;
+use crate::load::Control;
+use crate::time::Instant;
+use asperity_sweep::{minimum, strands, sum, sweep, zeros};
+
+/// A state within the last step of a run; [`Drive::view`](crate::Drive::view) shows it as a row.
+pub struct Between {
+    pub(crate) instant: Instant,
+    pub(crate) state: ContactState,
+    /// h0 + u.
+    pub(crate) gap: Vec<f64>,
+    /// u.
+    pub(crate) displacement: Vec<f64>,
+}
+
+impl Stepper {
+    /// The state at `time` within the step of the last row: after the row before it, not after the last row. `None` outside of it, and
+    /// where the history knows none.
+    pub(crate) fn between(&self, time: f64) -> Option<Between> {
+        let row = self.step.as_ref().filter(|_| !self.is_open)?;
+        if row.instant.jump || !(time > row.start && time <= row.instant.time) {
+            return None;
+        }
+        let part = row.up_to(time);
+        let mut displacement = zeros(self.gap.len());
+        let Moment { share, load } = self.history.within(&part, &self.ends(), &mut displacement)?;
+        let hardness = self.contact.hardness();
+        let cell_area = self.simulation.grid.cell_area();
+        let (from, to) = (&self.before.pressure[..], &self.now.pressure[..]);
+        let [before, now] = [from, to].map(|p| cell_area * sum(p));
+        let mixed = before + share * (now - before);
+        let scale = if mixed > 0.0 { load / mixed } else { 1.0 };
+        let mut pressure = zeros(from.len());
+        let fields = (&mut pressure[..], from, to, hardness);
+        sweep(fields, &|(m, a, b, top): (&mut [f64], &[f64], &[f64], Hardness)| {
+            for (i, m) in m.iter_mut().enumerate() {
+                let value = a[i] + share * (b[i] - a[i]);
+                // Cells at the hardness at both ends stay there.
+                *m = if value >= top.at(i) { top.at(i) } else { (scale * value).min(top.at(i)) };
+            }
+        });
+        let mut gap = self.undeformed.now().to_vec();
+        sweep((&mut gap[..], &displacement[..]), &|(h, u): (&mut [f64], &[f64])| {
+            h.iter_mut().zip(u).for_each(|(h, u)| *h += u);
+        });
+        let cells = (&pressure[..], &gap[..], hardness);
+        let [weight, closed, touching] = sweep(cells, &|(p, h, hardness): (&[f64], &[f64], Hardness)| {
+            strands(p.len(), |i| {
+                let free = if p[i] > 0.0 && p[i] < hardness.at(i) { p[i] } else { 0.0 };
+                let closed = if free > 0.0 { free * h[i] } else { 0.0 };
+                [free, closed, f64::from(u8::from(p[i] > 0.0))]
+            })
+        });
+        let approach = match row.instant.control {
+            _ if weight > 0.0 => closed / weight,
+            Control::Approach => part.instant.value,
+            // Every touching cell is at the hardness: bounded from below only.
+            _ if touching > 0.0 => self.now.approach,
+            _ => minimum(&gap),
+        };
+        // The gap holds u itself: nothing is multiplied by a compliance.
+        let unit_displacement = zeros(pressure.len());
+        Some(Between {
+            instant: part.instant,
+            state: ContactState { pressure, unit_displacement, approach, rounding: f64::INFINITY },
+            gap,
+            displacement,
+        })
+    }
+}

@@ -1,0 +1,342 @@
+//! What a row of the result tells: numbers of the contact, and the fields on request.
+
+use asperity_sweep::eights::{Eight, Work, vectorize};
+use ndarray::{Array2, ArrayView2};
+
+use crate::contact::{ContactState, Hardness, Outcome};
+use crate::drive::Coordinate;
+use crate::grid::{Boundary, Grid};
+use crate::load::Control;
+use crate::history::History;
+use crate::process::{Process, cells};
+use crate::quantities::{Column, Quantity, contact_edges};
+use crate::simulation::Simulation;
+use crate::sliding::Friction;
+use crate::step::{Recorder, UndeformedGap};
+use crate::time::Instant;
+use asperity_sweep::{Max, sweep};
+
+/// The numbers of one row.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Row {
+    /// Where it stands among the rows of its run.
+    pub coordinate: Coordinate,
+    /// W = cell area times sum p \[N\].
+    pub load: f64,
+    /// w \[m\], zero at first touch of the undeformed bodies. Of a free line contact of half-spaces it is measured from the end of the domain,
+    /// x = L: a half-space under a load on a line moves endlessly against points at infinity.
+    pub approach: f64,
+    /// Area of the cells with p > 0 \[m^2\].
+    pub contact_area: f64,
+    /// Contact area less the share of its perimeter (Yastrebov, Anciaux & Molinari 2017) \[m^2\].
+    pub contact_area_corrected: f64,
+    /// Contact area over the domain's.
+    pub contact_fraction: f64,
+    /// Area of the cells at the hardness \[m^2\].
+    pub capped_area: f64,
+    /// W over the domain's area \[Pa\].
+    pub mean_pressure: f64,
+    /// Largest p \[Pa\].
+    pub max_pressure: f64,
+    /// Mean gap of the cells that can touch \[m\]; flattened overlap counts as negative.
+    pub mean_gap: f64,
+    /// Iterations of the solver.
+    pub iterations: usize,
+    /// Applications of K.
+    pub convolutions: usize,
+    /// Largest violation of the contact conditions over the pressure-weighted mean displacement.
+    pub residual: f64,
+    /// Certified relative energy-norm error of the pressure.
+    pub certificate: f64,
+    /// Estimated error of the stress at the end of the step, relative, where steps are adaptive or layers creep differently; 0 of
+    /// a jump, and where nothing touches.
+    pub time_error: Option<f64>,
+    /// Number of the stage, from 0.
+    pub stage: usize,
+}
+
+/// (pi - 1 + ln 2)/24: the mean excess of a counted area per perimeter and cell.
+pub(crate) const PERIMETER_SHARE: f64 = (std::f64::consts::PI - 1.0 + std::f64::consts::LN_2) / 24.0;
+
+/// One row of a run: the state, lent until the run goes on.
+#[derive(Clone, Copy)]
+pub struct Step<'a> {
+    pub(crate) index: usize,
+    pub(crate) coordinate: Coordinate,
+    /// Of a row in time.
+    pub(crate) instant: Option<Instant>,
+    pub(crate) control: Control,
+    pub(crate) simulation: &'a Simulation,
+    pub(crate) hardness: Hardness<'a>,
+    pub(crate) state: &'a ContactState,
+    /// h0 + g.
+    pub(crate) gap: &'a [f64],
+    /// c: u = c U + g.
+    pub(crate) compliance: f64,
+    pub(crate) outcome: Outcome,
+    pub(crate) recalled: Recalled<'a>,
+    pub(crate) time_error: Option<f64>,
+    /// The undeformed gap, where processes may have changed it.
+    pub(crate) undeformed: Option<&'a UndeformedGap>,
+    pub(crate) processes: &'a [Box<dyn Process>],
+    /// The quantities of the row; `None` between rows.
+    pub(crate) recorder: Option<&'a Recorder>,
+    /// The forces of a steady state of motion.
+    pub(crate) friction: Option<Friction>,
+}
+
+/// g, the displacement that the past leaves.
+#[derive(Clone, Copy)]
+pub(crate) enum Recalled<'a> {
+    /// Of the step under way.
+    History(&'a dyn History),
+    /// Itself.
+    Field(&'a [f64]),
+    /// None.
+    Nothing,
+}
+
+impl<'a> Step<'a> {
+    /// Number of the row; 0 is t = 0+.
+    pub fn index(&self) -> usize {
+        self.index
+    }
+
+    /// What is simulated.
+    pub fn simulation(&self) -> &'a Simulation {
+        self.simulation
+    }
+
+    /// Work of the load, and the sum of the energies stored, lost and spent on flattening \[J\]; `None` where no energy is
+    /// asked for.
+    pub(crate) fn energy_balance(&self) -> Option<[f64; 2]> {
+        let energy = |quantity| self.of_process(quantity);
+        let kept = energy(Quantity::ElasticEnergy)? + energy(Quantity::DissipatedEnergy)?;
+        Some([energy(Quantity::ExternalWork)?, kept + energy(Quantity::FlatteningWork)?])
+    }
+
+    /// A quantity that a process tells of this row.
+    pub(crate) fn of_process(&self, quantity: Quantity) -> Option<f64> {
+        let of_friction = || self.friction.and_then(|friction| friction.quantity(quantity));
+        self.processes.iter().find_map(|process| process.quantity(quantity)).or_else(of_friction)
+    }
+
+    /// Time, length of the step, prescribed value; `None` of a steady state.
+    pub fn instant(&self) -> Option<Instant> {
+        self.instant
+    }
+
+    /// Time or velocity.
+    pub fn coordinate(&self) -> Coordinate {
+        self.coordinate
+    }
+
+    /// What is prescribed.
+    pub fn control(&self) -> Control {
+        self.control
+    }
+
+    /// True where every touching cell is at the hardness: the approach is only bounded from below.
+    pub fn saturated(&self) -> bool {
+        self.outcome.saturated
+    }
+
+    /// The forces of a contact in motion.
+    pub fn friction(&self) -> Option<Friction> {
+        Friction::from_quantities(|quantity| self.of_process(quantity))
+    }
+
+    /// Cells along x and y that the contact has moved, rounded: fields in its frame are taken there (see
+    /// [`in_contact_frame`](crate::process::in_contact_frame)). 0 where nothing moves.
+    pub fn frame_shift(&self) -> [isize; 2] {
+        match (&self.simulation.motion, self.of_process(Quantity::SlidingDistance)) {
+            (Some(motion), Some(distance)) => {
+                cells(motion.direction, self.simulation.grid.spacing(), distance)
+            }
+            _ => [0; 2],
+        }
+    }
+
+    /// Pressure \[Pa\], shape (nx, ny).
+    pub fn pressure(&self) -> ArrayView2<'a, f64> {
+        to_view(self.simulation.grid.shape(), &self.state.pressure)
+    }
+
+    /// Gap h = h0 + u - w \[m\]: 0 in contact, negative where capped cells are flattened.
+    pub fn gap_into(&self, gap: &mut Array2<f64>) {
+        let (c, w) = (self.compliance, self.state.approach);
+        let cells = self.state.unit_displacement.iter().zip(self.gap);
+        gap.iter_mut().zip(cells).for_each(|(gap, (u, h))| *gap = c * u + h - w);
+    }
+
+    /// Normal displacement u = integral C d(Kp) of both surfaces together \[m\]; of a free line contact against the end of the
+    /// domain, x = L.
+    pub fn displacement_into(&self, displacement: &mut Array2<f64>) {
+        let datum = self.datum();
+        if let Some(displacement) = displacement.as_slice_mut() {
+            self.recalled.write(displacement);
+        }
+        let cells = displacement.iter_mut().zip(&self.state.unit_displacement);
+        cells.for_each(|(g, u)| *g += self.compliance * u - datum);
+    }
+
+    /// 0 out of contact, 1 in contact, 2 at the hardness.
+    pub fn contact_into(&self, contact: &mut Array2<u8>) {
+        let state = |p: f64, hardness: f64| u8::from(p > 0.0) + u8::from(p >= hardness);
+        let cells = contact.iter_mut().zip(&self.state.pressure).enumerate();
+        cells.for_each(|(n, (c, p))| *c = state(*p, self.hardness.at(n)));
+    }
+
+    /// The numbers of the row.
+    pub fn row(&self) -> Row {
+        let Simulation { grid, boundary, .. } = self.simulation;
+        let bodies = (self.gap, self.hardness, self.compliance);
+        let contact = Row::of_contact(grid, *boundary, bodies, self.state, &self.outcome);
+        Row {
+            coordinate: self.coordinate,
+            approach: self.state.approach - self.datum(),
+            time_error: self.time_error,
+            stage: self.instant.map_or(0, |instant| instant.stage),
+            ..contact
+        }
+    }
+
+    /// What displacements and approach are measured from \[m\]: where they are known up to a constant, the displacement of the domain's
+    /// end, x = L, on the straight line through the last two cells; else 0.
+    fn datum(&self) -> f64 {
+        if !self.simulation.is_up_to_a_constant() {
+            return 0.0;
+        }
+        let mut u = vec![0.0; self.state.unit_displacement.len()];
+        self.recalled.write(&mut u);
+        u.iter_mut().zip(&self.state.unit_displacement).for_each(|(g, unit)| *g += self.compliance * unit);
+        match u[..] {
+            [.., before, last] => last + 0.5 * (last - before),
+            _ => 0.0,
+        }
+    }
+
+    /// Permanent flattening \[m\] since t = 0, 0 or more: what [`Plasticity::Accumulate`](crate::Plasticity) has added to the
+    /// undeformed gap. 0 everywhere with the reversible cut-off.
+    pub fn flattening_into(&self, flattening: &mut Array2<f64>) {
+        flattening.fill(0.0);
+        if let Some(gap) = self.undeformed.filter(|_| self.simulation.motion.is_none()) {
+            let cells = flattening.iter_mut().zip(gap.now().iter().zip(gap.at_start()));
+            cells.for_each(|(f, (now, then))| *f = if now > then { now - then } else { 0.0 });
+        }
+    }
+
+    /// The quantities asked for, with the ends of their bins; none of a state between rows.
+    pub fn columns(&self) -> &'a [Column] {
+        self.recorder.map_or(&[], Recorder::columns)
+    }
+
+    /// The numbers of all [`columns`](Self::columns), one after the other. NaN after a solve that failed.
+    pub fn quantities(&self) -> &'a [f64] {
+        self.recorder.map_or(&[], Recorder::values)
+    }
+
+    /// A quantity of this row: one number, or one per bin; `None` where it was not asked for.
+    pub fn quantity(&self, quantity: Quantity) -> Option<&'a [f64]> {
+        self.recorder?.of(quantity)
+    }
+}
+
+impl Recalled<'_> {
+    fn write(self, g: &mut [f64]) {
+        match self {
+            Recalled::History(history) => history.recalled(g),
+            Recalled::Field(own) => g.copy_from_slice(own),
+            Recalled::Nothing => g.fill(0.0),
+        }
+    }
+}
+
+impl Row {
+    /// t \[s\]; NaN of a row that has no time.
+    pub fn time(&self) -> f64 {
+        match self.coordinate {
+            Coordinate::Time(t) => t,
+            _ => f64::NAN,
+        }
+    }
+
+    /// The numbers of one elastic contact, at the time 0: of a state that solves the problem of this gap \[m\], hardness and
+    /// compliance \[1/Pa\], each cell of the grid.
+    pub fn of_contact(
+        grid: &Grid,
+        boundary: Boundary,
+        (gap, hardness, compliance): (&[f64], Hardness<'_>, f64),
+        state: &ContactState,
+        outcome: &Outcome,
+    ) -> Row {
+        let (c, w) = (compliance, state.approach);
+        let ([pressure, touching, capped, gap, touchable], Max(peak)) = sweep(
+            (&state.pressure[..], &state.unit_displacement[..], gap, hardness),
+            &|(p, u, h, hardness): (&[f64], &[f64], &[f64], Hardness)| {
+                vectorize(Survey { p, u, h, hardness, c, w })
+            },
+        );
+        // The border of a free domain is no edge of the contact, and the ends of a line contact are points.
+        let edges = match grid.is_line() {
+            true => 0,
+            false => contact_edges(to_view(grid.shape(), &state.pressure), boundary).number(),
+        };
+        let cell = grid.cell_area();
+        let contact_area = touching * cell;
+        Row {
+            coordinate: Coordinate::None,
+            load: pressure * cell,
+            approach: w,
+            contact_area,
+            contact_area_corrected: contact_area - PERIMETER_SHARE * edges as f64 * cell,
+            contact_fraction: touching / grid.len() as f64,
+            capped_area: capped * cell,
+            mean_pressure: pressure / grid.len() as f64,
+            max_pressure: peak,
+            mean_gap: gap / touchable,
+            iterations: outcome.iterations,
+            convolutions: outcome.convolutions,
+            residual: outcome.residual,
+            certificate: outcome.certificate,
+            time_error: None,
+            stage: 0,
+        }
+    }
+}
+
+/// The sums of p, of touching cells, of capped ones, of gaps, and of cells that can touch; and the largest p.
+struct Survey<'a> {
+    p: &'a [f64],
+    u: &'a [f64],
+    h: &'a [f64],
+    hardness: Hardness<'a>,
+    c: f64,
+    w: f64,
+}
+
+impl Work for Survey<'_> {
+    type Yield = ([f64; 5], Max);
+
+    #[inline(always)]
+    fn run<V: Eight>(self) -> ([f64; 5], Max) {
+        let [zero, c, w] = [0.0, self.c, self.w].map(V::splat);
+        let (mut sums, mut peak) = ([zero; 5], zero);
+        for n in (0..self.p.len()).step_by(8) {
+            let [p, u] = [self.p, self.u].map(|field| V::load(field, n, 0.0));
+            let h = V::load(self.h, n, f64::INFINITY);
+            let can_touch = h.less(V::splat(f64::INFINITY));
+            let capped = self.hardness.eight::<V>(n).at_most(p);
+            let gap = (c * u + h - w).only(can_touch);
+            let terms = [p, V::count(zero.less(p)), V::count(capped), gap, V::count(can_touch)];
+            sums = std::array::from_fn(|k| sums[k] + terms[k]);
+            peak = p.larger(peak);
+        }
+        (sums.map(V::sum), Max(peak.largest()))
+    }
+}
+
+/// The cells as a field.
+pub(crate) fn to_view(shape: (usize, usize), cells: &[f64]) -> ArrayView2<'_, f64> {
+    ArrayView2::from_shape(shape, cells).expect("fields of a run have the shape of its grid")
+}

@@ -1,0 +1,535 @@
+//! When the next row is, and whether a step tried is taken: stages, events, step size.
+//!
+//! The schedule knows no contact. It proposes an interval; it sees a summary of each attempt at it and answers with another
+//! interval to try, or that the attempt stands:
+//!
+//! ```text
+//! while let Proposal::Try(interval) = schedule.propose()? {
+//!     loop { match schedule.judge(&attempt(interval)) { Try(next) => interval = next, Accept => break } }
+//! }
+//! ```
+//!
+//! An adaptive step is tried shorter until its error is small enough; then a stage that ends at an event is cut where the event
+//! happens.
+
+use std::sync::Arc;
+
+use super::event::{Enclosure, MET};
+use super::interval::{Course, Interval, Piece};
+use super::snapshot::{Loader, Saver};
+use super::step_size::StepSizeControl;
+use crate::error::{Error, Result};
+use crate::load::{Control, Event, History, Stage};
+use crate::material::ReducedTime;
+use crate::simulation::Simulation;
+use crate::time::{Instant, SAME, Span, Stop, TimeGrid, agree, stops};
+
+/// Steps to the period of a sine, at least, where steps are adaptive.
+const STEPS_PER_PERIOD: f64 = 40.0;
+
+/// What an attempt at a step ended with.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Summary {
+    /// The row that the attempt led to; it may end before the interval proposed.
+    pub(crate) instant: Instant,
+    /// Estimated error of the step, where it is.
+    pub(crate) error: Option<f64>,
+    /// Whether contact was made or lost at its end.
+    pub(crate) is_turn: bool,
+    pub(crate) touches: bool,
+    /// Whether a traction besides the contact acts on the surfaces: then a load of 0 says nothing of the contact.
+    pub(crate) pulls: bool,
+    pub(crate) reached: Reached,
+    /// Approach at which the surfaces without pressure would just touch \[m\].
+    pub(crate) first_touch: f64,
+}
+
+/// What a row reached: a stage may end or begin with it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Reached {
+    pub(crate) approach: f64,
+    pub(crate) load: f64,
+}
+
+/// The answer to an attempt.
+#[derive(Debug)]
+pub(crate) enum Verdict {
+    /// Not yet: try this interval.
+    Try(Interval),
+    /// It stands.
+    Accept,
+}
+
+/// The next row.
+#[derive(Debug)]
+pub(crate) enum Proposal {
+    Try(Interval),
+    Done(StopReason),
+}
+
+/// Why there is no further row.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum StopReason {
+    /// The last stage has ended, or the time of the run.
+    Complete,
+    /// A stage waited for an event that did not come.
+    Missed { stage: usize, event: Event, reached: Reached },
+}
+
+/// What the attempts at a row are for.
+#[derive(Debug)]
+enum Search {
+    /// A step whose error is small enough.
+    Length,
+    /// The event within the step.
+    Event { event: Event, enclosure: Enclosure },
+    /// The row ends where the event has just happened.
+    End,
+}
+
+/// What is planned of a run.
+struct Plan {
+    stages: Vec<Stage>,
+    times: TimeGrid,
+    /// Area of the domain \[m²\].
+    area: f64,
+    /// Whether a contact can follow a jump.
+    can_jump: bool,
+    /// The clocks of bodies whose temperature changes, and the number of parts that remember.
+    clocks: Vec<ReducedTime>,
+    remember: usize,
+    kinks: Vec<f64>,
+    /// Instants besides those of the grid at which steps end.
+    include: Vec<f64>,
+}
+
+pub(crate) struct Schedule {
+    plan: Plan,
+    /// The stage under way, and the value that its quantity had when it began.
+    stage: usize,
+    started_from: f64,
+    course: Course,
+    stops: Vec<Stop>,
+    /// The next stop.
+    next: usize,
+    /// A row of zero length comes next, at this value.
+    jump: Option<f64>,
+    size: Option<StepSizeControl>,
+    /// The last row, what it reached, and whether the course goes on smoothly after it.
+    last: Option<Instant>,
+    reached: Reached,
+    touched: bool,
+    is_smooth: bool,
+    /// Which side of its value the event is waited for from: -1 below, 1 above, 0 not yet known.
+    side: f64,
+    /// The largest approach and load so far.
+    largest: Reached,
+    stopped: Option<StopReason>,
+    search: Search,
+}
+
+impl Schedule {
+    pub(crate) fn new(simulation: &Simulation) -> Self {
+        let end = simulation.times.end();
+        let thermal = &simulation.thermal;
+        let plan = Plan {
+            stages: simulation.loading.stages.clone(),
+            times: simulation.times.clone(),
+            area: simulation.grid.area(),
+            can_jump: simulation.instantaneous() > 0.0,
+            clocks: thermal.iter().map(|body| body.clock.clone()).collect(),
+            remember: simulation.parts().filter(|c| !c.terms.is_empty() || c.fluidity > 0.0).count(),
+            kinks: (thermal.iter().flat_map(|body| body.clock.breaks(end)))
+                .chain(simulation.motion.iter().flat_map(|motion| motion.path.breaks(end)))
+                .collect(),
+            include: simulation.stops(),
+        };
+        Schedule::of(plan)
+    }
+
+    fn of(plan: Plan) -> Self {
+        let course = Course { history: Arc::new(History::Step { value: 0.0 }), start: 0.0, scale: 0.0 };
+        let mut schedule = Schedule {
+            plan,
+            stage: 0,
+            started_from: 0.0,
+            course,
+            stops: vec![],
+            next: 0,
+            jump: None,
+            size: None,
+            last: None,
+            reached: Reached::default(),
+            touched: false,
+            is_smooth: false,
+            side: 0.0,
+            largest: Reached::default(),
+            stopped: None,
+            search: Search::Length,
+        };
+        schedule.enter(0, 0.0, Reached::default());
+        schedule
+    }
+
+    pub(crate) fn finished(&self) -> bool {
+        self.stopped == Some(StopReason::Complete)
+    }
+
+    fn stage(&self) -> &Stage {
+        &self.plan.stages[self.stage.min(self.plan.stages.len() - 1)]
+    }
+
+    /// The smooth piece that begins with the next step, where steps are adaptive and one begins.
+    pub(crate) fn piece(&self) -> Option<Piece> {
+        if self.is_smooth || self.jump.is_some() || self.stopped.is_some() || self.size.is_none() {
+            return None;
+        }
+        let last = self.last?;
+        Some(Piece {
+            start: last.time,
+            length: self.stops.get(self.next)?.time - last.time,
+            is_after_jump: last.jump,
+            control: self.stage().control,
+            area: self.plan.area,
+            course: self.course.clone(),
+        })
+    }
+
+    /// The first step of a smooth piece may be that long.
+    pub(crate) fn restart(&mut self, first: f64) {
+        self.size.iter_mut().for_each(|size| size.restart(first));
+    }
+
+    /// The next row as planned.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where a stage begins with a jump that the material cannot follow.
+    pub(crate) fn propose(&mut self) -> Result<Proposal> {
+        if let Some(reason) = self.stopped {
+            return Ok(Proposal::Done(reason));
+        }
+        self.search = Search::Length;
+        let time = self.last.map_or(0.0, |last| last.time);
+        if let Some(value) = self.jump {
+            if self.stage > 0 && !self.plan.can_jump {
+                return Err(Error::invalid(
+                    format!("jump in stage {} at t = {time} s", self.stage + 1),
+                    format!("to {value:e}"),
+                    "a course from the value reached: the material has no instantaneous compliance, so no \
+                     contact follows a jump",
+                ));
+            }
+            return Ok(Proposal::Try(self.interval(time, 0.0, value, true)));
+        }
+        let Some(stop) = self.stops.get(self.next) else { return Ok(Proposal::Done(StopReason::Complete)) };
+        let rest = stop.time - time;
+        let longest = self.size.as_ref().map(|size| size.dt.min(self.longest_linear(time, stop, size.drift())));
+        Ok(Proposal::Try(match longest {
+            // Not a sliver before the stop.
+            Some(longest) if rest > 1.1 * longest => {
+                let dt = if rest < 2.0 * longest { 0.5 * rest } else { longest };
+                self.interval(time, rest, stop.before, false).of_length(dt)
+            }
+            _ => self.interval(stop.time, rest, stop.before, false),
+        }))
+    }
+
+    fn interval(&self, time: f64, dt: f64, value: f64, jump: bool) -> Interval {
+        let stage = self.stage();
+        Interval {
+            instant: Instant { time, dt, value, jump, control: stage.control, stage: self.stage },
+            start: self.last.map_or(time, |last| last.time),
+            is_smooth: self.is_smooth,
+            is_adaptive: self.size.is_some(),
+            held_from: self.reached.approach,
+            course: self.course.clone(),
+            load: super::Load::default(),
+        }
+    }
+
+    /// How long a step from `time` may be until a clock has changed ln of its rate by `drift` \[s\]. A step is linear in
+    /// reduced time: right where the rate is constant, and also where one clock alone runs under a held value.
+    fn longest_linear(&self, time: f64, stop: &Stop, drift: f64) -> f64 {
+        let rest = stop.time - time;
+        let Course { history, start, scale } = &self.course;
+        let held = (stop.before - history.after(time - start)).abs() <= 1e-12 * scale;
+        if held && self.plan.remember < 2 {
+            return rest;
+        }
+        let most =
+            |dt: f64| self.plan.clocks.iter().map(|clock| clock.drift(time, time + dt)).fold(0.0, f64::max);
+        if most(rest) <= drift {
+            return rest;
+        }
+        // The temperature goes one way between two stops.
+        let [mut least, mut longest] = [0.0, rest];
+        for _ in 0..40 {
+            let middle = 0.5 * (least + longest);
+            if most(middle) <= drift { least = middle } else { longest = middle }
+        }
+        longest
+    }
+
+    /// Whether the attempt at an interval stands, or what to try instead.
+    pub(crate) fn judge(&mut self, tried: &Interval, attempt: &Summary) -> Verdict {
+        let dt = attempt.instant.dt;
+        match &mut self.search {
+            Search::End => return Verdict::Accept,
+            Search::Length => {
+                let size = self.size.as_ref().filter(|_| !attempt.instant.jump);
+                if let Some(dt) = size.and_then(|size| size.rejects(dt, attempt.error?)) {
+                    return Verdict::Try(tried.of_length(dt));
+                }
+                match self.find_event(attempt) {
+                    Some(search) => self.search = search,
+                    None => return Verdict::Accept,
+                }
+            }
+            Search::Event { event, .. } => {
+                let event = *event;
+                let (signal, tolerance) = self.signal(event, attempt);
+                let signal_before = self.side * signal;
+                match &mut self.search {
+                    Search::Event { enclosure, .. } if !met(event, signal, tolerance) => {
+                        enclosure.narrow(dt, signal_before);
+                    }
+                    search => *search = Search::End,
+                }
+            }
+        }
+        let Search::Event { enclosure, .. } = &mut self.search else { return Verdict::Accept };
+        if let Some(dt) = enclosure.guess() {
+            return Verdict::Try(tried.of_length(dt));
+        }
+        let far = enclosure.far();
+        self.search = Search::End;
+        if dt == far { Verdict::Accept } else { Verdict::Try(tried.of_length(far)) }
+    }
+
+    /// The event that happens in a step whose error is small enough; `None` where there is none.
+    fn find_event(&mut self, attempt: &Summary) -> Option<Search> {
+        let stage = self.stage();
+        let event = match stage.until? {
+            // No load is no contact, where nothing pulls.
+            Event::Load(0.0) | Event::Pressure(0.0) if !attempt.pulls => Event::ContactLost,
+            event => event,
+        };
+        let Instant { dt, jump, control, .. } = attempt.instant;
+        if jump && dt == 0.0 && stage.after_jump {
+            return None;
+        }
+        let (signal, tolerance) = self.signal(event, attempt);
+        let start = self.signal_at_start(event, attempt);
+        if self.side == 0.0 {
+            // The value must be left before it can be reached, and what never touched is not lost: from the last row on,
+            // else from this one on.
+            self.side = match event {
+                Event::ContactLost => f64::from(u8::from(self.touched)),
+                _ if start.abs() > tolerance => start.signum(),
+                _ => 0.0,
+            };
+        }
+        let side = self.side;
+        if side == 0.0 || side * signal > 0.0 && !met(event, signal, tolerance) {
+            return None;
+        }
+        if jump || met(event, signal, tolerance) {
+            return Some(Search::End);
+        }
+        let before = match (event, control) {
+            // The distance between the bodies is known only of open ones.
+            (Event::ContactLost, Control::Approach) => f64::NAN,
+            _ => side * start,
+        };
+        Some(Search::Event { event, enclosure: Enclosure::new(dt, before, side * signal) })
+    }
+
+    /// The quantity of an event less its value, and what counts as none.
+    fn signal(&self, event: Event, attempt: &Summary) -> (f64, f64) {
+        let Reached { approach, load } = attempt.reached;
+        let deepest = self.largest.approach.max(approach.abs());
+        let heaviest = self.largest.load.max(load.abs());
+        let area = self.plan.area;
+        match event {
+            Event::Approach(value) => (approach - value, MET * deepest.max(value.abs())),
+            Event::Load(value) => (load - value, MET * heaviest.max(value.abs())),
+            Event::Pressure(value) => (load / area - value, MET * value.abs().max(heaviest / area)),
+            Event::ContactLost if attempt.instant.control == Control::Approach => {
+                (approach - attempt.first_touch, MET * deepest)
+            }
+            // Under a load the bodies touch as long as there is any.
+            Event::ContactLost if attempt.touches => (load.max(f64::MIN_POSITIVE), 0.0),
+            Event::ContactLost => (0.0, 0.0),
+        }
+    }
+
+    /// The same at the start of the step.
+    fn signal_at_start(&self, event: Event, attempt: &Summary) -> f64 {
+        self.signal(event, &Summary { reached: self.reached, touches: self.touched, ..*attempt }).0
+    }
+
+    /// Takes the row that stands.
+    pub(crate) fn accept(&mut self, row: &Summary) {
+        let Summary { instant, error, is_turn, reached, .. } = *row;
+        let is_event = matches!(self.search, Search::End);
+        self.largest.approach = self.largest.approach.max(reached.approach.abs());
+        self.largest.load = self.largest.load.max(reached.load.abs());
+        self.last = Some(instant);
+        (self.reached, self.touched) = (reached, row.touches);
+        self.is_smooth = !instant.jump && !is_turn;
+        if let Some(size) = &mut self.size
+            && !instant.jump
+        {
+            size.accept(instant.dt, error.unwrap_or(0.0));
+        }
+        if instant.jump {
+            self.jump = None;
+        } else if let Some(stop) = self.stops.get(self.next)
+            && instant.time >= stop.time
+        {
+            self.next += 1;
+            self.jump = stop.after;
+            if stop.bend || stop.after.is_some() {
+                self.is_smooth = false;
+            }
+        }
+        let is_over = self.jump.is_none() && self.next >= self.stops.len();
+        if !is_event && !is_over {
+            return;
+        }
+        let stage = self.stage();
+        match stage.until.filter(|_| !is_event && stage.duration.is_none()) {
+            Some(event) => self.stopped = Some(StopReason::Missed { stage: self.stage, event, reached }),
+            None => self.enter(self.stage + 1, instant.time, reached),
+        }
+    }
+
+    /// Begins a stage where the quantities have the values `reached`.
+    fn enter(&mut self, stage: usize, time: f64, reached: Reached) {
+        self.is_smooth = false;
+        let end = self.plan.times.end();
+        let next = self.plan.stages.get(stage).filter(|_| time < end * (1.0 - SAME));
+        let Some(control) = next.map(|next| next.control) else {
+            self.stopped = Some(StopReason::Complete);
+            return;
+        };
+        let reached = match control {
+            Control::Load => reached.load,
+            Control::Pressure => reached.load / self.plan.area,
+            Control::Approach => reached.approach,
+        };
+        self.arrive(stage, time, reached);
+        let first = self.course.history.after(0.0);
+        self.jump = (stage == 0 || !agree(first, reached)).then_some(first);
+        self.side = 0.0;
+    }
+
+    /// The stops of a stage that starts at `start`.
+    fn arrive(&mut self, stage: usize, start: f64, reached: f64) {
+        let Plan { stages, times, include, kinks, .. } = &self.plan;
+        let next = &stages[stage];
+        let run_end = times.end();
+        let end = next.duration.map_or(run_end, |duration| (start + duration).min(run_end));
+        let history = next.course.resolve(reached);
+        let span =
+            Span { history: &history, start, end, run_end, include, kinks, turns: next.until.is_some() };
+        self.stops = stops(&span, next.times.as_ref(), times);
+        self.next = 0;
+        let longest = match &history {
+            History::Sine { frequency, .. } => 1.0 / (STEPS_PER_PERIOD * frequency),
+            _ => f64::INFINITY,
+        };
+        self.size = match next.times.as_ref().unwrap_or(times) {
+            TimeGrid::Adaptive { end, tolerance, first } => {
+                Some(StepSizeControl::new(*tolerance, *first, *end, longest))
+            }
+            _ => None,
+        };
+        let [least, most] = history.range(end - start);
+        self.course = Course { history: Arc::new(history), start, scale: least.abs().max(most.abs()) };
+        (self.stage, self.started_from) = (stage, reached);
+    }
+
+    pub(crate) fn save(&self, to: &mut Saver<'_>) {
+        let flag = |yes: bool| f64::from(u8::from(yes));
+        to.numbers("stage", vec![self.stage as f64, self.course.start, self.started_from, self.next as f64]);
+        to.number("smooth", flag(self.is_smooth));
+        to.number("side", self.side);
+        to.numbers("reached", vec![self.reached.approach, self.reached.load, flag(self.touched)]);
+        to.numbers("largest", vec![self.largest.approach, self.largest.load]);
+        if let Some(value) = self.jump {
+            to.number("jump", value);
+        }
+        if let Some(last) = self.last {
+            to.numbers("last", vec![last.time, last.dt, last.value, flag(last.jump)]);
+        }
+        if let Some(size) = &self.size {
+            to.numbers("step_size", vec![size.dt, size.elapsed]);
+        }
+        let stopped = match self.stopped {
+            None => 0.0,
+            Some(StopReason::Complete) => 1.0,
+            Some(StopReason::Missed { .. }) => 2.0,
+        };
+        to.number("stopped", stopped);
+    }
+
+    pub(crate) fn load(&mut self, from: &mut Loader<'_>) -> Result<()> {
+        let [stage, start, reached, next] = from.array("stage")?;
+        let is_sound = stage >= 0.0 && stage < self.plan.stages.len() as f64 && start >= 0.0 && next >= 0.0;
+        if !is_sound || !start.is_finite() || !reached.is_finite() {
+            return Err(from.foreign("stages of another programme"));
+        }
+        self.arrive(stage as usize, start, reached);
+        self.next = next as usize;
+        if self.next > self.stops.len() {
+            return Err(from.foreign("times of another programme"));
+        }
+        self.is_smooth = from.number("smooth")? == 1.0;
+        self.side = from.number("side")?;
+        let [approach, load, touched] = from.array("reached")?;
+        (self.reached, self.touched) = (Reached { approach, load }, touched == 1.0);
+        let [approach, load] = from.array("largest")?;
+        self.largest = Reached { approach, load };
+        self.jump = from.number("jump").ok();
+        self.last = from.array("last").ok().map(|[time, dt, value, jump]| {
+            let (control, stage) = (self.stage().control, self.stage);
+            Instant { time, dt, value, jump: jump == 1.0, control, stage }
+        });
+        if let (Some(size), Ok([dt, elapsed])) = (&mut self.size, from.array("step_size")) {
+            (size.dt, size.elapsed) = (dt, elapsed);
+        }
+        self.stopped = match (from.number("stopped")?, self.stage().until) {
+            (0.0, _) => None,
+            (2.0, Some(event)) => {
+                Some(StopReason::Missed { stage: self.stage, event, reached: self.reached })
+            }
+            _ => Some(StopReason::Complete),
+        };
+        Ok(())
+    }
+}
+
+impl StopReason {
+    /// The end of a run that is complete, or the error of one that is not.
+    pub(crate) fn outcome(self, end: f64) -> Result<()> {
+        match self {
+            StopReason::Complete => Ok(()),
+            StopReason::Missed { stage, event, reached } => Err(Error::Missed {
+                stage: stage + 1,
+                event: event.to_string(),
+                end,
+                approach: reached.approach,
+                load: reached.load,
+            }),
+        }
+    }
+}
+
+/// Whether an event is met as closely as asked for; contact is not lost before it is.
+fn met(event: Event, signal: f64, tolerance: f64) -> bool {
+    match event {
+        Event::ContactLost => signal <= 0.0 && -signal <= tolerance,
+        _ => signal.abs() <= tolerance,
+    }
+}

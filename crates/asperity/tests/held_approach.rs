@@ -62,7 +62,7 @@ fn off(rows: &[Row], relaxation: &Relaxation, clock: impl Fn(f64) -> f64) -> f64
     rows.iter()
         .map(|row| {
             assert!(row.contact_area == rows[0].contact_area && row.load > 0.0, "{row:?}");
-            (row.load / rows[0].load / exact(row.time) - 1.0).abs()
+            (row.load / rows[0].load / exact(row.time()) - 1.0).abs()
         })
         .fold(0.0, f64::max)
 }
@@ -228,7 +228,7 @@ fn a_load_then_a_held_approach_give_the_load_of_the_elastic_contact_seen_through
                 ..sphere(24)
             });
             for (t, ratio) in exact {
-                let row = rows.iter().find(|row| row.time == t).unwrap();
+                let row = rows.iter().find(|row| row.time() == t).unwrap();
                 // Nine digits are known of W0; the solver's tolerance.
                 assert!(
                     (row.load / rows[0].load / ratio - 1.0).abs() < 1e-6,
@@ -266,13 +266,13 @@ fn orders(
     steps.map(|steps| {
         let found = run(steps);
         let error = |row: &Row| {
-            let exact = best.iter().find(|b| (b.time - row.time).abs() < 1e-9 * end).unwrap().load;
+            let exact = best.iter().find(|b| (b.time() - row.time()).abs() < 1e-9 * end).unwrap().load;
             (row.load - exact).abs() / (exact + 0.1 * relaxed)
         };
         // On the rows of the coarsest steps.
         let every = end / (fine / (fine / steps).max(1)).min(16) as f64;
         let common = |row: &&Row| {
-            row.time >= start && (row.time / every).fract().min(1.0 - (row.time / every).fract()) < 1e-6
+            row.time() >= start && (row.time() / every).fract().min(1.0 - (row.time() / every).fract()) < 1e-6
         };
         let errors: Vec<f64> = found.iter().filter(common).map(error).collect();
         (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt()
@@ -352,7 +352,7 @@ fn pressed_held_retracted_and_touched_again_nothing_is_lost_that_is_there() {
                 if adaptive {
                     assert!(row.time_error.is_some_and(|error| (0.0..=1e-2).contains(&error)), "{row:?}");
                 }
-                for (t, load) in loads.iter().filter(|l| l.0 > start && l.0 <= row.time) {
+                for (t, load) in loads.iter().filter(|l| l.0 > start && l.0 <= row.time()) {
                     let between = march.between(*t).unwrap();
                     let found = march.view(&between).row().load;
                     // 1 % of the grid (20 cells to the radius), 1 % of the steps; of what is relaxed the grid's alone.
@@ -360,7 +360,7 @@ fn pressed_held_retracted_and_touched_again_nothing_is_lost_that_is_there() {
                     assert!((found - load).abs() <= allowed.max(1e-12), "{ratio} {t}: {found} {load}");
                     compared += 1;
                 }
-                start = row.time;
+                start = row.time();
             }
             println!("{ratio} {count} rows");
             assert_eq!(compared, loads.len());
@@ -373,8 +373,8 @@ fn pressed_held_retracted_and_touched_again_nothing_is_lost_that_is_there() {
 fn errors_of_adaptive_steps(base: &Simulation, end: f64, tolerance: f64) -> ([f64; 2], usize) {
     let times = TimeGrid::Adaptive { end, tolerance, first: end };
     let found = rows(Simulation { times, ..base.clone() });
-    let parts = found.windows(2).filter(|pair| pair[1].time > pair[0].time).flat_map(|pair| {
-        let [a, b] = [pair[0].time, pair[1].time];
+    let parts = found.windows(2).filter(|pair| pair[1].time() > pair[0].time()).flat_map(|pair| {
+        let [a, b] = [pair[0].time(), pair[1].time()];
         (1..=8).map(move |n| if n == 8 { b } else { a + (b - a) * f64::from(n) / 8.0 })
     });
     let fine = rows(Simulation { times: TimeGrid::List(parts.collect()), ..base.clone() });
@@ -382,7 +382,7 @@ fn errors_of_adaptive_steps(base: &Simulation, end: f64, tolerance: f64) -> ([f6
     let (load, peak) = (largest(|row| row.load), largest(|row| row.max_pressure));
     let mut worst = [0.0_f64; 2];
     for row in &found {
-        let same = |other: &&Row| (other.time - row.time).abs() <= 1e-12 * row.time;
+        let same = |other: &&Row| (other.time() - row.time()).abs() <= 1e-12 * row.time();
         let exact = fine.iter().rfind(same).unwrap();
         worst[0] = worst[0].max((row.load - exact.load).abs() / load);
         worst[1] = worst[1].max((row.max_pressure - exact.max_pressure).abs() / peak);

@@ -185,7 +185,7 @@ fn a_resumed_march_gives_the_same_bits_with_clocks() {
         // Without its clock the memory is another one.
         let march = March::new(simulation.clone()).unwrap();
         let mut plain = march.checkpoint();
-        plain.scalars = vec![0.5, 1.0];
+        plain.numbers.retain(|(name, _)| !name.starts_with("step/history"));
         if scheme == Scheme::Linear {
             assert!(March::resume(simulation, &plain).is_err());
         }

@@ -37,8 +37,8 @@ use crate::time::Instant;
 /// ```
 pub struct March {
     simulation: Arc<Simulation>,
-    schedule: Schedule,
-    stepper: Stepper,
+    pub(crate) schedule: Schedule,
+    pub(crate) stepper: Stepper,
     recorder: Recorder,
     /// Rows done.
     done: usize,

@@ -9,8 +9,8 @@ use ndarray::ArrayView2;
 use super::words::{digits, rows};
 use super::{FEW_CONTACT_CELLS, Finding, SPOTS_UNRESOLVED};
 use crate::grid::{Boundary, Grid};
-use crate::step::{PERIMETER_SHARE, Row};
 use crate::quantities::contact_edges;
+use crate::step::{PERIMETER_SHARE, Row};
 
 /// Cells across a spot, at least: below, the pressure inside it is a guess.
 const ACROSS: f64 = 4.0;

@@ -30,7 +30,13 @@ struct Moment {
 
 impl HereditarySum {
     pub(super) fn new(creep: &Creep, thermal: &[ThermalCreep]) -> Self {
-        HereditarySum { creep: creep.clone(), thermal: thermal.to_vec(), starts: vec![], past: vec![], open: None }
+        HereditarySum {
+            creep: creep.clone(),
+            thermal: thermal.to_vec(),
+            starts: vec![],
+            past: vec![],
+            open: None,
+        }
     }
 
     fn moment(&self, time: f64) -> Moment {

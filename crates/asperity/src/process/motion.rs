@@ -154,9 +154,8 @@ impl Process for Moving {
             // Bodies that remember nothing lose nothing: what the sums are is the error of the grid.
             (forces.force, forces.side) = (0.0, 0.0);
         }
-        let gap: Vec<f64> = (row.gap.iter().zip(&row.now.unit_displacement))
-            .map(|(h, u)| h + row.compliance * u)
-            .collect();
+        let gap: Vec<f64> =
+            (row.gap.iter().zip(&row.now.unit_displacement)).map(|(h, u)| h + row.compliance * u).collect();
         let off = gap_force(grid, *boundary, pressure, to_view(grid.shape(), &gap), direction);
         let area = grid.cell_area() * row.now.pressure.iter().filter(|p| **p > 0.0).count() as f64;
         let coefficient = if forces.load > 0.0 { forces.force / forces.load } else { 0.0 };
@@ -232,7 +231,13 @@ fn source(n: usize, shift: isize, count: usize, boundary: Boundary) -> Option<us
 }
 
 /// `to` = `from` moved by `shift` cells; beyond the ends of a free domain there is 0.
-pub(crate) fn roll((nx, ny): (usize, usize), boundary: Boundary, shift: [isize; 2], from: &[f64], to: &mut [f64]) {
+pub(crate) fn roll(
+    (nx, ny): (usize, usize),
+    boundary: Boundary,
+    shift: [isize; 2],
+    from: &[f64],
+    to: &mut [f64],
+) {
     for (i, row) in to.chunks_mut(ny).enumerate() {
         let Some(a) = source(i, shift[0], nx, boundary) else {
             row.fill(0.0);

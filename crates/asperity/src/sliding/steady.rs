@@ -28,10 +28,10 @@ use crate::drive::Coordinate;
 use crate::error::{Error, NotConverged, Result};
 use crate::grid::Boundary;
 use crate::load::{Control, Course, History, Stage};
-use crate::simulation::Simulation;
-use crate::step::{Recalled, Recorder, Step};
 use crate::operator::Operator;
 use crate::quantities::Quantity;
+use crate::simulation::Simulation;
+use crate::step::{Recalled, Recorder, Step};
 
 /// What moves, and how fast.
 #[derive(Clone, Debug, PartialEq)]
@@ -212,7 +212,8 @@ impl Steady {
     pub fn last(&self) -> Option<Step<'_>> {
         let index = self.done.max(1) - 1;
         let velocity = *self.motion.velocities.get(index)?;
-        (self.state.pressure.iter().any(|p| *p > 0.0)).then(|| self.view(velocity, index, Some(&self.recorder)))
+        (self.state.pressure.iter().any(|p| *p > 0.0))
+            .then(|| self.view(velocity, index, Some(&self.recorder)))
     }
 
     fn measure(&mut self, velocity: f64) {

@@ -3,16 +3,14 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use crate::contact::{
-    ContactState, Hardness, Outcome, Prescribed, Problem, Solver, SolverOptions, Start,
-};
+use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem, Solver, SolverOptions, Start};
 use crate::error::Result;
 use crate::operator::Operator;
 use crate::simulation::Simulation;
 use crate::traction::TractionSolver;
 
 pub(super) struct StepContact {
-    operator: Box<dyn Operator>,
+    pub(super) operator: Box<dyn Operator>,
     /// Whether the operator is that of one step alone.
     changes: bool,
     solver: Solver,
@@ -82,9 +80,7 @@ impl StepContact {
         let (operator, options, interrupt) = (&mut *self.operator, &self.options, self.interrupt.as_deref());
         match &mut self.traction {
             None => self.solver.solve_from(start, operator, &problem, options, state, interrupt),
-            Some(traction) => {
-                traction.solve(&mut self.solver, operator, &problem, options, state, interrupt)
-            }
+            Some(traction) => traction.solve(&mut self.solver, operator, &problem, options, state, interrupt),
         }
     }
 

@@ -130,7 +130,13 @@ impl Stepper {
             return Ok(first);
         }
         if !self.is_apart() {
-            self.history.keep_as_third(&ends(&self.before, &self.now, self.loads, &self.gap, &self.undeformed));
+            self.history.keep_as_third(&ends(
+                &self.before,
+                &self.now,
+                self.loads,
+                &self.gap,
+                &self.undeformed,
+            ));
         }
         match third.step == 1.0 {
             true => self.solve(step),

@@ -223,7 +223,8 @@ impl Schedule {
         }
         let Some(stop) = self.stops.get(self.next) else { return Ok(Proposal::Done(StopReason::Complete)) };
         let rest = stop.time - time;
-        let longest = self.size.as_ref().map(|size| size.dt.min(self.longest_linear(time, stop, size.drift())));
+        let longest =
+            self.size.as_ref().map(|size| size.dt.min(self.longest_linear(time, stop, size.drift())));
         Ok(Proposal::Try(match longest {
             // Not a sliver before the stop.
             Some(longest) if rest > 1.1 * longest => {

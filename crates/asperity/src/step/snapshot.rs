@@ -97,11 +97,7 @@ impl<'a> Loader<'a> {
     }
 
     /// What `load` reads is in the room `name`.
-    pub(crate) fn within<T>(
-        &mut self,
-        name: &str,
-        load: impl FnOnce(&mut Self) -> Result<T>,
-    ) -> Result<T> {
+    pub(crate) fn within<T>(&mut self, name: &str, load: impl FnOnce(&mut Self) -> Result<T>) -> Result<T> {
         let outer = self.room.clone();
         self.room = format!("{outer}{name}/");
         let loaded = load(self);

@@ -44,7 +44,14 @@ pub(super) struct StepSizeControl {
 impl StepSizeControl {
     pub(super) fn new(tolerance: f64, first: f64, end: f64, longest: f64) -> Self {
         let first = first.min(longest);
-        StepSizeControl { allowed: SHARE * tolerance, first, shortest: SHORTEST * end, longest, dt: first, elapsed: 0.0 }
+        StepSizeControl {
+            allowed: SHARE * tolerance,
+            first,
+            shortest: SHORTEST * end,
+            longest,
+            dt: first,
+            elapsed: 0.0,
+        }
     }
 
     /// How far ln of the rate of a clock may go in a step.

@@ -163,9 +163,7 @@ impl Stepper {
         to.rounding = from.rounding + 1.0;
         to.approach = from.approach;
         let has_load = match prescribed {
-            Prescribed::Load(load) => {
-                (sum(&to.pressure) * grid.cell_area() / load - 1.0).abs() <= SAME_LOAD
-            }
+            Prescribed::Load(load) => (sum(&to.pressure) * grid.cell_area() / load - 1.0).abs() <= SAME_LOAD,
             Prescribed::Approach(_) => true,
         };
         let is_known = boundary == Boundary::Periodic && has_load && to.is_precise(self.contact.tolerance());
@@ -309,10 +307,12 @@ impl Work for Combine<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::drive::March;
     use crate::grid::{Boundary, Grid};
     use crate::load::{Control, History};
-    use crate::march::Simulation;
     use crate::material::{Creep, CreepTerm};
+    use crate::simulation::Simulation;
+    use crate::step::Proposal;
     use crate::time::TimeGrid;
 
     /// A rough gap that creeps under a load, 120 rows of it.
@@ -338,17 +338,18 @@ mod tests {
     fn a_row_takes_no_convolution_but_those_of_its_steps_and_its_displacement_is_that_of_its_pressure() {
         for (boundary, hardness) in [(Boundary::Free, 0.25), (Boundary::Periodic, f64::INFINITY)] {
             let mut march = creep(boundary, hardness);
-            let mut fresh = vec![0.0; march.simulation.grid.len()];
+            let mut fresh = vec![0.0; march.simulation().grid.len()];
             let mut rows = 0;
             while let Some(step) = march.advance().unwrap() {
                 let row = step.row();
                 rows += usize::from(row.convolutions == row.iterations);
-                march.operator.apply_into(&march.state.pressure, &mut fresh);
+                let Stepper { contact, now, .. } = &mut march.stepper;
+                contact.operator.apply_into(&now.pressure, &mut fresh);
                 let largest = fresh.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
-                let off = fresh.iter().zip(&march.state.unit_displacement).map(|(a, b)| (a - b).abs());
+                let off = fresh.iter().zip(&now.unit_displacement).map(|(a, b)| (a - b).abs());
                 let off = off.fold(0.0, f64::max);
                 // A convolution has some roundings itself.
-                let bound = 4.0 * f64::EPSILON * march.state.rounding;
+                let bound = 4.0 * f64::EPSILON * now.rounding;
                 assert!(off <= bound * largest, "{} s: {off} {bound}", row.time());
             }
             // U is computed afresh in one row of ten or so.
@@ -363,17 +364,19 @@ mod tests {
             for _ in 0..12 {
                 march.advance().unwrap();
             }
-            let (last, before) = (march.state.pressure.clone(), march.previous.pressure.clone());
-            let mut instant = march.timeline.propose(&march.simulation).unwrap().unwrap();
-            march.begin(&mut instant).unwrap();
-            let guess = march.state.pressure.clone();
+            let March { stepper, schedule, .. } = &mut march;
+            let (last, before) = (stepper.now.pressure.clone(), stepper.before.pressure.clone());
+            let Proposal::Try(step) = schedule.propose().unwrap() else { panic!("more rows are planned") };
+            let step = stepper.set(&step).unwrap();
+            stepper.guess(&step, step.prescribed(1.0));
+            let guess = stepper.now.pressure.clone();
             let mut energy = |beside: f64| -> f64 {
                 let p: Vec<f64> =
                     (0..last.len()).map(|n| guess[n] + beside * (last[n] - before[n])).collect();
                 let mut u = vec![0.0; p.len()];
-                march.operator.apply_into(&p, &mut u);
-                let terms = p.iter().zip(&u).zip(&march.gap);
-                terms.map(|((p, u), h)| 0.5 * march.compliance * p * u + h * p).sum()
+                stepper.contact.operator.apply_into(&p, &mut u);
+                let terms = p.iter().zip(&u).zip(&stepper.gap);
+                terms.map(|((p, u), h)| 0.5 * stepper.compliance * p * u + h * p).sum()
             };
             let [less, here, more] = [-0.1, 0.0, 0.1].map(&mut energy);
             // A parabola with its end here, to what differences of the energy keep.

@@ -8,7 +8,7 @@
 //!     h' = h + c K b                                    one convolution
 //!     q, w = contact of c K, h', load W/A - Σ b or approach w
 //!     g = h' + c K q - w,   B = b(g, q),   f = B - b
-//!     stop where Σ|f| <= tolerance (Σ|B| + Σ q)
+//!     stop where Σ|f| <= tolerance (Σ|B| + Σ q), the largest of all passes
 //!     b = extrapolation of the last passes where it lowers the residual, else a shorter plain step
 //! ```
 //!
@@ -79,7 +79,7 @@ pub(crate) struct TractionSolver {
 #[derive(Clone, Copy)]
 struct Pass {
     outcome: Outcome,
-    /// Σ|B - b| over Σ|B| + Σ q.
+    /// Σ|B - b| over the largest Σ|B| + Σ q.
     residual: f64,
     /// 1/2 <t, c K t> + Σ γ(g), less the work of a prescribed load.
     energy: Option<f64>,
@@ -118,7 +118,8 @@ impl TractionSolver {
         state: &mut ContactState,
         interrupt: Option<&AtomicBool>,
     ) -> Result<Outcome> {
-        let mut run = Run { own: self, solver, operator, options, interrupt, total: Outcome::default() };
+        let mut run =
+            Run { own: self, solver, operator, options, interrupt, total: Outcome::default(), scale: 0.0 };
         match problem.prescribed {
             Prescribed::Approach(_) => run.solve(problem)?,
             Prescribed::Load(load) => match run.solve(problem) {
@@ -145,6 +146,8 @@ struct Run<'a> {
     options: &'a SolverOptions,
     interrupt: Option<&'a AtomicBool>,
     total: Outcome,
+    /// The largest Σ|B| + Σ q of a pass: what the residual is measured by.
+    scale: f64,
 }
 
 impl Run<'_> {
@@ -201,7 +204,8 @@ impl Run<'_> {
             approach => approach,
         };
         let inner = Problem { gap: &own.shifted, prescribed, ..*problem };
-        let options = SolverOptions { tolerance: (INNER * self.options.tolerance).max(1e-14), ..*self.options };
+        let options =
+            SolverOptions { tolerance: (INNER * self.options.tolerance).max(1e-14), ..*self.options };
         let (solver, state) = (&mut *self.solver, &mut own.contact);
         let outcome =
             solver.solve_from(Start::Pressure, self.operator, &inner, &options, state, self.interrupt)?;
@@ -216,20 +220,19 @@ impl Run<'_> {
             (&own.bound[..], &own.next[..], &own.contact.pressure[..]),
             (&own.image[..], &own.contact.unit_displacement[..]),
         );
-        let [change, size, work, total] = sweep(fields, &|((b, next, q), (kb, kq)): (
-            (&[f64], &[f64], &[f64]),
-            (&[f64], &[f64]),
-        )| {
-            strands(b.len(), |i| {
-                let t = b[i] + q[i];
-                [(next[i] - b[i]).abs(), next[i].abs() + q[i], t * (kb[i] + kq[i]), t]
-            })
-        });
+        let [change, size, work, total] =
+            sweep(fields, &|((b, next, q), (kb, kq)): ((&[f64], &[f64], &[f64]), (&[f64], &[f64]))| {
+                strands(b.len(), |i| {
+                    let t = b[i] + q[i];
+                    [(next[i] - b[i]).abs(), next[i].abs() + q[i], t * (kb[i] + kq[i]), t]
+                })
+            });
+        self.scale = self.scale.max(size);
         let potential = own.law.energy(&own.gap);
         let of_load = if matches!(problem.prescribed, Prescribed::Load(_)) { w * total } else { 0.0 };
         Ok(Pass {
             outcome,
-            residual: if change > 0.0 { change / size } else { 0.0 },
+            residual: if change > 0.0 { change / self.scale } else { 0.0 },
             energy: potential.map(|potential| 0.5 * c * work + potential - of_load),
         })
     }
@@ -246,11 +249,10 @@ impl Run<'_> {
         };
         let (mut a, mut fa) = (start, excess(self, start)?);
         let mut step = if fa > 0.0 { -1e-3 } else { 1e-3 } * scale.max(start.abs()).max(1e-12);
-        let tolerance = self.options.tolerance;
-        let small = |f: f64| f.abs() <= tolerance * load.abs();
+        let small = self.options.tolerance * load.abs().max(fa.abs());
         let (mut b, mut fb) = (a, fa);
         for _ in 0..MOST_APPROACHES {
-            if small(fb) {
+            if fb.abs() <= small {
                 return Ok(());
             }
             if fa * fb < 0.0 {
@@ -262,12 +264,16 @@ impl Run<'_> {
             step *= 2.0;
         }
         for _ in 0..MOST_APPROACHES {
-            if small(fb) {
+            if fb.abs() <= small {
                 return Ok(());
             }
             let w = b - fb * (b - a) / (fb - fa);
             let f = excess(self, w)?;
-            if f * fb < 0.0 { (a, fa) = (b, fb) } else { fa *= 0.5 }
+            if f * fb < 0.0 {
+                (a, fa) = (b, fb)
+            } else {
+                fa *= 0.5
+            }
             (b, fb) = (w, f);
         }
         Err(Error::invalid(

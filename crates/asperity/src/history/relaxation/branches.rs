@@ -108,13 +108,7 @@ impl Branches {
     }
 
     /// Writes `sum` = `base` + the combination; 0 in place of no base.
-    pub(crate) fn combine(
-        &self,
-        of: Combination<'_>,
-        u: &[f64],
-        base: Option<&[f64]>,
-        sum: &mut [f64],
-    ) {
+    pub(crate) fn combine(&self, of: Combination<'_>, u: &[f64], base: Option<&[f64]>, sum: &mut [f64]) {
         sweep((self.lent(), u, sum, base), &|(q, u, sum, base): (
             Interleaved<&[f64]>,
             &[f64],

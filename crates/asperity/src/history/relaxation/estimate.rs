@@ -21,8 +21,8 @@
 //! the whole step says. Where u runs linearly in time, 1/4 of |Δw| - |Δu| stands in its place of |u\[z0, z1, z2\]| Δz² where it is
 //! larger. (A quarter, because this error does not add up over the steps.)
 
-use super::shape::{Shape, moment};
 use super::rules::Driver;
+use super::shape::{Shape, moment};
 use super::{Reference, Relaxation};
 use crate::history::Ends;
 use crate::material::Dual;

@@ -5,8 +5,8 @@
 //! the step make the pair one material with the same compliances. The strains of its terms do not depend on the
 //! rates, so that they carry the state of the bodies from one ratio of the rates to another.
 
-use crate::simulation::Simulation;
 use crate::material::{Creep, CreepTerm};
+use crate::simulation::Simulation;
 
 /// A clock slower than this share of the fastest stands still.
 const STOPPED: f64 = 1e-40;

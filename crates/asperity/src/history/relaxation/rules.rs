@@ -236,11 +236,11 @@ mod tests {
                 t += x;
                 dual.to_strains(&q, driver, &mut strains);
                 shape.set(&dual, 2.0, 0.0, &strains);
-                let driver = match shape.runs_one_way(&dual, driver, x) {
+                let runs_in = match shape.runs_one_way(&dual, driver, x) {
                     true => Driver::Load(shape.change(&dual, x)),
                     false => Driver::Time,
                 };
-                rules.set(&dual, x, driver, &shape);
+                rules.set(&dual, x, runs_in, &shape);
                 let next = rules.end(2.0, driver, &mut q);
                 assert!(next >= driver * (1.0 - 1e-9), "{seed}: {driver} {next}");
                 driver = next;

@@ -7,13 +7,13 @@
 //! While the approach is held, u changes outside of the contact only, because the pressure relaxes. It runs as the pressure of the
 //! mean then, Σ A_i (1 - exp(-s/τ_i)) with A_i = E_i (L - q_i). Otherwise u runs linearly in time.
 
+use crate::error::Result;
 use crate::history::Moment;
 use crate::history::relaxation::rules::{Driver, Rules, Share};
 use crate::history::relaxation::shape::{Shape, fading_share, moment};
 use crate::history::relaxation::{Total, growing, soon};
-use crate::step::{Load, Loader, Piece, Saver};
-use crate::error::Result;
 use crate::material::{Creep, CreepTerm, Dual};
+use crate::step::{Load, Loader, Piece, Saver};
 
 /// A term of the other sign below this share of the largest is rounding.
 const ROUNDING: f64 = 1e-12;

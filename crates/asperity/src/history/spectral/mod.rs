@@ -245,7 +245,9 @@ impl History for Spectral {
     fn within(&self, part: &Interval, ends: &Ends<'_>, u: &mut [f64]) -> Option<Moment> {
         let (x, whole) = (part.length(), self.length);
         let moment = match &self.mean {
-            Some(mean) if self.under_way == UnderWay::Contact && x < whole => mean.moment(&self.run, x, whole),
+            Some(mean) if self.under_way == UnderWay::Contact && x < whole => {
+                mean.moment(&self.run, x, whole)
+            }
             _ => Moment { share: if whole > 0.0 { x / whole } else { 1.0 }, load: ends.loads[1] },
         };
         let mut start = vec![0.0; self.grid.len()];
@@ -293,7 +295,8 @@ impl History for Spectral {
         if self.steps.is_empty() {
             return Err(from.foreign("a history without a step"));
         }
-        let mean = from.within("mean", |from| if from.is_empty() { Ok(None) } else { Mean::load(from).map(Some) });
+        let mean =
+            from.within("mean", |from| if from.is_empty() { Ok(None) } else { Mean::load(from).map(Some) });
         self.mean = mean?;
         let count = 2 * (self.states.len() + self.displacement.len());
         let fields = (0..count.div_ceil(self.grid.len())).map(|k| from.field(&format!("waves_{k}")));

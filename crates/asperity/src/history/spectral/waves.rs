@@ -15,9 +15,9 @@ use ndarray::Array2;
 use rayon::prelude::*;
 use rustfft::num_complex::Complex64;
 
-use crate::history::relaxation::rules::Share;
 use crate::error::{Error, Result};
 use crate::grid::{Boundary, Grid};
+use crate::history::relaxation::rules::Share;
 use crate::kernel::Kernel;
 use crate::layer::{Inseparable, TOLERANCE};
 use crate::operator::{eigenvalues, torus, wide};
@@ -120,7 +120,12 @@ impl Waves {
     }
 
     /// The same on a torus; `None` where a wave of it does not creep like a body.
-    fn on(grid: &Grid, boundary: Boundary, width: Width, layers: &Inseparable) -> Result<Option<(Self, f64)>> {
+    fn on(
+        grid: &Grid,
+        boundary: Boundary,
+        width: Width,
+        layers: &Inseparable,
+    ) -> Result<Option<(Self, f64)>> {
         let lengths = match width {
             Width::Narrow => torus(grid, boundary),
             Width::Wide => wide::lengths(grid),

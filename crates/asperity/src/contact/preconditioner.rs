@@ -17,7 +17,7 @@
 //! It costs three convolutions in f32 on the unpadded grid, and saves half of the iterations. The three are one chain: of what
 //! lies between them only z is written to memory, and both products of a come from the spectra (Parseval).
 
-use asperity_sweep::eights::vectorize;
+use asperity_sweep::simd::vectorize;
 
 use super::sweeps::preconditioner::{Add, Keep, Weigh};
 use crate::grid::{Boundary, Grid};

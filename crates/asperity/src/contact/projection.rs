@@ -4,7 +4,7 @@
 //! The sum is a piecewise linear, non-decreasing function of lambda; Newton's method with a bracket finds
 //! its root in a few sweeps. Neither the trial point nor the projection is stored for it.
 
-use asperity_sweep::eights::Eight;
+use asperity_sweep::simd::F64x8;
 
 use super::Hardness;
 use super::bounds::Interval;
@@ -46,7 +46,7 @@ pub(super) struct Shift {
 impl Shift {
     /// The projection of eight cells.
     #[inline(always)]
-    pub fn project<V: Eight>(self, y: V, bounds: Interval<V>) -> V {
+    pub fn project<V: F64x8>(self, y: V, bounds: Interval<V>) -> V {
         let q = bounds.project(y + V::splat(self.lambda));
         V::select(bounds.is_free(q), bounds.project(q - V::splat(self.rest)), q)
     }

@@ -1,6 +1,6 @@
 //! Kernels of the preconditioner, on the rows of its convolutions (see [`crate::contact::preconditioner`]).
 
-use asperity_sweep::eights::{Eight, Mask, Work};
+use asperity_sweep::simd::{F64x8, Mask, Work};
 
 /// D of an open cell that is adjacent to one of S by a side or a corner.
 const ADJACENT: f64 = 0.67;
@@ -16,7 +16,7 @@ impl Work for Keep<'_> {
     type Yield = ();
 
     #[inline(always)]
-    fn run<V: Eight>(self) {
+    fn run<V: F64x8>(self) {
         for (n, _) in (0..).step_by(8).zip(self.set).filter(|(_, set)| **set != 0) {
             V::load(self.x, n, 0.0).store(self.z, n);
         }
@@ -34,7 +34,7 @@ impl Work for Weigh<'_> {
     type Yield = ();
 
     #[inline(always)]
-    fn run<V: Eight>(self) {
+    fn run<V: F64x8>(self) {
         for ((n, set), adjacent) in (0..).step_by(8).zip(self.set).zip(self.adjacent) {
             let (adjacent, open) = (V::Mask::from_bits(*adjacent), V::Mask::from_bits(!set));
             let weights = V::select(adjacent, V::splat(ADJACENT), V::splat(1.0)).only(open);
@@ -55,7 +55,7 @@ impl Work for Add<'_> {
     type Yield = ();
 
     #[inline(always)]
-    fn run<V: Eight>(self) {
+    fn run<V: F64x8>(self) {
         let t = V::splat(self.t);
         for (n, _) in (0..).step_by(8).zip(self.set).filter(|(_, set)| **set != 0) {
             (V::load(self.z, n, 0.0) + t * V::load(self.x, n, 0.0)).store(self.z, n);

@@ -1,7 +1,7 @@
 //! Kernels that rate a state: the mean gap of the free cells, and for an approach w the residual r = c U + h - w, the working
 //! set, and the sums and extremes of [`Rating`].
 
-use asperity_sweep::eights::{Eight, Mask, Work};
+use asperity_sweep::simd::{F64x8, Mask, Work};
 
 use crate::contact::Hardness;
 use crate::contact::bounds::Interval;
@@ -20,7 +20,7 @@ impl Work for FreeGap<'_> {
     type Yield = [f64; 2];
 
     #[inline(always)]
-    fn run<V: Eight>(self) -> [f64; 2] {
+    fn run<V: F64x8>(self) -> [f64; 2] {
         let (mut sum, mut cells) = (V::splat(0.0), V::splat(0.0));
         let c = V::splat(self.compliance);
         for n in (0..self.p.len()).step_by(8) {
@@ -45,7 +45,7 @@ impl Work for Rate<'_> {
     type Yield = Rating;
 
     #[inline(always)]
-    fn run<V: Eight>(self) -> Rating {
+    fn run<V: F64x8>(self) -> Rating {
         let mut gauge = Gauge::<V>::new(self.compliance, self.hardness, self.w);
         for n in (0..self.p.len()).step_by(8) {
             let (p, u) = (V::load(self.p, n, 0.0), V::load(self.u, n, 0.0));
@@ -71,7 +71,7 @@ impl Work for FindWorking<'_> {
     type Yield = Rating;
 
     #[inline(always)]
-    fn run<V: Eight>(self) -> Rating {
+    fn run<V: F64x8>(self) -> Rating {
         let mut gauge = Gauge::<V>::new(self.compliance, self.hardness, self.w);
         for (n, set) in (0..).step_by(8).zip(self.set.0) {
             let (p, u) = (V::load(self.p, n, 0.0), V::load(self.u, n, 0.0));
@@ -108,7 +108,7 @@ struct Gauge<V> {
     violation: V,
 }
 
-impl<V: Eight> Gauge<V> {
+impl<V: F64x8> Gauge<V> {
     #[inline(always)]
     fn new(compliance: f64, hardness: Hardness, w: f64) -> Self {
         let [zero, up, down] = [0.0, f64::INFINITY, f64::NEG_INFINITY].map(V::splat);

@@ -1,52 +1,9 @@
-//! Sweeps over fields, eight cells at a time: one formula, compiled for every instruction set.
-//!
-//! A formula that is generic over [`Eight`] reads like the scalar one; [`vectorize`] runs it in the
-//! widest vectors that the processor has (one of 512 bits, two of 256 bits, or plain Rust). Sums run in
-//! eight strands, cell n in strand n mod 8, on all of them, and nothing is contracted to fused
-//! multiply-adds: the bits are the same on every processor.
-//!
-//! Loads and stores take the place of the first cell. Beyond the end of a field a load gives a chosen value and
-//! a store writes nothing, so that a field of any length is walked in steps of eight.
-//!
-//! Sets of cells are bits, one byte for eight cells: `set[n / 8] >> (n % 8) & 1`.
-//!
-//! ```
-//! use asperity_sweep::eights::{Eight, Work, vectorize};
-//!
-//! /// sum of max(p, 0)
-//! struct Pushing<'a>(&'a [f64]);
-//! impl Work for Pushing<'_> {
-//!     type Yield = f64;
-//!     #[inline(always)]
-//!     fn run<V: Eight>(self) -> f64 {
-//!         let mut sum = V::splat(0.0);
-//!         for n in (0..self.0.len()).step_by(8) {
-//!             sum = sum + V::load(self.0, n, 0.0).larger(V::splat(0.0));
-//!         }
-//!         sum.sum()
-//!     }
-//! }
-//! assert_eq!(vectorize(Pushing(&[1.0, -2.0, 3.0])), 4.0);
-//! ```
-//!
-//! `unsafe` is here for the intrinsics, which need their processor, and for loads and stores whose bounds were
-//! just checked.
-#![allow(unsafe_code)]
-
-#[cfg(target_arch = "x86_64")]
-mod avx2;
-#[cfg(target_arch = "x86_64")]
-mod avx512;
-mod portable;
-#[cfg(test)]
-mod tests;
+//! Eight `f64` as one value, whatever the vectors of the processor, and what is written over them.
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Not, Sub};
 
-use crate::Instructions;
-
 /// Eight `f64`, one for each of eight neighbouring cells.
-pub trait Eight:
+pub trait F64x8:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
     /// Which of the eight.
@@ -157,9 +114,9 @@ pub trait Cell: Copy + Default + Into<f64> + Send + Sync + 'static {
     /// The nearest.
     fn nearest(x: f64) -> Self;
     /// Eight of them as `f64`, exactly.
-    fn widen<V: Eight>(cells: [Self; 8]) -> V;
+    fn widen<V: F64x8>(cells: [Self; 8]) -> V;
     /// The nearest eight.
-    fn narrow<V: Eight>(eight: V) -> [Self; 8];
+    fn narrow<V: F64x8>(eight: V) -> [Self; 8];
 }
 
 impl Cell for f64 {
@@ -168,11 +125,11 @@ impl Cell for f64 {
         x
     }
     #[inline(always)]
-    fn widen<V: Eight>(cells: [f64; 8]) -> V {
+    fn widen<V: F64x8>(cells: [f64; 8]) -> V {
         V::from_array(cells)
     }
     #[inline(always)]
-    fn narrow<V: Eight>(eight: V) -> [f64; 8] {
+    fn narrow<V: F64x8>(eight: V) -> [f64; 8] {
         eight.to_array()
     }
 }
@@ -183,11 +140,11 @@ impl Cell for f32 {
         x as f32
     }
     #[inline(always)]
-    fn widen<V: Eight>(cells: [f32; 8]) -> V {
+    fn widen<V: F64x8>(cells: [f32; 8]) -> V {
         V::from_singles(cells)
     }
     #[inline(always)]
-    fn narrow<V: Eight>(eight: V) -> [f32; 8] {
+    fn narrow<V: F64x8>(eight: V) -> [f32; 8] {
         eight.to_singles()
     }
 }
@@ -208,39 +165,10 @@ fn store_partial<T: Cell>(field: &mut [T], at: usize, cells: &[T; 8]) {
     rest.iter_mut().zip(cells).for_each(|(x, cell)| *x = *cell);
 }
 
-/// A sweep over cells that any [`Eight`] can do. `run`, and all that it calls, is `#[inline(always)]`.
+/// A sweep over cells that any [`F64x8`] can do. `run`, and all that it calls, is `#[inline(always)]`.
 pub trait Work {
     /// What the sweep yields.
     type Yield;
     /// Does it.
-    fn run<V: Eight>(self) -> Self::Yield;
-}
-
-/// Does the work in the widest vectors that this processor has.
-pub fn vectorize<W: Work>(work: W) -> W::Yield {
-    #[cfg(target_arch = "x86_64")]
-    {
-        if is_x86_feature_detected!("avx2") {
-            if is_x86_feature_detected!("avx512f") {
-                return avx512::run(work);
-            }
-            return avx2::run(work);
-        }
-    }
-    portable::run(work)
-}
-
-/// Does the work on chosen instructions; the bits do not depend on them.
-///
-/// # Panics
-/// Where the processor does not have them.
-pub fn vectorize_on<W: Work>(instructions: Instructions, work: W) -> W::Yield {
-    assert!(Instructions::available().contains(&instructions), "{instructions:?} is not available");
-    match instructions {
-        #[cfg(target_arch = "x86_64")]
-        Instructions::Avx512 => avx512::run(work),
-        #[cfg(target_arch = "x86_64")]
-        Instructions::Avx2 => avx2::run(work),
-        _ => portable::run(work),
-    }
+    fn run<V: F64x8>(self) -> Self::Yield;
 }

@@ -2,41 +2,41 @@
 
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Not, Sub};
 
-use super::{Eight, Mask, Work};
+use super::vector::{F64x8, Mask, Work};
 
 pub(super) fn run<W: Work>(work: W) -> W::Yield {
-    work.run::<Plain>()
+    work.run::<PortableF64x8>()
 }
 
 #[derive(Clone, Copy)]
-pub(super) struct Plain([f64; 8]);
+pub(super) struct PortableF64x8([f64; 8]);
 
 #[derive(Clone, Copy)]
-pub(super) struct Bits([bool; 8]);
+pub(super) struct PortableMask([bool; 8]);
 
 macro_rules! arithmetic {
     ($($trait:ident $method:ident),+) => {$(
-        impl $trait for Plain {
+        impl $trait for PortableF64x8 {
             type Output = Self;
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                Plain(std::array::from_fn(|i| self.0[i].$method(other.0[i])))
+                PortableF64x8(std::array::from_fn(|i| self.0[i].$method(other.0[i])))
             }
         }
     )+};
 }
 arithmetic!(Add add, Sub sub, Mul mul, Div div);
 
-impl Eight for Plain {
-    type Mask = Bits;
+impl F64x8 for PortableF64x8 {
+    type Mask = PortableMask;
 
     #[inline(always)]
     fn splat(x: f64) -> Self {
-        Plain([x; 8])
+        PortableF64x8([x; 8])
     }
     #[inline(always)]
     fn from_array(cells: [f64; 8]) -> Self {
-        Plain(cells)
+        PortableF64x8(cells)
     }
     #[inline(always)]
     fn to_array(self) -> [f64; 8] {
@@ -44,7 +44,7 @@ impl Eight for Plain {
     }
     #[inline(always)]
     fn from_singles(cells: [f32; 8]) -> Self {
-        Plain(cells.map(f64::from))
+        PortableF64x8(cells.map(f64::from))
     }
     #[inline(always)]
     fn to_singles(self) -> [f32; 8] {
@@ -52,34 +52,34 @@ impl Eight for Plain {
     }
     #[inline(always)]
     fn abs(self) -> Self {
-        Plain(self.0.map(f64::abs))
+        PortableF64x8(self.0.map(f64::abs))
     }
     #[inline(always)]
     fn larger(self, other: Self) -> Self {
-        Plain(std::array::from_fn(|i| if self.0[i] > other.0[i] { self.0[i] } else { other.0[i] }))
+        PortableF64x8(std::array::from_fn(|i| if self.0[i] > other.0[i] { self.0[i] } else { other.0[i] }))
     }
     #[inline(always)]
     fn smaller(self, other: Self) -> Self {
-        Plain(std::array::from_fn(|i| if self.0[i] < other.0[i] { self.0[i] } else { other.0[i] }))
+        PortableF64x8(std::array::from_fn(|i| if self.0[i] < other.0[i] { self.0[i] } else { other.0[i] }))
     }
     #[inline(always)]
-    fn less(self, other: Self) -> Bits {
-        Bits(std::array::from_fn(|i| self.0[i] < other.0[i]))
+    fn less(self, other: Self) -> PortableMask {
+        PortableMask(std::array::from_fn(|i| self.0[i] < other.0[i]))
     }
     #[inline(always)]
-    fn at_most(self, other: Self) -> Bits {
-        Bits(std::array::from_fn(|i| self.0[i] <= other.0[i]))
+    fn at_most(self, other: Self) -> PortableMask {
+        PortableMask(std::array::from_fn(|i| self.0[i] <= other.0[i]))
     }
     #[inline(always)]
-    fn select(mask: Bits, yes: Self, no: Self) -> Self {
-        Plain(std::array::from_fn(|i| if mask.0[i] { yes.0[i] } else { no.0[i] }))
+    fn select(mask: PortableMask, yes: Self, no: Self) -> Self {
+        PortableF64x8(std::array::from_fn(|i| if mask.0[i] { yes.0[i] } else { no.0[i] }))
     }
 }
 
-impl Mask for Bits {
+impl Mask for PortableMask {
     #[inline(always)]
     fn from_bits(bits: u8) -> Self {
-        Bits(std::array::from_fn(|i| bits >> i & 1 == 1))
+        PortableMask(std::array::from_fn(|i| bits >> i & 1 == 1))
     }
     #[inline(always)]
     fn bits(self) -> u8 {
@@ -87,26 +87,26 @@ impl Mask for Bits {
     }
 }
 
-impl BitAnd for Bits {
+impl BitAnd for PortableMask {
     type Output = Self;
     #[inline(always)]
     fn bitand(self, other: Self) -> Self {
-        Bits(std::array::from_fn(|i| self.0[i] & other.0[i]))
+        PortableMask(std::array::from_fn(|i| self.0[i] & other.0[i]))
     }
 }
 
-impl BitOr for Bits {
+impl BitOr for PortableMask {
     type Output = Self;
     #[inline(always)]
     fn bitor(self, other: Self) -> Self {
-        Bits(std::array::from_fn(|i| self.0[i] | other.0[i]))
+        PortableMask(std::array::from_fn(|i| self.0[i] | other.0[i]))
     }
 }
 
-impl Not for Bits {
+impl Not for PortableMask {
     type Output = Self;
     #[inline(always)]
     fn not(self) -> Self {
-        Bits(self.0.map(|on| !on))
+        PortableMask(self.0.map(|on| !on))
     }
 }

@@ -1,6 +1,7 @@
 //! Every instruction set gives the bits of plain Rust, and of the formula cell by cell.
 
 use super::*;
+use crate::Instructions;
 
 /// Most of the operations in one sweep; fields of any length.
 struct Everything<'a> {
@@ -15,7 +16,7 @@ struct Everything<'a> {
 impl Work for Everything<'_> {
     type Yield = [f64; 3];
     #[inline(always)]
-    fn run<V: Eight>(self) -> [f64; 3] {
+    fn run<V: F64x8>(self) -> [f64; 3] {
         let (mut sum, mut most, mut least) =
             (V::splat(0.0), V::splat(f64::NEG_INFINITY), V::splat(f64::INFINITY));
         for n in (0..self.x.len()).step_by(8) {
@@ -80,7 +81,7 @@ fn nothing_is_written_beyond_a_field() {
     impl Work for Fill<'_> {
         type Yield = ();
         #[inline(always)]
-        fn run<V: Eight>(self) {
+        fn run<V: F64x8>(self) {
             V::splat(1.0).store(&mut self.0[..5], 0);
             V::splat(2.0).store(self.0, 16);
         }

@@ -8,14 +8,14 @@
 //!
 //! Normalisation: forward and inverse transforms together are the identity.
 
+pub mod batched;
 pub mod fft;
-pub mod lanes;
 mod pruned;
 mod spectrum;
 
 use ndarray::ArrayView2;
 
-use lanes::Lanes;
+use batched::BatchedFft;
 pub use spectrum::even_spectrum;
 
 /// A planned convolution. Bit-identical for any number of threads; `apply_into` allocates nothing.
@@ -42,22 +42,22 @@ trait Engine: Send {
     fn apply_into(&mut self, input: &[f64], output: &mut [f64]);
 }
 
-impl Engine for Lanes<f64> {
+impl Engine for BatchedFft<f64> {
     fn apply_into(&mut self, input: &[f64], output: &mut [f64]) {
-        Lanes::apply_into(self, input, output);
+        BatchedFft::apply_into(self, input, output);
     }
 }
 
 impl Convolution {
     /// Plans a convolution of `cells` = \[nx, ny\] with transforms of `lengths` = \[mx, my\], on the
-    /// lane-batched engine ([`lanes`]): the same bits on every processor.
+    /// lane-batched engine ([`batched`]): the same bits on every processor.
     ///
     /// `spectrum` has the shape (mx/2 + 1, my/2 + 1): the real multiplier S(kx, ky), even in kx and ky.
     ///
     /// # Panics
     /// Where the shapes contradict each other: they come from the operators of this crate.
     pub fn new(cells: [usize; 2], lengths: [usize; 2], spectrum: ArrayView2<f64>) -> Self {
-        Convolution { engine: Box::new(Lanes::new(cells, lengths, spectrum)) }
+        Convolution { engine: Box::new(BatchedFft::new(cells, lengths, spectrum)) }
     }
 
     /// The same on rustfft, slower and another rounding: the oracle and yardstick of the engine.
@@ -72,7 +72,7 @@ impl Convolution {
 
     /// A length of at least `minimum` that transforms fast.
     pub fn good_length(minimum: usize) -> usize {
-        Lanes::<f64>::good_length(minimum)
+        BatchedFft::<f64>::good_length(minimum)
     }
 
     /// `output` = S * `input`; both C-order, nx ny cells.
@@ -82,7 +82,7 @@ impl Convolution {
 
     /// Bytes that [`Self::new`] takes for these cells and lengths.
     pub fn bytes(cells: [usize; 2], lengths: [usize; 2]) -> usize {
-        Lanes::<f64>::bytes(cells, lengths, 1)
+        BatchedFft::<f64>::bytes(cells, lengths, 1)
     }
 }
 

@@ -7,7 +7,7 @@
 use std::sync::Arc;
 
 use super::wave_spectrum;
-use crate::convolution::lanes::Lanes;
+use crate::convolution::batched::BatchedFft;
 use crate::grid::{Boundary, Grid};
 use crate::kernel::Kernel;
 use crate::set::margins;
@@ -34,7 +34,7 @@ pub struct ApproximateInverse {
 
 struct Torus {
     lengths: [usize; 2],
-    plan: Option<Lanes<f32>>,
+    plan: Option<BatchedFft<f32>>,
 }
 
 impl ApproximateInverse {
@@ -47,7 +47,7 @@ impl ApproximateInverse {
     /// Bytes that the plans take at most.
     pub(crate) fn bytes(grid: &Grid, boundary: Boundary) -> usize {
         let [close, wide] = [0, APART].map(|apart| lengths(grid, boundary, apart));
-        let bytes = |lengths| Lanes::<f32>::bytes(grid.cells(), lengths, 2);
+        let bytes = |lengths| BatchedFft::<f32>::bytes(grid.cells(), lengths, 2);
         bytes(wide) + if close == wide { 0 } else { bytes(close) }
     }
 
@@ -71,7 +71,7 @@ impl ApproximateInverse {
     }
 
     /// The plan for pressures on a set of cells (bits, eight in a byte).
-    pub(crate) fn around(&mut self, set: &[u8]) -> &mut Lanes<f32> {
+    pub(crate) fn around(&mut self, set: &[u8]) -> &mut BatchedFft<f32> {
         let unit = self.unit();
         let torus = if self.is_apart(set) { &mut self.close } else { &mut self.wide };
         torus.planned(&self.grid, &*self.kernel, unit)
@@ -89,14 +89,14 @@ impl ApproximateInverse {
 /// The torus that leaves `apart` cells beyond a free domain.
 fn lengths(grid: &Grid, boundary: Boundary, apart: usize) -> [usize; 2] {
     match boundary {
-        Boundary::Free if grid.is_line() => [Lanes::<f32>::good_length(grid.cells()[0] + apart), 1],
-        Boundary::Free => grid.cells().map(|n| Lanes::<f32>::good_length(n + apart)),
+        Boundary::Free if grid.is_line() => [BatchedFft::<f32>::good_length(grid.cells()[0] + apart), 1],
+        Boundary::Free => grid.cells().map(|n| BatchedFft::<f32>::good_length(n + apart)),
         Boundary::Periodic => grid.cells(),
     }
 }
 
 impl Torus {
-    fn planned(&mut self, grid: &Grid, kernel: &dyn Kernel, unit: f64) -> &mut Lanes<f32> {
+    fn planned(&mut self, grid: &Grid, kernel: &dyn Kernel, unit: f64) -> &mut BatchedFft<f32> {
         let lengths = self.lengths;
         self.plan.get_or_insert_with(|| {
             let [dx, dy] = grid.spacing();
@@ -109,7 +109,7 @@ impl Torus {
                 wave_spectrum(lengths, size, uniform / unit, |qx, qy| 1.0 / (kernel.symbol(qx, qy) * unit));
             let least = inverse.iter().fold(f64::INFINITY, |least, s| least.min(*s));
             let screened = inverse.mapv(|s| (least + SCREEN) / (s + SCREEN));
-            Lanes::with_spectra(grid.cells(), lengths, &[inverse.view(), screened.view()])
+            BatchedFft::with_spectra(grid.cells(), lengths, &[inverse.view(), screened.view()])
         })
     }
 }

@@ -2,12 +2,12 @@
 
 use super::butterfly::{Butterfly, Whole};
 use super::complex::Complex;
-use super::lane::Lane;
-use super::prefetch::{For, prefetch};
+use super::prefetch::{Purpose, prefetch};
+use super::vector::Vector;
 
 /// The leaves of a block, which starts at position `start` of its part.
 #[inline(always)]
-pub fn run_leaves<V: Lane, const R: usize>(block: &mut [Complex<V>], start: usize, leaf: &mut impl Leaf<V>)
+pub fn run_leaves<V: Vector, const R: usize>(block: &mut [Complex<V>], start: usize, leaf: &mut impl Leaf<V>)
 where
     Whole<R>: Butterfly<V, R, R>,
 {
@@ -18,7 +18,7 @@ where
 }
 
 /// What happens at the leaves, where R numbers and their transform are in registers.
-pub trait Leaf<V: Lane> {
+pub trait Leaf<V: Vector> {
     /// With the R numbers x from position `at` of a part on.
     fn at<const R: usize>(&mut self, x: [Complex<V>; R], at: usize) -> [Complex<V>; R]
     where
@@ -28,7 +28,7 @@ pub trait Leaf<V: Lane> {
 /// The transform alone.
 pub struct Plain;
 
-impl<V: Lane> Leaf<V> for Plain {
+impl<V: Vector> Leaf<V> for Plain {
     #[inline(always)]
     fn at<const R: usize>(&mut self, x: [Complex<V>; R], _: usize) -> [Complex<V>; R]
     where
@@ -45,7 +45,7 @@ pub struct Energy<V> {
     im: V,
 }
 
-impl<V: Lane> Energy<V> {
+impl<V: Vector> Energy<V> {
     #[inline(always)]
     pub fn zero() -> Self {
         let zero = V::splat(V::Scalar::default());
@@ -71,14 +71,14 @@ const SPECTRUM_AHEAD: usize = 4096;
 /// Transform, times the spectrum, transform back on exchanged parts.
 pub struct Product<'a, V>(pub &'a [V], pub &'a mut Energy<V>);
 
-impl<V: Lane> Leaf<V> for Product<'_, V> {
+impl<V: Vector> Leaf<V> for Product<'_, V> {
     #[inline(always)]
     fn at<const R: usize>(&mut self, x: [Complex<V>; R], at: usize) -> [Complex<V>; R]
     where
         Whole<R>: Butterfly<V, R, R>,
     {
         let spectrum = &self.0[at..at + R];
-        prefetch(For::Reading, spectrum.as_ptr().wrapping_byte_add(SPECTRUM_AHEAD), R);
+        prefetch(Purpose::Reading, spectrum.as_ptr().wrapping_byte_add(SPECTRUM_AHEAD), R);
         let mut y = Whole::<R>::transform(x);
         for k in 0..R {
             let product = y[k].times(spectrum[k]);
@@ -92,7 +92,7 @@ impl<V: Lane> Leaf<V> for Product<'_, V> {
 /// The same with the spectrum read backwards.
 pub struct MirroredProduct<'a, V>(pub &'a [V], pub &'a mut Energy<V>);
 
-impl<V: Lane> Leaf<V> for MirroredProduct<'_, V> {
+impl<V: Vector> Leaf<V> for MirroredProduct<'_, V> {
     #[inline(always)]
     fn at<const R: usize>(&mut self, x: [Complex<V>; R], at: usize) -> [Complex<V>; R]
     where

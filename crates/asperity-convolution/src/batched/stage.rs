@@ -2,9 +2,9 @@
 
 use super::butterfly::{Butterfly, HalfOf, OfHalf, Whole};
 use super::complex::{Complex, Root};
-use super::lane::{Lane, Real};
 use super::parts::Parts;
 use super::roots::root;
+use super::vector::{Scalar, Vector};
 
 /// A pass of radix R on blocks of `span` = m numbers.
 pub struct Stage<T> {
@@ -14,7 +14,7 @@ pub struct Stage<T> {
     roots: Vec<Root<T>>,
 }
 
-impl<T: Real> Stage<T> {
+impl<T: Scalar> Stage<T> {
     pub fn new(radix: usize, span: usize) -> Self {
         let roots = (0..span / radix).flat_map(|j| (1..radix).map(move |r| root(j * r, span))).collect();
         Stage { radix, span, roots }
@@ -29,7 +29,7 @@ impl<T: Real> Stage<T> {
     /// The first pass: from the signal, its missing parts in the margin, into the buffer. `half`:
     /// the second half of the signal is zero.
     #[inline(always)]
-    pub fn open<V: Lane<Scalar = T>>(
+    pub fn open<V: Vector<Scalar = T>>(
         &self,
         half: bool,
         signal: &mut [Complex<V>],
@@ -51,7 +51,7 @@ impl<T: Real> Stage<T> {
     /// The last pass: from the buffer into the signal, its missing parts into the margin. `half`: only
     /// the first half of the signal is wanted.
     #[inline(always)]
-    pub fn close<V: Lane<Scalar = T>>(
+    pub fn close<V: Vector<Scalar = T>>(
         &self,
         half: bool,
         signal: &mut [Complex<V>],
@@ -72,7 +72,7 @@ impl<T: Real> Stage<T> {
 
     /// An inner pass on the way down, in place.
     #[inline(always)]
-    pub fn decimate_in_frequency<V: Lane<Scalar = T>>(&self, block: &mut [Complex<V>]) {
+    pub fn decimate_in_frequency<V: Vector<Scalar = T>>(&self, block: &mut [Complex<V>]) {
         match self.radix {
             8 => self.down::<V, 8>(block),
             5 => self.down::<V, 5>(block),
@@ -83,7 +83,7 @@ impl<T: Real> Stage<T> {
 
     /// An inner pass on the way up, in place.
     #[inline(always)]
-    pub fn decimate_in_time<V: Lane<Scalar = T>>(&self, block: &mut [Complex<V>]) {
+    pub fn decimate_in_time<V: Vector<Scalar = T>>(&self, block: &mut [Complex<V>]) {
         match self.radix {
             8 => self.up::<V, 8>(block),
             5 => self.up::<V, 5>(block),
@@ -94,7 +94,7 @@ impl<T: Real> Stage<T> {
 
     /// y(j, r) = exp(-2 pi i j r / m) times the transform of x(j + q m/R) over q.
     #[inline(always)]
-    fn first_pass<V: Lane<Scalar = T>, B: Butterfly<V, P, R>, const P: usize, const R: usize>(
+    fn first_pass<V: Vector<Scalar = T>, B: Butterfly<V, P, R>, const P: usize, const R: usize>(
         &self,
         signal: &mut [Complex<V>],
         margin: &mut [Complex<V>],
@@ -109,7 +109,7 @@ impl<T: Real> Stage<T> {
 
     /// The way back of the first pass; exchanges real and imaginary parts for good.
     #[inline(always)]
-    fn last_pass<V: Lane<Scalar = T>, B: Butterfly<V, R, P>, const P: usize, const R: usize>(
+    fn last_pass<V: Vector<Scalar = T>, B: Butterfly<V, R, P>, const P: usize, const R: usize>(
         &self,
         signal: &mut [Complex<V>],
         margin: &mut [Complex<V>],
@@ -127,7 +127,7 @@ impl<T: Real> Stage<T> {
     }
 
     #[inline(always)]
-    fn down<V: Lane<Scalar = T>, const R: usize>(&self, block: &mut [Complex<V>])
+    fn down<V: Vector<Scalar = T>, const R: usize>(&self, block: &mut [Complex<V>])
     where
         Whole<R>: Butterfly<V, R, R>,
     {
@@ -138,7 +138,7 @@ impl<T: Real> Stage<T> {
     }
 
     #[inline(always)]
-    fn up<V: Lane<Scalar = T>, const R: usize>(&self, block: &mut [Complex<V>])
+    fn up<V: Vector<Scalar = T>, const R: usize>(&self, block: &mut [Complex<V>])
     where
         Whole<R>: Butterfly<V, R, R>,
     {
@@ -151,7 +151,7 @@ impl<T: Real> Stage<T> {
 
 /// y(r) w^r, r = 1..R.
 #[inline(always)]
-fn rotated<V: Lane, const R: usize>(mut y: [Complex<V>; R], roots: &[Root<V::Scalar>]) -> [Complex<V>; R] {
+fn rotated<V: Vector, const R: usize>(mut y: [Complex<V>; R], roots: &[Root<V::Scalar>]) -> [Complex<V>; R] {
     for r in 1..R {
         y[r] = y[r].rotated(roots[r - 1]);
     }

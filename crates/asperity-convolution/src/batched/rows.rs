@@ -10,10 +10,10 @@
 //! The last pair is repeated until it fills its block.
 
 use super::complex::{Complex, Root, scalars, scalars_mut, transpose};
-use super::lane::{Kernel, Lane, MAX_LANES, Real};
-use super::prefetch::For;
+use super::prefetch::Purpose;
 use super::roots::root;
 use super::transform::Transform;
+use super::vector::{Kernel, MAX_LANES, Scalar, Vector};
 use super::work::{Scratch, Tiles};
 
 /// Tiles are prefetched so many blocks before they are needed.
@@ -39,7 +39,7 @@ struct Pair<T> {
     root: Root<T>,
 }
 
-impl<T: Real> Rows<T> {
+impl<T: Scalar> Rows<T> {
     /// Rows of `cells` numbers, transformed with 2 H = twice the transform's length, for vectors of
     /// that many lanes.
     pub fn new(cells: usize, transform: Transform<T>, lanes: usize) -> Self {
@@ -79,7 +79,7 @@ impl<T: Real> Rows<T> {
 
     /// signal\[j\] = x(2j) + i x(2j + 1), zero beyond ny, row n of `rows` in lane n.
     #[inline(always)]
-    fn pack<V: Lane<Scalar = T>>(&self, rows: &[T], signal: &mut [Complex<V>]) {
+    fn pack<V: Vector<Scalar = T>>(&self, rows: &[T], signal: &mut [Complex<V>]) {
         let (ny, lanes) = (self.cells, V::LANES);
         let full = rows.len() == lanes * ny;
         for (start, numbers) in (0..ny).step_by(lanes).zip(signal.chunks_exact_mut(lanes / 2)) {
@@ -102,7 +102,7 @@ impl<T: Real> Rows<T> {
 
     /// The way back of [`Rows::pack`].
     #[inline(always)]
-    fn unpack<V: Lane<Scalar = T>>(&self, signal: &[Complex<V>], rows: &mut [T]) {
+    fn unpack<V: Vector<Scalar = T>>(&self, signal: &[Complex<V>], rows: &mut [T]) {
         let (ny, lanes) = (self.cells, V::LANES);
         let full = rows.len() == lanes * ny;
         for (start, numbers) in (0..ny).step_by(lanes).zip(signal.chunks_exact(lanes / 2)) {
@@ -121,10 +121,10 @@ impl<T: Real> Rows<T> {
     }
 }
 
-impl<T: Real> Pair<T> {
+impl<T: Scalar> Pair<T> {
     /// 2 X(k) and 2 X(H - k), from Z.
     #[inline(always)]
-    fn spectra<V: Lane<Scalar = T>>(&self, z: &[Complex<V>]) -> (Complex<V>, Complex<V>) {
+    fn spectra<V: Vector<Scalar = T>>(&self, z: &[Complex<V>]) -> (Complex<V>, Complex<V>) {
         let (z, m) = (z[self.position], z[self.mirror]);
         let even = z.plus_conjugate(m);
         let odd = z.minus_conjugate(m).rotated(self.root);
@@ -133,7 +133,7 @@ impl<T: Real> Pair<T> {
 
     /// 2 Z(k) and 2 Z(H - k), from X, into Z, real and imaginary parts exchanged.
     #[inline(always)]
-    fn store<V: Lane<Scalar = T>>(&self, x: Complex<V>, m: Complex<V>, z: &mut [Complex<V>]) {
+    fn store<V: Vector<Scalar = T>>(&self, x: Complex<V>, m: Complex<V>, z: &mut [Complex<V>]) {
         let even = x.plus_conjugate(m);
         let odd = x.minus_conjugate(m).rotated_back(self.root);
         z[self.mirror] = even.conjugate_minus(odd).swapped();
@@ -142,14 +142,14 @@ impl<T: Real> Pair<T> {
 }
 
 /// One block of rows, forward: `rows` into their `tiles` of the column blocks.
-pub struct ForwardRows<'a, V: Lane> {
+pub struct ForwardRows<'a, V: Vector> {
     pub plan: &'a Rows<V::Scalar>,
     pub rows: &'a [V::Scalar],
     pub tiles: Tiles<'a, V>,
     pub scratch: &'a mut Scratch<V>,
 }
 
-impl<V: Lane> Kernel for ForwardRows<'_, V> {
+impl<V: Vector> Kernel for ForwardRows<'_, V> {
     #[inline(always)]
     fn run(mut self) {
         let [signal, spectrum] = self.plan.scratch(V::LANES);
@@ -162,7 +162,7 @@ impl<V: Lane> Kernel for ForwardRows<'_, V> {
             for lane in 0..half {
                 (columns[lane], columns[half + lane]) = pairs[lane].spectra(spectrum);
             }
-            self.tiles.prefetch(For::Writing, block + AHEAD);
+            self.tiles.prefetch(Purpose::Writing, block + AHEAD);
             let tile = self.tiles.tile(block);
             if tile.len() == V::LANES {
                 transpose(&columns, tile);
@@ -176,14 +176,14 @@ impl<V: Lane> Kernel for ForwardRows<'_, V> {
 }
 
 /// One block of rows, back: `rows` from their `tiles` of the column blocks.
-pub struct InverseRows<'a, V: Lane> {
+pub struct InverseRows<'a, V: Vector> {
     pub plan: &'a Rows<V::Scalar>,
     pub tiles: Tiles<'a, V>,
     pub rows: &'a mut [V::Scalar],
     pub scratch: &'a mut Scratch<V>,
 }
 
-impl<V: Lane> Kernel for InverseRows<'_, V> {
+impl<V: Vector> Kernel for InverseRows<'_, V> {
     #[inline(always)]
     fn run(mut self) {
         let [signal, spectrum] = self.plan.scratch(V::LANES);
@@ -191,7 +191,7 @@ impl<V: Lane> Kernel for InverseRows<'_, V> {
         let half = V::LANES / 2;
         let mut columns = [Complex::<V>::zero(); MAX_LANES];
         for (block, pairs) in self.plan.pairs.chunks_exact(half).enumerate() {
-            self.tiles.prefetch(For::Reading, block + AHEAD);
+            self.tiles.prefetch(Purpose::Reading, block + AHEAD);
             let tile = self.tiles.tile(block);
             if tile.len() == V::LANES {
                 transpose(tile, &mut columns);

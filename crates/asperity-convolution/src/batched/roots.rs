@@ -1,10 +1,10 @@
 //! Roots of unity, to the last bit the same on every machine.
 
 use super::complex::Root;
-use super::lane::Real;
+use super::vector::Scalar;
 
 /// exp(-2 pi i k / n), from an angle of the first octant: rounded well, and exact where it is 0 or 1.
-pub fn root<T: Real>(k: usize, n: usize) -> Root<T> {
+pub fn root<T: Scalar>(k: usize, n: usize) -> Root<T> {
     let k = k % n;
     // The quarter turn, then the rest of it as an angle of at most an eighth of a turn either way.
     let quarter = (8 * k + n) / (2 * n);

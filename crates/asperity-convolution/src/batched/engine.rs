@@ -2,21 +2,20 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use asperity_sweep::Instructions;
 use ndarray::ArrayView2;
 use rayon::prelude::*;
 
 use super::complex::Complex;
 use super::factors::Factors;
-use super::lane::{Kernel, Lane, Real};
 use super::leaf::Energy;
-use super::prefetch::Ahead;
+use super::prefetch::PrefetchAhead;
 use super::rows::{ForwardRows, InverseRows, Rows};
 use super::transform::Transform;
+use super::vector::{Kernel, Scalar, Vector};
 use super::work::{Scratch, SharedTiles, block_stride};
 
-/// A planned convolution in lanes of one kind.
-pub struct Engine<V: Lane> {
+/// A planned convolution in vectors of one kind.
+pub struct Engine<V: Vector> {
     /// nx.
     rows: usize,
     row_plan: Rows<V::Scalar>,
@@ -35,12 +34,12 @@ pub struct Engine<V: Lane> {
 }
 
 /// Rows that a caller modifies together: as many as the widest vectors hold, so that a group starts at a multiple of eight cells.
-fn group<V: Lane>() -> usize {
+fn group<V: Vector>() -> usize {
     V::LANES.max(64 / size_of::<V::Scalar>())
 }
 
-impl<V: Lane> Engine<V> {
-    /// See [`super::Lanes::with_spectra`]; the factors are those of mx and my/2.
+impl<V: Vector> Engine<V> {
+    /// See [`super::BatchedFft::with_spectra`]; the factors are those of mx and my/2.
     pub fn new(
         cells: [usize; 2],
         lengths: [usize; 2],
@@ -96,7 +95,7 @@ impl<V: Lane> Engine<V> {
             // SAFETY: every group of rows is visited once; its blocks have no row in common, and are read before they are
             // written.
             let tiles = |first: usize, cells: &[V::Scalar]| unsafe { tiles.of_rows(first, cells.len() / ny) };
-            with(scratch, |scratch| {
+            with_scratch(scratch, |scratch| {
                 let mut buffer = std::mem::take(&mut scratch.rows);
                 let cells = &mut buffer[..rows.len() * ny];
                 for (rows, first) in cells.chunks_mut(V::LANES * ny).zip(rows.clone().step_by(V::LANES)) {
@@ -119,7 +118,7 @@ impl<V: Lane> Engine<V> {
 /// The multiplier in the order in which the columns need it.
 ///
 /// Both passes over rows leave their result doubled, and both transforms lack their 1/m.
-fn blocked_spectrum<V: Lane>(
+fn blocked_spectrum<V: Vector>(
     [mx, my]: [usize; 2],
     row_plan: &Rows<V::Scalar>,
     column_plan: &Transform<V::Scalar>,
@@ -144,7 +143,7 @@ fn blocked_spectrum<V: Lane>(
 }
 
 /// One block of columns: transformed, multiplied, transformed back.
-struct Columns<'a, V: Lane> {
+struct Columns<'a, V: Vector> {
     plan: &'a Transform<V::Scalar>,
     columns: &'a mut [Complex<V>],
     stride: usize,
@@ -153,7 +152,7 @@ struct Columns<'a, V: Lane> {
     scratch: &'a mut Scratch<V>,
 }
 
-impl<V: Lane> Kernel for Columns<'_, V> {
+impl<V: Vector> Kernel for Columns<'_, V> {
     #[inline(always)]
     fn run(self) {
         let (margin, transform) = self.scratch.buffers(self.plan.signal_length(), self.plan.length());
@@ -161,7 +160,7 @@ impl<V: Lane> Kernel for Columns<'_, V> {
         std::hint::black_box(&Complex::<V>::zero());
         // The block that follows is likely the next of this thread.
         let following = self.columns.as_ptr().wrapping_add(self.stride);
-        let mut ahead = Ahead::of(following, self.columns.len(), self.plan.steps());
+        let mut ahead = PrefetchAhead::of(following, self.columns.len(), self.plan.steps());
         self.plan.convolve(self.columns, margin, transform, self.spectrum, self.energy, &mut ahead);
     }
 }
@@ -170,7 +169,7 @@ impl<V: Lane> Kernel for Columns<'_, V> {
 /// that the caller keeps (empty where there is none).
 pub type Modify<'a, T> = dyn Fn(usize, &mut [T], &mut [T]) + Sync + 'a;
 
-/// The passes of a convolution, whatever its lanes.
+/// The passes of a convolution, whatever its vectors.
 pub trait Convolve<T>: Send {
     /// The rows of the input, forward.
     fn forward(&mut self, input: &[T]);
@@ -185,7 +184,7 @@ pub trait Convolve<T>: Send {
     fn modify(&mut self, kept: &mut [T], modify: &Modify<T>, forward: bool);
 }
 
-impl<V: Lane> Convolve<V::Scalar> for Engine<V> {
+impl<V: Vector> Convolve<V::Scalar> for Engine<V> {
     fn forward(&mut self, input: &[V::Scalar]) {
         let (ny, plan, scratch) = (self.row_plan.cells(), &self.row_plan, &self.scratch);
         assert_eq!(input.len(), self.rows * ny);
@@ -193,7 +192,7 @@ impl<V: Lane> Convolve<V::Scalar> for Engine<V> {
         input.par_chunks(V::LANES * ny).enumerate().for_each(|(n, rows)| {
             // SAFETY: every block of rows is visited once, and blocks have no row in common.
             let tiles = unsafe { tiles.of_rows(n * V::LANES, rows.len() / ny) };
-            with(scratch, |scratch| V::vectorize(ForwardRows { plan, rows, tiles, scratch }));
+            with_scratch(scratch, |scratch| V::vectorize(ForwardRows { plan, rows, tiles, scratch }));
         });
     }
 
@@ -204,7 +203,7 @@ impl<V: Lane> Convolve<V::Scalar> for Engine<V> {
         blocks.for_each(|((columns, spectrum), total)| {
             let columns = &mut columns[..nx];
             let mut energy = Energy::zero();
-            with(scratch, |scratch| {
+            with_scratch(scratch, |scratch| {
                 V::vectorize(Columns { plan, columns, stride, spectrum, energy: &mut energy, scratch });
             });
             *total = energy.total();
@@ -226,7 +225,7 @@ impl<V: Lane> Convolve<V::Scalar> for Engine<V> {
         output.par_chunks_mut(V::LANES * ny).enumerate().for_each(|(n, rows)| {
             // SAFETY: every block of rows is visited once, and blocks have no row in common.
             let tiles = unsafe { tiles.of_rows(n * V::LANES, rows.len() / ny) };
-            with(scratch, |scratch| V::vectorize(InverseRows { plan, tiles, rows, scratch }));
+            with_scratch(scratch, |scratch| V::vectorize(InverseRows { plan, tiles, rows, scratch }));
         });
     }
 
@@ -242,25 +241,8 @@ impl<V: Lane> Convolve<V::Scalar> for Engine<V> {
     }
 }
 
-/// The engine in the lanes of an instruction set that is available.
-pub fn plan<T: Real>(
-    instructions: Instructions,
-    cells: [usize; 2],
-    lengths: [usize; 2],
-    factors: [&Factors; 2],
-    spectra: &[ArrayView2<f64>],
-) -> Box<dyn Convolve<T>> {
-    match instructions {
-        #[cfg(target_arch = "x86_64")]
-        Instructions::Avx512 => Box::new(Engine::<T::Avx512>::new(cells, lengths, factors, spectra)),
-        #[cfg(target_arch = "x86_64")]
-        Instructions::Avx2 => Box::new(Engine::<T::Avx2>::new(cells, lengths, factors, spectra)),
-        _ => Box::new(Engine::<T::Portable>::new(cells, lengths, factors, spectra)),
-    }
-}
-
 /// Runs `work` with the buffers of this thread. `work` must not wait for another thread, which could need the same buffers.
-fn with<V: Lane>(scratch: &[Mutex<Scratch<V>>], work: impl FnOnce(&mut Scratch<V>)) {
+fn with_scratch<V: Vector>(scratch: &[Mutex<Scratch<V>>], work: impl FnOnce(&mut Scratch<V>)) {
     let mine = rayon::current_thread_index().unwrap_or(0) % scratch.len();
     work(&mut scratch[mine].lock().unwrap_or_else(PoisonError::into_inner));
 }

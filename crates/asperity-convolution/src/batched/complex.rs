@@ -2,7 +2,7 @@
 
 use std::ops::{Add, Sub};
 
-use super::lane::Lane;
+use super::vector::Vector;
 
 /// re + i im, in every lane. Whole cache lines.
 #[derive(Clone, Copy)]
@@ -19,7 +19,7 @@ pub struct Root<T> {
     pub im: T,
 }
 
-impl<V: Lane> Add for Complex<V> {
+impl<V: Vector> Add for Complex<V> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
@@ -27,7 +27,7 @@ impl<V: Lane> Add for Complex<V> {
     }
 }
 
-impl<V: Lane> Sub for Complex<V> {
+impl<V: Vector> Sub for Complex<V> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
@@ -35,7 +35,7 @@ impl<V: Lane> Sub for Complex<V> {
     }
 }
 
-impl<V: Lane> Complex<V> {
+impl<V: Vector> Complex<V> {
     /// 0.
     #[inline(always)]
     pub fn zero() -> Self {
@@ -126,7 +126,7 @@ impl<V: Lane> Complex<V> {
 
 /// The scalars of `numbers`: all lanes of one real part, all lanes of its imaginary part, and so on.
 #[inline(always)]
-pub fn scalars<V: Lane>(numbers: &[Complex<V>]) -> &[V::Scalar] {
+pub fn scalars<V: Vector>(numbers: &[Complex<V>]) -> &[V::Scalar] {
     const { assert!(size_of::<Complex<V>>() == 2 * V::LANES * size_of::<V::Scalar>(), "padded") };
     // SAFETY: a Complex is two V one after the other, and a V has the layout of LANES scalars.
     unsafe { std::slice::from_raw_parts(numbers.as_ptr().cast(), 2 * V::LANES * numbers.len()) }
@@ -134,7 +134,7 @@ pub fn scalars<V: Lane>(numbers: &[Complex<V>]) -> &[V::Scalar] {
 
 /// As [`scalars`], to write.
 #[inline(always)]
-pub fn scalars_mut<V: Lane>(numbers: &mut [Complex<V>]) -> &mut [V::Scalar] {
+pub fn scalars_mut<V: Vector>(numbers: &mut [Complex<V>]) -> &mut [V::Scalar] {
     const { assert!(size_of::<Complex<V>>() == 2 * V::LANES * size_of::<V::Scalar>(), "padded") };
     // SAFETY: as in `scalars`; any bit pattern of V is valid; the borrow is exclusive.
     unsafe { std::slice::from_raw_parts_mut(numbers.as_mut_ptr().cast(), 2 * V::LANES * numbers.len()) }
@@ -142,7 +142,7 @@ pub fn scalars_mut<V: Lane>(numbers: &mut [Complex<V>]) -> &mut [V::Scalar] {
 
 /// Exchanges lanes and positions of `LANES` complex numbers: lane j of to\[i\] is lane i of from\[j\].
 #[inline(always)]
-pub fn transpose<V: Lane>(from: &[Complex<V>], to: &mut [Complex<V>]) {
+pub fn transpose<V: Vector>(from: &[Complex<V>], to: &mut [Complex<V>]) {
     let stride = 2 * V::LANES;
     let (from, to) = (scalars(from), scalars_mut(to));
     V::transpose(from, stride, to, stride);

@@ -7,11 +7,11 @@
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use super::complex::Complex;
-use super::lane::{Lane, Real};
+use super::vector::{Scalar, Vector};
 
 /// A constant in all lanes.
 #[inline(always)]
-fn constant<V: Lane>(c: f64) -> V {
+fn constant<V: Vector>(c: f64) -> V {
     V::splat(V::Scalar::nearest(c))
 }
 
@@ -30,35 +30,35 @@ pub struct OfHalf<const R: usize>;
 /// The first half of the transform.
 pub struct HalfOf<const R: usize>;
 
-impl<V: Lane> Butterfly<V, 1, 1> for Whole<1> {
+impl<V: Vector> Butterfly<V, 1, 1> for Whole<1> {
     #[inline(always)]
     fn transform(x: [Complex<V>; 1]) -> [Complex<V>; 1] {
         x
     }
 }
 
-impl<V: Lane> Butterfly<V, 2, 2> for Whole<2> {
+impl<V: Vector> Butterfly<V, 2, 2> for Whole<2> {
     #[inline(always)]
     fn transform([a, b]: [Complex<V>; 2]) -> [Complex<V>; 2] {
         [a + b, a - b]
     }
 }
 
-impl<V: Lane> Butterfly<V, 1, 2> for OfHalf<2> {
+impl<V: Vector> Butterfly<V, 1, 2> for OfHalf<2> {
     #[inline(always)]
     fn transform([a]: [Complex<V>; 1]) -> [Complex<V>; 2] {
         [a, a]
     }
 }
 
-impl<V: Lane> Butterfly<V, 2, 1> for HalfOf<2> {
+impl<V: Vector> Butterfly<V, 2, 1> for HalfOf<2> {
     #[inline(always)]
     fn transform([a, b]: [Complex<V>; 2]) -> [Complex<V>; 1] {
         [a + b]
     }
 }
 
-impl<V: Lane> Butterfly<V, 3, 3> for Whole<3> {
+impl<V: Vector> Butterfly<V, 3, 3> for Whole<3> {
     #[inline(always)]
     fn transform([a, b, c]: [Complex<V>; 3]) -> [Complex<V>; 3] {
         const SIN_60: f64 = 0.866_025_403_784_438_6;
@@ -69,21 +69,21 @@ impl<V: Lane> Butterfly<V, 3, 3> for Whole<3> {
     }
 }
 
-impl<V: Lane> Butterfly<V, 4, 4> for Whole<4> {
+impl<V: Vector> Butterfly<V, 4, 4> for Whole<4> {
     #[inline(always)]
     fn transform([a, b, c, d]: [Complex<V>; 4]) -> [Complex<V>; 4] {
         dft4_of_halves([a + c, b + d], [a - c, b - d])
     }
 }
 
-impl<V: Lane> Butterfly<V, 2, 4> for OfHalf<4> {
+impl<V: Vector> Butterfly<V, 2, 4> for OfHalf<4> {
     #[inline(always)]
     fn transform(x: [Complex<V>; 2]) -> [Complex<V>; 4] {
         dft4_of_halves(x, x)
     }
 }
 
-impl<V: Lane> Butterfly<V, 4, 2> for HalfOf<4> {
+impl<V: Vector> Butterfly<V, 4, 2> for HalfOf<4> {
     #[inline(always)]
     fn transform([a, b, c, d]: [Complex<V>; 4]) -> [Complex<V>; 2] {
         [(a + c) + (b + d), (a - c).minus_i(b - d)]
@@ -92,11 +92,11 @@ impl<V: Lane> Butterfly<V, 4, 2> for HalfOf<4> {
 
 /// From the sums s(q) = x(q) + x(q + 2) and the differences d(q) = x(q) - x(q + 2).
 #[inline(always)]
-fn dft4_of_halves<V: Lane>(s: [Complex<V>; 2], d: [Complex<V>; 2]) -> [Complex<V>; 4] {
+fn dft4_of_halves<V: Vector>(s: [Complex<V>; 2], d: [Complex<V>; 2]) -> [Complex<V>; 4] {
     [s[0] + s[1], d[0].minus_i(d[1]), s[0] - s[1], d[0].plus_i(d[1])]
 }
 
-impl<V: Lane> Butterfly<V, 5, 5> for Whole<5> {
+impl<V: Vector> Butterfly<V, 5, 5> for Whole<5> {
     #[inline(always)]
     fn transform([a, b, c, d, e]: [Complex<V>; 5]) -> [Complex<V>; 5] {
         const COS_72: f64 = 0.309_016_994_374_947_45;
@@ -121,21 +121,21 @@ impl<V: Lane> Butterfly<V, 5, 5> for Whole<5> {
     }
 }
 
-impl<V: Lane> Butterfly<V, 8, 8> for Whole<8> {
+impl<V: Vector> Butterfly<V, 8, 8> for Whole<8> {
     #[inline(always)]
     fn transform([a, b, c, d, e, f, g, h]: [Complex<V>; 8]) -> [Complex<V>; 8] {
         dft8_of_halves([a + e, b + f, c + g, d + h], [a - e, b - f, c - g, d - h])
     }
 }
 
-impl<V: Lane> Butterfly<V, 4, 8> for OfHalf<8> {
+impl<V: Vector> Butterfly<V, 4, 8> for OfHalf<8> {
     #[inline(always)]
     fn transform(x: [Complex<V>; 4]) -> [Complex<V>; 8] {
         dft8_of_halves(x, x)
     }
 }
 
-impl<V: Lane> Butterfly<V, 8, 4> for HalfOf<8> {
+impl<V: Vector> Butterfly<V, 8, 4> for HalfOf<8> {
     #[inline(always)]
     fn transform(x: [Complex<V>; 8]) -> [Complex<V>; 4] {
         // The four others are not used, so the compiler drops them.
@@ -147,7 +147,7 @@ impl<V: Lane> Butterfly<V, 8, 4> for HalfOf<8> {
 /// From the sums s(q) = x(q) + x(q + 4) and the differences d(q) = x(q) - x(q + 4): the even
 /// outputs are the transform of s, the odd ones that of d(q) exp(-i pi q / 4).
 #[inline(always)]
-fn dft8_of_halves<V: Lane>(s: [Complex<V>; 4], d: [Complex<V>; 4]) -> [Complex<V>; 8] {
+fn dft8_of_halves<V: Vector>(s: [Complex<V>; 4], d: [Complex<V>; 4]) -> [Complex<V>; 8] {
     let [x0, x2, x4, x6] = Whole::<4>::transform(s);
     let (near, far) = (d[0].minus_i(d[2]), d[0].plus_i(d[2]));
     let (difference, sum) = (d[1] - d[3], d[1] + d[3]);

@@ -7,7 +7,7 @@
 
 use ndarray::{Array2, ArrayView2};
 
-use crate::even_spectrum;
+use crate::spectrum::even_spectrum;
 
 /// The spectrum on `longer` lengths that does what `spectrum` does on `lengths`, for fields of `cells`.
 ///

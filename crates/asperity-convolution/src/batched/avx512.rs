@@ -4,7 +4,7 @@ use std::arch::x86_64::*;
 use std::ops::{Add, Mul, Sub};
 
 use super::avx2::transpose_8x8;
-use super::lane::{Kernel, Lane, tile_end};
+use super::vector::{Kernel, Vector, tile_end};
 
 /// Eight f64.
 #[derive(Clone, Copy)]
@@ -18,31 +18,31 @@ pub struct F32x16(__m512);
 
 /// The arithmetic, from the names of the intrinsics.
 macro_rules! arithmetic {
-    ($lane:ident, $add:ident, $sub:ident, $mul:ident) => {
-        impl Add for $lane {
+    ($vector:ident, $add:ident, $sub:ident, $mul:ident) => {
+        impl Add for $vector {
             type Output = Self;
             #[inline(always)]
             fn add(self, other: Self) -> Self {
-                // SAFETY: plans with this lane are made where AVX-512F was detected.
-                $lane(unsafe { $add(self.0, other.0) })
+                // SAFETY: plans with this vector are made where AVX-512F was detected.
+                $vector(unsafe { $add(self.0, other.0) })
             }
         }
 
-        impl Sub for $lane {
+        impl Sub for $vector {
             type Output = Self;
             #[inline(always)]
             fn sub(self, other: Self) -> Self {
-                // SAFETY: plans with this lane are made where AVX-512F was detected.
-                $lane(unsafe { $sub(self.0, other.0) })
+                // SAFETY: plans with this vector are made where AVX-512F was detected.
+                $vector(unsafe { $sub(self.0, other.0) })
             }
         }
 
-        impl Mul for $lane {
+        impl Mul for $vector {
             type Output = Self;
             #[inline(always)]
             fn mul(self, other: Self) -> Self {
-                // SAFETY: plans with this lane are made where AVX-512F was detected.
-                $lane(unsafe { $mul(self.0, other.0) })
+                // SAFETY: plans with this vector are made where AVX-512F was detected.
+                $vector(unsafe { $mul(self.0, other.0) })
             }
         }
     };
@@ -53,32 +53,26 @@ arithmetic!(F32x16, _mm512_add_ps, _mm512_sub_ps, _mm512_mul_ps);
 
 /// Splat, the fused products and the entry point, from the names of the intrinsics.
 macro_rules! lane_methods {
-    ($lane:ident, $scalar:ty, $splat:ident, $fmadd:ident, $fmsub:ident, $fnmadd:ident) => {
+    ($vector:ident, $scalar:ty, $splat:ident, $fmadd:ident, $fnmadd:ident) => {
         type Scalar = $scalar;
-        const LANES: usize = size_of::<$lane>() / size_of::<$scalar>();
+        const LANES: usize = size_of::<$vector>() / size_of::<$scalar>();
 
         #[inline(always)]
         fn splat(x: $scalar) -> Self {
-            // SAFETY: plans with this lane are made where AVX-512F was detected.
-            $lane(unsafe { $splat(x) })
+            // SAFETY: plans with this vector are made where AVX-512F was detected.
+            $vector(unsafe { $splat(x) })
         }
 
         #[inline(always)]
         fn mul_add(self, b: Self, c: Self) -> Self {
-            // SAFETY: plans with this lane are made where AVX-512F was detected.
-            $lane(unsafe { $fmadd(self.0, b.0, c.0) })
-        }
-
-        #[inline(always)]
-        fn mul_sub(self, b: Self, c: Self) -> Self {
-            // SAFETY: plans with this lane are made where AVX-512F was detected.
-            $lane(unsafe { $fmsub(self.0, b.0, c.0) })
+            // SAFETY: plans with this vector are made where AVX-512F was detected.
+            $vector(unsafe { $fmadd(self.0, b.0, c.0) })
         }
 
         #[inline(always)]
         fn neg_mul_add(self, b: Self, c: Self) -> Self {
-            // SAFETY: plans with this lane are made where AVX-512F was detected.
-            $lane(unsafe { $fnmadd(self.0, b.0, c.0) })
+            // SAFETY: plans with this vector are made where AVX-512F was detected.
+            $vector(unsafe { $fnmadd(self.0, b.0, c.0) })
         }
 
         #[inline(always)]
@@ -87,15 +81,15 @@ macro_rules! lane_methods {
             fn compiled(kernel: impl Kernel) {
                 kernel.run();
             }
-            // SAFETY: plans with this lane are made where AVX-512F, AVX2 and FMA were detected.
+            // SAFETY: plans with this vector are made where AVX-512F, AVX2 and FMA were detected.
             unsafe { compiled(kernel) }
         }
     };
 }
 
 // SAFETY: __m512d is eight f64.
-unsafe impl Lane for F64x8 {
-    lane_methods!(F64x8, f64, _mm512_set1_pd, _mm512_fmadd_pd, _mm512_fmsub_pd, _mm512_fnmadd_pd);
+unsafe impl Vector for F64x8 {
+    lane_methods!(F64x8, f64, _mm512_set1_pd, _mm512_fmadd_pd, _mm512_fnmadd_pd);
 
     #[inline(always)]
     fn transpose(from: &[f64], from_stride: usize, to: &mut [f64], to_stride: usize) {
@@ -126,8 +120,8 @@ unsafe impl Lane for F64x8 {
 }
 
 // SAFETY: __m512 is sixteen f32.
-unsafe impl Lane for F32x16 {
-    lane_methods!(F32x16, f32, _mm512_set1_ps, _mm512_fmadd_ps, _mm512_fmsub_ps, _mm512_fnmadd_ps);
+unsafe impl Vector for F32x16 {
+    lane_methods!(F32x16, f32, _mm512_set1_ps, _mm512_fmadd_ps, _mm512_fnmadd_ps);
 
     #[inline(always)]
     fn transpose(from: &[f32], from_stride: usize, to: &mut [f32], to_stride: usize) {

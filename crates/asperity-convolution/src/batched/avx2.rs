@@ -3,7 +3,7 @@
 use std::arch::x86_64::*;
 use std::ops::{Add, Mul, Sub};
 
-use super::lane::{Kernel, Lane, tile_end};
+use super::vector::{Kernel, Vector, tile_end};
 
 /// Four f64.
 #[derive(Clone, Copy)]
@@ -17,31 +17,31 @@ pub struct F32x8(__m256);
 
 /// The arithmetic, from the names of the intrinsics.
 macro_rules! arithmetic {
-    ($lane:ident, $add:ident, $sub:ident, $mul:ident) => {
-        impl Add for $lane {
+    ($vector:ident, $add:ident, $sub:ident, $mul:ident) => {
+        impl Add for $vector {
             type Output = Self;
             #[inline(always)]
             fn add(self, other: Self) -> Self {
-                // SAFETY: plans with this lane are made where AVX2 and FMA were detected.
-                $lane(unsafe { $add(self.0, other.0) })
+                // SAFETY: plans with this vector are made where AVX2 and FMA were detected.
+                $vector(unsafe { $add(self.0, other.0) })
             }
         }
 
-        impl Sub for $lane {
+        impl Sub for $vector {
             type Output = Self;
             #[inline(always)]
             fn sub(self, other: Self) -> Self {
-                // SAFETY: plans with this lane are made where AVX2 and FMA were detected.
-                $lane(unsafe { $sub(self.0, other.0) })
+                // SAFETY: plans with this vector are made where AVX2 and FMA were detected.
+                $vector(unsafe { $sub(self.0, other.0) })
             }
         }
 
-        impl Mul for $lane {
+        impl Mul for $vector {
             type Output = Self;
             #[inline(always)]
             fn mul(self, other: Self) -> Self {
-                // SAFETY: plans with this lane are made where AVX2 and FMA were detected.
-                $lane(unsafe { $mul(self.0, other.0) })
+                // SAFETY: plans with this vector are made where AVX2 and FMA were detected.
+                $vector(unsafe { $mul(self.0, other.0) })
             }
         }
     };
@@ -52,32 +52,26 @@ arithmetic!(F32x8, _mm256_add_ps, _mm256_sub_ps, _mm256_mul_ps);
 
 /// Splat, the fused products and the entry point, from the names of the intrinsics.
 macro_rules! lane_methods {
-    ($lane:ident, $scalar:ty, $splat:ident, $fmadd:ident, $fmsub:ident, $fnmadd:ident) => {
+    ($vector:ident, $scalar:ty, $splat:ident, $fmadd:ident, $fnmadd:ident) => {
         type Scalar = $scalar;
-        const LANES: usize = size_of::<$lane>() / size_of::<$scalar>();
+        const LANES: usize = size_of::<$vector>() / size_of::<$scalar>();
 
         #[inline(always)]
         fn splat(x: $scalar) -> Self {
-            // SAFETY: plans with this lane are made where AVX2 and FMA were detected.
-            $lane(unsafe { $splat(x) })
+            // SAFETY: plans with this vector are made where AVX2 and FMA were detected.
+            $vector(unsafe { $splat(x) })
         }
 
         #[inline(always)]
         fn mul_add(self, b: Self, c: Self) -> Self {
-            // SAFETY: plans with this lane are made where AVX2 and FMA were detected.
-            $lane(unsafe { $fmadd(self.0, b.0, c.0) })
-        }
-
-        #[inline(always)]
-        fn mul_sub(self, b: Self, c: Self) -> Self {
-            // SAFETY: plans with this lane are made where AVX2 and FMA were detected.
-            $lane(unsafe { $fmsub(self.0, b.0, c.0) })
+            // SAFETY: plans with this vector are made where AVX2 and FMA were detected.
+            $vector(unsafe { $fmadd(self.0, b.0, c.0) })
         }
 
         #[inline(always)]
         fn neg_mul_add(self, b: Self, c: Self) -> Self {
-            // SAFETY: plans with this lane are made where AVX2 and FMA were detected.
-            $lane(unsafe { $fnmadd(self.0, b.0, c.0) })
+            // SAFETY: plans with this vector are made where AVX2 and FMA were detected.
+            $vector(unsafe { $fnmadd(self.0, b.0, c.0) })
         }
 
         #[inline(always)]
@@ -86,15 +80,15 @@ macro_rules! lane_methods {
             fn compiled(kernel: impl Kernel) {
                 kernel.run();
             }
-            // SAFETY: plans with this lane are made where AVX2 and FMA were detected.
+            // SAFETY: plans with this vector are made where AVX2 and FMA were detected.
             unsafe { compiled(kernel) }
         }
     };
 }
 
 // SAFETY: __m256d is four f64.
-unsafe impl Lane for F64x4 {
-    lane_methods!(F64x4, f64, _mm256_set1_pd, _mm256_fmadd_pd, _mm256_fmsub_pd, _mm256_fnmadd_pd);
+unsafe impl Vector for F64x4 {
+    lane_methods!(F64x4, f64, _mm256_set1_pd, _mm256_fmadd_pd, _mm256_fnmadd_pd);
 
     #[inline(always)]
     fn transpose(from: &[f64], from_stride: usize, to: &mut [f64], to_stride: usize) {
@@ -115,8 +109,8 @@ unsafe impl Lane for F64x4 {
 }
 
 // SAFETY: __m256 is eight f32.
-unsafe impl Lane for F32x8 {
-    lane_methods!(F32x8, f32, _mm256_set1_ps, _mm256_fmadd_ps, _mm256_fmsub_ps, _mm256_fnmadd_ps);
+unsafe impl Vector for F32x8 {
+    lane_methods!(F32x8, f32, _mm256_set1_ps, _mm256_fmadd_ps, _mm256_fnmadd_ps);
 
     #[inline(always)]
     fn transpose(from: &[f32], from_stride: usize, to: &mut [f32], to_stride: usize) {

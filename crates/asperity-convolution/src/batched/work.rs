@@ -7,8 +7,8 @@
 use std::marker::PhantomData;
 
 use super::complex::Complex;
-use super::lane::Lane;
-use super::prefetch::{For, prefetch};
+use super::prefetch::{Purpose, prefetch};
+use super::vector::Vector;
 
 /// Bytes that keep what is used together apart modulo the page of 4096 bytes. Powers of two would
 /// otherwise put it into the same sets of the cache, where it displaces itself, and a load would wait
@@ -21,7 +21,7 @@ pub fn block_stride<V>(rows: usize) -> usize {
 }
 
 /// The buffers of one thread.
-pub struct Scratch<V: Lane> {
+pub struct Scratch<V: Vector> {
     /// Rows that a caller visits.
     pub rows: Vec<V::Scalar>,
     numbers: Vec<Complex<V>>,
@@ -29,7 +29,7 @@ pub struct Scratch<V: Lane> {
     second: usize,
 }
 
-impl<V: Lane> Scratch<V> {
+impl<V: Vector> Scratch<V> {
     /// A buffer for a signal and one for its transform, and room for rows of so many cells.
     pub fn new(signal: usize, transform: usize, cells: usize) -> Self {
         let size = size_of::<Complex<V>>();
@@ -94,7 +94,7 @@ impl<V> Tiles<'_, V> {
 
     /// Asks for a tile that will be wanted soon.
     #[inline(always)]
-    pub fn prefetch(&self, what: For, block: usize) {
+    pub fn prefetch(&self, what: Purpose, block: usize) {
         let offset = block * self.stride + self.first;
         prefetch(what, self.start.wrapping_add(offset), self.count);
     }

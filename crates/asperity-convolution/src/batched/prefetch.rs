@@ -2,7 +2,7 @@
 
 /// For what.
 #[derive(Clone, Copy, PartialEq)]
-pub enum For {
+pub enum Purpose {
     /// To be read at once: into the first cache.
     Reading,
     /// To be read in a while: into the second.
@@ -13,7 +13,7 @@ pub enum For {
 
 /// Asks for the cache lines of `count` items from `start` on, which need not be a valid address.
 #[inline(always)]
-pub fn prefetch<T>(what: For, start: *const T, count: usize) {
+pub fn prefetch<T>(what: Purpose, start: *const T, count: usize) {
     #[cfg(target_arch = "x86_64")]
     for line in (0..count * size_of::<T>()).step_by(64) {
         use std::arch::x86_64::{_MM_HINT_ET0, _MM_HINT_T0, _MM_HINT_T1, _mm_prefetch};
@@ -21,9 +21,9 @@ pub fn prefetch<T>(what: For, start: *const T, count: usize) {
         // SAFETY: a prefetch is a hint; it accesses nothing and may name any address.
         unsafe {
             match what {
-                For::Reading => _mm_prefetch::<_MM_HINT_T0>(line),
-                For::ReadingLater => _mm_prefetch::<_MM_HINT_T1>(line),
-                For::Writing => _mm_prefetch::<_MM_HINT_ET0>(line),
+                Purpose::Reading => _mm_prefetch::<_MM_HINT_T0>(line),
+                Purpose::ReadingLater => _mm_prefetch::<_MM_HINT_T1>(line),
+                Purpose::Writing => _mm_prefetch::<_MM_HINT_ET0>(line),
             }
         }
     }
@@ -32,26 +32,26 @@ pub fn prefetch<T>(what: For, start: *const T, count: usize) {
 }
 
 /// A range of memory that is prefetched in steps, to be read later.
-pub struct Ahead<T> {
+pub struct PrefetchAhead<T> {
     next: *const T,
     step: usize,
 }
 
-impl<T> Ahead<T> {
+impl<T> PrefetchAhead<T> {
     /// `count` items from `start` on, in so many steps.
     pub fn of(start: *const T, count: usize, steps: usize) -> Self {
-        Ahead { next: start, step: count.div_ceil(steps) }
+        PrefetchAhead { next: start, step: count.div_ceil(steps) }
     }
 
     /// Nothing.
     pub fn nothing() -> Self {
-        Ahead { next: std::ptr::null(), step: 0 }
+        PrefetchAhead { next: std::ptr::null(), step: 0 }
     }
 
     /// Asks for the next step.
     #[inline(always)]
     pub fn advance(&mut self) {
-        prefetch(For::ReadingLater, self.next, self.step);
+        prefetch(Purpose::ReadingLater, self.next, self.step);
         self.next = self.next.wrapping_add(self.step);
     }
 }

@@ -39,17 +39,18 @@ mod butterfly;
 mod complex;
 mod engine;
 mod factors;
-mod lane;
 mod leaf;
 mod parts;
 mod portable;
 mod prefetch;
+mod real;
 mod roots;
 mod rows;
 mod stage;
 #[cfg(test)]
 mod tests;
 mod transform;
+mod vector;
 mod work;
 mod wrap;
 
@@ -59,28 +60,28 @@ use ndarray::{Array2, ArrayView2};
 use engine::Convolve;
 pub use engine::Modify;
 use factors::factors;
-pub use lane::Real;
+pub use real::Real;
 use wrap::wrapped_spectrum;
 
 /// A planned convolution of real fields with a real, even spectrum, in `f64` or `f32`.
 ///
 /// ```
-/// use asperity_convolution::{even_spectrum, lanes::Lanes};
+/// use asperity_convolution::{even_spectrum, batched::BatchedFft};
 ///
 /// // A kernel that only shifts nothing: K = 1 at distance 0. Its spectrum is 1.
-/// let lengths = [Lanes::<f64>::good_length(2 * 30 - 1), Lanes::<f64>::good_length(2 * 20 - 1)];
+/// let lengths = [BatchedFft::<f64>::good_length(2 * 30 - 1), BatchedFft::<f64>::good_length(2 * 20 - 1)];
 /// let spectrum = ndarray::Array2::ones((lengths[0] / 2 + 1, lengths[1] / 2 + 1));
-/// let mut convolution = Lanes::<f64>::new([30, 20], lengths, spectrum.view());
+/// let mut convolution = BatchedFft::<f64>::new([30, 20], lengths, spectrum.view());
 /// let input: Vec<f64> = (0..600).map(f64::from).collect();
 /// let mut output = vec![0.0; 600];
 /// convolution.apply_into(&input, &mut output);
 /// assert!(input.iter().zip(&output).all(|(p, u)| (p - u).abs() < 1e-12));
 /// ```
-pub struct Lanes<T> {
+pub struct BatchedFft<T> {
     engine: Box<dyn Convolve<T>>,
 }
 
-impl<T: Real> Lanes<T> {
+impl<T: Real> BatchedFft<T> {
     /// A length of at least `minimum` that this engine transforms fast, for padding with zeros.
     pub fn good_length(minimum: usize) -> usize {
         factors::good_length(minimum)
@@ -125,7 +126,7 @@ impl<T: Real> Lanes<T> {
         }
         let along_y = if lengths[1].is_multiple_of(2) { factors(lengths[1] / 2) } else { None };
         if let (Some(x), Some(y)) = (factors(lengths[0]), along_y) {
-            return Lanes { engine: T::plan(instructions, cells, lengths, [&x, &y], spectra) };
+            return BatchedFft { engine: T::plan(instructions, cells, lengths, [&x, &y], spectra) };
         }
         let longer = cells.map(|n| Self::good_length(2 * n - 1));
         let wrap = |spectrum: &ArrayView2<f64>| wrapped_spectrum(cells, lengths, longer, spectrum.view());
@@ -169,11 +170,11 @@ impl<T: Real> Lanes<T> {
 /// rows at a time while they are in the cache, and only what it keeps is written to memory.
 ///
 /// ```
-/// use asperity_convolution::lanes::Lanes;
+/// use asperity_convolution::batched::BatchedFft;
 ///
 /// // x -> 3 x, squared -> 5 x.
 /// let [three, five] = [3.0, 5.0].map(|s| ndarray::Array2::from_elem((9, 9), s));
-/// let mut plan = Lanes::<f64>::with_spectra([16, 16], [16, 16], &[three.view(), five.view()]);
+/// let mut plan = BatchedFft::<f64>::with_spectra([16, 16], [16, 16], &[three.view(), five.view()]);
 /// let input: Vec<f64> = (0..256).map(f64::from).collect();
 /// let mut output = vec![0.0; 256];
 /// let mut chain = plan.chain(&input);

@@ -11,10 +11,10 @@
 
 use super::complex::Complex;
 use super::factors::Factors;
-use super::lane::{Lane, Real};
 use super::leaf::{Energy, Leaf, MirroredProduct, Plain, Product, run_leaves};
-use super::prefetch::Ahead;
+use super::prefetch::PrefetchAhead;
 use super::stage::Stage;
+use super::vector::{Scalar, Vector};
 
 /// A planned transform of `length` complex numbers.
 pub struct Transform<T> {
@@ -26,7 +26,7 @@ pub struct Transform<T> {
     leaf: usize,
 }
 
-impl<T: Real> Transform<T> {
+impl<T: Scalar> Transform<T> {
     pub fn new(factors: &Factors, half: bool) -> Self {
         let mut span = factors.inner.iter().product::<usize>() * factors.leaf;
         let length = factors.first * span;
@@ -86,19 +86,19 @@ impl<T: Real> Transform<T> {
 
     /// buffer = the spectrum of `signal` (`signal_length` numbers), digit-reversed.
     #[inline(always)]
-    pub fn forward<V: Lane<Scalar = T>>(&self, signal: &mut [Complex<V>], buffer: &mut [Complex<V>]) {
+    pub fn forward<V: Vector<Scalar = T>>(&self, signal: &mut [Complex<V>], buffer: &mut [Complex<V>]) {
         self.first.open(self.half, signal, &mut [], buffer);
         for part in buffer.chunks_exact_mut(self.first.part()) {
-            self.descend::<V, true, false>(part, &mut Plain, &mut Ahead::nothing());
+            self.descend::<V, true, false>(part, &mut Plain, &mut PrefetchAhead::nothing());
         }
     }
 
     /// signal = m times the inverse of the digit-reversed spectrum in `buffer`, whose real and
     /// imaginary parts the caller has exchanged.
     #[inline(always)]
-    pub fn inverse<V: Lane<Scalar = T>>(&self, buffer: &mut [Complex<V>], signal: &mut [Complex<V>]) {
+    pub fn inverse<V: Vector<Scalar = T>>(&self, buffer: &mut [Complex<V>], signal: &mut [Complex<V>]) {
         for part in buffer.chunks_exact_mut(self.first.part()) {
-            self.descend::<V, false, true>(part, &mut Plain, &mut Ahead::nothing());
+            self.descend::<V, false, true>(part, &mut Plain, &mut PrefetchAhead::nothing());
         }
         self.first.close(self.half, signal, &mut [], buffer);
     }
@@ -109,14 +109,14 @@ impl<T: Real> Transform<T> {
     /// missing; `spectrum` is real, even, digit-reversed, of `mirrored_length`; `energy` sums S |y|^2 over
     /// the transform y, and `ahead` prefetches meanwhile.
     #[inline(always)]
-    pub fn convolve<V: Lane<Scalar = T>>(
+    pub fn convolve<V: Vector<Scalar = T>>(
         &self,
         signal: &mut [Complex<V>],
         margin: &mut [Complex<V>],
         buffer: &mut [Complex<V>],
         spectrum: &[V],
         energy: &mut Energy<V>,
-        ahead: &mut Ahead<Complex<V>>,
+        ahead: &mut PrefetchAhead<Complex<V>>,
     ) {
         let radix = self.first.radix;
         let part_length = self.first.part();
@@ -149,11 +149,11 @@ impl<T: Real> Transform<T> {
     /// The recursion is written as a loop over the deepest blocks: a stage runs before the first,
     /// and again after the last, of the deepest blocks that it covers.
     #[inline(always)]
-    fn descend<V: Lane<Scalar = T>, const DOWN: bool, const UP: bool>(
+    fn descend<V: Vector<Scalar = T>, const DOWN: bool, const UP: bool>(
         &self,
         part: &mut [Complex<V>],
         leaf: &mut impl Leaf<V>,
-        ahead: &mut Ahead<Complex<V>>,
+        ahead: &mut PrefetchAhead<Complex<V>>,
     ) {
         let deepest = self.deepest();
         let mut start = 0;

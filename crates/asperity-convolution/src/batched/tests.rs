@@ -92,7 +92,7 @@ fn on_threads<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> R {
     rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(work)
 }
 
-fn apply<T: Real>(mut convolution: Lanes<T>, input: &[T]) -> Vec<T> {
+fn apply<T: Real>(mut convolution: BatchedFft<T>, input: &[T]) -> Vec<T> {
     let mut output = vec![T::nearest(f64::NAN); input.len()];
     convolution.apply_into(input, &mut output);
     output
@@ -104,12 +104,12 @@ fn equals_the_plain_transform_on_any_shape() {
         let (input, spectrum) = (field(cells), spectrum(lengths));
         let exact = plain(cells, lengths, &spectrum, &input);
         for instructions in Instructions::available() {
-            let found = apply(Lanes::on(instructions, cells, lengths, &[spectrum.view()]), &input);
+            let found = apply(BatchedFft::on(instructions, cells, lengths, &[spectrum.view()]), &input);
             let error = error(&found, &exact);
             // Rounding of a transform: a few 2^-53 per pass, some ten passes in all.
             assert!(error < 4e-15, "{instructions:?} {cells:?} {lengths:?}: {error:e}");
             let single: Vec<f32> = input.iter().map(|x| *x as f32).collect();
-            let found = apply(Lanes::on(instructions, cells, lengths, &[spectrum.view()]), &single);
+            let found = apply(BatchedFft::on(instructions, cells, lengths, &[spectrum.view()]), &single);
             let found: Vec<f64> = found.into_iter().map(f64::from).collect();
             let error = self::error(&found, &exact);
             // The same with 2^-24.
@@ -124,7 +124,7 @@ fn assert_same_bits<T: Real>(cells: [usize; 2], lengths: [usize; 2], bits: impl 
     let input: Vec<T> = input.into_iter().map(T::nearest).collect();
     let run = |instructions, threads| -> Vec<u64> {
         on_threads(threads, || {
-            let convolution = Lanes::on(instructions, cells, lengths, &[spectrum.view()]);
+            let convolution = BatchedFft::on(instructions, cells, lengths, &[spectrum.view()]);
             apply(convolution, &input).into_iter().map(&bits).collect()
         })
     };
@@ -172,7 +172,7 @@ fn has_the_same_bits_for_any_number_of_lanes() {
 fn a_plan_can_be_used_again_and_on_more_threads_than_it_was_made_for() {
     let (cells, lengths) = if cfg!(miri) { ([9, 13], [18, 30]) } else { ([61, 50], [144, 240]) };
     let spectrum = spectrum(lengths);
-    let mut convolution = on_threads(1, || Lanes::<f64>::new(cells, lengths, spectrum.view()));
+    let mut convolution = on_threads(1, || BatchedFft::<f64>::new(cells, lengths, spectrum.view()));
     let other: Vec<f64> = field(cells).iter().map(|x| 1.0 / x).collect();
     let mut output = vec![0.0; other.len()];
     convolution.apply_into(&other, &mut output);
@@ -181,7 +181,7 @@ fn a_plan_can_be_used_again_and_on_more_threads_than_it_was_made_for() {
         convolution.apply_into(&field(cells), &mut output);
         output
     });
-    assert_eq!(again, apply(Lanes::new(cells, lengths, spectrum.view()), &field(cells)));
+    assert_eq!(again, apply(BatchedFft::new(cells, lengths, spectrum.view()), &field(cells)));
 }
 
 /// The factor of a cell between two convolutions, by its number.
@@ -201,7 +201,7 @@ fn a_chain_is_one_convolution_after_the_other() {
             let input: Vec<T> = field(cells).into_iter().map(T::nearest).collect();
             let plan = |instructions, number: &[usize]| {
                 let views: Vec<_> = number.iter().map(|n| spectra[*n].view()).collect();
-                Lanes::<T>::on(instructions, cells, lengths, &views)
+                BatchedFft::<T>::on(instructions, cells, lengths, &views)
             };
             let dot =
                 |x: &[T], y: &[T]| -> f64 { x.iter().zip(y).map(|(x, y)| x.widened() * y.widened()).sum() };
@@ -258,11 +258,11 @@ fn zero_gives_zero_and_one_cell_its_response() {
     let (cells, lengths) = if cfg!(miri) { ([6, 10], [12, 20]) } else { ([24, 40], [48, 80]) };
     let spectrum = spectrum(lengths);
     let zero = vec![0.0; cells[0] * cells[1]];
-    assert_eq!(apply(Lanes::<f64>::new(cells, lengths, spectrum.view()), &zero), zero);
+    assert_eq!(apply(BatchedFft::<f64>::new(cells, lengths, spectrum.view()), &zero), zero);
     // A unit in a corner shows the kernel, which is the transform of the spectrum.
     let mut unit = zero;
     unit[0] = 1.0;
-    let response = apply(Lanes::<f64>::new(cells, lengths, spectrum.view()), &unit);
+    let response = apply(BatchedFft::<f64>::new(cells, lengths, spectrum.view()), &unit);
     let kernel = crate::even_spectrum(&spectrum, lengths) / (lengths[0] * lengths[1]) as f64;
     let exact: Vec<f64> = kernel.slice(ndarray::s![..cells[0], ..cells[1]]).iter().copied().collect();
     assert!(error(&response, &exact) < 4e-15);
@@ -286,14 +286,14 @@ proptest! {
     ) {
         let cells = [nx, ny];
         let lengths = if good {
-            cells.map(|n| Lanes::<f64>::good_length(2 * n - 1))
+            cells.map(|n| BatchedFft::<f64>::good_length(2 * n - 1))
         } else {
             [nx + extra_x, ny + extra_y]
         };
         let spectrum = spectrum(lengths);
         let input = &values[..nx * ny];
         let exact = plain(cells, lengths, &spectrum, input);
-        let found = apply(Lanes::new(cells, lengths, spectrum.view()), input);
+        let found = apply(BatchedFft::new(cells, lengths, spectrum.view()), input);
         let error = error(&found, &exact);
         // As above; a wrapped kernel adds the rounding of two more transforms.
         prop_assert!(error < 1e-14, "{cells:?} {lengths:?}: {error:e}");

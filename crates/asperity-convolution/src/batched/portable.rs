@@ -1,4 +1,4 @@
-//! Lanes in plain Rust: the truth that the other lanes are compared with, and NEON on aarch64, where
+//! Lanes in plain Rust: the truth that the other vectors are compared with, and NEON on aarch64, where
 //! the compiler turns the loops into its vectors and `mul_add` is an instruction.
 //!
 //! Without an instruction for it, `mul_add` is a correctly rounded library call: slow, but with the
@@ -6,7 +6,7 @@
 
 use std::ops::{Add, Mul, Sub};
 
-use super::lane::{Kernel, Lane, Real, tile_end};
+use super::vector::{Kernel, Scalar, Vector, tile_end};
 
 /// N scalars.
 #[derive(Clone, Copy, Debug)]
@@ -40,9 +40,9 @@ macro_rules! portable {
         }
 
         // SAFETY: a transparent array of scalars, on which every operation is plain Rust.
-        unsafe impl<const N: usize> Lane for Portable<$scalar, N>
+        unsafe impl<const N: usize> Vector for Portable<$scalar, N>
         where
-            $scalar: Real,
+            $scalar: Scalar,
         {
             type Scalar = $scalar;
             const LANES: usize = N;
@@ -56,12 +56,6 @@ macro_rules! portable {
             #[cfg_attr(not(target_arch = "x86_64"), inline(always))]
             fn mul_add(self, b: Self, c: Self) -> Self {
                 Portable(std::array::from_fn(|i| self.0[i].mul_add(b.0[i], c.0[i])))
-            }
-
-            #[cfg_attr(target_arch = "x86_64", inline(never))]
-            #[cfg_attr(not(target_arch = "x86_64"), inline(always))]
-            fn mul_sub(self, b: Self, c: Self) -> Self {
-                Portable(std::array::from_fn(|i| self.0[i].mul_add(b.0[i], -c.0[i])))
             }
 
             #[cfg_attr(target_arch = "x86_64", inline(never))]

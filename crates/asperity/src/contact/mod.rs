@@ -13,7 +13,6 @@ mod coarse;
 mod direction;
 mod gauss_seidel;
 mod polonsky_keer;
-mod preconditioner;
 mod problem;
 mod projected_cg;
 mod projection;

@@ -104,7 +104,7 @@ impl ProjectedCg {
         }
         let mean = if search.sum.is_some() { rating.working_mean() } else { 0.0 };
         run(Centre { r: &mut self.residual, set: Set(&self.working), mean, unit: search.unit });
-        self.preconditioner.apply_into(&self.residual, &self.working, &mut self.preconditioned);
+        self.preconditioner.apply_on_set_into(&self.residual, &self.working, &mut self.preconditioned);
         let fields = Fields {
             r: &self.residual,
             r_old: &self.residual_old,

@@ -1,4 +1,4 @@
-//! Kernels of the preconditioner, on the rows of its convolutions (see [`crate::contact::preconditioner`]).
+//! Kernels of the approximate inverse on a set, on the rows of its convolutions (see [`super::inverse`]).
 
 use asperity_sweep::simd::{F64x8, Mask, Work};
 
@@ -6,7 +6,7 @@ use asperity_sweep::simd::{F64x8, Mask, Work};
 const ADJACENT: f64 = 0.67;
 
 /// z = x on the groups of cells with one of the set.
-pub(in crate::contact) struct Keep<'a> {
+pub(super) struct Keep<'a> {
     pub z: &'a mut [f32],
     pub set: &'a [u8],
     pub x: &'a [f32],
@@ -24,7 +24,7 @@ impl Work for Keep<'_> {
 }
 
 /// x becomes D x on the open cells, 0 on the set.
-pub(in crate::contact) struct Weigh<'a> {
+pub(super) struct Weigh<'a> {
     pub x: &'a mut [f32],
     pub set: &'a [u8],
     pub adjacent: &'a [u8],
@@ -44,7 +44,7 @@ impl Work for Weigh<'_> {
 }
 
 /// z += t x on the groups of cells with one of the set.
-pub(in crate::contact) struct Add<'a> {
+pub(super) struct Add<'a> {
     pub z: &'a mut [f32],
     pub set: &'a [u8],
     pub x: &'a [f32],

@@ -63,19 +63,19 @@ impl Problem<'_> {
     ///
     /// # Errors
     /// [`Error::Infeasible`], [`Error::Undetermined`], [`Error::Invalid`].
-    pub(super) fn settle(
+    pub(super) fn trivial_solution(
         &self,
         operator: &mut dyn Operator,
         state: &mut ContactState,
     ) -> Result<Option<Outcome>> {
         let extent = self.extent();
         match self.prescribed {
-            Prescribed::Load(load) => self.settle_load(load, &extent, operator, state),
-            Prescribed::Approach(approach) => self.settle_approach(approach, &extent, operator, state),
+            Prescribed::Load(load) => self.trivial_under_load(load, &extent, operator, state),
+            Prescribed::Approach(approach) => self.trivial_at_approach(approach, &extent, operator, state),
         }
     }
 
-    fn settle_load(
+    fn trivial_under_load(
         &self,
         load: f64,
         extent: &Extent,
@@ -109,7 +109,7 @@ impl Problem<'_> {
         Ok(Some(Outcome { convolutions: 1, saturated: true, ..Outcome::default() }))
     }
 
-    fn settle_approach(
+    fn trivial_at_approach(
         &self,
         approach: f64,
         extent: &Extent,

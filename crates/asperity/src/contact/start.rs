@@ -45,8 +45,8 @@ impl ProjectedCg {
 
     /// One step from a pressure outside its bounds, taken whole, which makes it feasible; false where there is none.
     fn step_onto_bounds(&mut self, search: &mut Search) -> bool {
-        let rating = self.rate(search);
-        let Some(step) = self.conjugate_step(search, &rating) else { return false };
+        let report = self.residual_report(search);
+        let Some(step) = self.conjugate_step(search, &report) else { return false };
         self.find_step(search, step);
         search.operator.apply_into(&self.step, &mut self.image);
         search.convolutions += 1;

@@ -8,5 +8,5 @@ pub(super) mod direction;
 pub(super) mod feasible;
 pub(super) mod gradient;
 pub(super) mod projection;
-pub(super) mod rate;
+pub(super) mod residual;
 pub(super) mod step;

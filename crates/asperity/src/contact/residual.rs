@@ -1,16 +1,16 @@
-//! The rating of a state: the approach that fits it best, and how far it violates the contact conditions.
+//! The residual of a state: the approach that fits it best, and how far it violates the contact conditions.
 //!
 //! With g = c U + h and r = g - w, the conditions are p = 0 where r >= 0, 0 < p < H where r = 0, p = H where r <= 0. The
 //! working set S holds the cells that violate them or are free to move. Under load control w is the mean of g over the free
 //! cells D = {0 < p < H}, or where there are none, between what the cells at the two bounds allow.
 
-use super::sweeps::rate::{FreeGap, Rate};
+use super::sweeps::residual::{FindResidual, FreeGap};
 use super::{ContactState, Prescribed, Problem};
 use asperity_sweep::{Merge, larger, run, smaller};
 
 /// Sums and extremes over all cells, for the approach w.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rating {
+pub(super) struct ResidualReport {
     /// w \[m\].
     pub w: f64,
     /// Sum of r, and number of cells, over the free cells D.
@@ -33,9 +33,9 @@ pub(super) struct Rating {
     pub violation: f64,
 }
 
-impl Merge for Rating {
+impl Merge for ResidualReport {
     fn merge(self, next: Self) -> Self {
-        Rating {
+        ResidualReport {
             w: self.w,
             free: self.free.merge(next.free),
             working: self.working.merge(next.working),
@@ -50,11 +50,11 @@ impl Merge for Rating {
     }
 }
 
-impl Rating {
-    /// Rates a state for the approach w.
+impl ResidualReport {
+    /// The report of a state for the approach w.
     pub(super) fn of(problem: &Problem, state: &ContactState, w: f64) -> Self {
         let Problem { gap, compliance, hardness, .. } = *problem;
-        run(Rate { p: &state.pressure, u: &state.unit_displacement, gap, hardness, compliance, w })
+        run(FindResidual { p: &state.pressure, u: &state.unit_displacement, gap, hardness, compliance, w })
     }
 
     /// The approach that the cells give: the prescribed one, or the mean of g over D; where D is empty, the middle of what
@@ -85,7 +85,7 @@ impl Rating {
     }
 }
 
-/// The approach that fits a state best, see [`Rating::approach`].
+/// The approach that fits a state best, see [`ResidualReport::approach`].
 pub(super) fn find_approach(problem: &Problem, state: &ContactState) -> f64 {
     if let Prescribed::Approach(w) = problem.prescribed {
         return w;
@@ -93,5 +93,9 @@ pub(super) fn find_approach(problem: &Problem, state: &ContactState) -> f64 {
     let Problem { gap, compliance, hardness, .. } = *problem;
     let (p, u) = (&state.pressure[..], &state.unit_displacement[..]);
     let [sum, cells] = run(FreeGap { p, u, gap, hardness, compliance });
-    if cells > 0.0 { sum / cells } else { Rating::of(problem, state, 0.0).approach(problem.prescribed) }
+    if cells > 0.0 {
+        sum / cells
+    } else {
+        ResidualReport::of(problem, state, 0.0).approach(problem.prescribed)
+    }
 }

@@ -1,11 +1,11 @@
-//! Kernels that rate a state: the mean gap of the free cells, and for an approach w the residual r = c U + h - w, the working
-//! set, and the sums and extremes of [`Rating`].
+//! Kernels of the residual report: the mean gap of the free cells, and for an approach w the residual r = c U + h - w, the working
+//! set, and the sums and extremes of [`ResidualReport`].
 
 use asperity_sweep::simd::{F64x8, Mask, Work};
 
 use crate::contact::Hardness;
 use crate::contact::bounds::Interval;
-use crate::contact::rating::Rating;
+use crate::contact::residual::ResidualReport;
 use asperity_sweep::{SetMut, kernel};
 
 kernel! {
@@ -34,24 +34,24 @@ impl Work for FreeGap<'_> {
 }
 
 kernel! {
-    /// The rating of a state for the approach w.
-    pub(in crate::contact) struct Rate<'a> {
+    /// The report of a state for the approach w.
+    pub(in crate::contact) struct FindResidual<'a> {
         cells { p: &'a [f64], u: &'a [f64], gap: &'a [f64], hardness: Hardness<'a> }
         numbers { compliance: f64, w: f64 }
     }
 }
 
-impl Work for Rate<'_> {
-    type Yield = Rating;
+impl Work for FindResidual<'_> {
+    type Yield = ResidualReport;
 
     #[inline(always)]
-    fn run<V: F64x8>(self) -> Rating {
-        let mut gauge = Gauge::<V>::new(self.compliance, self.hardness, self.w);
+    fn run<V: F64x8>(self) -> ResidualReport {
+        let mut residuals = Residuals::<V>::new(self.compliance, self.hardness, self.w);
         for n in (0..self.p.len()).step_by(8) {
             let (p, u) = (V::load(self.p, n, 0.0), V::load(self.u, n, 0.0));
-            gauge.add(p, u, V::load(self.gap, n, f64::INFINITY), self.hardness.interval(n));
+            residuals.add(p, u, V::load(self.gap, n, f64::INFINITY), self.hardness.interval(n));
         }
-        gauge.rating()
+        residuals.report()
     }
 }
 
@@ -68,31 +68,31 @@ kernel! {
 }
 
 impl Work for FindWorking<'_> {
-    type Yield = Rating;
+    type Yield = ResidualReport;
 
     #[inline(always)]
-    fn run<V: F64x8>(self) -> Rating {
-        let mut gauge = Gauge::<V>::new(self.compliance, self.hardness, self.w);
+    fn run<V: F64x8>(self) -> ResidualReport {
+        let mut residuals = Residuals::<V>::new(self.compliance, self.hardness, self.w);
         for (n, set) in (0..).step_by(8).zip(self.set.0) {
             let (p, u) = (V::load(self.p, n, 0.0), V::load(self.u, n, 0.0));
             let h = V::load(self.gap, n, f64::INFINITY);
             // Most cells without pressure are apart: they need no more than the least of their gaps.
-            let (r, working) = if gauge.add_if_apart(p, u, h) {
+            let (r, working) = if residuals.add_if_apart(p, u, h) {
                 (V::splat(0.0), 0)
             } else {
-                let (r, working) = gauge.add(p, u, h, self.hardness.interval(n));
+                let (r, working) = residuals.add(p, u, h, self.hardness.interval(n));
                 (r.only(working), working.bits())
             };
             if std::mem::replace(set, working) | working != 0 {
                 r.store(self.residual, n);
             }
         }
-        gauge.rating()
+        residuals.report()
     }
 }
 
-/// The sums and extremes of a rating, one strand for each of eight cells.
-struct Gauge<V> {
+/// The sums and extremes of a report, one strand for each of eight cells.
+struct Residuals<V> {
     compliance: V,
     w: V,
     approach: f64,
@@ -108,11 +108,11 @@ struct Gauge<V> {
     violation: V,
 }
 
-impl<V: F64x8> Gauge<V> {
+impl<V: F64x8> Residuals<V> {
     #[inline(always)]
     fn new(compliance: f64, hardness: Hardness, w: f64) -> Self {
         let [zero, up, down] = [0.0, f64::INFINITY, f64::NEG_INFINITY].map(V::splat);
-        Gauge {
+        Residuals {
             compliance: V::splat(compliance),
             w: V::splat(w),
             approach: w,
@@ -170,8 +170,8 @@ impl<V: F64x8> Gauge<V> {
     }
 
     #[inline(always)]
-    fn rating(self) -> Rating {
-        Rating {
+    fn report(self) -> ResidualReport {
+        ResidualReport {
             w: self.approach,
             free: self.free.map(V::sum),
             working: self.working.map(V::sum),

@@ -4,7 +4,7 @@ use asperity_sweep::simd::{F64x8, Mask, Work};
 
 use crate::contact::Hardness;
 use crate::contact::projection::Shift;
-use asperity_sweep::{Min, Set, SetMut, kernel};
+use asperity_sweep::{Max, Min, Set, SetMut, kernel};
 
 kernel! {
     /// Number of cells that can touch, the sum of H over them, and the least gap.
@@ -28,6 +28,30 @@ impl Work for Limits<'_> {
             least = h.smaller(least);
         }
         ([touchable, most].map(V::sum), Min(least.least()))
+    }
+}
+
+kernel! {
+    /// The largest c U + h of the cells that can touch.
+    pub(in crate::contact) struct LargestGap<'a> {
+        cells { u: &'a [f64], gap: &'a [f64] }
+        numbers { compliance: f64 }
+    }
+}
+
+impl Work for LargestGap<'_> {
+    type Yield = Max;
+
+    #[inline(always)]
+    fn run<V: F64x8>(self) -> Max {
+        let (compliance, none) = (V::splat(self.compliance), V::splat(f64::NEG_INFINITY));
+        let mut largest = none;
+        for n in (0..self.gap.len()).step_by(8) {
+            let h = V::load(self.gap, n, f64::INFINITY);
+            let g = h + compliance * V::load(self.u, n, 0.0);
+            largest = V::select(h.less(V::splat(f64::INFINITY)), g, none).larger(largest);
+        }
+        Max(largest.largest())
     }
 }
 

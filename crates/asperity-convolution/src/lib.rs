@@ -10,7 +10,8 @@
 
 pub mod batched;
 pub mod fft;
-mod pruned;
+mod on_rustfft;
+pub mod plane;
 mod spectrum;
 
 use ndarray::ArrayView2;
@@ -60,14 +61,15 @@ impl Convolution {
         Convolution { engine: Box::new(BatchedFft::new(cells, lengths, spectrum)) }
     }
 
-    /// The same on rustfft, slower and another rounding: the oracle and yardstick of the engine.
+    /// The same on rustfft, slower, with another rounding and buffers of each thread that are allocated again and again: the
+    /// oracle and yardstick of the engine.
     ///
     /// # Panics
     /// As [`Self::new`].
     pub fn on_rustfft(cells: [usize; 2], lengths: [usize; 2], spectrum: ArrayView2<f64>) -> Self {
         assert!(lengths[0] >= cells[0] && lengths[1] >= cells[1]);
         assert_eq!(spectrum.dim(), (lengths[0] / 2 + 1, lengths[1] / 2 + 1));
-        Convolution { engine: Box::new(pruned::Pruned::new(cells, lengths, spectrum)) }
+        Convolution { engine: Box::new(on_rustfft::OnRustfft::new(cells, lengths, spectrum)) }
     }
 
     /// A length of at least `minimum` that transforms fast.

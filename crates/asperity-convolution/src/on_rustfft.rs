@@ -3,7 +3,6 @@
 use ndarray::{Array2, ArrayView2};
 use rustfft::num_complex::Complex64;
 
-use super::Engine;
 use crate::plane::RealPlane;
 
 pub(super) struct OnRustfft {
@@ -20,10 +19,8 @@ impl OnRustfft {
         let spectrum = spectrum.t().mapv(|s| s * normalisation).as_standard_layout().into_owned();
         OnRustfft { columns: plane.columns(), plane, spectrum }
     }
-}
 
-impl Engine for OnRustfft {
-    fn apply_into(&mut self, input: &[f64], output: &mut [f64]) {
+    pub(super) fn apply_into(&mut self, input: &[f64], output: &mut [f64]) {
         self.plane.rows_forward(input, &mut self.columns);
         let spectrum = &self.spectrum;
         self.plane.each_column(&mut self.columns, |transforms, ky, column| {

@@ -1,18 +1,16 @@
 //! The back end of the operators: what plans and computes their convolutions, and those of their approximate inverses.
 //!
 //! An operator says which spectrum it is, on a torus of which lengths; how a convolution is computed, and where, is known to
-//! the back end alone. [`Cpu`] is the one there is. Another (a graphics processor, several machines) is one more
-//! implementation of [`Backend`], handed to [`plan_on`](super::plan_on); [`default_backend`] is what [`plan`](super::plan) takes.
+//! the back end alone. [`Cpu`](super::Cpu) is the one there is. Another (a graphics processor, several machines) is one more
+//! implementation of [`Backend`], handed to [`plan_on`](super::plan_on); [`plan`](super::plan) takes
+//! [`default_backend`](super::default_backend).
 //!
 //! Spectra are real and even, for transforms without normalisation: shape (mx/2 + 1, my/2 + 1) for lengths \[mx, my\]. Cells
 //! between the domain and the torus hold zeros on the way in and are dropped on the way out. Fields are C-order, nx ny cells.
 
 use std::fmt::Debug;
-use std::sync::Arc;
 
 use ndarray::ArrayView2;
-
-use super::cpu::Cpu;
 
 /// Plans convolutions.
 pub trait Backend: Debug + Send + Sync {
@@ -55,9 +53,4 @@ pub trait InversePlan: Send {
     /// z = M_SS r - a M_SC y, y = D G_CC D M_CS r, on a set S (bits, eight cells in a byte) outside of which r is zero; what z
     /// holds there means nothing. a = b'y / y'M y, or 0 where one of the two is not positive.
     fn apply_on_set_into(&mut self, r: &[f32], set: &[u8], z: &mut [f32]);
-}
-
-/// The back end of operators that are planned without one.
-pub fn default_backend() -> Arc<dyn Backend> {
-    Arc::new(Cpu)
 }

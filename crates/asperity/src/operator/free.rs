@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use ndarray::{Array1, Array2};
 
-use super::backend::{Backend, ConvolutionPlan, default_backend};
-use super::{ApproximateInverse, Operator, mean};
+use super::backend::{Backend, ConvolutionPlan};
+use super::{ApproximateInverse, Operator, default_backend, mean};
 use crate::convolution::{Convolution, even_spectrum};
 use crate::error::{Error, Result};
 use crate::grid::{Boundary, Grid};

@@ -20,8 +20,8 @@
 
 use std::sync::Arc;
 
-use super::backend::{Backend, InversePlan, default_backend};
-use super::wave_spectrum;
+use super::backend::{Backend, InversePlan};
+use super::{default_backend, wave_spectrum};
 use crate::convolution::Convolution;
 use crate::grid::{Boundary, Grid};
 use crate::kernel::Kernel;

@@ -13,7 +13,7 @@ mod inverse;
 mod periodic;
 pub(crate) mod wide;
 
-pub use backend::{Backend, ConvolutionPlan, InversePlan, default_backend};
+pub use backend::{Backend, ConvolutionPlan, InversePlan};
 pub use cpu::Cpu;
 pub use dense::Dense;
 pub use free::Free;
@@ -52,6 +52,11 @@ pub trait Operator: Send {
 
     /// K of the same body on another grid, for a start from coarser grids; `None` where there is none.
     fn on_grid(&self, grid: Grid) -> Option<Box<dyn Operator>>;
+}
+
+/// The back end of operators that are planned without one.
+pub fn default_backend() -> Arc<dyn Backend> {
+    Arc::new(Cpu)
 }
 
 /// The operator of a body with that kernel, on a grid.

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use ndarray::Array2;
 
-use super::backend::{Backend, ConvolutionPlan, default_backend};
-use super::{ApproximateInverse, Operator, mean, wave_spectrum};
+use super::backend::{Backend, ConvolutionPlan};
+use super::{ApproximateInverse, Operator, default_backend, mean, wave_spectrum};
 use crate::grid::{Boundary, Grid};
 use crate::kernel::Kernel;
 

@@ -5,7 +5,7 @@
 
 use std::time::Instant;
 
-use asperity_convolution::lanes::Lanes;
+use asperity_convolution::batched::BatchedFft;
 use asperity_convolution::{Convolution, even_spectrum};
 use asperity_sweep::Instructions;
 use ndarray::Array2;
@@ -49,7 +49,7 @@ fn main() {
                     if instructions == Instructions::Portable {
                         continue;
                     }
-                    let mut form = Lanes::<f64>::on(instructions, [n, n], lengths, &[spectrum.view()]);
+                    let mut form = BatchedFft::<f64>::on(instructions, [n, n], lengths, &[spectrum.view()]);
                     let (i, e, mut out) = (input.clone(), exact.clone(), vec![0.0; n * n]);
                     forms.push((
                         format!("{instructions:?} f64"),
@@ -59,7 +59,7 @@ fn main() {
                         }),
                         vec![],
                     ));
-                    let mut form = Lanes::<f32>::on(instructions, [n, n], lengths, &[spectrum.view()]);
+                    let mut form = BatchedFft::<f32>::on(instructions, [n, n], lengths, &[spectrum.view()]);
                     let (i, e, mut out) = (single.clone(), exact.clone(), vec![0.0; n * n]);
                     forms.push((
                         format!("{instructions:?} f32"),

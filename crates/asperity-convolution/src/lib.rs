@@ -8,14 +8,16 @@
 //!
 //! Normalisation: forward and inverse transforms together are the identity.
 
+pub mod batched;
 pub mod fft;
-pub mod lanes;
-mod pruned;
+mod on_rustfft;
+pub mod plane;
 mod spectrum;
 
 use ndarray::ArrayView2;
 
-use lanes::Lanes;
+use batched::BatchedFft;
+use on_rustfft::OnRustfft;
 pub use spectrum::even_spectrum;
 
 /// A planned convolution. Bit-identical for any number of threads; `apply_into` allocates nothing.
@@ -33,56 +35,52 @@ pub use spectrum::even_spectrum;
 /// assert!((u[0] - 1.0).abs() < 1e-15 && (u[1] - 2.0).abs() < 1e-15);
 /// ```
 pub struct Convolution {
-    engine: Box<dyn Engine>,
+    engine: Engine,
 }
 
-/// What a back end does.
-trait Engine: Send {
-    /// output = S * input; both of length nx ny.
-    fn apply_into(&mut self, input: &[f64], output: &mut [f64]);
-}
-
-impl Engine for Lanes<f64> {
-    fn apply_into(&mut self, input: &[f64], output: &mut [f64]) {
-        Lanes::apply_into(self, input, output);
-    }
+enum Engine {
+    Batched(BatchedFft<f64>),
+    OnRustfft(Box<OnRustfft>),
 }
 
 impl Convolution {
     /// Plans a convolution of `cells` = \[nx, ny\] with transforms of `lengths` = \[mx, my\], on the
-    /// lane-batched engine ([`lanes`]): the same bits on every processor.
+    /// batched engine ([`batched`]): the same bits on every processor.
     ///
     /// `spectrum` has the shape (mx/2 + 1, my/2 + 1): the real multiplier S(kx, ky), even in kx and ky.
     ///
     /// # Panics
     /// Where the shapes contradict each other: they come from the operators of this crate.
     pub fn new(cells: [usize; 2], lengths: [usize; 2], spectrum: ArrayView2<f64>) -> Self {
-        Convolution { engine: Box::new(Lanes::new(cells, lengths, spectrum)) }
+        Convolution { engine: Engine::Batched(BatchedFft::new(cells, lengths, spectrum)) }
     }
 
-    /// The same on rustfft, slower and another rounding: the oracle and yardstick of the engine.
+    /// The same on rustfft, slower, with another rounding, and with buffers that each application allocates: the oracle and
+    /// yardstick of the engine.
     ///
     /// # Panics
     /// As [`Self::new`].
     pub fn on_rustfft(cells: [usize; 2], lengths: [usize; 2], spectrum: ArrayView2<f64>) -> Self {
-        assert!(lengths[0] >= cells[0] && lengths[1] >= cells[1]);
         assert_eq!(spectrum.dim(), (lengths[0] / 2 + 1, lengths[1] / 2 + 1));
-        Convolution { engine: Box::new(pruned::Pruned::new(cells, lengths, spectrum)) }
+        Convolution { engine: Engine::OnRustfft(Box::new(OnRustfft::new(cells, lengths, spectrum))) }
     }
 
     /// A length of at least `minimum` that transforms fast.
     pub fn good_length(minimum: usize) -> usize {
-        Lanes::<f64>::good_length(minimum)
+        BatchedFft::<f64>::good_length(minimum)
     }
 
     /// `output` = S * `input`; both C-order, nx ny cells.
     pub fn apply_into(&mut self, input: &[f64], output: &mut [f64]) {
-        self.engine.apply_into(input, output);
+        match &mut self.engine {
+            Engine::Batched(fft) => fft.apply_into(input, output),
+            Engine::OnRustfft(fft) => fft.apply_into(input, output),
+        }
     }
 
     /// Bytes that [`Self::new`] takes for these cells and lengths.
     pub fn bytes(cells: [usize; 2], lengths: [usize; 2]) -> usize {
-        Lanes::<f64>::bytes(cells, lengths, 1)
+        BatchedFft::<f64>::bytes(cells, lengths, 1)
     }
 }
 

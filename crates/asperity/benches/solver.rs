@@ -19,7 +19,7 @@ use asperity::{
     Boundary, ContactState, Control, Grid, History, Loading, Method, Prescribed, Problem, Solver,
     SolverOptions, TimeGrid,
 };
-use asperity_sweep::eights::{Eight, Work, vectorize};
+use asperity_sweep::simd::{F64x8, Work, vectorize};
 use rayon::prelude::*;
 
 const HARDNESS: f64 = 300e6;
@@ -249,7 +249,7 @@ fn arithmetic_rate() -> f64 {
     impl Work for Chains {
         type Yield = f64;
         #[inline(always)]
-        fn run<V: Eight>(self) -> f64 {
+        fn run<V: F64x8>(self) -> f64 {
             // Twelve chains keep both ports busy over the latency of four cycles; all stay near 1.
             let (by, plus) = (V::splat(black_box(0.999_999)), V::splat(black_box(1e-6)));
             let mut chains = [V::splat(1.0); 12];

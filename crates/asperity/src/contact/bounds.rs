@@ -1,6 +1,6 @@
 //! The bounds of the pressure, 0 <= p <= H: what is projected, what is free, and what a residual may move.
 
-use asperity_sweep::eights::Eight;
+use asperity_sweep::simd::F64x8;
 
 use asperity_sweep::Cells;
 
@@ -40,9 +40,9 @@ impl Hardness<'_> {
         *self == Hardness::Uniform(f64::INFINITY)
     }
 
-    /// H of eight cells.
+    /// H of eight cells, from `cell` on.
     #[inline(always)]
-    pub(crate) fn eight<V: Eight>(&self, cell: usize) -> V {
+    pub(crate) fn load<V: F64x8>(&self, cell: usize) -> V {
         match self {
             Hardness::Uniform(hardness) => V::splat(*hardness),
             Hardness::Cells(cells) => V::load(cells, cell, f64::INFINITY),
@@ -51,8 +51,8 @@ impl Hardness<'_> {
 
     /// The bounds of eight cells.
     #[inline(always)]
-    pub(crate) fn interval<V: Eight>(&self, cell: usize) -> Interval<V> {
-        Interval { top: self.eight(cell) }
+    pub(crate) fn interval<V: F64x8>(&self, cell: usize) -> Interval<V> {
+        Interval { top: self.load(cell) }
     }
 }
 
@@ -88,7 +88,7 @@ pub(crate) struct Interval<V> {
     pub top: V,
 }
 
-impl<V: Eight> Interval<V> {
+impl<V: F64x8> Interval<V> {
     /// The nearest feasible pressure.
     #[inline(always)]
     pub fn project(self, y: V) -> V {
@@ -139,7 +139,7 @@ impl<V: Eight> Interval<V> {
 
 #[cfg(test)]
 mod tests {
-    use asperity_sweep::eights::{Mask, Work, vectorize};
+    use asperity_sweep::simd::{Mask, Work, vectorize};
 
     use super::*;
 
@@ -149,7 +149,7 @@ mod tests {
     impl Work for Working {
         type Yield = u8;
         #[inline(always)]
-        fn run<V: Eight>(self) -> u8 {
+        fn run<V: F64x8>(self) -> u8 {
             Interval { top: V::splat(2.0) }.is_working(V::from_array(self.0), V::from_array(self.1)).bits()
         }
     }

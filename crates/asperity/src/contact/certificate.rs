@@ -8,11 +8,11 @@
 //! Gamma = sum p (g - min g). Under approach control w is given; the sum of p* that then multiplies the largest r- is
 //! replaced by that of p.
 
-use super::rating::Rating;
+use super::residual::ResidualReport;
 use super::{Outcome, Prescribed, Problem};
 use crate::grid::Grid;
 
-impl Rating {
+impl ResidualReport {
     /// The displacement that violations are measured by: (p'u)/(sum p), or the overlap before first contact \[m\].
     pub(super) fn displacement(&self, problem: &Problem) -> f64 {
         let [pressure, pu] = self.pressure;

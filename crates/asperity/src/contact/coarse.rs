@@ -14,11 +14,11 @@ use crate::grid::Grid;
 use crate::operator::Operator;
 
 /// Fewest cells along a side of a coarse grid.
-const FEWEST: usize = 64;
+const FEWEST_CELLS: usize = 64;
 /// Tolerance on a coarse grid: finer than what its cells can tell.
-const TOLERANCE: f64 = 3e-3;
+const COARSE_TOLERANCE: f64 = 3e-3;
 /// Iterations on a coarse grid at most.
-const ITERATIONS: usize = 30;
+const COARSE_ITERATIONS: usize = 30;
 
 /// Sets `state.pressure`, so far zero everywhere, to that of coarser grids where the grid has any; the sum of p is only
 /// roughly right. Returns the work in convolutions of the fine grid.
@@ -46,8 +46,11 @@ pub(super) fn start(
     let hardness = of_cells.as_deref().map_or(problem.hardness, Hardness::Cells);
     let mut solver = Solver::new(options.method, &*coarse_operator);
     let mut coarse = ContactState::new(grid.len());
-    let options =
-        SolverOptions { tolerance: options.tolerance.max(TOLERANCE), max_iterations: ITERATIONS, ..*options };
+    let options = SolverOptions {
+        tolerance: options.tolerance.max(COARSE_TOLERANCE),
+        max_iterations: COARSE_ITERATIONS,
+        ..*options
+    };
     let problem = Problem { gap: &gap, hardness, ..*problem };
     match solver.solve(&mut *coarse_operator, &problem, &options, &mut coarse, interrupt) {
         Ok(outcome) => {
@@ -66,7 +69,7 @@ pub(super) fn start(
 /// The grid of half as many cells along each side.
 fn coarser(grid: &Grid) -> Option<Grid> {
     let [nx, ny] = grid.cells();
-    let fits = |n: usize| n.is_multiple_of(2) && n / 2 >= FEWEST;
+    let fits = |n: usize| n.is_multiple_of(2) && n / 2 >= FEWEST_CELLS;
     let halves = fits(nx) && (fits(ny) || grid.is_line());
     halves.then(|| grid.with_cells([nx / 2, ny / 2]).ok()).flatten()
 }
@@ -154,7 +157,7 @@ mod tests {
                 assert!(fast.convolutions <= slow.convolutions, "{fast:?} {slow:?}");
                 assert!(fast.iterations < slow.iterations, "{fast:?} {slow:?}");
                 // Each is within its own certificate of the solution.
-                let apart = cold.apart(&uniform);
+                let apart = cold.energy_distance(&uniform);
                 assert!(apart <= fast.certificate + slow.certificate, "{apart}");
             }
         }

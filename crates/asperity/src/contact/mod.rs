@@ -13,11 +13,10 @@ mod coarse;
 mod direction;
 mod gauss_seidel;
 mod polonsky_keer;
-mod preconditioner;
 mod problem;
 mod projected_cg;
 mod projection;
-mod rating;
+mod residual;
 mod search;
 mod start;
 mod state;
@@ -156,7 +155,7 @@ impl Solver {
         state: &mut ContactState,
         interrupt: Option<&AtomicBool>,
     ) -> Result<Outcome> {
-        if let Some(outcome) = problem.settle(operator, state)? {
+        if let Some(outcome) = problem.trivial_solution(operator, state)? {
             return Ok(outcome);
         }
         match self {
@@ -175,10 +174,10 @@ impl Solver {
 
 /// How far a state with this pressure and this U, of whatever operator, is from the contact of `problem`; sets its approach. The
 /// certificate holds for every operator with a positive symmetric part.
-pub(crate) fn rate(problem: &Problem, grid: &Grid, tolerance: f64, state: &mut ContactState) -> Outcome {
-    state.approach = rating::find_approach(problem, state);
-    let rating = rating::Rating::of(problem, state, state.approach);
-    rating.outcome(problem, grid, tolerance)
+pub(crate) fn assess(problem: &Problem, grid: &Grid, tolerance: f64, state: &mut ContactState) -> Outcome {
+    state.approach = residual::find_approach(problem, state);
+    let report = residual::ResidualReport::of(problem, state, state.approach);
+    report.outcome(problem, grid, tolerance)
 }
 
 /// Clips a pressure to its bounds and gives it the load of `problem` again.

@@ -13,7 +13,7 @@ use std::sync::atomic::AtomicBool;
 use gradient::Progress;
 
 use super::bounds::clip;
-use super::rating::Rating;
+use super::residual::ResidualReport;
 use super::start::{make_feasible, set_sum};
 use super::{
     ContactState, Hardness, Outcome, Prescribed, Problem, SolverOptions, interrupted, not_converged,
@@ -48,7 +48,7 @@ impl PolonskyKeer {
         24 * grid.len() + grid.len() / 8
     }
 
-    /// See [`super::Solver::solve`]; the trivial cases are settled there.
+    /// See [`super::Solver::solve`]; the trivial cases are answered there.
     pub(super) fn solve(
         &mut self,
         operator: &mut dyn Operator,
@@ -70,10 +70,10 @@ impl PolonskyKeer {
         let mut memory = 0.0;
         let mut iteration = 0;
         loop {
-            let w = Rating::of(problem, state, 0.0).approach(problem.prescribed);
+            let w = ResidualReport::of(problem, state, 0.0).approach(problem.prescribed);
             state.approach = w;
-            let rating = Rating::of(problem, state, w);
-            let rated = rating.outcome(problem, &grid, options.tolerance);
+            let report = ResidualReport::of(problem, state, w);
+            let rated = report.outcome(problem, &grid, options.tolerance);
             let outcome = Outcome { iterations: iteration, convolutions, ..rated };
             if outcome.residual <= options.tolerance {
                 state.rounding = 1.0 + iteration as f64;
@@ -86,11 +86,11 @@ impl PolonskyKeer {
                 return Err(Error::Interrupted);
             }
             iteration += 1;
-            let stalled = progress.has_stalled(outcome.residual) || rating.no_cell_is_free();
+            let stalled = progress.has_stalled(outcome.residual) || report.no_cell_is_free();
             tracing::debug!(
                 iterations = iteration,
                 residual = outcome.residual,
-                working = rating.working_cells(),
+                working = report.working_cells(),
                 step = if stalled { "gradient" } else { "conjugate" },
                 convolutions
             );
@@ -105,7 +105,7 @@ impl PolonskyKeer {
                 continue;
             }
             let product = self.residual_on_free(problem, state);
-            self.turn(problem, state, product * memory);
+            self.update_direction(problem, state, product * memory);
             operator.apply_into(&self.direction, &mut self.image);
             convolutions += 1;
             let [rd, curvature] = self.products();
@@ -149,7 +149,7 @@ impl PolonskyKeer {
     }
 
     /// d <- r + beta d on D; under load control with its mean over D removed.
-    fn turn(&mut self, problem: &Problem, state: &ContactState, beta: f64) {
+    fn update_direction(&mut self, problem: &Problem, state: &ContactState, beta: f64) {
         let hardness = problem.hardness;
         let [sum, cells] = sweep(
             (&mut self.direction[..], &self.residual[..], &state.pressure[..], hardness),

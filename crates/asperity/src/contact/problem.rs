@@ -1,10 +1,10 @@
 //! What is asked of one elastic contact, and the questions that have an answer without iterations, or none.
 
-use super::sweeps::feasible::Limits;
+use super::sweeps::feasible::{LargestGap, Limits};
 use super::{ContactState, Hardness, Outcome};
 use crate::error::{Error, Result};
 use crate::operator::Operator;
-use asperity_sweep::{Max, Min, run, sum, sweep};
+use asperity_sweep::{Min, run, sum, sweep};
 
 /// One elastic contact of unit operator K.
 #[derive(Clone, Copy, Debug)]
@@ -63,19 +63,19 @@ impl Problem<'_> {
     ///
     /// # Errors
     /// [`Error::Infeasible`], [`Error::Undetermined`], [`Error::Invalid`].
-    pub(super) fn settle(
+    pub(super) fn trivial_solution(
         &self,
         operator: &mut dyn Operator,
         state: &mut ContactState,
     ) -> Result<Option<Outcome>> {
         let extent = self.extent();
         match self.prescribed {
-            Prescribed::Load(load) => self.settle_load(load, &extent, operator, state),
-            Prescribed::Approach(approach) => self.settle_approach(approach, &extent, operator, state),
+            Prescribed::Load(load) => self.trivial_under_load(load, &extent, operator, state),
+            Prescribed::Approach(approach) => self.trivial_at_approach(approach, &extent, operator, state),
         }
     }
 
-    fn settle_load(
+    fn trivial_under_load(
         &self,
         load: f64,
         extent: &Extent,
@@ -96,20 +96,20 @@ impl Problem<'_> {
         if load < max * (1.0 - SAME_LOAD) {
             return Ok(None);
         }
-        let at_bound = |n: usize, h: f64| if h < f64::INFINITY { self.hardness.at(n) } else { 0.0 };
-        let cells = state.pressure.iter_mut().zip(self.gap).enumerate();
-        cells.for_each(|(n, (p, h))| *p = at_bound(n, *h));
+        let bound = |(p, gap, hardness): (&mut [f64], &[f64], Hardness)| {
+            p.iter_mut().zip(gap).enumerate().for_each(|(n, (p, h))| {
+                *p = if *h < f64::INFINITY { hardness.at(n) } else { 0.0 };
+            });
+        };
+        sweep((&mut state.pressure[..], self.gap, self.hardness), &bound);
         operator.apply_into(&state.pressure, &mut state.unit_displacement);
         state.rounding = 1.0;
-        state.approach = sweep((self.gap, &state.unit_displacement[..]), &|(h, u): (&[f64], &[f64])| {
-            let cells = h.iter().zip(u).filter(|(h, _)| **h < f64::INFINITY);
-            Max(cells.fold(f64::NEG_INFINITY, |m, (h, u)| m.max(h + self.compliance * u)))
-        })
-        .0;
+        let (u, gap, compliance) = (&state.unit_displacement[..], self.gap, self.compliance);
+        state.approach = run(LargestGap { u, gap, compliance }).0;
         Ok(Some(Outcome { convolutions: 1, saturated: true, ..Outcome::default() }))
     }
 
-    fn settle_approach(
+    fn trivial_at_approach(
         &self,
         approach: f64,
         extent: &Extent,

@@ -10,12 +10,12 @@ use std::sync::atomic::AtomicBool;
 
 use super::direction::{Fields, make_conjugate};
 use super::projection::Trial;
-use super::rating::{Rating, find_approach};
+use super::residual::{ResidualReport, find_approach};
 use super::search::Search;
 use super::start::Start;
-use super::step::{Kind, Slope, Step};
+use super::step::{Slope, Step, StepKind};
 use super::sweeps::direction::{Centre, Steepest};
-use super::sweeps::rate::FindWorking;
+use super::sweeps::residual::FindWorking;
 use super::sweeps::step::{Advance, Curvature, FindStep};
 use super::{
     ContactState, Outcome, Prescribed, Problem, ProjectedCg, SolverOptions, interrupted, not_converged,
@@ -28,7 +28,7 @@ use asperity_sweep::{Min, Set, SetMut, run};
 const PATIENCE: usize = 10;
 
 impl ProjectedCg {
-    /// See [`super::Solver::solve`]; [`Problem::settle`] has settled the trivial cases.
+    /// See [`super::Solver::solve`]; [`Problem::trivial_solution`] has answered the trivial cases.
     pub(super) fn solve(
         &mut self,
         start: Start,
@@ -41,8 +41,8 @@ impl ProjectedCg {
         let grid = *operator.grid();
         let mut search = self.start(start, operator, problem, state)?;
         loop {
-            let rating = self.rate(&mut search);
-            let rated = rating.outcome(problem, &grid, options.tolerance);
+            let report = self.residual_report(&mut search);
+            let rated = report.outcome(problem, &grid, options.tolerance);
             let Search { iterations, convolutions, .. } = search;
             let outcome = Outcome { iterations, convolutions, ..rated };
             let converged = outcome.residual <= options.tolerance;
@@ -59,16 +59,16 @@ impl ProjectedCg {
                 search.convolve();
                 continue;
             }
-            search.watch(outcome.residual);
+            search.count_stall(outcome.residual);
             let step =
-                if search.stalled < PATIENCE { self.conjugate_step(&mut search, &rating) } else { None };
+                if search.stalled < PATIENCE { self.conjugate_step(&mut search, &report) } else { None };
             let taken = step.and_then(|step| self.take(&mut search, step)).or_else(|| {
-                let step = self.gradient_step(&mut search, &rating)?;
+                let step = self.gradient_step(&mut search, &report)?;
                 self.take(&mut search, step)
             });
             match taken {
                 Some(step) => tracing::debug!(
-                    iterations, residual = outcome.residual, working = rating.working_cells(), %step,
+                    iterations, residual = outcome.residual, working = report.working_cells(), %step,
                     convolutions = search.convolutions
                 ),
                 // Rounding errors of U may hide the way down.
@@ -78,8 +78,8 @@ impl ProjectedCg {
         }
     }
 
-    /// Rates the state for the approach that fits it best; finds the working set and the residual on it.
-    pub(super) fn rate(&mut self, search: &mut Search) -> Rating {
+    /// The report of the state for the approach that fits it best; finds the working set and the residual on it.
+    pub(super) fn residual_report(&mut self, search: &mut Search) -> ResidualReport {
         let Search { problem, state, .. } = search;
         let w = match (problem.prescribed, search.free_gap.take()) {
             (Prescribed::Approach(w), _) | (Prescribed::Load(_), Some(w)) => w,
@@ -89,22 +89,22 @@ impl ProjectedCg {
         let (p, u) = (&state.pressure[..], &state.unit_displacement[..]);
         let Problem { gap, compliance, hardness, .. } = **problem;
         let (residual, set) = (&mut self.residual[..], SetMut(&mut self.working));
-        let rating = run(FindWorking { p, u, gap, hardness, residual, set, compliance, w });
+        let report = run(FindWorking { p, u, gap, hardness, residual, set, compliance, w });
         if search.unit == 0.0 {
-            search.unit = if rating.violation > 0.0 { rating.violation } else { 1.0 };
+            search.unit = if report.violation > 0.0 { report.violation } else { 1.0 };
         }
-        rating
+        report
     }
 
     /// The step along the conjugate direction on S; `None` where there is none.
-    pub(super) fn conjugate_step(&mut self, search: &mut Search, rating: &Rating) -> Option<Step> {
-        let cells = rating.working_cells();
+    pub(super) fn conjugate_step(&mut self, search: &mut Search, report: &ResidualReport) -> Option<Step> {
+        let cells = report.working_cells();
         if cells == 0.0 {
             return None;
         }
-        let mean = if search.sum.is_some() { rating.working_mean() } else { 0.0 };
+        let mean = if search.sum.is_some() { report.working_mean() } else { 0.0 };
         run(Centre { r: &mut self.residual, set: Set(&self.working), mean, unit: search.unit });
-        self.preconditioner.apply_into(&self.residual, &self.working, &mut self.preconditioned);
+        self.preconditioner.apply_on_set_into(&self.residual, &self.working, &mut self.preconditioned);
         let fields = Fields {
             r: &self.residual,
             r_old: &self.residual_old,
@@ -116,17 +116,17 @@ impl ProjectedCg {
         let product = make_conjugate(fields, search.product, search.sum.is_some(), cells)?;
         search.product = Some(product);
         let length = search.length * self.preconditioner.unit() * search.unit / search.problem.compliance;
-        let sum = search.sum.map(|sum| sum - rating.pressure[0] + rating.working[2]);
+        let sum = search.sum.map(|sum| sum - report.pressure[0] + report.working[2]);
         Step::conjugate(self.trial(search, length), sum, cells)
     }
 
     /// The projected gradient step over all cells that can touch; `None` where no shift keeps the load.
-    fn gradient_step(&mut self, search: &mut Search, rating: &Rating) -> Option<Step> {
+    fn gradient_step(&mut self, search: &mut Search, report: &ResidualReport) -> Option<Step> {
         let Problem { gap, compliance, .. } = *search.problem;
         let (u, d, r) =
             (&search.state.unit_displacement[..], &mut self.direction[..], &mut self.residual[..]);
         let set = SetMut(&mut self.working);
-        run(Steepest { u, gap, d, r, set, compliance, w: rating.w, unit: search.unit });
+        run(Steepest { u, gap, d, r, set, compliance, w: report.w, unit: search.unit });
         // Direction and step are not zero outside of the last working set any more.
         self.working_old.fill(u8::MAX);
         search.product = None;
@@ -140,7 +140,7 @@ impl ProjectedCg {
     }
 
     /// Takes a step as far as f falls along it, one convolution; `None` where f does not fall.
-    fn take(&mut self, search: &mut Search, step: Step) -> Option<Kind> {
+    fn take(&mut self, search: &mut Search, step: Step) -> Option<StepKind> {
         let (slope, square, reach) = self.find_step(search, step);
         if slope >= 0.0 || slope.is_nan() {
             return None;
@@ -150,7 +150,7 @@ impl ProjectedCg {
         let (s, image, set) = (&self.step[..], &self.image[..], Set(&self.working));
         let curvature = search.problem.compliance * run(Curvature { s, image, set });
         let along = Slope { slope, curvature, reach };
-        search.learn(step.kind, along.minimum(), square / curvature);
+        search.update_lengths(step.kind, along.minimum(), square / curvature);
         self.advance(search, step.line_search(along));
         Some(step.kind)
     }

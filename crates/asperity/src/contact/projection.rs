@@ -4,7 +4,7 @@
 //! The sum is a piecewise linear, non-decreasing function of lambda; Newton's method with a bracket finds
 //! its root in a few sweeps. Neither the trial point nor the projection is stored for it.
 
-use asperity_sweep::eights::Eight;
+use asperity_sweep::simd::F64x8;
 
 use super::Hardness;
 use super::bounds::Interval;
@@ -13,11 +13,11 @@ use asperity_sweep::{Max, Min, Set, run};
 
 /// Relative error at which a sum is met: the cells inside the bounds take the rest, and so few of them cross a bound
 /// by it that nothing is left.
-const CLOSE: f64 = 1e-13;
+const SUM_TOLERANCE: f64 = 1e-13;
 
 /// A shift that misses the sum by more than this share is none: the trial point is so far away that its rounding error hides
 /// the sum.
-const MISSED: f64 = 1e-3;
+const LARGEST_MISS: f64 = 1e-3;
 
 /// Evaluations of the sum at most; Newton's method needs a handful.
 const MOST_EVALUATIONS: usize = 200;
@@ -46,7 +46,7 @@ pub(super) struct Shift {
 impl Shift {
     /// The projection of eight cells.
     #[inline(always)]
-    pub fn project<V: Eight>(self, y: V, bounds: Interval<V>) -> V {
+    pub fn project<V: F64x8>(self, y: V, bounds: Interval<V>) -> V {
         let q = bounds.project(y + V::splat(self.lambda));
         V::select(bounds.is_free(q), bounds.project(q - V::splat(self.rest)), q)
     }
@@ -81,7 +81,7 @@ impl Trial<'_> {
             if excess.abs() < f64::abs(best.1) {
                 best = (lambda, excess, found.inside);
             }
-            if excess.abs() <= CLOSE * target {
+            if excess.abs() <= SUM_TOLERANCE * target {
                 break;
             }
             bracket[usize::from(excess > 0.0)] = lambda;
@@ -103,7 +103,7 @@ impl Trial<'_> {
             found = self.clipped_sum(lambda);
         }
         let (lambda, excess, inside) = best;
-        if excess.abs() > MISSED * target {
+        if excess.abs() > LARGEST_MISS * target {
             return None;
         }
         Some(Shift { lambda, rest: if inside > 0.0 { excess / inside } else { 0.0 } })

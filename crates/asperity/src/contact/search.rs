@@ -1,6 +1,6 @@
 //! What an iteration of projected conjugate gradients tells the next, in one solve.
 
-use super::step::Kind;
+use super::step::StepKind;
 use super::{ContactState, Problem};
 use crate::operator::Operator;
 
@@ -68,7 +68,7 @@ impl<'a> Search<'a> {
     }
 
     /// Counts the iterations in which the residual has not halved.
-    pub(super) fn watch(&mut self, residual: f64) {
+    pub(super) fn count_stall(&mut self, residual: f64) {
         self.stalled += 1;
         if residual < 0.5 * self.best {
             (self.best, self.stalled) = (residual, 0);
@@ -76,12 +76,12 @@ impl<'a> Search<'a> {
     }
 
     /// The next length of trial steps, from the multiple of the last one at which f was least.
-    pub(super) fn learn(&mut self, kind: Kind, exact: f64, inverse_curvature: f64) {
+    pub(super) fn update_lengths(&mut self, kind: StepKind, exact: f64, inverse_curvature: f64) {
         match kind {
-            Kind::Straight => self.length = (self.length * exact).clamp(0.05, 20.0),
-            Kind::Clipped => self.length *= exact.max(0.0).sqrt().clamp(0.3, 1.5),
-            Kind::Gradient if inverse_curvature.is_finite() => self.gradient_length = inverse_curvature,
-            Kind::Gradient => {}
+            StepKind::Straight => self.length = (self.length * exact).clamp(0.05, 20.0),
+            StepKind::Clipped => self.length *= exact.max(0.0).sqrt().clamp(0.3, 1.5),
+            StepKind::Gradient if inverse_curvature.is_finite() => self.gradient_length = inverse_curvature,
+            StepKind::Gradient => {}
         }
     }
 }

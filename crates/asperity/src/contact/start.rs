@@ -6,7 +6,7 @@ use super::sweeps::feasible::{BelowAndCapped, Clip, Scale, ShiftAll};
 use super::{ContactState, Hardness, Problem, ProjectedCg, bounds};
 use crate::error::{Error, Result};
 use crate::operator::Operator;
-use asperity_sweep::{Set, SetMut, run};
+use asperity_sweep::{Set, SetMut, run, sweep};
 
 /// What is known of the state that a solve starts from.
 #[derive(Clone, Copy, Debug)]
@@ -45,8 +45,8 @@ impl ProjectedCg {
 
     /// One step from a pressure outside its bounds, taken whole, which makes it feasible; false where there is none.
     fn step_onto_bounds(&mut self, search: &mut Search) -> bool {
-        let rating = self.rate(search);
-        let Some(step) = self.conjugate_step(search, &rating) else { return false };
+        let report = self.residual_report(search);
+        let Some(step) = self.conjugate_step(search, &report) else { return false };
         self.find_step(search, step);
         search.operator.apply_into(&self.step, &mut self.image);
         search.convolutions += 1;
@@ -73,15 +73,16 @@ pub(super) fn make_feasible(
     };
     if sum <= 0.0 {
         let uniform = target / cells;
-        for (p, set) in state.pressure.chunks_mut(8).zip(&*touchable) {
-            p.iter_mut().enumerate().for_each(|(i, p)| *p = uniform * f64::from(*set >> i & 1));
-        }
+        let fill = |(p, set, hardness): (&mut [f64], Set, Hardness)| {
+            p.iter_mut().enumerate().for_each(|(n, p)| {
+                *p = bounds::clip(uniform * f64::from(set.0[n / 8] >> (n % 8) & 1), hardness.at(n));
+            });
+        };
+        sweep((&mut state.pressure[..], Set(touchable), hardness), &fill);
+        // Soft cells of a mixed surface carry less.
         if matches!(hardness, Hardness::Uniform(_)) {
             return Ok(());
         }
-        // Soft cells carry less.
-        let cells = state.pressure.iter_mut().enumerate();
-        cells.for_each(|(n, p)| *p = bounds::clip(*p, hardness.at(n)));
     }
     set_sum(&mut state.pressure, touchable, hardness, target).ok_or_else(|| Error::Infeasible {
         load: target * cell_area,

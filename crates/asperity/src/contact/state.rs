@@ -3,7 +3,7 @@
 use asperity_sweep::zeros;
 
 /// The share of a solver's tolerance that the rounding error of U may take.
-const SPARE: f64 = 1e-2;
+const ROUNDING_SHARE: f64 = 1e-2;
 
 /// Pressure, its displacement under unit modulus, and approach.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,7 +26,7 @@ impl ContactState {
 
     /// Whether the rounding error of U stays below what a solver's `tolerance` shows.
     pub(crate) fn is_precise(&self, tolerance: f64) -> bool {
-        f64::EPSILON * self.rounding <= SPARE * tolerance
+        f64::EPSILON * self.rounding <= ROUNDING_SHARE * tolerance
     }
 
     /// Whether any cell is under pressure.
@@ -44,7 +44,7 @@ impl ContactState {
 
     /// How far another state is from this one in the energy norm, of this one's.
     #[cfg(test)]
-    pub(super) fn apart(&self, other: &Self) -> f64 {
+    pub(super) fn energy_distance(&self, other: &Self) -> f64 {
         let (mut energy, mut off) = (0.0, 0.0);
         for n in 0..self.pressure.len() {
             let [p, u] = [self.pressure[n], self.unit_displacement[n]];

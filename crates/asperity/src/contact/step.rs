@@ -3,21 +3,21 @@
 use super::projection::{Shift, Sum, Trial};
 
 /// A clipped step is taken whole where the exact minimum lies beyond this share of it.
-const WHOLE: f64 = 0.8;
+const FULL_STEP: f64 = 0.8;
 /// How often, and by how much, a step is shortened whose sum is lost in its rounding error.
-const SHORTER: (usize, f64) = (8, 1e-3);
+const SHORTENING: (usize, f64) = (8, 1e-3);
 
 /// The step s = clip(p - a d + lambda) - p on a set of cells.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Step {
-    pub kind: Kind,
+    pub kind: StepKind,
     /// a, in units of the direction.
     pub length: f64,
     pub shift: Shift,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Kind {
+pub(super) enum StepKind {
     /// The trial point is feasible: s = -a d, and the step may go on beyond it, as far as the bounds.
     Straight,
     /// The trial point was projected.
@@ -42,27 +42,27 @@ impl Step {
     /// are to have, where the load is given. `None` where no shift gives it to them.
     pub(super) fn conjugate(trial: Trial, sum: Option<f64>, cells: f64) -> Option<Self> {
         let unshifted = trial.clipped_sum(0.0);
-        let kind = if unshifted.inside == cells { Kind::Straight } else { Kind::Clipped };
+        let kind = if unshifted.inside == cells { StepKind::Straight } else { StepKind::Clipped };
         Step::shifted(kind, trial, sum, unshifted)
     }
 
     /// The projected gradient step; `sum` as above.
     pub(super) fn gradient(trial: Trial, sum: Option<f64>) -> Option<Self> {
-        Step::shifted(Kind::Gradient, trial, sum, trial.clipped_sum(0.0))
+        Step::shifted(StepKind::Gradient, trial, sum, trial.clipped_sum(0.0))
     }
 
-    fn shifted(mut kind: Kind, mut trial: Trial, sum: Option<f64>, mut unshifted: Sum) -> Option<Self> {
+    fn shifted(mut kind: StepKind, mut trial: Trial, sum: Option<f64>, mut unshifted: Sum) -> Option<Self> {
         let Some(sum) = sum else {
             return Some(Step { kind, length: trial.length, shift: Shift::default() });
         };
-        for _ in 0..SHORTER.0 {
+        for _ in 0..SHORTENING.0 {
             if let Some(shift) = trial.shift_to_sum(sum, unshifted) {
                 return Some(Step { kind, length: trial.length, shift });
             }
-            trial.length *= SHORTER.1;
+            trial.length *= SHORTENING.1;
             unshifted = trial.clipped_sum(0.0);
-            if kind == Kind::Straight {
-                kind = Kind::Clipped;
+            if kind == StepKind::Straight {
+                kind = StepKind::Clipped;
             }
         }
         None
@@ -72,11 +72,11 @@ impl Step {
     pub(super) fn line_search(&self, along: Slope) -> f64 {
         let exact = along.minimum();
         match self.kind {
-            Kind::Straight => exact.min(along.reach),
+            StepKind::Straight => exact.min(along.reach),
             // Taken whole it puts all clipped cells exactly on their bounds, and f still falls.
-            Kind::Clipped if exact >= WHOLE => 1.0,
-            Kind::Clipped => exact,
-            Kind::Gradient => exact.min(1.0),
+            StepKind::Clipped if exact >= FULL_STEP => 1.0,
+            StepKind::Clipped => exact,
+            StepKind::Gradient => exact.min(1.0),
         }
     }
 }
@@ -88,12 +88,12 @@ impl Slope {
     }
 }
 
-impl std::fmt::Display for Kind {
+impl std::fmt::Display for StepKind {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
-            Kind::Straight => "straight",
-            Kind::Clipped => "clipped",
-            Kind::Gradient => "gradient",
+            StepKind::Straight => "straight",
+            StepKind::Clipped => "clipped",
+            StepKind::Gradient => "gradient",
         })
     }
 }

@@ -1,13 +1,12 @@
 //! The working memory of projected conjugate gradients.
 
-use super::preconditioner::Preconditioner;
 use crate::grid::{Boundary, Grid};
-use crate::operator::Operator;
+use crate::operator::{ApproximateInverse, Operator};
 use asperity_sweep::zeros;
 
 /// Preconditioned projected conjugate gradients: the preconditioner, 32 bytes per cell, and two sets.
 pub struct ProjectedCg {
-    pub(super) preconditioner: Preconditioner,
+    pub(super) preconditioner: ApproximateInverse,
     /// Residual on S over `unit`, now and one iteration ago.
     pub(super) residual: Vec<f32>,
     pub(super) residual_old: Vec<f32>,
@@ -27,7 +26,7 @@ impl ProjectedCg {
     pub fn new(operator: &dyn Operator) -> Self {
         let n = operator.grid().len();
         ProjectedCg {
-            preconditioner: Preconditioner::new(operator),
+            preconditioner: operator.approximate_inverse(),
             residual: zeros(n),
             residual_old: zeros(n),
             preconditioned: zeros(n),
@@ -42,11 +41,11 @@ impl ProjectedCg {
     /// z, roughly the inverse of K restricted to a set of cells (bits, eight in a byte) times r, which is zero elsewhere; in
     /// units of the preconditioner's largest value. What z holds outside of the set means nothing. An iteration does it once.
     pub fn precondition(&mut self, r: &[f32], set: &[u8], z: &mut [f32]) {
-        self.preconditioner.apply_into(r, set, z);
+        self.preconditioner.apply_on_set_into(r, set, z);
     }
 
     /// Bytes that the method takes at most, without the operator.
     pub(crate) fn bytes(grid: &Grid, boundary: Boundary) -> usize {
-        Preconditioner::bytes(grid, boundary) + 32 * grid.len() + grid.len() / 4
+        ApproximateInverse::bytes(grid, boundary) + 32 * grid.len() + grid.len() / 4
     }
 }

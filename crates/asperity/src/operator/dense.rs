@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 use ndarray::{Array2, ArrayView1};
 
-use super::{ApproximateInverse, Operator};
+use super::{ApproximateInverse, Operator, default_backend};
 use crate::grid::{Boundary, Grid};
 use crate::kernel::HalfSpace;
 
@@ -113,7 +113,7 @@ impl Operator for Dense {
     }
 
     fn approximate_inverse(&self) -> ApproximateInverse {
-        ApproximateInverse::new(self.grid, self.boundary, Arc::new(HalfSpace))
+        ApproximateInverse::new(default_backend(), self.grid, self.boundary, Arc::new(HalfSpace))
     }
 
     fn on_grid(&self, _: Grid) -> Option<Box<dyn Operator>> {

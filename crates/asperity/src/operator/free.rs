@@ -5,7 +5,8 @@ use std::sync::Arc;
 
 use ndarray::{Array1, Array2};
 
-use super::{ApproximateInverse, Operator, mean};
+use super::backend::{Backend, ConvolutionPlan};
+use super::{ApproximateInverse, Operator, default_backend, mean};
 use crate::convolution::{Convolution, even_spectrum};
 use crate::error::{Error, Result};
 use crate::grid::{Boundary, Grid};
@@ -14,8 +15,9 @@ use crate::kernel::{HalfSpace, Kernel, strip};
 /// u(i, j) = sum K(i - i', j - j') p(i', j'), with no pressure outside the domain.
 pub struct Free {
     grid: Grid,
+    backend: Arc<dyn Backend>,
     kernel: Arc<dyn Kernel>,
-    convolution: Convolution,
+    convolution: Box<dyn ConvolutionPlan>,
     self_influence: f64,
 }
 
@@ -24,39 +26,50 @@ impl Free {
     ///
     /// # Errors
     /// [`Error::Invalid`] where the kernel cannot be computed on the grid, or is not positive definite there.
-    pub fn new(grid: Grid, kernel: Arc<dyn Kernel>) -> Result<Self> {
+    pub fn new(backend: Arc<dyn Backend>, grid: Grid, kernel: Arc<dyn Kernel>) -> Result<Self> {
         let influence = influence(&grid, &*kernel)?;
         let spectrum = even_spectrum(&influence, padded(&grid));
-        Ok(Free::planned(grid, kernel, influence[(0, 0)], &spectrum))
+        Ok(Free::planned(backend, grid, kernel, influence[(0, 0)], &spectrum))
     }
 
     pub(super) fn eigenvalues(grid: &Grid, kernel: &dyn Kernel) -> Result<Array2<f64>> {
         Ok(even_spectrum(&influence(grid, kernel)?, padded(grid)))
     }
 
-    pub(super) fn of_eigenvalues(grid: Grid, kernel: Arc<dyn Kernel>, eigenvalues: &Array2<f64>) -> Self {
-        Free::planned(grid, kernel, mean(padded(&grid), eigenvalues.view()), eigenvalues)
+    pub(super) fn of_eigenvalues(
+        backend: Arc<dyn Backend>,
+        grid: Grid,
+        kernel: Arc<dyn Kernel>,
+        eigenvalues: &Array2<f64>,
+    ) -> Self {
+        Free::planned(backend, grid, kernel, mean(padded(&grid), eigenvalues.view()), eigenvalues)
     }
 
     /// The operator of the elastic half-space.
-    pub fn half_space(grid: Grid) -> Self {
+    pub fn half_space(backend: Arc<dyn Backend>, grid: Grid) -> Self {
         let influence = match grid.is_line() {
             true => of_strips(strip(grid.spacing()[0], computed(&grid)[0]), padded(&grid)[1]),
             false => HalfSpace.coefficients(grid.spacing(), computed(&grid)),
         };
         let spectrum = even_spectrum(&influence, padded(&grid));
         debug_assert!(spectrum.iter().all(|s| *s > 0.0), "the kernel is positive definite");
-        Free::planned(grid, Arc::new(HalfSpace), influence[(0, 0)], &spectrum)
+        Free::planned(backend, grid, Arc::new(HalfSpace), influence[(0, 0)], &spectrum)
     }
 
-    fn planned(grid: Grid, kernel: Arc<dyn Kernel>, self_influence: f64, spectrum: &Array2<f64>) -> Self {
-        let convolution = Convolution::new(grid.cells(), padded(&grid), spectrum.view());
-        Free { grid, kernel, convolution, self_influence }
+    fn planned(
+        backend: Arc<dyn Backend>,
+        grid: Grid,
+        kernel: Arc<dyn Kernel>,
+        self_influence: f64,
+        spectrum: &Array2<f64>,
+    ) -> Self {
+        let convolution = backend.plan(grid.cells(), padded(&grid), spectrum.view());
+        Free { grid, backend, kernel, convolution, self_influence }
     }
 
     /// Bytes that the operator takes on that grid.
     pub(super) fn bytes(grid: &Grid) -> usize {
-        Convolution::bytes(grid.cells(), padded(grid))
+        default_backend().bytes(grid.cells(), padded(grid))
     }
 }
 
@@ -129,11 +142,11 @@ impl Operator for Free {
     }
 
     fn approximate_inverse(&self) -> ApproximateInverse {
-        ApproximateInverse::new(self.grid, Boundary::Free, self.kernel.clone())
+        ApproximateInverse::new(self.backend.clone(), self.grid, Boundary::Free, self.kernel.clone())
     }
 
     fn on_grid(&self, grid: Grid) -> Option<Box<dyn Operator>> {
-        Some(Box::new(Free::new(grid, self.kernel.clone()).ok()?))
+        Some(Box::new(Free::new(self.backend.clone(), grid, self.kernel.clone()).ok()?))
     }
 }
 

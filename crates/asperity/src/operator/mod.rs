@@ -2,18 +2,22 @@
 //!
 //! Everything elastic and geometric is in K; the material enters as the scalar compliance that
 //! multiplies it (theory: space and time separate). An operator is planned from a [`Kernel`]: by its influence coefficients on
-//! a free domain, by its symbol on a periodic one. Nothing above this module knows either, nor the length of a transform.
+//! a free domain, by its symbol on a periodic one. Nothing above this module knows either, nor the length of a transform. The
+//! convolutions of an operator and of its approximate inverse are planned on one [`Backend`].
 
+mod backend;
+mod cpu;
 mod dense;
 mod free;
 mod inverse;
 mod periodic;
 pub(crate) mod wide;
 
+pub use backend::{Backend, ConvolutionPlan, InversePlan};
+pub use cpu::Cpu;
 pub use dense::Dense;
 pub use free::Free;
 pub use inverse::ApproximateInverse;
-pub(crate) use inverse::{INVERSE, SCREENED};
 pub use periodic::Periodic;
 
 use std::sync::Arc;
@@ -43,11 +47,16 @@ pub trait Operator: Send {
     /// from their mean, and full contact under a given approach leaves the load undetermined.
     fn determines_mean(&self) -> bool;
 
-    /// An approximate inverse of K, for preconditioning.
+    /// An approximate inverse of K, for preconditioning, on the operator's own back end.
     fn approximate_inverse(&self) -> ApproximateInverse;
 
     /// K of the same body on another grid, for a start from coarser grids; `None` where there is none.
     fn on_grid(&self, grid: Grid) -> Option<Box<dyn Operator>>;
+}
+
+/// The back end of operators that are planned without one.
+pub fn default_backend() -> Arc<dyn Backend> {
+    Arc::new(Cpu)
 }
 
 /// The operator of a body with that kernel, on a grid.
@@ -69,17 +78,30 @@ pub trait Operator: Send {
 /// # Errors
 /// [`Error::Invalid`](crate::Error::Invalid) where the grid of a free domain does not resolve the body.
 pub fn plan(grid: Grid, boundary: Boundary, kernel: Arc<dyn Kernel>) -> Result<Box<dyn Operator>> {
+    plan_on(default_backend(), grid, boundary, kernel)
+}
+
+/// The same on a chosen back end.
+///
+/// # Errors
+/// As [`plan`].
+pub fn plan_on(
+    backend: Arc<dyn Backend>,
+    grid: Grid,
+    boundary: Boundary,
+    kernel: Arc<dyn Kernel>,
+) -> Result<Box<dyn Operator>> {
     Ok(match boundary {
-        Boundary::Free => Box::new(Free::new(grid, kernel)?),
-        Boundary::Periodic => Box::new(Periodic::new(grid, kernel)),
+        Boundary::Free => Box::new(Free::new(backend, grid, kernel)?),
+        Boundary::Periodic => Box::new(Periodic::new(backend, grid, kernel)),
     })
 }
 
 /// The operator of the elastic half-space.
 pub fn half_space(grid: Grid, boundary: Boundary) -> Box<dyn Operator> {
     match boundary {
-        Boundary::Free => Box::new(Free::half_space(grid)),
-        Boundary::Periodic => Box::new(Periodic::new(grid, Arc::new(HalfSpace))),
+        Boundary::Free => Box::new(Free::half_space(default_backend(), grid)),
+        Boundary::Periodic => Box::new(Periodic::new(default_backend(), grid, Arc::new(HalfSpace))),
     }
 }
 
@@ -109,9 +131,10 @@ pub(crate) fn of_eigenvalues(
     kernel: Arc<dyn Kernel>,
     eigenvalues: &Array2<f64>,
 ) -> Box<dyn Operator> {
+    let backend = default_backend();
     match boundary {
-        Boundary::Free => Box::new(Free::of_eigenvalues(grid, kernel, eigenvalues)),
-        Boundary::Periodic => Box::new(Periodic::of_eigenvalues(grid, kernel, eigenvalues)),
+        Boundary::Free => Box::new(Free::of_eigenvalues(backend, grid, kernel, eigenvalues)),
+        Boundary::Periodic => Box::new(Periodic::of_eigenvalues(backend, grid, kernel, eigenvalues)),
     }
 }
 

@@ -4,24 +4,25 @@ use std::sync::Arc;
 
 use ndarray::Array2;
 
-use super::{ApproximateInverse, Operator, mean, wave_spectrum};
-use crate::convolution::Convolution;
+use super::backend::{Backend, ConvolutionPlan};
+use super::{ApproximateInverse, Operator, default_backend, mean, wave_spectrum};
 use crate::grid::{Boundary, Grid};
 use crate::kernel::Kernel;
 
 /// u = F^-1 \[ K^(q) F p \]. Where the kernel leaves a uniform displacement undetermined, u has zero mean.
 pub struct Periodic {
     grid: Grid,
+    backend: Arc<dyn Backend>,
     kernel: Arc<dyn Kernel>,
-    convolution: Convolution,
+    convolution: Box<dyn ConvolutionPlan>,
     self_influence: f64,
 }
 
 impl Periodic {
     /// Plans the operator.
-    pub fn new(grid: Grid, kernel: Arc<dyn Kernel>) -> Self {
+    pub fn new(backend: Arc<dyn Backend>, grid: Grid, kernel: Arc<dyn Kernel>) -> Self {
         let eigenvalues = Periodic::eigenvalues(&grid, &*kernel);
-        Periodic::of_eigenvalues(grid, kernel, &eigenvalues)
+        Periodic::of_eigenvalues(backend, grid, kernel, &eigenvalues)
     }
 
     pub(super) fn eigenvalues(grid: &Grid, kernel: &dyn Kernel) -> Array2<f64> {
@@ -29,16 +30,21 @@ impl Periodic {
         wave_spectrum(grid.cells(), grid.size(), kernel.uniform().unwrap_or(0.0), symbol)
     }
 
-    pub(super) fn of_eigenvalues(grid: Grid, kernel: Arc<dyn Kernel>, eigenvalues: &Array2<f64>) -> Self {
+    pub(super) fn of_eigenvalues(
+        backend: Arc<dyn Backend>,
+        grid: Grid,
+        kernel: Arc<dyn Kernel>,
+        eigenvalues: &Array2<f64>,
+    ) -> Self {
         let cells = grid.cells();
-        let convolution = Convolution::new(cells, cells, eigenvalues.view());
+        let convolution = backend.plan(cells, cells, eigenvalues.view());
         let self_influence = mean(cells, eigenvalues.view());
-        Periodic { grid, kernel, convolution, self_influence }
+        Periodic { grid, backend, kernel, convolution, self_influence }
     }
 
     /// Bytes that the operator takes on that grid.
     pub(super) fn bytes(grid: &Grid) -> usize {
-        Convolution::bytes(grid.cells(), grid.cells())
+        default_backend().bytes(grid.cells(), grid.cells())
     }
 }
 
@@ -64,11 +70,11 @@ impl Operator for Periodic {
     }
 
     fn approximate_inverse(&self) -> ApproximateInverse {
-        ApproximateInverse::new(self.grid, Boundary::Periodic, self.kernel.clone())
+        ApproximateInverse::new(self.backend.clone(), self.grid, Boundary::Periodic, self.kernel.clone())
     }
 
     fn on_grid(&self, grid: Grid) -> Option<Box<dyn Operator>> {
-        Some(Box::new(Periodic::new(grid, self.kernel.clone())))
+        Some(Box::new(Periodic::new(self.backend.clone(), grid, self.kernel.clone())))
     }
 }
 
@@ -81,7 +87,7 @@ mod tests {
     fn the_self_influence_is_what_the_convolution_says() {
         for cells in [[16, 16], [9, 14], [1, 7], [20, 33]] {
             let grid = Grid::new(cells, [1.0, 2.0]).unwrap();
-            let mut operator = Periodic::new(grid, Arc::new(HalfSpace));
+            let mut operator = Periodic::new(default_backend(), grid, Arc::new(HalfSpace));
             let (mut unit, mut response) = (vec![0.0; cells[0] * cells[1]], vec![0.0; cells[0] * cells[1]]);
             unit[0] = 1.0;
             operator.apply_into(&unit, &mut response);

@@ -3,7 +3,7 @@
 //! A contour of a grid runs along x and y only. One of random direction is longer by the mean of |cos| + |sin|, 4/π
 //! (V. A. Yastrebov, G. Anciaux & J.-F. Molinari, Tribol. Int. 114 (2017) 161).
 
-use asperity_sweep::eights::{Eight, Mask, Work, vectorize};
+use asperity_sweep::simd::{F64x8, Mask, Work, vectorize};
 use ndarray::ArrayView2;
 use rayon::prelude::*;
 
@@ -78,7 +78,7 @@ impl Work for Row<'_> {
     type Yield = Edges;
 
     #[inline(always)]
-    fn run<V: Eight>(self) -> Edges {
+    fn run<V: F64x8>(self) -> Edges {
         let zero = V::splat(0.0);
         let mut edges = Edges::default();
         for n in (0..self.here.len()).step_by(8) {

@@ -6,18 +6,18 @@ use ndarray::Array2;
 
 use super::streaming::Streaming;
 use super::torus::Spectrum;
-use crate::convolution::Convolution;
 use crate::error::{Error, Result};
 use crate::grid::{Boundary, Grid};
 use crate::kernel::Kernel;
-use crate::operator::{ApproximateInverse, Operator};
+use crate::operator::{ApproximateInverse, Backend, ConvolutionPlan, Operator, default_backend};
 
 /// u = M p.
 pub(super) struct Metric {
     grid: Grid,
     boundary: Boundary,
+    backend: Arc<dyn Backend>,
     kernel: Arc<dyn Kernel>,
-    convolution: Convolution,
+    convolution: Box<dyn ConvolutionPlan>,
     self_influence: f64,
     determines_mean: bool,
 }
@@ -38,12 +38,14 @@ impl Metric {
         let quarter = Array2::from_shape_fn((mx / 2 + 1, my / 2 + 1), of);
         let times = |k: usize, m: usize| if k == 0 || 2 * k == m { 1.0 } else { 2.0 };
         let sum: f64 = quarter.indexed_iter().map(|((kx, ky), s)| times(kx, mx) * times(ky, my) * s).sum();
+        let backend = default_backend();
         Metric {
-            convolution: Convolution::new(grid.cells(), [mx, my], quarter.view()),
+            convolution: backend.plan(grid.cells(), [mx, my], quarter.view()),
             self_influence: sum / (mx as f64 * my as f64),
             determines_mean: quarter[(0, 0)] > 0.0,
             grid,
             boundary,
+            backend,
             kernel,
         }
     }
@@ -71,7 +73,7 @@ impl Operator for Metric {
     }
 
     fn approximate_inverse(&self) -> ApproximateInverse {
-        ApproximateInverse::new(self.grid, self.boundary, self.kernel.clone())
+        ApproximateInverse::new(self.backend.clone(), self.grid, self.boundary, self.kernel.clone())
     }
 
     fn on_grid(&self, _grid: Grid) -> Option<Box<dyn Operator>> {

@@ -265,7 +265,7 @@ impl Steady {
         if found.is_ok() {
             found = loop {
                 self.torus.apply_into(&steady, &self.state.pressure, &mut self.state.unit_displacement);
-                let rated = contact::rate(&problem, &grid, options.tolerance, &mut self.state);
+                let rated = contact::assess(&problem, &grid, options.tolerance, &mut self.state);
                 let outcome =
                     Outcome { iterations: total.iterations, convolutions: total.convolutions + 1, ..rated };
                 total.convolutions += 1;
@@ -568,7 +568,7 @@ impl Newton<'_> {
             let state = &mut steady.state;
             steady.torus.apply_into(self.steady, &state.pressure, &mut state.unit_displacement);
             total.convolutions += 1;
-            let residual = contact::rate(self.problem, &grid, self.options.tolerance, state).residual;
+            let residual = contact::assess(self.problem, &grid, self.options.tolerance, state).residual;
             // The set may change a few times before the residual falls.
             stalled = if residual < 0.7 * least { 0 } else { stalled + 1 };
             if residual < least {

@@ -3,12 +3,8 @@
 //! The convolution engine of the contact solver takes even, real spectra only. What slides has a front and a back: its
 //! spectrum S(-q) = conj S(q) is complex. Normalisation: both transforms together are the identity.
 
-use std::sync::Arc;
-
-use asperity_convolution::fft;
+use asperity_convolution::plane::RealPlane;
 use rayon::prelude::*;
-use realfft::{ComplexToReal, RealToComplex};
-use rustfft::Fft;
 use rustfft::num_complex::Complex64;
 
 /// The multipliers of a torus of mx x my cells, in columns of constant ky: S(kx, ky) at `ky * mx + kx`, 0 <= ky <= my/2, all kx.
@@ -17,48 +13,36 @@ pub(crate) struct Spectrum(pub(crate) Vec<Complex64>);
 
 /// The transforms of a domain on a torus.
 pub(crate) struct Torus {
-    /// nx, ny.
-    cells: [usize; 2],
-    /// mx, my.
-    lengths: [usize; 2],
-    rows_forward: Arc<dyn RealToComplex<f64>>,
-    rows_back: Arc<dyn ComplexToReal<f64>>,
-    columns_forward: Arc<dyn Fft<f64>>,
-    columns_back: Arc<dyn Fft<f64>>,
-    /// Transformed rows, a row after the other.
-    rows: Vec<Complex64>,
-    /// The same, a column after the other.
+    plane: RealPlane,
+    /// The transformed rows of a field.
     columns: Vec<Complex64>,
 }
 
 impl Torus {
     pub(crate) fn new(cells: [usize; 2], lengths: [usize; 2]) -> Self {
-        let half = lengths[1] / 2 + 1;
-        Torus {
-            cells,
-            lengths,
-            rows_forward: fft::real_forward(lengths[1]),
-            rows_back: fft::real_inverse(lengths[1]),
-            columns_forward: fft::forward(lengths[0]),
-            columns_back: fft::inverse(lengths[0]),
-            rows: vec![Complex64::ZERO; cells[0] * half],
-            columns: vec![Complex64::ZERO; cells[0] * half],
-        }
+        let plane = RealPlane::new(cells, lengths);
+        Torus { columns: plane.columns(), plane }
     }
 
     /// mx, my.
     pub(crate) fn lengths(&self) -> [usize; 2] {
-        self.lengths
+        self.plane.lengths()
+    }
+
+    /// 1/(mx my), which makes both transforms together the identity.
+    fn scale(&self) -> f64 {
+        let [mx, my] = self.lengths();
+        1.0 / (mx as f64 * my as f64)
     }
 
     /// Numbers of a [`Spectrum`].
     pub(crate) fn spectrum_len(&self) -> usize {
-        self.lengths[0] * (self.lengths[1] / 2 + 1)
+        self.lengths()[0] * self.plane.waves_along_y()
     }
 
     /// The spectrum with these numbers S(kx, ky), -mx/2 < kx <= mx/2. Where a wave is its own opposite, only the real part counts.
     pub(crate) fn spectrum(&self, of: impl Fn(i64, i64) -> Complex64 + Sync) -> Spectrum {
-        let [mx, my] = self.lengths;
+        let [mx, my] = self.lengths();
         let own = |k: usize, m: usize| k == 0 || 2 * k == m;
         let number = |n: usize| {
             let (kx, ky) = (n % mx, n / mx);
@@ -71,21 +55,25 @@ impl Torus {
 
     /// u = F⁻¹[ S F p ]; both fields have nx ny cells.
     pub(crate) fn apply_into(&mut self, spectrum: &Spectrum, p: &[f64], u: &mut [f64]) {
-        self.forward(p);
-        self.multiply(|n, x| x * spectrum.0[n]);
-        self.back(u);
+        let (mx, scale) = (self.lengths()[0], self.scale());
+        self.plane.rows_forward(p, &mut self.columns);
+        self.plane.each_column(&mut self.columns, |transforms, ky, column| {
+            let waves = transforms.forward(column).iter_mut();
+            waves.zip(&spectrum.0[ky * mx..]).for_each(|(x, s)| *x = *x * s * scale);
+            column.copy_from_slice(transforms.back());
+        });
+        self.plane.rows_back(&self.columns, u);
     }
 
     /// F p, p of nx ny cells.
     pub(crate) fn transform(&mut self, p: &[f64]) -> Spectrum {
-        let (mx, nx) = (self.lengths[0], self.cells[0]);
-        self.forward(p);
         let mut all = vec![Complex64::ZERO; self.spectrum_len()];
-        let fft = &self.columns_forward;
-        all.par_chunks_mut(mx).zip(self.columns.par_chunks(nx)).for_each(|(wave, column)| {
-            wave[..nx].copy_from_slice(column);
-            fft.process(wave);
-        });
+        self.plane.rows_forward(p, &mut self.columns);
+        let nx = self.columns.len() / self.plane.waves_along_y();
+        all.par_chunks_mut(self.lengths()[0]).zip(self.columns.par_chunks(nx)).for_each_init(
+            || self.plane.column(),
+            |transforms, (waves, column)| waves.copy_from_slice(transforms.forward(column)),
+        );
         Spectrum(all)
     }
 
@@ -96,110 +84,46 @@ impl Torus {
         weight: impl Fn(Complex64, i64) -> f64 + Sync,
         p: &[f64],
     ) -> f64 {
-        let [mx, my] = self.lengths;
-        self.forward(p);
-        let fft = &self.columns_forward;
-        let nx = self.cells[0];
+        let [mx, my] = self.lengths();
+        self.plane.rows_forward(p, &mut self.columns);
+        let nx = self.columns.len() / self.plane.waves_along_y();
         let sums: Vec<f64> = self
             .columns
             .par_chunks(nx)
             .enumerate()
-            .map(|(ky, column)| {
-                let mut wave = vec![Complex64::ZERO; mx];
-                wave[..nx].copy_from_slice(column);
-                fft.process(&mut wave);
-                let twice = if ky == 0 || 2 * ky == my { 1.0 } else { 2.0 };
-                let terms = wave.iter().enumerate().map(|(kx, x)| {
-                    let signed = if 2 * kx > mx { kx as i64 - mx as i64 } else { kx as i64 };
-                    weight(spectrum.0[ky * mx + kx], signed) * x.norm_sqr()
-                });
-                twice * terms.sum::<f64>()
-            })
+            .map_init(
+                || self.plane.column(),
+                |transforms, (ky, column)| {
+                    let twice = if ky == 0 || 2 * ky == my { 1.0 } else { 2.0 };
+                    let terms = transforms.forward(column).iter().enumerate().map(|(kx, x)| {
+                        let signed = if 2 * kx > mx { kx as i64 - mx as i64 } else { kx as i64 };
+                        weight(spectrum.0[ky * mx + kx], signed) * x.norm_sqr()
+                    });
+                    twice * terms.sum::<f64>()
+                },
+            )
             .collect();
         sums.iter().sum::<f64>() / (mx as f64 * my as f64)
     }
 
     /// u = F⁻¹[ S T ] of a transform T and a spectrum S.
     pub(crate) fn back_from(&mut self, transform: &Spectrum, spectrum: &Spectrum, u: &mut [f64]) {
-        let (mx, nx) = (self.lengths[0], self.cells[0]);
-        let scale = 1.0 / (mx as f64 * self.lengths[1] as f64);
-        let fft = &self.columns_back;
-        self.columns.par_chunks_mut(nx).enumerate().for_each(|(ky, column)| {
-            let own = ky * mx..(ky + 1) * mx;
-            let pairs = transform.0[own.clone()].iter().zip(&spectrum.0[own]);
-            let mut wave: Vec<Complex64> = pairs.map(|(a, b)| a * b * scale).collect();
-            fft.process(&mut wave);
-            column.copy_from_slice(&wave[..nx]);
-        });
-        self.back(u);
+        self.back(|n| transform.0[n] * spectrum.0[n], u);
     }
 
     /// u = F⁻¹ T of a transform T.
     pub(crate) fn back_of(&mut self, transform: &[Complex64], u: &mut [f64]) {
-        let (mx, nx) = (self.lengths[0], self.cells[0]);
-        let scale = 1.0 / (mx as f64 * self.lengths[1] as f64);
-        let fft = &self.columns_back;
-        self.columns.par_chunks_mut(nx).zip(transform.par_chunks(mx)).for_each(|(column, waves)| {
-            let mut waves: Vec<Complex64> = waves.iter().map(|wave| wave * scale).collect();
-            fft.process(&mut waves);
-            column.copy_from_slice(&waves[..nx]);
+        self.back(|n| transform[n], u);
+    }
+
+    /// u = F⁻¹ of the numbers `wave(ky mx + kx)`.
+    fn back(&mut self, wave: impl Fn(usize) -> Complex64 + Sync, u: &mut [f64]) {
+        let (mx, scale) = (self.lengths()[0], self.scale());
+        self.plane.each_column(&mut self.columns, |transforms, ky, column| {
+            transforms.waves.iter_mut().zip(ky * mx..).for_each(|(x, n)| *x = wave(n) * scale);
+            column.copy_from_slice(transforms.back());
         });
-        self.back(u);
-    }
-
-    fn forward(&mut self, p: &[f64]) {
-        let (ny, half, fft) = (self.cells[1], self.lengths[1] / 2 + 1, &self.rows_forward);
-        self.rows.par_chunks_mut(half).zip(p.par_chunks(ny)).for_each_init(
-            || (fft.make_input_vec(), fft.make_scratch_vec()),
-            |(input, scratch), (out, row)| {
-                input[..ny].copy_from_slice(row);
-                input[ny..].fill(0.0);
-                let done = fft.process_with_scratch(input, out, scratch);
-                debug_assert!(done.is_ok(), "the buffers have the plan's lengths");
-            },
-        );
-        let (nx, rows) = (self.cells[0], &self.rows);
-        self.columns.par_chunks_mut(nx).enumerate().for_each(|(ky, column)| {
-            column.iter_mut().enumerate().for_each(|(i, x)| *x = rows[i * half + ky]);
-        });
-    }
-
-    /// Every column forward, each number times what `multiply(n, x)` makes of it, and back.
-    fn multiply(&mut self, multiply: impl Fn(usize, Complex64) -> Complex64 + Sync) {
-        let (mx, nx) = (self.lengths[0], self.cells[0]);
-        let scale = 1.0 / (mx as f64 * self.lengths[1] as f64);
-        let (forward, back) = (&self.columns_forward, &self.columns_back);
-        let scratch = forward.get_inplace_scratch_len().max(back.get_inplace_scratch_len());
-        self.columns.par_chunks_mut(nx).enumerate().for_each_init(
-            || (vec![Complex64::ZERO; mx], vec![Complex64::ZERO; scratch]),
-            |(wave, scratch), (ky, column)| {
-                wave[..nx].copy_from_slice(column);
-                wave[nx..].fill(Complex64::ZERO);
-                forward.process_with_scratch(wave, scratch);
-                wave.iter_mut().enumerate().for_each(|(kx, x)| *x = multiply(ky * mx + kx, *x) * scale);
-                back.process_with_scratch(wave, scratch);
-                column.copy_from_slice(&wave[..nx]);
-            },
-        );
-    }
-
-    fn back(&mut self, u: &mut [f64]) {
-        let ([nx, ny], my) = (self.cells, self.lengths[1]);
-        let (fft, columns) = (&self.rows_back, &self.columns);
-        u.par_chunks_mut(ny).enumerate().for_each_init(
-            || (fft.make_input_vec(), fft.make_output_vec(), fft.make_scratch_vec()),
-            |(spectrum, row, scratch), (i, u)| {
-                spectrum.iter_mut().enumerate().for_each(|(ky, x)| *x = columns[ky * nx + i]);
-                // The ends of a real signal's spectrum are real; rounding left a trace.
-                spectrum[0].im = 0.0;
-                if my.is_multiple_of(2) {
-                    spectrum[my / 2].im = 0.0;
-                }
-                let done = fft.process_with_scratch(spectrum, row, scratch);
-                debug_assert!(done.is_ok(), "the buffers have the plan's lengths");
-                u.copy_from_slice(&row[..ny]);
-            },
-        );
+        self.plane.rows_back(&self.columns, u);
     }
 }
 

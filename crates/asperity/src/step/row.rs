@@ -1,6 +1,6 @@
 //! What a row of the result tells: numbers of the contact, and the fields on request.
 
-use asperity_sweep::eights::{Eight, Work, vectorize};
+use asperity_sweep::simd::{F64x8, Work, vectorize};
 use ndarray::{Array2, ArrayView2};
 
 use crate::contact::{ContactState, Hardness, Outcome};
@@ -319,14 +319,14 @@ impl Work for Survey<'_> {
     type Yield = ([f64; 5], Max);
 
     #[inline(always)]
-    fn run<V: Eight>(self) -> ([f64; 5], Max) {
+    fn run<V: F64x8>(self) -> ([f64; 5], Max) {
         let [zero, c, w] = [0.0, self.c, self.w].map(V::splat);
         let (mut sums, mut peak) = ([zero; 5], zero);
         for n in (0..self.p.len()).step_by(8) {
             let [p, u] = [self.p, self.u].map(|field| V::load(field, n, 0.0));
             let h = V::load(self.h, n, f64::INFINITY);
             let can_touch = h.less(V::splat(f64::INFINITY));
-            let capped = self.hardness.eight::<V>(n).at_most(p);
+            let capped = self.hardness.load::<V>(n).at_most(p);
             let gap = (c * u + h - w).only(can_touch);
             let terms = [p, V::count(zero.less(p)), V::count(capped), gap, V::count(can_touch)];
             sums = std::array::from_fn(|k| sums[k] + terms[k]);

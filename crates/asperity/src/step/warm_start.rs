@@ -7,7 +7,7 @@
 //! state, and where it could show, U is computed afresh. Where layers creep differently the operator is another one in each step:
 //! there the two U cost a convolution each, and save several iterations.
 
-use asperity_sweep::eights::{Eight, Mask, Work};
+use asperity_sweep::simd::{F64x8, Mask, Work};
 
 use super::{Interval, Stepper};
 use crate::contact::{ContactState, Hardness, Prescribed, SAME_LOAD, Start};
@@ -222,7 +222,7 @@ impl Work for Products<'_> {
     type Yield = Pair;
 
     #[inline(always)]
-    fn run<V: Eight>(self) -> Pair {
+    fn run<V: F64x8>(self) -> Pair {
         let zero = V::splat(0.0);
         let (mut energy, mut work, mut sum) = ([zero; 3], [zero; 2], [zero; 2]);
         let (mut size, mut at_cut_off) = (zero, zero);
@@ -240,7 +240,7 @@ impl Work for Products<'_> {
             work = [work[0] + x * h, work[1] + d * h];
             sum = [sum[0] + x, sum[1] + d];
             size = size + d.abs();
-            at_cut_off = at_cut_off + V::count(touches & !x.less(self.hardness.eight(n)));
+            at_cut_off = at_cut_off + V::count(touches & !x.less(self.hardness.load(n)));
         }
         Pair {
             energy: energy.map(V::sum),
@@ -279,7 +279,7 @@ impl Work for Combine<'_> {
     type Yield = [f64; 4];
 
     #[inline(always)]
-    fn run<V: Eight>(self) -> [f64; 4] {
+    fn run<V: F64x8>(self) -> [f64; 4] {
         let Combination { a, f } = self.combination;
         let (a, f, zero) = (V::splat(a), V::splat(f), V::splat(0.0));
         let mut sums = [zero; 4];

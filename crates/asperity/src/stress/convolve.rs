@@ -8,10 +8,10 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use asperity_convolution::fft;
+use asperity_convolution::plane::RealPlane;
 use ndarray::{Array1, Array2, ArrayViewMut1, Axis};
 use rayon::prelude::*;
-use realfft::{ComplexToReal, RealToComplex};
-use rustfft::Fft;
+use realfft::RealToComplex;
 use rustfft::num_complex::Complex64;
 
 use super::Component;
@@ -42,27 +42,22 @@ pub struct SubsurfaceStress {
     boundary: Boundary,
     /// Poisson's ratio of [`set_pressure`](Self::set_pressure).
     poisson: f64,
-    /// Lengths of the transforms.
-    lengths: [usize; 2],
-    rows_forward: Arc<dyn RealToComplex<f64>>,
-    rows_inverse: Arc<dyn ComplexToReal<f64>>,
-    columns_forward: Arc<dyn Fft<f64>>,
-    columns_inverse: Arc<dyn Fft<f64>>,
-    /// Columns of the real coefficients of a cell.
-    coefficient_columns: Arc<dyn RealToComplex<f64>>,
+    plane: RealPlane,
+    /// Columns and rows of the real coefficients of a cell.
+    coefficients: [Arc<dyn RealToComplex<f64>>; 2],
     /// The stress is the sum of those under these pressures.
     sources: Vec<Source>,
     /// Uniform stress xx and yy besides \[Pa\].
     lateral: f64,
-    /// Transforms of the rows of a component: (ky, row).
-    work: Array2<Complex64>,
+    /// Transformed rows of a component.
+    work: Vec<Complex64>,
 }
 
 /// A pressure and the Poisson's ratio of the body that it acts on.
 struct Source {
     poisson: f64,
-    /// Transforms of the rows of the pressure: (ky, row).
-    rows: Array2<Complex64>,
+    /// Transformed rows of the pressure.
+    rows: Vec<Complex64>,
 }
 
 impl SubsurfaceStress {
@@ -78,20 +73,16 @@ impl SubsurfaceStress {
             Boundary::Free => grid.cells().map(|n| Convolution::good_length(2 * n - 1)),
             Boundary::Periodic => grid.cells(),
         };
-        let columns = (lengths[1] / 2 + 1, grid.cells()[0]);
+        let plane = RealPlane::new(grid.cells(), lengths);
         Ok(SubsurfaceStress {
-            rows_forward: fft::real_forward(lengths[1]),
-            rows_inverse: fft::real_inverse(lengths[1]),
-            columns_forward: fft::forward(lengths[0]),
-            columns_inverse: fft::inverse(lengths[0]),
-            coefficient_columns: fft::real_forward(lengths[0]),
+            coefficients: lengths.map(fft::real_forward),
             sources: vec![],
             lateral: 0.0,
-            work: Array2::zeros(columns),
+            work: plane.columns(),
+            plane,
             grid,
             boundary,
             poisson,
-            lengths,
         })
     }
 
@@ -156,24 +147,8 @@ impl SubsurfaceStress {
 
     /// Adds a pressure on a body of this Poisson's ratio.
     fn add(&mut self, p: &[f64], poisson: f64) {
-        let [nx, ny] = self.grid.cells();
-        let fft = &self.rows_forward;
-        let transforms: Vec<Vec<Complex64>> = p
-            .par_chunks(ny)
-            .map(|row| {
-                let (mut input, mut output) = (fft.make_input_vec(), fft.make_output_vec());
-                input[..ny].copy_from_slice(row);
-                let done = fft.process(&mut input, &mut output);
-                debug_assert!(done.is_ok(), "the buffers have the plan's lengths");
-                output
-            })
-            .collect();
-        let mut rows = Array2::zeros((self.lengths[1] / 2 + 1, nx));
-        rows.outer_iter_mut().into_par_iter().enumerate().for_each(
-            |(ky, mut column): (usize, ArrayViewMut1<'_, Complex64>)| {
-                column.iter_mut().zip(&transforms).for_each(|(x, row)| *x = row[ky]);
-            },
-        );
+        let mut rows = self.plane.columns();
+        self.plane.rows_forward(p, &mut rows);
         self.sources.push(Source { poisson, rows });
     }
 
@@ -202,7 +177,7 @@ impl SubsurfaceStress {
             };
             self.add_product(component, &spectrum, source);
         }
-        self.rows_back(out);
+        self.plane.rows_back(&self.work, out);
         if matches!(component, Component::Xx | Component::Yy) {
             out.iter_mut().for_each(|stress| *stress += self.lateral);
         }
@@ -224,12 +199,12 @@ impl SubsurfaceStress {
     /// The stress at the offsets (i dx, j dy), i < nx and j < ny, from a cell under unit pressure, transformed along y: (i, ky).
     fn transformed_rows(&self, component: Component, depth: f64, poisson: f64) -> Array2<f64> {
         let ([nx, ny], [dx, dy]) = (self.grid.cells(), self.grid.spacing());
-        let (fft, odd) = (&self.rows_forward, component.is_odd()[1]);
+        let (fft, odd) = (&self.coefficients[1], component.is_odd()[1]);
         let is_far = depth > (nx as f64 * dx).max(ny as f64 * dy);
         let at = |i: usize, j: usize| {
             corner(component, (i as f64 - 0.5) * dx, (j as f64 - 0.5) * dy, depth, poisson, is_far)
         };
-        let mut rows = Array2::zeros((nx, self.lengths[1] / 2 + 1));
+        let mut rows = Array2::zeros((nx, self.plane.waves_along_y()));
         if self.grid.is_line() {
             // The transform of one cell along y is constant.
             let of = |i: usize| strip(component, i as f64 * dx, depth, 0.5 * dx, poisson);
@@ -255,26 +230,20 @@ impl SubsurfaceStress {
 
     /// work += the columns of the pressure of a source times the spectrum, transformed back along x.
     fn add_product(&mut self, component: Component, spectrum: &Spectrum, source: usize) {
-        let (mx, nx) = (self.lengths[0], self.grid.cells()[0]);
-        let scale = 1.0 / (mx as f64 * self.lengths[1] as f64);
+        let (lengths, nx) = (self.plane.lengths(), self.grid.cells()[0]);
+        let mx = lengths[0];
+        let scale = 1.0 / (mx as f64 * lengths[1] as f64);
         let odd = component.is_odd();
         let unit = match odd {
             [false, false] => Complex64::new(scale, 0.0),
             [true, true] => Complex64::new(-scale, 0.0),
             _ => Complex64::new(0.0, scale),
         };
-        let (forward, inverse, half) =
-            (&self.columns_forward, &self.columns_inverse, &self.coefficient_columns);
-        let (lengths, size) = (self.lengths, self.grid.size());
-        let pressure = self.sources[source].rows.outer_iter();
-        let columns = self.work.outer_iter_mut().into_par_iter().zip(pressure);
-        columns.enumerate().for_each_init(
-            || {
-                let scratch = forward.get_inplace_scratch_len().max(inverse.get_inplace_scratch_len());
-                let buffer = vec![Complex64::ZERO; mx];
-                (buffer, vec![Complex64::ZERO; scratch], Array1::zeros(mx / 2 + 1), Half::new(half))
-            },
-            |(buffer, scratch, factors, halves), (ky, (mut work, pressure))| {
+        let (plane, half, size) = (&self.plane, &self.coefficients[0], self.grid.size());
+        let pressure = self.sources[source].rows.par_chunks(nx);
+        self.work.par_chunks_mut(nx).zip(pressure).enumerate().for_each_init(
+            || (plane.column(), Array1::zeros(mx / 2 + 1), Half::new(half)),
+            |(transforms, factors, halves), (ky, (work, pressure))| {
                 match spectrum {
                     Spectrum::Cell(rows) => {
                         let column = rows.column(ky);
@@ -289,35 +258,12 @@ impl SubsurfaceStress {
                         })
                     }
                 }
-                buffer[nx..].fill(Complex64::ZERO);
-                buffer.iter_mut().zip(pressure).for_each(|(x, p)| *x = *p);
-                forward.process_with_scratch(buffer, scratch);
-                for (k, x) in buffer.iter_mut().enumerate() {
+                for (k, x) in transforms.forward(pressure).iter_mut().enumerate() {
                     let mirrored = 2 * k > mx;
                     let factor = factors[if mirrored { mx - k } else { k }];
                     *x *= unit * if mirrored && odd[0] { -factor } else { factor };
                 }
-                inverse.process_with_scratch(buffer, scratch);
-                work.iter_mut().zip(&buffer[..nx]).for_each(|(work, x)| *work += *x);
-            },
-        );
-    }
-
-    fn rows_back(&self, out: &mut [f64]) {
-        let (ny, my) = (self.grid.cells()[1], self.lengths[1]);
-        let (fft, work) = (&self.rows_inverse, &self.work);
-        out.par_chunks_mut(ny).enumerate().for_each_init(
-            || (fft.make_input_vec(), fft.make_output_vec(), fft.make_scratch_vec()),
-            |(spectrum, row, scratch), (i, out)| {
-                spectrum.iter_mut().enumerate().for_each(|(ky, x)| *x = work[(ky, i)]);
-                // The ends of a real signal's spectrum are real; rounding left a trace.
-                spectrum[0].im = 0.0;
-                if my.is_multiple_of(2) {
-                    spectrum[my / 2].im = 0.0;
-                }
-                let done = fft.process_with_scratch(spectrum, row, scratch);
-                debug_assert!(done.is_ok(), "the buffers have the plan's lengths");
-                out.copy_from_slice(&row[..ny]);
+                work.iter_mut().zip(transforms.back()).for_each(|(work, x)| *work += *x);
             },
         );
     }

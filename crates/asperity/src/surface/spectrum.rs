@@ -10,9 +10,8 @@
 
 use std::f64::consts::TAU;
 
-use asperity_convolution::fft;
-use ndarray::parallel::prelude::*;
-use ndarray::{Array2, ArrayView2, Axis};
+use asperity_convolution::plane::RealPlane;
+use ndarray::{Array2, ArrayView2};
 use rustfft::num_complex::Complex64;
 
 use crate::error::{Error, Result};
@@ -22,65 +21,37 @@ use crate::grid::Grid;
 pub(super) fn transform(grid: &Grid, heights: ArrayView2<f64>) -> Result<Array2<Complex64>> {
     check_shape(grid, heights)?;
     check_defined(heights)?;
-    let [nx, ny] = grid.cells();
-    let along_y = fft::real_forward(ny);
-    let mut amplitudes = Array2::<Complex64>::zeros((nx, ny / 2 + 1));
+    let (plane, mut columns) = planned(grid);
     let scale = 1.0 / grid.len() as f64;
-    amplitudes.outer_iter_mut().into_par_iter().zip(heights.outer_iter()).for_each_init(
-        || (vec![0.0; ny], along_y.make_output_vec(), along_y.make_scratch_vec()),
-        |(input, output, scratch), (mut row, z)| {
-            input.iter_mut().zip(z).for_each(|(a, z)| *a = z * scale);
-            // The lengths come from the plan itself, so the call cannot fail.
-            let _ = along_y.process_with_scratch(input, output, scratch);
-            row.iter_mut().zip(output.iter()).for_each(|(a, b)| *a = *b);
-        },
-    );
-    let along_x = fft::forward(nx);
-    transform_columns(&mut amplitudes, along_x.as_ref());
-    Ok(amplitudes)
+    let heights: Vec<f64> = heights.iter().map(|z| z * scale).collect();
+    if let Some(columns) = columns.as_slice_mut() {
+        plane.rows_forward(&heights, columns);
+        plane
+            .each_column(columns, |transforms, _, column| column.copy_from_slice(transforms.forward(column)));
+    }
+    Ok(columns.reversed_axes())
 }
 
 /// The heights of given amplitudes.
-pub(super) fn inverse(grid: &Grid, mut amplitudes: Array2<Complex64>) -> Array2<f64> {
-    let [nx, ny] = grid.cells();
-    let along_x = fft::inverse(nx);
-    transform_columns(&mut amplitudes, along_x.as_ref());
-    let along_y = fft::real_inverse(ny);
-    let mut heights = Array2::zeros((nx, ny));
-    heights.outer_iter_mut().into_par_iter().zip(amplitudes.outer_iter()).for_each_init(
-        || (along_y.make_input_vec(), vec![0.0; ny], along_y.make_scratch_vec()),
-        |(input, output, scratch), (mut z, row)| {
-            input.iter_mut().zip(row).for_each(|(a, b)| *a = *b);
-            // Real but for rounding, as those of every real row.
-            input[0].im = 0.0;
-            if ny.is_multiple_of(2) {
-                input[ny / 2].im = 0.0;
-            }
-            // The lengths come from the plan itself, so the call cannot fail.
-            let _ = along_y.process_with_scratch(input, output, scratch);
-            z.iter_mut().zip(output.iter()).for_each(|(a, b)| *a = *b);
-        },
-    );
+pub(super) fn inverse(grid: &Grid, amplitudes: Array2<Complex64>) -> Array2<f64> {
+    let (plane, mut columns) = planned(grid);
+    columns.assign(&amplitudes.reversed_axes());
+    let mut heights = Array2::zeros(grid.shape());
+    if let (Some(columns), Some(heights)) = (columns.as_slice_mut(), heights.as_slice_mut()) {
+        plane.each_column(columns, |transforms, _, column| {
+            transforms.waves.copy_from_slice(column);
+            column.copy_from_slice(transforms.back());
+        });
+        plane.rows_back(columns, heights);
+    }
     heights
 }
 
-/// Columns transformed together: one cache line holds four numbers of a row.
-const COLUMNS: usize = 8;
-
-fn transform_columns(amplitudes: &mut Array2<Complex64>, plan: &dyn rustfft::Fft<f64>) {
-    let n = plan.len();
-    amplitudes.axis_chunks_iter_mut(Axis(1), COLUMNS).into_par_iter().for_each_init(
-        || (vec![Complex64::ZERO; COLUMNS * n], vec![Complex64::ZERO; plan.get_inplace_scratch_len()]),
-        |(work, scratch), mut columns| {
-            for (i, row) in columns.outer_iter().enumerate() {
-                row.iter().enumerate().for_each(|(c, a)| work[c * n + i] = *a);
-            }
-            plan.process_with_scratch(&mut work[..columns.ncols() * n], scratch);
-            for (i, mut row) in columns.outer_iter_mut().enumerate() {
-                row.iter_mut().enumerate().for_each(|(c, a)| *a = work[c * n + i]);
-            }
-        },
-    );
+/// The transforms of the grid, and room for its amplitudes by (ky, kx).
+fn planned(grid: &Grid) -> (RealPlane, Array2<Complex64>) {
+    let plane = RealPlane::new(grid.cells(), grid.cells());
+    let columns = Array2::zeros((plane.waves_along_y(), grid.cells()[0]));
+    (plane, columns)
 }
 
 /// (qx, qy) of the amplitude at (i, j) \[1/m\]; a Nyquist wave has its positive one.

@@ -1,7 +1,7 @@
 //! Kernels of the search direction, all on the working set: products of the preconditioned residual, the conjugate direction,
 //! and the steepest descent over all cells that can touch.
 
-use asperity_sweep::eights::{Eight, Mask, Work};
+use asperity_sweep::simd::{F64x8, Mask, Work};
 
 use asperity_sweep::{Set, SetMut, kernel};
 
@@ -17,7 +17,7 @@ impl Work for Centre<'_> {
     type Yield = ();
 
     #[inline(always)]
-    fn run<V: Eight>(self) {
+    fn run<V: F64x8>(self) {
         let (mean, per) = (V::splat(self.mean), V::splat(1.0 / self.unit));
         for (n, set) in (0..).step_by(8).zip(self.set.0).filter(|(_, set)| **set != 0) {
             let r = (V::load(self.r, n, 0.0) - mean) * per;
@@ -37,7 +37,7 @@ impl Work for Products<'_> {
     type Yield = [f64; 5];
 
     #[inline(always)]
-    fn run<V: Eight>(self) -> [f64; 5] {
+    fn run<V: F64x8>(self) -> [f64; 5] {
         let zero = V::splat(0.0);
         let (mut sum_z, mut zr, mut zr_old, mut sum_r_old, mut sum_d_old) = (zero, zero, zero, zero, zero);
         for (n, set) in (0..).step_by(8).zip(self.set.0).filter(|(_, set)| **set != 0) {
@@ -66,7 +66,7 @@ impl Work for Conjugate<'_> {
     type Yield = ();
 
     #[inline(always)]
-    fn run<V: Eight>(self) {
+    fn run<V: F64x8>(self) {
         let (beta, mean) = (V::splat(self.beta), V::splat(self.mean));
         for ((n, set), old) in (0..).step_by(8).zip(self.set.0).zip(self.set_old.0) {
             if *set | *old == 0 {
@@ -93,7 +93,7 @@ impl Work for Steepest<'_> {
     type Yield = ();
 
     #[inline(always)]
-    fn run<V: Eight>(self) {
+    fn run<V: F64x8>(self) {
         let (c, w, per) = (V::splat(self.compliance), V::splat(self.w), V::splat(1.0 / self.unit));
         for (n, set) in (0..).step_by(8).zip(self.set.0) {
             let g = c * V::load(self.u, n, 0.0) + V::load(self.gap, n, f64::INFINITY);

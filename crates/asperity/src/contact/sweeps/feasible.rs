@@ -1,10 +1,10 @@
 //! Kernels that make a pressure feasible: within its bounds, zero where nothing can touch, with a given sum.
 
-use asperity_sweep::eights::{Eight, Mask, Work};
+use asperity_sweep::simd::{F64x8, Mask, Work};
 
 use crate::contact::Hardness;
 use crate::contact::projection::Shift;
-use asperity_sweep::{Min, Set, SetMut, kernel};
+use asperity_sweep::{Max, Min, Set, SetMut, kernel};
 
 kernel! {
     /// Number of cells that can touch, the sum of H over them, and the least gap.
@@ -17,17 +17,41 @@ impl Work for Limits<'_> {
     type Yield = ([f64; 2], Min);
 
     #[inline(always)]
-    fn run<V: Eight>(self) -> Self::Yield {
+    fn run<V: F64x8>(self) -> Self::Yield {
         let [mut touchable, mut most] = [V::splat(0.0); 2];
         let mut least = V::splat(f64::INFINITY);
         for n in (0..self.gap.len()).step_by(8) {
             let h = V::load(self.gap, n, f64::INFINITY);
             let can_touch = h.less(V::splat(f64::INFINITY));
             touchable = touchable + V::count(can_touch);
-            most = most + self.hardness.eight::<V>(n).only(can_touch);
+            most = most + self.hardness.load::<V>(n).only(can_touch);
             least = h.smaller(least);
         }
         ([touchable, most].map(V::sum), Min(least.least()))
+    }
+}
+
+kernel! {
+    /// The largest c U + h of the cells that can touch.
+    pub(in crate::contact) struct LargestGap<'a> {
+        cells { u: &'a [f64], gap: &'a [f64] }
+        numbers { compliance: f64 }
+    }
+}
+
+impl Work for LargestGap<'_> {
+    type Yield = Max;
+
+    #[inline(always)]
+    fn run<V: F64x8>(self) -> Max {
+        let (compliance, none) = (V::splat(self.compliance), V::splat(f64::NEG_INFINITY));
+        let mut largest = none;
+        for n in (0..self.gap.len()).step_by(8) {
+            let h = V::load(self.gap, n, f64::INFINITY);
+            let g = h + compliance * V::load(self.u, n, 0.0);
+            largest = V::select(h.less(V::splat(f64::INFINITY)), g, none).larger(largest);
+        }
+        Max(largest.largest())
     }
 }
 
@@ -43,7 +67,7 @@ impl Work for Clip<'_> {
     type Yield = [f64; 2];
 
     #[inline(always)]
-    fn run<V: Eight>(self) -> [f64; 2] {
+    fn run<V: F64x8>(self) -> [f64; 2] {
         let (mut sum, mut cells) = (V::splat(0.0), V::splat(0.0));
         for (n, set) in (0..).step_by(8).zip(self.touchable.0) {
             let can_touch = V::load(self.gap, n, f64::INFINITY).less(V::splat(f64::INFINITY));
@@ -68,11 +92,11 @@ impl Work for BelowAndCapped<'_> {
     type Yield = [f64; 2];
 
     #[inline(always)]
-    fn run<V: Eight>(self) -> [f64; 2] {
+    fn run<V: F64x8>(self) -> [f64; 2] {
         let (mut sum, mut capped) = (V::splat(0.0), V::splat(0.0));
         for n in (0..self.p.len()).step_by(8) {
             let p = V::load(self.p, n, 0.0);
-            let below = p.less(self.hardness.eight(n));
+            let below = p.less(self.hardness.load(n));
             sum = sum + p.only(below);
             capped = capped + p.only(!below);
         }
@@ -92,11 +116,11 @@ impl Work for Scale<'_> {
     type Yield = f64;
 
     #[inline(always)]
-    fn run<V: Eight>(self) -> f64 {
+    fn run<V: F64x8>(self) -> f64 {
         let mut over = V::splat(0.0);
         for n in (0..self.p.len()).step_by(8) {
             let p = V::load(self.p, n, 0.0);
-            let hardness = self.hardness.eight(n);
+            let hardness = self.hardness.load(n);
             let scaled = V::select(p.less(hardness), p * V::splat(self.factor), p);
             scaled.smaller(hardness).store(self.p, n);
             over = over + V::count(hardness.less(scaled));
@@ -117,7 +141,7 @@ impl Work for ShiftAll<'_> {
     type Yield = ();
 
     #[inline(always)]
-    fn run<V: Eight>(self) {
+    fn run<V: F64x8>(self) {
         for (n, set) in (0..).step_by(8).zip(self.set.0) {
             let p = self.shift.project(V::load(self.p, n, 0.0), self.hardness.interval(n));
             p.only(V::Mask::from_bits(*set)).store(self.p, n);

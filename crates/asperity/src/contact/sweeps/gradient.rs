@@ -1,6 +1,6 @@
 //! Kernels of a projected-gradient step in double precision: the trial point, and the step to its projection.
 
-use asperity_sweep::eights::{Eight, Mask, Work};
+use asperity_sweep::simd::{F64x8, Mask, Work};
 
 use crate::contact::Hardness;
 use crate::contact::projection::Shift;
@@ -20,7 +20,7 @@ impl Work for GradientTrial<'_> {
     type Yield = ();
 
     #[inline(always)]
-    fn run<V: Eight>(self) {
+    fn run<V: F64x8>(self) {
         let [compliance, w, length] = [self.compliance, self.w, self.length].map(V::splat);
         for (n, set) in (0..).step_by(8).zip(self.set.0) {
             let r = compliance * V::load(self.u, n, 0.0) + V::load(self.gap, n, 0.0) - w;
@@ -43,7 +43,7 @@ impl Work for GradientStep<'_> {
     type Yield = [f64; 2];
 
     #[inline(always)]
-    fn run<V: Eight>(self) -> [f64; 2] {
+    fn run<V: F64x8>(self) -> [f64; 2] {
         let [mut slope, mut square] = [V::splat(0.0); 2];
         for (n, set) in (0..).step_by(8).zip(self.set.0) {
             let q = self.shift.project(V::load(self.y, n, 0.0), self.hardness.interval(n));

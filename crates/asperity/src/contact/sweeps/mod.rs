@@ -7,7 +7,6 @@
 pub(super) mod direction;
 pub(super) mod feasible;
 pub(super) mod gradient;
-pub(super) mod preconditioner;
 pub(super) mod projection;
-pub(super) mod rate;
+pub(super) mod residual;
 pub(super) mod step;

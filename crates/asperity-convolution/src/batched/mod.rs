@@ -1,0 +1,217 @@
+//! The lane-batched back end: a vector holds the same element of several rows, or columns.
+//!
+//! Most fast Fourier transforms vectorise inside of one signal and pay with shuffles. A convolution
+//! of a field has hundreds of signals of the same length, so here every lane of a vector belongs to
+//! another one, and each runs the scalar algorithm undisturbed:
+//!
+//! 1. `rows`: a block of rows is transposed into lanes, transformed along y as packed real signals,
+//!    and transposed into blocks of columns (`work`);
+//! 2. columns (`engine`): every block is transformed along x, multiplied by the real spectrum and
+//!    transformed back while it is in the cache;
+//! 3. `rows` again, backwards.
+//!
+//! The transforms (`transform`) leave the spectrum in digit-reversed order; the multiplier is stored in the same
+//! order. Zero padding is never stored: the first pass of a transform takes the second half of its
+//! input as zero, the last one back computes the first half only.
+//!
+//! Every lane does the same IEEE 754 operations in the same order on all processors, fused
+//! multiply-adds included, and no sum depends on how work is shared out: results are bit-identical
+//! for all instruction sets, vector lengths and numbers of threads.
+//!
+//! # Memory
+//! For cells nx ny and lengths \[mx, my\] in scalars of s bytes: the half spectrum, nx (my + 2) s; the
+//! multiplier, 5/8 mx (my/2 + 1) s; per thread two blocks of lanes, of some 3 mx numbers each. On
+//! a free domain of N x N cells (lengths 2 N) that is 26 bytes per cell in f64 and 13 in f32; on a
+//! periodic one 10.5 and 5.25.
+//!
+//! This room is the only one with `unsafe`: the intrinsics, which need their processor; scalars seen
+//! as vectors and back; and the transposition, where threads write to rows of their own in a shared
+//! array.
+#![allow(unsafe_code)]
+// Butterflies read like their sums: elements by number.
+#![allow(clippy::needless_range_loop)]
+
+#[cfg(target_arch = "x86_64")]
+mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
+mod butterfly;
+mod complex;
+mod engine;
+mod factors;
+mod leaf;
+mod parts;
+mod portable;
+mod prefetch;
+mod real;
+mod roots;
+mod rows;
+mod stage;
+#[cfg(test)]
+mod tests;
+mod transform;
+mod vector;
+mod work;
+mod wrap;
+
+use asperity_sweep::Instructions;
+use ndarray::{Array2, ArrayView2};
+
+use engine::Convolve;
+pub use engine::Modify;
+use factors::factors;
+pub use real::Real;
+use wrap::wrapped_spectrum;
+
+/// A planned convolution of real fields with a real, even spectrum, in `f64` or `f32`.
+///
+/// ```
+/// use asperity_convolution::{even_spectrum, batched::BatchedFft};
+///
+/// // A kernel that only shifts nothing: K = 1 at distance 0. Its spectrum is 1.
+/// let lengths = [BatchedFft::<f64>::good_length(2 * 30 - 1), BatchedFft::<f64>::good_length(2 * 20 - 1)];
+/// let spectrum = ndarray::Array2::ones((lengths[0] / 2 + 1, lengths[1] / 2 + 1));
+/// let mut convolution = BatchedFft::<f64>::new([30, 20], lengths, spectrum.view());
+/// let input: Vec<f64> = (0..600).map(f64::from).collect();
+/// let mut output = vec![0.0; 600];
+/// convolution.apply_into(&input, &mut output);
+/// assert!(input.iter().zip(&output).all(|(p, u)| (p - u).abs() < 1e-12));
+/// ```
+pub struct BatchedFft<T> {
+    engine: Box<dyn Convolve<T>>,
+}
+
+impl<T: Real> BatchedFft<T> {
+    /// A length of at least `minimum` that this engine transforms fast, for padding with zeros.
+    pub fn good_length(minimum: usize) -> usize {
+        factors::good_length(minimum)
+    }
+
+    /// Plans a convolution of `cells` = \[nx, ny\], cyclic on `lengths` = \[mx, my\] cells.
+    ///
+    /// `spectrum` has the shape (mx/2 + 1, my/2 + 1): the real multiplier S(kx, ky), even in kx and
+    /// ky, for transforms without normalisation. The fastest lengths are [`Self::good_length`] and,
+    /// for periodic domains, 2^a 3^b 5^c with my even; any others are wrapped into a padded
+    /// convolution, at some three times the work of a periodic one.
+    ///
+    /// # Panics
+    /// Where a length is less than its cells, a count is 0, or the spectrum has another shape.
+    pub fn new(cells: [usize; 2], lengths: [usize; 2], spectrum: ArrayView2<f64>) -> Self {
+        Self::with_spectra(cells, lengths, &[spectrum])
+    }
+
+    /// As [`Self::new`], with several spectra for a [`Chain`] of convolutions; the first is that of [`Self::apply_into`].
+    ///
+    /// # Panics
+    /// Also where there is none.
+    pub fn with_spectra(cells: [usize; 2], lengths: [usize; 2], spectra: &[ArrayView2<f64>]) -> Self {
+        Self::on(Instructions::available()[0], cells, lengths, spectra)
+    }
+
+    /// As [`Self::with_spectra`], on chosen instructions.
+    ///
+    /// # Panics
+    /// Also where the processor does not have them.
+    pub fn on(
+        instructions: Instructions,
+        cells: [usize; 2],
+        lengths: [usize; 2],
+        spectra: &[ArrayView2<f64>],
+    ) -> Self {
+        assert!(Instructions::available().contains(&instructions), "{instructions:?} is not available");
+        assert!(cells[0] > 0 && cells[1] > 0 && lengths[0] >= cells[0] && lengths[1] >= cells[1]);
+        assert!(!spectra.is_empty());
+        for spectrum in spectra {
+            assert_eq!(spectrum.dim(), (lengths[0] / 2 + 1, lengths[1] / 2 + 1));
+        }
+        let along_y = if lengths[1].is_multiple_of(2) { factors(lengths[1] / 2) } else { None };
+        if let (Some(x), Some(y)) = (factors(lengths[0]), along_y) {
+            return BatchedFft { engine: T::plan(instructions, cells, lengths, [&x, &y], spectra) };
+        }
+        let longer = cells.map(|n| Self::good_length(2 * n - 1));
+        let wrap = |spectrum: &ArrayView2<f64>| wrapped_spectrum(cells, lengths, longer, spectrum.view());
+        let wrapped: Vec<Array2<f64>> = spectra.iter().map(wrap).collect();
+        let wrapped: Vec<ArrayView2<f64>> = wrapped.iter().map(|spectrum| spectrum.view()).collect();
+        Self::on(instructions, cells, longer, &wrapped)
+    }
+
+    /// `output` = S * `input`; both C-order, nx ny cells.
+    ///
+    /// # Panics
+    /// Where a length is not nx ny.
+    pub fn apply_into(&mut self, input: &[T], output: &mut [T]) {
+        self.engine.forward(input);
+        self.engine.multiply(0);
+        self.engine.back(output);
+    }
+
+    /// Bytes that a plan with so many spectra takes, without the buffers of its threads (a few rows and columns).
+    pub fn bytes(cells: [usize; 2], lengths: [usize; 2], spectra: usize) -> usize {
+        let along_y = if lengths[1].is_multiple_of(2) { factors(lengths[1] / 2) } else { None };
+        let [mx, my] = match (factors(lengths[0]), along_y) {
+            (Some(_), Some(_)) => lengths,
+            _ => cells.map(|n| Self::good_length(2 * n - 1)),
+        };
+        let columns = my / 2 + 1;
+        size_of::<T>() * (2 * cells[0] * columns + spectra * (5 * mx).div_ceil(8) * columns)
+    }
+
+    /// Starts several convolutions one after the other, with something done to the field in between.
+    ///
+    /// # Panics
+    /// Where the length is not nx ny.
+    pub fn chain(&mut self, input: &[T]) -> Chain<'_, T> {
+        self.engine.forward(input);
+        Chain { engine: &mut *self.engine }
+    }
+}
+
+/// Several convolutions of a field, one after the other, with an operation on the cells in between. The operation runs on a few
+/// rows at a time while they are in the cache, and only what it keeps is written to memory.
+///
+/// ```
+/// use asperity_convolution::batched::BatchedFft;
+///
+/// // x -> 3 x, squared -> 5 x.
+/// let [three, five] = [3.0, 5.0].map(|s| ndarray::Array2::from_elem((9, 9), s));
+/// let mut plan = BatchedFft::<f64>::with_spectra([16, 16], [16, 16], &[three.view(), five.view()]);
+/// let input: Vec<f64> = (0..256).map(f64::from).collect();
+/// let mut output = vec![0.0; 256];
+/// let mut chain = plan.chain(&input);
+/// chain.multiply(0);
+/// chain.modify(&mut [], &|_, x, _| x.iter_mut().for_each(|x| *x *= *x));
+/// chain.multiply(1);
+/// chain.finish(&mut output, &|_, x, output| output.copy_from_slice(x));
+/// assert!(output.iter().zip(&input).all(|(y, x)| (y - 45.0 * x * x).abs() < 1e-8));
+/// ```
+pub struct Chain<'a, T> {
+    engine: &'a mut dyn Convolve<T>,
+}
+
+impl<T: Real> Chain<'_, T> {
+    /// x becomes S * x with the spectrum of that number; returns x'S x, of the x before (Parseval's theorem).
+    ///
+    /// # Panics
+    /// Where there is none.
+    pub fn multiply(&mut self, spectrum: usize) -> f64 {
+        self.engine.multiply(spectrum)
+    }
+
+    /// `modify(first, x, kept)` changes x, eight rows (sixteen in f32) at a time; `kept` are the same cells of a field of the
+    /// caller, or none where that is empty. `first` is the number of the first cell, a multiple of eight. `modify` must not wait
+    /// for another thread.
+    ///
+    /// # Panics
+    /// Where `kept` has another length.
+    pub fn modify(&mut self, kept: &mut [T], modify: &Modify<T>) {
+        self.engine.modify(kept, modify, true);
+    }
+
+    /// The last operation: x is not convolved again.
+    ///
+    /// # Panics
+    /// Where `kept` has another length.
+    pub fn finish(self, kept: &mut [T], modify: &Modify<T>) {
+        self.engine.modify(kept, modify, false);
+    }
+}

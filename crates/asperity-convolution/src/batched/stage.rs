@@ -1,0 +1,159 @@
+//! One pass of a transform: blocks of m numbers, each in R parts of m/R.
+
+use super::butterfly::{Butterfly, HalfOf, OfHalf, Whole};
+use super::complex::{Complex, Root};
+use super::parts::Parts;
+use super::roots::root;
+use super::vector::{Scalar, Vector};
+
+/// A pass of radix R on blocks of `span` = m numbers.
+pub struct Stage<T> {
+    pub radix: usize,
+    pub span: usize,
+    /// exp(-2 pi i j r / m), r = 1..R, for every j of a part.
+    roots: Vec<Root<T>>,
+}
+
+impl<T: Scalar> Stage<T> {
+    pub fn new(radix: usize, span: usize) -> Self {
+        let roots = (0..span / radix).flat_map(|j| (1..radix).map(move |r| root(j * r, span))).collect();
+        Stage { radix, span, roots }
+    }
+
+    /// How many numbers a part has.
+    #[inline(always)]
+    pub fn part(&self) -> usize {
+        self.span / self.radix
+    }
+
+    /// The first pass: from the signal, its missing parts in the margin, into the buffer. `half`:
+    /// the second half of the signal is zero.
+    #[inline(always)]
+    pub fn open<V: Vector<Scalar = T>>(
+        &self,
+        half: bool,
+        signal: &mut [Complex<V>],
+        margin: &mut [Complex<V>],
+        buffer: &mut [Complex<V>],
+    ) {
+        match (self.radix, half) {
+            (8, true) => self.first_pass::<V, OfHalf<8>, 4, 8>(signal, margin, buffer),
+            (8, false) => self.first_pass::<V, Whole<8>, 8, 8>(signal, margin, buffer),
+            (5, _) => self.first_pass::<V, Whole<5>, 5, 5>(signal, margin, buffer),
+            (4, true) => self.first_pass::<V, OfHalf<4>, 2, 4>(signal, margin, buffer),
+            (4, false) => self.first_pass::<V, Whole<4>, 4, 4>(signal, margin, buffer),
+            (3, _) => self.first_pass::<V, Whole<3>, 3, 3>(signal, margin, buffer),
+            (_, true) => self.first_pass::<V, OfHalf<2>, 1, 2>(signal, margin, buffer),
+            (_, false) => self.first_pass::<V, Whole<2>, 2, 2>(signal, margin, buffer),
+        }
+    }
+
+    /// The last pass: from the buffer into the signal, its missing parts into the margin. `half`: only
+    /// the first half of the signal is wanted.
+    #[inline(always)]
+    pub fn close<V: Vector<Scalar = T>>(
+        &self,
+        half: bool,
+        signal: &mut [Complex<V>],
+        margin: &mut [Complex<V>],
+        buffer: &mut [Complex<V>],
+    ) {
+        match (self.radix, half) {
+            (8, true) => self.last_pass::<V, HalfOf<8>, 4, 8>(signal, margin, buffer),
+            (8, false) => self.last_pass::<V, Whole<8>, 8, 8>(signal, margin, buffer),
+            (5, _) => self.last_pass::<V, Whole<5>, 5, 5>(signal, margin, buffer),
+            (4, true) => self.last_pass::<V, HalfOf<4>, 2, 4>(signal, margin, buffer),
+            (4, false) => self.last_pass::<V, Whole<4>, 4, 4>(signal, margin, buffer),
+            (3, _) => self.last_pass::<V, Whole<3>, 3, 3>(signal, margin, buffer),
+            (_, true) => self.last_pass::<V, HalfOf<2>, 1, 2>(signal, margin, buffer),
+            (_, false) => self.last_pass::<V, Whole<2>, 2, 2>(signal, margin, buffer),
+        }
+    }
+
+    /// An inner pass on the way down, in place.
+    #[inline(always)]
+    pub fn decimate_in_frequency<V: Vector<Scalar = T>>(&self, block: &mut [Complex<V>]) {
+        match self.radix {
+            8 => self.down::<V, 8>(block),
+            5 => self.down::<V, 5>(block),
+            4 => self.down::<V, 4>(block),
+            _ => self.down::<V, 3>(block),
+        }
+    }
+
+    /// An inner pass on the way up, in place.
+    #[inline(always)]
+    pub fn decimate_in_time<V: Vector<Scalar = T>>(&self, block: &mut [Complex<V>]) {
+        match self.radix {
+            8 => self.up::<V, 8>(block),
+            5 => self.up::<V, 5>(block),
+            4 => self.up::<V, 4>(block),
+            _ => self.up::<V, 3>(block),
+        }
+    }
+
+    /// y(j, r) = exp(-2 pi i j r / m) times the transform of x(j + q m/R) over q.
+    #[inline(always)]
+    fn first_pass<V: Vector<Scalar = T>, B: Butterfly<V, P, R>, const P: usize, const R: usize>(
+        &self,
+        signal: &mut [Complex<V>],
+        margin: &mut [Complex<V>],
+        buffer: &mut [Complex<V>],
+    ) {
+        let signal = Parts::<V, P>::of_signal(signal, margin, self.part());
+        let mut buffer = Parts::<V, R>::of(buffer);
+        for (j, w) in (0..buffer.length()).zip(self.roots.chunks_exact(R - 1)) {
+            buffer.store(j, rotated(B::transform(signal.load(j)), w));
+        }
+    }
+
+    /// The way back of the first pass; exchanges real and imaginary parts for good.
+    #[inline(always)]
+    fn last_pass<V: Vector<Scalar = T>, B: Butterfly<V, R, P>, const P: usize, const R: usize>(
+        &self,
+        signal: &mut [Complex<V>],
+        margin: &mut [Complex<V>],
+        buffer: &mut [Complex<V>],
+    ) {
+        let mut signal = Parts::<V, P>::of_signal(signal, margin, self.part());
+        let buffer = Parts::<V, R>::of(buffer);
+        for (j, w) in (0..buffer.length()).zip(self.roots.chunks_exact(R - 1)) {
+            let mut x = B::transform(rotated(buffer.load(j), w));
+            for q in 0..P {
+                x[q] = x[q].swapped();
+            }
+            signal.store(j, x);
+        }
+    }
+
+    #[inline(always)]
+    fn down<V: Vector<Scalar = T>, const R: usize>(&self, block: &mut [Complex<V>])
+    where
+        Whole<R>: Butterfly<V, R, R>,
+    {
+        let mut parts = Parts::<V, R>::of(block);
+        for (j, w) in (0..parts.length()).zip(self.roots.chunks_exact(R - 1)) {
+            parts.store(j, rotated(Whole::<R>::transform(parts.load(j)), w));
+        }
+    }
+
+    #[inline(always)]
+    fn up<V: Vector<Scalar = T>, const R: usize>(&self, block: &mut [Complex<V>])
+    where
+        Whole<R>: Butterfly<V, R, R>,
+    {
+        let mut parts = Parts::<V, R>::of(block);
+        for (j, w) in (0..parts.length()).zip(self.roots.chunks_exact(R - 1)) {
+            parts.store(j, Whole::<R>::transform(rotated(parts.load(j), w)));
+        }
+    }
+}
+
+/// y(r) w^r, r = 1..R.
+#[inline(always)]
+fn rotated<V: Vector, const R: usize>(mut y: [Complex<V>; R], roots: &[Root<V::Scalar>]) -> [Complex<V>; R] {
+    for r in 1..R {
+        y[r] = y[r].rotated(roots[r - 1]);
+    }
+    y
+}

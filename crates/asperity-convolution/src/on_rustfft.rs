@@ -1,0 +1,35 @@
+//! The convolution on rustfft: the oracle and yardstick of the batched engine.
+
+use ndarray::{Array2, ArrayView2};
+use rustfft::num_complex::Complex64;
+
+use crate::plane::RealPlane;
+
+pub(super) struct OnRustfft {
+    plane: RealPlane,
+    /// S / (mx my), stored (ky, kx) as the columns read it.
+    spectrum: Array2<f64>,
+    columns: Vec<Complex64>,
+}
+
+impl OnRustfft {
+    pub(super) fn new(cells: [usize; 2], lengths: [usize; 2], spectrum: ArrayView2<f64>) -> Self {
+        let plane = RealPlane::new(cells, lengths);
+        let normalisation = 1.0 / (lengths[0] as f64 * lengths[1] as f64);
+        let spectrum = spectrum.t().mapv(|s| s * normalisation).as_standard_layout().into_owned();
+        OnRustfft { columns: plane.columns(), plane, spectrum }
+    }
+
+    pub(super) fn apply_into(&mut self, input: &[f64], output: &mut [f64]) {
+        self.plane.rows_forward(input, &mut self.columns);
+        let spectrum = &self.spectrum;
+        self.plane.each_column(&mut self.columns, |transforms, ky, column| {
+            let waves = transforms.forward(column);
+            let mx = waves.len();
+            // S(min(kx, mx - kx), ky)
+            waves.iter_mut().enumerate().for_each(|(kx, x)| *x *= spectrum[(ky, kx.min(mx - kx))]);
+            column.copy_from_slice(transforms.back());
+        });
+        self.plane.rows_back(&self.columns, output);
+    }
+}

@@ -1,0 +1,103 @@
+//! The sweep: blocks in parallel, their yields merged up a fixed tree.
+
+use rayon::prelude::*;
+
+use crate::cells::Cells;
+use crate::merge::Merge;
+use crate::simd::{Work, vectorize};
+
+/// Cells in one block, a multiple of eight: a few arrays of it fit the second-level cache.
+pub const BLOCK: usize = 8192;
+
+/// A field of zeros, written by all threads: memory that a system hands out as zeros without writing them would be fetched
+/// when it is first used, cell by cell in the middle of a solve, and twice where it is read first.
+pub fn zeros<T: Default + Send>(cells: usize) -> Vec<T> {
+    (0..cells).into_par_iter().with_min_len(BLOCK).map(|_| T::default()).collect()
+}
+
+/// Applies `block` to every block of the cells and merges what they yield.
+pub fn sweep<C: Cells, M: Merge>(cells: C, block: &(impl Fn(C) -> M + Sync)) -> M {
+    let n = cells.cells();
+    if n <= BLOCK {
+        return block(cells);
+    }
+    let (first, second) = cells.split((n / 2).next_multiple_of(BLOCK));
+    let (mut first, mut second) = (Half::Cells(first), Half::Cells(second));
+    both(&mut || first.sweep(block), &mut || second.sweep(block));
+    match (first, second) {
+        (Half::Yield(a), Half::Yield(b)) => a.merge(b),
+        _ => unreachable!("both halves have run"),
+    }
+}
+
+/// Half of a field, before and after it is swept.
+enum Half<C, M> {
+    Cells(C),
+    Swept,
+    Yield(M),
+}
+
+impl<C: Cells, M: Merge> Half<C, M> {
+    fn sweep(&mut self, block: &(impl Fn(C) -> M + Sync)) {
+        if let Half::Cells(cells) = std::mem::replace(self, Half::Swept) {
+            *self = Half::Yield(sweep(cells, block));
+        }
+    }
+}
+
+/// Runs both, on two threads where there are. Not generic, so that the machinery of threads is compiled once.
+fn both(first: &mut (dyn FnMut() + Send), second: &mut (dyn FnMut() + Send)) {
+    rayon::join(first, second);
+}
+
+/// Runs a kernel over all of its cells, in the widest vectors of the processor and on all threads, and merges what the blocks
+/// yield in a fixed order.
+pub fn run<K: Cells + Work>(kernel: K) -> K::Yield
+where
+    K::Yield: Merge,
+{
+    sweep(kernel, &|part: K| vectorize(part))
+}
+
+/// Sums over `n` cells in eight interleaved strands: the order that vector units prefer, fixed here.
+#[inline(always)]
+pub fn strands<const K: usize>(n: usize, mut term: impl FnMut(usize) -> [f64; K]) -> [f64; K] {
+    let mut strand = [[0.0; K]; 8];
+    let whole = n - n % 8;
+    let mut i = 0;
+    while i < whole {
+        for (lane, sums) in strand.iter_mut().enumerate() {
+            let t = term(i + lane);
+            for k in 0..K {
+                sums[k] += t[k];
+            }
+        }
+        i += 8;
+    }
+    for (lane, sums) in strand.iter_mut().enumerate().take(n - whole) {
+        let t = term(whole + lane);
+        for k in 0..K {
+            sums[k] += t[k];
+        }
+    }
+    let [a, b, c, d, e, f, g, h] = strand;
+    std::array::from_fn(|k| ((a[k] + b[k]) + (c[k] + d[k])) + ((e[k] + f[k]) + (g[k] + h[k])))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sweep_meets_every_cell_once() {
+        let mut seen = vec![0u8; 3 * BLOCK + 5];
+        let index: Vec<usize> = (0..seen.len()).collect();
+        let total = sweep((&mut seen[..], &index[..]), &|(seen, index): (&mut [u8], &[usize])| {
+            seen.iter_mut().for_each(|s| *s += 1);
+            index.iter().map(|i| *i as f64).sum::<f64>()
+        });
+        assert!(seen.iter().all(|s| *s == 1));
+        let n = index.len() as f64;
+        assert_eq!(total, n * (n - 1.0) / 2.0);
+    }
+}

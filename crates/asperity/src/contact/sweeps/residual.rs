@@ -1,0 +1,187 @@
+//! Kernels of the residual report: the mean gap of the free cells, and for an approach w the residual r = c U + h - w, the working
+//! set, and the sums and extremes of [`ResidualReport`].
+
+use asperity_sweep::simd::{F64x8, Mask, Work};
+
+use crate::contact::Hardness;
+use crate::contact::bounds::Interval;
+use crate::contact::residual::ResidualReport;
+use asperity_sweep::{SetMut, kernel};
+
+kernel! {
+    /// Sum of g = c U + h over the free cells 0 < p < H, and their number.
+    pub(in crate::contact) struct FreeGap<'a> {
+        cells { p: &'a [f64], u: &'a [f64], gap: &'a [f64], hardness: Hardness<'a> }
+        numbers { compliance: f64 }
+    }
+}
+
+impl Work for FreeGap<'_> {
+    type Yield = [f64; 2];
+
+    #[inline(always)]
+    fn run<V: F64x8>(self) -> [f64; 2] {
+        let (mut sum, mut cells) = (V::splat(0.0), V::splat(0.0));
+        let c = V::splat(self.compliance);
+        for n in (0..self.p.len()).step_by(8) {
+            let free = self.hardness.interval::<V>(n).is_free(V::load(self.p, n, 0.0));
+            let g = c * V::load(self.u, n, 0.0) + V::load(self.gap, n, f64::INFINITY);
+            sum = sum + g.only(free);
+            cells = cells + V::count(free);
+        }
+        [sum.sum(), cells.sum()]
+    }
+}
+
+kernel! {
+    /// The report of a state for the approach w.
+    pub(in crate::contact) struct FindResidual<'a> {
+        cells { p: &'a [f64], u: &'a [f64], gap: &'a [f64], hardness: Hardness<'a> }
+        numbers { compliance: f64, w: f64 }
+    }
+}
+
+impl Work for FindResidual<'_> {
+    type Yield = ResidualReport;
+
+    #[inline(always)]
+    fn run<V: F64x8>(self) -> ResidualReport {
+        let mut residuals = Residuals::<V>::new(self.compliance, self.hardness, self.w);
+        for n in (0..self.p.len()).step_by(8) {
+            let (p, u) = (V::load(self.p, n, 0.0), V::load(self.u, n, 0.0));
+            residuals.add(p, u, V::load(self.gap, n, f64::INFINITY), self.hardness.interval(n));
+        }
+        residuals.report()
+    }
+}
+
+kernel! {
+    /// The same; and the working set, with r on it and 0 elsewhere. `set` holds the set of the residual that was
+    /// there before: that residual is zero elsewhere.
+    pub(in crate::contact) struct FindWorking<'a> {
+        cells {
+            p: &'a [f64], u: &'a [f64], gap: &'a [f64], hardness: Hardness<'a>,
+            residual: &'a mut [f32], set: SetMut<'a>,
+        }
+        numbers { compliance: f64, w: f64 }
+    }
+}
+
+impl Work for FindWorking<'_> {
+    type Yield = ResidualReport;
+
+    #[inline(always)]
+    fn run<V: F64x8>(self) -> ResidualReport {
+        let mut residuals = Residuals::<V>::new(self.compliance, self.hardness, self.w);
+        for (n, set) in (0..).step_by(8).zip(self.set.0) {
+            let (p, u) = (V::load(self.p, n, 0.0), V::load(self.u, n, 0.0));
+            let h = V::load(self.gap, n, f64::INFINITY);
+            // Most cells without pressure are apart: they need no more than the least of their gaps.
+            let (r, working) = if residuals.add_if_apart(p, u, h) {
+                (V::splat(0.0), 0)
+            } else {
+                let (r, working) = residuals.add(p, u, h, self.hardness.interval(n));
+                (r.only(working), working.bits())
+            };
+            if std::mem::replace(set, working) | working != 0 {
+                r.store(self.residual, n);
+            }
+        }
+        residuals.report()
+    }
+}
+
+/// The sums and extremes of a report, one strand for each of eight cells.
+struct Residuals<V> {
+    compliance: V,
+    w: V,
+    approach: f64,
+    has_top: bool,
+    free: [V; 2],
+    working: [V; 3],
+    pressure: [V; 2],
+    gamma: V,
+    capped: V,
+    empty: V,
+    touching: V,
+    peak: V,
+    violation: V,
+}
+
+impl<V: F64x8> Residuals<V> {
+    #[inline(always)]
+    fn new(compliance: f64, hardness: Hardness, w: f64) -> Self {
+        let [zero, up, down] = [0.0, f64::INFINITY, f64::NEG_INFINITY].map(V::splat);
+        Residuals {
+            compliance: V::splat(compliance),
+            w: V::splat(w),
+            approach: w,
+            has_top: !hardness.is_infinite(),
+            free: [zero; 2],
+            working: [zero; 3],
+            pressure: [zero; 2],
+            gamma: zero,
+            capped: down,
+            empty: up,
+            touching: up,
+            peak: down,
+            violation: zero,
+        }
+    }
+
+    /// Adds eight cells where all have p = 0 and r >= 0; returns whether they do.
+    #[inline(always)]
+    fn add_if_apart(&mut self, p: V, u: V, h: V) -> bool {
+        let zero = V::splat(0.0);
+        let r = self.compliance * u + h - self.w;
+        let apart = (zero.less(p.abs()) | r.less(zero)).bits() == 0;
+        if apart {
+            self.empty = r.smaller(self.empty);
+        }
+        apart
+    }
+
+    /// Adds eight cells; returns r and the working set.
+    #[inline(always)]
+    fn add(&mut self, p: V, u: V, h: V, bounds: Interval<V>) -> (V, V::Mask) {
+        let zero = V::splat(0.0);
+        let r = self.compliance * u + h - self.w;
+        let touches = zero.less(p);
+        let free = bounds.is_free(p);
+        let works = bounds.is_working(p, r);
+        let violation = r.abs().only(works);
+        self.free = [self.free[0] + r.only(free), self.free[1] + V::count(free)];
+        let [sum_r, cells, sum_p] = self.working;
+        self.working = [sum_r + r.only(works), cells + V::count(works), sum_p + p.only(works)];
+        let [up, down] = [f64::INFINITY, f64::NEG_INFINITY].map(V::splat);
+        self.capped = V::select(bounds.top.at_most(p), r, down).larger(self.capped);
+        self.empty = V::select(touches, up, r).smaller(self.empty);
+        self.violation = violation.larger(self.violation);
+        self.pressure = [self.pressure[0] + p, self.pressure[1] + (p * u).only(touches)];
+        self.gamma = if self.has_top {
+            let distance = V::select(zero.less(r), p, bounds.top - p);
+            self.gamma + (distance * violation).only(works)
+        } else {
+            self.touching = V::select(touches, r, up).smaller(self.touching);
+            self.gamma + (p * r).only(touches)
+        };
+        self.peak = p.larger(self.peak);
+        (r, works)
+    }
+
+    #[inline(always)]
+    fn report(self) -> ResidualReport {
+        ResidualReport {
+            w: self.approach,
+            free: self.free.map(V::sum),
+            working: self.working.map(V::sum),
+            pressure: self.pressure.map(V::sum),
+            gamma: self.gamma.sum(),
+            capped: self.capped.largest(),
+            empty: self.empty.least(),
+            touching: self.touching.least(),
+            peak: self.peak.largest(),
+            violation: self.violation.largest(),
+        }
+    }
+}

@@ -1,6 +1,7 @@
-//! Tasks of the project: `cargo xtask test | bench | peers | sanitize | miri | figures | verification | notices |
+//! Tasks of the project: `cargo xtask test | golden | bench | peers | sanitize | miri | figures | verification | notices |
 //! package | site | workflows`.
 
+mod golden;
 mod lock;
 mod notices;
 mod package;
@@ -18,6 +19,8 @@ cargo xtask TASK
   test          format, lints, all tests, documentation, licences and advisories of the dependencies (where cargo-deny is
                 installed), Python's view of the results; installs the Python packages that
                 it needs below target/, and fails where it cannot, unless told --without-python
+  golden        runs the cases of crates/asperity-io/tests/golden with two programs, golden OLD NEW, and says of each case whether
+                the results have the same bits
   bench         times convolution, elastic contact, creep and surfaces, and prints tables (a quiet machine, please);
                 with --quick up to 1024 x 1024 cells
   peers         times other programs and this one on the same surfaces, and writes target/peers/peers.md
@@ -63,6 +66,7 @@ fn main() -> ExitCode {
     let task = std::env::args().nth(1);
     let done = match task.as_deref() {
         Some("test") => test(std::env::args().any(|a| a == "--without-python")),
+        Some("golden") => golden::golden(&std::env::args().skip(2).collect::<Vec<_>>()),
         Some("bench") => bench(std::env::args().any(|a| a == "--quick")),
         Some("peers") => peers::peers(std::env::args().any(|a| a == "--quick")),
         Some("sanitize") => sanitize(),

@@ -83,16 +83,6 @@ pub(super) fn run(
                 return Err(record.fail(Some(steady.simulation()), best, source));
             }
         };
-        let stored = stored.and_then(|row| {
-            // Between two velocities an interruption loses nothing.
-            let stops = options.interrupt.load(Ordering::Relaxed);
-            if case.output.checkpoint && !finished && (stops || record.writer.checkpoint_due()) {
-                let found = record.findings(Some(steady.simulation()));
-                record.writer.note(found)?;
-                record.writer.checkpoint(&checkpoint_of(&steady))?;
-            }
-            Ok(row)
-        });
         let row = match stored {
             Ok(row) => row,
             Err(source) => return Err(record.stop_storing(Some(steady.simulation()), source)),
@@ -108,6 +98,20 @@ pub(super) fn run(
             finished,
             stress: None,
         });
+        // Between two velocities an interruption loses nothing.
+        let stops = options.interrupt.load(Ordering::Relaxed) && !finished;
+        let due = case.output.checkpoint && !finished && (stops || record.writer.checkpoint_due());
+        if due {
+            let found = record.findings(Some(steady.simulation()));
+            let kept =
+                record.writer.note(found).and_then(|()| record.writer.checkpoint(&checkpoint_of(&steady)));
+            if let Err(source) = kept {
+                return Err(record.stop_storing(Some(steady.simulation()), source));
+            }
+        }
+        if stops {
+            return record.end(Some(steady.simulation()), Outcome::new(Status::Interrupted));
+        }
     }
     record.end(Some(steady.simulation()), Outcome::new(Status::Complete))
 }

@@ -16,7 +16,7 @@ const SPARKS: usize = 16;
 
 /// Who tells the progress.
 pub enum Teller {
-    /// A live line, and times and contact areas of the rows so far.
+    /// A live line, and coordinates and contact areas of the rows so far.
     Bar(ProgressBar, [Vec<f64>; 2]),
     /// Plain lines.
     Lines {
@@ -38,7 +38,11 @@ fn course(progress: &Progress) -> [u64; 3] {
     match progress.total {
         Some(total) => [progress.resumed as u64, progress.done as u64, total as u64],
         None if progress.finished => [0, COURSE, COURSE],
-        None => [0, (COURSE as f64 * (progress.row.time / progress.end).clamp(0.0, 1.0)) as u64, COURSE],
+        None => [
+            0,
+            (COURSE as f64 * (progress.row.coordinate.value() / progress.end).clamp(0.0, 1.0)) as u64,
+            COURSE,
+        ],
     }
 }
 
@@ -78,10 +82,7 @@ impl Teller {
             return self.tell_stress(done, all);
         }
         let row = progress.row;
-        let moment = match progress.sweep {
-            true => format!("v = {}", words::quantity(row.time, "m/s")),
-            false => format!("t = {}", words::quantity(row.time, "s")),
-        };
+        let moment = words::coordinate(row.coordinate);
         let friction =
             progress.friction.map_or(String::new(), |f| format!(", friction {:.4}", f.coefficient));
         let state = format!(
@@ -90,8 +91,8 @@ impl Teller {
             words::counted(row.iterations, "iteration")
         );
         match self {
-            Teller::Bar(bar, [times, areas]) => {
-                times.push(row.time);
+            Teller::Bar(bar, [coordinates, areas]) => {
+                coordinates.push(row.coordinate.value());
                 areas.push(row.contact_fraction);
                 let [from, done, all] = course(progress);
                 if bar.position() == 0 {
@@ -101,7 +102,7 @@ impl Teller {
                 }
                 bar.set_position(done);
                 bar.set_prefix(rows(progress));
-                let bars = terminal::sparkline(times, areas, progress.sweep, SPARKS);
+                let bars = terminal::sparkline(row.coordinate.axis(), coordinates, areas, SPARKS);
                 bar.set_message(format!("area {bars}  {state}"));
             }
             Teller::Lines { started, told, pause } => {

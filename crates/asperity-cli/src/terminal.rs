@@ -1,17 +1,18 @@
 //! Pictures out of letters.
 
+use asperity::Axis;
 use asperity_report::result::is_logarithmic;
 use ndarray::{Array2, ArrayView2};
 
 const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
 
-/// Numbers over time, or over the velocity of a `sweep`, as a row of `width` bars from the least to the greatest.
+/// Numbers of rows at their coordinates on `axis`, as a row of `width` bars from the least to the greatest.
 ///
 /// A bar is the mean of the numbers in its part of the axis; where there are none, the value on the straight line
 /// between the neighbours. The axis is logarithmic where it is in figures. Numbers that differ by rounding only are
 /// half high.
-pub fn sparkline(rows: &[f64], values: &[f64], sweep: bool, width: usize) -> String {
-    let log = is_logarithmic(rows, sweep);
+pub fn sparkline(axis: Axis, rows: &[f64], values: &[f64], width: usize) -> String {
+    let log = is_logarithmic(rows, axis);
     let points: Vec<[f64; 2]> = rows
         .iter()
         .zip(values)
@@ -80,7 +81,7 @@ mod tests {
     #[test]
     fn a_sparkline_goes_from_the_least_to_the_greatest() {
         let even: Vec<f64> = (0..1000).map(f64::from).collect();
-        let over = |values: &[f64], width| sparkline(&even[..values.len()], values, false, width);
+        let over = |values: &[f64], width| sparkline(Axis::Time, &even[..values.len()], values, width);
         assert_eq!(over(&[], 8), "");
         assert_eq!(over(&[2.0], 8), "▄");
         assert_eq!(over(&[0.0, 0.0], 2), "▄▄");
@@ -94,13 +95,13 @@ mod tests {
         // Most rows lie in the first of four seconds, where nothing changes.
         let times = [0.0, 0.2, 0.4, 0.6, 0.8, 2.0, 3.0, 4.0];
         let values = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 7.0, 7.0];
-        assert_eq!(sparkline(&times, &values, false, 4), "▁▁▁█");
+        assert_eq!(sparkline(Axis::Time, &times, &values, 4), "▁▁▁█");
         // Rows per decade: the axis is logarithmic, and t = 0 has no place on it.
         let times: Vec<f64> = std::iter::once(0.0).chain((0..8).map(|n| 10f64.powi(n))).collect();
         let values: Vec<f64> = std::iter::once(-50.0).chain((0..8).map(f64::from)).collect();
-        assert_eq!(sparkline(&times, &values, false, 8), "▁▂▃▄▅▆▇█");
+        assert_eq!(sparkline(Axis::Time, &times, &values, 8), "▁▂▃▄▅▆▇█");
         // Between rows that are far apart it goes straight.
-        assert_eq!(sparkline(&[0.0, 7.0], &[0.0, 7.0], false, 7), "▁▃▄▅▆▇█");
+        assert_eq!(sparkline(Axis::Time, &[0.0, 7.0], &[0.0, 7.0], 7), "▁▃▄▅▆▇█");
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Numbers as a person reads and writes them.
 
 use asperity::march::Row;
-pub use asperity_io::readable::{bytes, counted, duration, quantity};
+pub use asperity_io::readable::{bytes, coordinate, counted, duration, quantity};
 
 use crate::failure::Failure;
 

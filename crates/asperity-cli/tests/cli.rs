@@ -94,7 +94,7 @@ fn a_run_prints_a_summary_and_leaves_a_result() {
     let reader = Reader::open(&dir.join("small.zarr")).unwrap();
     assert_eq!(reader.status(), Status::Complete);
     let rows = reader.rows().unwrap();
-    assert_eq!((rows.len(), rows[0].time, rows[16].time), (17, 0.0, 8.0));
+    assert_eq!((rows.len(), rows[0].time(), rows[16].time()), (17, 0.0, 8.0));
     // At t = 4 s the load is whole and some cells are at the hardness; at 8 s all is open.
     assert!((rows[8].load - 0.5).abs() < 1e-12 && rows[8].max_pressure == 2e6);
     assert_eq!((rows[16].load, rows[16].contact_area), (0.0, 0.0));

@@ -34,13 +34,13 @@ pub fn of_result(reader: &Reader) -> Result<Vec<Cyclic>, StoreError> {
         // The stage starts where the one before ended; its own rows follow.
         let first = rows.partition_point(|row| row.stage < stage);
         let last = rows.partition_point(|row| row.stage <= stage);
-        let start = if stage == 0 { 0.0 } else { first.checked_sub(1).map_or(0.0, |n| rows[n].time) };
+        let start = if stage == 0 { 0.0 } else { first.checked_sub(1).map_or(0.0, |n| rows[n].time()) };
         // A jump at the start is a row of the stage; without one the stage begins with the last row before.
-        let from = if first < last && rows[first].time > start { first.saturating_sub(1) } else { first };
+        let from = if first < last && rows[first].time() > start { first.saturating_sub(1) } else { first };
         let of = &rows[from..last];
         let column = |value: fn(&crate::store::Row) -> f64| of.iter().map(value).collect::<Vec<f64>>();
         let [time, load, approach] =
-            [column(|row| row.time), column(|row| row.load), column(|row| row.approach)];
+            [column(|row| row.time()), column(|row| row.load), column(|row| row.approach)];
         if let Ok(cycles) = cycles(&time, &load, &approach, frequency, start) {
             found.push(Cyclic { stage, frequency, cycles });
         }

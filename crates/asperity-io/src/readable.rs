@@ -1,5 +1,7 @@
 //! Numbers for people: SI values with the prefix that suits them, counts, bytes, durations.
 
+use asperity::Coordinate;
+
 /// A unit with its prefix: the number shown is `factor` times the SI value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shown {
@@ -101,6 +103,11 @@ pub fn quantity(value: f64, unit: &str) -> String {
     if shown.text.is_empty() { text } else { format!("{text} {}", shown.text) }
 }
 
+/// Where a row stands: "t = 2 ms", "v = 3 mm/s".
+pub fn coordinate(at: Coordinate) -> String {
+    format!("{} = {}", at.axis().symbol(), quantity(at.value(), at.axis().unit()))
+}
+
 /// So many of a thing: "1 term", "2 terms".
 pub fn counted(count: usize, thing: &str) -> String {
     if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
@@ -178,6 +185,7 @@ mod tests {
         assert_eq!(quantity(3e8, "s"), "3.000e8 s");
         assert_eq!(quantity(3e-4, "Pa"), "0.3 mPa");
         assert_eq!(quantity(-1.567e-20, "m"), "-1.567e-8 pm");
+        assert_eq!(coordinate(Coordinate::Velocity(2e-3)), "v = 2 mm/s");
     }
 
     #[test]

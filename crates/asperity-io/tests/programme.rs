@@ -28,7 +28,7 @@ fn a_programme_of_stages_is_run_stored_interrupted_and_resumed_to_the_same_bits(
     let mut shares = vec![];
     let summary = run(&case, &options(&whole), |progress| {
         assert_eq!(progress.total, None);
-        shares.push(progress.row.time / progress.end);
+        shares.push(progress.row.time() / progress.end);
     })
     .unwrap();
     assert_eq!(summary.status, Status::Complete);
@@ -72,7 +72,7 @@ fn a_programme_of_stages_is_run_stored_interrupted_and_resumed_to_the_same_bits(
     assert_eq!(times.len(), 6);
     assert_eq!(times[1..5], [5.0, 65.0, 70.0, 100.0]);
     for (time, step) in times.iter().zip(whole.field_steps()) {
-        assert!(rows[*step].time >= *time && (*step == 0 || rows[*step - 1].time < *time));
+        assert!(rows[*step].time() >= *time && (*step == 0 || rows[*step - 1].time() < *time));
     }
     // Both stages that press, hold, retract, wait and press again are there; while apart nothing is pressed.
     let stages: Vec<usize> = rows.iter().map(|row| row.stage).collect();
@@ -108,6 +108,6 @@ fn an_event_that_does_not_come_fails_the_run_and_keeps_its_rows() {
     assert!(source.to_string().contains("stage 3 waits for loss of contact"), "{source}");
     assert_eq!(summary.status, Status::Failed);
     let reader = Reader::open(&path).unwrap();
-    assert_eq!(reader.rows().unwrap().last().unwrap().time, 200.0);
+    assert_eq!(reader.rows().unwrap().last().unwrap().time(), 200.0);
     assert!(reader.work().message.as_ref().unwrap().contains("stage 3"));
 }

@@ -5,15 +5,15 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use asperity::finding::{Judge, Known};
 use asperity::quantities::{Quantities, Quantity};
-use asperity::sliding::{Direction, MovingGap, Path, Steady, SteadyMotion};
+use asperity::sliding::{Direction, MovingGap, Path, SteadyMotion};
 use asperity::surface::Part;
 use asperity::{
-    Boundary, Course, Event, Grid, History, Programme, Simulation, SolverOptions, Stage, TimeGrid, march,
-    material,
+    Boundary, Course, Drive, Event, Grid, History, Programme, Simulation, SolverOptions, Stage, TimeGrid,
+    drive, march, material,
 };
 use asperity_io::choice::{self, Choice};
 use asperity_io::resources;
-use asperity_io::store::FieldKind;
+use asperity_io::store::{FieldKind, SCALARS};
 use numpy::{IntoPyArray, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -22,79 +22,11 @@ use crate::error::{CaseError, raised};
 use crate::material::{Body, Pair};
 use crate::wait::{detached, without_python};
 
-/// What gives one row after the other.
-enum Rows {
-    Times(Box<march::March>),
-    Velocities(Box<Steady>),
-}
-
-impl Rows {
-    fn advance(&mut self) -> asperity::Result<Option<march::Step<'_>>> {
-        match self {
-            Rows::Times(march) => march.advance(),
-            Rows::Velocities(steady) => steady.advance(),
-        }
-    }
-
-    fn last(&self) -> Option<march::Step<'_>> {
-        match self {
-            Rows::Times(march) => march.last(),
-            Rows::Velocities(steady) => steady.last(),
-        }
-    }
-
-    fn simulation(&self) -> &Simulation {
-        match self {
-            Rows::Times(march) => march.simulation(),
-            Rows::Velocities(steady) => steady.simulation(),
-        }
-    }
-
-    fn done(&self) -> usize {
-        match self {
-            Rows::Times(march) => march.done(),
-            Rows::Velocities(steady) => steady.done(),
-        }
-    }
-
-    /// Whether the last row is done.
-    fn finished(&self) -> bool {
-        match self {
-            Rows::Times(march) => march.finished(),
-            Rows::Velocities(steady) => steady.done() == steady.motion().velocities.len(),
-        }
-    }
-
-    fn expected(&self) -> Option<usize> {
-        match self {
-            Rows::Times(march) => march.rows_expected(),
-            Rows::Velocities(steady) => Some(steady.motion().velocities.len()),
-        }
-    }
-
-    /// Times, or velocities.
-    fn planned(&self) -> Vec<f64> {
-        match self {
-            Rows::Times(march) => {
-                march.simulation().plan().instants.iter().map(|instant| instant.time).collect()
-            }
-            Rows::Velocities(steady) => steady.motion().velocities.clone(),
-        }
-    }
-
-    fn interrupt_with(&mut self, flag: Arc<AtomicBool>) {
-        match self {
-            Rows::Times(march) => march.interrupt_with(flag),
-            Rows::Velocities(steady) => steady.interrupt_with(flag),
-        }
-    }
-}
-
 /// The march of one simulation, or its sweep over velocities.
 #[pyclass]
 pub struct March {
     /// Locked where threads of Python share it.
-    march: Mutex<Rows>,
+    march: Mutex<Box<dyn Drive>>,
     judge: Judge,
     /// The numbers of the last row.
     last: Option<march::Row>,
@@ -351,19 +283,17 @@ impl March {
         let interrupt = Arc::new(AtomicBool::new(false));
         let made = without_python(py, &interrupt, || {
             let judge = Judge::new(&simulation, Known { bodies: &bodies, ..Known::default() });
-            let rows = match moves {
-                None => Rows::Times(Box::new(march::March::new(simulation)?)),
-                Some(Moves::Path(motion)) => {
-                    let simulation = Simulation { motion: Some(*motion), ..simulation };
-                    Rows::Times(Box::new(march::March::new(simulation)?))
-                }
-                Some(Moves::Steady(motion)) => Rows::Velocities(Box::new(Steady::new(simulation, motion)?)),
+            let (motion, steady) = match moves {
+                None => (None, None),
+                Some(Moves::Path(motion)) => (Some(*motion), None),
+                Some(Moves::Steady(motion)) => (None, Some(motion)),
             };
-            let judge = match &rows {
-                Rows::Times(_) => judge,
-                Rows::Velocities(steady) => judge.of_sweep(steady.streaming().clone()),
+            let drive = drive::of(Simulation { motion, ..simulation }, steady)?;
+            let judge = match drive.streaming() {
+                Some(streaming) => judge.of_sweep(streaming.clone()),
+                None => judge,
             };
-            Ok((rows, judge))
+            Ok((drive, judge))
         })?;
         let (mut march, judge) = made.map_err(|error| raised(py, error))?;
         march.interrupt_with(interrupt.clone());
@@ -436,13 +366,13 @@ impl March {
     /// Rows in all.
     fn __len__(&self) -> usize {
         let march = self.locked();
-        march.expected().unwrap_or(march.done())
+        march.rows_expected().unwrap_or(march.done())
     }
 
     /// Rows in all, where they are known beforehand.
     #[getter]
     fn rows_expected(&self) -> Option<usize> {
-        self.locked().expected()
+        self.locked().rows_expected()
     }
 
     /// Whether the last row is done.
@@ -538,27 +468,18 @@ enum Map {
 }
 
 impl March {
-    fn locked(&self) -> MutexGuard<'_, Rows> {
+    fn locked(&self) -> MutexGuard<'_, Box<dyn Drive>> {
         self.march.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
 /// The numbers of a row by their names in results.
 pub fn fill(into: &Bound<'_, PyDict>, row: &march::Row) -> PyResult<()> {
-    into.set_item("time", row.time)?;
-    into.set_item("load", row.load)?;
-    into.set_item("approach", row.approach)?;
-    into.set_item("contact_area", row.contact_area)?;
-    into.set_item("contact_area_corrected", row.contact_area_corrected)?;
-    into.set_item("contact_fraction", row.contact_fraction)?;
-    into.set_item("capped_area", row.capped_area)?;
-    into.set_item("mean_pressure", row.mean_pressure)?;
-    into.set_item("max_pressure", row.max_pressure)?;
-    into.set_item("mean_gap", row.mean_gap)?;
-    into.set_item("iterations", row.iterations)?;
-    into.set_item("convolutions", row.convolutions)?;
-    into.set_item("residual", row.residual)?;
-    into.set_item("certificate", row.certificate)?;
-    into.set_item("time_error", row.time_error.unwrap_or(f64::NAN))?;
-    into.set_item("stage", row.stage)
+    for scalar in SCALARS {
+        match scalar.is_count() {
+            true => into.set_item(scalar.name, scalar.of(row) as u64)?,
+            false => into.set_item(scalar.name, scalar.of(row))?,
+        }
+    }
+    Ok(())
 }

@@ -6,7 +6,7 @@ use std::sync::atomic::AtomicBool;
 
 use asperity::quantities::Column;
 use asperity_io::leakage;
-use asperity_io::store::{At, Field, FieldKind, Header, Outcome, Reader, Row, Status, Writer};
+use asperity_io::store::{At, Field, FieldKind, Header, Outcome, Reader, Row, SCALARS, Status, Writer};
 use asperity_io::stress::{self, StressPlan};
 use ndarray::{ArrayView3, Axis};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
@@ -259,7 +259,17 @@ pub fn save(
     let setup = serde_json::from_str(setup).map_err(|error| CaseError::new_err(error.to_string()))?;
     let findings = serde_json::from_str(findings).map_err(|error| CaseError::new_err(error.to_string()))?;
     let findings = asperity_io::finding::from_list(&findings);
-    let rows = rows(&columns)?;
+    let mut header = Header {
+        title,
+        case_text: String::new(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        grid,
+        fields: vec![],
+        quantities: vec![],
+        rows_expected: None,
+        setup,
+    };
+    let rows = rows(&columns, header.axis())?;
     let mut held = Vec::new();
     for (name, stack) in &fields {
         let kind = FieldKind::from_name(name)
@@ -294,16 +304,9 @@ pub fn save(
         asked.push(column);
     }
     let numbers: Vec<_> = quantities.iter().map(|(_, _, values)| values.as_array()).collect();
-    let header = Header {
-        title,
-        case_text: String::new(),
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        grid,
-        fields: stacks.iter().map(Stack::kind).collect(),
-        quantities: asked,
-        rows_expected: Some(rows.len()),
-        setup,
-    };
+    header.fields = stacks.iter().map(Stack::kind).collect();
+    header.quantities = asked;
+    header.rows_expected = Some(rows.len());
     if field_times.len() != field_steps.len() {
         return Err(CaseError::new_err("the number of times must equal the number of rows of the fields"));
     }
@@ -315,7 +318,7 @@ pub fn save(
             for (k, time) in field_times.iter().enumerate().filter(|(k, _)| field_steps[*k] == n) {
                 let maps: Vec<Field> = stacks.iter().map(|stack| stack.field(k)).collect();
                 // A state between the row before and this one has a time of its own.
-                if *time < row.time {
+                if *time < row.coordinate.value() {
                     writer.stage(*time, &maps)?;
                 } else {
                     fields = maps;
@@ -361,64 +364,32 @@ pub fn status_of(word: &str) -> Status {
 }
 
 /// A row of numbers by their names: the inverse of [`crate::march::fill`].
-pub fn row_of(numbers: &Bound<'_, PyDict>) -> PyResult<Row> {
-    let number = |name: &str| -> PyResult<f64> {
-        let found = numbers.get_item(name)?;
-        found.ok_or_else(|| CaseError::new_err(format!("the row has no '{name}'")))?.extract()
-    };
-    let time_error = number("time_error")?;
-    Ok(Row {
-        time: number("time")?,
-        load: number("load")?,
-        approach: number("approach")?,
-        contact_area: number("contact_area")?,
-        contact_area_corrected: number("contact_area_corrected")?,
-        contact_fraction: number("contact_fraction")?,
-        capped_area: number("capped_area")?,
-        mean_pressure: number("mean_pressure")?,
-        max_pressure: number("max_pressure")?,
-        mean_gap: number("mean_gap")?,
-        iterations: number("iterations")? as usize,
-        convolutions: number("convolutions")? as usize,
-        residual: number("residual")?,
-        certificate: number("certificate")?,
-        time_error: (!time_error.is_nan()).then_some(time_error),
-        stage: number("stage")? as usize,
-    })
+pub fn row_of(numbers: &Bound<'_, PyDict>, axis: asperity::Axis) -> PyResult<Row> {
+    let mut row = Row { coordinate: axis.at(0.0), ..Row::default() };
+    for scalar in SCALARS {
+        let found = numbers.get_item(scalar.name)?;
+        let found = found.ok_or_else(|| CaseError::new_err(format!("the row has no '{}'", scalar.name)))?;
+        scalar.set(&mut row, found.extract()?);
+    }
+    Ok(row)
 }
 
 /// The rows of columns of equal length: the inverse of [`crate::march::fill`].
-fn rows(columns: &HashMap<String, PyReadonlyArray1<'_, f64>>) -> PyResult<Vec<Row>> {
-    let column = |name: &str| {
-        let column = columns.get(name).map(|column| column.as_array());
-        column.ok_or_else(|| CaseError::new_err(format!("the result has no column '{name}'")))
-    };
-    let length = column("time")?.len();
-    let mut rows = vec![Row::default(); length];
-    let mut set = |name: &str, set: fn(&mut Row, f64)| {
-        let column = column(name)?;
-        if column.len() != length {
-            let found = column.len();
+fn rows(columns: &HashMap<String, PyReadonlyArray1<'_, f64>>, axis: asperity::Axis) -> PyResult<Vec<Row>> {
+    let mut rows: Option<Vec<Row>> = None;
+    for scalar in SCALARS {
+        let name = scalar.name;
+        let column = columns
+            .get(name)
+            .ok_or_else(|| CaseError::new_err(format!("the result has no column '{name}'")))?
+            .as_array();
+        let (found, template) = (column.len(), Row { coordinate: axis.at(0.0), ..Row::default() });
+        let rows = rows.get_or_insert_with(|| vec![template; found]);
+        if found != rows.len() {
+            let length = rows.len();
             return Err(CaseError::new_err(format!("'{name}' has {found} rows, but time has {length}")));
         }
-        rows.iter_mut().zip(column).for_each(|(row, value)| set(row, *value));
-        Ok(())
-    };
-    set("time", |row, value| row.time = value)?;
-    set("load", |row, value| row.load = value)?;
-    set("approach", |row, value| row.approach = value)?;
-    set("contact_area", |row, value| row.contact_area = value)?;
-    set("contact_area_corrected", |row, value| row.contact_area_corrected = value)?;
-    set("contact_fraction", |row, value| row.contact_fraction = value)?;
-    set("capped_area", |row, value| row.capped_area = value)?;
-    set("mean_pressure", |row, value| row.mean_pressure = value)?;
-    set("max_pressure", |row, value| row.max_pressure = value)?;
-    set("mean_gap", |row, value| row.mean_gap = value)?;
-    set("iterations", |row, value| row.iterations = value as usize)?;
-    set("convolutions", |row, value| row.convolutions = value as usize)?;
-    set("residual", |row, value| row.residual = value)?;
-    set("certificate", |row, value| row.certificate = value)?;
-    set("time_error", |row, value| row.time_error = (!value.is_nan()).then_some(value))?;
-    set("stage", |row, value| row.stage = value as usize)?;
-    Ok(rows)
+        rows.iter_mut().zip(column).for_each(|(row, value)| scalar.set(row, *value));
+    }
+    Ok(rows.unwrap_or_default())
 }

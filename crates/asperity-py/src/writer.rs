@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use asperity::Axis;
 use asperity::quantities::Column;
 use asperity_io::store::{Field, FieldKind, Header, Outcome};
 use ndarray::Array2;
@@ -19,6 +20,7 @@ use crate::wait::detached;
 pub struct Writer {
     writer: Option<asperity_io::store::Writer>,
     kinds: Vec<FieldKind>,
+    axis: Axis,
 }
 
 /// A field as Python holds it.
@@ -74,7 +76,7 @@ impl Writer {
             setup: serde_json::from_str(setup).map_err(|error| CaseError::new_err(error.to_string()))?,
         };
         let created = detached(py, || asperity_io::store::Writer::create(&path, &header, gap, force))?;
-        Ok(Writer { writer: Some(created.map_err(file)?), kinds })
+        Ok(Writer { writer: Some(created.map_err(file)?), kinds, axis: header.axis() })
     }
 
     /// Stores a row: its numbers by their names, those of its quantities one after the other, and its fields by their names where
@@ -86,7 +88,7 @@ impl Writer {
         quantities: Vec<f64>,
         fields: &Bound<'_, PyDict>,
     ) -> PyResult<()> {
-        let row = row_of(row)?;
+        let row = row_of(row, self.axis)?;
         let mut held = vec![];
         for kind in self.kinds.iter().filter(|_| !fields.is_empty()) {
             let found = fields.get_item(kind.name())?;

@@ -1,5 +1,6 @@
 //! `asperity compare`: what differs between two results.
 
+use asperity::Axis;
 use asperity_io::compare::{Comparison, compare};
 use asperity_io::store::Reader;
 
@@ -12,12 +13,12 @@ pub fn run(args: &args::Compare) -> Result<(), Failure> {
     let told = |error: &dyn std::fmt::Display| Failure::input(error.to_string());
     let first = Reader::open(&args.first).map_err(|error| told(&error))?;
     let second = Reader::open(&args.second).map_err(|error| told(&error))?;
-    let kind = |reader: &Reader| (reader.header().grid.is_line(), reader.header().is_sweep());
+    let kind = |reader: &Reader| (reader.header().grid.is_line(), reader.header().axis());
     if kind(&first) != kind(&second) {
         let words = |reader: &Reader| match kind(reader) {
-            (_, true) => "a sweep over velocities",
-            (true, false) => "a line contact",
-            (false, false) => "a contact over an area",
+            (_, Axis::Velocity) => "a sweep over velocities",
+            (true, _) => "a line contact",
+            (false, _) => "a contact over an area",
         };
         return Err(Failure::input(format!(
             "{} is {}, and {} is {}: their numbers have different units",
@@ -49,7 +50,7 @@ fn text(found: &Comparison, first: &Reader) -> String {
     }
     text +=
         &format!("\n{:<28}{:<16}{:<16}{:<14}largest difference\n", "at the end", "first", "second", "change");
-    let sweep = first.header().is_sweep();
+    let axis = first.header().axis();
     for number in &found.numbers {
         let units = if number.units == "1" { "" } else { number.units.as_str() };
         let [a, b] = number.last;
@@ -62,7 +63,7 @@ fn text(found: &Comparison, first: &Reader) -> String {
         };
         let word = |value: f64| if units.is_empty() { format!("{value:.6}") } else { quantity(value, units) };
         let largest = number.largest_difference.map_or(String::new(), apart);
-        let name = if sweep && number.name == "time" { "velocity" } else { &number.name };
+        let name = if number.name == "time" { axis.name() } else { &number.name };
         text += &format!("{name:<28}{:<16}{:<16}{change:<14}{largest}\n", word(a), word(b));
     }
     text += &match found.common_rows {

@@ -25,6 +25,7 @@ pub mod view;
 
 use std::path::Path;
 
+use asperity::Axis;
 use asperity_io::case::quantity::range::NonNegative;
 use asperity_io::case::quantity::{Time, Velocity};
 use asperity_io::store::{At, Reader};
@@ -55,9 +56,9 @@ pub fn instant(reader: &Reader, text: Option<&str>) -> Result<At, Failure> {
 /// An option that names a time \[s\], of a sweep a velocity \[m/s\].
 fn moment(reader: &Reader, option: &str, text: Option<&str>) -> Result<Option<f64>, Failure> {
     let Some(text) = text else { return Ok(None) };
-    Ok(Some(match reader.header().is_sweep() {
-        true => read::<Velocity>(option, text, "10 mm/s")?.get(),
-        false => read::<Time>(option, text, "500 s")?.get(),
+    Ok(Some(match reader.header().axis() {
+        Axis::Velocity => read::<Velocity>(option, text, "10 mm/s")?.get(),
+        Axis::Time | Axis::None => read::<Time>(option, text, "500 s")?.get(),
     }))
 }
 

@@ -1,8 +1,9 @@
 //! `asperity run`.
 
+use asperity::Axis;
 use asperity::finding::Finding;
 use asperity::march::Row;
-use asperity_io::case::{Case, Travel};
+use asperity_io::case::Case;
 use asperity_io::leakage::LeakError;
 use asperity_io::session::{RunError, RunOptions, Summary, run as run_case};
 use asperity_io::store::Status;
@@ -12,7 +13,7 @@ use serde_json::{Value, json};
 use crate::args::Run;
 use crate::failure::Failure;
 use crate::progress::Teller;
-use crate::words::{bytes, duration, in_contact, mean_gap, quantity};
+use crate::words::{bytes, coordinate, duration, in_contact, mean_gap, quantity};
 
 /// Runs the case, tells the progress on stderr and a summary on stdout.
 pub fn run(args: &Run) -> Result<(), Failure> {
@@ -80,19 +81,11 @@ fn tell_materials(args: &Run, case: &Case) {
     }
 }
 
-/// Whether its rows are steady states of motion.
-fn is_sweep(case: &Case) -> bool {
-    case.motion.as_ref().is_some_and(|motion| matches!(motion.travel, Travel::Steady(_)))
-}
-
 fn best_state(best: &Row, case: &Case) -> String {
     let grid = &case.grid;
-    let moment = match is_sweep(case) {
-        true => format!("v = {}", quantity(best.time, "m/s")),
-        false => format!("t = {}", quantity(best.time, "s")),
-    };
     format!(
-        "  best state at {moment}: load {}, approach {}, contact {:.4} %, largest pressure {}",
+        "  best state at {}: load {}, approach {}, contact {:.4} %, largest pressure {}",
+        coordinate(best.coordinate),
         quantity(best.load, grid.units("N")),
         quantity(best.approach, "m"),
         100.0 * best.contact_fraction,
@@ -102,7 +95,6 @@ fn best_state(best: &Row, case: &Case) -> String {
 
 fn tell(args: &Run, case: &Case, summary: &Summary, error: Option<&RunError>) -> Result<(), Failure> {
     let grid = &case.grid;
-    let sweep = is_sweep(case);
     if args.json {
         return crate::print(&format!("{}\n", json_object(summary, error)));
     }
@@ -112,11 +104,12 @@ fn tell(args: &Run, case: &Case, summary: &Summary, error: Option<&RunError>) ->
     let mut text = String::new();
     let mut line = |name: &str, value: String| text += &format!("{name:<13}{value}\n");
     if let Some(last) = &summary.last {
-        if sweep {
-            line("velocity", format!("{} (the last of {})", quantity(last.time, "m/s"), summary.rows));
-        } else {
-            line("time", quantity(last.time, "s"));
-        }
+        let (axis, at) = (last.coordinate.axis(), last.coordinate.value());
+        let of = match axis {
+            Axis::Velocity => format!(" (the last of {})", summary.rows),
+            Axis::Time | Axis::None => String::new(),
+        };
+        line(axis.name(), quantity(at, axis.unit()) + &of);
         line("load", quantity(last.load, grid.units("N")));
         line("approach", quantity(last.approach, "m"));
         let area = quantity(last.contact_area, grid.units("m2"));
@@ -211,7 +204,7 @@ fn json_object(summary: &Summary, error: Option<&RunError>) -> Value {
     }
     if let Some(RunError::Solve { best: Some(best), .. }) = error {
         object["best"] = json!({
-            "time": best.time,
+            "time": best.coordinate.value(),
             "load": best.load,
             "approach": best.approach,
             "contact_area": best.contact_area,

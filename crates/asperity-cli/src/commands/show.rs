@@ -1,8 +1,8 @@
 //! `asperity show`: a result in the terminal.
 
-use asperity::Grid;
 use asperity::march::Row;
 use asperity::quantities::Quantity;
+use asperity::{Axis, Grid};
 use asperity_io::cycles;
 use asperity_io::leakage::LeakHistory;
 use asperity_io::store::{At, Reader, Status, StoreError};
@@ -147,20 +147,19 @@ fn course(reader: &Reader, rows: &[Row]) -> Result<String, StoreError> {
     let header = reader.header();
     let grid = &header.grid;
     let (force, area) = (grid.units("N"), grid.units("m2"));
-    let times: Vec<f64> = rows.iter().map(|row| row.time).collect();
-    let bars = |values: &[f64]| sparkline(&times, values, header.is_sweep(), SPARKS);
+    let times: Vec<f64> = rows.iter().map(|row| row.coordinate.value()).collect();
+    let bars = |values: &[f64]| sparkline(header.axis(), &times, values, SPARKS);
     let curve = |name: &str, value: fn(&Row) -> f64, words: &dyn Fn(f64) -> String| {
         let values: Vec<f64> = rows.iter().map(value).collect();
         let [low, high] = extremes(&values).map(words);
         let ends = if low == high { "unchanged".to_owned() } else { format!("{low} to {high}") };
         line(name, format!("{:<14}{}  {ends}", words(value(last)), bars(&values)))
     };
-    let mut text = match header.is_sweep() {
-        true => {
-            let ends = [times[0], last.time].map(|velocity| quantity(velocity, "m/s"));
-            line("velocity", ends.join(" to "))
-        }
-        false => line("time", quantity(last.time, "s")),
+    let axis = header.axis();
+    let [first, end] = [&rows[0], last].map(|row| quantity(row.coordinate.value(), axis.unit()));
+    let mut text = match axis {
+        Axis::Velocity => line(axis.name(), format!("{first} to {end}")),
+        Axis::Time | Axis::None => line(axis.name(), end),
     };
     if reader.scalars().iter().any(|series| series.name == Quantity::FrictionCoefficient.name()) {
         let mu = reader.series(Quantity::FrictionCoefficient.name())?;
@@ -185,7 +184,7 @@ fn course(reader: &Reader, rows: &[Row]) -> Result<String, StoreError> {
     text +=
         &line("pressure", format!("nominal mean {nominal}, in the contact {touching}, largest {largest}"));
     let asked = reader.scalars().into_iter().filter(|s| {
-        let coordinate = header.is_sweep() && s.name == Quantity::Velocity.name();
+        let coordinate = axis == Axis::Velocity && s.name == Quantity::Velocity.name();
         Quantity::from_name(s.name).is_some() && !coordinate
     });
     for (n, series) in asked.enumerate() {
@@ -227,7 +226,7 @@ fn work(reader: &Reader, rows: &[Row]) -> String {
     let memory = work.peak_memory_bytes.map_or(String::new(), |b| format!(", {}", bytes(b as f64)));
     let per_row = work.convolutions as f64 / rows.len().max(1) as f64;
     let kept: Vec<_> = header.fields.iter().map(|kind| kind.name()).collect();
-    let instants = if header.is_sweep() { "velocities" } else { "times" };
+    let instants = header.axis().plural();
     [
         line("certificate", format!("{worst:.1e} at worst (relative error of the pressure)")),
         line(

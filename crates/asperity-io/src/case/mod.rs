@@ -69,7 +69,9 @@ use asperity::material::{Body, Creep, ThermalCreep};
 use asperity::quantities::{Quantities, Quantity};
 use asperity::sliding::{MovingGap, SteadyMotion};
 use asperity::surface::{Part, undeformed_gap};
-use asperity::{Boundary, Error, Grid, Plasticity, Programme, Scheme, Simulation, SolverOptions, TimeGrid};
+use asperity::{
+    Axis, Boundary, Error, Grid, Plasticity, Programme, Scheme, Simulation, SolverOptions, TimeGrid,
+};
 use ndarray::Array2;
 
 pub use describe::{Description, MaterialReport, Preparation, WaveReport};
@@ -319,6 +321,14 @@ impl Case {
         }
     }
 
+    /// What the rows of its run follow one another in.
+    pub fn axis(&self) -> Axis {
+        match self.motion.as_ref().map(|motion| &motion.travel) {
+            Some(Travel::Steady(_)) => Axis::Velocity,
+            Some(Travel::Path(_)) | None => Axis::Time,
+        }
+    }
+
     /// How the bodies yield in space.
     pub fn kernel(&self) -> Arc<dyn Kernel> {
         match &self.layers {
@@ -349,22 +359,21 @@ impl Case {
 
     /// The quantities that are asked for, of this simulation.
     fn quantities(&self, simulation: &Simulation) -> Quantities {
+        let steady = self.axis() == Axis::Velocity;
         let mut wanted = self.output.quantities.clone();
         if self.output.all_quantities {
             let possible = |quantity: &Quantity| {
                 let alone = Quantities { list: vec![*quantity], ..wanted.clone() };
                 // Displacements may be known up to a constant, and those of steady motion have no history.
-                let swept = self.motion.as_ref().is_some_and(|m| matches!(m.travel, Travel::Steady(_)));
                 let by_displacement = quantity.is_energy() || *quantity == Quantity::ContactStiffness;
                 let known = !(quantity.is_energy() && simulation.scheme == Scheme::Direct)
-                    && !((simulation.is_up_to_a_constant() || swept || self.waves.is_some())
+                    && !((simulation.is_up_to_a_constant() || steady || self.waves.is_some())
                         && by_displacement);
                 known && simulation.columns_of(&alone).is_ok()
             };
             wanted.list = Quantity::at_rest().filter(possible).collect();
         }
         if let Some(motion) = &self.motion {
-            let steady = matches!(motion.travel, Travel::Steady(_));
             // What steady states have no row of, or what displacements that are known up to a constant do not determine.
             let known = |quantity: &Quantity| match quantity {
                 Quantity::Velocity | Quantity::SlidingDistance => !steady,

@@ -4,9 +4,8 @@
 //! cells, because the solver is preconditioned. So the same case with few cells tells it. For the method of Polonsky and Keer,
 //! whose iterations grow with the grid, the number is scaled.
 
-use asperity::sliding::Steady;
 use asperity::surface::Part;
-use asperity::{Grid, March, Method};
+use asperity::{Grid, Method, drive};
 use ndarray::Array2;
 
 use super::Case;
@@ -45,30 +44,19 @@ impl Case {
         let parts = parts?;
         let simulation = coarse.simulation_of(&parts).ok()?;
         let mut found = Rehearsal { rows: 0, convolutions: 0 };
-        let mut count = |convolutions: usize| {
+        let steady = coarse.steady_of(&parts, &simulation).ok()?;
+        let mut drive = drive::of(simulation, steady).ok()?;
+        let mut reached = 0.0;
+        while let Some(step) = drive.advance().ok()? {
+            let row = step.row();
+            reached = row.coordinate.value();
             found.rows += 1;
-            found.convolutions += convolutions;
-            found.convolutions < ENOUGH && found.rows < ENOUGH_ROWS
-        };
-        let share = match coarse.steady_of(&parts, &simulation).ok()? {
-            Some(motion) => {
-                let total = motion.velocities.len();
-                let mut steady = Steady::new(simulation, motion).ok()?;
-                while steady.done() < total && count(steady.advance().ok()??.row().convolutions) {}
-                steady.done() as f64 / total as f64
+            found.convolutions += row.convolutions;
+            if found.convolutions >= ENOUGH || found.rows >= ENOUGH_ROWS {
+                break;
             }
-            None => {
-                let mut march = March::new(simulation).ok()?;
-                let mut reached = 0.0;
-                while let Some(step) = march.advance().ok()? {
-                    reached = step.instant().time;
-                    if !count(step.row().convolutions) {
-                        break;
-                    }
-                }
-                if march.finished() { 1.0 } else { reached / self.times.end() }
-            }
-        };
+        }
+        let share = if drive.finished() { 1.0 } else { reached / self.times.end() };
         let found = found.completed(share, self.rows);
         Some(match self.solver.method {
             Method::ProjectedCg => found,

@@ -99,9 +99,8 @@ impl<'a> Contents<'a> {
             add(series.name, series.units, series.long_name, &[TIME, place], Data::Reals(numbers));
         }
         let times = instants.iter().map(|index| reader.field_times()[*index]).collect();
-        let (units, what) =
-            if header.is_sweep() { ("m/s", "velocity of the fields") } else { ("s", "time of the fields") };
-        add(map, units, what, &[FIELD_TIME], Data::Reals(times));
+        let of_fields = Series::of_fields(header);
+        add(of_fields.name, of_fields.units, of_fields.long_name, &[FIELD_TIME], Data::Reals(times));
         let steps = instants.iter().map(|index| count(reader.field_steps()[*index])).collect();
         add("field_step", "1", "row of the fields", &[FIELD_TIME], Data::Counts(steps));
         let x = (0..nx).map(|i| grid.x(i)).collect();

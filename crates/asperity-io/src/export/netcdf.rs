@@ -233,6 +233,7 @@ impl Header {
 mod tests {
     use super::*;
     use crate::store::{At, Field, FieldKind, Header as ResultHeader, Reader, Row, Writer};
+    use asperity::Coordinate;
     use ndarray::{Array2, Axis};
     use netcdf_reader::NcFile;
 
@@ -257,7 +258,9 @@ mod tests {
             let pressure = Array2::from_shape_fn((5, 3), |(i, j)| (step * 15 + i * 3 + j) as f64 / 3.0);
             let contact = Array2::from_elem((5, 3), step as u8);
             let fields = [Field::Pressure(pressure.view()), Field::Contact(contact.view())];
-            writer.append(&Row { time: step as f64, ..Row::default() }, &fields).unwrap();
+            writer
+                .append(&Row { coordinate: Coordinate::Time(step as f64), ..Row::default() }, &fields)
+                .unwrap();
         }
         let reader = Reader::open(&path).unwrap();
         let contents = Contents::new(&reader, &header.fields, vec![0, 1, 2]).ok().unwrap();

@@ -1,8 +1,8 @@
-//! The state from which a march goes on: one file, replaced as a whole.
+//! The state from which a run goes on: one file, replaced as a whole.
 //!
 //! `checkpoint/state.bin`: eight bytes of magic, the length of a JSON header (u64), the header
-//! `{step, scalars, fields: [{name, shape}]}`, then the numbers as little-endian doubles, then the
-//! CRC-32 of all before it. It lies in a group of its own, so that the directory stays a sound
+//! `{rows, numbers: [{name, count}], fields: [{name, shape}]}`, then the numbers as little-endian doubles, then the
+//! CRC-32 of all before it. Form 1 had its numbers without names and is not read. It lies in a group of its own, so that the directory stays a sound
 //! Zarr hierarchy.
 
 use std::fs::{self, File};
@@ -16,6 +16,7 @@ use serde::{Deserialize, Serialize};
 
 use super::document::write_bare_group;
 use super::error::{Result, StoreError, io};
+use super::header::Header;
 use super::sync;
 
 /// Directory of the checkpoint in a result.
@@ -27,15 +28,22 @@ pub(super) const GROUP: &str = "group.json";
 pub(super) const GROUP_PARTIAL: &str = "group.json.partial";
 /// Names of the files in the directory.
 pub(super) const FILES: [&str; 4] = [FILE, PARTIAL, GROUP, GROUP_PARTIAL];
-/// Ends with the number of the form.
-const MAGIC: &[u8; 8] = b"ASPCHK\0\x01";
+const MAGIC: &[u8; 7] = b"ASPCHK\0";
+/// Number of the form, after the magic.
+const FORM: u8 = 2;
 const LONGEST_HEADER: u64 = 1 << 20;
 
 #[derive(Serialize, Deserialize)]
 struct Contents {
-    step: usize,
-    scalars: usize,
+    rows: usize,
+    numbers: Vec<Count>,
     fields: Vec<FieldShape>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Count {
+    name: String,
+    count: usize,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -71,18 +79,21 @@ pub(super) fn directory(root: &Path) -> Result<PathBuf> {
 }
 
 fn write_file(path: &Path, checkpoint: &Checkpoint, is_synced: bool) -> std::io::Result<()> {
-    let fields = checkpoint.fields.iter();
+    let (numbers, fields) = (checkpoint.numbers.iter(), checkpoint.fields.iter());
     let contents = Contents {
-        step: checkpoint.step,
-        scalars: checkpoint.scalars.len(),
+        rows: checkpoint.step,
+        numbers: numbers.map(|(name, n)| Count { name: name.clone(), count: n.len() }).collect(),
         fields: fields.map(|(name, f)| FieldShape { name: name.clone(), shape: f.dim() }).collect(),
     };
     let header = serde_json::to_vec(&contents)?;
     let mut file = Summed { inner: File::create(path)?, crc: Crc::new(), bytes: Vec::new() };
     file.put(MAGIC)?;
+    file.put(&[FORM])?;
     file.put(&(header.len() as u64).to_le_bytes())?;
     file.put(&header)?;
-    file.put_numbers(&checkpoint.scalars)?;
+    for (_, numbers) in &checkpoint.numbers {
+        file.put_numbers(numbers)?;
+    }
     for (_, field) in &checkpoint.fields {
         let field = field.as_standard_layout();
         file.put_numbers(field.as_slice().unwrap_or_default())?;
@@ -92,8 +103,8 @@ fn write_file(path: &Path, checkpoint: &Checkpoint, is_synced: bool) -> std::io:
     if is_synced { file.inner.sync_data() } else { Ok(()) }
 }
 
-/// The checkpoint of the result at `root`, or `None` where none was written.
-pub(super) fn read(root: &Path) -> Result<Option<Checkpoint<'static>>> {
+/// The checkpoint of the result at `root` of that header, which holds so many rows, or `None` where none was written.
+pub(super) fn read(root: &Path, header: &Header, rows: usize) -> Result<Option<Checkpoint<'static>>> {
     let path = root.join(DIRECTORY).join(FILE);
     let file = match crate::resources::open(&path) {
         Ok(file) => file,
@@ -104,6 +115,9 @@ pub(super) fn read(root: &Path) -> Result<Option<Checkpoint<'static>>> {
     let checkpoint = read_file(file, length).map_err(|error| match error {
         Unreadable::System(source) => StoreError::Io { path: path.clone(), action: "read", source },
         Unreadable::Damaged(what) => damaged(&path, what),
+        Unreadable::Former => {
+            StoreError::FormerCheckpoint { path: path.clone(), version: header.version.clone(), rows }
+        }
     })?;
     Ok(Some(checkpoint))
 }
@@ -131,6 +145,8 @@ pub(super) fn remove(root: &Path) -> Result<()> {
 enum Unreadable {
     System(std::io::Error),
     Damaged(String),
+    /// Of a form before [`FORM`].
+    Former,
 }
 
 impl From<std::io::Error> for Unreadable {
@@ -150,8 +166,10 @@ fn read_file(file: File, length: u64) -> Result<Checkpoint<'static>, Unreadable>
     file.read_exact(&mut prefix)?;
     crc.update(&prefix);
     let (magic, size) = prefix.split_at(8);
-    if magic != MAGIC {
-        return Err(damaged("it does not begin as a checkpoint of this version"));
+    match magic.split_last() {
+        Some((&FORM, magic)) if magic == MAGIC => {}
+        Some((form, magic)) if magic == MAGIC && (1..FORM).contains(form) => return Err(Unreadable::Former),
+        _ => return Err(damaged("it does not begin as a checkpoint of this version")),
     }
     let size = size.try_into().map_or(u64::MAX, u64::from_le_bytes);
     if size > LONGEST_HEADER.min(length) {
@@ -163,23 +181,26 @@ fn read_file(file: File, length: u64) -> Result<Checkpoint<'static>, Unreadable>
     let contents: Contents = serde_json::from_slice(&header)
         .map_err(|error| Unreadable::Damaged(format!("its header: {error}")))?;
     // The length of the file has to be that of the header's numbers before memory is asked for.
-    let numbers = contents.fields.iter().try_fold(contents.scalars, |sum, field| {
-        field.shape.0.checked_mul(field.shape.1).and_then(|cells| sum.checked_add(cells))
-    });
+    let cells = contents.fields.iter().map(|field| field.shape.0.checked_mul(field.shape.1));
+    let mut counts = contents.numbers.iter().map(|numbers| Some(numbers.count)).chain(cells);
+    let numbers = counts.try_fold(0_usize, |sum, count| sum.checked_add(count?));
     let expected = numbers.and_then(|n| (n as u64).checked_mul(8)).and_then(|n| n.checked_add(16 + size + 4));
     if expected != Some(length) {
         return Err(damaged("its length is not that of its contents"));
     }
-    let mut numbers = |count: usize| -> Result<Vec<f64>, Unreadable> {
+    let mut read = |count: usize| -> Result<Vec<f64>, Unreadable> {
         let mut bytes = vec![0; 8 * count];
         file.read_exact(&mut bytes)?;
         crc.update(&bytes);
         Ok(bytes.as_chunks::<8>().0.iter().map(|b| f64::from_le_bytes(*b)).collect())
     };
-    let scalars = numbers(contents.scalars)?;
+    let mut numbers = Vec::with_capacity(contents.numbers.len());
+    for Count { name, count } in contents.numbers {
+        numbers.push((name, read(count)?));
+    }
     let mut fields = Vec::with_capacity(contents.fields.len());
     for FieldShape { name, shape } in contents.fields {
-        let field = Array2::from_shape_vec(shape, numbers(shape.0 * shape.1)?);
+        let field = Array2::from_shape_vec(shape, read(shape.0 * shape.1)?);
         let field = field.map_err(|error| Unreadable::Damaged(error.to_string()))?;
         fields.push((name, field.into()));
     }
@@ -188,7 +209,7 @@ fn read_file(file: File, length: u64) -> Result<Checkpoint<'static>, Unreadable>
     if u32::from_le_bytes(sum) != crc.sum() {
         return Err(damaged("its checksum is wrong"));
     }
-    Ok(Checkpoint { step: contents.step, scalars, fields })
+    Ok(Checkpoint { step: contents.rows, numbers, fields })
 }
 
 /// A file that sums what is written to it.

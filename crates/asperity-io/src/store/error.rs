@@ -65,6 +65,17 @@ pub enum StoreError {
         /// What to do.
         hint: &'static str,
     },
+    /// The checkpoint is of a form that this version does not go on from.
+    #[error("{} is a checkpoint of an earlier asperity ({version}), which this version cannot go on from; the rows stored ({rows}) are \
+             kept: resume with the earlier version, or run the case again with --force", .path.display())]
+    FormerCheckpoint {
+        /// The checkpoint.
+        path: PathBuf,
+        /// Version that wrote the result.
+        version: String,
+        /// Rows stored.
+        rows: usize,
+    },
     /// A run cannot go on from this result: it belongs to another case.
     #[error("{} belongs to another case: {what} is {stored}, now {given}; restore the case, or start again with another output or --force", .path.display())]
     Mismatch {

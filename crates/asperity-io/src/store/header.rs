@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use asperity::Grid;
 use asperity::finding::Finding;
 use asperity::quantities::{Column, Quantity};
+use asperity::{Axis, Grid};
 use serde_json::{Map, Value, json};
 
 use super::checksum::Sums;
@@ -59,18 +59,20 @@ impl Header {
         Some(format!("{} {bodies}", if word == "periodic" { "periodic" } else { "free" }))
     }
 
-    /// Whether its rows are steady states of motion: they have a velocity in place of a time.
-    pub fn is_sweep(&self) -> bool {
-        self.setup.get("motion").and_then(|motion| motion.get("steady")).and_then(Value::as_bool)
-            == Some(true)
+    /// What its rows follow one another in.
+    pub fn axis(&self) -> Axis {
+        match self.setup.get("motion").and_then(|motion| motion.get("steady")).and_then(Value::as_bool) {
+            Some(true) => Axis::Velocity,
+            _ => Axis::Time,
+        }
     }
 
-    /// The name that an array or a dimension has in this result: in a sweep the velocity takes the place of the time.
+    /// The name that an array or a dimension has in this result: over velocities they take the place of the times.
     pub(crate) fn stored(&self, name: &'static str) -> &'static str {
-        match name {
-            "time" if self.is_sweep() => "velocity",
-            "field_time" if self.is_sweep() => "field_velocity",
-            name => name,
+        match (name, self.axis()) {
+            ("time", Axis::Velocity) => "velocity",
+            ("field_time", Axis::Velocity) => "field_velocity",
+            (name, _) => name,
         }
     }
 }

@@ -1,8 +1,8 @@
 //! Names, units, dimensions and chunks of the arrays of a result.
 
-use asperity::Grid;
 use asperity::march::Row;
 use asperity::quantities::{Column as Quantity, Quantity as Kind};
+use asperity::{Axis, Grid};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -99,6 +99,34 @@ pub struct Scalar {
     pub(super) entry: Entry,
 }
 
+impl Scalar {
+    /// Its number in a row; NaN for none.
+    pub fn of(&self, row: &Row) -> f64 {
+        let mut row = *row;
+        match self.entry {
+            Entry::Coordinate => row.coordinate.value(),
+            Entry::Real(entry) => *entry(&mut row),
+            Entry::Maybe(entry) => entry(&mut row).unwrap_or(f64::NAN),
+            Entry::Count(entry) => *entry(&mut row) as f64,
+        }
+    }
+
+    /// Sets it in a row, whose coordinate is on its axis before.
+    pub fn set(&self, row: &mut Row, value: f64) {
+        match self.entry {
+            Entry::Coordinate => row.coordinate = row.coordinate.axis().at(value),
+            Entry::Real(entry) => *entry(row) = value,
+            Entry::Maybe(entry) => *entry(row) = Some(value).filter(|number| !number.is_nan()),
+            Entry::Count(entry) => *entry(row) = value as usize,
+        }
+    }
+
+    /// Whether it is a whole number.
+    pub fn is_count(&self) -> bool {
+        matches!(self.entry, Entry::Count(_))
+    }
+}
+
 /// A per-step number that a result has, whether every result has it or it was asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Series {
@@ -125,14 +153,23 @@ impl Series {
             "capped_area" if header.grid.is_line() => "length at the hardness",
             "load" if header.grid.is_line() => "normal load per length along y",
             "mean_pressure" if header.grid.is_line() => "load over length of the domain",
-            "time" if header.is_sweep() => "velocity",
+            "time" => header.axis().name(),
             _ => scalar.long_name,
         };
         let units = match scalar.name {
-            "time" if header.is_sweep() => "m/s",
+            "time" => header.axis().unit(),
             _ => header.grid.units(scalar.units),
         };
         Series { name: header.stored(scalar.name), units, long_name }
+    }
+
+    /// The coordinate of the fields.
+    pub(crate) fn of_fields(header: &Header) -> Series {
+        let (units, long_name) = match header.axis() {
+            Axis::Velocity => (Axis::Velocity.unit(), "velocity of the fields"),
+            Axis::Time | Axis::None => (Axis::Time.unit(), "time of the fields"),
+        };
+        Series { name: header.stored("field_time"), units, long_name }
     }
 
     /// A quantity of a result. The border of a contact on a line are its ends, which are counted.
@@ -194,6 +231,8 @@ pub(crate) fn coordinates(column: &Quantity, grid: &Grid) -> Vec<(Series, Vec<f6
 /// Where a row keeps a scalar.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Entry {
+    /// On its axis, which the row has before.
+    Coordinate,
     Real(fn(&mut Row) -> &mut f64),
     Count(fn(&mut Row) -> &mut usize),
     /// A number that not every row has: NaN for none.
@@ -203,7 +242,7 @@ pub(super) enum Entry {
 impl Entry {
     fn data_type(self) -> DataType {
         match self {
-            Entry::Real(_) | Entry::Maybe(_) => DataType::Float64,
+            Entry::Coordinate | Entry::Real(_) | Entry::Maybe(_) => DataType::Float64,
             Entry::Count(_) => DataType::Int64,
         }
     }
@@ -212,6 +251,7 @@ impl Entry {
     pub(super) fn to_bytes(self, row: &Row) -> [u8; 8] {
         let mut row = *row;
         match self {
+            Entry::Coordinate => row.coordinate.value().to_le_bytes(),
             Entry::Real(entry) => entry(&mut row).to_le_bytes(),
             Entry::Maybe(entry) => entry(&mut row).unwrap_or(f64::NAN).to_le_bytes(),
             Entry::Count(entry) => i64::try_from(*entry(&mut row)).unwrap_or(i64::MAX).to_le_bytes(),
@@ -221,6 +261,7 @@ impl Entry {
     /// Sets it from those bytes; `None` where they hold no count.
     pub(super) fn set(self, row: &mut Row, bytes: [u8; 8]) -> Option<()> {
         match self {
+            Entry::Coordinate => row.coordinate = row.coordinate.axis().at(f64::from_le_bytes(bytes)),
             Entry::Real(entry) => *entry(row) = f64::from_le_bytes(bytes),
             Entry::Maybe(entry) => {
                 *entry(row) = Some(f64::from_le_bytes(bytes)).filter(|number| !number.is_nan())
@@ -233,7 +274,7 @@ impl Entry {
 
 macro_rules! scalars {
     ($($kind:ident $name:ident [$units:literal] $long_name:literal;)*) => {
-        [$(Scalar {
+        [Scalar { name: "time", units: "s", long_name: "time", entry: Entry::Coordinate }, $(Scalar {
             name: stringify!($name),
             units: $units,
             long_name: $long_name,
@@ -242,9 +283,8 @@ macro_rules! scalars {
     };
 }
 
-/// The per-step numbers of a result, `time` first.
+/// The per-step numbers of a result, the coordinate first.
 pub const SCALARS: [Scalar; 16] = scalars![
-    Real time ["s"] "time";
     Real load ["N"] "normal load";
     Real approach ["m"] "rigid-body approach";
     Real contact_area ["m2"] "contact area";
@@ -410,11 +450,8 @@ pub(super) fn is_of_maps(dimension: &str) -> bool {
 /// All arrays of a result with `rows` rows and `maps` instants of its fields.
 pub(super) fn arrays(header: &Header, rows: usize, maps: usize) -> Vec<ArraySpec> {
     let mut arrays = over_time(header, rows, maps);
-    if header.is_sweep() {
+    if header.axis() == Axis::Velocity {
         for array in &mut arrays {
-            if array.name == "field_time" {
-                array.attributes = json!({"units": "m/s", "long_name": "velocity of the fields"});
-            }
             array.name = header.stored(array.name);
             array.dimensions = match *array.dimensions {
                 ["time"] => &["velocity"],
@@ -466,7 +503,15 @@ fn over_time(header: &Header, rows: usize, maps: usize) -> Vec<ArraySpec> {
             }
         }
     }
-    arrays.push(series("field_time", DataType::Float64, "field_time", maps, "s", "time of the fields"));
+    let of_fields = Series::of_fields(header);
+    arrays.push(series(
+        "field_time",
+        DataType::Float64,
+        "field_time",
+        maps,
+        of_fields.units,
+        of_fields.long_name,
+    ));
     arrays.push(series("field_step", DataType::Int64, "field_time", maps, "1", "row of the fields"));
     arrays.push(coordinate("x", nx, "x, centres of the cells"));
     // Nothing changes along y of a line: it has no such dimension.

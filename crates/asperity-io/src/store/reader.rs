@@ -139,13 +139,15 @@ impl Reader {
         for scalar in SCALARS {
             let numbers = self.column(scalar.name, self.len())?;
             // The length is trusted once the files have shown to hold it.
-            rows.resize(numbers.len(), Row::default());
+            rows.resize(numbers.len(), Row { coordinate: self.header().axis().at(0.0), ..Row::default() });
             column::fill(&mut rows, scalar.entry, &numbers)
                 .ok_or_else(|| corrupt(&self.root.join(scalar.name), "a count in it is negative"))?;
         }
         // What a loss of power did not let reach the disk reads as zeros.
-        if let Some(n) = rows.windows(2).position(|pair| pair[1].time < pair[0].time) {
-            return Err(corrupt(&self.root.join("time"), format_args!("times decrease after row {n}")));
+        let coordinate = |row: &Row| row.coordinate.value();
+        if let Some(n) = rows.windows(2).position(|pair| coordinate(&pair[1]) < coordinate(&pair[0])) {
+            let (name, what) = (self.header().stored("time"), self.header().axis().plural());
+            return Err(corrupt(&self.root.join(name), format_args!("{what} decrease after row {n}")));
         }
         Ok(rows)
     }
@@ -243,17 +245,22 @@ impl Reader {
             }
         };
         found.ok_or_else(|| {
+            let axis = self.header().axis();
+            let (unit, several) = (axis.unit(), axis.plural());
             let what = match at {
                 At::Index(index) => format!("fields of number {index}"),
-                At::Time(time) => format!("fields at {time} s"),
+                At::Time(time) => format!("fields at {time} {unit}"),
                 At::Last => "fields".to_owned(),
             };
             let instead = match times[..] {
                 [] => "no field is stored yet".to_owned(),
                 [first, .., last] => {
-                    format!("it holds fields at {} times from {first} s to {last} s", times.len())
+                    format!(
+                        "it holds fields at {} {several} from {first} {unit} to {last} {unit}",
+                        times.len()
+                    )
                 }
-                [only] => format!("it holds fields at {only} s"),
+                [only] => format!("it holds fields at {only} {unit}"),
             };
             self.missing(what, instead)
         })

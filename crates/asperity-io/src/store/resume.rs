@@ -27,6 +27,7 @@ impl Writer {
     /// # Errors
     /// [`StoreError::Mismatch`] where `header` or `initial_gap` \[m\] is not that of the result (the case,
     /// or a file that it names, has changed); [`StoreError::Complete`] where nothing is left to do;
+    /// [`StoreError::FormerCheckpoint`] where an earlier version wrote the checkpoint;
     /// [`StoreError::Busy`] where another process is writing it; [`StoreError::NotAResult`],
     /// [`StoreError::Newer`], [`StoreError::Corrupt`] and [`StoreError::Io`] as of [`Reader::open`].
     pub fn resume(
@@ -45,7 +46,7 @@ impl Writer {
         compare_gap(path, reader.initial_gap()?.view(), initial_gap)?;
         refuse_links(path)?;
 
-        let checkpoint = checkpoint::read(path)?;
+        let checkpoint = checkpoint::read(path, reader.header(), reader.len())?;
         let rows = checkpoint.as_ref().map_or(0, |checkpoint| checkpoint.step);
         if rows > reader.len() {
             let what = format!("it is of row {rows}, but {} rows are stored", reader.len());
@@ -89,8 +90,8 @@ impl Writer {
                 remove(&directory)?;
             }
         }
-        let last_time = all[..rows].last().map_or(f64::NEG_INFINITY, |row| row.time);
-        Ok((Writer::attach(path, document, held, last_time)?, checkpoint))
+        let last = all[..rows].last().map_or(f64::NEG_INFINITY, |row| row.coordinate.value());
+        Ok((Writer::attach(path, document, held, last)?, checkpoint))
     }
 }
 

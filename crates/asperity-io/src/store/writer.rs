@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use asperity::finding::Finding;
-use asperity::march::{Checkpoint, Row};
+use asperity::march::{Row, Checkpoint};
 use ndarray::ArrayView2;
 
 use super::checkpoint;
@@ -109,10 +109,11 @@ pub struct Writer {
     field_time: Column,
     field_step: Column,
     fields: Vec<(FieldKind, Chunks)>,
-    last_time: f64,
-    /// Maps written that the next row brings into the result, and the time of the last of them.
+    /// The coordinate of the last row.
+    last: f64,
+    /// Maps written that the next row brings into the result, and the coordinate of the last of them.
     staged: usize,
-    staged_time: f64,
+    last_staged: f64,
     wall_before: f64,
     started: Instant,
     committed: Instant,
@@ -181,12 +182,7 @@ impl Writer {
     }
 
     /// A writer that goes on after the rows and fields of `document`.
-    pub(super) fn attach(
-        root: &Path,
-        document: Document,
-        lock: Option<File>,
-        last_time: f64,
-    ) -> Result<Writer> {
+    pub(super) fn attach(root: &Path, document: Document, lock: Option<File>, last: f64) -> Result<Writer> {
         let specs = document.arrays();
         let header = document.header.clone();
         let spec = |name: &'static str| {
@@ -208,9 +204,9 @@ impl Writer {
             field_step: per_map("field_step")?,
             fields: fields.collect::<Result<_>>()?,
             root: root.to_owned(),
-            last_time,
+            last,
             staged: 0,
-            staged_time: last_time,
+            last_staged: last,
             wall_before: document.progress.work.wall_s,
             started: Instant::now(),
             committed: Instant::now(),
@@ -235,6 +231,16 @@ impl Writer {
         }
         let source = std::io::Error::other("the result was moved or removed while it was written");
         Err(StoreError::Io { path: self.root.clone(), action: "write into", source })
+    }
+
+    /// Refuses a coordinate below the `last` one.
+    fn check_order(&self, of: &str, at: f64, last: f64) -> Result<()> {
+        if at >= last {
+            return Ok(());
+        }
+        let (name, unit) = (self.header.axis().name(), self.header.axis().unit());
+        let expected = format!("not less than the {name} before it, {last} {unit}");
+        Err(input(format!("{name} of the {of}"), format!("{at} {unit}"), expected))
     }
 
     /// The directory of the result.
@@ -282,15 +288,12 @@ impl Writer {
                 format!("{wanted}, those of the header"),
             ));
         }
-        if row.time.is_nan() || row.time < self.last_time {
-            let expected = format!("not less than the time before it, {} s", self.last_time);
-            return Err(input("time of the row", format!("{} s", row.time), expected));
-        }
+        let at = row.coordinate.value();
+        self.check_order("row", at, self.last)?;
         self.check_place()?;
         self.check_fields(fields)?;
-        if self.staged > 0 && row.time < self.staged_time {
-            let expected = format!("not less than that of the fields before it, {} s", self.staged_time);
-            return Err(input("time of the row", format!("{} s", row.time), expected));
+        if self.staged > 0 {
+            self.check_order("row", at, self.last_staged)?;
         }
         let Progress { rows, maps, .. } = self.progress;
         let maps = maps + self.staged;
@@ -307,7 +310,7 @@ impl Writer {
         let mut progress = self.progress.clone();
         progress.maps = maps;
         if !fields.is_empty() {
-            self.write_maps(maps, row.time, fields)?;
+            self.write_maps(maps, at, fields)?;
             progress.maps += 1;
         }
         progress.rows += 1;
@@ -329,7 +332,7 @@ impl Writer {
         [&mut self.field_time, &mut self.field_step].into_iter().for_each(|column| column.commit(maps));
         self.progress = progress;
         self.staged = 0;
-        self.last_time = row.time;
+        self.last = at;
         self.documents_behind = true;
         if self.documents_written.elapsed() > LAG {
             self.flush_documents(Way::Quick)?;
@@ -343,11 +346,7 @@ impl Writer {
     /// # Errors
     /// As of [`append`](Self::append); without fields nothing is done.
     pub fn stage(&mut self, time: f64, fields: &[Field<'_>]) -> Result<()> {
-        let last = if self.staged > 0 { self.staged_time } else { self.last_time };
-        if time.is_nan() || time < last {
-            let expected = format!("not less than the time before it, {last} s");
-            return Err(input("time of the fields", format!("{time} s"), expected));
-        }
+        self.check_order("fields", time, if self.staged > 0 { self.last_staged } else { self.last })?;
         self.check_place()?;
         self.check_fields(fields)?;
         if fields.is_empty() {
@@ -355,7 +354,7 @@ impl Writer {
         }
         self.write_maps(self.progress.maps + self.staged, time, fields)?;
         self.staged += 1;
-        self.staged_time = time;
+        self.last_staged = time;
         Ok(())
     }
 
@@ -427,7 +426,7 @@ impl Writer {
     pub fn checkpoint(&mut self, checkpoint: &Checkpoint) -> Result<()> {
         if checkpoint.step != self.progress.rows {
             let expected = format!("{}, the rows stored", self.progress.rows);
-            return Err(input("step of the checkpoint", checkpoint.step, expected));
+            return Err(input("rows of the checkpoint", checkpoint.step, expected));
         }
         self.check_place()?;
         let start = Instant::now();
@@ -608,10 +607,10 @@ mod tests {
         let map = Array2::zeros((4, 3));
         let mut writer = Writer::create(&path, &header, map.view(), false).unwrap();
         let copy = path.join(checkpoint::DIRECTORY).join(checkpoint::GROUP);
-        for step in 1..=2 {
+        for rows in 1..=2 {
             writer.append(&Row::default(), &[Field::Pressure(map.view())]).unwrap();
-            writer.checkpoint(&Checkpoint { step, scalars: vec![], fields: vec![] }).unwrap();
-            assert_eq!(copy.exists(), step == 2);
+            writer.checkpoint(&Checkpoint { step: rows, numbers: vec![], fields: vec![] }).unwrap();
+            assert_eq!(copy.exists(), rows == 2);
             assert!(!writer.checkpoint_due());
             writer.unsynced.since = Instant::now().checked_sub(SYNC_PAUSE).unwrap();
         }

@@ -7,7 +7,7 @@ use ndarray::Array2;
 
 use super::evaluate::{StressError, boundary, of_result};
 use super::{Below, Depths, Instant, Pressures, StressPlan};
-use crate::readable::quantity;
+use crate::readable::coordinate;
 use crate::store::{At, Reader};
 
 /// Slabs of a section, and of one below a line, where they cost little.
@@ -69,8 +69,7 @@ pub fn section(reader: &Reader, below: &Below, instant: &Instant) -> Result<Sect
     let number = |name| below.number(instant, name);
     let place = ["max_mises_depth", "max_mises_x", "max_mises_y"].map(number);
     if place[..1 + grid.dimensions()].iter().any(|length| !length.is_finite()) {
-        let [symbol, unit] = if reader.header().is_sweep() { ["v", "m/s"] } else { ["t", "s"] };
-        let when = format!("{symbol} = {}", quantity(instant.time, unit));
+        let when = coordinate(reader.header().axis().at(instant.time));
         return Err(StressError::NoContact { path: reader.path().to_owned(), when });
     }
     let mut stress = below.set.poisson.transforms(grid, boundary(reader))?;

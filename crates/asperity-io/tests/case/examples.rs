@@ -123,7 +123,7 @@ fn the_rubber_that_warms_up_is_solved_on_a_coarse_grid() {
     }
     // The load is held from 1 s on: the approach grows from that of leather to that of rubber. The law behind the
     // data, 30 s at 20 °C: G = 0.7 MPa and what the fractional element still bears.
-    let at = |t: f64| rows.iter().find(|row| row.time == t).unwrap().approach;
+    let at = |t: f64| rows.iter().find(|row| row.time() == t).unwrap().approach;
     let growth = at(110.0) / at(1.0);
     let law = asperity::material::Fractional::Zener {
         equilibrium: 0.7e6,

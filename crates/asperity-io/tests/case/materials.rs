@@ -307,7 +307,7 @@ fn a_temperature_history_gives_each_body_its_clock() {
     while let Some(step) = march.advance().unwrap() {
         rows.push(step.row());
     }
-    assert!(rows.iter().any(|row| row.time == 35.0));
+    assert!(rows.iter().any(|row| row.time() == 35.0));
     // After the load has risen to 0.1 N at 10 s the contact only grows, to the solver's tolerance.
     assert!(rows[1..].windows(2).all(|pair| pair[0].approach <= pair[1].approach * (1.0 + 1e-5)));
 }

@@ -2,8 +2,7 @@
 
 use std::path::Path;
 
-use asperity::March;
-use asperity::sliding::Steady;
+use asperity::drive;
 use asperity_io::case::{Case, Rehearsal};
 
 /// A case of 192 x 192 cells, or a line of 1024: several times as fine as its rehearsal.
@@ -27,23 +26,12 @@ const UNTIL: &str = "[time]\nend = \"20 s\"\nsteps = 20";
 fn solved(case: &Case) -> Rehearsal {
     let parts = case.parts().unwrap();
     let simulation = case.simulation_of(&parts).unwrap();
+    let steady = case.steady_of(&parts, &simulation).unwrap();
+    let mut drive = drive::of(simulation, steady).unwrap();
     let mut found = Rehearsal { rows: 0, convolutions: 0 };
-    match case.steady_of(&parts, &simulation).unwrap() {
-        Some(motion) => {
-            let total = motion.velocities.len();
-            let mut steady = Steady::new(simulation, motion).unwrap();
-            while steady.done() < total {
-                found.convolutions += steady.advance().unwrap().unwrap().row().convolutions;
-                found.rows += 1;
-            }
-        }
-        None => {
-            let mut march = March::new(simulation).unwrap();
-            while let Some(step) = march.advance().unwrap() {
-                found.convolutions += step.row().convolutions;
-                found.rows += 1;
-            }
-        }
+    while let Some(step) = drive.advance().unwrap() {
+        found.convolutions += step.row().convolutions;
+        found.rows += 1;
     }
     found
 }

@@ -2,8 +2,8 @@
 
 #![allow(dead_code)] // each test program uses a part
 
-use asperity::Grid;
-use asperity_io::store::{Checkpoint, Field, FieldKind, Header, Result, Row, Writer};
+use asperity::{Coordinate, Grid};
+use asperity_io::store::{Field, FieldKind, Header, Result, Row, Checkpoint, Writer};
 use ndarray::Array2;
 use tempfile::TempDir;
 
@@ -60,7 +60,7 @@ impl Case {
         let touching = pressure.iter().filter(|p| **p > 0.0).count();
         Row {
             // Steps 4 and 5 are the two sides of a jump.
-            time: if step > 4 { step - 1 } else { step } as f64 / 3.0,
+            coordinate: Coordinate::Time(if step > 4 { step - 1 } else { step } as f64 / 3.0),
             load: noise(100 + step),
             approach: -noise(step),
             residual: if step == 2 { f64::NAN } else { 1e-7 * noise(step) },
@@ -116,7 +116,11 @@ impl Case {
     pub(crate) fn checkpoint(&self, step: usize) -> Checkpoint<'static> {
         Checkpoint {
             step,
-            scalars: vec![noise(step), f64::NAN, -0.0],
+            numbers: vec![
+                ("schedule/stage".into(), vec![noise(step), f64::NAN, -0.0]),
+                ("none".into(), vec![]),
+                ("history/states".into(), vec![1.0 / 3.0]),
+            ],
             fields: vec![
                 ("pressure".into(), self.pressure(step).into()),
                 ("flow".into(), self.gap(step).into()),
@@ -138,10 +142,10 @@ pub(crate) fn bits(map: &Array2<f64>) -> Vec<u64> {
 
 /// Every number of a row, as bits.
 pub(crate) fn row_bits(row: &Row) -> Vec<u64> {
-    let Row { time, load, approach, contact_area, contact_area_corrected, contact_fraction, .. } = *row;
+    let Row { coordinate, load, approach, contact_area, contact_area_corrected, contact_fraction, .. } = *row;
     let Row { capped_area, mean_pressure, max_pressure, mean_gap, residual, certificate, .. } = *row;
     let reals = [
-        time,
+        coordinate.value(),
         load,
         approach,
         contact_area,

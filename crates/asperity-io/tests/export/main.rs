@@ -108,7 +108,7 @@ fn csv_reads_back_to_the_same_bits() {
         assert_eq!(line.len(), lines[0].len());
         let row = case.row(step);
         for (name, value) in
-            [("time [s]", row.time), ("approach [m]", row.approach), ("certificate", row.certificate)]
+            [("time [s]", row.time()), ("approach [m]", row.approach), ("certificate", row.certificate)]
         {
             assert_eq!(line[column(name)].parse::<f64>().unwrap().to_bits(), value.to_bits(), "{name}");
         }
@@ -144,7 +144,7 @@ fn vtk_lists_each_state_at_a_time_of_its_own() {
     assert_eq!(times.len(), 7);
     assert!(times.windows(2).all(|pair| pair[0] < pair[1]), "{times:?}");
     // Steps 4 and 5 are the two sides of a jump.
-    assert_eq!((times[4], times[5]), (case.row(5).time.next_down(), case.row(5).time));
+    assert_eq!((times[4], times[5]), (case.row(5).time().next_down(), case.row(5).time()));
     let states = names(&directory.path().join("rough"));
     assert_eq!(
         (states.len(), states[0].as_str(), states[7].as_str()),
@@ -244,7 +244,7 @@ fn other_programs_read_the_bits() {
     let dump = |name: &str, bytes: Vec<u8>| fs::write(directory.path().join(name), bytes).unwrap();
     dump("initial_gap", le_bytes(&case.gap));
     dump("case", case.header.case_text.clone().into_bytes());
-    dump("time", (0..7).flat_map(|step| case.row(step).time.to_le_bytes()).collect());
+    dump("time", (0..7).flat_map(|step| case.row(step).time().to_le_bytes()).collect());
     dump("residual", (0..7).flat_map(|step| case.row(step).residual.to_le_bytes()).collect());
     let steps = [0, 2, 4, 6];
     dump("pressure", steps.iter().flat_map(|step| le_bytes(&case.pressure(*step))).collect());

@@ -365,6 +365,23 @@ fn a_damaged_checkpoint_is_not_resumed_from() {
 }
 
 #[test]
+fn a_checkpoint_of_an_earlier_form_is_refused_and_nothing_is_lost() {
+    let (_directory, path) = place();
+    write(&path);
+    let (file, case) = (path.join("checkpoint/state.bin"), case());
+    let mut earlier = fs::read(&file).unwrap();
+    earlier[7] = 1;
+    fs::write(&file, earlier).unwrap();
+    let error = Writer::resume(&path, &case.header, case.gap.view()).unwrap_err();
+    assert!(
+        matches!(&error, StoreError::FormerCheckpoint { rows: 4, version, .. } if *version == case.header.version)
+    );
+    assert!(error.to_string().contains("the rows stored (4) are kept"), "{error}");
+    assert!(error.to_string().ends_with("or run the case again with --force"), "{error}");
+    assert_eq!((Reader::open(&path).unwrap().len(), verify(&path).unwrap().damage), (4, vec![]));
+}
+
+#[test]
 fn a_checkpoint_of_rows_that_are_not_there_is_refused() {
     let (_directory, path) = place();
     write(&path);

@@ -92,7 +92,7 @@ fn what_an_interrupted_write_leaves_is_not_seen_and_is_overwritten() {
 
     let reader = Reader::open(&path).unwrap();
     assert_eq!((reader.len(), reader.field_times().len()), (3, 2));
-    assert_eq!(reader.series("time").unwrap().last(), Some(&case.row(2).time));
+    assert_eq!(reader.series("time").unwrap().last(), Some(&case.row(2).time()));
 
     let (mut writer, state) = Writer::resume(&path, &case.header, case.gap.view()).unwrap();
     assert!(state.is_none());

@@ -23,7 +23,7 @@ fn xarray_reads_the_bits_without_a_warning() {
     dump("pressure", le_bytes(&case.pressure(6)));
     dump("gap", le_bytes(&case.gap(6)));
     dump("contact", case.contact(6).into_raw_vec_and_offset().0);
-    dump("time", (0..7).flat_map(|step| case.row(step).time.to_le_bytes()).collect());
+    dump("time", (0..7).flat_map(|step| case.row(step).time().to_le_bytes()).collect());
     dump("residual", (0..7).flat_map(|step| case.row(step).residual.to_le_bytes()).collect());
 
     let check = |status: &str| {

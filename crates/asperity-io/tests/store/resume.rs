@@ -44,9 +44,11 @@ fn resumed(case: &Case) {
     let state = state.unwrap();
     let expected = case.checkpoint(5);
     assert_eq!(state.step, 5);
-    let scalars =
-        |c: &asperity_io::store::Checkpoint| c.scalars.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
-    assert_eq!(scalars(&state), scalars(&expected));
+    let bits_of = |numbers: &[f64]| numbers.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+    assert_eq!(state.numbers.len(), expected.numbers.len());
+    for (numbers, expected) in state.numbers.iter().zip(&expected.numbers) {
+        assert_eq!((&numbers.0, bits_of(&numbers.1)), (&expected.0, bits_of(&expected.1)));
+    }
     for (field, expected) in state.fields.iter().zip(&expected.fields) {
         assert_eq!((&field.0, bits(&field.1.to_owned())), (&expected.0, bits(&expected.1.to_owned())));
     }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use asperity::Coordinate;
 use asperity_io::store::{At, Field, FieldKind, Outcome, Reader, Row, SCALARS, Status, StoreError, Writer};
 use ndarray::Array2;
 use zarrs::array::Array;
@@ -53,7 +54,12 @@ fn series_run_over_the_end_of_a_chunk() {
     let mut writer = Writer::create(&path, &case.header, case.gap.view(), false).unwrap();
     let steps = 4096 + 3;
     for step in 0..steps {
-        writer.append(&Row { time: step as f64, iterations: step, ..Row::default() }, &[]).unwrap();
+        writer
+            .append(
+                &Row { coordinate: Coordinate::Time(step as f64), iterations: step, ..Row::default() },
+                &[],
+            )
+            .unwrap();
     }
     drop(writer);
     let reader = Reader::open(&path).unwrap();
@@ -170,7 +176,10 @@ fn what_does_not_fit_the_result_is_refused_and_leaves_it_as_it_was() {
         assert!(matches!(writer.append(&row, &fields), Err(StoreError::Input { .. })));
     }
     for time in [0.5, f64::NAN] {
-        assert!(matches!(writer.append(&Row { time, ..row }, &[]), Err(StoreError::Input { .. })));
+        assert!(matches!(
+            writer.append(&Row { coordinate: Coordinate::Time(time), ..row }, &[]),
+            Err(StoreError::Input { .. })
+        ));
     }
     assert!(matches!(writer.checkpoint(&case.checkpoint(3)), Err(StoreError::Input { .. })));
     assert_eq!(Reader::open(&path).unwrap().len(), 4);

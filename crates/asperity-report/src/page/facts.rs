@@ -1,5 +1,6 @@
 //! The case and the work of a result, in words.
 
+use asperity::Axis;
 use asperity_io::cycles;
 use asperity_io::readable::quantity;
 use asperity_io::store::{Reader, StoreError};
@@ -69,15 +70,18 @@ pub(super) fn facts(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
     line("Temperature", crate::result::temperatures(reader));
     line("Motion", motion(setup));
     line("Hardness", number("hardness", "Pa"));
-    if header.is_sweep() {
-        let rows = reader.series("time")?;
-        let ends = rows.first().zip(rows.last());
-        let words =
-            |(from, to): (&f64, &f64)| format!("{} to {}", quantity(*from, "m/s"), quantity(*to, "m/s"));
-        line("Velocities", ends.map(words));
-    } else {
-        let end = setup.get("end").and_then(Value::as_f64);
-        line("Time", end.map(|end| format!("0 to {}", time(end))));
+    match header.axis() {
+        Axis::Velocity => {
+            let rows = reader.series("time")?;
+            let ends = rows.first().zip(rows.last());
+            let words =
+                |(from, to): (&f64, &f64)| format!("{} to {}", quantity(*from, "m/s"), quantity(*to, "m/s"));
+            line("Velocities", ends.map(words));
+        }
+        Axis::Time | Axis::None => {
+            let end = setup.get("end").and_then(Value::as_f64);
+            line("Time", end.map(|end| format!("0 to {}", time(end))));
+        }
     }
     for [name, words] in last_cycles(reader)? {
         line(&name, Some(words));

@@ -1,5 +1,6 @@
 //! What a page knows besides its maps.
 
+use asperity::Coordinate;
 use asperity::cycles::Cycle;
 use asperity_io::cycles;
 use asperity_io::leakage::LeakHistory;
@@ -80,7 +81,7 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
         "grid": {"cells": grid.cells(), "size": grid.size(), "line": grid.is_line()},
         "series": series,
         "units": units,
-        "rows": {"label": rows.label, "unit": rows.unit, "symbol": rows.symbol, "log": rows.log},
+        "rows": {"label": rows.of.name(), "unit": rows.of.unit(), "symbol": rows.of.symbol(), "log": rows.log},
         "last_cycle": last_cycle(reader)?,
         "cycles": each_cycle(reader)?,
         "quantities": quantities(reader, theory.is_some()),
@@ -188,7 +189,6 @@ fn status(reader: &Reader) -> String {
 fn headline(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
     let rows = reader.rows()?;
     let Some(last) = rows.last() else { return Ok(vec![]) };
-    let axis = Rows::of(reader)?;
     let grid = &reader.header().grid;
     let (force, area) = (grid.units("N"), grid.units("m2"));
     let contact = match grid.is_line() {
@@ -205,8 +205,11 @@ fn headline(reader: &Reader) -> Result<Vec<[String; 2]>, StoreError> {
     };
     let mut lines = vec![
         [
-            format!("{} (last of {} rows)", axis.label, rows.len()),
-            if reader.header().is_sweep() { quantity(last.time, axis.unit) } else { time(last.time) },
+            format!("{} (last of {} rows)", last.coordinate.axis().name(), rows.len()),
+            match last.coordinate {
+                Coordinate::Velocity(velocity) => quantity(velocity, "m/s"),
+                at => time(at.value()),
+            },
         ],
         ["load".into(), quantity(last.load, force)],
         ["approach".into(), quantity(last.approach, "m")],

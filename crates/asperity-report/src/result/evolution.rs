@@ -177,7 +177,7 @@ pub(crate) fn last_cycle(
     let (Some(first), Some(last)) = (times.iter().position(shown), times.iter().rposition(shown)) else {
         return Ok(None);
     };
-    if reader.header().is_sweep() {
+    if reader.header().axis() != asperity::Axis::Time {
         return Ok(None);
     }
     let sines = cycles::of_result(reader)?;

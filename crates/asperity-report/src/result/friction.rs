@@ -55,9 +55,9 @@ pub(super) fn friction(reader: &Reader, options: &Options) -> Result<Figure, Plo
     let mut figure = Figure::new("").with(coefficient).with(force).with(area);
     if has("dissipated_power") {
         // Over decades of velocity the power spans decades too.
-        let own = match reader.header().is_sweep() {
-            true => Axis::log("power lost", grid.units("W")),
-            false => Axis::linear("power lost", grid.units("W")),
+        let own = match reader.header().axis() {
+            asperity::Axis::Velocity => Axis::log("power lost", grid.units("W")),
+            asperity::Axis::Time | asperity::Axis::None => Axis::linear("power lost", grid.units("W")),
         };
         let power = Curves::new("Power", axis(), own);
         figure = figure.with(nameless(power, &x, reader.series("dissipated_power")?));
@@ -70,7 +70,8 @@ pub(super) fn friction(reader: &Reader, options: &Options) -> Result<Figure, Plo
 pub(crate) fn persson(reader: &Reader) -> Result<Option<Vec<PerssonFriction>>, StoreError> {
     let header = reader.header();
     let layered = header.setup.contains_key("layer_separable");
-    if !header.is_sweep() || header.grid.is_line() || layered || boundary(reader) != Boundary::Periodic {
+    let over_velocities = header.axis() == asperity::Axis::Velocity;
+    if !over_velocities || header.grid.is_line() || layered || boundary(reader) != Boundary::Periodic {
         return Ok(None);
     }
     let velocities = reader.series("time")?;

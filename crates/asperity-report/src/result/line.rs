@@ -16,8 +16,9 @@ const MOST_CURVES: usize = 6;
 /// A field over x at an instant, and over x and time where several instants are stored.
 pub(super) fn field(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, StoreError> {
     let index = reader.index(at)?;
-    let panel = match reader.header().is_sweep() {
-        true => of_sweep(reader, kind, index)?,
+    let over_velocities = reader.header().axis() == asperity::Axis::Velocity;
+    let panel = match over_velocities {
+        true => of_velocities(reader, kind, index)?,
         false => curve(reader, kind, At::Index(index))?,
     };
     let mut figure = Figure::new("").columns(1).with(panel);
@@ -26,7 +27,7 @@ pub(super) fn field(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, 
     if kind == FieldKind::Gap && one(reader, kind, At::Index(index))?.iter().any(|gap| *gap < 0.0) {
         words += super::fields::OVERLAP;
     }
-    if reader.header().is_sweep() && reader.field_times().len() > 1 {
+    if over_velocities && reader.field_times().len() > 1 {
         words += " Solid: this velocity.";
     }
     if let Some(map) = over_time(reader, kind)? {
@@ -37,7 +38,7 @@ pub(super) fn field(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, 
 }
 
 /// A field over x at some of the stored velocities of a sweep, that of number `index` as a solid line among dashed ones.
-fn of_sweep(reader: &Reader, kind: FieldKind, index: usize) -> Result<Curves, StoreError> {
+fn of_velocities(reader: &Reader, kind: FieldKind, index: usize) -> Result<Curves, StoreError> {
     let count = reader.field_times().len();
     let every = count.div_ceil(MOST_CURVES).max(1);
     let mut panel = Curves::new("", along(reader), axis(reader, kind));
@@ -112,7 +113,7 @@ fn axis(reader: &Reader, kind: FieldKind) -> Axis {
 pub(crate) fn over_time(reader: &Reader, kind: FieldKind) -> Result<Option<Map>, StoreError> {
     let times = reader.field_times();
     let (Some(first), Some(last)) = (times.first().copied(), times.last().copied()) else { return Ok(None) };
-    if last <= first || reader.header().is_sweep() {
+    if last <= first || reader.header().axis() != asperity::Axis::Time {
         return Ok(None);
     }
     let block = reader.header().grid.cells()[0].div_ceil(COLUMNS);

@@ -25,7 +25,7 @@ mod together;
 use asperity::Boundary;
 use asperity::material::{Creep, CreepTerm};
 use asperity_io::choice;
-use asperity_io::readable::quantity;
+use asperity_io::readable::{coordinate, quantity};
 use asperity_io::store::{At, FieldKind, Reader, StoreError};
 use asperity_io::stress::StressError;
 use serde_json::Value;
@@ -440,9 +440,9 @@ fn caption(reader: &Reader, index: usize) -> Result<String, StoreError> {
 /// " The contact moves along +x." at a stored instant, for captions; empty at rest.
 fn motion(reader: &Reader, index: usize) -> Result<String, StoreError> {
     let Some(motion) = reader.header().setup.get("motion") else { return Ok(String::new()) };
-    let velocity = match reader.header().is_sweep() {
-        true => reader.field_times()[index],
-        false => at_instant(reader, index, "velocity")?,
+    let velocity = match reader.header().axis() {
+        asperity::Axis::Velocity => reader.field_times()[index],
+        asperity::Axis::Time | asperity::Axis::None => at_instant(reader, index, "velocity")?,
     };
     if velocity == 0.0 {
         return Ok(" The contact is at rest.".to_owned());
@@ -476,10 +476,7 @@ fn no_contact(reader: &Reader, index: usize) -> Result<String, StoreError> {
 
 /// "t = 500 s", or "v = 10 mm/s" of a sweep over velocities.
 pub fn moment(reader: &Reader, time: f64) -> String {
-    match reader.header().is_sweep() {
-        true => format!("v = {}", quantity(time, "m/s")),
-        false => format!("t = {}", quantity(time, "s")),
-    }
+    coordinate(reader.header().axis().at(time))
 }
 
 /// The contact creep function C(t) of the pair, without bodies that creep by a clock of their own; `None` where the result does

@@ -8,9 +8,7 @@ use crate::figure::Axis;
 /// The axis of the rows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Rows {
-    pub(crate) label: &'static str,
-    pub(crate) unit: &'static str,
-    pub(crate) symbol: &'static str,
+    pub(crate) of: asperity::Axis,
     /// Whether a logarithmic axis shows them better.
     pub(crate) log: bool,
     /// Ends of the axis; `None` for those of the data.
@@ -19,7 +17,7 @@ pub(crate) struct Rows {
 
 impl Rows {
     pub(crate) fn of(reader: &Reader) -> Result<Rows, StoreError> {
-        Ok(Rows::over(reader.header().is_sweep(), &reader.series("time")?))
+        Ok(Rows::over(reader.header().axis(), &reader.series("time")?))
     }
 
     /// Those of a window.
@@ -28,16 +26,16 @@ impl Rows {
     /// [`PlotError::Window`] where no row lies in it.
     pub(crate) fn within(reader: &Reader, options: &Options) -> Result<Rows, PlotError> {
         let values = reader.series("time")?;
-        let sweep = reader.header().is_sweep();
+        let of = reader.header().axis();
         if options.window == [None, None] {
-            return Ok(Rows::over(sweep, &values));
+            return Ok(Rows::over(of, &values));
         }
         let inside: Vec<f64> = values.iter().copied().filter(|value| options.shows(*value)).collect();
         let (Some(first), Some(last)) = (inside.first(), inside.last()) else {
             let ends = [values.first(), values.last()].map(|end| super::moment(reader, *end.unwrap_or(&0.0)));
             return Err(PlotError::Window { ends });
         };
-        let rows = Rows::over(sweep, &inside);
+        let rows = Rows::over(of, &inside);
         // A logarithmic axis begins at the first row after 0.
         let positive = inside.iter().copied().find(|value| *value > 0.0).unwrap_or(*first);
         let start = if options.log.unwrap_or(rows.log) { positive } else { *first };
@@ -45,27 +43,26 @@ impl Rows {
         Ok(Rows { range: Some([from, options.window[1].unwrap_or(*last)]), ..rows })
     }
 
-    fn over(sweep: bool, values: &[f64]) -> Rows {
-        let log = is_logarithmic(values, sweep);
-        match sweep {
-            true => Rows { label: "velocity", unit: "m/s", symbol: "v", log, range: None },
-            false => Rows { label: "time", unit: "s", symbol: "t", log, range: None },
-        }
+    fn over(of: asperity::Axis, values: &[f64]) -> Rows {
+        Rows { of, log: is_logarithmic(values, of), range: None }
     }
 
     /// The axis of a panel; `log` where that was asked for.
     pub(crate) fn axis(self, log: Option<bool>) -> Axis {
         let axis = match log.unwrap_or(self.log) {
-            true => Axis::log(self.label, self.unit),
-            false => Axis::linear(self.label, self.unit),
+            true => Axis::log(self.of.name(), self.of.unit()),
+            false => Axis::linear(self.of.name(), self.of.unit()),
         };
         Axis { range: self.range, ..axis }
     }
 }
 
-/// Whether a logarithmic axis shows these times \[s\], or velocities \[m/s\] of a sweep, better than a linear one.
-pub fn is_logarithmic(values: &[f64], sweep: bool) -> bool {
-    if sweep { spans_a_decade(values) } else { crowds_the_start(values) }
+/// Whether a logarithmic axis shows these coordinates of rows better than a linear one.
+pub fn is_logarithmic(values: &[f64], of: asperity::Axis) -> bool {
+    match of {
+        asperity::Axis::Velocity => spans_a_decade(values),
+        asperity::Axis::Time | asperity::Axis::None => crowds_the_start(values),
+    }
 }
 
 fn spans_a_decade(values: &[f64]) -> bool {

@@ -31,7 +31,8 @@ fn course(reader: &Reader) -> Option<Vec<[f64; 2]>> {
     let stored = setup.get("temperature_course").or(setup.get("temperature"))?.as_array()?;
     let pair = |point: &Value| Some([point.get(0)?.as_f64()?, point.get(1)?.as_f64()?]);
     let course: Vec<[f64; 2]> = stored.iter().map(pair).collect::<Option<_>>()?;
-    (!reader.header().is_sweep() && course.iter().any(|point| point[1] != course[0][1])).then_some(course)
+    let changes = course.iter().any(|point| point[1] != course[0][1]);
+    (reader.header().axis() == asperity::Axis::Time && changes).then_some(course)
 }
 
 /// The temperature \[K\] at a time; after a jump where one is there.

@@ -42,6 +42,15 @@ impl Axis {
         }
     }
 
+    /// Its name for several rows.
+    pub fn plural(self) -> &'static str {
+        match self {
+            Axis::Time => "times",
+            Axis::Velocity => "velocities",
+            Axis::None => "",
+        }
+    }
+
     /// Its unit.
     pub fn unit(self) -> &'static str {
         match self {

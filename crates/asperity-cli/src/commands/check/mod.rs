@@ -2,7 +2,7 @@
 
 mod work;
 
-use asperity::Grid;
+use asperity::{Axis, Grid};
 use asperity_io::case::{Case, Examination, Inputs, SurfaceInput, Travel};
 use asperity_io::stress::StressDescription;
 use serde_json::json;
@@ -57,18 +57,18 @@ fn shape(surface: &SurfaceInput) -> Option<String> {
     (!parts.is_empty()).then(|| format!("{}: {}", surface.name, parts.join(", ")))
 }
 
-/// "12.00 µm", or "12.00 µm right after the load, 15.00 µm at the end"; of a sweep at the highest and the lowest velocities.
-fn range([first, last]: [f64; 2], is_sweep: bool, words: impl Fn(f64) -> String) -> String {
+/// "12.00 µm", or "12.00 µm right after the load, 15.00 µm at the end"; over velocities at the highest and the lowest.
+fn range([first, last]: [f64; 2], axis: Axis, words: impl Fn(f64) -> String) -> String {
     let [first, last] = [first, last].map(words);
-    match is_sweep {
+    match axis {
         _ if first == last => first,
-        false => format!("{first} right after the load, {last} at the end"),
-        true => format!("{first} at very high velocities, {last} at very low ones"),
+        Axis::Time | Axis::None => format!("{first} right after the load, {last} at the end"),
+        Axis::Velocity => format!("{first} at very high velocities, {last} at very low ones"),
     }
 }
 
 /// What is prescribed at most, and the contact to be expected: lines of a name and a value.
-fn prospects(grid: &Grid, inputs: &Inputs, is_sweep: bool) -> Vec<[String; 2]> {
+fn prospects(grid: &Grid, inputs: &Inputs, axis: Axis) -> Vec<[String; 2]> {
     let mut lines = vec![];
     let mut line = |name: &str, value: String| lines.push([name.to_owned(), value]);
     if let (Some(load), Some(pressure)) = (inputs.largest_load, inputs.largest_mean_pressure) {
@@ -80,19 +80,14 @@ fn prospects(grid: &Grid, inputs: &Inputs, is_sweep: bool) -> Vec<[String; 2]> {
     }
     let strain = inputs.expected_pressure_over_modulus.map_or(String::new(), |p| format!(", p/E* {p:.2e}"));
     if let (Some(radii), Some(cells)) = (inputs.expected_contact_radius, inputs.expected_cells_across) {
-        let radius = range(radii, is_sweep, |radius| quantity(radius, "m"));
+        let radius = range(radii, axis, |radius| quantity(radius, "m"));
         let of = if grid.is_line() { "half-width of the contact" } else { "contact radius" };
         line("expected", format!("{of} {radius}, {cells:.0} cells across{strain}"));
     } else if let Some(shares) = inputs.expected_contact_share {
-        let share = range(shares, is_sweep, |share| format!("{:.2} %", 100.0 * share));
+        let share = range(shares, axis, |share| format!("{:.2} %", 100.0 * share));
         line("expected", format!("share of the domain in contact {share}{strain}"));
     }
     lines
-}
-
-/// Whether its rows are steady states of motion.
-fn is_sweep(case: &Case) -> bool {
-    case.motion.as_ref().is_some_and(|motion| matches!(motion.travel, Travel::Steady(_)))
 }
 
 /// How the contact moves, and how far the memory of the material reaches then.
@@ -286,7 +281,7 @@ fn tell(case: &Case, examined: &Examination, work: Option<&Work>) -> String {
     if let Some([least, most]) = d.hardness_of_cells {
         line("hardness", format!("{} to {}, by cell", quantity(least, "Pa"), quantity(most, "Pa")));
     }
-    for [name, value] in prospects(&case.grid, inputs, is_sweep(case)) {
+    for [name, value] in prospects(&case.grid, inputs, case.axis()) {
         line(&name, value);
     }
     let end = quantity(d.end, "s");
@@ -296,7 +291,7 @@ fn tell(case: &Case, examined: &Examination, work: Option<&Work>) -> String {
     line(
         "time",
         match d.rows {
-            Some(rows) if is_sweep(case) => {
+            Some(rows) if case.axis() == Axis::Velocity => {
                 format!("{} of motion, one for each velocity", counted(rows, "steady state"))
             }
             Some(rows) => format!("{rows} rows to {end}, {} scheme", d.scheme),

@@ -1,0 +1,141 @@
+//! The result of a run under way: what each row brings, and how the run ends.
+
+use std::path::Path;
+
+use asperity::finding::{Finding, Judge};
+use asperity::march::Row;
+use asperity::sliding::Friction;
+use asperity::{Drive, Error};
+
+use super::maps::Maps;
+use super::{RunError, Summary, peak_memory_bytes};
+use crate::case::Case;
+use crate::store::{Outcome, Reader, Status, StoreError, Work, Writer};
+use crate::stress::Below;
+
+/// Rows and findings of the sessions before a resumed one.
+#[derive(Default)]
+pub(super) struct Earlier {
+    pub(super) rows: Vec<Row>,
+    pub(super) findings: Vec<Finding>,
+}
+
+impl Earlier {
+    /// Those of the result at `path`.
+    pub(super) fn read(path: &Path) -> Result<Earlier, StoreError> {
+        let reader = Reader::open(path)?;
+        Ok(Earlier { rows: reader.rows()?, findings: reader.findings().to_vec() })
+    }
+}
+/// The result of a run under way, and its judge.
+pub(super) struct Record<'a> {
+    pub(super) case: &'a Case,
+    pub(super) writer: Writer,
+    pub(super) judge: Judge,
+    pub(super) path: &'a Path,
+    /// The last row stored, and its forces.
+    pub(super) last: Option<Row>,
+    pub(super) friction: Option<Friction>,
+    /// The stress below the surface, once it is computed.
+    pub(super) stress: Option<Below>,
+}
+
+impl Record<'_> {
+    /// Stores the last row, and before it the fields between it and the row before it that are asked for.
+    pub(super) fn store(
+        &mut self,
+        maps: &mut Maps<'_>,
+        drive: &dyn Drive,
+    ) -> Result<Option<Row>, StoreError> {
+        let Some(step) = drive.last() else { return Ok(None) };
+        let (row, stored) = (step.row(), &self.case.output.rows);
+        let at = row.coordinate.value();
+        let start = step.instant().map_or(at, |instant| at - instant.dt);
+        for coordinate in stored.between(start, at) {
+            // Steps that end there keep their own fields.
+            if let Some(between) = drive.between(*coordinate)
+                && let Some(view) = drive.view(&between)
+            {
+                self.writer.stage(*coordinate, &maps.of(&view))?;
+            }
+        }
+        let fields = if stored.holds(step.index(), drive.finished(), at) { maps.of(&step) } else { vec![] };
+        self.writer.append_with(&row, step.quantities(), &fields)?;
+        self.judge.see(&step, &row);
+        self.last = Some(row);
+        self.friction = step.friction();
+        Ok(Some(row))
+    }
+
+    /// What was found so far: of the materials, and of the run.
+    fn findings(&self, drive: Option<&dyn Drive>) -> Vec<Finding> {
+        let of_run = match drive {
+            Some(drive) => self.judge.findings(drive.simulation()),
+            None => self.judge.known().to_vec(),
+        };
+        let of_stress = self.stress.iter().flat_map(|below| below.findings(&self.case.grid));
+        self.case.findings.iter().cloned().chain(of_run).chain(of_stress).collect()
+    }
+
+    /// Stores what was found, and the state from which the run goes on.
+    pub(super) fn checkpoint(&mut self, drive: &dyn Drive) -> Result<(), StoreError> {
+        self.writer.note(self.findings(Some(drive)))?;
+        self.writer.checkpoint(&drive.checkpoint())
+    }
+
+    /// Ends a run whose step was not solved, or whose drive could not be made.
+    pub(super) fn fail(self, drive: Option<&dyn Drive>, source: Error) -> RunError {
+        let best = drive.and_then(|drive| drive.last()).map(|step| Box::new(step.row()));
+        let outcome = Outcome { message: Some(source.to_string()), ..Outcome::new(Status::Failed) };
+        match self.end(drive, outcome) {
+            Ok(summary) => RunError::Solve { source, summary: Box::new(summary), best },
+            Err(error) => error,
+        }
+    }
+
+    /// Ends a run whose step could not be stored; that this cannot be stored either is no news.
+    pub(super) fn stop_storing(self, drive: &dyn Drive, source: StoreError) -> RunError {
+        let outcome = Outcome { message: Some(source.to_string()), ..Outcome::new(Status::Failed) };
+        let summary = match self.end(Some(drive), outcome) {
+            Ok(summary) => Box::new(summary),
+            Err(RunError::Storage { summary, .. }) => summary,
+            Err(error) => return error,
+        };
+        RunError::Storage { source, summary }
+    }
+
+    /// Ends the result.
+    pub(super) fn end(mut self, drive: Option<&dyn Drive>, outcome: Outcome) -> Result<Summary, RunError> {
+        let findings = self.findings(drive);
+        self.writer.set_findings(findings.clone());
+        let (rows, before) = (self.writer.len(), self.writer.work().clone());
+        let outcome = Outcome {
+            peak_memory_bytes: peak_memory_bytes(),
+            threads: Some(rayon::current_num_threads()),
+            ..outcome
+        };
+        let (status, result, last) = (outcome.status, self.path.to_owned(), self.last);
+        let friction = self.friction;
+        let stress = self.stress.take();
+        let summary = |status, work: Work| Summary {
+            status,
+            rows,
+            iterations: work.iterations,
+            convolutions: work.convolutions,
+            wall_s: work.wall_s,
+            peak_memory_bytes: work.peak_memory_bytes,
+            result,
+            last,
+            friction,
+            findings,
+            stress,
+            leak: None,
+        };
+        match self.writer.finish(&outcome) {
+            Ok(work) => Ok(summary(status, work)),
+            Err(source) => {
+                Err(RunError::Storage { source, summary: Box::new(summary(Status::Failed, before)) })
+            }
+        }
+    }
+}

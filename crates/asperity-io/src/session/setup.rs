@@ -1,0 +1,95 @@
+//! What a result says of its run before the first row: the case in numbers.
+
+use asperity::kernel::Kernel;
+use asperity::material::Creep;
+use asperity::sliding::SteadyMotion;
+use asperity::{Axis, Simulation};
+use serde_json::{Map, Value, json};
+
+use crate::case::Case;
+use crate::store::Header;
+use crate::stress::{self, Ratio, StressBody};
+
+/// What the result says of the run before it starts.
+pub(super) fn header(case: &Case, simulation: &Simulation, steady: Option<&SteadyMotion>) -> Header {
+    let plan = || Some(simulation.plan()).filter(|plan| plan.exact).map(|plan| plan.instants.len());
+    Header {
+        title: case.title.clone().unwrap_or_default(),
+        case_text: case.source.clone(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        grid: simulation.grid,
+        fields: case.output.fields.iter().copied().collect(),
+        // Checked with the simulation.
+        quantities: simulation.columns().unwrap_or_default(),
+        rows_expected: steady.map_or_else(plan, |motion| Some(motion.velocities.len())),
+        setup: setup(case),
+    }
+}
+
+/// Points of a course for pictures: all of them, or of many every second one, every third one and so on, and the last.
+fn thinned(points: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    const MOST: usize = 1000;
+    let every = points.len().div_ceil(MOST).max(1);
+    let is_kept = |n: usize| n.is_multiple_of(every) || n + 1 == points.len();
+    points.iter().enumerate().filter(|(n, _)| is_kept(*n)).map(|(_, point)| *point).collect()
+}
+
+/// The case in numbers, SI.
+fn setup(case: &Case) -> Map<String, Value> {
+    let description = serde_json::to_value(case.describe()).unwrap_or_default();
+    let mut setup = match description {
+        Value::Object(map) => map,
+        _ => Map::new(),
+    };
+    setup.insert("contact_creep_compliance".into(), creep(&case.creep));
+    if !case.thermal.is_empty() {
+        let parts: Vec<Value> = case.thermal.iter().map(|body| creep(&body.creep)).collect();
+        setup.insert("contact_creep_compliance_over_reduced_time".into(), json!(parts));
+    }
+    if let Some(points) = &case.temperatures {
+        setup.insert("temperature_course".into(), json!(thinned(points)));
+    }
+    if !case.files.is_empty() {
+        let files: Map<String, Value> =
+            case.files.iter().map(|(path, digest)| (path.clone(), json!(digest))).collect();
+        setup.insert("md5_of_files".into(), json!(files));
+    }
+    if let Some(layers) = &case.layers {
+        let misfit = case.waves.as_ref().map(|waves| waves.misfit());
+        setup.insert("layer_separable".into(), json!(misfit.is_none()));
+        setup.insert("layer_misfit".into(), json!(misfit.unwrap_or(0.0)));
+        setup.insert("layer_rigid_base".into(), json!(layers.depth().is_some()));
+    }
+    if let Some(motion) = &case.motion {
+        let steady = case.axis() == Axis::Velocity;
+        let [x, y] = motion.direction.unit();
+        let shear = motion.shear_stress;
+        setup.insert(
+            "motion".into(),
+            json!({ "steady": steady, "direction": [x, y], "rolls": motion.rolls, "shear_stress": shear }),
+        );
+    }
+    let ratio = |body| StressBody::of(body, !case.thermal.is_empty()).poisson;
+    let ratios: Vec<Option<Ratio>> = case.bodies.iter().map(ratio).collect();
+    if ratios.iter().flatten().any(|ratio| ratio.constant().is_none()) {
+        let creep = |ratio: &Option<Ratio>| match ratio {
+            Some(Ratio::Changing(creep)) => json!(creep),
+            _ => Value::Null,
+        };
+        setup.insert(stress::POISSON_CREEP.into(), ratios.iter().map(creep).collect());
+    }
+    setup.insert("solver_tolerance".into(), json!(case.solver.tolerance));
+    if let Some(plan) = &case.stress {
+        setup.insert(stress::SETUP.into(), serde_json::to_value(plan).unwrap_or_default());
+    }
+    if let Some(leak) = &case.leakage {
+        setup.insert("leakage".into(), serde_json::to_value(leak).unwrap_or_default());
+    }
+    setup
+}
+
+/// A creep function in numbers, SI.
+fn creep(creep: &Creep) -> Value {
+    let terms: Vec<_> = creep.terms.iter().map(|t| json!([t.compliance, t.retardation_time])).collect();
+    json!({ "instantaneous": creep.instantaneous, "terms": terms, "fluidity": creep.fluidity })
+}

@@ -1,184 +1,93 @@
 //! Reductions of whole fields, by name: in parallel, in the widest vectors, and with the same bits for any number of threads and
 //! on every processor.
 
-use crate::cells::Cells;
 use crate::merge::{Max, Min};
 use crate::simd::{F64x8, Work};
 use crate::sweep::run;
 
-/// Sum of the cells.
-pub fn sum(field: &[f64]) -> f64 {
-    run(SumOf { field, term: Value })
-}
+/// Declares a reduction of one field or more, eight cells at a time, by what one sweep over a block does: the value that it
+/// starts from, that of the cells beyond the end, the step, what the block yields, and what is told of all yields.
+macro_rules! reduction {
+    ($(#[$doc:meta])* $name:ident($first:ident $(, $next:ident)*) -> $result:ty {
+        from $start:expr, beyond $beyond:expr, |$value:ident| $step:expr, $yield:ty: $end:expr, $tell:expr
+    }) => {
+        $(#[$doc])*
+        pub fn $name($first: &[f64] $(, $next: &[f64])*) -> $result {
+            kernel! {
+                struct Reduction<'a> { cells { $first: &'a [f64] $(, $next: &'a [f64])* } }
+            }
+            impl Work for Reduction<'_> {
+                type Yield = $yield;
 
-/// Number of cells above 0.
-///
-/// ```
-/// use asperity_sweep::{count_finite, count_positive, dot, is_zero, maximum, minimum, sum};
-/// let field = [0.0, 2.0, -1.0, f64::INFINITY];
-/// assert_eq!((count_positive(&field), count_finite(&field)), (2, 3));
-/// assert_eq!((minimum(&field), maximum(&field[..3]), sum(&field[..3])), (-1.0, 2.0, 1.0));
-/// assert_eq!(dot(&field[..3], &field[..3]), 5.0);
-/// assert!(is_zero(&field[..1]) && !is_zero(&field));
-/// ```
-pub fn count_positive(field: &[f64]) -> usize {
-    run(SumOf { field, term: IsPositive }) as usize
-}
-
-/// Number of cells that are neither infinite nor NaN.
-pub fn count_finite(field: &[f64]) -> usize {
-    run(SumOf { field, term: IsFinite }) as usize
-}
-
-/// True where every cell is 0, of either sign.
-pub fn is_zero(field: &[f64]) -> bool {
-    run(SumOf { field, term: IsNotZero }) == 0.0
-}
-
-/// Sum of the products of the cells of two fields of one length.
-pub fn dot(a: &[f64], b: &[f64]) -> f64 {
-    run(Dot { a, b })
-}
-
-/// Smallest cell; infinity where there is none. NaN does not count.
-pub fn minimum(field: &[f64]) -> f64 {
-    run(Minimum { field }).0
-}
-
-/// Largest cell; minus infinity where there is none. NaN does not count.
-pub fn maximum(field: &[f64]) -> f64 {
-    run(Maximum { field }).0
-}
-
-/// What a cell adds to a sum; 0 for a cell that is [`BEYOND`](Self::BEYOND).
-trait Term: Copy + Send {
-    const BEYOND: f64 = 0.0;
-    fn of<V: F64x8>(self, x: V) -> V;
-}
-
-#[derive(Clone, Copy)]
-struct Value;
-
-#[derive(Clone, Copy)]
-struct IsPositive;
-
-#[derive(Clone, Copy)]
-struct IsFinite;
-
-#[derive(Clone, Copy)]
-struct IsNotZero;
-
-impl Term for Value {
-    #[inline(always)]
-    fn of<V: F64x8>(self, x: V) -> V {
-        x
-    }
-}
-
-impl Term for IsPositive {
-    #[inline(always)]
-    fn of<V: F64x8>(self, x: V) -> V {
-        V::count(V::splat(0.0).less(x))
-    }
-}
-
-impl Term for IsFinite {
-    const BEYOND: f64 = f64::INFINITY;
-    #[inline(always)]
-    fn of<V: F64x8>(self, x: V) -> V {
-        V::count(x.abs().less(V::splat(f64::INFINITY)))
-    }
-}
-
-impl Term for IsNotZero {
-    #[inline(always)]
-    fn of<V: F64x8>(self, x: V) -> V {
-        V::count(!x.abs().at_most(V::splat(0.0)))
-    }
-}
-
-struct SumOf<'a, T> {
-    field: &'a [f64],
-    term: T,
-}
-
-impl<T: Term> Cells for SumOf<'_, T> {
-    fn cells(&self) -> usize {
-        self.field.len()
-    }
-    fn split(self, mid: usize) -> (Self, Self) {
-        let (first, second) = self.field.split_at(mid);
-        (SumOf { field: first, term: self.term }, SumOf { field: second, term: self.term })
-    }
-}
-
-impl<T: Term> Work for SumOf<'_, T> {
-    type Yield = f64;
-
-    #[inline(always)]
-    fn run<V: F64x8>(self) -> f64 {
-        let mut sum = V::splat(0.0);
-        for n in (0..self.field.len()).step_by(8) {
-            sum = sum + self.term.of(V::load(self.field, n, T::BEYOND));
+                #[inline(always)]
+                fn run<V: F64x8>(self) -> $yield {
+                    let mut $value = V::splat($start);
+                    for n in (0..self.$first.len()).step_by(8) {
+                        let $first = V::load(self.$first, n, $beyond);
+                        $(let $next = V::load(self.$next, n, $beyond);)*
+                        $value = $step;
+                    }
+                    $end
+                }
+            }
+            $tell(run(Reduction { $first $(, $next)* }))
         }
-        sum.sum()
+    };
+}
+
+reduction! {
+    /// Sum of the cells.
+    sum(x) -> f64 { from 0.0, beyond 0.0, |sum| sum + x, f64: sum.sum(), |sum| sum }
+}
+
+reduction! {
+    /// Sum of the products of the cells of two fields of one length.
+    dot(a, b) -> f64 { from 0.0, beyond 0.0, |sum| sum + a * b, f64: sum.sum(), |sum| sum }
+}
+
+reduction! {
+    /// Smallest cell; infinity where there is none. NaN does not count.
+    minimum(x) -> f64 {
+        from f64::INFINITY, beyond f64::INFINITY, |least| x.smaller(least), Min: Min(least.least()), |min: Min| min.0
     }
 }
 
-kernel! {
-    struct Dot<'a> {
-        cells { a: &'a [f64], b: &'a [f64] }
+reduction! {
+    /// Largest cell; minus infinity where there is none. NaN does not count.
+    maximum(x) -> f64 {
+        from f64::NEG_INFINITY, beyond f64::NEG_INFINITY, |most| x.larger(most), Max: Max(most.largest()), |max: Max| max.0
     }
 }
 
-impl Work for Dot<'_> {
-    type Yield = f64;
-
-    #[inline(always)]
-    fn run<V: F64x8>(self) -> f64 {
-        let mut sum = V::splat(0.0);
-        for n in (0..self.a.len()).step_by(8) {
-            sum = sum + V::load(self.a, n, 0.0) * V::load(self.b, n, 0.0);
-        }
-        sum.sum()
+reduction! {
+    /// Number of cells above 0.
+    ///
+    /// ```
+    /// use asperity_sweep::{count_finite, count_positive, dot, is_zero, maximum, minimum, sum};
+    /// let field = [0.0, 2.0, -1.0, f64::INFINITY];
+    /// assert_eq!((count_positive(&field), count_finite(&field)), (2, 3));
+    /// assert_eq!((minimum(&field), maximum(&field[..3]), sum(&field[..3])), (-1.0, 2.0, 1.0));
+    /// assert_eq!(dot(&field[..3], &field[..3]), 5.0);
+    /// assert!(is_zero(&field[..1]) && !is_zero(&field));
+    /// ```
+    count_positive(x) -> usize {
+        from 0.0, beyond 0.0, |cells| cells + V::count(V::splat(0.0).less(x)), f64: cells.sum(), |cells| cells as usize
     }
 }
 
-kernel! {
-    struct Minimum<'a> {
-        cells { field: &'a [f64] }
+reduction! {
+    /// Number of cells that are neither infinite nor NaN.
+    count_finite(x) -> usize {
+        from 0.0, beyond f64::INFINITY, |cells| cells + V::count(x.abs().less(V::splat(f64::INFINITY))),
+        f64: cells.sum(), |cells| cells as usize
     }
 }
 
-impl Work for Minimum<'_> {
-    type Yield = Min;
-
-    #[inline(always)]
-    fn run<V: F64x8>(self) -> Min {
-        let mut least = V::splat(f64::INFINITY);
-        for n in (0..self.field.len()).step_by(8) {
-            least = V::load(self.field, n, f64::INFINITY).smaller(least);
-        }
-        Min(least.least())
-    }
-}
-
-kernel! {
-    struct Maximum<'a> {
-        cells { field: &'a [f64] }
-    }
-}
-
-impl Work for Maximum<'_> {
-    type Yield = Max;
-
-    #[inline(always)]
-    fn run<V: F64x8>(self) -> Max {
-        let mut largest = V::splat(f64::NEG_INFINITY);
-        for n in (0..self.field.len()).step_by(8) {
-            largest = V::load(self.field, n, f64::NEG_INFINITY).larger(largest);
-        }
-        Max(largest.largest())
+reduction! {
+    /// True where every cell is 0, of either sign.
+    is_zero(x) -> bool {
+        from 0.0, beyond 0.0, |others| others + V::count(!x.abs().at_most(V::splat(0.0))),
+        f64: others.sum(), |others| others == 0.0
     }
 }
 

@@ -1,7 +1,8 @@
 //! Tasks of the project: `cargo xtask test | golden | bench | peers | sanitize | miri | figures | verification | notices |
-//! package | site | workflows`.
+//! package | site | workflows | lines`.
 
 mod golden;
+mod lines;
 mod lock;
 mod notices;
 mod package;
@@ -37,6 +38,7 @@ cargo xtask TASK
   workflows     compares the files for forge and archives with their schemas, and lints the workflows
   site          builds the documentation as web pages in target/site; with --check, looks at them in Chromium: links,
                 formulas, search, phone width, errors
+  lines         counts the lines of Rust and Python that are neither test nor comment nor blank, by crate and folder
 ";
 
 /// What the Python side of the tests and figures imports.
@@ -76,6 +78,7 @@ fn main() -> ExitCode {
         Some("notices") => notices::notices(),
         Some("package") => package::package(&std::env::args().skip(2).collect::<Vec<_>>()),
         Some("workflows") => workflows::workflows(),
+        Some("lines") => lines::lines(),
         Some("site") => site::site(std::env::args().any(|a| a == "--check")),
         _ => {
             print!("{HELP}");

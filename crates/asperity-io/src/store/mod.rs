@@ -72,7 +72,7 @@ mod sync;
 mod verify;
 mod writer;
 
-pub use asperity::march::{Row, Checkpoint};
+pub use asperity::march::{Checkpoint, Row};
 pub use error::{Result, StoreError};
 pub use header::{Header, Status, Work};
 pub(crate) use layout::coordinates;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use asperity::finding::Finding;
-use asperity::march::{Row, Checkpoint};
+use asperity::march::{Checkpoint, Row};
 use ndarray::ArrayView2;
 
 use super::checkpoint;

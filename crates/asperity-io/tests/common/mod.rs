@@ -3,7 +3,7 @@
 #![allow(dead_code)] // each test program uses a part
 
 use asperity::{Coordinate, Grid};
-use asperity_io::store::{Field, FieldKind, Header, Result, Row, Checkpoint, Writer};
+use asperity_io::store::{Checkpoint, Field, FieldKind, Header, Result, Row, Writer};
 use ndarray::Array2;
 use tempfile::TempDir;
 

@@ -6,13 +6,13 @@
 
 use ndarray::{Array2, ArrayView2};
 
-use super::record::to_view;
 use super::{March, Scheme, Simulation, Step};
 use crate::contact::Start;
 use crate::error::{Error, Result};
 use crate::grid::Boundary;
 use crate::march::Plasticity;
-use crate::sliding::{Direction, Forces, Friction, MovingGap, Path, Slopes, gap_force};
+use crate::material::Creep;
+use crate::sliding::{ContactForces, Direction, Friction, MovingGap, Path, SecondEstimate, Slopes};
 use crate::time::Instant;
 
 /// How a contact moves.
@@ -198,40 +198,28 @@ impl March {
     pub(super) fn find_friction(&mut self, instant: Instant) {
         let (Some(motion), Some(moving)) = (&self.simulation.motion, &mut self.moving) else { return };
         let Simulation { grid, boundary, .. } = &self.simulation;
-        let shape = grid.shape();
-        let pressure = to_view(shape, &self.state.pressure);
-        let mut forces = Forces::of(grid, *boundary, pressure, &moving.slopes, motion.direction);
-        if self.simulation.parts().all(|creep| creep.terms.is_empty() && creep.fluidity == 0.0) {
-            // Bodies that remember nothing lose nothing: what the sums are is the error of the grid.
-            (forces.force, forces.side) = (0.0, 0.0);
-        }
-        let gap: Vec<f64> = (self.gap.iter().zip(&self.state.unit_displacement))
-            .map(|(h, u)| h + self.compliance * u)
-            .collect();
-        let off =
-            gap_force(grid, *boundary, pressure, ArrayView2::from(to_view(shape, &gap)), motion.direction);
-        let area = grid.cell_area() * self.state.pressure.iter().filter(|p| **p > 0.0).count() as f64;
-        let coefficient = if forces.load > 0.0 { forces.force / forces.load } else { 0.0 };
-        let seen = forces.force.abs() > 1e-13 * forces.load;
-        let before = std::mem::replace(&mut moving.before, moving.distance);
-        self.slid = Slid {
-            work: 0.5 * (self.friction.force + forces.force) * (moving.distance - before),
-            dt: instant.dt,
-        };
-        self.friction = Friction {
+        let remembers = |creep: &Creep| !creep.terms.is_empty() || creep.fluidity != 0.0;
+        let contact = ContactForces {
+            grid,
+            boundary: *boundary,
+            direction: motion.direction,
+            slopes: &moving.slopes,
+            pressure: &self.state.pressure,
+            gap: &self.gap,
+            compliance: self.compliance,
+            unit_displacement: &self.state.unit_displacement,
+            remembers: self.simulation.parts().any(remembers),
             velocity: motion.path.velocity(instant.time),
             distance: moving.distance,
-            force: forces.force,
-            side: forces.side,
-            coefficient,
-            uncertainty: if seen { (off / forces.force).abs() } else { 0.0 },
-            moment: forces.moment,
-            power: f64::NAN,
-            total: motion.shear_stress.map_or(f64::NAN, |stress| match forces.load > 0.0 {
-                true => coefficient + stress * area / forces.load,
-                false => 0.0,
-            }),
+            shear_stress: motion.shear_stress,
         };
+        let friction = Friction::of(&contact, SecondEstimate::Differences);
+        let before = std::mem::replace(&mut moving.before, moving.distance);
+        self.slid = Slid {
+            work: 0.5 * (self.friction.force + friction.force) * (moving.distance - before),
+            dt: instant.dt,
+        };
+        self.friction = friction;
     }
 }
 

@@ -14,7 +14,6 @@ mod friction;
 mod influence;
 mod metric;
 mod moving;
-mod newton;
 mod path;
 mod persson;
 mod shells;
@@ -24,10 +23,22 @@ mod streaming;
 pub(crate) mod torus;
 
 pub use friction::{Direction, Friction};
-pub(crate) use friction::{Forces, gap_force};
+pub(crate) use friction::{ContactForces, SecondEstimate};
 pub use moving::MovingGap;
 pub use path::Path;
 pub use persson::{Correction, Magnification, Persson, PerssonFriction};
 pub use slopes::Slopes;
 pub use steady::{Steady, SteadyMotion};
 pub use streaming::Streaming;
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::error::{Error, Result};
+
+/// [`Error::Interrupted`] where somebody asked to stop.
+fn stop_at(interrupt: Option<&AtomicBool>) -> Result<()> {
+    match interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+        true => Err(Error::Interrupted),
+        false => Ok(()),
+    }
+}

@@ -60,6 +60,18 @@ impl Streaming {
         Ok(streaming)
     }
 
+    /// The same bodies with this share of what they yield in time yielded at once: C(∞) is kept.
+    pub(super) fn hastened(&self, share: f64) -> Streaming {
+        let mut hastened = self.clone();
+        for (creep, _) in &mut hastened.parts {
+            for term in &mut creep.terms {
+                creep.instantaneous += share * term.compliance;
+                term.compliance *= 1.0 - share;
+            }
+        }
+        hastened
+    }
+
     /// C(0+) \[1/Pa\].
     pub fn instantaneous(&self) -> f64 {
         self.parts.iter().map(|(creep, _)| creep.instantaneous).sum()

@@ -272,3 +272,103 @@ fn a_rough_rubber_converges_at_every_speed_over_eight_decades() {
     assert!(rows.windows(2).all(|pair| pair[1].0.contact_area >= pair[0].0.contact_area));
     assert!(rows.iter().all(|(_, friction, _)| friction.power > 0.0));
 }
+
+/// A cylinder of radius 1 on a line of cells 4 long, C(∞) = 1, of so many times the compliance at once and one term of time 1; the
+/// half-width of the relaxed contact is 1.
+fn cylinder<'a>(parts: &'a [Part], cells: usize, contrast: f64, tolerance: f64) -> Case<'a> {
+    Case {
+        grid: Grid::line(cells, 4.0).unwrap(),
+        boundary: Boundary::Free,
+        parts,
+        creep: zener(1.0 / contrast, 1.0 - 1.0 / contrast, 1.0),
+        load: 0.25 * PI,
+        direction: Direction::X,
+        tolerance,
+    }
+}
+
+#[test]
+fn a_state_that_failed_has_the_number_of_its_velocity_and_the_next_start_is_the_last_good_one() {
+    let parts = shape(Shape::Cylinder { radius: 1.0 });
+    let case = cylinder(&parts, 256, 100.0, 1e-6);
+    let mut steady = case.steady(&[0.01, 0.3]);
+    let mut simulation = steady.simulation().clone();
+    simulation.solver.max_iterations = 20;
+    steady = Steady::new(simulation, steady.motion().clone()).unwrap();
+    let good = steady.advance().unwrap().unwrap().pressure().to_owned();
+    for _ in 0..2 {
+        assert!(matches!(steady.advance(), Err(asperity::Error::NotConverged(_))));
+        let failed = steady.last().unwrap();
+        assert_eq!((failed.index(), failed.friction().unwrap().velocity), (1, 0.3));
+        assert!(failed.row().residual > 1e-6 && failed.pressure() != good);
+        assert!(steady.done() == 1 && !steady.finished());
+        assert!(steady.start().iter().eq(good.iter()));
+    }
+}
+
+#[test]
+fn a_resumed_sweep_has_the_same_bits() {
+    let parts = shape(Shape::Cylinder { radius: 1.0 });
+    let case = cylinder(&parts, 128, 100.0, 1e-6);
+    // The memory of the first two reaches beyond the domain.
+    let velocities = [10.0, 3.0, 0.3, 1.0];
+    let mut steady = case.steady(&velocities);
+    let mut rows = vec![];
+    while let Some(step) = steady.advance().unwrap() {
+        rows.push((step.row(), step.friction().unwrap(), step.pressure().to_owned()));
+    }
+    for done in 1..velocities.len() {
+        let mut again = case.steady(&velocities);
+        let pressure: Vec<f64> = rows[done - 1].2.iter().copied().collect();
+        again.resume(done, &pressure).unwrap();
+        for (row, friction, pressure) in &rows[done..] {
+            let step = again.advance().unwrap().unwrap();
+            assert_eq!((step.row(), step.friction().unwrap()), (*row, *friction));
+            assert_eq!(step.pressure(), *pressure);
+        }
+        assert!(again.finished() && again.advance().unwrap().is_none());
+    }
+}
+
+#[test]
+fn memory_of_a_sweep_is_bounded_whatever_the_velocity() {
+    let parts = shape(Shape::Cylinder { radius: 1.0 });
+    let steady = cylinder(&parts, 128, 100.0, 1e-6).steady(&[1.0]);
+    assert!(Steady::bytes(steady.simulation(), steady.motion()) < 1 << 20);
+    let grid = Grid::new([512, 512], [1.0, 1.0]).unwrap();
+    let ball = shape(Shape::Sphere { radius: 10.0 });
+    let case = Case { grid, ..cylinder(&ball, 128, 100.0, 1e-6) };
+    let steady = case.steady(&[1.0]);
+    let bytes = Steady::bytes(steady.simulation(), steady.motion());
+    assert!((1 << 28..3 << 30).contains(&bytes), "{bytes}");
+}
+
+#[test]
+fn single_terms_of_any_contrast_converge_alone_at_any_speed() {
+    let cylinder_parts = shape(Shape::Cylinder { radius: 1.0 });
+    let rough = SelfAffine {
+        hurst: 0.8,
+        roughness: Roughness::RmsGradient(0.1),
+        longest: 0.5,
+        shortest: 0.125,
+        roll_off: 0.25,
+        seed: 1,
+    };
+    let rough_parts = [Part::SelfAffine(rough)];
+    for contrast in [100.0, 500.0, 3000.0] {
+        for v in [0.1, 0.7, 3.0, 10.0, 100.0] {
+            let line = cylinder(&cylinder_parts, 128, contrast, 1e-6);
+            let plane = Case {
+                grid: Grid::new([64, 64], [1.0, 1.0]).unwrap(),
+                boundary: Boundary::Periodic,
+                load: 0.03,
+                tolerance: 1e-5,
+                ..cylinder(&rough_parts, 128, contrast, 1e-6)
+            };
+            for case in [line, plane] {
+                let (row, friction, _) = case.run(&[v]).remove(0);
+                assert!(row.residual <= case.tolerance && friction.power >= 0.0, "{contrast} {v}");
+            }
+        }
+    }
+}

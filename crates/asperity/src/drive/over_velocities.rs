@@ -3,25 +3,21 @@
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-use ndarray::Array2;
-
 use super::{Axis, Drive};
-use crate::error::{Error, Result};
-use crate::march::{Checkpoint, Simulation, Step};
+use crate::error::Result;
+use crate::simulation::Simulation;
 use crate::sliding::{Steady, SteadyMotion, Streaming};
+use crate::step::{Checkpoint, Loader, Saver, Step};
 
 impl Steady {
     /// Goes on where a checkpoint of the same sweep was taken.
     ///
     /// # Errors
-    /// As [`Steady::new`]; [`Error::Invalid`] where the checkpoint belongs to another sweep.
+    /// As [`Steady::new`]; [`Error::Invalid`](crate::Error::Invalid) where the checkpoint belongs to another sweep.
     pub fn resumed(simulation: Simulation, motion: SteadyMotion, checkpoint: &Checkpoint) -> Result<Self> {
         let mut steady = Steady::new(simulation, motion)?;
-        let pressure = checkpoint.fields.iter().find(|(name, _)| name == "pressure");
-        let Some((_, pressure)) = pressure else {
-            return Err(Error::invalid("checkpoint", "without the field pressure", "one of this sweep"));
-        };
-        steady.resume(checkpoint.step, &pressure.iter().copied().collect::<Vec<_>>())?;
+        let from = Loader::new(checkpoint, Steady::simulation(&steady).grid.shape());
+        steady.resume(checkpoint.step, &from.field("pressure")?)?;
         Ok(steady)
     }
 }
@@ -56,7 +52,7 @@ impl Drive for Steady {
     }
 
     fn finished(&self) -> bool {
-        Steady::done(self) == self.motion().velocities.len()
+        Steady::finished(self)
     }
 
     fn interrupt_with(&mut self, flag: Arc<AtomicBool>) {
@@ -64,14 +60,9 @@ impl Drive for Steady {
     }
 
     fn checkpoint(&self) -> Checkpoint<'_> {
-        let shape = Steady::simulation(self).grid.shape();
-        let pressure =
-            Steady::last(self).map_or_else(|| Array2::zeros(shape), |step| step.pressure().to_owned());
-        Checkpoint {
-            step: Steady::done(self),
-            numbers: vec![],
-            fields: vec![("pressure".into(), pressure.into())],
-        }
+        let mut to = Saver::new(Steady::done(self), Steady::simulation(self).grid.shape());
+        to.field("pressure", self.start());
+        to.finish()
     }
 
     fn streaming(&self) -> Option<&Streaming> {

@@ -9,10 +9,11 @@ use ndarray::{Array2, ArrayView2};
 use super::{Process, Solved};
 use crate::error::{Error, Result};
 use crate::grid::Boundary;
+use crate::material::Creep;
 use crate::quantities::Quantity;
 use crate::simulation::{Plasticity, Scheme, Simulation};
-use crate::sliding::{Direction, Forces, Friction, MovingGap, Path, Slopes, gap_force};
-use crate::step::{Interval, Loader, Saver, UndeformedGap, to_view};
+use crate::sliding::{ContactForces, Direction, Friction, MovingGap, Path, SecondEstimate, Slopes};
+use crate::step::{Interval, Loader, Saver, UndeformedGap};
 
 /// How a contact moves.
 #[derive(Clone, Debug, PartialEq)]
@@ -146,36 +147,25 @@ impl Process for Moving {
 
     /// Finds the forces at the end of the row.
     fn accept(&mut self, row: &mut Solved<'_>) -> Result<()> {
-        let Simulation { grid, boundary, .. } = row.simulation;
-        let direction = self.motion.direction;
-        let pressure = to_view(grid.shape(), &row.now.pressure);
-        let mut forces = Forces::of(grid, *boundary, pressure, &self.slopes, direction);
-        if row.simulation.parts().all(|creep| creep.terms.is_empty() && creep.fluidity == 0.0) {
-            // Bodies that remember nothing lose nothing: what the sums are is the error of the grid.
-            (forces.force, forces.side) = (0.0, 0.0);
-        }
-        let gap: Vec<f64> =
-            (row.gap.iter().zip(&row.now.unit_displacement)).map(|(h, u)| h + row.compliance * u).collect();
-        let off = gap_force(grid, *boundary, pressure, to_view(grid.shape(), &gap), direction);
-        let area = grid.cell_area() * row.now.pressure.iter().filter(|p| **p > 0.0).count() as f64;
-        let coefficient = if forces.load > 0.0 { forces.force / forces.load } else { 0.0 };
-        let seen = forces.force.abs() > 1e-13 * forces.load;
-        let before = std::mem::replace(&mut self.before, self.distance);
-        row.other_work += 0.5 * (self.friction.force + forces.force) * (self.distance - before);
-        self.friction = Friction {
+        let remembers = |creep: &Creep| !creep.terms.is_empty() || creep.fluidity != 0.0;
+        let contact = ContactForces {
+            grid: &row.simulation.grid,
+            boundary: row.simulation.boundary,
+            direction: self.motion.direction,
+            slopes: &self.slopes,
+            pressure: &row.now.pressure,
+            gap: row.gap,
+            compliance: row.compliance,
+            unit_displacement: &row.now.unit_displacement,
+            remembers: row.simulation.parts().any(remembers),
             velocity: self.motion.path.velocity(row.step.instant.time),
             distance: self.distance,
-            force: forces.force,
-            side: forces.side,
-            coefficient,
-            uncertainty: if seen { (off / forces.force).abs() } else { 0.0 },
-            moment: forces.moment,
-            power: f64::NAN,
-            total: self.motion.shear_stress.map_or(f64::NAN, |stress| match forces.load > 0.0 {
-                true => coefficient + stress * area / forces.load,
-                false => 0.0,
-            }),
+            shear_stress: self.motion.shear_stress,
         };
+        let friction = Friction::of(&contact, SecondEstimate::Differences);
+        let before = std::mem::replace(&mut self.before, self.distance);
+        row.other_work += 0.5 * (self.friction.force + friction.force) * (self.distance - before);
+        self.friction = friction;
         Ok(())
     }
 

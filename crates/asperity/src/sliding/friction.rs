@@ -1,6 +1,6 @@
 //! The forces of a contact in motion.
 
-use ndarray::ArrayView2;
+use asperity_sweep::{Cells, strands, sweep};
 
 use super::Slopes;
 use crate::grid::{Boundary, Grid};
@@ -26,6 +26,11 @@ impl Direction {
             Direction::Y => dy,
             Direction::Angle(_) => (dx / cx.abs().max(1e-300)).min(dy / cy.abs().max(1e-300)),
         }
+    }
+
+    /// The axis that it is along, of x or y.
+    pub(super) fn axis(self) -> usize {
+        usize::from(self == Direction::Y)
     }
 
     /// Its unit vector.
@@ -95,71 +100,134 @@ impl Friction {
     }
 }
 
-/// Sums over the pressure: load, force, side force and moment.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Forces {
-    pub(crate) load: f64,
-    pub(crate) force: f64,
-    pub(crate) side: f64,
-    pub(crate) moment: f64,
+/// What the forces of a contact in motion are found from.
+pub(crate) struct ContactForces<'a> {
+    pub(crate) grid: &'a Grid,
+    pub(crate) boundary: Boundary,
+    pub(crate) direction: Direction,
+    /// Of the undeformed gap of what moves.
+    pub(crate) slopes: &'a Slopes,
+    pub(crate) pressure: &'a [f64],
+    /// Undeformed gap and displacement c U; a constant does not count.
+    pub(crate) gap: &'a [f64],
+    pub(crate) compliance: f64,
+    pub(crate) unit_displacement: &'a [f64],
+    /// Whether the bodies remember anything. Those that do not lose nothing: what the sums are then is the error of the grid.
+    pub(crate) remembers: bool,
+    pub(crate) velocity: f64,
+    /// How far the contact has moved.
+    pub(crate) distance: f64,
+    pub(crate) shear_stress: Option<f64>,
 }
 
-impl Forces {
-    /// Of a pressure under a gap with these slopes.
-    pub(crate) fn of(
-        grid: &Grid,
-        boundary: Boundary,
-        pressure: ArrayView2<f64>,
-        slopes: &Slopes,
-        direction: Direction,
-    ) -> Forces {
-        let [cx, cy] = direction.unit();
-        let cell = grid.cell_area();
+/// The second estimate of the force, -Σ p du/ds.
+pub(crate) enum SecondEstimate {
+    /// By differences of the displacement from cell to cell. The power lost is not known.
+    Differences,
+    /// In a steady state, where its work is what is lost; of a periodic domain from the waves \[N\].
+    Steady(Option<f64>),
+}
+
+impl Friction {
+    /// Of a solved contact.
+    pub(crate) fn of(contact: &ContactForces, second: SecondEstimate) -> Friction {
+        let [load, mut force, mut side, moment, off, area] = contact.sums();
+        if !contact.remembers {
+            (force, side) = (0.0, 0.0);
+        }
+        let coefficient = if load > 0.0 { force / load } else { 0.0 };
+        let (apart, scale, power) = match second {
+            SecondEstimate::Differences => (off, force.abs(), f64::NAN),
+            SecondEstimate::Steady(waves) => {
+                let second = waves.unwrap_or(if contact.remembers { force - off } else { 0.0 });
+                let power = second.max(0.0) * contact.velocity;
+                (force - second, force.abs().max(second.abs()), power)
+            }
+        };
+        Friction {
+            velocity: contact.velocity,
+            distance: contact.distance,
+            force,
+            side,
+            coefficient,
+            uncertainty: if scale > ROUNDING * load { (apart / scale).abs() } else { 0.0 },
+            moment,
+            power,
+            total: contact.shear_stress.map_or(f64::NAN, |stress| match load > 0.0 {
+                true => coefficient + stress * area / load,
+                false => 0.0,
+            }),
+        }
+    }
+}
+
+/// Forces below this share of the load are rounding errors.
+const ROUNDING: f64 = 1e-13;
+
+impl ContactForces<'_> {
+    /// Load, force, side force, moment, Σ p dg/ds with g the gap of the deformed bodies, and area in contact.
+    ///
+    /// g is 0 in contact, so that Σ p dg/ds comes from the edges alone: it is the difference of the two estimates of the force.
+    fn sums(&self) -> [f64; 6] {
+        let (grid, [cx, cy]) = (self.grid, self.direction.unit());
+        let ny = grid.cells()[1];
         // On a periodic domain from the nearest image of the centre.
         let from = |x: f64, axis: usize| {
-            let (x, length) = (x - slopes.centre[axis], grid.size()[axis]);
-            if boundary == Boundary::Periodic { x - length * (x / length).round() } else { x }
+            let (x, length) = (x - self.slopes.centre[axis], grid.size()[axis]);
+            if self.boundary == Boundary::Periodic { x - length * (x / length).round() } else { x }
         };
-        let mut sums = [0.0; 4];
-        for (((i, j), p), (sx, sy)) in pressure.indexed_iter().zip(slopes.x.iter().zip(&slopes.y)) {
-            if *p > 0.0 {
-                let arm = cx * from(grid.x(i), 0) + cy * from(grid.y(j), 1);
-                let terms = [*p, p * (cx * sx + cy * sy), p * (cx * sy - cy * sx), p * arm];
-                sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
+        let of_cell = |cell: usize| {
+            let p = self.pressure[cell];
+            if p <= 0.0 {
+                return [0.0; 6];
             }
-        }
-        let [load, force, side, moment] = sums.map(|sum| cell * sum);
-        Forces { load, force, side, moment }
+            let (i, j) = (cell / ny, cell % ny);
+            let (sx, sy) = (self.slopes.x[(i, j)], self.slopes.y[(i, j)]);
+            let arm = cx * from(grid.x(i), 0) + cy * from(grid.y(j), 1);
+            let edge = self.slope_of_gap(i, j);
+            [p, p * (cx * sx + cy * sy), p * (cx * sy - cy * sx), p * arm, p * edge, 1.0]
+        };
+        let sums = sweep(Numbers { first: 0, count: grid.len() }, &|numbers: Numbers| {
+            strands(numbers.count, |n| of_cell(numbers.first + n))
+        });
+        sums.map(|sum| grid.cell_area() * sum)
+    }
+
+    /// dg/ds by central differences; 0 beside cells that cannot touch.
+    fn slope_of_gap(&self, i: usize, j: usize) -> f64 {
+        let ([nx, ny], [dx, dy], [cx, cy]) = (self.grid.cells(), self.grid.spacing(), self.direction.unit());
+        let step = |n: usize, count: usize, forward: bool| match (self.boundary, forward) {
+            (Boundary::Periodic, true) => (n + 1) % count,
+            (Boundary::Periodic, false) => (n + count - 1) % count,
+            (Boundary::Free, true) => (n + 1).min(count - 1),
+            (Boundary::Free, false) => n.saturating_sub(1),
+        };
+        let gap = |i: usize, j: usize| {
+            let cell = i * ny + j;
+            self.gap[cell] + self.compliance * self.unit_displacement[cell]
+        };
+        let along_x = (gap(step(i, nx, true), j) - gap(step(i, nx, false), j)) / (2.0 * dx);
+        let along_y = match ny {
+            1 => 0.0,
+            _ => (gap(i, step(j, ny, true)) - gap(i, step(j, ny, false))) / (2.0 * dy),
+        };
+        let slope = cx * along_x + cy * along_y;
+        if slope.is_finite() { slope } else { 0.0 }
     }
 }
 
-/// Σ p dg/ds \[N\] with central differences of the gap g of the deformed bodies: 0 but at the edges of the contact, and the
-/// difference of the two estimates of friction.
-pub(crate) fn gap_force(
-    grid: &Grid,
-    boundary: Boundary,
-    pressure: ArrayView2<f64>,
-    gap: ArrayView2<f64>,
-    direction: Direction,
-) -> f64 {
-    let ([nx, ny], [dx, dy], [cx, cy]) = (grid.cells(), grid.spacing(), direction.unit());
-    let step = |n: usize, count: usize, forward: bool| match (boundary, forward) {
-        (Boundary::Periodic, true) => (n + 1) % count,
-        (Boundary::Periodic, false) => (n + count - 1) % count,
-        (Boundary::Free, true) => (n + 1).min(count - 1),
-        (Boundary::Free, false) => n.saturating_sub(1),
-    };
-    let mut sum = 0.0;
-    for ((i, j), p) in pressure.indexed_iter() {
-        if *p > 0.0 {
-            let along_x = (gap[(step(i, nx, true), j)] - gap[(step(i, nx, false), j)]) / (2.0 * dx);
-            let along_y = match ny {
-                1 => 0.0,
-                _ => (gap[(i, step(j, ny, true))] - gap[(i, step(j, ny, false))]) / (2.0 * dy),
-            };
-            let slope = cx * along_x + cy * along_y;
-            sum += p * if slope.is_finite() { slope } else { 0.0 };
-        }
+/// Numbers of cells that follow one another, to be swept.
+struct Numbers {
+    first: usize,
+    count: usize,
+}
+
+impl Cells for Numbers {
+    fn cells(&self) -> usize {
+        self.count
     }
-    sum * grid.cell_area()
+    fn split(self, mid: usize) -> (Self, Self) {
+        let Numbers { first, count } = self;
+        (Numbers { first, count: mid }, Numbers { first: first + mid, count: count - mid })
+    }
 }

@@ -11,8 +11,12 @@
 //!
 //! which is stable. k has kinks x ln|x| at the ends of a cell, ±dx/2, towards which the panels of the quadrature are graded.
 
+use std::sync::atomic::AtomicBool;
+
 use rayon::prelude::*;
 
+use super::stop_at;
+use crate::error::Result;
 use crate::grid::Grid;
 use crate::kernel::{love, strip_at};
 
@@ -44,101 +48,141 @@ pub(super) struct Branch {
 /// `j * (2 N + 1) + i + N`.
 ///
 /// Of a line contact a constant is free; that of k is chosen here as its value N cells away.
-pub(super) fn influence(grid: &Grid, reach: [usize; 2], instantaneous: f64, branches: &[Branch]) -> Vec<f64> {
+///
+/// # Errors
+/// [`Error::Interrupted`] soon after `interrupt` has become true.
+pub(super) fn influence(
+    grid: &Grid,
+    reach: [usize; 2],
+    instantaneous: f64,
+    branches: &[Branch],
+    interrupt: Option<&AtomicBool>,
+) -> Result<Vec<f64>> {
     let [dx, dy] = grid.spacing();
     let (n, rows) = (reach[0], reach[1] + 1);
     let mut all = vec![0.0; (2 * n + 1) * rows];
     let far = strip_at(n as f64 * dx, dx);
-    all.par_chunks_mut(2 * n + 1).enumerate().for_each(|(j, row)| {
+    let quadrature = Quadrature::new(dx, branches);
+    all.par_chunks_mut(2 * n + 1).enumerate().try_for_each(|(j, row)| {
         let y = j as f64 * dy;
         let k = |x: f64| if grid.is_line() { strip_at(x, dx) - far } else { love(x, y, [dx, dy]) };
-        let centre = |i: usize| (i as f64 - n as f64) * dx;
-        row.iter_mut().enumerate().for_each(|(i, to)| *to = instantaneous * k(centre(i)));
-        let quadrature = Quadrature::new(dx, n, &k);
-        for branch in branches {
-            quadrature.add(*branch, row);
-        }
-    });
-    all
+        quadrature.fill(row, instantaneous, &k, interrupt)
+    })?;
+    Ok(all)
 }
 
-/// The elastic coefficient at the nodes of all cells, which every branch shares.
-struct Quadrature<'a, K> {
+/// Cells after which an interruption is looked for.
+const WATCH: i64 = 512;
+
+/// What the integrals over all cells share.
+struct Quadrature<'a> {
     dx: f64,
-    reach: usize,
-    k: &'a K,
-    /// (s, weight, k(x_i + s)) of the cells from -N on.
-    nodes: Vec<Vec<(f64, f64, f64)>>,
+    branches: &'a [Branch],
+    /// Of cells beside the kinks, and of all others.
+    rules: [Rule; 2],
 }
 
-impl<'a, K: Fn(f64) -> f64> Quadrature<'a, K> {
-    fn new(dx: f64, reach: usize, k: &'a K) -> Self {
-        let nodes = (-(reach as i64)..reach as i64)
-            .map(|i| {
-                let x = i as f64 * dx;
-                let mut nodes = vec![];
-                for (a, b) in panels(i, dx) {
-                    gauss(a, b, |s, weight| nodes.push((s, weight, k(x + s))));
-                }
-                nodes
-            })
-            .collect();
-        Quadrature { dx, reach, k, nodes }
+/// The nodes in one cell.
+struct Rule {
+    panels: Vec<(f64, f64)>,
+    /// s, 0 < s < dx.
+    places: Vec<f64>,
+    /// The weights of a place times e^(-s/l), for each branch.
+    weights: Vec<Vec<f64>>,
+}
+
+impl Rule {
+    fn new(panels: Vec<(f64, f64)>, branches: &[Branch]) -> Self {
+        let mut nodes = vec![];
+        panels.iter().for_each(|(a, b)| gauss(*a, *b, |s, weight| nodes.push((s, weight))));
+        let of = |branch: &Branch| nodes.iter().map(|(s, w)| w * libm::exp(-s / branch.length)).collect();
+        Rule {
+            weights: branches.iter().map(of).collect(),
+            places: nodes.iter().map(|(s, _)| *s).collect(),
+            panels,
+        }
+    }
+}
+
+impl<'a> Quadrature<'a> {
+    fn new(dx: f64, branches: &'a [Branch]) -> Self {
+        let rules = [true, false].map(|near| Rule::new(panels(near, dx), branches));
+        Quadrature { dx, branches, rules }
     }
 
-    /// row += C_j k_j.
-    fn add(&self, branch: Branch, row: &mut [f64]) {
-        let Branch { compliance, length: l } = branch;
-        let (dx, n) = (self.dx, self.reach as i64);
-        let decay = libm::exp(-dx / l);
-        let mut k = self.ahead(n as f64 * dx, l);
-        row[2 * self.reach] += compliance * k;
-        for i in (-n..n).rev() {
-            let gained = if l >= 0.5 * dx {
-                let nodes = &self.nodes[(i + n) as usize];
-                nodes.iter().map(|(s, weight, k)| weight * libm::exp(-s / l) * k).sum::<f64>() / l
-            } else {
-                self.within(i, l)
-            };
-            k = decay * k + gained;
-            row[(i + n) as usize] += compliance * k;
+    /// row = C0 k + Σ C_j k_j.
+    fn fill(
+        &self,
+        row: &mut [f64],
+        instantaneous: f64,
+        k: &impl Fn(f64) -> f64,
+        interrupt: Option<&AtomicBool>,
+    ) -> Result<()> {
+        let (dx, n) = (self.dx, (row.len() / 2) as i64);
+        let decays: Vec<f64> = self.branches.iter().map(|b| libm::exp(-dx / b.length)).collect();
+        let mut ahead: Vec<f64> =
+            self.branches.iter().map(|b| self.ahead(n as f64 * dx, b.length, k)).collect();
+        let mut values = vec![];
+        for i in (-n..=n).rev() {
+            if i % WATCH == 0 {
+                stop_at(interrupt)?;
+            }
+            let x = i as f64 * dx;
+            let to = &mut row[(i + n) as usize];
+            *to = instantaneous * k(x);
+            let rule = &self.rules[usize::from(!(-1 - NEAR..=NEAR).contains(&i))];
+            if i < n && !self.branches.is_empty() {
+                values.clear();
+                values.extend(rule.places.iter().map(|s| k(x + s)));
+            }
+            for (b, Branch { compliance, length: l }) in self.branches.iter().enumerate() {
+                if i < n {
+                    let gained = if *l >= 0.5 * dx {
+                        rule.weights[b].iter().zip(&values).map(|(w, k)| w * k).sum::<f64>() / l
+                    } else {
+                        within(x, *l, &rule.panels, k)
+                    };
+                    ahead[b] = decays[b] * ahead[b] + gained;
+                }
+                *to += compliance * ahead[b];
+            }
         }
+        Ok(())
     }
 
     /// ∫ e^(-s/l)/l k(x + s) ds over s > 0 where k is smooth ahead of x.
-    fn ahead(&self, x: f64, l: f64) -> f64 {
+    fn ahead(&self, x: f64, l: f64, k: &impl Fn(f64) -> f64) -> f64 {
         let (mut sum, mut start, mut panel) = (0.0, 0.0, (0.5 * x).min(l));
         while start < END * l {
             let end = (start + panel).min(END * l);
-            gauss(start, end, |s, weight| sum += weight * libm::exp(-s / l) * (self.k)(x + s));
+            gauss(start, end, |s, weight| sum += weight * libm::exp(-s / l) * k(x + s));
             (start, panel) = (end, (1.5 * panel).min(2.0 * l));
         }
         sum / l
     }
-
-    /// ∫ e^(-s/l)/l k(x_i + s) ds over a cell that is long against l.
-    fn within(&self, i: i64, l: f64) -> f64 {
-        let x = i as f64 * self.dx;
-        let mut sum = 0.0;
-        for (a, b) in panels(i, self.dx) {
-            let (mut start, end) = (a, b.min(END * l));
-            while start < end {
-                let stop = (start + 2.0 * l).min(end);
-                gauss(start, stop, |s, weight| sum += weight * libm::exp(-s / l) * (self.k)(x + s));
-                start = stop;
-            }
-        }
-        sum / l
-    }
 }
 
-/// The panels of cell i, 0 < s < dx: two halves, graded towards the middle where x_i + s comes near a kink there.
-fn panels(i: i64, dx: f64) -> Vec<(f64, f64)> {
+/// ∫ e^(-s/l)/l k(x + s) ds over a cell that is long against l.
+fn within(x: f64, l: f64, panels: &[(f64, f64)], k: &impl Fn(f64) -> f64) -> f64 {
+    let mut sum = 0.0;
+    for (a, b) in panels {
+        let (mut start, end) = (*a, b.min(END * l));
+        while start < end {
+            let stop = (start + 2.0 * l).min(end);
+            gauss(start, stop, |s, weight| sum += weight * libm::exp(-s / l) * k(x + s));
+            start = stop;
+        }
+    }
+    sum / l
+}
+
+/// The panels of a cell i, 0 < s < dx: two halves; `near` the kinks graded towards the middle. The kinks at x = -dx/2 and dx/2
+/// are the middles of the cells -1 and 0; those beside them are graded too, which costs little.
+fn panels(near: bool, dx: f64) -> Vec<(f64, f64)> {
     let middle = 0.5 * dx;
-    if !(-1 - NEAR..=NEAR).contains(&i) {
+    if !near {
         return vec![(0.0, middle), (middle, dx)];
     }
-    // Kinks at x = -dx/2 and dx/2: the middles of the cells -1 and 0. Near by, halves are graded too: they cost little.
     let mut ends = vec![0.0];
     let mut width = middle;
     for _ in 0..PANELS {
@@ -178,7 +222,8 @@ mod tests {
         for grid in [Grid::new([8, 8], [8.0, 4.0]).unwrap(), Grid::line(8, 8.0).unwrap()] {
             for l in [0.02, 0.3, 1.0, 7.0, 300.0] {
                 let n = 8;
-                let found = influence(&grid, [n, 3], 0.0, &[Branch { compliance: 1.0, length: l }]);
+                let found =
+                    influence(&grid, [n, 3], 0.0, &[Branch { compliance: 1.0, length: l }], None).unwrap();
                 for (i, j) in [(-8_i64, 0_usize), (-3, 2), (0, 0), (-1, 0), (1, 1), (8, 3)] {
                     let j = if grid.is_line() { 0 } else { j };
                     let dy = grid.spacing()[1];
@@ -198,9 +243,17 @@ mod tests {
     #[test]
     fn a_short_memory_is_the_elastic_body_and_a_long_one_none() {
         let grid = Grid::new([4, 4], [4.0, 4.0]).unwrap();
-        let of = |l: f64| influence(&grid, [4, 0], 0.0, &[Branch { compliance: 1.0, length: l }]);
+        let of =
+            |l: f64| influence(&grid, [4, 0], 0.0, &[Branch { compliance: 1.0, length: l }], None).unwrap();
         let short = of(1e-6);
         assert!((short[4] - love(0.0, 0.0, [1.0, 1.0])).abs() < 1e-5);
         assert!(of(1e9).iter().all(|k| k.abs() < 1e-6));
+    }
+
+    #[test]
+    fn an_interruption_is_seen_while_coefficients_are_computed() {
+        let (grid, flag) = (Grid::new([4, 4], [4.0, 4.0]).unwrap(), AtomicBool::new(true));
+        let stopped = influence(&grid, [1 << 14, 8], 1.0, &[], Some(&flag));
+        assert!(matches!(stopped, Err(crate::error::Error::Interrupted)));
     }
 }

@@ -5,7 +5,7 @@
 //! front of each bump, and friction is its component along the slopes, F = Σ p dh/dx.
 //!
 //! - [`Steady`]: one steady state for each velocity;
-//! - motion in time is part of the [march](crate::march): the gap moves over a body that keeps its memory;
+//! - motion in time is part of the [march](crate::March): the gap moves over a body that keeps its memory;
 //! - [`Persson`]: the estimate of Persson's theory from the power spectrum, for comparison.
 //!
 //! docs/sliding.md has the theory, what is computed and how it was checked.
@@ -14,7 +14,6 @@ mod friction;
 mod influence;
 mod metric;
 mod moving;
-mod newton;
 mod path;
 mod persson;
 mod shells;
@@ -23,11 +22,23 @@ mod steady;
 mod streaming;
 pub(crate) mod torus;
 
+pub(crate) use friction::{ContactForces, SecondEstimate};
 pub use friction::{Direction, Friction};
-pub(crate) use friction::{Forces, gap_force};
 pub use moving::MovingGap;
 pub use path::Path;
 pub use persson::{Correction, Magnification, Persson, PerssonFriction};
 pub use slopes::Slopes;
 pub use steady::{Steady, SteadyMotion};
 pub use streaming::Streaming;
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::error::{Error, Result};
+
+/// [`Error::Interrupted`] where somebody asked to stop.
+fn stop_at(interrupt: Option<&AtomicBool>) -> Result<()> {
+    match interrupt.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+        true => Err(Error::Interrupted),
+        false => Ok(()),
+    }
+}

@@ -11,8 +11,8 @@
 use rustfft::num_complex::Complex64;
 
 use crate::error::{Error, Result};
-use crate::march::Simulation;
 use crate::material::Creep;
+use crate::simulation::Simulation;
 
 /// The creep functions of the bodies whose material streams through the contact; each with how fast its clock runs.
 #[derive(Clone, Debug)]
@@ -58,6 +58,18 @@ impl Streaming {
             ));
         }
         Ok(streaming)
+    }
+
+    /// The same bodies with this share of what they yield in time yielded at once: C(∞) is kept.
+    pub(super) fn hastened(&self, share: f64) -> Streaming {
+        let mut hastened = self.clone();
+        for (creep, _) in &mut hastened.parts {
+            for term in &mut creep.terms {
+                creep.instantaneous += share * term.compliance;
+                term.compliance *= 1.0 - share;
+            }
+        }
+        hastened
     }
 
     /// C(0+) \[1/Pa\].

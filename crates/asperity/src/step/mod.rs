@@ -31,7 +31,7 @@ pub use snapshot::Checkpoint;
 
 pub(crate) use interval::{Interval, Load, Piece};
 pub(crate) use quantities::Recorder;
-pub(crate) use row::{PERIMETER_SHARE, Recalled, to_view};
+pub(crate) use row::{PERIMETER_SHARE, Recalled};
 pub(crate) use schedule::{Proposal, Reached, Schedule, Summary, Verdict};
 pub(crate) use snapshot::{Loader, Saver};
 pub(crate) use undeformed::UndeformedGap;

@@ -1,34 +1,38 @@
-//! Newton's method on a predicted contact set: A p = w - h on the free cells D, the load kept, by right-preconditioned GMRES
+//! The linear system of a Newton step on a contact set D: A p = w - h there, the load kept, by right-preconditioned GMRES
 //! (Saad & Schultz, SIAM J. Sci. Stat. Comput. 7 (1986) 856).
 //!
 //! The unknown is a change d of the pressure on D of zero sum. With P the projection that takes the mean over D away, the
 //! equation is P A d = -P r, and P F⁻¹[1/A^] the preconditioner.
 
-use super::torus::{Spectrum, Torus};
+use std::sync::atomic::AtomicBool;
+
+use super::operators::Operators;
+use crate::error::Result;
+use crate::sliding::stop_at;
 
 /// The residual falls by this factor, in at most so many vectors.
 const REDUCTION: f64 = 0.02;
 const VECTORS: usize = 40;
+/// Fields that a solve takes, were all cells in contact.
+pub(super) const FIELDS: usize = 2 * VECTORS;
 
 /// The operator A on a set of cells, and its approximate inverse.
 pub(super) struct OnSet<'a> {
-    pub(super) torus: &'a mut Torus,
-    pub(super) operator: &'a Spectrum,
-    pub(super) inverse: &'a Spectrum,
+    pub(super) operators: &'a mut Operators,
     /// Numbers of the cells of D.
     pub(super) cells: &'a [usize],
     /// Two fields of work.
-    pub(super) work: [&'a mut Vec<f64>; 2],
+    pub(super) work: [&'a mut [f64]; 2],
     pub(super) convolutions: usize,
+    pub(super) interrupt: Option<&'a AtomicBool>,
 }
 
 impl OnSet<'_> {
-    fn apply(&mut self, inverse: bool, x: &[f64]) -> Vec<f64> {
+    fn apply(&mut self, apply_into: fn(&mut Operators, &[f64], &mut [f64]), x: &[f64]) -> Vec<f64> {
         let [input, output] = &mut self.work;
         input.fill(0.0);
         self.cells.iter().zip(x).for_each(|(cell, x)| input[*cell] = *x);
-        let spectrum = if inverse { self.inverse } else { self.operator };
-        self.torus.apply_into(spectrum, input, output);
+        apply_into(self.operators, input, output);
         self.convolutions += 1;
         let mut y: Vec<f64> = self.cells.iter().map(|cell| output[*cell]).collect();
         centre(&mut y);
@@ -36,12 +40,15 @@ impl OnSet<'_> {
     }
 
     /// d of zero sum with P A d = -P `residual`, roughly.
-    pub(super) fn solve(&mut self, residual: &[f64]) -> Vec<f64> {
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`](crate::error::Error::Interrupted).
+    pub(super) fn solve(&mut self, residual: &[f64]) -> Result<Vec<f64>> {
         let mut v: Vec<f64> = residual.iter().map(|r| -r).collect();
         centre(&mut v);
         let size = norm(&v);
         if size == 0.0 {
-            return v;
+            return Ok(v);
         }
         scale(&mut v, 1.0 / size);
         let mut basis = vec![v];
@@ -50,8 +57,9 @@ impl OnSet<'_> {
         let (mut triangle, mut rotations): (Vec<Vec<f64>>, Vec<[f64; 2]>) = (vec![], vec![]);
         let mut right = vec![size];
         for k in 0..VECTORS.min(residual.len()) {
-            let z = self.apply(true, &basis[k]);
-            let mut y = self.apply(false, &z);
+            stop_at(self.interrupt)?;
+            let z = self.apply(Operators::invert_into, &basis[k]);
+            let mut y = self.apply(Operators::apply_into, &z);
             preconditioned.push(z);
             let mut column = Vec::with_capacity(k + 2);
             for v in &basis {
@@ -93,7 +101,7 @@ impl OnSet<'_> {
         for (z, weight) in preconditioned.iter().zip(&weights) {
             d.iter_mut().zip(z).for_each(|(d, z)| *d += weight * z);
         }
-        d
+        Ok(d)
     }
 }
 

@@ -1,0 +1,200 @@
+//! The steady contact at one velocity, by the metric iteration and by continuation (see [`super`]).
+
+use std::sync::atomic::AtomicBool;
+
+use super::operators::{Operators, Stream};
+use crate::contact::{self, ContactState, Outcome, Problem, Solver, SolverOptions};
+use crate::error::{Error, NotConverged, Result};
+use crate::grid::Grid;
+use crate::operator::Operator;
+use crate::simulation::Simulation;
+
+/// Metric steps without Newton's steps after some of those that were rejected, at most.
+const SKIP: usize = 3;
+/// Metric steps after which a contact is taken from easier ones.
+const STEPS: usize = 60;
+/// C0/C(∞) of the first of the easier bodies, from each to the next, and where even one as small as this took too many steps.
+const EASY: f64 = 0.25;
+const FALL: f64 = 1.0 / 3.0;
+const LEAST_FALL: f64 = 0.9;
+/// Tolerance of the contacts on the way.
+const ON_THE_WAY: f64 = 1e-3;
+
+/// The contact of one velocity.
+pub(super) struct SteadyContact<'a> {
+    pub(super) grid: &'a Grid,
+    pub(super) problem: Problem<'a>,
+    pub(super) options: SolverOptions,
+    pub(super) stream: Stream<'a>,
+    pub(super) interrupt: Option<&'a AtomicBool>,
+    /// Of the contact under way.
+    pub(super) tolerance: f64,
+    /// Iterations and convolutions until now, and the rating of the last state.
+    pub(super) spent: Outcome,
+}
+
+/// Working memory of the iteration.
+pub(super) struct Fields {
+    pub(super) trial: ContactState,
+    pub(super) best: ContactState,
+    /// The gap of the metric step, and the image of the pressure.
+    pub(super) work: [Vec<f64>; 2],
+}
+
+impl<'a> SteadyContact<'a> {
+    pub(super) fn new(stream: Stream<'a>, problem: Problem<'a>, interrupt: Option<&'a AtomicBool>) -> Self {
+        let Simulation { grid, solver: options, .. } = stream.simulation;
+        let (options, tolerance) = (*options, options.tolerance);
+        SteadyContact { grid, problem, options, stream, interrupt, tolerance, spent: Outcome::default() }
+    }
+
+    /// Solves the contact from the pressure of `state`, which becomes the best one found.
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`], [`Error::Infeasible`], [`Error::Interrupted`].
+    pub(super) fn solve(&mut self, state: &mut ContactState) -> Result<()> {
+        let n = self.grid.len();
+        let mut fields = Fields {
+            trial: ContactState::new(n),
+            best: ContactState::new(n),
+            work: [vec![0.0; n], vec![0.0; n]],
+        };
+        let mut operators = Operators::plan(&self.stream, false, self.interrupt)?;
+        match self.iterate(&mut operators, &mut fields, STEPS, state)? {
+            true => Ok(()),
+            false => self.continue_from_easier(&mut fields, state),
+        }
+    }
+
+    /// Continuation in the instantaneous compliance: from a body that yields a quarter at once, on which the iteration contracts
+    /// well, down to the body itself, each contact from the one before.
+    fn continue_from_easier(&mut self, fields: &mut Fields, state: &mut ContactState) -> Result<()> {
+        let streaming = self.stream.streaming;
+        let own = streaming.instantaneous() / streaming.relaxed();
+        let (mut solved, mut fall) = (None, FALL);
+        let mut start = state.pressure.clone();
+        loop {
+            let at_once = solved.map_or(EASY, |at_once| fall * at_once).max(own);
+            let easier = streaming.hastened((at_once - own) / (1.0 - own));
+            let stream = Stream { streaming: &easier, ..self.stream };
+            self.tolerance =
+                if at_once > own { self.options.tolerance.max(ON_THE_WAY) } else { self.options.tolerance };
+            let most = if fall < LEAST_FALL { STEPS } else { usize::MAX };
+            let mut operators = Operators::plan(&stream, true, self.interrupt)?;
+            let found = self.iterate(&mut operators, fields, most, state)?;
+            tracing::debug!(at_once, found, "continuation");
+            if !found {
+                fall = fall.sqrt();
+                state.pressure.copy_from_slice(&start);
+            } else if at_once <= own {
+                return Ok(());
+            } else {
+                start.copy_from_slice(&state.pressure);
+                solved = Some(at_once);
+            }
+        }
+    }
+
+    /// The metric iteration with Newton's steps. False where so many metric steps are not enough.
+    fn iterate(
+        &mut self,
+        operators: &mut Operators,
+        fields: &mut Fields,
+        steps: usize,
+        state: &mut ContactState,
+    ) -> Result<bool> {
+        let mut solver = Solver::new(self.options.method, operators.metric());
+        self.begin(operators, state)?;
+        let (mut rejected, mut skip) = (0, 0);
+        for _ in 0..=steps {
+            operators.apply_into(&state.pressure, &mut state.unit_displacement);
+            let residual = self.rate(state).residual;
+            tracing::debug!(
+                iterations = self.spent.iterations,
+                residual,
+                convolutions = self.spent.convolutions,
+                rejected,
+                "steady"
+            );
+            if residual <= self.tolerance {
+                return Ok(true);
+            }
+            if self.spent.iterations >= self.options.max_iterations {
+                return Err(self.not_converged());
+            }
+            self.metric_step(operators, &mut solver, fields, residual, state)?;
+            if skip > 0 {
+                skip -= 1;
+                continue;
+            }
+            rejected = if self.newton(operators, fields, residual, state)? { 0 } else { rejected + 1 };
+            skip = SKIP.min(rejected);
+        }
+        Ok(false)
+    }
+
+    /// p = the contact of M and the gap h + u - M p.
+    fn metric_step(
+        &mut self,
+        operators: &mut Operators,
+        solver: &mut Solver,
+        fields: &mut Fields,
+        residual: f64,
+        state: &mut ContactState,
+    ) -> Result<()> {
+        let [gap, image] = &mut fields.work;
+        operators.metric().apply_into(&state.pressure, image);
+        let displacements = state.unit_displacement.iter().zip(&*image);
+        for ((to, h), (u, mp)) in gap.iter_mut().zip(self.problem.gap).zip(displacements) {
+            *to = h + self.problem.compliance * (u - mp);
+        }
+        let options = SolverOptions {
+            tolerance: f64::max(0.1 * self.tolerance, 0.1 * residual).clamp(1e-13, 0.1),
+            ..self.options
+        };
+        let problem = Problem { gap: &gap[..], ..self.problem };
+        let (iterations, convolutions) =
+            match solver.solve(operators.metric(), &problem, &options, state, self.interrupt) {
+                Ok(done) => (done.iterations, done.convolutions),
+                Err(Error::NotConverged(report)) => (report.iterations, report.iterations),
+                Err(error) => return Err(error),
+            };
+        self.spent.iterations += iterations + 1;
+        self.spent.convolutions += convolutions + 1;
+        Ok(())
+    }
+
+    /// Makes the pressure of the state feasible; where there is none, it is that of the contact of M.
+    fn begin(&mut self, operators: &mut Operators, state: &mut ContactState) -> Result<()> {
+        if state.pressure.iter().any(|p| *p > 0.0) {
+            return contact::make_feasible(&self.problem, self.grid, state);
+        }
+        let rough = SolverOptions { tolerance: self.options.tolerance.max(1e-3), ..self.options };
+        let metric = operators.metric();
+        let mut solver = Solver::new(rough.method, metric);
+        let outcome = solver.solve(metric, &self.problem, &rough, state, self.interrupt)?;
+        self.spent.iterations += outcome.iterations;
+        self.spent.convolutions += outcome.convolutions;
+        Ok(())
+    }
+
+    /// Rates a state whose U was just computed.
+    pub(super) fn rate(&mut self, state: &mut ContactState) -> Outcome {
+        let rated = contact::assess(&self.problem, self.grid, self.tolerance, state);
+        let Outcome { iterations, convolutions, .. } = self.spent;
+        self.spent = Outcome { iterations, convolutions: convolutions + 1, ..rated };
+        self.spent
+    }
+
+    fn not_converged(&self) -> Error {
+        Error::NotConverged(NotConverged {
+            method: "steady motion",
+            iterations: self.spent.iterations,
+            residual: self.spent.residual,
+            tolerance: self.options.tolerance,
+            certificate: self.spent.certificate,
+            time: None,
+            velocity: Some(self.stream.velocity),
+        })
+    }
+}

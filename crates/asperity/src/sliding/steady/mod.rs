@@ -1,0 +1,288 @@
+//! Steady states of motion: one contact for each velocity.
+//!
+//! Find 0 <= p <= H with the load W and the contact conditions on g = A p + h - w, where A has the symbol K^(q) C~(q.v). A is not
+//! symmetric, so there is no energy to minimise, but it is strongly monotone: the solution is unique.
+//!
+//! ```text
+//! for each velocity, from the pressure of the one before:
+//!     A, M                                                                               (operators)
+//!     loop:                                                                              (contact)
+//!         u = A p,  w from the free cells,  r = u + h - w;  stop where the contact conditions hold
+//!         p = contact of the symmetric operator M = |A|²/Re A and the gap h + u - M p    (metric step)
+//!         p = p after Newton's steps on its contact set, where they lower the residual   (newton, gmres)
+//!     where that takes too long, the same for bodies that yield a share s of C(∞) at once, s from 1/4 down to C0/C(∞)
+//! ```
+//!
+//! The metric step contracts by max sin δ < 1 in the norm of M, δ = arg A^, from any start: |1 - A^/M^| = |sin δ|, and the
+//! solution of a convex contact is a 1-Lipschitz function of its gap in that norm. Newton's steps make it fast. Continuation
+//! brings them to where they converge: sin δ is far below 1 for s = 1/4, and a smaller s changes the contact only where the
+//! pressure rises steeply (docs/sliding.md).
+
+mod checks;
+mod coefficients;
+mod contact;
+mod gmres;
+mod newton;
+mod operators;
+
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use self::contact::SteadyContact;
+use self::operators::{Operators, Stream};
+use super::{ContactForces, Direction, Friction, SecondEstimate, Slopes, Streaming};
+use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem};
+use crate::drive::Coordinate;
+use crate::error::{Error, Result};
+use crate::load::Control;
+use crate::simulation::Simulation;
+use crate::step::{Recalled, Recorder, Step};
+
+/// What moves, and how fast.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SteadyMotion {
+    /// Direction of the velocity.
+    pub direction: Direction,
+    /// Velocities \[m/s\], not negative; each is solved from the one before it.
+    pub velocities: Vec<f64>,
+    /// Slopes of the gap of the simulation.
+    pub slopes: Slopes,
+    /// A shear stress on the area in contact \[Pa\], for [`Friction::total`].
+    pub shear_stress: Option<f64>,
+}
+
+/// A sweep over velocities.
+///
+/// ```
+/// use asperity::{material::{Creep, CreepTerm}, sliding::{Direction, Slopes, Steady, SteadyMotion}};
+/// use asperity::{Boundary, Control, Grid, History, Loading, march::Simulation, surface::{Part, Shape, undeformed_gap}};
+/// // A cylinder of 10 mm rolls over a Zener solid that yields five times its instantaneous compliance in 10 ms.
+/// let grid = Grid::line(128, 4e-3)?;
+/// let parts = [Part::Shape { shape: Shape::Cylinder { radius: 10e-3 }, center: [0.0, 0.0] }];
+/// let gap = undeformed_gap(&grid, &parts)?;
+/// let creep = Creep {
+///     instantaneous: 1e-8, fluidity: 0.0, terms: vec![CreepTerm { compliance: 4e-8, retardation_time: 0.01 }],
+/// };
+/// let slopes = Slopes::of(&grid, Boundary::Free, &parts, &gap)?;
+/// let simulation = Simulation {
+///     creep,
+///     loading: Loading { control: Control::Load, history: History::Step { value: 1e3 } }.into(),
+///     ..Simulation::new(grid, gap)
+/// };
+/// let motion = SteadyMotion { direction: Direction::X, velocities: vec![0.01, 0.1, 1.0], slopes, shear_stress: None };
+/// let mut steady = Steady::new(simulation, motion)?;
+/// let mut friction = vec![];
+/// while let Some(step) = steady.advance()? {
+///     friction.push(step.friction().expect("it moves").coefficient);
+/// }
+/// // Most is lost where the material relaxes while it passes the contact.
+/// assert!(friction[1] > friction[0] && friction[1] > friction[2] && friction[2] > 0.0);
+/// # Ok::<(), asperity::Error>(())
+/// ```
+pub struct Steady {
+    simulation: Simulation,
+    motion: SteadyMotion,
+    streaming: Streaming,
+    /// W \[N\].
+    load: f64,
+    /// The pressure of the last velocity done, from which the next is solved.
+    start: Vec<f64>,
+    done: usize,
+    last: Solved,
+    recorder: Recorder,
+    interrupt: Option<Arc<AtomicBool>>,
+}
+
+/// The last state, good or not.
+struct Solved {
+    /// Number of its velocity.
+    index: usize,
+    velocity: f64,
+    state: ContactState,
+    outcome: Outcome,
+    friction: Friction,
+}
+
+impl Steady {
+    /// Checks the simulation. Of it count the grid, the body, the gap, the hardness, the solver, the material, and the load: a load
+    /// or a mean pressure that is held.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] naming the quantity; [`Error::Infeasible`] where the load exceeds what the hardness carries.
+    pub fn new(simulation: Simulation, motion: SteadyMotion) -> Result<Self> {
+        motion.validate(&simulation)?;
+        simulation.validate()?;
+        let (cells, load) = (simulation.grid.len(), checks::held_load(&simulation)?);
+        let last = Solved {
+            index: 0,
+            velocity: 0.0,
+            state: ContactState::new(cells),
+            outcome: Outcome::default(),
+            friction: Friction::default(),
+        };
+        Ok(Steady {
+            streaming: Streaming::new(&simulation)?,
+            load,
+            start: vec![0.0; cells],
+            done: 0,
+            last,
+            recorder: Recorder::new(simulation.columns()?),
+            interrupt: None,
+            simulation,
+            motion,
+        })
+    }
+
+    /// Stops soon after `flag` has become true: within one iteration of the solver, or some hundred influence coefficients.
+    pub fn interrupt_with(&mut self, flag: Arc<AtomicBool>) {
+        self.interrupt = Some(flag);
+    }
+
+    /// What is simulated.
+    pub fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+
+    /// What moves.
+    pub fn motion(&self) -> &SteadyMotion {
+        &self.motion
+    }
+
+    /// The creep functions of the bodies that stream by.
+    pub fn streaming(&self) -> &Streaming {
+        &self.streaming
+    }
+
+    /// Velocities done.
+    pub fn done(&self) -> usize {
+        self.done
+    }
+
+    /// Whether the last velocity is done.
+    pub fn finished(&self) -> bool {
+        self.done == self.motion.velocities.len()
+    }
+
+    /// The pressure that the next velocity is solved from \[Pa\]: that of the last one done, whatever became of a later one. With
+    /// [`done`](Self::done) it is all that the velocities to come depend on.
+    pub fn start(&self) -> &[f64] {
+        &self.start
+    }
+
+    /// Goes on after `done` velocities from the pressure of the last of them \[Pa\].
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] where there are fewer velocities, or the pressure has not one number for each cell.
+    pub fn resume(&mut self, done: usize, pressure: &[f64]) -> Result<()> {
+        if done > self.motion.velocities.len() || pressure.len() != self.simulation.grid.len() {
+            return Err(Error::invalid("checkpoint", format!("{done} velocities"), "one of this sweep"));
+        }
+        self.done = done;
+        self.start.copy_from_slice(pressure);
+        self.last.index = done.saturating_sub(1);
+        self.last.velocity = self.motion.velocities[self.last.index];
+        self.last.state.pressure.copy_from_slice(pressure);
+        Ok(())
+    }
+
+    /// Memory that a sweep takes at most \[bytes\]: operators, solver and fields.
+    pub fn bytes(simulation: &Simulation, motion: &SteadyMotion) -> usize {
+        // Gap and slopes; pressure and U of three states, the start and two fields of work; vectors of GMRES, were all in contact.
+        let fields = 3 + 6 + 3 + gmres::FIELDS;
+        Operators::bytes(simulation, motion.direction) + 8 * simulation.grid.len() * fields
+    }
+
+    /// The next steady state, or `None` at the end. Its row has the velocity in place of the time.
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`] with the velocity; [`Steady::last`] then has the best state.
+    /// [`Error::Interrupted`].
+    pub fn advance(&mut self) -> Result<Option<Step<'_>>> {
+        let Some(velocity) = self.motion.velocities.get(self.done).copied() else { return Ok(None) };
+        (self.last.index, self.last.velocity) = (self.done, velocity);
+        let solved = self.solve(velocity);
+        let row = self.last.row(&self.simulation, &self.streaming, None);
+        row.record(&mut self.recorder);
+        solved?;
+        self.start.copy_from_slice(&self.last.state.pressure);
+        self.done += 1;
+        Ok(self.last())
+    }
+
+    /// The last steady state; after an error the best one reached. `None` before the first.
+    pub fn last(&self) -> Option<Step<'_>> {
+        let touches = self.last.state.pressure.iter().any(|p| *p > 0.0);
+        touches.then(|| self.last.row(&self.simulation, &self.streaming, Some(&self.recorder)))
+    }
+
+    /// Solves for one velocity.
+    fn solve(&mut self, velocity: f64) -> Result<()> {
+        let stream = Stream {
+            simulation: &self.simulation,
+            streaming: &self.streaming,
+            direction: self.motion.direction,
+            velocity,
+        };
+        let problem = Problem {
+            gap: gap(&self.simulation),
+            compliance: self.streaming.relaxed(),
+            hardness: Hardness::Uniform(self.simulation.hardness),
+            prescribed: Prescribed::Load(self.load),
+        };
+        let mut contact = SteadyContact::new(stream, problem, self.interrupt.as_deref());
+        let Solved { state, outcome, friction, .. } = &mut self.last;
+        state.pressure.copy_from_slice(&self.start);
+        let solved = contact.solve(state);
+        *outcome = contact.spent;
+        let forces = ContactForces {
+            grid: &self.simulation.grid,
+            boundary: self.simulation.boundary,
+            direction: self.motion.direction,
+            slopes: &self.motion.slopes,
+            pressure: &state.pressure,
+            gap: problem.gap,
+            compliance: problem.compliance,
+            unit_displacement: &state.unit_displacement,
+            remembers: self.streaming.branches().next().is_some(),
+            velocity,
+            distance: 0.0,
+            shear_stress: self.motion.shear_stress,
+        };
+        *friction = Friction::of(&forces, SecondEstimate::Steady(stream.loss(&state.pressure)));
+        solved
+    }
+}
+
+impl Solved {
+    /// As a row, with its quantities where they are recorded.
+    fn row<'a>(
+        &'a self,
+        simulation: &'a Simulation,
+        streaming: &Streaming,
+        recorder: Option<&'a Recorder>,
+    ) -> Step<'a> {
+        Step {
+            index: self.index,
+            coordinate: Coordinate::Velocity(self.velocity),
+            instant: None,
+            control: Control::Load,
+            simulation,
+            hardness: Hardness::Uniform(simulation.hardness),
+            state: &self.state,
+            gap: gap(simulation),
+            compliance: streaming.relaxed(),
+            outcome: self.outcome,
+            recalled: Recalled::Nothing,
+            time_error: None,
+            undeformed: None,
+            processes: &[],
+            recorder,
+            friction: Some(self.friction),
+        }
+    }
+}
+
+/// The undeformed gap, cell by cell: that of a valid simulation is in C-order.
+fn gap(simulation: &Simulation) -> &[f64] {
+    simulation.gap.as_slice().unwrap_or_default()
+}

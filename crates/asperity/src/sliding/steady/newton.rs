@@ -1,0 +1,97 @@
+//! Newton's steps on the contact set: the cells that are free, 0 < p < H, and those that violate the contact conditions.
+//!
+//! ```text
+//! loop:
+//!     u = A p,  w, r;  keep the best p;  stop where its residual has not fallen for a while
+//!     D = free and violated cells;  p += d on D with A d = -r there, the load kept      (GMRES)
+//!     p = p within its bounds, with the load
+//! ```
+
+use super::contact::{Fields, SteadyContact};
+use super::gmres::OnSet;
+use super::operators::Operators;
+use crate::contact::{self, ContactState};
+use crate::error::Result;
+
+/// Steps at most, and those without progress.
+const STEPS: usize = 20;
+const PATIENCE: usize = 2;
+/// The residual after a step over the least one before it, at most, for progress.
+const PROGRESS: f64 = 0.7;
+/// The residual after all steps over `before`, at most, for them to count.
+const ENOUGH: f64 = 0.7;
+
+impl SteadyContact<'_> {
+    /// Takes Newton's steps from the pressure of `state`, which is replaced where they bring the residual well below `before`.
+    /// Returns whether they did.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`](crate::error::Error::Interrupted).
+    pub(super) fn newton(
+        &mut self,
+        operators: &mut Operators,
+        fields: &mut Fields,
+        before: f64,
+        state: &mut ContactState,
+    ) -> Result<bool> {
+        let Fields { trial, best, work } = fields;
+        copy(state, trial);
+        let (mut least, mut stalled) = (f64::INFINITY, 0);
+        for _ in 0..=STEPS {
+            operators.apply_into(&trial.pressure, &mut trial.unit_displacement);
+            let residual = self.rate(trial).residual;
+            // The set may change a few times before the residual falls.
+            stalled = if residual < PROGRESS * least { 0 } else { stalled + 1 };
+            if residual < least {
+                least = residual;
+                copy(trial, best);
+            }
+            if residual <= self.tolerance || stalled > PATIENCE {
+                break;
+            }
+            let (cells, violations) = self.free_cells(trial);
+            if cells.is_empty() {
+                break;
+            }
+            let [first, second] = work;
+            let interrupt = self.interrupt;
+            let mut on_set =
+                OnSet { operators, cells: &cells, work: [first, second], convolutions: 0, interrupt };
+            let change = on_set.solve(&violations)?;
+            // The preconditioner costs as much as the operator on the torus.
+            self.spent.convolutions += on_set.convolutions;
+            self.spent.iterations += 1;
+            cells.iter().zip(&change).for_each(|(n, d)| trial.pressure[*n] += d);
+            if contact::make_feasible(&self.problem, self.grid, trial).is_err() {
+                break;
+            }
+        }
+        let better = least < ENOUGH * before;
+        if better {
+            std::mem::swap(state, best);
+        }
+        Ok(better)
+    }
+
+    /// The cells that are free or violate the contact conditions, and r/c there.
+    fn free_cells(&self, state: &ContactState) -> (Vec<usize>, Vec<f64>) {
+        let (problem, c) = (&self.problem, self.problem.compliance);
+        let (mut cells, mut violations) = (vec![], vec![]);
+        for (n, (p, u)) in state.pressure.iter().zip(&state.unit_displacement).enumerate() {
+            let (h, most) = (problem.gap[n], problem.hardness.at(n));
+            let r = h + c * u - state.approach;
+            let free = *p > 0.0 && *p < most || *p <= 0.0 && r < 0.0 || *p >= most && r > 0.0;
+            if h < f64::INFINITY && free {
+                cells.push(n);
+                violations.push(r / c);
+            }
+        }
+        (cells, violations)
+    }
+}
+
+fn copy(from: &ContactState, to: &mut ContactState) {
+    to.pressure.copy_from_slice(&from.pressure);
+    to.unit_displacement.copy_from_slice(&from.unit_displacement);
+    to.approach = from.approach;
+}

@@ -1,0 +1,244 @@
+//! The operators of one velocity: A, its approximate inverse, and the symmetric operator M of the metric step.
+//!
+//! On a periodic domain A^ = K^(q) C~(q.v) is known. On a free one A is made of influence coefficients on a torus of at least
+//! twice the domain ([`coefficients`](super::coefficients)). What the torus holds beyond the domain does not count, but M needs
+//! Re A^ > 0 there, and 1/A^ is the better an inverse the more the torus is like the endless body. Where the memory reaches
+//! far, v λ beyond the domain, the torus is made longer along the motion, up to a bound; what is left of Re A^ <= 0 then is
+//! replaced by K^ Re C~ in M and in the inverse. A itself is exact on every torus.
+
+use std::borrow::Cow;
+use std::f64::consts::TAU;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+
+use rustfft::num_complex::Complex64;
+
+use super::coefficients;
+use crate::contact::Solver;
+use crate::convolution::Convolution;
+use crate::error::Result;
+use crate::grid::{Boundary, Grid};
+use crate::simulation::Simulation;
+use crate::sliding::metric::{Metric, MetricKernel};
+use crate::sliding::stop_at;
+use crate::sliding::torus::{Spectrum, Torus};
+use crate::sliding::{Direction, Streaming};
+
+/// The torus of a free domain along the motion over the shortest one, at most, and the memory that makes it longer at most \[bytes\].
+const LONGEST: usize = 16;
+const TORUS_BYTES: usize = 1 << 30;
+/// The same where A is hard to invert, at least.
+const LONG: usize = 8;
+
+/// A body that streams by, and how fast.
+#[derive(Clone, Copy)]
+pub(super) struct Stream<'a> {
+    pub(super) simulation: &'a Simulation,
+    pub(super) streaming: &'a Streaming,
+    pub(super) direction: Direction,
+    /// \[m/s\]
+    pub(super) velocity: f64,
+}
+
+/// A and what goes with it, over the relaxed compliance.
+pub(super) struct Operators {
+    torus: Torus,
+    steady: Spectrum,
+    inverse: Spectrum,
+    metric: Metric,
+}
+
+impl Operators {
+    /// Of one velocity; `long` takes a torus on which the inverse is good.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`](crate::error::Error::Interrupted).
+    pub(super) fn plan(stream: &Stream, long: bool, interrupt: Option<&AtomicBool>) -> Result<Self> {
+        let Simulation { grid, boundary, kernel, .. } = stream.simulation;
+        let (torus, steady) = match boundary {
+            Boundary::Periodic => {
+                let torus = Torus::new(grid.cells(), grid.cells());
+                let steady = stream.periodic(&torus);
+                (torus, steady)
+            }
+            Boundary::Free => stream.free(long, interrupt)?,
+        };
+        stop_at(interrupt)?;
+        let positive = stream.positive(&torus, &steady);
+        let reciprocal = |a: &Complex64| if a.norm_sqr() > 0.0 { a.inv() } else { Complex64::ZERO };
+        let metric_kernel = MetricKernel {
+            elastic: kernel.clone(),
+            streaming: stream.streaming.clone(),
+            velocity: stream.velocities(),
+            unit: stream.streaming.relaxed(),
+        };
+        Ok(Operators {
+            inverse: Spectrum(positive.0.iter().map(reciprocal).collect()),
+            metric: Metric::new(*grid, *boundary, &positive, torus.lengths(), Arc::new(metric_kernel)),
+            torus,
+            steady,
+        })
+    }
+
+    /// u = A p.
+    pub(super) fn apply_into(&mut self, p: &[f64], u: &mut [f64]) {
+        self.torus.apply_into(&self.steady, p, u);
+    }
+
+    /// p, roughly the pressure with A p = u.
+    pub(super) fn invert_into(&mut self, u: &[f64], p: &mut [f64]) {
+        self.torus.apply_into(&self.inverse, u, p);
+    }
+
+    /// M.
+    pub(super) fn metric(&mut self) -> &mut Metric {
+        &mut self.metric
+    }
+
+    /// Bytes that the operators and a solver of M take at most.
+    pub(super) fn bytes(simulation: &Simulation, direction: Direction) -> usize {
+        let Simulation { grid, boundary, solver, .. } = simulation;
+        let torus = match boundary {
+            Boundary::Periodic => torus_bytes(grid, grid.cells()),
+            Boundary::Free => {
+                let mut lengths = shortest(grid);
+                while let Some(longer) = lengthened(grid, lengths, direction) {
+                    lengths = longer;
+                }
+                torus_bytes(grid, lengths)
+            }
+        };
+        torus + Solver::bytes(solver.method, grid, *boundary)
+    }
+}
+
+/// Two transforms, four spectra while they are planned, M, and the coefficients of a free domain.
+fn torus_bytes(grid: &Grid, [mx, my]: [usize; 2]) -> usize {
+    let half = my / 2 + 1;
+    32 * grid.cells()[0] * half
+        + 64 * mx * half
+        + Convolution::bytes(grid.cells(), [mx, my])
+        + 8 * mx * my
+        + 8 * (mx + 1) * half
+}
+
+/// Lengths of the shortest torus of a free domain.
+fn shortest(grid: &Grid) -> [usize; 2] {
+    let even = |cells: usize| 2 * Convolution::good_length(cells);
+    let [nx, ny] = grid.cells();
+    [even(nx), if grid.is_line() { 1 } else { even(ny) }]
+}
+
+/// Twice as long along the motion, where that is allowed.
+fn lengthened(grid: &Grid, mut lengths: [usize; 2], direction: Direction) -> Option<[usize; 2]> {
+    let axis = direction.axis();
+    lengths[axis] *= 2;
+    let allowed =
+        lengths[axis] <= LONGEST * shortest(grid)[axis] && torus_bytes(grid, lengths) <= TORUS_BYTES;
+    allowed.then_some(lengths)
+}
+
+impl Stream<'_> {
+    /// Velocity along x and y.
+    fn velocities(&self) -> [f64; 2] {
+        self.direction.unit().map(|c| c * self.velocity)
+    }
+
+    /// A on a periodic domain, from its symbol.
+    fn periodic(&self, torus: &Torus) -> Spectrum {
+        let Simulation { grid, kernel, .. } = self.simulation;
+        let unit = self.streaming.relaxed();
+        let along = self.velocities();
+        let fundamental = grid.size().map(|length| TAU / length);
+        let cells = grid.cells();
+        torus.spectrum(|kx, ky| {
+            if (kx, ky) == (0, 0) {
+                return (kernel.uniform().unwrap_or(0.0) * self.streaming.at(0.0) / unit).re.into();
+            }
+            let q = |k: i64, axis: usize| {
+                if grid.is_line() && axis == 1 { 0.0 } else { k as f64 * fundamental[axis] }
+            };
+            // A wave of two cells is the mean of its two directions.
+            let signs = |k: i64, axis: usize| {
+                if 2 * k.unsigned_abs() as usize == cells[axis] { [1, -1] } else { [1, 1] }
+            };
+            let mut compliance = Complex64::ZERO;
+            for sx in signs(kx, 0) {
+                for sy in signs(ky, 1) {
+                    let omega = along[0] * q(sx * kx, 0) + along[1] * q(sy * ky, 1);
+                    compliance += 0.25 * self.streaming.at(omega);
+                }
+            }
+            compliance * kernel.symbol(q(kx, 0).abs(), q(ky, 1).abs()) / unit
+        })
+    }
+
+    /// A on a free domain, on the shortest torus on which its real part is positive, or the longest that is allowed.
+    fn free(&self, long: bool, interrupt: Option<&AtomicBool>) -> Result<(Torus, Spectrum)> {
+        let (grid, axis) = (&self.simulation.grid, self.direction.axis());
+        let mut lengths = shortest(grid);
+        let enough = lengths[axis] * if long { LONG } else { 1 };
+        loop {
+            let longer = lengthened(grid, lengths, self.direction);
+            if lengths[axis] >= enough || longer.is_none() {
+                let spectrum = coefficients::on_torus(self, lengths, shortest(grid), interrupt)?;
+                if longer.is_none() || spectrum.0.iter().all(|a| a.re > 0.0) {
+                    return Ok((Torus::new(grid.cells(), lengths), spectrum));
+                }
+            }
+            lengths = longer.unwrap_or(lengths);
+        }
+    }
+
+    /// The spectrum of A; where its real part is not positive, that is raised to K^ Re C~.
+    fn positive<'s>(&self, torus: &Torus, spectrum: &'s Spectrum) -> Cow<'s, Spectrum> {
+        let Simulation { grid, boundary, kernel, .. } = self.simulation;
+        if *boundary == Boundary::Periodic || spectrum.0.iter().all(|a| a.re > 0.0) {
+            return Cow::Borrowed(spectrum);
+        }
+        let (along, unit, lengths) = (self.velocities(), self.streaming.relaxed(), torus.lengths());
+        let endless = torus.spectrum(|kx, ky| {
+            if (kx, ky) == (0, 0) {
+                return Complex64::ZERO;
+            }
+            let wave = |k: i64, axis: usize| match grid.is_line() && axis == 1 {
+                true => 0.0,
+                false => TAU * k as f64 / (lengths[axis] as f64 * grid.spacing()[axis]),
+            };
+            let [qx, qy] = [wave(kx, 0), wave(ky, 1)];
+            let compliance = self.streaming.at(along[0] * qx + along[1] * qy).re / unit;
+            (kernel.symbol(qx.abs(), qy.abs()) * compliance).into()
+        });
+        let raised = |(a, least): (&Complex64, &Complex64)| Complex64::new(a.re.max(least.re), a.im);
+        Cow::Owned(Spectrum(spectrum.0.iter().zip(&endless.0).map(raised).collect()))
+    }
+
+    /// The second estimate of friction on a periodic domain, Σ (q.s) Im A |p^|² >= 0 \[N\]; `None` on a free one.
+    pub(super) fn loss(&self, pressure: &[f64]) -> Option<f64> {
+        let Simulation { grid, boundary, kernel, .. } = self.simulation;
+        if *boundary != Boundary::Periodic {
+            return None;
+        }
+        let mut torus = Torus::new(grid.cells(), grid.cells());
+        let unit = self.direction.unit();
+        let fundamental = grid.size().map(|length| TAU / length);
+        let cells = grid.cells();
+        let spectrum = torus.spectrum(|kx, ky| {
+            let alternates = |k: i64, axis: usize| 2 * k.unsigned_abs() as usize == cells[axis];
+            let q = |k: i64, axis: usize| match grid.is_line() && axis == 1 || alternates(k, axis) {
+                true => 0.0,
+                false => k as f64 * fundamental[axis],
+            };
+            let along = unit[0] * q(kx, 0) + unit[1] * q(ky, 1);
+            let size =
+                [kx as f64 * fundamental[0], if grid.is_line() { 0.0 } else { ky as f64 * fundamental[1] }];
+            if along == 0.0 {
+                return Complex64::ZERO;
+            }
+            let compliance = self.streaming.at(along * self.velocity);
+            (along * kernel.symbol(size[0].abs(), size[1].abs()) * compliance.im).into()
+        });
+        let energy = torus.energy(&spectrum, |s, _| s.re, pressure);
+        Some(energy * grid.cell_area())
+    }
+}

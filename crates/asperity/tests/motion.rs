@@ -127,7 +127,7 @@ fn a_long_slide_becomes_the_steady_state() {
         };
         let end = 12.0 + 2.0 * length / v;
         let rows = run(Simulation {
-            quantities: Quantities::of(Quantity::OF_MOTION),
+            quantities: Quantities::of(Quantity::of_motion()),
             ..simulation(
                 grid,
                 Boundary::Periodic,
@@ -229,7 +229,7 @@ fn a_run_goes_on_from_a_checkpoint_with_the_same_bits() {
     let grid = Grid::new([24, 16], [1.0, 0.7]).unwrap();
     let parts = vec![(Part::Shape { shape: Shape::Sphere { radius: 1.0 }, center: [0.0, 0.0] }, true)];
     let slide = || Simulation {
-        quantities: Quantities::of(Quantity::OF_MOTION),
+        quantities: Quantities::of(Quantity::of_motion()),
         ..simulation(
             grid,
             Boundary::Periodic,

@@ -365,10 +365,10 @@ impl Case {
             let possible = |quantity: &Quantity| {
                 let alone = Quantities { list: vec![*quantity], ..wanted.clone() };
                 // Displacements may be known up to a constant, and those of steady motion have no history.
-                let by_displacement = quantity.is_energy() || *quantity == Quantity::ContactStiffness;
+                let by_history = quantity.is_energy() || *quantity == Quantity::ContactStiffness;
                 let known = !(quantity.is_energy() && simulation.scheme == Scheme::Direct)
-                    && !((simulation.is_up_to_a_constant() || steady || self.waves.is_some())
-                        && by_displacement);
+                    && !(self.waves.is_some() && by_history)
+                    && !((simulation.is_up_to_a_constant() || steady) && quantity.is_of_time());
                 known && simulation.columns_of(&alone).is_ok()
             };
             wanted.list = Quantity::at_rest().filter(possible).collect();
@@ -383,7 +383,7 @@ impl Case {
                 _ => true,
             };
             wanted.list.retain(|quantity| !quantity.is_of_motion());
-            wanted.list.extend(Quantity::OF_MOTION.into_iter().filter(known));
+            wanted.list.extend(Quantity::of_motion().filter(known));
             wanted.list.extend(motion.shear_stress.map(|_| Quantity::FrictionCoefficientTotal));
         }
         wanted

@@ -2,7 +2,7 @@
 
 use std::ops::RangeInclusive;
 
-use asperity::quantities::Quantity;
+use asperity::quantities::{Panel, Quantity};
 use asperity_io::cycles;
 use asperity_io::readable::quantity;
 use asperity_io::store::{Reader, StoreError};
@@ -58,9 +58,6 @@ pub(crate) struct QuantityPanel {
     pub(crate) states: &'static [&'static str],
 }
 
-/// The label of counts.
-const NUMBER: &str = "number";
-
 /// Directions in which something percolates, by number.
 const DIRECTIONS: [&str; 4] = ["none", "x", "y", "x and y"];
 
@@ -72,38 +69,16 @@ pub(crate) fn quantity_panels(reader: &Reader) -> Vec<QuantityPanel> {
     let line = reader.header().grid.is_line();
     for column in &reader.header().quantities {
         let quantity = column.quantity;
-        let (title, label, line) = match quantity {
-            _ if quantity.is_histogram() => continue,
-            Quantity::ElasticEnergy => ("Energy", "energy", "elastic"),
-            Quantity::DissipatedEnergy => ("Energy", "energy", "dissipated"),
-            Quantity::FlatteningWork => ("Energy", "energy", "flattening"),
-            Quantity::ExternalWork => ("Energy", "energy", "work of the load"),
-            Quantity::LargestSpot if line => ("Lengths of contact spots", "length", "largest"),
-            Quantity::MeanSpot if line => ("Lengths of contact spots", "length", "mean"),
-            Quantity::LargestSpot => ("Areas of contact spots", "area", "largest"),
-            Quantity::MeanSpot => ("Areas of contact spots", "area", "mean"),
-            Quantity::ContactSpots => ("Contact spots", NUMBER, ""),
-            Quantity::ContactStiffness => ("Contact stiffness", "stiffness", ""),
-            Quantity::ContactPerimeter if line => ("Ends of the contact", NUMBER, ""),
-            Quantity::ContactPerimeter => ("Perimeter of the contact", "length", ""),
-            Quantity::ContactPercolation => ("Percolation", "connected along", "contact"),
-            Quantity::GapPercolation => ("Percolation", "connected along", "open gap"),
-            Quantity::Velocity => ("Velocity", "velocity", ""),
-            Quantity::SlidingDistance => ("Distance moved", "distance", ""),
-            Quantity::FrictionForce => ("Friction", "force", "against motion"),
-            Quantity::SideForce => ("Friction", "force", "across it"),
-            Quantity::FrictionCoefficient => ("Friction coefficient", "friction coefficient", "of the bulk"),
-            Quantity::FrictionCoefficientTotal => {
-                ("Friction coefficient", "friction coefficient", "with the shear stress")
-            }
-            Quantity::FrictionUncertainty => ("Uncertainty of friction", "share of the force", ""),
-            Quantity::RollingMoment => ("Rolling moment", "moment", ""),
-            Quantity::DissipatedPower => ("Power lost", "power", ""),
-            _ => ("Gap", "gap", "rms"),
+        let Some(Panel { title, label, legend }) = quantity.panel() else { continue };
+        // Spots of a line contact have lengths, and its border are points.
+        let (title, label) = match (quantity, line) {
+            (Quantity::LargestSpot | Quantity::MeanSpot, true) => ("Lengths of contact spots", "length"),
+            (Quantity::ContactPerimeter, true) => ("Ends of the contact", "number"),
+            _ => (title, label),
         };
         let percolates = matches!(quantity, Quantity::ContactPercolation | Quantity::GapPercolation);
         let states: &'static [&'static str] = if percolates { &DIRECTIONS } else { &[] };
-        let line = (line, quantity.name());
+        let line = (legend, quantity.name());
         // The mean gap, which every row has, beside the rms gap.
         let mean = (quantity == Quantity::RmsGap).then_some(("mean", "mean_gap"));
         match panels.iter_mut().find(|panel| panel.title == title) {
@@ -135,7 +110,7 @@ pub(super) fn quantities(reader: &Reader, options: &Options) -> Result<Figure, P
     let mut figure = Figure::new("");
     for panel in panels {
         let (up, steps) = match panel.states {
-            [] if panel.label == NUMBER => (Axis::linear(NUMBER, "").counting(), false),
+            [] if panel.label == "number" => (Axis::linear("number", "").counting(), false),
             [] => (Axis::linear(panel.label, panel.units), false),
             names => (Axis::states(panel.label, names), true),
         };

@@ -2,11 +2,12 @@
 //!
 //! A process sees a step twice: before it is solved it may move the undeformed gap to where it is at the end of the step
 //! ([`Process::open`], repeatable at any length), and once the row stands it takes it in ([`Process::accept`]). The quantities and
-//! fields that it adds to a row it declares by answering for them. Members: [`motion`], [`flattening`], [`energy`],
-//! [`stiffness`].
+//! fields that it adds to a row it declares by answering for them. Members: motion, stiffness, energies, power of
+//! the load, flattening.
 
 mod energy;
 mod flattening;
+mod load_power;
 mod motion;
 mod stiffness;
 
@@ -92,6 +93,9 @@ pub(crate) fn of(
     }
     if let Some(energy) = energy::Energy::of(simulation, history) {
         processes.push(Box::new(energy));
+    }
+    if let Some(power) = load_power::LoadPower::of(simulation) {
+        processes.push(Box::new(power));
     }
     if let Some(flattening) = flattening::Flattening::of(simulation) {
         processes.push(Box::new(flattening));

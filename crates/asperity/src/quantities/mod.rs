@@ -13,6 +13,8 @@
 //! | `dissipated_energy` | J | energy that their dashpots have turned into heat since t = 0 |
 //! | `flattening_work` | J | work on the cells at the hardness |
 //! | `external_work` | J | ∫ W dw since t = 0 |
+//! | `contact_eccentricity` | m | distance of the centre of pressure from the middle of the contact |
+//! | `load_power` | W | power of the load in the step |
 //! | `spot_histogram` | | number of spots per class of area, by powers of two of the cell |
 //! | `pressure_histogram` | 1/Pa | probability density of the pressure of the cells in contact |
 //! | `gap_histogram` | 1/m | probability density of the gap of the open cells |
@@ -27,6 +29,7 @@
 //! quantities of a row", "Permanent flattening"). A march takes them by
 //! [`Simulation::quantities`](crate::Simulation::quantities) and lends them in [`Step::quantity`](crate::march::Step::quantity).
 
+mod eccentricity;
 mod histogram;
 mod perimeter;
 mod stiffness;
@@ -36,154 +39,173 @@ use ndarray::Array2;
 use crate::error::{Error, Result, positive};
 use crate::grid::Grid;
 
+pub(crate) use eccentricity::eccentricity;
 pub(crate) use histogram::{densities, spot_classes};
 pub use perimeter::{Edges, contact_edges};
 pub use stiffness::ContactStiffness;
 
-/// A quantity that each row may have; see the table of [`self`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(rename_all = "snake_case"))]
-#[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
-pub enum Quantity {
+macro_rules! quantities {
+    ($($(#[$doc:meta])* $variant:ident = $name:literal [$units:literal] $long_name:literal, $kind:ident,
+       ($title:literal, $label:literal, $legend:literal);)*) => {
+        /// A quantity that each row may have; see the table of [`self`].
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        #[cfg_attr(
+            feature = "serde",
+            derive(serde::Serialize, serde::Deserialize),
+            serde(rename_all = "snake_case")
+        )]
+        #[cfg_attr(feature = "schemars", derive(schemars::JsonSchema))]
+        pub enum Quantity {
+            $($(#[$doc])* $variant,)*
+        }
+
+        impl Quantity {
+            /// Every quantity.
+            pub const ALL: [Quantity; [$(Quantity::$variant),*].len()] = [$(Quantity::$variant),*];
+
+            const fn declaration(self) -> Declaration {
+                match self {
+                    $(Quantity::$variant => Declaration {
+                        name: $name,
+                        units: $units,
+                        long_name: $long_name,
+                        kind: Kind::$kind,
+                        panel: Panel { title: $title, label: $label, legend: $legend },
+                    },)*
+                }
+            }
+        }
+    };
+}
+
+// Each quantity once: what it is, name in results and case files, unit ("1": none), words for axes, kind, and the panel of figures that
+// shows it (title, axis, name in the legend).
+quantities! {
     /// Slope of load over approach under a small, sudden change, in N/m; about ten convolutions per row.
     ///
     /// The bodies respond with their instantaneous compliance C(0+), as at the onset of unloading; infinite where that
     /// is 0, and in the full contact of a periodic body. Cells at the hardness carry no more, unless flattening stays:
     /// then they respond elastically to unloading and count.
-    ContactStiffness,
+    ContactStiffness = "contact_stiffness" ["N/m"] "contact stiffness", Response, ("Contact stiffness", "stiffness", "");
     /// Number of contact spots.
     ///
     /// Cells that share an edge belong to one spot; on a periodic domain opposite borders are neighbours.
-    ContactSpots,
+    ContactSpots = "contact_spots" ["1"] "contact spots", Spots, ("Contact spots", "number", "");
     /// Area of the largest contact spot, in m2; 0 without contact.
-    LargestSpot,
+    LargestSpot = "largest_spot" ["m2"] "area of the largest contact spot", Spots, ("Areas of contact spots", "area", "largest");
     /// Mean area of a contact spot, in m2; 0 without contact.
-    MeanSpot,
+    MeanSpot = "mean_spot" ["m2"] "mean area of a contact spot", Spots, ("Areas of contact spots", "area", "mean");
     /// Length of the edges between cells in and out of contact, in m.
     ///
     /// The border of a free domain does not count. A smooth contour without preferred direction is shorter by π/4
     /// (Yastrebov, Anciaux & Molinari 2017).
-    ContactPerimeter,
+    ContactPerimeter = "contact_perimeter" ["m"] "counted perimeter of the contact", State, ("Perimeter of the contact", "length", "");
     /// Whether cells in contact that share edges reach from border to border: 1 along x, 2 along y, 3 both, 0 neither.
     ///
     /// On a periodic domain they may pass across the borders at their sides.
-    ContactPercolation,
+    ContactPercolation = "contact_percolation" ["1"] "percolation of the contact (1: x, 2: y, 3: both)", Percolation, ("Percolation", "connected along", "contact");
     /// The same of the cells out of contact: where it is 0 no fluid passes.
-    GapPercolation,
+    GapPercolation = "gap_percolation" ["1"] "percolation of the gap (1: x, 2: y, 3: both)", Percolation, ("Percolation", "connected along", "open gap");
     /// Root mean square of the gap over the cells that can touch, in m.
-    RmsGap,
+    RmsGap = "rms_gap" ["m"] "rms gap", State, ("Gap", "gap", "rms");
+    /// Distance of the centre of pressure from the middle of the contact area, in m: 0 where the contact bears evenly.
+    ///
+    /// The middle is that of the cells in contact; on a periodic domain both are means around the domain, by the phase of its
+    /// longest wave.
+    ContactEccentricity = "contact_eccentricity" ["m"] "distance of the centre of pressure from the middle of the contact", State, ("Eccentricity of the pressure", "distance", "");
     /// Energy stored in the springs of both bodies, in J.
-    ElasticEnergy,
+    ElasticEnergy = "elastic_energy" ["J"] "elastic energy", Energy, ("Energy", "energy", "elastic");
     /// Energy that the dashpots of both bodies have turned into heat since t = 0, in J.
-    DissipatedEnergy,
+    DissipatedEnergy = "dissipated_energy" ["J"] "dissipated energy", Energy, ("Energy", "energy", "dissipated");
     /// Work on the cells at the hardness, hardness times overlap, in J.
     ///
     /// Given back on unloading where the cut-off is reversible, summed up where flattening stays.
-    FlatteningWork,
+    FlatteningWork = "flattening_work" ["J"] "work of flattening", Energy, ("Energy", "energy", "flattening");
     /// Work of the load since t = 0, in J.
     ///
     /// ∫ W dw from the mean load of each step, jumps exact. It is the sum of the three energies, up to the error of the steps.
-    ExternalWork,
+    ExternalWork = "external_work" ["J"] "external work", Energy, ("Energy", "energy", "work of the load");
+    /// Power of the load in the step, mean load times change of the approach over time, in W; 0 in a jump.
+    LoadPower = "load_power" ["W"] "power of the load", Response, ("Power of the load", "power", "");
     /// Number of contact spots per class of area: 1 cell, 2 to 3, 4 to 7, and so on.
-    SpotHistogram,
+    SpotHistogram = "spot_histogram" ["1"] "number of contact spots per class of area", SpotHistogram, ("", "", "");
     /// Probability density of the pressure of the cells in contact, in 1/Pa.
-    PressureHistogram,
+    PressureHistogram = "pressure_histogram" ["1/Pa"] "probability density of the contact pressure", Histogram, ("", "", "");
     /// Probability density of the gap of the open cells, in 1/m.
-    GapHistogram,
+    GapHistogram = "gap_histogram" ["1/m"] "probability density of the open gap", Histogram, ("", "", "");
     /// Velocity of the contact, in m/s; of a contact in motion, as all that follow.
-    Velocity,
+    Velocity = "velocity" ["m/s"] "velocity", Motion, ("Velocity", "velocity", "");
     /// Distance that the contact has moved, in m.
-    SlidingDistance,
+    SlidingDistance = "sliding_distance" ["m"] "distance moved", Motion, ("Distance moved", "distance", "");
     /// Force of the bodies against motion, Σ p dh/ds, in N.
-    FrictionForce,
+    FrictionForce = "friction_force" ["N"] "friction force", Motion, ("Friction", "force", "against motion");
     /// Force across the direction of motion, in N.
-    SideForce,
+    SideForce = "side_force" ["N"] "side force", Motion, ("Friction", "force", "across it");
     /// Friction force over load.
-    FrictionCoefficient,
+    FrictionCoefficient = "friction_coefficient" ["1"] "friction coefficient of the loss in the bulk", Motion, ("Friction coefficient", "friction coefficient", "of the bulk");
     /// Friction coefficient with the share of a given shear stress on the area in contact.
-    FrictionCoefficientTotal,
+    FrictionCoefficientTotal = "friction_coefficient_total" ["1"] "friction coefficient with the shear stress on the contact", MotionOnRequest, ("Friction coefficient", "friction coefficient", "with the shear stress");
     /// Difference of the friction force from its second estimate, -Σ p du/ds, over the force.
-    FrictionUncertainty,
+    FrictionUncertainty = "friction_uncertainty" ["1"] "difference of two estimates of friction, relative", Motion, ("Uncertainty of friction", "share of the force", "");
     /// Moment of the pressure about the middle of the shapes, in N m.
-    RollingMoment,
+    RollingMoment = "rolling_moment" ["N m"] "rolling moment", Motion, ("Rolling moment", "moment", "");
     /// Power lost in the bodies, in W.
-    DissipatedPower,
+    DissipatedPower = "dissipated_power" ["W"] "power lost in the bodies", Motion, ("Power lost", "power", "");
+}
+
+/// What a quantity is declared to be.
+struct Declaration {
+    name: &'static str,
+    units: &'static str,
+    long_name: &'static str,
+    kind: Kind,
+    panel: Panel,
+}
+
+/// What a quantity is taken from.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    /// The state of the row.
+    State,
+    /// Its contact spots, its connected cells, distributions.
+    Spots,
+    Percolation,
+    SpotHistogram,
+    Histogram,
+    /// The energy of the bodies, kept account of from row to row.
+    Energy,
+    /// The step or the response of the contact: known in time only.
+    Response,
+    /// A contact in motion, each row of which has it, or on request.
+    Motion,
+    MotionOnRequest,
+}
+
+/// Where figures show a quantity: quantities of one title share a panel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Panel {
+    /// Title of the panel.
+    pub title: &'static str,
+    /// Label of its axis.
+    pub label: &'static str,
+    /// Name of the quantity in the legend; empty where it has the panel for itself.
+    pub legend: &'static str,
 }
 
 impl Quantity {
-    /// Every quantity.
-    pub const ALL: [Quantity; 24] = [
-        Quantity::ContactStiffness,
-        Quantity::ContactSpots,
-        Quantity::LargestSpot,
-        Quantity::MeanSpot,
-        Quantity::ContactPerimeter,
-        Quantity::ContactPercolation,
-        Quantity::GapPercolation,
-        Quantity::RmsGap,
-        Quantity::ElasticEnergy,
-        Quantity::DissipatedEnergy,
-        Quantity::FlatteningWork,
-        Quantity::ExternalWork,
-        Quantity::SpotHistogram,
-        Quantity::PressureHistogram,
-        Quantity::GapHistogram,
-        Quantity::Velocity,
-        Quantity::SlidingDistance,
-        Quantity::FrictionForce,
-        Quantity::SideForce,
-        Quantity::FrictionCoefficient,
-        Quantity::FrictionCoefficientTotal,
-        Quantity::FrictionUncertainty,
-        Quantity::RollingMoment,
-        Quantity::DissipatedPower,
-    ];
-
     /// Those of a contact whether it moves or not.
     pub fn at_rest() -> impl Iterator<Item = Quantity> {
         Quantity::ALL.into_iter().filter(|quantity| !quantity.is_of_motion())
     }
 
     /// Those of a contact in motion, which each of its rows has.
-    pub const OF_MOTION: [Quantity; 8] = [
-        Quantity::Velocity,
-        Quantity::SlidingDistance,
-        Quantity::FrictionForce,
-        Quantity::SideForce,
-        Quantity::FrictionCoefficient,
-        Quantity::FrictionUncertainty,
-        Quantity::RollingMoment,
-        Quantity::DissipatedPower,
-    ];
+    pub fn of_motion() -> impl Iterator<Item = Quantity> {
+        Quantity::ALL.into_iter().filter(|quantity| quantity.declaration().kind == Kind::Motion)
+    }
 
     /// Its name in case files and results.
     pub fn name(self) -> &'static str {
-        match self {
-            Quantity::ContactStiffness => "contact_stiffness",
-            Quantity::ContactSpots => "contact_spots",
-            Quantity::LargestSpot => "largest_spot",
-            Quantity::MeanSpot => "mean_spot",
-            Quantity::ContactPerimeter => "contact_perimeter",
-            Quantity::ContactPercolation => "contact_percolation",
-            Quantity::GapPercolation => "gap_percolation",
-            Quantity::RmsGap => "rms_gap",
-            Quantity::ElasticEnergy => "elastic_energy",
-            Quantity::DissipatedEnergy => "dissipated_energy",
-            Quantity::FlatteningWork => "flattening_work",
-            Quantity::ExternalWork => "external_work",
-            Quantity::SpotHistogram => "spot_histogram",
-            Quantity::PressureHistogram => "pressure_histogram",
-            Quantity::GapHistogram => "gap_histogram",
-            Quantity::Velocity => "velocity",
-            Quantity::SlidingDistance => "sliding_distance",
-            Quantity::FrictionForce => "friction_force",
-            Quantity::SideForce => "side_force",
-            Quantity::FrictionCoefficient => "friction_coefficient",
-            Quantity::FrictionCoefficientTotal => "friction_coefficient_total",
-            Quantity::FrictionUncertainty => "friction_uncertainty",
-            Quantity::RollingMoment => "rolling_moment",
-            Quantity::DissipatedPower => "dissipated_power",
-        }
+        self.declaration().name
     }
 
     /// The quantity of that name.
@@ -193,94 +215,47 @@ impl Quantity {
 
     /// Its unit; "1" where it has none.
     pub fn units(self) -> &'static str {
-        match self {
-            Quantity::ContactStiffness => "N/m",
-            Quantity::ContactSpots
-            | Quantity::SpotHistogram
-            | Quantity::ContactPercolation
-            | Quantity::GapPercolation => "1",
-            Quantity::LargestSpot | Quantity::MeanSpot => "m2",
-            Quantity::ContactPerimeter | Quantity::RmsGap => "m",
-            Quantity::ElasticEnergy
-            | Quantity::DissipatedEnergy
-            | Quantity::FlatteningWork
-            | Quantity::ExternalWork => "J",
-            Quantity::PressureHistogram => "1/Pa",
-            Quantity::GapHistogram => "1/m",
-            Quantity::Velocity => "m/s",
-            Quantity::SlidingDistance => "m",
-            Quantity::FrictionForce => "N",
-            Quantity::SideForce => "N",
-            Quantity::FrictionCoefficient => "1",
-            Quantity::FrictionCoefficientTotal => "1",
-            Quantity::FrictionUncertainty => "1",
-            Quantity::RollingMoment => "N m",
-            Quantity::DissipatedPower => "W",
-        }
+        self.declaration().units
     }
 
     /// What it is, for axes and legends.
     pub fn long_name(self) -> &'static str {
-        match self {
-            Quantity::ContactStiffness => "contact stiffness",
-            Quantity::ContactSpots => "contact spots",
-            Quantity::LargestSpot => "area of the largest contact spot",
-            Quantity::MeanSpot => "mean area of a contact spot",
-            Quantity::ContactPerimeter => "counted perimeter of the contact",
-            Quantity::ContactPercolation => "percolation of the contact (1: x, 2: y, 3: both)",
-            Quantity::GapPercolation => "percolation of the gap (1: x, 2: y, 3: both)",
-            Quantity::RmsGap => "rms gap",
-            Quantity::ElasticEnergy => "elastic energy",
-            Quantity::DissipatedEnergy => "dissipated energy",
-            Quantity::FlatteningWork => "work of flattening",
-            Quantity::ExternalWork => "external work",
-            Quantity::SpotHistogram => "number of contact spots per class of area",
-            Quantity::PressureHistogram => "probability density of the contact pressure",
-            Quantity::GapHistogram => "probability density of the open gap",
-            Quantity::Velocity => "velocity",
-            Quantity::SlidingDistance => "distance moved",
-            Quantity::FrictionForce => "friction force",
-            Quantity::SideForce => "side force",
-            Quantity::FrictionCoefficient => "friction coefficient of the loss in the bulk",
-            Quantity::FrictionCoefficientTotal => "friction coefficient with the shear stress on the contact",
-            Quantity::FrictionUncertainty => "difference of two estimates of friction, relative",
-            Quantity::RollingMoment => "rolling moment",
-            Quantity::DissipatedPower => "power lost in the bodies",
-        }
+        self.declaration().long_name
+    }
+
+    /// Where figures show it; `None` of a histogram.
+    pub fn panel(self) -> Option<Panel> {
+        (!self.is_histogram()).then_some(self.declaration().panel)
     }
 
     /// Whether it has a number per bin; otherwise one per row.
     pub fn is_histogram(self) -> bool {
-        matches!(self, Quantity::SpotHistogram | Quantity::PressureHistogram | Quantity::GapHistogram)
+        matches!(self.declaration().kind, Kind::SpotHistogram | Kind::Histogram)
     }
 
     /// Whether it follows the energy of the bodies.
     pub fn is_energy(self) -> bool {
-        matches!(
-            self,
-            Quantity::ElasticEnergy
-                | Quantity::DissipatedEnergy
-                | Quantity::FlatteningWork
-                | Quantity::ExternalWork
-        )
+        self.declaration().kind == Kind::Energy
+    }
+
+    /// Whether it belongs to a run in time: energies, the work of a step, the response of the contact.
+    pub fn is_of_time(self) -> bool {
+        matches!(self.declaration().kind, Kind::Energy | Kind::Response)
     }
 
     /// Whether it belongs to a contact in motion.
     pub fn is_of_motion(self) -> bool {
-        Quantity::OF_MOTION.contains(&self) || self == Quantity::FrictionCoefficientTotal
+        matches!(self.declaration().kind, Kind::Motion | Kind::MotionOnRequest)
     }
 
     /// Whether it takes the memory of [`Spots`](crate::spots::Spots): connected cells are found.
     pub(crate) fn connects(self) -> bool {
-        self.is_of_spots() || matches!(self, Quantity::ContactPercolation | Quantity::GapPercolation)
+        self.is_of_spots() || self.declaration().kind == Kind::Percolation
     }
 
     /// Whether it is about contact spots.
     pub(crate) fn is_of_spots(self) -> bool {
-        matches!(
-            self,
-            Quantity::ContactSpots | Quantity::LargestSpot | Quantity::MeanSpot | Quantity::SpotHistogram
-        )
+        matches!(self.declaration().kind, Kind::Spots | Kind::SpotHistogram)
     }
 }
 

@@ -353,9 +353,7 @@ impl Simulation {
             }
         }
         let moves = self.motion.is_some();
-        let depends = |q: &&Quantity| {
-            q.is_energy() || **q == Quantity::ContactStiffness || **q == Quantity::DissipatedPower && moves
-        };
+        let depends = |q: &&Quantity| q.is_of_time() || **q == Quantity::DissipatedPower && moves;
         match self.quantities.list.iter().find(depends) {
             Some(quantity) => Err(Error::invalid(
                 "quantity of a free line contact",

@@ -2,7 +2,7 @@
 
 use super::Step;
 use crate::contact::Hardness;
-use crate::quantities::{Column, Quantity, contact_edges, densities, spot_classes};
+use crate::quantities::{Column, Quantity, contact_edges, densities, eccentricity, spot_classes};
 use crate::simulation::Plasticity;
 use crate::spots::{Spots, spans};
 use asperity_sweep::{strands, sweep};
@@ -85,6 +85,7 @@ impl Step<'_> {
                 Quantity::ContactPercolation => across(|p| *p > 0.0),
                 Quantity::GapPercolation => across(|p| *p <= 0.0),
                 Quantity::RmsGap => self.rms_gap(),
+                Quantity::ContactEccentricity => eccentricity(grid, boundary, pressure),
                 Quantity::SpotHistogram => {
                     if let Some(spots) = &spots {
                         spot_classes(spots, grid.cell_area(), own);

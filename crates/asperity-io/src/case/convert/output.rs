@@ -32,8 +32,7 @@ pub fn plasticity(solver: &raw::Solver) -> Plasticity {
 pub fn up_to_a_constant(checks: &mut Checks<'_, '_>, output: &raw::Output) {
     for at in output.quantities.iter().flatten() {
         let raw::Quantities::One(quantity) = at.value else { continue };
-        let depends = quantity.is_energy() || quantity == Quantity::ContactStiffness;
-        if depends {
+        if quantity.is_of_time() {
             let message = format!(
                 "\"{}\" depends on displacements, which a line contact on a free domain knows up to a constant only",
                 quantity.name()

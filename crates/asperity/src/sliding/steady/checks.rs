@@ -65,7 +65,7 @@ fn validate(simulation: &Simulation, motion: &SteadyMotion) -> Result<()> {
             "one number: the material streams by",
         ));
     }
-    let refused = |q: &&Quantity| q.is_energy() || **q == Quantity::ContactStiffness;
+    let refused = |q: &&Quantity| q.is_of_time();
     if let Some(quantity) = simulation.quantities.list.iter().find(refused) {
         return Err(Error::invalid(
             "quantity of a steady state of motion",

@@ -1,0 +1,43 @@
+//! The power of the load in each step: P = (W_n + W_(n+1))/2 (w_(n+1) - w_n)/Δt.
+
+use super::{Process, Solved};
+use crate::error::Result;
+use crate::quantities::Quantity;
+use crate::simulation::Simulation;
+use crate::step::{Loader, Saver, UndeformedGap};
+
+pub(super) struct LoadPower {
+    /// Of the last step \[W\].
+    last: f64,
+}
+
+impl LoadPower {
+    /// `None` where it is not asked for.
+    pub(super) fn of(simulation: &Simulation) -> Option<Self> {
+        simulation.quantities.has(Quantity::LoadPower).then_some(LoadPower { last: f64::NAN })
+    }
+}
+
+impl Process for LoadPower {
+    fn accept(&mut self, row: &mut Solved<'_>) -> Result<()> {
+        let [before, now] = row.loads;
+        let advance = row.now.approach - row.before.approach;
+        let dt = row.step.length();
+        self.last = if dt > 0.0 { 0.5 * (before + now) * advance / dt } else { 0.0 };
+        Ok(())
+    }
+
+    fn quantity(&self, quantity: Quantity) -> Option<f64> {
+        (quantity == Quantity::LoadPower).then_some(self.last)
+    }
+
+    fn name(&self) -> &'static str {
+        "load_power"
+    }
+
+    fn save<'a>(&'a self, _to: &mut Saver<'a>, _gap: &'a UndeformedGap) {}
+
+    fn load(&mut self, _from: &mut Loader<'_>, _gap: &mut UndeformedGap) -> Result<()> {
+        Ok(())
+    }
+}

@@ -26,7 +26,7 @@
 //! to the last step appended.
 //!
 //! ```
-//! use asperity::Grid;
+//! use asperity::{Coordinate, Grid};
 //! use asperity_io::store::{At, Field, FieldKind, Header, Outcome, Reader, Row, Status, Writer};
 //! use ndarray::Array2;
 //!
@@ -43,7 +43,7 @@
 //!     setup: Default::default(),
 //! };
 //! let mut writer = Writer::create(&path, &header, Array2::zeros((4, 3)).view(), false)?;
-//! let row = Row { time: 0.0, load: 12.0, ..Row::default() };
+//! let row = Row { coordinate: Coordinate::Time(0.0), load: 12.0, ..Row::default() };
 //! writer.append(&row, &[Field::Pressure(Array2::from_elem((4, 3), 1e6).view())])?;
 //! writer.finish(&Outcome::new(Status::Complete))?;
 //!

@@ -1,6 +1,7 @@
-//! What ends a command early, how it is told, and its exit code.
+//! What ends a command early, how it is printed, and its exit code.
 
 use asperity_io::case::{CaseError, CaseErrors};
+use asperity_io::readable::counted;
 use miette::{Diagnostic, GraphicalReportHandler, LabeledSpan, NamedSource, SourceCode};
 
 /// Why a command did not do what was asked.
@@ -51,17 +52,17 @@ impl Failure {
         }
     }
 
-    /// Tells it on stderr.
-    pub fn tell(&self) {
+    /// Prints it on stderr.
+    pub fn print(&self) {
         match self {
-            Failure::Case(errors) => tell_case(errors),
+            Failure::Case(errors) => print_case(errors),
             Failure::Input(message) | Failure::Solve(message) | Failure::System(message) => {
-                crate::talk::say!("error: {message}");
+                crate::messages::message!("error: {message}");
             }
             Failure::Strict(warnings) => {
-                crate::talk::say!("error: {} (--strict)", crate::words::counted(*warnings, "warning"));
+                crate::messages::message!("error: {} (--strict)", counted(*warnings, "warning"));
             }
-            Failure::Interrupted(message) => crate::talk::say!("interrupted: {message}"),
+            Failure::Interrupted(message) => crate::messages::message!("interrupted: {message}"),
         }
     }
 }
@@ -73,7 +74,7 @@ impl From<CaseErrors> for Failure {
 }
 
 /// Each fault with the lines of the case that it is in.
-fn tell_case(errors: &CaseErrors) {
+fn print_case(errors: &CaseErrors) {
     let handler = GraphicalReportHandler::new().with_width(terminal_width()).with_links(false);
     let source = masked(&errors.source);
     let short = source.lines().all(|line| line.len() <= LONGEST_LINE);
@@ -82,11 +83,11 @@ fn tell_case(errors: &CaseErrors) {
         let mut text = String::new();
         let drawn = short && error.span.is_some() && handler.render_report(&mut text, &fault).is_ok();
         if drawn {
-            crate::talk::write(&text);
+            crate::messages::write(&text);
         } else {
             let text = format!("{}: {error}", errors.name);
             let cut = text.char_indices().nth(LONGEST_LINE).map_or(text.as_str(), |(end, _)| &text[..end]);
-            crate::talk::say!("error: {cut}{}", if cut.len() < text.len() { " ..." } else { "" });
+            crate::messages::message!("error: {cut}{}", if cut.len() < text.len() { " ..." } else { "" });
         }
     }
 }
@@ -100,7 +101,7 @@ const LONGEST_LINE: usize = 1000;
 /// The source with its control characters replaced by question marks, as many bytes each.
 fn masked(source: &str) -> String {
     // A carriage return may end a line.
-    let mask = |c: char| crate::talk::hidden(c) && c != '\r';
+    let mask = |c: char| crate::messages::hidden(c) && c != '\r';
     let mut text = String::with_capacity(source.len());
     for c in source.chars() {
         if mask(c) {

@@ -1,20 +1,21 @@
 //! The command `asperity`, as a function: the program of this crate calls it, and so does the Python package, whose wheel
 //! carries the command in this way.
 //!
-//! Data goes to stdout, talk to stderr. Exit codes: 0 done; 1 the solve or the system failed, or a result is damaged; 2 the
+//! Data goes to stdout, messages to stderr. Exit codes: 0 done; 1 the solve or the system failed, or a result is damaged; 2 the
 //! input is wrong; 130 interrupted.
 
-mod apart;
 mod args;
 mod commands;
 mod failure;
+mod format;
+mod input;
 mod interrupt;
+mod messages;
+mod output_paths;
 mod progress;
-mod talk;
 mod terminal;
 mod threads;
 mod trace;
-mod words;
 
 use std::ffi::OsString;
 use std::io::Write;
@@ -48,12 +49,12 @@ fn command_here(words: &[OsString]) -> u8 {
         Ok(args) => obey(args),
         Err(error) if commands::plot::lacks_figure(words, &error) => {
             let failure = commands::plot::no_figure();
-            failure.tell();
+            failure.print();
             failure.code()
         }
         Err(error) => {
-            if words.iter().any(|word| word.to_string_lossy().contains(talk::hidden)) {
-                talk::write(&talk::printable(&error.to_string()));
+            if words.iter().any(|word| word.to_string_lossy().contains(messages::hidden)) {
+                messages::write(&messages::printable(&error.to_string()));
             } else {
                 // A reader that has gone needs no help text.
                 let _ = error.print();
@@ -68,11 +69,11 @@ fn command_here(words: &[OsString]) -> u8 {
 
 fn obey(args: Args) -> u8 {
     trace::listen(if let Command::Run(run) = &args.command { run.verbose } else { 0 });
-    let checked = apart::check(&args.command).and_then(|()| threads::start(&args.command));
+    let checked = output_paths::check(&args.command).and_then(|()| threads::start(&args.command));
     match checked.and_then(|()| run(args.command)) {
         Ok(()) => 0,
         Err(failure) => {
-            failure.tell();
+            failure.print();
             failure.code()
         }
     }
@@ -105,7 +106,7 @@ fn run(command: Command) -> Result<(), Failure> {
 /// Writes data to stdout. A reader that has gone (`asperity schema | head`) is no failure.
 fn print(text: &str) -> Result<(), Failure> {
     match std::io::stdout()
-        .write_all(talk::printable(text).as_bytes())
+        .write_all(messages::printable(text).as_bytes())
         .and_then(|()| std::io::stdout().flush())
     {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => {

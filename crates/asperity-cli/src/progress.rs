@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use asperity_io::session::Progress;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-use crate::{terminal, words};
+use crate::{format, terminal};
 
 /// Time between two plain lines.
 const PAUSE: Duration = Duration::from_secs(5);
@@ -14,19 +14,19 @@ const PAUSE: Duration = Duration::from_secs(5);
 /// Letters of the line of the contact area.
 const SPARKS: usize = 16;
 
-/// Who tells the progress.
-pub enum Teller {
+/// Where the progress of a run is shown.
+pub enum ProgressDisplay {
     /// A live line, and coordinates and contact areas of the rows so far.
     Bar(ProgressBar, [Vec<f64>; 2]),
     /// Plain lines.
     Lines {
-        /// Start of the run, and the last line told.
+        /// Start of the run, and the last line.
         started: Instant,
-        told: Option<Instant>,
+        printed: Option<Instant>,
         /// Time between two lines.
         pause: Duration,
     },
-    /// Nobody.
+    /// Nowhere.
     Silent,
 }
 
@@ -54,15 +54,15 @@ fn rows(progress: &Progress) -> String {
     }
 }
 
-impl Teller {
+impl ProgressDisplay {
     /// A live line where stderr is a terminal, plain lines elsewhere; a line for every row where that is asked for.
     pub fn new(quiet: bool, every_row: bool) -> Self {
         if quiet {
-            return Teller::Silent;
+            return ProgressDisplay::Silent;
         }
         if every_row || !std::io::stderr().is_terminal() {
             let pause = if every_row { Duration::ZERO } else { PAUSE };
-            return Teller::Lines { started: Instant::now(), told: None, pause };
+            return ProgressDisplay::Lines { started: Instant::now(), printed: None, pause };
         }
         let bar = ProgressBar::with_draw_target(Some(1), ProgressDrawTarget::stderr());
         let template = "{bar:20.cyan/dim} {prefix} rows  {msg}  {elapsed} ({eta} left)";
@@ -73,25 +73,25 @@ impl Teller {
         if std::thread::Builder::new().spawn(|| ()).is_ok() {
             bar.enable_steady_tick(Duration::from_millis(250));
         }
-        Teller::Bar(bar, [vec![], vec![]])
+        ProgressDisplay::Bar(bar, [vec![], vec![]])
     }
 
     /// One row more.
-    pub fn tell(&mut self, progress: &Progress) {
+    pub fn update(&mut self, progress: &Progress) {
         if let Some([done, all]) = progress.stress {
-            return self.tell_stress(done, all);
+            return self.update_stress(done, all);
         }
         let row = progress.row;
-        let moment = words::coordinate(row.coordinate);
+        let moment = format::coordinate(row.coordinate);
         let friction =
             progress.friction.map_or(String::new(), |f| format!(", friction {:.4}", f.coefficient));
         let state = format!(
             "{moment}, contact {:.2} %{friction}, {}",
             100.0 * row.contact_fraction,
-            words::counted(row.iterations, "iteration")
+            format::counted(row.iterations, "iteration")
         );
         match self {
-            Teller::Bar(bar, [coordinates, areas]) => {
+            ProgressDisplay::Bar(bar, [coordinates, areas]) => {
                 coordinates.push(row.coordinate.value());
                 areas.push(row.contact_fraction);
                 let [from, done, all] = course(progress);
@@ -105,8 +105,8 @@ impl Teller {
                 let bars = terminal::sparkline(row.coordinate.axis(), coordinates, areas, SPARKS);
                 bar.set_message(format!("area {bars}  {state}"));
             }
-            Teller::Lines { started, told, pause } => {
-                let due = told.is_none_or(|told| told.elapsed() >= *pause);
+            ProgressDisplay::Lines { started, printed, pause } => {
+                let due = printed.is_none_or(|printed| printed.elapsed() >= *pause);
                 if due || progress.finished {
                     let [from, done, all] = course(progress);
                     let rest = all.saturating_sub(done) as f64;
@@ -114,38 +114,38 @@ impl Teller {
                         started.elapsed().as_secs_f64() * rest / done.saturating_sub(from).max(1) as f64;
                     // Time says little of the rows to come.
                     let left = match progress.total {
-                        Some(_) => words::duration(left),
+                        Some(_) => format::duration(left),
                         None => format!(
                             "{} of the time",
-                            words::quantity(rest / COURSE as f64 * progress.end, "s")
+                            format::quantity(rest / COURSE as f64 * progress.end, "s")
                         ),
                     };
-                    crate::talk::say!("row {}: {state}, {left} left", rows(progress));
-                    *told = Some(Instant::now());
+                    crate::messages::message!("row {}: {state}, {left} left", rows(progress));
+                    *printed = Some(Instant::now());
                 }
             }
-            Teller::Silent => {}
+            ProgressDisplay::Silent => {}
         }
     }
 
     /// The stress below the surface, after the last row.
-    fn tell_stress(&mut self, done: usize, all: usize) {
+    fn update_stress(&mut self, done: usize, all: usize) {
         let state = format!("stress below the surface: {done} of {all} times");
         match self {
-            Teller::Bar(bar, _) => bar.set_message(state),
-            Teller::Lines { told, pause, .. } => {
-                if told.is_none_or(|told| told.elapsed() >= *pause) {
-                    crate::talk::say!("{state}");
-                    *told = Some(Instant::now());
+            ProgressDisplay::Bar(bar, _) => bar.set_message(state),
+            ProgressDisplay::Lines { printed, pause, .. } => {
+                if printed.is_none_or(|printed| printed.elapsed() >= *pause) {
+                    crate::messages::message!("{state}");
+                    *printed = Some(Instant::now());
                 }
             }
-            Teller::Silent => {}
+            ProgressDisplay::Silent => {}
         }
     }
 
     /// Clears the line.
     pub fn end(&self) {
-        if let Teller::Bar(bar, _) = self {
+        if let ProgressDisplay::Bar(bar, _) = self {
             bar.finish_and_clear();
         }
     }

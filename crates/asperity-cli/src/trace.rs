@@ -53,9 +53,9 @@ impl<S: Subscriber> Layer<S> for Table {
         event.record(&mut line);
         if line.is_first() || !self.headed.swap(true, Ordering::Relaxed) {
             let headings = COLUMNS.map(|(_, heading, width)| format!("{heading:>width$}"));
-            crate::talk::say!("{}", headings.join("  "));
+            crate::messages::message!("{}", headings.join("  "));
         }
-        crate::talk::say!("{}", line.print());
+        crate::messages::message!("{}", line.print());
     }
 }
 

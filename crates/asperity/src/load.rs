@@ -4,9 +4,12 @@
 //! the march takes a jump as a step of zero length. Every history is zero before t = 0.
 
 mod programme;
+mod time_grid;
 
 pub(crate) use programme::of_stage;
 pub use programme::{Course, Event, Programme, Stage};
+pub(crate) use time_grid::SHORTEST;
+pub use time_grid::TimeGrid;
 
 use crate::error::{Error, Result, non_negative, positive};
 

@@ -6,13 +6,13 @@ use asperity_io::store::Reader;
 
 use crate::args;
 use crate::failure::Failure;
-use crate::words::{counted, quantity};
+use crate::format::{counted, quantity};
 
 /// Prints the table.
 pub fn run(args: &args::Compare) -> Result<(), Failure> {
-    let told = |error: &dyn std::fmt::Display| Failure::input(error.to_string());
-    let first = Reader::open(&args.first).map_err(|error| told(&error))?;
-    let second = Reader::open(&args.second).map_err(|error| told(&error))?;
+    let failed = |error: &dyn std::fmt::Display| Failure::input(error.to_string());
+    let first = Reader::open(&args.first).map_err(|error| failed(&error))?;
+    let second = Reader::open(&args.second).map_err(|error| failed(&error))?;
     let kind = |reader: &Reader| (reader.header().grid.is_line(), reader.header().axis());
     if kind(&first) != kind(&second) {
         let words = |reader: &Reader| match kind(reader) {
@@ -28,9 +28,9 @@ pub fn run(args: &args::Compare) -> Result<(), Failure> {
             words(&second)
         )));
     }
-    let found = compare(&first, &second).map_err(|error| told(&error))?;
+    let found = compare(&first, &second).map_err(|error| failed(&error))?;
     if args.json {
-        let object = serde_json::to_string(&found).map_err(|error| told(&error))?;
+        let object = serde_json::to_string(&found).map_err(|error| failed(&error))?;
         return crate::print(&format!("{object}\n"));
     }
     crate::print(&text(&found, &first))
@@ -83,7 +83,7 @@ fn text(found: &Comparison, first: &Reader) -> String {
     text
 }
 
-/// A change of this much is told as a factor.
+/// A change of this much is shown as a factor.
 const FACTOR: f64 = 9.0;
 
 /// A relative difference.

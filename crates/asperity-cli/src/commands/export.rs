@@ -26,7 +26,7 @@ pub fn run(args: &Export) -> Result<(), Failure> {
     let written = export(&reader, format, &output, &options);
     let written = written.map_err(Failure::of)?;
     if let Some(sentence) = format.left_out(&reader) {
-        crate::talk::say!("{sentence}");
+        crate::messages::message!("{sentence}");
     }
     crate::print(&written.iter().map(|path| format!("{}\n", path.display())).collect::<String>())
 }

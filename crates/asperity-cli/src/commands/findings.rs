@@ -5,8 +5,8 @@ use asperity::finding::Finding;
 use crate::failure::Failure;
 
 /// One line each, on stderr.
-pub fn tell(findings: &[Finding]) {
-    findings.iter().for_each(|finding| crate::talk::say!("{finding}"));
+pub fn print(findings: &[Finding]) {
+    findings.iter().for_each(|finding| crate::messages::message!("{finding}"));
 }
 
 /// "2 warnings, 1 note: contact-at-border, large-strain, outliers".
@@ -14,7 +14,7 @@ pub fn counted(findings: &[Finding]) -> String {
     let warnings = findings.iter().filter(|finding| finding.is_warning()).count();
     let parts = [(warnings, "warning"), (findings.len() - warnings, "note")];
     let parts: Vec<String> =
-        parts.iter().filter(|part| part.0 > 0).map(|part| crate::words::counted(part.0, part.1)).collect();
+        parts.iter().filter(|part| part.0 > 0).map(|part| crate::format::counted(part.0, part.1)).collect();
     let codes: Vec<&str> = findings.iter().map(|finding| finding.code.as_ref()).collect();
     format!("{}: {}", parts.join(", "), codes.join(", "))
 }

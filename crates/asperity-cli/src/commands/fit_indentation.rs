@@ -13,10 +13,10 @@ use asperity_io::curve::{Indentation, MaterialOf, indentation_block};
 use asperity_report::material::indentation as picture;
 use serde_json::{Value, json};
 
-use super::material::{columns, parsed, told, write};
+use super::material::{columns, failed, parsed, write};
 use crate::args::FitIndentation;
 use crate::failure::Failure;
-use crate::words::quantity;
+use crate::format::quantity;
 
 /// Fits a record.
 pub fn run(args: &FitIndentation) -> Result<(), Failure> {
@@ -55,7 +55,7 @@ pub fn run(args: &FitIndentation) -> Result<(), Failure> {
     for path in args.output.iter().chain(&args.plot) {
         super::free(path, args.force)?;
     }
-    let record = Indentation::read(&args.record, &columns).map_err(told)?;
+    let record = Indentation::read(&args.record, &columns).map_err(failed)?;
     let taken = IndentationRecord { times: &record.times, loads: &record.loads, depths: &record.depths };
     let fit = fit_indentation(profile, &taken, &options)
         .map_err(|error| Failure::input(format!("{}: {error}", args.record.display())))?;

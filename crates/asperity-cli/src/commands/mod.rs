@@ -9,7 +9,6 @@ pub mod fit_indentation;
 pub mod leak;
 pub mod material;
 pub mod new;
-mod patience;
 pub mod picture;
 pub mod plot;
 pub mod report;
@@ -22,6 +21,7 @@ pub mod surface;
 pub mod verify;
 pub mod verify_result;
 pub mod view;
+mod write_timeout;
 
 use std::path::Path;
 
@@ -31,7 +31,7 @@ use asperity_io::case::quantity::{Time, Velocity};
 use asperity_io::store::{At, Reader};
 
 use crate::failure::Failure;
-use crate::words::read;
+use crate::input::read;
 
 /// Refuses a path where there is something already that `force` does not allow to replace, or in a folder that there is not.
 fn free(path: &Path, force: bool) -> Result<(), Failure> {

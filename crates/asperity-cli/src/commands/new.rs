@@ -8,7 +8,7 @@ use asperity_io::output;
 
 use crate::args::New;
 use crate::failure::Failure;
-use crate::words;
+use crate::input::meant;
 
 /// Writes the starter case, or lists them.
 pub fn run(args: &New) -> Result<(), Failure> {
@@ -21,7 +21,7 @@ pub fn run(args: &New) -> Result<(), Failure> {
         let names: Vec<_> = TEMPLATES.iter().map(|t| t.name).collect();
         return Err(Failure::input(format!(
             "there is no starter case \"{name}\"{}; choose one of {}",
-            words::meant(name, &names),
+            meant(name, &names),
             names.join(", ")
         )));
     };
@@ -35,6 +35,6 @@ pub fn run(args: &New) -> Result<(), Failure> {
             _ => format!("cannot write {}: {error}", path.display()),
         })
     })?;
-    crate::talk::say!("wrote {}; run it with: asperity run {}", path.display(), path.display());
+    crate::messages::message!("wrote {}; run it with: asperity run {}", path.display(), path.display());
     Ok(())
 }

@@ -8,21 +8,21 @@ use crate::failure::Failure;
 
 /// Computes the figures one after another, writes each, and prints how far they are from what is independent.
 pub fn run(args: &Reproduce) -> Result<(), Failure> {
-    let told = |error: &dyn std::fmt::Display| Failure::input(error.to_string());
+    let failed = |error: &dyn std::fmt::Display| Failure::input(error.to_string());
     let mut numbers = if args.figures.is_empty() { FIGURES.to_vec() } else { args.figures.clone() };
     numbers.sort_unstable();
     numbers.dedup();
     let files: Vec<_> =
         numbers.iter().map(|n| args.output.join(format!("figure-{n}.{}", args.form))).collect();
     if let Some(taken) = files.iter().find(|file| !args.force && file.exists()) {
-        return Err(told(&format!(
+        return Err(failed(&format!(
             "{} already exists; choose another directory or use --force",
             taken.display()
         )));
     }
     let results = args.output.join("results");
     std::fs::create_dir_all(&results)
-        .map_err(|error| told(&format!("cannot make {}: {error}", results.display())))?;
+        .map_err(|error| failed(&format!("cannot make {}: {error}", results.display())))?;
     let options = Options { results, cells: args.cells.map(|n| n as usize) };
     let (mut list, mut table) = (Vec::new(), String::new());
     // The figures of the rough sphere come from the same runs.
@@ -30,10 +30,10 @@ pub fn run(args: &Reproduce) -> Result<(), Failure> {
     let groups = smooth.into_iter().map(|n| vec![n]).chain((!rough.is_empty()).then_some(rough));
     for group in groups {
         let names: Vec<_> = group.iter().map(u8::to_string).collect();
-        crate::talk::say!("figure {} ...", names.join(", "));
+        crate::messages::message!("figure {} ...", names.join(", "));
         for one in reproduce(&group, &options).map_err(failure)? {
             let file = args.output.join(format!("figure-{}.{}", one.number, args.form));
-            one.figure.write(&file, args.force).map_err(|error| told(&error))?;
+            one.figure.write(&file, args.force).map_err(|error| failed(&error))?;
             table += &format!("Figure {}: {}\n  {}\n", one.number, one.title, file.display());
             for difference in &one.differences {
                 table += &format!("  {}\n", difference.words());

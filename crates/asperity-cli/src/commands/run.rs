@@ -12,27 +12,27 @@ use serde_json::{Value, json};
 
 use crate::args::Run;
 use crate::failure::Failure;
-use crate::progress::Teller;
-use crate::words::{bytes, coordinate, duration, in_contact, mean_gap, quantity};
+use crate::format::{bytes, coordinate, duration, in_contact, mean_gap, quantity};
+use crate::progress::ProgressDisplay;
 
 /// Runs the case, tells the progress on stderr and a summary on stdout.
 pub fn run(args: &Run) -> Result<(), Failure> {
     let case = Case::read(&args.case, &args.common.set)?;
-    tell_materials(args, &case);
-    let known = tell_findings(args, &case.findings, &[]);
+    print_materials(args, &case);
+    let known = print_findings(args, &case.findings, &[]);
     let options = RunOptions {
         output: args.output.clone(),
         force: args.force,
         resume: args.resume,
         interrupt: crate::interrupt::flag(),
     };
-    let mut teller = Teller::new(args.quiet, args.verbose > 0);
-    let done = run_case(&case, &options, |progress| teller.tell(&progress));
-    teller.end();
+    let mut display = ProgressDisplay::new(args.quiet, args.verbose > 0);
+    let done = run_case(&case, &options, |progress| display.update(&progress));
+    display.end();
     match done {
         Ok(summary) => {
-            tell_findings(args, &summary.findings, &known);
-            tell(args, &case, &summary, None)?;
+            print_findings(args, &summary.findings, &known);
+            print_summary(args, &case, &summary, None)?;
             if summary.status != Status::Interrupted {
                 return super::findings::strict(args.strict, &summary.findings);
             }
@@ -55,28 +55,28 @@ pub fn run(args: &Run) -> Result<(), Failure> {
             | RunError::Storage { summary, .. }
             | RunError::Leakage { summary, .. } = &error
             {
-                tell_findings(args, &summary.findings, &known);
-                tell(args, &case, summary, Some(&error))?;
+                print_findings(args, &summary.findings, &known);
+                print_summary(args, &case, summary, Some(&error))?;
             }
             Err(Failure::Solve(message))
         }
     }
 }
 
-/// Tells the findings that are not told yet on stderr, and returns them.
-fn tell_findings(args: &Run, findings: &[Finding], told: &[Finding]) -> Vec<Finding> {
-    let new: Vec<Finding> = findings.iter().filter(|finding| !told.contains(finding)).cloned().collect();
+/// Prints the findings that are not printed yet on stderr, and returns them.
+fn print_findings(args: &Run, findings: &[Finding], printed: &[Finding]) -> Vec<Finding> {
+    let new: Vec<Finding> = findings.iter().filter(|finding| !printed.contains(finding)).cloned().collect();
     if !args.quiet {
-        super::findings::tell(&new);
+        super::findings::print(&new);
     }
     new
 }
 
 /// What stands for measured and fractional materials, and how well.
-fn tell_materials(args: &Run, case: &Case) {
+fn print_materials(args: &Run, case: &Case) {
     for report in case.materials.iter().filter(|_| !args.quiet) {
         for line in super::material::source(report) {
-            crate::talk::say!("{}: {line}", report.body);
+            crate::messages::message!("{}: {line}", report.body);
         }
     }
 }
@@ -93,7 +93,12 @@ fn best_state(best: &Row, case: &Case) -> String {
     )
 }
 
-fn tell(args: &Run, case: &Case, summary: &Summary, error: Option<&RunError>) -> Result<(), Failure> {
+fn print_summary(
+    args: &Run,
+    case: &Case,
+    summary: &Summary,
+    error: Option<&RunError>,
+) -> Result<(), Failure> {
     let grid = &case.grid;
     if args.json {
         return crate::print(&format!("{}\n", json_object(summary, error)));

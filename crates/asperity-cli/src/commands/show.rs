@@ -13,8 +13,8 @@ use serde_json::json;
 use super::instant;
 use crate::args::ShowResult;
 use crate::failure::Failure;
+use crate::format::{bytes, duration, in_contact, mean_gap, quantity};
 use crate::terminal::{shares, sparkline};
-use crate::words::{bytes, duration, in_contact, mean_gap, quantity};
 
 /// Letters of the map and of the curves.
 const COLUMNS: usize = 56;

@@ -19,7 +19,7 @@ pub fn run(args: &Verify) -> Result<(), Failure> {
     let chosen =
         CASES.iter().filter(|(name, _)| args.cases.is_empty() || args.cases.iter().any(|c| c == name));
     for (name, case) in chosen {
-        crate::talk::say!("{name} ...");
+        crate::messages::message!("{name} ...");
         checks.extend(case().map_err(|error| Failure::Solve(format!("{name}: {error}")))?);
     }
     crate::print(&if args.json {

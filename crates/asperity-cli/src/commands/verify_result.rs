@@ -5,7 +5,7 @@ use serde_json::json;
 
 use crate::args::VerifyResult;
 use crate::failure::Failure;
-use crate::words::counted;
+use crate::format::counted;
 
 /// Reads all of the result and prints what is damaged.
 pub fn run(args: &VerifyResult) -> Result<(), Failure> {

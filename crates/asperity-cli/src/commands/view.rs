@@ -25,7 +25,7 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 use tokio::task::AbortHandle;
 use tokio::time::timeout;
 
-use super::patience::Patient;
+use super::write_timeout::WriteTimeout;
 use crate::args::View;
 use crate::failure::Failure;
 
@@ -34,7 +34,7 @@ const CONNECTIONS: usize = 128;
 /// Answers at a time that may be as large as a map; they are held in memory until they are sent.
 const LARGE_ANSWERS: usize = 4;
 /// Time for a request to arrive, for a client to take more of an answer, and for a large answer to find a place.
-const PATIENCE: Duration = Duration::from_secs(10);
+const WRITE_TIMEOUT: Duration = Duration::from_secs(10);
 /// Time for an answer to be sent in all.
 const LONGEST: Duration = Duration::from_secs(600);
 
@@ -42,14 +42,14 @@ const LONGEST: Duration = Duration::from_secs(600);
 pub fn run(args: &View) -> Result<(), Failure> {
     // What cannot be shown is told before anything listens.
     Reader::open(&args.result).map_err(|error| Failure::input(error.to_string()))?;
-    let told = |error: std::io::Error| Failure::input(format!("cannot listen at {}: {error}", args.host));
+    let failed = |error: std::io::Error| Failure::input(format!("cannot listen at {}: {error}", args.host));
     let token = token()?;
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(told)?;
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(failed)?;
     runtime.block_on(async {
-        let listener = TcpListener::bind(SocketAddr::new(args.host, args.port)).await.map_err(told)?;
-        let address = listener.local_addr().map_err(told)?;
+        let listener = TcpListener::bind(SocketAddr::new(args.host, args.port)).await.map_err(failed)?;
+        let address = listener.local_addr().map_err(failed)?;
         crate::print(&format!("http://{address}/{token}/\n"))?;
-        crate::talk::say!(
+        crate::messages::message!(
             "open this address in a browser; who knows it can read the result; press Ctrl-C to stop"
         );
         serve(listener, Server::new(&args.result, args.host, token)).await;
@@ -111,8 +111,8 @@ async fn serve(listener: TcpListener, server: Server) {
                 answer(request, server.clone())
             });
             let mut connection = http1::Builder::new();
-            connection.timer(TokioTimer::new()).header_read_timeout(PATIENCE).keep_alive(false);
-            let stream = Patient::new(TokioIo::new(stream), PATIENCE);
+            connection.timer(TokioTimer::new()).header_read_timeout(WRITE_TIMEOUT).keep_alive(false);
+            let stream = WriteTimeout::new(TokioIo::new(stream), WRITE_TIMEOUT);
             // A browser that hangs up early is no failure.
             let _ = timeout(LONGEST, connection.serve_connection(stream, service)).await;
             drop(place);
@@ -162,7 +162,7 @@ async fn answer(
         return Ok(text(StatusCode::FORBIDDEN, "open the address that `asperity view` printed, all of it"));
     }
     let path = path.to_owned();
-    let place = match timeout(PATIENCE, server.large.clone().acquire_owned()).await {
+    let place = match timeout(WRITE_TIMEOUT, server.large.clone().acquire_owned()).await {
         Ok(Ok(place)) => place,
         _ => return Ok(text(StatusCode::SERVICE_UNAVAILABLE, "too many requests at a time; try again")),
     };

@@ -40,10 +40,12 @@
 //! ```
 
 mod convert;
+mod cost;
 mod describe;
 mod error;
 mod examine;
 pub mod fragment;
+mod leak_keys;
 mod measured;
 mod memory;
 mod overrides;
@@ -51,7 +53,6 @@ mod plan;
 pub mod quantity;
 mod raw;
 mod read;
-mod rehearse;
 mod schema;
 mod specimen;
 mod text;
@@ -74,13 +75,13 @@ use asperity::{
 };
 use ndarray::Array2;
 
+pub use cost::CostEstimate;
 pub use describe::{Description, MaterialReport, Preparation, WaveReport};
 pub use error::{CaseError, CaseErrors};
 pub use examine::{Examination, Inputs, ModulusInput, SurfaceInput};
 pub use measured::Measured;
 pub use plan::{Motion, Output, Rows, Surface, Travel};
-pub use raw::{LeakDirection, Leakage as LeakageKeys};
-pub use rehearse::Rehearsal;
+pub use raw::Leakage as LeakageKeys;
 pub use schema::schema;
 pub use specimen::{Specimen, specimens};
 pub use words::nearest;

@@ -3,13 +3,13 @@
 use std::f64::consts::LN_10;
 
 use asperity::material::{
-    Abscissa, Creep, Fit, FitOptions, Isotherm, MasterCurve, Material, Misfit, Moduli, Modulus,
-    ModulusChange, Relaxation, Shift, ShiftFit, VerticalShift, estimate_shift, fit_arrhenius, fit_creep,
-    fit_dma, fit_relaxation, fit_wlf, master_curve,
+    Creep, Fit, FitOptions, Isotherm, MasterCurve, Material, Misfit, Moduli, Modulus, ModulusChange,
+    Relaxation, Shift, ShiftFit, VerticalShift, estimate_shift, fit_arrhenius, fit_creep, fit_dma,
+    fit_relaxation, fit_wlf, master_curve,
 };
 
 use super::error::{CurveError, Fault, Remedy, fault};
-use super::sweeps::SAME_TEMPERATURE;
+use super::isotherms::{abscissa, at_isotherm, isotherms, point, snap};
 use super::vertical::{self, VerticalRequest};
 use super::{Curves, Kind, Sweep};
 
@@ -339,47 +339,6 @@ fn master(curves: &Curves, shift: Option<&Shift>) -> Result<(MasterCurve, Vec<us
     master.map(|master| (master, lines)).map_err(|error| at_isotherm(curves, &error))
 }
 
-/// The temperature of the shift factor that belongs to a sweep: chambers hold it to about a kelvin.
-pub(super) fn snap(temperature: &mut f64, points: &[(f64, f64)]) {
-    let nearest = points.iter().map(|point| point.0).min_by(|a, b| {
-        let away = |kelvin: f64| (kelvin - *temperature).abs();
-        away(*a).total_cmp(&away(*b))
-    });
-    if let Some(kelvin) = nearest.filter(|kelvin| (kelvin - *temperature).abs() <= SAME_TEMPERATURE) {
-        *temperature = kelvin;
-    }
-}
-
-/// A fault of the isotherms, with the line of the point that it names.
-pub(super) fn at_isotherm(curves: &Curves, error: &asperity::Error) -> Fault {
-    let message = error.to_string();
-    let sweep = curves.sweeps.iter().find(|sweep| {
-        sweep.temperature.is_some_and(|kelvin| {
-            message.contains(&format!("isotherm at {} K", (100.0 * kelvin).round() / 100.0))
-        })
-    });
-    let line = sweep.and_then(|sweep| sweep.lines.get(point(&message)?.checked_sub(1)?));
-    match line {
-        Some(line) => fault(message).at(*line),
-        None => fault(message),
-    }
-}
-
-pub(super) fn isotherms(curves: &Curves) -> Vec<Isotherm> {
-    let isotherm = |sweep: &Sweep| {
-        let temperature = sweep.temperature?;
-        Some(Isotherm { temperature, x: sweep.x.clone(), curves: sweep.curves.clone() })
-    };
-    curves.sweeps.iter().filter_map(isotherm).collect()
-}
-
-pub(super) fn abscissa(kind: Kind) -> Abscissa {
-    match kind {
-        Kind::Dma => Abscissa::Frequency,
-        Kind::Relaxation | Kind::Creep => Abscissa::Time,
-    }
-}
-
 /// A shift, the distance of an estimated law from its factors, and these.
 struct Found {
     shift: Option<Shift>,
@@ -475,11 +434,4 @@ fn left_out(moduli: Moduli, columns: &[(&'static str, Misfit)]) -> Option<String
         other.0,
         100.0 * other.1.rms
     ))
-}
-
-/// The number in "of point 31" or "point 31 of".
-fn point(message: &str) -> Option<usize> {
-    let (_, rest) = message.split_once("point ")?;
-    let digits: String = rest.chars().take_while(char::is_ascii_digit).collect();
-    digits.parse().ok()
 }

@@ -30,6 +30,7 @@ mod error;
 mod factors;
 mod fit;
 mod indentation;
+mod isotherms;
 mod role;
 mod sweeps;
 mod table;

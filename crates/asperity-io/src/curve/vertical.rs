@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::Deserialize;
 
 use super::error::{Fault, Remedy, fault};
-use super::fit::{abscissa, at_isotherm, isotherms, snap};
+use super::isotherms::{abscissa, at_isotherm, isotherms, snap};
 use super::{Curves, Kind};
 
 /// A vertical shift by name.

@@ -3,7 +3,6 @@
 //! What is asked for ([`Leak`]) comes from `[leakage]` of a case or from the command line; one state is answered by
 //! [`Leak::of_gap`], a result by [`store`], which stores its answer in the result ([`crate::store`]), or [`compute`].
 
-mod keys;
 mod result;
 pub mod words;
 
@@ -14,15 +13,28 @@ use asperity::leakage::{
 };
 use asperity::{Grid, Result};
 use ndarray::{Array2, ArrayView2};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-pub use crate::case::LeakDirection;
 pub use result::{LeakError, LeakHistory, compute, settings, store};
 
 /// Fields of the gap, the network and the iteration that a flow holds besides the factor, about.
 const FIELDS: f64 = 20.0;
 /// 20 degC \[K\].
 const ROOM: f64 = 293.15;
+
+/// Where the fluid flows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum LeakDirection {
+    /// Along x.
+    #[default]
+    X,
+    /// Along y.
+    Y,
+    /// Along x, and the effective conductance in both directions; on periodic domains.
+    Both,
+}
 
 /// What is asked for.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -9,14 +9,10 @@
 //! holds the CRC-32C s_k of the bytes of all rows of array k, and that of the attributes that numbers depend on,
 //! followed by the numbers of rows and fields.
 
-use std::collections::BTreeMap;
-
 use serde_json::{Map, Value, json};
 
 use super::header::Progress;
-
-/// Checksums by the name of the array.
-pub(super) type Sums = BTreeMap<String, u32>;
+pub(super) use super::header::Sums;
 
 const ATTRIBUTE: &str = "checksums";
 const DOCUMENT: &str = "document";

@@ -1,5 +1,6 @@
 //! What a result says about itself: the attributes of its group.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use asperity::finding::Finding;
@@ -7,9 +8,8 @@ use asperity::quantities::{Column, Quantity};
 use asperity::{Axis, Grid};
 use serde_json::{Map, Value, json};
 
-use super::checksum::Sums;
 use super::error::{Result, StoreError, corrupt};
-use super::layout::FieldKind;
+use super::field_kind::FieldKind;
 use crate::finding;
 
 /// Value of the attribute `format`: marks the directories that this store may replace.
@@ -126,6 +126,9 @@ impl std::fmt::Display for Status {
         f.write_str(self.as_str())
     }
 }
+
+/// Checksums by the name of the array.
+pub(super) type Sums = BTreeMap<String, u32>;
 
 /// How much of a run is stored.
 #[derive(Clone, Debug)]

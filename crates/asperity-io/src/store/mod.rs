@@ -26,7 +26,7 @@
 //! to the last step appended.
 //!
 //! ```
-//! use asperity::Grid;
+//! use asperity::{Coordinate, Grid};
 //! use asperity_io::store::{At, Field, FieldKind, Header, Outcome, Reader, Row, Status, Writer};
 //! use ndarray::Array2;
 //!
@@ -43,7 +43,7 @@
 //!     setup: Default::default(),
 //! };
 //! let mut writer = Writer::create(&path, &header, Array2::zeros((4, 3)).view(), false)?;
-//! let row = Row { time: 0.0, load: 12.0, ..Row::default() };
+//! let row = Row { coordinate: Coordinate::Time(0.0), load: 12.0, ..Row::default() };
 //! writer.append(&row, &[Field::Pressure(Array2::from_elem((4, 3), 1e6).view())])?;
 //! writer.finish(&Outcome::new(Status::Complete))?;
 //!
@@ -60,6 +60,7 @@ mod column;
 mod create;
 mod document;
 mod error;
+mod field_kind;
 mod header;
 mod layout;
 mod leak;
@@ -74,9 +75,10 @@ mod writer;
 
 pub use asperity::march::{Checkpoint, Row};
 pub use error::{Result, StoreError};
+pub use field_kind::FieldKind;
 pub use header::{Header, Status, Work};
 pub(crate) use layout::coordinates;
-pub use layout::{FieldKind, SCALARS, Scalar, Series};
+pub use layout::{SCALARS, Scalar, Series};
 pub use leak::{LeakTable, LeakWriter, Leaks};
 pub use reader::{At, Reader};
 pub use stress::{StressSet, StressWriter};

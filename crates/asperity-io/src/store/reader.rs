@@ -13,8 +13,9 @@ use super::chunks::Chunks;
 use super::column;
 use super::document::Document;
 use super::error::{Result, StoreError, corrupt};
+use super::field_kind::FieldKind;
 use super::header::{self, Header, Status, Work};
-use super::layout::{ArraySpec, DataType, Entry, FieldKind, SCALARS, Series};
+use super::layout::{ArraySpec, DataType, Entry, SCALARS, Series};
 use super::leak::Leaks;
 use super::leftovers;
 

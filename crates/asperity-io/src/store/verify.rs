@@ -9,7 +9,8 @@ use super::checkpoint;
 use super::chunks::Chunks;
 use super::document::{NAME, read_json};
 use super::error::{Result, StoreError, corrupt};
-use super::layout::{self, ArraySpec, FieldKind};
+use super::field_kind::FieldKind;
+use super::layout::{self, ArraySpec};
 use super::reader::{At, Reader};
 
 /// What was found in a result.

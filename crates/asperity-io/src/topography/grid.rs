@@ -4,16 +4,13 @@ use ndarray::Array2;
 use rayon::prelude::*;
 
 use super::Problem;
-use super::sample::{Kind, Order, decode_into};
+use super::sample::{FEW, Kind, Order, decode_into};
 
 /// Most points of a topography, as of a grid.
 pub(super) const MOST_POINTS: usize = 1 << 31;
 
 /// Columns and lines of the tiles in which a map is transposed: a tile of binary64 fits the innermost cache.
 const TILE: usize = 32;
-
-/// Maps with fewer points are not worth the threads.
-pub(super) const FEW: usize = 1 << 15;
 
 /// Number of points nx ny, refused where it is 0 or absurd.
 pub(super) fn points(nx: u64, ny: u64) -> Result<usize, Problem> {

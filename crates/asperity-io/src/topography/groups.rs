@@ -26,9 +26,10 @@ const MOST_DIMENSIONS: u64 = 4_000_000;
 
 /// Refuses groups that link to a group around them, and trees that are too large.
 pub(super) fn check(bytes: Arc<[u8]>, options: OpenOptions) -> Result<(), Problem> {
-    let file = Hdf5File::from_shared_bytes_with_options(bytes, options).map_err(broken)?;
+    let file = Hdf5File::from_shared_bytes_with_options(bytes, options)
+        .map_err(|error| broken("the file", error))?;
     let mut walk = Walk::default();
-    let tree = walk.visit(&file.root_group().map_err(broken)?, 0)?;
+    let tree = walk.visit(&file.root_group().map_err(|error| broken("the file", error))?, 0)?;
     if tree.dimensions > MOST_DIMENSIONS {
         return Err(too_large());
     }
@@ -66,7 +67,7 @@ impl Walk {
             return Err(Problem::malformed("the tree of the groups", deep, COPY));
         }
         self.trees.insert(group.address(), None);
-        let (groups, sets) = group.members().map_err(broken)?;
+        let (groups, sets) = group.members().map_err(|error| broken("the file", error))?;
         let sets = sets.len() as u64;
         let mut tree = Tree { groups: 1, objects: 1 + sets, dimensions: 0 };
         for inner in &groups {
@@ -96,6 +97,14 @@ fn too_large() -> Problem {
     Problem::malformed("the tree of the groups", many, COPY)
 }
 
-fn broken(error: hdf5_reader::error::Error) -> Problem {
-    super::netcdf::broken("the file", error)
+pub(super) fn broken(what: &str, error: impl std::fmt::Display) -> Problem {
+    let error = error.to_string();
+    // The library names filters and features that it does not know.
+    if error.contains("unsupported") {
+        return Problem::unsupported(
+            format!("{what} ({error})"),
+            "save it without filters or with gzip alone",
+        );
+    }
+    Problem::malformed(what, error, "whole, undamaged NetCDF or HDF5")
 }

@@ -12,6 +12,7 @@ use ndarray::{Array2, ArrayD, Ix2};
 use netcdf_reader::{NcAttrValue, NcFile, NcFormat, NcOpenOptions, NcType, NcVariable};
 
 use super::finish::{Lateral, Measured, Unit, choose_heights, unit_of};
+use super::groups::broken;
 use super::unit::{LoneA, metres};
 use super::unpack::most_unpacked;
 use super::{Format, Problem, foreign, grid, groups};
@@ -92,18 +93,6 @@ pub(super) fn read_netcdf(bytes: &[u8], channel: Option<&str>) -> Result<(Format
     let metadata = metadata.filter_map(|a| Some((a.name.clone(), text(&a.value)?))).collect();
     let channel = Some(name.clone());
     Ok((format, Measured { heights, unit, lateral, channel, channels: names, metadata }))
-}
-
-pub(super) fn broken(what: &str, error: impl std::fmt::Display) -> Problem {
-    let error = error.to_string();
-    // The library names filters and features that it does not know.
-    if error.contains("unsupported") {
-        return Problem::unsupported(
-            format!("{what} ({error})"),
-            "save it without filters or with gzip alone",
-        );
-    }
-    Problem::malformed(what, error, "whole, undamaged NetCDF or HDF5")
 }
 
 /// The two-dimensional variables of numbers with their paths, those of outer groups first.

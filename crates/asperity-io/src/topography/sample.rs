@@ -3,7 +3,9 @@
 use rayon::prelude::*;
 
 use super::Problem;
-use super::grid::FEW;
+
+/// Maps with fewer points are not worth the threads.
+pub(super) const FEW: usize = 1 << 15;
 
 /// Type of a binary number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

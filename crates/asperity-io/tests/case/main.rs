@@ -1,5 +1,6 @@
 //! Case files: the starter cases hold, and what is wrong is named with key, line and words.
 
+mod cost;
 mod errors;
 mod examples;
 mod hostile;
@@ -9,4 +10,3 @@ mod materials;
 mod measured;
 mod motion;
 mod values;
-mod work;

@@ -14,6 +14,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._arrays import Floats, as_plane, cells_of, centres, choice, frozen, in_hertz, number, plain
+from ._axis import TIME, VELOCITY
 from ._columns import HISTOGRAMS, QUANTITIES, ROW, Column, units_of
 from ._core import CaseError
 from ._findings import Finding, findings_of
@@ -151,8 +152,8 @@ class Result(Sealed):
         self._size = tuple(float(length) for length in size)
         self._attributes = attributes
         motion = json.loads(attributes.get("setup") or "{}").get("motion") or {}
-        # A sweep over velocities: they stand in place of the times.
-        self._sweep = bool(motion.get("steady"))
+        # Of a sweep the velocities stand in place of the times.
+        self._axis = VELOCITY if motion.get("steady") else TIME
         self._path = path
         self._store = store
         self._histograms = dict(histograms or {})
@@ -173,7 +174,7 @@ class Result(Sealed):
     def _column(self, name: str) -> Floats:
         """A column of the rows, or why there is none."""
         table = self.__dict__.get("_table")
-        if self.__dict__.get("_sweep") and table is not None:
+        if self.__dict__.get("_axis") == VELOCITY and table is not None:
             if name == "velocity":
                 velocities: Floats = table["time"]
                 return velocities
@@ -207,7 +208,7 @@ class Result(Sealed):
     def __dir__(self) -> list[str]:
         # Columns that it does not have are left out.
         columns = {name for name, value in vars(Result).items() if isinstance(value, Column)}
-        here = {*self._table, *self._stress, *(["velocity"] if self._sweep else [])} - ({"time"} if self._sweep else set())
+        here = {*self._table, *self._stress, self._axis.name} - ({"time"} - {self._axis.name})
         return sorted({*super().__dir__()} - columns | here)
 
     def __len__(self) -> int:
@@ -261,7 +262,7 @@ class Result(Sealed):
     @property
     def is_sweep(self) -> bool:
         """Whether its rows are steady states of motion, one for each `velocity`."""
-        return self._sweep
+        return self._axis == VELOCITY
 
     @property
     def field_times(self) -> Floats:
@@ -271,7 +272,7 @@ class Result(Sealed):
     @property
     def field_velocities(self) -> Floats:
         """Velocities at which the fields of a sweep were kept [m/s]."""
-        if not self._sweep:
+        if not self.is_sweep:
             return self._column("field_velocities")
         return self._field_times
 
@@ -315,8 +316,8 @@ class Result(Sealed):
     def units(self, name: str) -> str:
         """The unit of a number of the rows by its name, "1" where it has none: "N" or, of a line contact, "N/m" of the load."""
         known = {**ROW, **QUANTITIES}
-        if self._sweep and name == "time":
-            return "m/s"
+        if name == "time":
+            return self._axis.unit
         if name not in known:
             raise CaseError(f"{name!r} is no number of a row; there are {', '.join(known)}")
         return units_of(name, known[name][0], self.is_line)
@@ -354,7 +355,7 @@ class Result(Sealed):
         if name not in self._fields:
             choice("the field", name, list(FIELDS))
             raise CaseError(f"the field {name!r} was not kept; kept: {', '.join(self._fields) or 'none'}")
-        if (velocity is not None and not self._sweep) or (time is not None and self._sweep):
+        if (velocity is not None and not self.is_sweep) or (time is not None and self.is_sweep):
             raise CaseError("velocity= is for a sweep over velocities, time= for a run in time")
         return self._one(name, self._index(time if velocity is None else velocity, index))
 
@@ -416,7 +417,7 @@ class Result(Sealed):
         leaks that are stored in it. Its arrays are copies; their `units` are read by pint and cf-xarray."""
         import xarray
 
-        along, at = ("velocity", "field_velocity") if self._sweep else ("time", "field_time")
+        along, at = self._axis.name, f"field_{self._axis.name}"
         rows = {
             name: (along, np.array(self._table[name]), {"units": self.units(name), "long_name": words})
             for name, (_, words) in {**ROW, **QUANTITIES}.items()
@@ -537,7 +538,7 @@ class Result(Sealed):
         ``frame.attrs["units"]``."""
         import pandas  # type: ignore[import-not-found,import-untyped,unused-ignore]
 
-        along = "velocity" if self._sweep else "time"
+        along = self._axis.name
         columns = {name: np.array(self._table[name]) for name in {**ROW, **QUANTITIES} if name != "time" and name in self._table}
         frame = pandas.DataFrame(columns, index=pandas.Index(np.array(self._table["time"]), name=along))
         frame.attrs["units"] = {along: self.units("time"), **{name: self.units(name) for name in columns}}
@@ -602,7 +603,7 @@ class Result(Sealed):
         if len(self) == 0:
             return f"<{title}: no rows yet, {cells}>"
         return (
-            f"<{title}: {len(self)} rows to {'v' if self._sweep else 't'} = {self._table['time'][-1]:g} {self.units('time')}, {cells}; "
+            f"<{title}: {len(self)} rows to {self._axis.symbol} = {self._table['time'][-1]:g} {self._axis.unit}, {cells}; "
             f"approach {self.approach[-1]:.4g} m, contact {100 * self.contact_fraction[-1]:.4g} %; "
             f"fields {', '.join(self._fields) or 'none'} at {len(self._field_steps)} times>"
         )
@@ -628,7 +629,7 @@ class Result(Sealed):
         if time is not None and index is not None:
             raise CaseError("give time or index, exactly one of them")
         if time is not None:
-            what, unit = ("velocity", "m/s") if self._sweep else ("time", "s")
+            what, unit = self._axis.name, self._axis.unit
             wanted = number(what, time)
             end = max(np.max(self._table["time"]), np.max(self.field_times))
             # Times that are written with 12 digits are those of rows.

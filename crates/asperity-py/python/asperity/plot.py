@@ -115,11 +115,11 @@ class Plots:
             log_time = _spans_a_decade(over) if result.is_sweep else _crowds_the_start(over)
         # A logarithmic axis has no place for the row at the time 0.
         rows = over > 0 if log_time else np.full(over.shape, True)
-        along = "velocity" if result.is_sweep else "time"
+        along = result._axis
         for ax, panel in zip(drawn.flat, self._panels()):
             # Decades on both sides of a second, or of 1 m/s, are powers of ten of it.
             wide = log_time and np.any(over[rows] < 1.0) and over[-1] > 1e6 * np.min(over[rows], initial=np.inf) and over[-1] > 1.0
-            shift, rows_unit = _scale(ax, along, 1.0 if wide else _largest(over), "m/s" if result.is_sweep else "s", axis="x", log=log_time)
+            shift, rows_unit = _scale(ax, along.name, 1.0 if wide else _largest(over), along.unit, axis="x", log=log_time)
             factor, text = _scale(ax, panel.title, _largest(*(values for _, values in panel.curves)), panel.unit, panel.power)
             first = None
             for n, (words, values) in enumerate(panel.curves):
@@ -128,7 +128,7 @@ class Plots:
                 (line,) = ax.plot(over[rows] * shift, values[rows] * factor, label=told or None, **_marked(given, values[rows]))
                 first = first or line
             _settle(ax)
-            ax.set_xlabel(f"{along} [{rows_unit}]")
+            ax.set_xlabel(f"{along.name} [{rows_unit}]")
             ax.set_ylabel(panel.title if panel.unit == "1" else f"{panel.title} [{text}]")
             if log_time:
                 # What another evolution has at the time 0 has no place here either.
@@ -358,7 +358,7 @@ class Plots:
         result, when = self._result, ""
         if len(result.field_times) > 1:
             moment = float(result.field_times[self._row(at)])
-            when = f"v = {quantity(moment, 'm/s')}" if result.is_sweep else f"t = {quantity(moment, 's')}"
+            when = f"{result._axis.symbol} = {quantity(moment, result._axis.unit)}"
         notes = notes if self._touches(at) else ["no contact", *notes]
         lines = [", ".join(part for part in (place, when) if part), *notes]
         if told := "\n".join(line for line in lines if line):

@@ -115,7 +115,7 @@ pub fn page(reader: &Reader, options: &Options) -> Result<String, StoreError> {
 /// The flow at the last instant at which the seal leaks. A page without this picture is still a page.
 fn leak_map(reader: &Reader) -> Option<String> {
     reader.leaks()?;
-    crate::leak::last_map(reader).ok().map(|figure| figure.to_svg())
+    crate::result::last_leak_map(reader).ok().map(|figure| figure.to_svg())
 }
 
 /// The page with its state and its maps.

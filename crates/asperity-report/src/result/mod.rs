@@ -15,6 +15,7 @@ mod distribution;
 mod evolution;
 mod fields;
 mod friction;
+mod leak;
 pub(crate) mod line;
 mod profile;
 mod rows;
@@ -34,6 +35,7 @@ pub(crate) use common::Common;
 pub use common::common_limits;
 pub(crate) use evolution::{last_cycle, quantity_panels};
 pub(crate) use friction::persson;
+pub(crate) use leak::last_map as last_leak_map;
 pub(crate) use rows::Rows;
 pub use rows::is_logarithmic;
 pub use stress::stress_figure;
@@ -328,7 +330,7 @@ fn panels(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, Plot
         Plot::LoadDisplacement => evolution::load_displacement(reader, options)?,
         Plot::Work => evolution::work(reader, options)?,
         Plot::Quantities => evolution::quantities(reader, options)?,
-        Plot::Leak => crate::leak::over_time(reader, options)?,
+        Plot::Leak => leak::over_time(reader, options)?,
         Plot::Friction => friction::friction(reader, options)?,
         Plot::Flattening => fields::map(reader, FieldKind::Flattening, options.at)?,
         Plot::Pressure => fields::map(reader, FieldKind::Pressure, options.at)?,

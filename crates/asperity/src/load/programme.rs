@@ -3,9 +3,8 @@
 //! Press under load, hold the approach reached, retract until contact is lost, wait, touch again: each of
 //! these is a stage with a control, a course of its value on a clock of its own, and an end.
 
-use super::{Control, History, Loading};
+use super::{Control, History, Loading, TimeGrid};
 use crate::error::{Error, Result, positive};
-use crate::time::TimeGrid;
 
 /// The stages of a run, one after the other. The run ends with the last of them or at the end of its time
 /// grid, whichever comes first.

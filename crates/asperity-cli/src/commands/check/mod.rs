@@ -1,32 +1,32 @@
 //! `asperity check`: what a case will do, without doing it.
 
-mod work;
+mod cost;
 
 use asperity::{Axis, Grid};
 use asperity_io::case::{Case, Examination, Inputs, SurfaceInput, Travel};
 use asperity_io::stress::StressDescription;
 use serde_json::json;
 
-use self::work::Work;
+use self::cost::Cost;
 use crate::args::Check;
 use crate::failure::Failure;
-use crate::words::{bytes, counted, duration, quantity};
+use crate::format::{bytes, counted, duration, quantity};
 
 /// Validates the case, builds its gap, and says what will be solved.
 pub fn run(args: &Check) -> Result<(), Failure> {
     let case = Case::read(&args.case, &args.common.set)?;
     // The files are read and the gap is built: what `run` would refuse is refused here.
     let examined = case.examine()?;
-    let work = work::work(&case, &examined.description);
+    let cost = cost::cost(&case, &examined.description);
     if args.json {
         let mut object = serde_json::to_value(&examined).unwrap_or_default();
         object["estimated_s"] =
-            json!(work.as_ref().map(|work| work.seconds + work::seconds_after(&case, &examined.description)));
-        object["estimated_rows"] = json!(work.as_ref().map(|work| work.rehearsal.rows));
-        object["estimated_convolutions"] = json!(work.as_ref().map(|work| work.rehearsal.convolutions));
+            json!(cost.as_ref().map(|cost| cost.seconds + cost::seconds_after(&case, &examined.description)));
+        object["estimated_rows"] = json!(cost.as_ref().map(|cost| cost.estimate.rows));
+        object["estimated_convolutions"] = json!(cost.as_ref().map(|cost| cost.estimate.convolutions));
         crate::print(&format!("{object}\n"))?;
     } else {
-        crate::print(&tell(&case, &examined, work.as_ref()))?;
+        crate::print(&summary(&case, &examined, cost.as_ref()))?;
     }
     super::findings::strict(args.strict, &examined.findings)
 }
@@ -155,7 +155,7 @@ fn stress_lines(stress: &StressDescription, seconds: Option<f64>) -> Vec<[String
         Some([only, _]) => format!("depth {}", quantity(only, "m")),
         None => format!("{} depths down to the width of the contact", stress.depth_count),
     };
-    let times = stress.times.map_or("the stored times".to_owned(), |n| crate::words::counted(n, "time"));
+    let times = stress.times.map_or("the stored times".to_owned(), |n| crate::format::counted(n, "time"));
     let mut lines = vec![[
         "stress".to_owned(),
         format!("of {} (Poisson's ratio {}), {range}, at {times}", stress.body, stress.poisson),
@@ -186,7 +186,7 @@ fn lengths(sides: &[f64]) -> String {
     sides.join(" x ")
 }
 
-fn tell(case: &Case, examined: &Examination, work: Option<&Work>) -> String {
+fn summary(case: &Case, examined: &Examination, cost: Option<&Cost>) -> String {
     let (d, inputs) = (&examined.description, &examined.inputs);
     let title = d.title.as_deref().unwrap_or(&case.name);
     let mut text = format!("{title}\n");
@@ -316,29 +316,29 @@ fn tell(case: &Case, examined: &Examination, work: Option<&Work>) -> String {
         ),
     );
     if let Some(stress) = &d.stress {
-        stress_lines(stress, work::stress_seconds(case, stress))
+        stress_lines(stress, cost::stress_seconds(case, stress))
             .into_iter()
             .for_each(|[name, value]| line(&name, value));
     }
     if let Some(leak) = &case.leakage {
         let memory = bytes(leak.bytes(case.grid.len()));
         let times = match &leak.times {
-            Some(times) => crate::words::counted(times.len(), "time"),
+            Some(times) => crate::format::counted(times.len(), "time"),
             None => "the stored times".to_owned(),
         };
-        let seconds = work::leak_seconds(case, d);
+        let seconds = cost::leak_seconds(case, d);
         let seconds = seconds.map_or(String::new(), |s| format!(", roughly {} after the run", roughly(s)));
         line("leakage", format!("{}, at {times}, up to {memory} of memory{seconds}", leak.words()));
     }
     line("memory", format!("about {}", bytes(d.memory_bytes as f64)));
-    if let Some(work) = work {
+    if let Some(cost) = cost {
         let threads = counted(rayon::current_num_threads(), "thread");
-        let found = work.rehearsal;
+        let found = cost.estimate;
         line(
             "run time",
             format!(
-                "roughly {} on {threads}: about {} and {} (rehearsed on a coarse grid)",
-                roughly(work.seconds),
+                "roughly {} on {threads}: about {} and {} (estimated on a coarse grid)",
+                roughly(cost.seconds),
                 counted(found.rows, "row"),
                 counted(found.convolutions, "convolution")
             ),

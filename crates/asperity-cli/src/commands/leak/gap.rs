@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 use super::options;
 use crate::args::{self, SurfaceFile};
 use crate::failure::Failure;
-use crate::words::quantity;
+use crate::format::quantity;
 
 /// Computes the leakage of one state and prints it.
 pub fn run(args: &args::Leak, path: &Path) -> Result<(), Failure> {
@@ -36,12 +36,12 @@ pub fn run(args: &args::Leak, path: &Path) -> Result<(), Failure> {
         None => None,
     };
     let leak = checked(&options::keys(&args.fluid)?, Boundary::Periodic).map_err(Failure::input)?;
-    let told = |error: asperity::Error| Failure::input(format!("{}: {error}", path.display()));
+    let failed = |error: asperity::Error| Failure::input(format!("{}: {error}", path.display()));
     let (nx, ny) = gap.heights.dim();
-    let grid = Grid::new([nx, ny], gap.size).map_err(told)?;
+    let grid = Grid::new([nx, ny], gap.size).map_err(failed)?;
     let contact = contact.as_ref().map(|contact| contact.view());
     let state = leak.of_gap(&grid, gap.heights.view(), contact, 0.0).map_err(|error| match error {
-        asperity::Error::Invalid { .. } => told(error),
+        asperity::Error::Invalid { .. } => failed(error),
         error => Failure::Solve(error.to_string()),
     })?;
     let mut judge = LeakJudge::default();
@@ -51,7 +51,7 @@ pub fn run(args: &args::Leak, path: &Path) -> Result<(), Failure> {
         let figure = asperity_report::leak::state(&leak, &state, gap.heights.view(), grid.size());
         crate::commands::picture::write(&figure, plot, args.force)?;
     }
-    super::super::findings::tell(&findings);
+    super::super::findings::print(&findings);
     let text = if args.json {
         let mut object = object(&state);
         object["leakage"] = serde_json::to_value(&leak).unwrap_or_default();

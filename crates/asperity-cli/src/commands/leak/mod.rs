@@ -15,8 +15,8 @@ use serde_json::{Map, Value, json};
 
 use crate::args;
 use crate::failure::Failure;
-use crate::talk::say;
-use crate::words::quantity;
+use crate::format::quantity;
+use crate::messages::message;
 
 /// Computes the leakage, or shows the one that is stored.
 pub fn run(args: &args::Leak) -> Result<(), Failure> {
@@ -31,15 +31,15 @@ pub fn run(args: &args::Leak) -> Result<(), Failure> {
 }
 
 fn result_leak(args: &args::Leak, path: &Path) -> Result<(), Failure> {
-    let told = |error: &dyn std::fmt::Display| Failure::input(error.to_string());
-    let reader = Reader::open(path).map_err(|error| told(&error))?;
+    let failed = |error: &dyn std::fmt::Display| Failure::input(error.to_string());
+    let reader = Reader::open(path).map_err(|error| failed(&error))?;
     let leak = asked(args, &reader)?;
-    let stored = LeakHistory::of(&reader).map_err(|error| told(&error))?;
+    let stored = LeakHistory::of(&reader).map_err(|error| failed(&error))?;
     let history = match stored {
         Some(stored) if stored.leak == leak => stored,
         stored => {
             if let Some(stored) = stored.filter(|_| !args.no_store) {
-                say!(
+                message!(
                     "replaces the stored leakage: {} (--no-store computes without storing)",
                     stored.leak.words()
                 );
@@ -54,7 +54,7 @@ fn result_leak(args: &args::Leak, path: &Path) -> Result<(), Failure> {
             found.map_err(failure)?
         }
     };
-    super::findings::tell(&history.findings);
+    super::findings::print(&history.findings);
     let text = if args.json { object(path, &history) } else { text(&history) };
     crate::print(&text)
 }

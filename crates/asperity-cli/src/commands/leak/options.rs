@@ -6,7 +6,7 @@ use asperity_io::case::quantity::{Length, MolarMass, Pressure, Temperature, Visc
 
 use crate::args::FluidOptions;
 use crate::failure::Failure;
-use crate::words::read;
+use crate::input::read;
 
 /// The keys that are given.
 pub fn keys(options: &FluidOptions) -> Result<LeakageKeys, Failure> {

@@ -5,7 +5,7 @@ use asperity_io::case::quantity::{Number, range};
 use asperity_io::case::{Specimen, specimens};
 use asperity_io::material_export::{Exported, Program, text};
 
-use super::{parsed, told, write};
+use super::{failed, parsed, write};
 use crate::args::{MaterialExport, To};
 use crate::failure::Failure;
 
@@ -20,7 +20,7 @@ pub fn export(args: &MaterialExport) -> Result<(), Failure> {
         Some(text) => Some(Lateral::Poisson(parsed::<Number<range::Poisson>>("--poisson", text)?.get())),
         None => None,
     };
-    let (material, shift) = specimen.at_reference().map_err(told)?;
+    let (material, shift) = specimen.at_reference().map_err(failed)?;
     let lateral = poisson.or(specimen.lateral);
     let vertical = specimen.report.vertical_law.as_ref();
     let exported = Exported { name: &specimen.name, material: &material, lateral, shift, vertical };

@@ -8,11 +8,11 @@ use asperity_io::curve::{Curves, Fitted, Kind, Request, Series, ShiftRequest};
 use asperity_report::material as pictures;
 use serde_json::{Map, Value, json};
 
-use super::given::{self, refused};
-use super::{celsius, symbols, told, write};
+use super::options::{self, refused};
+use super::{celsius, failed, symbols, write};
 use crate::args::Fit;
 use crate::failure::Failure;
-use crate::words::quantity;
+use crate::format::quantity;
 
 /// Room temperature \[K\]: shifts are estimated about the sweep nearest to it where no reference is given.
 const ROOM: f64 = 293.15;
@@ -23,9 +23,10 @@ pub fn fit(args: &Fit) -> Result<(), Failure> {
     for path in args.output.iter().chain(&args.plot) {
         crate::commands::free(path, args.force)?;
     }
-    let (shift, vertical, options) = (given::shift(args)?, given::vertical(args)?, given::options(args)?);
-    let mut curves = given::curves(&args.data, &args.table)?;
-    let window = args.window.as_deref().map(|text| given::ends(curves.kind, text)).transpose()?;
+    let (shift, vertical, options) =
+        (options::shift(args)?, options::vertical(args)?, options::options(args)?);
+    let mut curves = options::curves(&args.data, &args.table)?;
+    let window = args.window.as_deref().map(|text| options::ends(curves.kind, text)).transpose()?;
     let measure = args.modulus.or(curves.measure).unwrap_or_else(|| {
         let note = "the header does not say which: taken as Young's moduli; --modulus shear takes them as shear moduli";
         curves.notes.push(note.to_owned());
@@ -40,7 +41,7 @@ pub fn fit(args: &Fit) -> Result<(), Failure> {
     }
     if let Some(path) = &args.plot {
         let title = args.data.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
-        let figure = pictures::fit(&title, &curves, &fitted).map_err(told)?;
+        let figure = pictures::fit(&title, &curves, &fitted).map_err(failed)?;
         crate::commands::picture::write(&figure, path, args.force)?;
     }
     if args.json {
@@ -50,7 +51,7 @@ pub fn fit(args: &Fit) -> Result<(), Failure> {
         object["findings"] = asperity_io::finding::list(&findings);
         return crate::print(&format!("{object}\n"));
     }
-    crate::commands::findings::tell(&findings);
+    crate::commands::findings::print(&findings);
     let mut text = report(args, &curves, &fitted);
     match &args.output {
         Some(path) => {

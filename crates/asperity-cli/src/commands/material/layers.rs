@@ -8,7 +8,7 @@ use serde_json::json;
 
 use crate::args::Show;
 use crate::failure::Failure;
-use crate::words::quantity;
+use crate::format::quantity;
 
 /// Shortest wave over the thinnest layer, and longest wave over all layers together.
 const RANGE: [f64; 2] = [0.2, 200.0];

@@ -8,10 +8,10 @@ use asperity_io::curve::{Curves, Kind, Sweep};
 use asperity_report::material as pictures;
 use serde_json::{Value, json};
 
-use super::{celsius, given};
+use super::{celsius, options};
 use crate::args::Show;
 use crate::failure::Failure;
-use crate::words::{counted, quantity};
+use crate::format::{counted, quantity};
 
 /// Whether a file is one of measured data, not a case or a material.
 pub fn is_data(path: &Path) -> bool {
@@ -27,7 +27,7 @@ pub fn show(args: &Show) -> Result<(), Failure> {
             "{path} holds measured data: --from, --to and --set are for materials"
         )));
     }
-    let curves = given::curves(&args.file, &args.table)?;
+    let curves = options::curves(&args.file, &args.table)?;
     if let Some(path) = &args.plot {
         let title = args.file.file_name().map_or(String::new(), |name| name.to_string_lossy().into_owned());
         crate::commands::picture::write(&pictures::isotherms(&title, &curves), path, args.force)?;

@@ -2,9 +2,9 @@
 
 mod export;
 mod fit;
-mod given;
 mod layers;
 mod measured;
+mod options;
 
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -19,8 +19,8 @@ use serde_json::{Value, json};
 
 use crate::args::{Material, Show};
 use crate::failure::Failure;
-use crate::words::{counted, quantity};
-pub(super) use given::{columns, parsed};
+use crate::format::{counted, quantity};
+pub(super) use options::{columns, parsed};
 
 /// Shows a material or fits one.
 pub fn run(command: &Material) -> Result<(), Failure> {
@@ -63,13 +63,13 @@ fn show(args: &Show) -> Result<(), Failure> {
         )));
     }
     for specimen in &specimens {
-        specimen.warnings.iter().for_each(|warning| crate::talk::say!("warning: {warning}"));
+        specimen.warnings.iter().for_each(|warning| crate::messages::message!("warning: {warning}"));
     }
     if let Some(path) = &args.plot {
         let materials: Vec<_> = specimens.iter().map(|s| (s.name.as_str(), &s.material)).collect();
         let title = args.file.file_stem().map_or(String::new(), |stem| stem.to_string_lossy().into_owned());
         let drawn = if from.is_none() && to.is_none() { covered(&specimens, window) } else { window };
-        let figure = pictures::functions(&title, &materials, drawn).map_err(told)?;
+        let figure = pictures::functions(&title, &materials, drawn).map_err(failed)?;
         let shifts: Vec<pictures::Factors> = specimens.iter().filter_map(shift_of).collect();
         let figure =
             pictures::shift_factors(&shifts).into_iter().fold(figure, |figure, panel| figure.with(panel));
@@ -101,7 +101,7 @@ fn temperature_of(specimen: &Specimen) -> Option<String> {
     let (name, celsius) = (&specimen.name, format!("{:.1} °C", reference - 273.15));
     Some(match specimen.report.shift_factor {
         Some(factor) if factor != 1.0 => {
-            let factor = crate::words::quantity(factor, "");
+            let factor = crate::format::quantity(factor, "");
             format!("{name}: at its own temperature, a_T = {factor} of the reference {celsius}.")
         }
         _ => format!("{name}: at the reference temperature, {celsius}."),
@@ -156,7 +156,7 @@ struct Table {
 
 impl Table {
     fn of(specimen: &Specimen, [first, last]: [f64; 2], per_decade: u16) -> Result<Table, Failure> {
-        let relaxation = specimen.material.relaxation().map_err(told)?;
+        let relaxation = specimen.material.relaxation().map_err(failed)?;
         let steps = ((last / first).log10() * f64::from(per_decade) - 1e-9).ceil().max(1.0) as usize;
         let decade = |k: usize| k as f64 / f64::from(per_decade);
         let times: Vec<f64> =
@@ -312,7 +312,7 @@ fn celsius(kelvin: f64) -> f64 {
     (10.0 * (kelvin - 273.15)).round() / 10.0 + 0.0
 }
 
-pub(super) fn told(error: impl std::fmt::Display) -> Failure {
+pub(super) fn failed(error: impl std::fmt::Display) -> Failure {
     Failure::input(error.to_string())
 }
 

@@ -15,7 +15,8 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use super::instant;
 use crate::args;
 use crate::failure::Failure;
-use crate::words::{self, counted, read};
+use crate::format::counted;
+use crate::input::{meant, read};
 
 /// Whether a command line names a result but not what to draw of it: the one word of two that `asperity plot` needs is a path.
 pub fn lacks_figure(words: &[OsString], error: &clap::Error) -> bool {
@@ -49,9 +50,9 @@ pub fn run(args: &args::Plot) -> Result<(), Failure> {
         return Err(match Path::new(&args.what).exists() {
             true => no_figure(),
             false => {
-                let meant = words::meant(&args.what, &Plot::ALL.map(Plot::name));
+                let near = meant(&args.what, &Plot::ALL.map(Plot::name));
                 Failure::input(format!(
-                    "there is no figure \"{}\"{meant}; choose one of {}",
+                    "there is no figure \"{}\"{near}; choose one of {}",
                     args.what,
                     figures()
                 ))
@@ -61,7 +62,7 @@ pub fn run(args: &args::Plot) -> Result<(), Failure> {
     options::check(args, plot)?;
     let mut all = vec![];
     for (path, name) in args.results.iter().zip(names(&args.results)) {
-        all.push((name, Reader::open(path).map_err(told)?));
+        all.push((name, Reader::open(path).map_err(failed)?));
     }
     match &args.animate {
         Some(path) => animate(args, plot, &all, path),
@@ -84,7 +85,7 @@ fn draw(args: &args::Plot, plot: Plot, all: Vec<(String, Reader)>) -> Result<(),
         .output
         .clone()
         .unwrap_or_else(|| format!("{}-{}.png", stems.collect::<Vec<_>>().join("-"), plot.name()).into());
-    Form::of(&output).map_err(told)?;
+    Form::of(&output).map_err(failed)?;
     super::free(&output, args.force)?;
     let mut chosen = Options::default();
     if let Some((_, first)) = all.first() {
@@ -92,7 +93,7 @@ fn draw(args: &args::Plot, plot: Plot, all: Vec<(String, Reader)>) -> Result<(),
     }
     if args.same_colours {
         let readers: Vec<&Reader> = all.iter().map(|(_, reader)| reader).collect();
-        chosen.limits = common_limits(&readers, plot, &chosen).map_err(told)?;
+        chosen.limits = common_limits(&readers, plot, &chosen).map_err(failed)?;
     }
     let at = |reader: &Reader| instant(reader, args.time.as_deref());
     let drawn = match &all[..] {
@@ -105,7 +106,7 @@ fn draw(args: &args::Plot, plot: Plot, all: Vec<(String, Reader)>) -> Result<(),
             together(&all.collect::<Result<Vec<_>, Failure>>()?, plot, &chosen)
         }
     };
-    super::picture::write(&drawn.map_err(told)?, &output, args.force)?;
+    super::picture::write(&drawn.map_err(failed)?, &output, args.force)?;
     crate::print(&format!("{}\n", output.display()))
 }
 
@@ -113,7 +114,7 @@ fn animate(args: &args::Plot, plot: Plot, all: &[(String, Reader)], path: &Path)
     let [(_, reader)] = all else {
         return Err(Failure::input("--animate shows one result; give one".to_owned()));
     };
-    Motion::of(path).map_err(told)?;
+    Motion::of(path).map_err(failed)?;
     super::free(path, args.force)?;
     let duration = args.duration.as_deref();
     let duration =
@@ -125,21 +126,24 @@ fn animate(args: &args::Plot, plot: Plot, all: &[(String, Reader)], path: &Path)
     };
     let chosen = options::of(args, plot, reader)?;
     let last = Options { at: At::Last, ..chosen };
-    super::picture::tell_missing(&figure(reader, plot, &last).map_err(told)?);
+    super::picture::warn_of_missing_letters(&figure(reader, plot, &last).map_err(failed)?);
     match animation(reader, plot, &last, course, path, args.force) {
         Ok(Frames { shown, without_contact }) => {
             if without_contact > 0 {
-                crate::talk::say!("{} without contact: left out", counted(without_contact, "stored time"));
+                crate::messages::message!(
+                    "{} without contact: left out",
+                    counted(without_contact, "stored time")
+                );
             }
             crate::print(&format!("{}: {shown} frames\n", path.display()))
         }
         Err(AnimationError::Encoding { path, why }) => {
             Err(Failure::System(format!("cannot write {}: {why}", path.display())))
         }
-        Err(error) => Err(told(error)),
+        Err(error) => Err(failed(error)),
     }
 }
 
-fn told(error: impl std::error::Error + 'static) -> Failure {
+fn failed(error: impl std::error::Error + 'static) -> Failure {
     Failure::of(error)
 }

@@ -8,7 +8,7 @@ use asperity_report::result::{Line, Options, Plot};
 use super::super::moment;
 use crate::args;
 use crate::failure::Failure;
-use crate::words::read;
+use crate::input::read;
 
 /// Sides of the paper \[m\].
 const SIDES: [f64; 2] = [0.02, 1.0];

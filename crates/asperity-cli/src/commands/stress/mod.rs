@@ -1,6 +1,6 @@
 //! `asperity stress`: the stress below the surface of a result.
 
-mod tell;
+mod summary;
 
 use std::time::{Duration, Instant};
 
@@ -18,8 +18,8 @@ use asperity_report::result::stress_figure;
 
 use crate::args::Stress;
 use crate::failure::Failure;
-use crate::talk::say;
-use crate::words::read;
+use crate::input::read;
+use crate::messages::message;
 
 /// Fields of a volume where none are named.
 const USUAL: [StressQuantity; 3] = [StressQuantity::Mises, StressQuantity::Tresca, StressQuantity::Tension];
@@ -27,21 +27,21 @@ const USUAL: [StressQuantity; 3] = [StressQuantity::Mises, StressQuantity::Tresc
 /// Computes and stores the stress, or shows the one that is stored; then draws and writes what is asked for.
 pub fn run(args: &Stress) -> Result<(), Failure> {
     if let Some(path) = &args.plot {
-        Form::of(path).map_err(told)?;
+        Form::of(path).map_err(failed)?;
     }
     for path in args.plot.iter().chain(&args.output) {
         super::free(path, args.force)?;
     }
-    let reader = Reader::open(&args.result).map_err(told)?;
+    let reader = Reader::open(&args.result).map_err(failed)?;
     let plan = plan(args, &reader)?;
-    let stored = Below::of(&reader).map_err(told)?;
+    let stored = Below::of(&reader).map_err(failed)?;
     let below = match stored {
         Some(below) if StressPlan::of(&below.set, &reader) == plan => below,
         _ if args.no_store => of_result(&reader, &plan, &crate::interrupt::flag()).map_err(ended)?,
         stored => {
             if let Some(stored) = stored {
                 let words = StressPlan::of(&stored.set, &reader).words();
-                say!("replaces the stored stress {words} (--no-store computes without storing)");
+                message!("replaces the stored stress {words} (--no-store computes without storing)");
             }
             store(args, &plan)?
         }
@@ -50,35 +50,35 @@ pub fn run(args: &Stress) -> Result<(), Failure> {
         Some(text) => At::Time(read::<Time>("--time", text, "500 s")?.get()),
         None => below.worst().map_or(At::Last, |worst| At::Index(worst.index)),
     };
-    let index = reader.index(at).map_err(told)?;
+    let index = reader.index(at).map_err(failed)?;
     let mut written = vec![];
     if let Some(path) = &args.plot {
-        let one = Reader::open(&args.result).map_err(told)?;
+        let one = Reader::open(&args.result).map_err(failed)?;
         let shown = match below.instants.iter().any(|instant| instant.index == index) {
             true => below.clone(),
             false => below_at(&one, &plan, at).map_err(ended)?,
         };
-        let figure = stress_figure(&one, &shown, index).map_err(told)?;
+        let figure = stress_figure(&one, &shown, index).map_err(failed)?;
         crate::commands::picture::write(&figure, path, args.force)?;
         written.push(path.display().to_string());
     }
     if let Some(path) = &args.output {
         let quantities = if plan.quantities.is_empty() { USUAL.to_vec() } else { plan.quantities.clone() };
-        let files = volume(&reader, &plan, at, &quantities, path, args.force).map_err(told)?;
+        let files = volume(&reader, &plan, at, &quantities, path, args.force).map_err(failed)?;
         written.extend(files.iter().map(|path| path.display().to_string()));
     }
     let shown = below.instants.iter().find(|instant| instant.index == index).or(below.worst());
     if args.json {
-        return crate::print(&format!("{}\n", tell::object(&reader, &below, &written)));
+        return crate::print(&format!("{}\n", summary::object(&reader, &below, &written)));
     }
-    super::findings::tell(&below.findings(&reader.header().grid));
+    super::findings::print(&below.findings(&reader.header().grid));
     let drawn = args.plot.is_some() || args.output.is_some();
-    let mut text = tell::text(&below, shown, drawn);
+    let mut text = summary::text(&below, shown, drawn);
     written.iter().for_each(|path| text += &format!("{path}\n"));
     crate::print(&text)
 }
 
-fn told(error: impl std::error::Error + 'static) -> Failure {
+fn failed(error: impl std::error::Error + 'static) -> Failure {
     Failure::of(error)
 }
 
@@ -87,24 +87,24 @@ fn ended(error: StressError) -> Failure {
         StressError::Solve(asperity::Error::Interrupted) => {
             Failure::Interrupted("the stress is not stored".into())
         }
-        error => told(error),
+        error => failed(error),
     }
 }
 
 /// Computes the stress and adds it to the result.
 fn store(args: &Stress, plan: &StressPlan) -> Result<Below, Failure> {
-    let mut writer = Writer::amend(&args.result).map_err(told)?;
+    let mut writer = Writer::amend(&args.result).map_err(failed)?;
     /// Time between two messages.
     const OFTEN: Duration = Duration::from_secs(2);
-    let mut told_at = Instant::now();
-    let tell = |done: usize, of: usize| {
-        if of > 1 && !args.json && done < of && told_at.elapsed() > OFTEN {
-            told_at = Instant::now();
-            say!("stress below the surface: time {} of {of}", done + 1);
+    let mut printed_at = Instant::now();
+    let progress = |done: usize, of: usize| {
+        if of > 1 && !args.json && done < of && printed_at.elapsed() > OFTEN {
+            printed_at = Instant::now();
+            message!("stress below the surface: time {} of {of}", done + 1);
         }
     };
-    let below = evaluate(&mut writer, plan, &crate::interrupt::flag(), tell).map_err(ended)?;
-    let reader = Reader::open(&args.result).map_err(told)?;
+    let below = evaluate(&mut writer, plan, &crate::interrupt::flag(), progress).map_err(ended)?;
+    let reader = Reader::open(&args.result).map_err(failed)?;
     let new = below.findings(&reader.header().grid);
     let codes = [
         asperity::finding::STRESS_UNRESOLVED,
@@ -114,7 +114,7 @@ fn store(args: &Stress, plan: &StressPlan) -> Result<Below, Failure> {
     ];
     let others = writer.findings().iter().filter(|finding| !codes.contains(&finding.code.as_ref())).cloned();
     let findings = others.chain(new).collect();
-    writer.note(findings).map_err(told)?;
+    writer.note(findings).map_err(failed)?;
     Ok(below)
 }
 

@@ -5,7 +5,7 @@ use asperity::surface::{Part, SelfAffine};
 use asperity_io::case::fragment;
 use asperity_io::topography::Topography;
 
-use super::table::Portrait;
+use super::table::SurfaceSummary;
 use crate::args::SurfaceGenerate;
 use crate::failure::Failure;
 
@@ -34,7 +34,7 @@ pub fn run(args: &SurfaceGenerate) -> Result<(), Failure> {
     ];
     let keys: Vec<(&str, &str)> = given.into_iter().filter_map(|(key, text)| Some((key, text?))).collect();
     let (grid, part) = fragment::roughness(&keys).map_err(|faults| {
-        let told = |fault: &fragment::Fault| {
+        let failed = |fault: &fragment::Fault| {
             // A path of the command line is relative to where the command runs.
             let help = fault.help.as_ref().filter(|_| fault.key != "distribution.path");
             let help = help.map_or(String::new(), |help| format!("; {}", with_options(help)));
@@ -44,7 +44,7 @@ pub fn run(args: &SurfaceGenerate) -> Result<(), Failure> {
                 key => format!("{} {message}{help}", flag(key)),
             }
         };
-        Failure::input(faults.iter().map(told).collect::<Vec<_>>().join("\n"))
+        Failure::input(faults.iter().map(failed).collect::<Vec<_>>().join("\n"))
     })?;
     let (heights, spectrum) = match part {
         Part::SelfAffine(roughness) => (roughness.heights(&grid), roughness),
@@ -65,9 +65,9 @@ pub fn run(args: &SurfaceGenerate) -> Result<(), Failure> {
     topography.record([format!("made by asperity {version}: self-affine, {}", recipe.join(", "))]);
     super::save(&args.to, &topography, format)?;
     let written = args.to.output.display().to_string();
-    let portrait = Portrait::of(&written, &topography, Extent::Periodic)?;
+    let summary = SurfaceSummary::of(&written, &topography, Extent::Periodic)?;
     // The ring of the shortest waves is full only up to the cut-off.
-    portrait.fitted(spectrum.longest, 1.1 * spectrum.shortest).tell(
+    summary.fitted(spectrum.longest, 1.1 * spectrum.shortest).print(
         args.to.json,
         args.to.plot.as_deref(),
         args.to.force,

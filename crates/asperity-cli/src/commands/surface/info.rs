@@ -2,7 +2,7 @@
 
 use asperity::surface::statistics::Extent;
 
-use super::table::Portrait;
+use super::table::SurfaceSummary;
 use crate::args::SurfaceInfo;
 use crate::failure::Failure;
 
@@ -26,9 +26,9 @@ pub fn run(args: &SurfaceInfo) -> Result<(), Failure> {
     let topography = super::open(&args.file)?;
     let name = args.file.file.display().to_string();
     let extent = if args.periodic { Extent::Periodic } else { Extent::Finite };
-    let mut portrait = Portrait::of(&name, &topography, extent)?;
+    let mut summary = SurfaceSummary::of(&name, &topography, extent)?;
     if args.longest.is_some() || args.shortest.is_some() {
-        portrait = portrait.fitted_as_told(band[0], band[1])?;
+        summary = summary.fitted_as_asked(band[0], band[1])?;
     }
-    portrait.tell(args.json, args.plot.as_deref(), args.force)
+    summary.print(args.json, args.plot.as_deref(), args.force)
 }

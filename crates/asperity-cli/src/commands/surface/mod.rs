@@ -39,10 +39,10 @@ pub(super) fn open(file: &SurfaceFile) -> Result<Topography, Failure> {
 
 /// The heights on their grid; `name` is what messages call them.
 fn map(name: &str, topography: &Topography) -> Result<Map, Failure> {
-    let told = |error: asperity::Error| Failure::input(format!("{name}: {error}"));
+    let failed = |error: asperity::Error| Failure::input(format!("{name}: {error}"));
     let (nx, ny) = topography.heights.dim();
-    let grid = Grid::new([nx, ny], topography.size).map_err(told)?;
-    Map::new(grid, topography.heights.clone()).map_err(told)
+    let grid = Grid::new([nx, ny], topography.size).map_err(failed)?;
+    Map::new(grid, topography.heights.clone()).map_err(failed)
 }
 
 /// The format that `--to` or else the ending of the path names; refuses to replace a file unless told.

@@ -5,7 +5,7 @@ use asperity_io::case::fragment;
 use asperity_io::preparation::{Step, prepare};
 use asperity_io::topography::Topography;
 
-use super::table::Portrait;
+use super::table::SurfaceSummary;
 use crate::args::SurfaceProcess;
 use crate::failure::Failure;
 
@@ -19,21 +19,21 @@ pub fn run(args: &SurfaceProcess) -> Result<(), Failure> {
         .collect::<Result<_, _>>()?;
     let mut topography = super::open(&args.file)?;
     let name = args.file.file.display().to_string();
-    let told = |error: asperity::Error| {
+    let failed = |error: asperity::Error| {
         // There is no domain here.
         let reason = error
             .to_string()
             .replace("as `cells` of the step or as `domain.cells` of the case", "cells=NX,NY");
         Failure::input(format!("{name}: {reason}"))
     };
-    let prepared = prepare(super::map(&name, &topography)?, &steps, None).map_err(told)?;
+    let prepared = prepare(super::map(&name, &topography)?, &steps, None).map_err(failed)?;
     topography.record(prepared.history);
     let size = prepared.surface.grid().size();
     let processed = Topography { heights: prepared.surface.into_heights(), size, ..topography };
     super::save(&args.to, &processed, format)?;
     let written = args.to.output.display().to_string();
     let processed = Topography { format, ..processed };
-    Portrait::of(&written, &processed, Extent::Finite)?.tell(
+    SurfaceSummary::of(&written, &processed, Extent::Finite)?.print(
         args.to.json,
         args.to.plot.as_deref(),
         args.to.force,

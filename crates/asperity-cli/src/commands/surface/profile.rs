@@ -11,10 +11,10 @@ use asperity_io::topography::{Profile, ReadOptions, Topography, read_profile};
 use asperity_report::figure::{Axis, Curves, Figure, Series, Style};
 use serde_json::json;
 
-use super::table::Portrait;
+use super::table::SurfaceSummary;
 use crate::args::{SurfaceFile, SurfaceFromProfile, SurfaceInfo};
 use crate::failure::Failure;
-use crate::words::quantity;
+use crate::format::quantity;
 
 /// Rings of the spectrum per decade.
 const PER_DECADE: u32 = 16;
@@ -39,7 +39,7 @@ fn prepared(
     profile: Profile,
     args: &SurfaceInfo,
 ) -> Result<(Vec<f64>, f64, Vec<String>), Failure> {
-    let told = |error: asperity::Error| Failure::input(format!("{name}: {error}"));
+    let failed = |error: asperity::Error| Failure::input(format!("{name}: {error}"));
     let spacing = profile.surface.grid().spacing()[0];
     let mut steps = vec![];
     if profile.surface.undefined() > 0 {
@@ -50,13 +50,13 @@ fn prepared(
         Some("fit") => Step::Circle { radius: None },
         Some(radius) => Step::Circle { radius: Some(super::length(radius)?) },
     });
-    let done = prepare(profile.surface, &steps, None).map_err(told)?;
+    let done = prepare(profile.surface, &steps, None).map_err(failed)?;
     let mut heights: Vec<f64> = done.surface.heights().iter().copied().collect();
     let mut history = profile.history;
     history.extend(done.history.into_iter().map(|step| step.replace("the plane", "the straight line")));
     if let Some(cutoff) = &args.cutoff {
         let cutoff = super::length(cutoff)?;
-        heights = roughness(&heights, spacing, cutoff).map_err(told)?;
+        heights = roughness(&heights, spacing, cutoff).map_err(failed)?;
         history.push(format!(
             "subtract the Gaussian mean line of cut-off {} (ISO 16610-21)",
             quantity(cutoff, "m")
@@ -68,12 +68,12 @@ fn prepared(
 /// Prints the parameters of the profile, and draws the picture asked for.
 pub(super) fn info(args: &SurfaceInfo, profile: Profile) -> Result<(), Failure> {
     let name = args.file.file.display().to_string();
-    let told = |error: asperity::Error| Failure::input(format!("{name}: {error}"));
+    let failed = |error: asperity::Error| Failure::input(format!("{name}: {error}"));
     let (stored, undefined) = (profile.surface.clone(), profile.surface.undefined());
     let size = stored.grid().size()[0];
     let (heights, spacing, history) = prepared(&name, profile, args)?;
-    let found = ProfileParameters::of(&heights, spacing).map_err(told)?;
-    let spectrum = ProfileSpectrum::of(&heights, spacing, args.periodic, PER_DECADE).map_err(told)?;
+    let found = ProfileParameters::of(&heights, spacing).map_err(failed)?;
+    let spectrum = ProfileSpectrum::of(&heights, spacing, args.periodic, PER_DECADE).map_err(failed)?;
     let finite = stored.heights().iter().copied().filter(|z| z.is_finite()).collect::<Vec<f64>>();
     let (low, high) = (
         finite.iter().copied().fold(f64::INFINITY, f64::min),
@@ -139,7 +139,7 @@ fn figure(name: &str, heights: &[f64], spacing: f64, spectrum: &ProfileSpectrum)
 pub(super) fn synthesize(args: &SurfaceFromProfile) -> Result<(), Failure> {
     let format = super::targets(&args.to)?;
     let name = args.file.file.display().to_string();
-    let told = |error: asperity::Error| Failure::input(format!("{name}: {error}"));
+    let failed = |error: asperity::Error| Failure::input(format!("{name}: {error}"));
     let Some(profile) = open(&args.file)? else {
         return Err(Failure::input(format!(
             "{name} is no profile: it needs two columns of text, position and height"
@@ -148,15 +148,15 @@ pub(super) fn synthesize(args: &SurfaceFromProfile) -> Result<(), Failure> {
     let spacing = profile.surface.grid().spacing()[0];
     let mut history = profile.history;
     let heights: Vec<f64> = profile.surface.heights().iter().copied().collect();
-    let spectrum = ProfileSpectrum::of(&heights, spacing, args.periodic, PER_DECADE).map_err(told)?;
+    let spectrum = ProfileSpectrum::of(&heights, spacing, args.periodic, PER_DECADE).map_err(failed)?;
     let size = match args.to_size.as_deref() {
         Some(text) if text.contains(',') => super::size(text)?,
         Some(text) => [super::length(text)?; 2],
         None => [profile.surface.grid().size()[0]; 2],
     };
     let cells = cells(args.cells.as_deref(), size, spacing)?;
-    let grid = Grid::new(cells, size).map_err(told)?;
-    let made = spectrum.surface(&grid, args.seed).map_err(told)?;
+    let grid = Grid::new(cells, size).map_err(failed)?;
+    let made = spectrum.surface(&grid, args.seed).map_err(failed)?;
     let mut topography = Topography {
         format,
         heights: made,
@@ -174,13 +174,13 @@ pub(super) fn synthesize(args: &SurfaceFromProfile) -> Result<(), Failure> {
     topography.record(history);
     super::save(&args.to, &topography, format)?;
     let written = args.to.output.display().to_string();
-    Portrait::of(&written, &topography, Extent::Periodic)?.tell(
+    SurfaceSummary::of(&written, &topography, Extent::Periodic)?.print(
         args.to.json,
         args.to.plot.as_deref(),
         args.to.force,
     )?;
     if !args.to.json {
-        crate::talk::say!(
+        crate::messages::message!(
             "assumed: the surface is the same in all directions and its heights are Gaussian; a profile cannot tell a lay"
         );
     }

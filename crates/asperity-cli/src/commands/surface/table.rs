@@ -1,4 +1,4 @@
-//! What is told of a surface: a table, a JSON object, a picture.
+//! What is printed of a surface: a table, a JSON object, a picture.
 
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use asperity_report::surface::picture;
 use serde_json::{Value, json};
 
 use crate::failure::Failure;
-use crate::words::quantity;
+use crate::format::quantity;
 
 /// Levels of the bearing curve.
 const LEVELS: usize = 1000;
@@ -19,7 +19,7 @@ const LEVELS: usize = 1000;
 const SHARES: [f64; 5] = [0.01, 0.1, 0.5, 0.9, 0.99];
 
 /// A surface and its statistics.
-pub struct Portrait<'a> {
+pub struct SurfaceSummary<'a> {
     name: &'a str,
     topography: &'a Topography,
     map: Map,
@@ -35,14 +35,14 @@ pub fn check_plot(plot: Option<&Path>, force: bool) -> Result<(), Failure> {
     super::free(plot, force)
 }
 
-impl<'a> Portrait<'a> {
+impl<'a> SurfaceSummary<'a> {
     /// Takes the statistics; `name` is what the surface is called.
     pub fn of(name: &'a str, topography: &'a Topography, extent: Extent) -> Result<Self, Failure> {
         let map = super::map(name, topography)?;
-        let told = |error: asperity::Error| Failure::input(format!("{name}: {error}"));
-        let summary = Summary::of(&map, extent).map_err(told)?;
-        let bearing = BearingCurve::of(&map, LEVELS).map_err(told)?;
-        Ok(Portrait { name, topography, map, extent, summary, bearing })
+        let failed = |error: asperity::Error| Failure::input(format!("{name}: {error}"));
+        let summary = Summary::of(&map, extent).map_err(failed)?;
+        let bearing = BearingCurve::of(&map, LEVELS).map_err(failed)?;
+        Ok(SurfaceSummary { name, topography, map, extent, summary, bearing })
     }
 
     /// Fits the Hurst exponent to the waves between two lengths \[m\] only; no fit where there are too few.
@@ -54,7 +54,7 @@ impl<'a> Portrait<'a> {
     }
 
     /// The same for a range that the user gives: too few waves are an error.
-    pub fn fitted_as_told(self, longest: f64, shortest: f64) -> Result<Self, Failure> {
+    pub fn fitted_as_asked(self, longest: f64, shortest: f64) -> Result<Self, Failure> {
         if let Some(waves) = &self.summary.waves {
             SelfAffineFit::of(&waves.spectrum, longest, shortest)
                 .map_err(|error| Failure::input(format!("{}: {error}", self.name)))?;
@@ -63,7 +63,7 @@ impl<'a> Portrait<'a> {
     }
 
     /// Prints the table or the object, and draws the picture where one is asked for.
-    pub fn tell(&self, json: bool, plot: Option<&Path>, force: bool) -> Result<(), Failure> {
+    pub fn print(&self, json: bool, plot: Option<&Path>, force: bool) -> Result<(), Failure> {
         if let Some(plot) = plot {
             let title =
                 Path::new(self.name).file_name().map_or(self.name.into(), |name| name.to_string_lossy());
@@ -77,7 +77,7 @@ impl<'a> Portrait<'a> {
     }
 
     fn object(&self) -> Value {
-        let Portrait { topography, summary, .. } = self;
+        let SurfaceSummary { topography, summary, .. } = self;
         let (nx, ny) = topography.heights.dim();
         let at = |i: usize, j: usize| topography.heights.get((i, j)).copied().filter(|h| h.is_finite());
         let (h, slopes) = (&summary.heights, summary.slopes);
@@ -137,7 +137,7 @@ impl<'a> Portrait<'a> {
     }
 
     fn table(&self) -> String {
-        let Portrait { topography, summary, .. } = self;
+        let SurfaceSummary { topography, summary, .. } = self;
         let mut text = String::new();
         let mut line = |name: &str, value: String, words: &str| {
             let gap = if words.is_empty() { String::new() } else { format!("  {words}") };

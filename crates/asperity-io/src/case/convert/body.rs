@@ -11,8 +11,8 @@ use asperity::material::{
 use asperity::time::Plan;
 
 use super::Checks;
-use super::layer::{self, Part};
-use super::material::{Model, Sample};
+use super::layer::{self, Made, Part};
+use super::sample::{Model, Sample};
 use crate::case::describe::MaterialReport;
 use crate::case::raw::{self, At};
 
@@ -138,15 +138,6 @@ pub fn pair(
     }
     pair.hardness = pair_hardness(&pair.bodies);
     Some(pair)
-}
-
-/// One body or layer, ready for the contact.
-pub struct Made {
-    pub body: Body,
-    creep: Creep,
-    pub clock: Option<ReducedTime>,
-    report: MaterialReport,
-    findings: Vec<Finding>,
 }
 
 fn made(

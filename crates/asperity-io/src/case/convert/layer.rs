@@ -2,13 +2,15 @@
 
 use std::ops::Range;
 
+use asperity::finding::Finding;
 use asperity::layer::{BodyLayer, Inseparable, Layered, LayeredBody, Response, response};
 use asperity::march::check_layers;
+use asperity::material::{Body, Creep, ReducedTime};
 use asperity::quantities::Quantity;
 use asperity::{Boundary, Error, Grid, Scheme};
 
 use super::Checks;
-use super::body::Made;
+use crate::case::describe::MaterialReport;
 use crate::case::quantity::range::{Poisson, Positive};
 use crate::case::quantity::{Number, Pressure};
 use crate::case::raw::{self, At, BodyBase};
@@ -30,6 +32,15 @@ pub struct Part<'a> {
     pub bulk_modulus: Option<Pressure<Positive>>,
     /// Cut-off of the pressure on it [Pa], at the surface.
     pub hardness: Option<f64>,
+}
+
+/// One body or layer, ready for the contact.
+pub struct Made {
+    pub body: Body,
+    pub creep: Creep,
+    pub clock: Option<ReducedTime>,
+    pub report: MaterialReport,
+    pub findings: Vec<Finding>,
 }
 
 /// The materials of all bodies, each from the surface down.

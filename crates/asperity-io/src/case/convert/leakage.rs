@@ -6,8 +6,8 @@ use asperity::leakage::Sides;
 use super::Checks;
 use super::stored_times::stored_times;
 use crate::case::plan::Output;
-use crate::case::raw::{self, At, LeakDirection};
-use crate::leakage::{Fluid, GasKind, Leak};
+use crate::case::raw::{self, At};
+use crate::leakage::{Fluid, GasKind, Leak, LeakDirection};
 use crate::store::FieldKind;
 
 /// What is wrong with the keys of a leakage: message, what was expected, what to do.

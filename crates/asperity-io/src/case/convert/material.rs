@@ -2,40 +2,16 @@
 
 use std::ops::Range;
 
-use asperity::material::{Creep, CreepTerm, Fractional, Material, Modulus, Relaxation, Shift, VerticalShift};
+use asperity::material::{Creep, CreepTerm, Fractional, Material, Modulus, Relaxation, Shift};
 
+use super::sample::{Model, Sample};
 use super::{Checks, curve, temperature};
 use crate::case::error::CaseError;
 use crate::case::quantity::range::{Order, Positive, Tolerance};
 use crate::case::quantity::{Number, Pressure, Time};
 use crate::case::raw::{self, At};
 use crate::case::text::Text;
-use crate::curve::{Fitted, ShiftRequest, VerticalRequest};
-
-/// A material as the case gives it, at its reference temperature.
-pub struct Sample {
-    pub model: Model,
-    /// "zener", "dma", ...
-    pub name: &'static str,
-    /// How its times depend on temperature.
-    pub shift: Option<Shift>,
-    /// How its moduli do.
-    pub vertical: Option<VerticalShift>,
-    /// Its own constant temperature [K].
-    pub temperature: Option<f64>,
-    /// The file that it was fitted to, and its MD5.
-    pub file: Option<(String, String)>,
-}
-
-/// What is known of it.
-pub enum Model {
-    /// All.
-    Known(Material),
-    /// A fractional model, which becomes a Prony sum over the times of the run.
-    Fractional { measure: Modulus, model: Fractional, time: f64, tolerance: f64 },
-    /// A fit of measured curves from a file.
-    Fitted { fitted: Box<Fitted>, file: String },
-}
+use crate::curve::{ShiftRequest, VerticalRequest};
 
 /// The conversion between relaxation and creep finds as many roots as there are terms.
 const MOST_TERMS: usize = 1000;

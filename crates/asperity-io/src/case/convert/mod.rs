@@ -14,6 +14,7 @@ mod material;
 mod motion;
 mod output;
 pub(super) mod prepare;
+mod sample;
 mod stored_times;
 pub(super) mod stress;
 pub(super) mod surface;

@@ -2,7 +2,7 @@
 
 use asperity::material::{Shift, VerticalShift};
 
-use super::material::Sample;
+use super::sample::Sample;
 use super::{Checks, history_file};
 use crate::case::quantity::{Number, Prescribed, Temperature};
 use crate::case::raw::{self, At, TemperatureHistory, Two};

@@ -2,24 +2,12 @@
 
 use asperity::leakage::{Rarefaction, Sides, Species};
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
 use super::{At, StoredTimes};
 use crate::case::quantity::range::{NonNegative, Positive};
 use crate::case::quantity::{Length, MolarMass, Pressure, Temperature, Viscosity};
-
-/// Where the fluid flows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Deserialize, Serialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum LeakDirection {
-    /// Along x.
-    #[default]
-    X,
-    /// Along y.
-    Y,
-    /// Along x, and the effective conductance in both directions; on periodic domains.
-    Both,
-}
+use crate::leakage::LeakDirection;
 
 /// The flow of a fluid through the gap, from the stored fields: a liquid with `pressure_drop` and `viscosity`, or
 /// a gas with `inlet`, `outlet` and `gas` (or its `viscosity` and `molar_mass`). Without a fluid only the gap is assessed.

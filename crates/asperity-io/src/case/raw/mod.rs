@@ -28,7 +28,7 @@ use serde::{Deserialize, Deserializer};
 
 pub use axes::Axes;
 pub use body::{Body, BodyBase, HardnessFile, Layer};
-pub use leakage::{LeakDirection, Leakage};
+pub use leakage::Leakage;
 pub use load::{From, History, Load, Sine, Spacing, Stage, Table, Time, Until};
 pub use material::{
     Column, CreepTable, CreepTerm, Dma, Fit, FractionalZener, Material, Prony, RelaxationTable,

@@ -1,10 +1,10 @@
-//! How long a run takes: the convolutions that a rehearsal on a coarse grid counts, times what one takes here.
+//! How long a run takes: the convolutions that an estimate on a coarse grid counts, times what one takes here.
 
 use std::time::Instant;
 
 use asperity::operator::half_space;
 use asperity::{Grid, Method, Scheme};
-use asperity_io::case::{Case, Description, Rehearsal};
+use asperity_io::case::{Case, CostEstimate, Description};
 use asperity_io::stress::StressDescription;
 
 /// Cells along a side on which a convolution is timed.
@@ -23,28 +23,28 @@ const STORED: f64 = 150e6;
 const START: f64 = 0.03;
 
 /// What a run takes.
-pub(super) struct Work {
+pub(super) struct Cost {
     /// Rows and convolutions.
-    pub(super) rehearsal: Rehearsal,
+    pub(super) estimate: CostEstimate,
     /// On the clock \[s\].
     pub(super) seconds: f64,
 }
 
-/// The work of a case; `None` where it cannot be rehearsed.
-pub(super) fn work(case: &Case, description: &Description) -> Option<Work> {
-    let rehearsal = case.rehearse()?;
+/// The cost of a case; `None` where it cannot be estimated.
+pub(super) fn cost(case: &Case, description: &Description) -> Option<Cost> {
+    let estimate = case.cost()?;
     let iteration = match case.solver.method {
         Method::ProjectedCg => PROJECTED_CG,
         Method::PolonskyKeer => POLONSKY_KEER,
     };
-    let rows = rehearsal.rows as f64;
+    let rows = estimate.rows as f64;
     let past = if case.scheme == Scheme::Direct { 0.5 * PAST * rows * rows } else { 0.0 };
     let terms = description.retardation_times.len() as f64;
-    let units = iteration * rehearsal.convolutions as f64 + (ROW + TERM * terms) * rows + past;
+    let units = iteration * estimate.convolutions as f64 + (ROW + TERM * terms) * rows + past;
     let cells = case.grid.len() as f64;
-    let stored = description.stored_rows.unwrap_or(rehearsal.rows) as f64;
+    let stored = description.stored_rows.unwrap_or(estimate.rows) as f64;
     let fields = 8.0 * cells * (stored * description.fields.len() as f64 + 1.0);
-    Some(Work { rehearsal, seconds: START + units * convolution(case)? + fields / STORED })
+    Some(Cost { estimate, seconds: START + units * convolution(case)? + fields / STORED })
 }
 
 /// What a convolution takes here \[s\], timed on a small grid and scaled as N log N.

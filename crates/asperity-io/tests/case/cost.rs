@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use asperity::drive;
-use asperity_io::case::{Case, Rehearsal};
+use asperity_io::case::{Case, CostEstimate};
 
-/// A case of 192 x 192 cells, or a line of 1024: several times as fine as its rehearsal.
+/// A case of 192 x 192 cells, or a line of 1024: several times as fine as the grid of its estimate.
 fn case(domain: &str, surface: &str, load: &str, more: &str) -> Case {
     let text = format!(
         "{domain}\n{surface}\n[[body]]\nname = \"rubber\"\npoisson = 0.5\nmaterial = {{ model = \"prony\", modulus = \
@@ -23,12 +23,12 @@ const ROUGH: &str = "[[surface]]\nkind = \"self-affine\"\nhurst = 0.8\nrms_gradi
 const UNTIL: &str = "[time]\nend = \"20 s\"\nsteps = 20";
 
 /// Rows and convolutions of the run itself.
-fn solved(case: &Case) -> Rehearsal {
+fn solved(case: &Case) -> CostEstimate {
     let parts = case.parts().unwrap();
     let simulation = case.simulation_of(&parts).unwrap();
     let steady = case.steady_of(&parts, &simulation).unwrap();
     let mut drive = drive::of(simulation, steady).unwrap();
-    let mut found = Rehearsal { rows: 0, convolutions: 0 };
+    let mut found = CostEstimate { rows: 0, convolutions: 0 };
     while let Some(step) = drive.advance().unwrap() {
         found.convolutions += step.row().convolutions;
         found.rows += 1;
@@ -38,7 +38,7 @@ fn solved(case: &Case) -> Rehearsal {
 
 /// Convolutions within a factor of two, and rows: exactly where they are planned.
 fn expected(name: &str, case: &Case) {
-    let (expected, solved) = (case.rehearse().expect(name), solved(case));
+    let (expected, solved) = (case.cost().expect(name), solved(case));
     let ratio = expected.convolutions as f64 / solved.convolutions as f64;
     assert!((0.5..=2.0).contains(&ratio), "{name}: expected {expected:?}, solved {solved:?}");
     match case.describe().rows {

@@ -5,7 +5,7 @@ use asperity_io::store::Reader;
 use asperity_io::stress::{Below, Instant, first_yield};
 use serde_json::{Map, Value, json};
 
-use crate::words::{counted, quantity};
+use crate::format::{counted, quantity};
 
 /// The JSON object.
 pub fn object(reader: &Reader, below: &Below, written: &[String]) -> Value {

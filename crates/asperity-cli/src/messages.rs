@@ -1,4 +1,4 @@
-//! What is said on stderr. It is never worth a result: where it cannot be written (a closed terminal, a full disk), it is
+//! Messages on stderr. A message is never worth a result: where it cannot be written (a closed terminal, a full disk), it is
 //! dropped.
 //!
 //! Titles, names and lines of files may hold control characters, which would move the cursor, change colours of a terminal or
@@ -8,13 +8,13 @@ use std::borrow::Cow;
 use std::fmt::Arguments;
 use std::io::Write;
 
-/// Says a line on stderr.
-macro_rules! say {
-    ($($text:tt)*) => { $crate::talk::line(format_args!($($text)*)) };
+/// Writes a line on stderr.
+macro_rules! message {
+    ($($text:tt)*) => { $crate::messages::line(format_args!($($text)*)) };
 }
-pub(crate) use say;
+pub(crate) use message;
 
-/// See [`say`].
+/// See [`message`].
 pub fn line(text: Arguments<'_>) {
     write(&format!("{}\n", printable(&text.to_string())));
 }

@@ -3,8 +3,8 @@
 use asperity::Boundary;
 use serde_json::{Map, Value, json};
 
-use super::{Fluid, GasKind, Leak};
-use crate::case::{LeakageKeys, leak as checked};
+use super::{LeakageKeys, leak as checked};
+use crate::leakage::{Fluid, GasKind, Leak};
 
 impl Leak {
     /// The keys that describe it, but for `times`.

@@ -11,7 +11,7 @@ use asperity_io::curve::{
     angular_frequency, read_shift_table,
 };
 
-use super::told;
+use super::failed;
 use crate::args::{Data, Fit};
 use crate::failure::Failure;
 
@@ -115,7 +115,9 @@ pub fn vertical(args: &Fit) -> Result<VerticalRequest, Failure> {
 pub fn ends(kind: Kind, text: &str) -> Result<[f64; 2], Failure> {
     let wanted = "two times or, of a dma, two frequencies, e.g. --window '0.1 s, 100 s'";
     let ends = split::<2>(text, "--window", wanted)?.map(|end| match kind {
-        Kind::Dma => angular_frequency(end).map_err(|error| told(format!("--window: {end} must be {error}"))),
+        Kind::Dma => {
+            angular_frequency(end).map_err(|error| failed(format!("--window: {end} must be {error}")))
+        }
         _ => parsed::<Time<range::Positive>>("--window", end).map(|time| time.get()),
     });
     let [first, last] = ends;

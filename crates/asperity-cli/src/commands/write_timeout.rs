@@ -9,18 +9,18 @@ use hyper::rt::{Read, ReadBufCursor, Write};
 use tokio::time::{Instant, Sleep, sleep};
 
 /// A stream whose writes end with an error after a pause without progress.
-pub struct Patient<S> {
+pub struct WriteTimeout<S> {
     stream: S,
-    patience: Duration,
+    limit: Duration,
     /// Runs while a write waits.
     clock: Pin<Box<Sleep>>,
     waits: bool,
 }
 
-impl<S> Patient<S> {
+impl<S> WriteTimeout<S> {
     /// The stream, whose writes may pause for so long.
-    pub fn new(stream: S, patience: Duration) -> Self {
-        Patient { stream, patience, clock: Box::pin(sleep(patience)), waits: false }
+    pub fn new(stream: S, limit: Duration) -> Self {
+        WriteTimeout { stream, limit, clock: Box::pin(sleep(limit)), waits: false }
     }
 
     /// Passes on what a write has come to; one that has waited too long is an error.
@@ -31,14 +31,14 @@ impl<S> Patient<S> {
         }
         if !self.waits {
             self.waits = true;
-            self.clock.as_mut().reset(Instant::now() + self.patience);
+            self.clock.as_mut().reset(Instant::now() + self.limit);
         }
         ready!(self.clock.as_mut().poll(context));
         Poll::Ready(Err(io::ErrorKind::TimedOut.into()))
     }
 }
 
-impl<S: Read + Unpin> Read for Patient<S> {
+impl<S: Read + Unpin> Read for WriteTimeout<S> {
     fn poll_read(
         mut self: Pin<&mut Self>,
         context: &mut Context<'_>,
@@ -48,7 +48,7 @@ impl<S: Read + Unpin> Read for Patient<S> {
     }
 }
 
-impl<S: Write + Unpin> Write for Patient<S> {
+impl<S: Write + Unpin> Write for WriteTimeout<S> {
     fn poll_write(
         mut self: Pin<&mut Self>,
         context: &mut Context<'_>,
@@ -106,7 +106,7 @@ mod tests {
     fn a_client_that_takes_nothing_is_given_up() {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_time().build().unwrap();
         runtime.block_on(async {
-            let mut stream = Patient::new(Stuck(false), Duration::from_millis(20));
+            let mut stream = WriteTimeout::new(Stuck(false), Duration::from_millis(20));
             let mut write = async || poll_fn(|cx| Pin::new(&mut stream).poll_write(cx, b"abc")).await;
             assert_eq!(write().await.unwrap(), 3);
             assert_eq!(write().await.unwrap_err().kind(), io::ErrorKind::TimedOut);

@@ -1,4 +1,4 @@
-//! A rehearsal: the case on a coarse grid, for the number of rows and of convolutions that its run takes.
+//! The cost of a run, estimated by the case on a coarse grid: its number of rows and of convolutions.
 //!
 //! How many iterations a row takes depends on what the load does, on the roughness and on the material, hardly on the number of
 //! cells, because the solver is preconditioned. So the same case with few cells tells it. For the method of Polonsky and Keer,
@@ -17,9 +17,9 @@ const CELLS_OF_LINE: usize = 256;
 const ENOUGH: usize = 1200;
 const ENOUGH_ROWS: usize = 2000;
 
-/// What a rehearsal found.
+/// The estimated cost of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rehearsal {
+pub struct CostEstimate {
     /// Rows of the run.
     pub rows: usize,
     /// Convolutions of the run.
@@ -28,7 +28,7 @@ pub struct Rehearsal {
 
 impl Case {
     /// Solves the case on a coarse grid. `None` where that cannot be solved.
-    pub fn rehearse(&self) -> Option<Rehearsal> {
+    pub fn cost(&self) -> Option<CostEstimate> {
         let parts = self.parts().ok()?;
         let every = self.grid.cells()[0].max(self.grid.cells()[1]).div_ceil(match self.grid.is_line() {
             true => CELLS_OF_LINE,
@@ -43,7 +43,7 @@ impl Case {
             parts.into_iter().map(|part| sample(part, &self.grid, every)).collect();
         let parts = parts?;
         let simulation = coarse.simulation_of(&parts).ok()?;
-        let mut found = Rehearsal { rows: 0, convolutions: 0 };
+        let mut found = CostEstimate { rows: 0, convolutions: 0 };
         let steady = coarse.steady_of(&parts, &simulation).ok()?;
         let mut drive = drive::of(simulation, steady).ok()?;
         let mut reached = 0.0;
@@ -65,20 +65,20 @@ impl Case {
     }
 }
 
-impl Rehearsal {
-    /// The whole run, of whose course a `share` was rehearsed, with the number of rows where it is known.
-    fn completed(self, share: f64, rows: Option<usize>) -> Rehearsal {
+impl CostEstimate {
+    /// The whole run, of whose course a `share` was computed, with the number of rows where it is known.
+    fn completed(self, share: f64, rows: Option<usize>) -> CostEstimate {
         let most = |n: f64| n.round().clamp(0.0, 1e12) as usize;
         let all = rows.unwrap_or_else(|| most(self.rows as f64 / share.max(1e-6)));
         let each = self.convolutions as f64 / self.rows.max(1) as f64;
-        Rehearsal { rows: all, convolutions: most(each * all as f64) }
+        CostEstimate { rows: all, convolutions: most(each * all as f64) }
     }
 
     /// The same on a grid so many times finer by the method of Polonsky and Keer, which has no preconditioner: spheres and rough
     /// surfaces on 64 to 512 cells took convolutions in proportion to the power 0.6 to 1.1 of the cells along a side.
-    fn refined(self, times: usize) -> Rehearsal {
+    fn refined(self, times: usize) -> CostEstimate {
         let growth = (times as f64).powf(0.75);
-        Rehearsal { convolutions: (growth * self.convolutions as f64).round() as usize, ..self }
+        CostEstimate { convolutions: (growth * self.convolutions as f64).round() as usize, ..self }
     }
 }
 

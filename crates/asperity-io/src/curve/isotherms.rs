@@ -1,0 +1,55 @@
+//! The sweeps of a file as isotherms, which shifts are estimated from.
+
+use asperity::material::{Abscissa, Isotherm};
+
+use super::error::{Fault, fault};
+use super::sweeps::SAME_TEMPERATURE;
+use super::{Curves, Kind, Sweep};
+
+/// The temperature of the shift factor that belongs to a sweep: chambers hold it to about a kelvin.
+pub(super) fn snap(temperature: &mut f64, points: &[(f64, f64)]) {
+    let nearest = points.iter().map(|point| point.0).min_by(|a, b| {
+        let away = |kelvin: f64| (kelvin - *temperature).abs();
+        away(*a).total_cmp(&away(*b))
+    });
+    if let Some(kelvin) = nearest.filter(|kelvin| (kelvin - *temperature).abs() <= SAME_TEMPERATURE) {
+        *temperature = kelvin;
+    }
+}
+
+/// A fault of the isotherms, with the line of the point that it names.
+pub(super) fn at_isotherm(curves: &Curves, error: &asperity::Error) -> Fault {
+    let message = error.to_string();
+    let sweep = curves.sweeps.iter().find(|sweep| {
+        sweep.temperature.is_some_and(|kelvin| {
+            message.contains(&format!("isotherm at {} K", (100.0 * kelvin).round() / 100.0))
+        })
+    });
+    let line = sweep.and_then(|sweep| sweep.lines.get(point(&message)?.checked_sub(1)?));
+    match line {
+        Some(line) => fault(message).at(*line),
+        None => fault(message),
+    }
+}
+
+pub(super) fn isotherms(curves: &Curves) -> Vec<Isotherm> {
+    let isotherm = |sweep: &Sweep| {
+        let temperature = sweep.temperature?;
+        Some(Isotherm { temperature, x: sweep.x.clone(), curves: sweep.curves.clone() })
+    };
+    curves.sweeps.iter().filter_map(isotherm).collect()
+}
+
+pub(super) fn abscissa(kind: Kind) -> Abscissa {
+    match kind {
+        Kind::Dma => Abscissa::Frequency,
+        Kind::Relaxation | Kind::Creep => Abscissa::Time,
+    }
+}
+
+/// The number in "of point 31" or "point 31 of".
+pub(super) fn point(message: &str) -> Option<usize> {
+    let (_, rest) = message.split_once("point ")?;
+    let digits: String = rest.chars().take_while(char::is_ascii_digit).collect();
+    digits.parse().ok()
+}

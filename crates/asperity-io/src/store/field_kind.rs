@@ -1,0 +1,74 @@
+//! The fields that a result may keep.
+
+use schemars::JsonSchema;
+use serde::Deserialize;
+
+use crate::choice;
+
+/// A field on the grid that a result may keep over time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+pub enum FieldKind {
+    /// Contact pressure p, in Pa, positive in compression.
+    Pressure,
+    /// Gap h between the deformed surfaces, in m.
+    Gap,
+    /// Normal displacement u, in m.
+    Displacement,
+    /// Contact state: 0 out of contact, 1 in contact, 2 at the hardness.
+    Contact,
+    /// Permanent flattening, in m: what the undeformed gap has gained; with plasticity = "accumulate".
+    Flattening,
+}
+
+impl FieldKind {
+    /// Every kind.
+    pub const ALL: [FieldKind; 5] = [
+        FieldKind::Pressure,
+        FieldKind::Gap,
+        FieldKind::Displacement,
+        FieldKind::Contact,
+        FieldKind::Flattening,
+    ];
+
+    /// Its name in case files and results.
+    pub fn name(self) -> &'static str {
+        choice::word(&self)
+    }
+
+    /// The kind of that name.
+    pub fn from_name(name: &str) -> Option<FieldKind> {
+        choice::parse(name)
+    }
+
+    /// Its unit; "1" where it has none.
+    pub fn units(self) -> &'static str {
+        match self {
+            FieldKind::Pressure => "Pa",
+            FieldKind::Gap | FieldKind::Displacement | FieldKind::Flattening => "m",
+            FieldKind::Contact => "1",
+        }
+    }
+
+    /// Bytes per cell.
+    pub(crate) fn bytes(self) -> u64 {
+        if self == FieldKind::Contact { 1 } else { 8 }
+    }
+
+    /// What it is, for axes and legends.
+    pub fn long_name(self) -> &'static str {
+        match self {
+            FieldKind::Pressure => "contact pressure",
+            FieldKind::Gap => "gap between the deformed surfaces",
+            FieldKind::Displacement => "normal displacement",
+            FieldKind::Contact => "contact state",
+            FieldKind::Flattening => "permanent flattening",
+        }
+    }
+}
+
+impl std::fmt::Display for FieldKind {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name())
+    }
+}

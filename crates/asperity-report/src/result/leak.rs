@@ -1,0 +1,153 @@
+//! Leakage of a result: how it changes over time, and where the fluid flows at an instant.
+
+use asperity_io::leakage::settings;
+use asperity_io::leakage::words::MBAR_LITRE;
+use asperity_io::readable::quantity;
+use asperity_io::store::{At, FieldKind, Reader};
+
+use super::{Options, PlotError, Rows};
+use crate::figure::{Axis, Curves, Figure, Map, Series, Style};
+use crate::leak::{heading, maps, words};
+
+/// The leaks of a result as they are stored, over time.
+fn curves(reader: &Reader, log: Option<bool>) -> Result<Vec<Curves>, PlotError> {
+    let time = reader.leak("leak_time")?;
+    let percolates = reader.leak("percolates")?;
+    // A logarithmic axis has no place for t = 0: it is of use where the seal leaks later too.
+    let leaks_later = time.iter().zip(&percolates).any(|(time, open)| *time > 0.0 && *open > 0.0);
+    let log_time = log.unwrap_or(Rows::of(reader)?.log) && leaks_later;
+    // All of the run, also where the seal is tight.
+    let first = time.iter().copied().find(|time| *time > 0.0 || !log_time).unwrap_or(0.0);
+    let last = time.last().copied().unwrap_or(0.0);
+    let axis = || {
+        let axis = if log_time { Axis::log("time", "s") } else { Axis::linear("time", "s") };
+        if last > first { axis.between(first, last) } else { axis }
+    };
+    let line = |name: &str, style: Style, column: &str| -> Result<Series, PlotError> {
+        // A tight seal has no place on a logarithmic axis.
+        let positive = |v: f64| if v > 0.0 { v } else { f64::NAN };
+        Ok(Series::new(
+            name,
+            style,
+            time.clone(),
+            reader.leak(column)?.into_iter().map(positive).collect::<Vec<_>>(),
+        ))
+    };
+    let mut all = vec![];
+    let gas = reader.leak("leak_rate_standard").is_ok();
+    if !percolates.contains(&1.0) {
+        // Logarithmic axes have no place for any of it.
+        return Ok(all);
+    }
+    if reader.leak("leak_rate").is_ok() {
+        let label =
+            if gas { Axis::log("leak rate, at 0 °C", "mbar l/s") } else { Axis::log("leak rate", "m3/s") };
+        let standard = if gas { reader.leak("leak_rate_standard")? } else { vec![] };
+        let rate = reader.leak("leak_rate")?;
+        // Of a gas every rate in kg/s has the same factor to mbar l/s.
+        let mut ratios = standard.iter().zip(&rate).map(|(standard, rate)| MBAR_LITRE * standard / rate);
+        let factor = ratios.rfind(|ratio| ratio.is_finite()).unwrap_or(1.0);
+        let scaled = |name: &str, style: Style, column: &str| -> Result<Series, PlotError> {
+            let mut series = line(name, style, column)?;
+            series.y.iter_mut().for_each(|rate| *rate *= factor);
+            Ok(series)
+        };
+        let panel = Curves::new("Leak rate", axis(), label)
+            .with(scaled("solved on the grid", Style::Line, "leak_rate")?)
+            .with(scaled("estimate from the critical constriction", Style::Dashed, "leak_estimate_junction")?)
+            .with(scaled(
+                "estimate from all gaps (effective medium)",
+                Style::DashDotted,
+                "leak_estimate_medium",
+            )?);
+        all.push(sealing(panel, &time, &percolates));
+    }
+    let gaps = Curves::new("Gaps", axis(), Axis::log("gap", "m"))
+        .with(line("hydraulic: even gap, same leak", Style::Line, "hydraulic_gap")?)
+        .with(line("critical: narrowest on best path", Style::Dashed, "critical_gap")?);
+    all.push(sealing(gaps, &time, &percolates));
+    Ok(all)
+}
+
+/// Leaks of up to this many times are marked: a line through one of them cannot be seen.
+const FEW: usize = 4;
+
+/// The panel over whole decades, with a vertical line at each time from which on the seal is tight after it has leaked.
+fn sealing(mut panel: Curves, time: &[f64], percolates: &[f64]) -> Curves {
+    let values = panel.series.iter().flat_map(|series| series.y.iter().copied()).filter(|y| *y > 0.0);
+    let [low, high] = values.fold([f64::INFINITY, 0.0], |[a, b], y| [f64::min(a, y), f64::max(b, y)]);
+    let ends = [10f64.powf(low.log10().floor()), 10f64.powf(high.log10().ceil())];
+    panel.y = panel.y.between(ends[0], ends[1]);
+    if percolates.iter().filter(|open| **open > 0.0).count() <= FEW {
+        for (series, sign) in panel.series.iter_mut().zip(Style::SIGNS.iter().cycle()) {
+            series.style = *sign;
+        }
+    }
+    let moments = (1..time.len()).filter(|n| percolates[n - 1] > 0.0 && percolates[*n] == 0.0);
+    moments.enumerate().fold(panel, |panel, (k, n)| {
+        let name = if k == 0 { "tight from here" } else { "" };
+        panel.with(Series::new(name, Style::Reference, vec![time[n]; 2], ends.to_vec()))
+    })
+}
+
+/// Leak rate and gaps over time, and the flow at an instant.
+pub(super) fn over_time(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
+    let mut figure = Figure::new("");
+    let window = Rows::within(reader, options)?.axis(options.log).range;
+    for mut panel in curves(reader, options.log)? {
+        panel.x.range = window.or(panel.x.range);
+        figure = figure.with(panel);
+    }
+    // The last state of a seal that has become tight shows no flow.
+    let instant = if options.at == At::Last { last_leak(reader) } else { options.at };
+    let (maps, mut caption) = at(reader, instant)?;
+    if reader.index(instant)? != reader.index(options.at)? {
+        caption += " The maps are of the last stored time at which it leaks.";
+    }
+    for map in maps {
+        figure = figure.with(map);
+    }
+    figure.panel = [300.0, 240.0];
+    Ok(figure.caption(caption))
+}
+
+/// The flow alone, for pages: at the last instant at which the seal leaks.
+pub(crate) fn last_map(reader: &Reader) -> Result<Figure, PlotError> {
+    let instant = last_leak(reader);
+    let (maps, mut caption) = at(reader, instant)?;
+    if reader.index(instant)? != reader.index(At::Last)? {
+        caption += " This is the last stored time at which it leaks.";
+    }
+    let mut figure = maps.into_iter().fold(Figure::new(""), |figure, map| figure.with(map)).caption(caption);
+    figure.panel = [300.0, 260.0];
+    Ok(figure)
+}
+
+/// The maps at an instant, computed as the stored leaks were.
+fn at(reader: &Reader, at: At) -> Result<(Vec<Map>, String), PlotError> {
+    let Some(leak) = settings(reader) else {
+        return Err(reader.no_leaks().into());
+    };
+    let index = reader.index(at)?;
+    let time = reader.field_times()[index];
+    let gap = reader.field(FieldKind::Gap, at)?;
+    let contact = reader.contact_states(at)?;
+    let grid = &reader.header().grid;
+    let found = leak.of_gap(grid, gap.view(), Some(contact.view()), time)?;
+    let moment = quantity(time, "s");
+    let caption = format!("t = {moment}: {}, {}. {}", heading(&found), leak.words(), words(&found));
+    Ok((maps(&found, gap.view(), grid.size()), caption))
+}
+
+/// The last instant at which the seal leaks, else the last one with a leakage.
+fn last_leak(reader: &Reader) -> At {
+    let column = |name: &str| reader.leak(name).unwrap_or_default();
+    let (open, times, steps) = (column("percolates"), column("leak_time"), column("leak_step"));
+    let Some(n) = open.iter().rposition(|open| *open > 0.0).or(open.len().checked_sub(1)) else {
+        return At::Last;
+    };
+    let same = |index: &usize| {
+        reader.field_times()[*index] == times[n] && reader.field_steps()[*index] as f64 == steps[n]
+    };
+    (0..reader.field_times().len()).rfind(same).map_or(At::Last, At::Index)
+}

@@ -15,7 +15,7 @@ use std::sync::Arc;
 
 use ndarray::parallel::prelude::*;
 use ndarray::{ArrayViewMut2, Axis};
-use rayon::slice::{ParallelSlice, ParallelSliceMut};
+use rayon::slice::ParallelSliceMut;
 use realfft::{ComplexToReal, RealToComplex};
 use rustfft::Fft;
 use rustfft::num_complex::Complex64;
@@ -91,15 +91,21 @@ impl RealPlane {
     /// # Panics
     /// Where a length is not that of the plan, here and below.
     pub fn rows_forward(&self, field: &[f64], columns: &mut [Complex64]) {
+        let [nx, ny] = self.cells;
+        assert_eq!(field.len(), nx * ny);
+        self.rows_forward_of(|i, row| row.copy_from_slice(&field[i * ny..][..ny]), columns);
+    }
+
+    /// The same of the rows that `read(i, row)` writes.
+    pub fn rows_forward_of(&self, read: impl Fn(usize, &mut [f64]) + Sync, columns: &mut [Complex64]) {
         let ([nx, ny], half, fft) = (self.cells, self.waves_along_y(), &self.rows_forward);
-        assert!(field.len() == nx * ny && columns.len() == nx * half);
+        assert_eq!(columns.len(), nx * half);
         if let Ok(mut columns) = ArrayViewMut2::from_shape((half, nx), columns) {
-            let blocks = columns.axis_chunks_iter_mut(Axis(1), ROWS).into_par_iter();
-            blocks.zip(field.par_chunks(ROWS * ny)).for_each_init(
+            columns.axis_chunks_iter_mut(Axis(1), ROWS).into_par_iter().enumerate().for_each_init(
                 || (fft.make_input_vec(), vec![Complex64::ZERO; ROWS * half], fft.make_scratch_vec()),
-                |(input, waves, scratch), (mut block, rows)| {
-                    for (row, waves) in rows.chunks_exact(ny).zip(waves.chunks_exact_mut(half)) {
-                        input[..ny].copy_from_slice(row);
+                |(input, waves, scratch), (n, mut block)| {
+                    for (i, waves) in (0..block.ncols()).zip(waves.chunks_exact_mut(half)) {
+                        read(n * ROWS + i, &mut input[..ny]);
                         input[ny..].fill(0.0);
                         let done = fft.process_with_scratch(input, waves, scratch);
                         debug_assert!(done.is_ok(), "the buffers have the plan's lengths");
@@ -176,10 +182,17 @@ pub struct Column<'a> {
 impl Column<'_> {
     /// The waves of a column of nx numbers, padded with zeros.
     pub fn forward(&mut self, column: &[Complex64]) -> &mut [Complex64] {
-        self.waves[..self.cells].copy_from_slice(column);
-        self.waves[self.cells..].fill(Complex64::ZERO);
-        self.forward.process_with_scratch(&mut self.waves, &mut self.scratch);
+        let mut waves = std::mem::take(&mut self.waves);
+        self.forward_into(column, &mut waves);
+        self.waves = waves;
         &mut self.waves
+    }
+
+    /// The same into mx numbers of the caller.
+    pub fn forward_into(&mut self, column: &[Complex64], waves: &mut [Complex64]) {
+        waves[..self.cells].copy_from_slice(column);
+        waves[self.cells..].fill(Complex64::ZERO);
+        self.forward.process_with_scratch(waves, &mut self.scratch);
     }
 
     /// The first nx numbers of the column that the waves are of, mx times; the waves are lost.

@@ -72,7 +72,7 @@ impl Torus {
         let nx = self.columns.len() / self.plane.waves_along_y();
         all.par_chunks_mut(self.lengths()[0]).zip(self.columns.par_chunks(nx)).for_each_init(
             || self.plane.column(),
-            |transforms, (waves, column)| waves.copy_from_slice(transforms.forward(column)),
+            |transforms, (waves, column)| transforms.forward_into(column, waves),
         );
         Spectrum(all)
     }

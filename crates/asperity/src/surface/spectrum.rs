@@ -21,11 +21,13 @@ use crate::grid::Grid;
 pub(super) fn transform(grid: &Grid, heights: ArrayView2<f64>) -> Result<Array2<Complex64>> {
     check_shape(grid, heights)?;
     check_defined(heights)?;
-    let (plane, mut columns) = planned(grid);
+    let plane = RealPlane::new(grid.cells(), grid.cells());
+    let mut columns = Array2::zeros((plane.waves_along_y(), grid.cells()[0]));
     let scale = 1.0 / grid.len() as f64;
-    let heights: Vec<f64> = heights.iter().map(|z| z * scale).collect();
+    let read =
+        |i: usize, row: &mut [f64]| row.iter_mut().zip(heights.row(i)).for_each(|(a, z)| *a = z * scale);
     if let Some(columns) = columns.as_slice_mut() {
-        plane.rows_forward(&heights, columns);
+        plane.rows_forward_of(read, columns);
         plane
             .each_column(columns, |transforms, _, column| column.copy_from_slice(transforms.forward(column)));
     }
@@ -34,8 +36,11 @@ pub(super) fn transform(grid: &Grid, heights: ArrayView2<f64>) -> Result<Array2<
 
 /// The heights of given amplitudes.
 pub(super) fn inverse(grid: &Grid, amplitudes: Array2<Complex64>) -> Array2<f64> {
-    let (plane, mut columns) = planned(grid);
-    columns.assign(&amplitudes.reversed_axes());
+    let plane = RealPlane::new(grid.cells(), grid.cells());
+    let mut columns = amplitudes.reversed_axes();
+    if !columns.is_standard_layout() {
+        columns = columns.as_standard_layout().into_owned();
+    }
     let mut heights = Array2::zeros(grid.shape());
     if let (Some(columns), Some(heights)) = (columns.as_slice_mut(), heights.as_slice_mut()) {
         plane.each_column(columns, |transforms, _, column| {
@@ -45,13 +50,6 @@ pub(super) fn inverse(grid: &Grid, amplitudes: Array2<Complex64>) -> Array2<f64>
         plane.rows_back(columns, heights);
     }
     heights
-}
-
-/// The transforms of the grid, and room for its amplitudes by (ky, kx).
-fn planned(grid: &Grid) -> (RealPlane, Array2<Complex64>) {
-    let plane = RealPlane::new(grid.cells(), grid.cells());
-    let columns = Array2::zeros((plane.waves_along_y(), grid.cells()[0]));
-    (plane, columns)
 }
 
 /// (qx, qy) of the amplitude at (i, j) \[1/m\]; a Nyquist wave has its positive one.

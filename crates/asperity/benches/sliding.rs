@@ -2,6 +2,7 @@
 //!
 //! Steady states at 31 velocities over six decades of a periodic rough surface of N x N cells on a rubber of 15 terms.
 
+use asperity::Drive;
 use std::time::Instant;
 
 use asperity::load::{Control, History, Loading};

@@ -7,6 +7,7 @@
 //! sweeps over fields. Bounds are measured in the same run: the rate of a copy between arrays that no cache
 //! holds, and the rate of independent multiplications and additions in registers.
 
+use asperity::Drive;
 use std::hint::black_box;
 use std::time::Instant;
 

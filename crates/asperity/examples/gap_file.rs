@@ -5,6 +5,7 @@
 //! at the mean PRESSURE. With steps of 1/50 of the relaxation time: a Zener solid whose E*(t) = 4 + 4 exp(-t), at four
 //! times the PRESSURE. The time is that of the solve; planning is not counted.
 
+use asperity::Drive;
 use std::time::Instant;
 
 use asperity::march::{March, Simulation};

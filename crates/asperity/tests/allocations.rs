@@ -2,6 +2,7 @@
 
 #![allow(unsafe_code)] // a counting allocator is an unsafe trait
 
+use asperity::Drive;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 

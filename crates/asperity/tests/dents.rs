@@ -1,5 +1,6 @@
 //! Permanent flattening: what follows from the contact conditions of the dented surface.
 
+use asperity::Drive;
 use asperity::load::{Course, Event, Programme, Stage};
 use asperity::march::{March, Plasticity, Simulation};
 use asperity::material::{Creep, CreepTerm};

@@ -1,5 +1,6 @@
 //! Stiff bodies under a held approach, steps of any length: what the solution does exactly, and how fast the rest converges.
 
+use asperity::Drive;
 use asperity::load::{Course, Stage};
 use asperity::march::{March, Row, Simulation};
 use asperity::material::{Creep, ReducedTime, Relaxation, Shift, ThermalCreep};
@@ -354,7 +355,7 @@ fn pressed_held_retracted_and_touched_again_nothing_is_lost_that_is_there() {
                 }
                 for (t, load) in loads.iter().filter(|l| l.0 > start && l.0 <= row.time()) {
                     let between = march.between(*t).unwrap();
-                    let found = march.view(&between).row().load;
+                    let found = march.view(&between).unwrap().row().load;
                     // 1 % of the grid (20 cells to the radius), 1 % of the steps; of what is relaxed the grid's alone.
                     let allowed = 0.01 * load + 0.01 * largest * f64::from(u8::from(*load > 0.02));
                     assert!((found - load).abs() <= allowed.max(1e-12), "{ratio} {t}: {found} {load}");

@@ -1,5 +1,6 @@
 //! Contacts of bodies of layers, against solutions that share nothing with the code.
 
+use asperity::Drive;
 use std::sync::Arc;
 
 use asperity::kernel::{HalfSpace, Kernel};

@@ -1,5 +1,6 @@
 //! Layers that creep differently: a viscoelastic coating on an elastic half-space.
 
+use asperity::Drive;
 use std::sync::Arc;
 
 use asperity::layer::{BodyLayer, Interface, LayeredBody, Response, response};

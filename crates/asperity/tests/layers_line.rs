@@ -1,5 +1,6 @@
 //! Line contacts of bodies of layers, against closed forms, against periodic domains, and against themselves.
 
+use asperity::Drive;
 use std::f64::consts::PI;
 use std::sync::Arc;
 

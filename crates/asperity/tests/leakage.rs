@@ -1,5 +1,6 @@
 //! Leaks against closed forms and published numbers, with the contact solver and the march in front.
 
+use asperity::Drive;
 use asperity::contact::{ContactState, Problem, Solver, SolverOptions};
 use asperity::leakage::{
     Direction, FlowOptions, Gas, Opening, Passages, Rarefaction, Sides, Species, gas_flow, liquid, plate,

@@ -1,5 +1,6 @@
 //! Line contacts in plane strain against closed forms, and against the same contact on a plane.
 
+use asperity::Drive;
 use std::f64::consts::PI;
 
 use asperity::march::{March, Row, Simulation};

@@ -1,5 +1,6 @@
 //! The march against exact histories, invariants that hold on every grid, and itself.
 
+use asperity::Drive;
 use asperity::contact::Outcome;
 use asperity::march::{Checkpoint, March, Row, Scheme, Simulation};
 use asperity::material::{Creep, CreepTerm, Relaxation, RelaxationTerm};

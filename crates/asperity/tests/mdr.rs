@@ -1,5 +1,6 @@
 //! The march on a grid against the row of springs: loading, unloading, opening, loading again, jumps.
 
+use asperity::Drive;
 use asperity::march::{March, Row, Simulation};
 use asperity::material::Relaxation;
 use asperity::reference::{Mdr, MdrOptions, MdrProfile, MdrState};

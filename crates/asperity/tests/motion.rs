@@ -1,5 +1,6 @@
 //! Contacts that move in time: against closed forms, against the steady state, and by their own balances.
 
+use asperity::Drive;
 use std::f64::consts::{PI, TAU};
 
 use asperity::march::{March, Motion, Row, Simulation};

@@ -1,5 +1,6 @@
 //! Quantities of each row against closed forms, the energy balance, and what other rooms say.
 
+use asperity::Drive;
 use std::f64::consts::PI;
 
 use asperity::march::{March, Scheme, Simulation};

@@ -1,5 +1,6 @@
 //! Stages, events and pull-off: against closed forms that hold on every grid, and the row of springs.
 
+use asperity::Drive;
 use asperity::load::{Control, Course, Event, History, Programme, Stage};
 use asperity::march::{March, Row, Simulation};
 use asperity::material::{Creep, CreepTerm, Relaxation};

@@ -1,5 +1,6 @@
 //! Bodies whose temperature changes: the march in reduced time.
 
+use asperity::Drive;
 use asperity::march::{March, Row, Scheme, Simulation};
 use asperity::material::{Creep, CreepTerm, ReducedTime, Shift, ThermalCreep};
 use asperity::operator::half_space;

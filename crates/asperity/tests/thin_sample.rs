@@ -1,5 +1,6 @@
 //! The material of a thin sample: fits of records that the three-dimensional march has computed.
 
+use asperity::Drive;
 use std::sync::Arc;
 
 use asperity::indentation::{IndentationOptions, IndentationRecord, SampleLayer, fit_indentation};

@@ -367,10 +367,10 @@ impl Case {
                 let alone = Quantities { list: vec![*quantity], ..wanted.clone() };
                 // Displacements may be known up to a constant, and those of steady motion have no history.
                 let by_history = quantity.is_energy() || *quantity == Quantity::ContactStiffness;
-                let known = !(quantity.is_energy() && simulation.scheme == Scheme::Direct)
-                    && !(self.waves.is_some() && by_history)
-                    && !((simulation.is_up_to_a_constant() || steady) && quantity.is_of_time());
-                known && simulation.columns_of(&alone).is_ok()
+                let unknown = quantity.is_energy() && simulation.scheme == Scheme::Direct
+                    || self.waves.is_some() && by_history
+                    || (simulation.is_up_to_a_constant() || steady) && quantity.is_of_time();
+                !unknown && simulation.columns_of(&alone).is_ok()
             };
             wanted.list = Quantity::at_rest().filter(possible).collect();
         }

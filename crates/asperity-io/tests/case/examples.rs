@@ -1,5 +1,6 @@
 //! The starter cases and the examples of the repository.
 
+use asperity::Drive;
 use std::path::{Path, PathBuf};
 
 use asperity::{Boundary, March};

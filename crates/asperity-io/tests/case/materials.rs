@@ -1,5 +1,6 @@
 //! Materials of a case: fractional models, measured curves, temperature.
 
+use asperity::Drive;
 use std::fmt::Write;
 use std::path::Path;
 

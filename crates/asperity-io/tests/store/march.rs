@@ -1,5 +1,6 @@
 //! A march that was stopped and resumed by way of its result ends with the bits of one that was not.
 
+use asperity::Drive;
 use asperity::march::{March, Simulation};
 use asperity::material::{Creep, CreepTerm};
 use asperity::quantities::{Quantities, Quantity};

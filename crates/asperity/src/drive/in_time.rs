@@ -82,47 +82,22 @@ impl March {
         Ok(march)
     }
 
-    /// Everything that the rest of the march depends on. A march resumed from it gives the same bits.
-    pub fn checkpoint(&self) -> Checkpoint<'_> {
-        let mut to = Saver::new(self.done, self.simulation.grid.shape());
-        to.within("schedule", |to| self.schedule.save(to));
-        to.within("step", |to| self.stepper.save(to));
-        to.finish()
+    fn accept(&mut self, attempt: &Summary) -> Result<()> {
+        self.row = Some((self.done, attempt.instant, attempt.error));
+        self.stepper.accept()?;
+        let mut recorder = std::mem::take(&mut self.recorder);
+        if !recorder.is_empty() {
+            self.last().iter().for_each(|step| step.record(&mut recorder));
+        }
+        self.recorder = recorder;
+        self.schedule.accept(attempt);
+        self.done += 1;
+        Ok(())
     }
+}
 
-    /// Stops the march, within one iteration of the solver, when `flag` becomes true.
-    pub fn interrupt_with(&mut self, flag: Arc<AtomicBool>) {
-        self.stepper.interrupt_with(flag);
-    }
-
-    /// Number of rows in all, where it is known beforehand: without events and adaptive steps.
-    pub fn rows_expected(&self) -> Option<usize> {
-        let plan = self.simulation.plan();
-        plan.exact.then_some(plan.instants.len())
-    }
-
-    /// Whether the last row is done.
-    pub fn finished(&self) -> bool {
-        self.schedule.finished()
-    }
-
-    /// Rows done.
-    pub fn done(&self) -> usize {
-        self.done
-    }
-
-    /// What is simulated.
-    pub fn simulation(&self) -> &Simulation {
-        &self.simulation
-    }
-
-    /// The next row, or `None` at the end.
-    ///
-    /// # Errors
-    /// [`Error::NotConverged`] with the time; [`March::last`] then lends the best state reached.
-    /// [`Error::Undetermined`], [`Error::Interrupted`]; [`Error::Missed`] where an event did not come;
-    /// [`Error::Invalid`] where a stage begins with a jump that the material cannot follow.
-    pub fn advance(&mut self) -> Result<Option<Step<'_>>> {
+impl Drive for March {
+    fn advance(&mut self) -> Result<Option<Step<'_>>> {
         if let Some(piece) = self.schedule.piece()
             && let Some(first) = self.stepper.first_step(&piece)
         {
@@ -146,21 +121,7 @@ impl March {
         Ok(self.last())
     }
 
-    fn accept(&mut self, attempt: &Summary) -> Result<()> {
-        self.row = Some((self.done, attempt.instant, attempt.error));
-        self.stepper.accept()?;
-        let mut recorder = std::mem::take(&mut self.recorder);
-        if !recorder.is_empty() {
-            self.last().iter().for_each(|step| step.record(&mut recorder));
-        }
-        self.recorder = recorder;
-        self.schedule.accept(attempt);
-        self.done += 1;
-        Ok(())
-    }
-
-    /// The last row (after an error: the state that the failed solve reached); `None` before the first.
-    pub fn last(&self) -> Option<Step<'_>> {
+    fn last(&self) -> Option<Step<'_>> {
         let (index, instant, time_error) = self.row?;
         let of_stepper = self.stepper.state();
         Some(Step {
@@ -172,39 +133,6 @@ impl March {
             recorder: Some(&self.recorder),
             ..of_stepper
         })
-    }
-
-    /// The state at `time` within the last step: after the row before it, not after the last row. `None`
-    /// outside of it, and where the scheme is not [`Scheme::Linear`](crate::Scheme::Linear).
-    pub fn between(&self, time: f64) -> Option<Between> {
-        self.stepper.between(time)
-    }
-
-    /// A state between rows as a row: its fields and numbers. Its index is that of the last row; work, residual and
-    /// certificate are those of the last row's solve.
-    pub fn view<'a>(&'a self, between: &'a Between) -> Step<'a> {
-        Step {
-            index: self.done.saturating_sub(1),
-            coordinate: Coordinate::Time(between.instant.time),
-            instant: Some(between.instant),
-            control: between.instant.control,
-            state: &between.state,
-            gap: &between.gap,
-            compliance: 0.0,
-            recalled: Recalled::Field(&between.displacement),
-            processes: &[],
-            ..self.stepper.state()
-        }
-    }
-}
-
-impl Drive for March {
-    fn advance(&mut self) -> Result<Option<Step<'_>>> {
-        March::advance(self)
-    }
-
-    fn last(&self) -> Option<Step<'_>> {
-        March::last(self)
     }
 
     fn simulation(&self) -> &Simulation {
@@ -219,8 +147,10 @@ impl Drive for March {
         self.simulation.plan().instants.iter().map(|instant| instant.time).collect()
     }
 
+    /// Without events and adaptive steps.
     fn rows_expected(&self) -> Option<usize> {
-        March::rows_expected(self)
+        let plan = self.simulation.plan();
+        plan.exact.then_some(plan.instants.len())
     }
 
     fn done(&self) -> usize {
@@ -228,22 +158,37 @@ impl Drive for March {
     }
 
     fn finished(&self) -> bool {
-        March::finished(self)
+        self.schedule.finished()
     }
 
     fn interrupt_with(&mut self, flag: Arc<AtomicBool>) {
-        March::interrupt_with(self, flag);
+        self.stepper.interrupt_with(flag);
     }
 
     fn checkpoint(&self) -> Checkpoint<'_> {
-        March::checkpoint(self)
+        let mut to = Saver::new(self.done, self.simulation.grid.shape());
+        to.within("schedule", |to| self.schedule.save(to));
+        to.within("step", |to| self.stepper.save(to));
+        to.finish()
     }
 
     fn between(&self, time: f64) -> Option<Between> {
-        March::between(self, time)
+        self.stepper.between(time)
     }
 
+    /// Work, residual and certificate are those of the last row's solve.
     fn view<'a>(&'a self, between: &'a Between) -> Option<Step<'a>> {
-        Some(March::view(self, between))
+        Some(Step {
+            index: self.done.saturating_sub(1),
+            coordinate: Coordinate::Time(between.instant.time),
+            instant: Some(between.instant),
+            control: between.instant.control,
+            state: &between.state,
+            gap: &between.gap,
+            compliance: 0.0,
+            recalled: Recalled::Field(&between.displacement),
+            processes: &[],
+            ..self.stepper.state()
+        })
     }
 }

@@ -11,7 +11,6 @@
 
 mod coordinate;
 mod in_time;
-mod over_velocities;
 
 pub use coordinate::{Axis, Coordinate};
 pub use in_time::March;
@@ -99,6 +98,6 @@ pub fn resume(
 ) -> Result<Box<dyn Drive>> {
     Ok(match steady {
         None => Box::new(March::resume(simulation, checkpoint)?),
-        Some(motion) => Box::new(Steady::resumed(simulation, motion, checkpoint)?),
+        Some(motion) => Box::new(Steady::resume(simulation, motion, checkpoint)?),
     })
 }

@@ -1,5 +1,6 @@
 //! Each judge fires on a case made for it, and is silent beside it.
 
+use crate::drive::Drive;
 use ndarray::Array2;
 
 use super::*;

@@ -11,6 +11,8 @@
 //! A step is opened, solved, opened again at other lengths where its error or an event asks for it, and closed. What came
 //! before it is taken in once, when it is first opened.
 
+#![allow(clippy::type_complexity)] // the closures of a sweep spell out the slices that they walk
+
 mod clocks;
 mod constant;
 mod hereditary;

@@ -307,7 +307,7 @@ impl Work for Combine<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drive::March;
+    use crate::drive::{Drive, March};
     use crate::grid::{Boundary, Grid};
     use crate::load::{Control, History};
     use crate::material::{Creep, CreepTerm};

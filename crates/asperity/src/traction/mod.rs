@@ -15,6 +15,8 @@
 //! Under a prescribed load W a pass in which Σ b alone exceeds W/A leaves no load to the contact: then the approach is searched at
 //! which the tractions carry W. After convergence the state holds t and U = K t: what the bodies remember is the total traction.
 
+#![allow(clippy::type_complexity)] // the closures of a sweep spell out the slices that they walk
+
 mod extrapolation;
 #[cfg(test)]
 mod tests;

@@ -1,6 +1,7 @@
 //! The seam, proved with a linear spring between flat surfaces: b = -k g, on a layer that a uniform pressure p displaces by
 //! u = κ ∫ C(t - s) dp(s).
 
+use crate::drive::Drive;
 use std::sync::Arc;
 
 use ndarray::Array2;

@@ -2,6 +2,7 @@
 
 use super::{Check, Checks, elastic_contact, shape_on};
 use crate::contact::SolverOptions;
+use crate::drive::Drive;
 use crate::error::Result;
 use crate::grid::{Boundary, Grid};
 use crate::load::{Control, History, Loading};

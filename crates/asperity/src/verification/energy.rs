@@ -2,6 +2,7 @@
 
 use super::{Check, Checks, shape_on, step_load, zener};
 use crate::contact::SolverOptions;
+use crate::drive::Drive;
 use crate::error::Result;
 use crate::load::{Control, History, Loading};
 use crate::march::{March, Plasticity, Row, Simulation};

@@ -2,6 +2,7 @@
 
 use super::{Check, Checks, rows, step_load, zener};
 use crate::contact::SolverOptions;
+use crate::drive::Drive;
 use crate::error::Result;
 use crate::grid::{Boundary, Grid};
 use crate::load::{Control, History, Loading, Programme};

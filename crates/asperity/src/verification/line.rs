@@ -1,5 +1,6 @@
 //! Line contacts against closed forms, unit contact modulus.
 
+use crate::drive::Drive;
 use std::f64::consts::{FRAC_2_PI, PI};
 
 use super::{Check, Checks, step_load};

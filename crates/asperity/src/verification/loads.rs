@@ -2,6 +2,7 @@
 
 use super::{Check, Checks, rows, shape_on, step_load, zener};
 use crate::cycles::cycles;
+use crate::drive::Drive;
 use crate::error::Result;
 use crate::load::{Control, Course, Event, History, Loading, Programme, Stage};
 use crate::march::{March, Row, Simulation};
@@ -132,7 +133,7 @@ pub(super) fn dense_output() -> Result<Vec<Check>> {
             let end = march.last().map_or(start, |step| step.coordinate().value());
             for t in at.into_iter().filter(|t| *t > start && *t <= end) {
                 let Some(between) = march.between(t) else { continue };
-                let found = march.view(&between).row().approach;
+                let found = march.view(&between).map_or(f64::NAN, |step| step.row().approach);
                 let exact =
                     fine.iter().find(|row| (row.time() - t).abs() < 1e-9).map_or(0.0, |row| row.approach);
                 worst = worst.max((found / exact - 1.0).abs());

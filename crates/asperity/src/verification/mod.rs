@@ -14,6 +14,7 @@ mod springs;
 mod temperature;
 mod viscoelastic;
 
+use crate::drive::Drive;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::load::{Control, History, Loading, Programme};

@@ -2,6 +2,7 @@
 
 use super::{Check, Checks, rows, shape_on, zener, zener_relaxation};
 use crate::contact::SolverOptions;
+use crate::drive::Drive;
 use crate::error::Result;
 use crate::grid::{Boundary, Grid};
 use crate::load::{Control, History, Loading};

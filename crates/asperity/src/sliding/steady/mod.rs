@@ -32,11 +32,11 @@ use self::contact::SteadyContact;
 use self::operators::{Operators, Stream};
 use super::{ContactForces, Direction, Friction, SecondEstimate, Slopes, Streaming};
 use crate::contact::{ContactState, Hardness, Outcome, Prescribed, Problem};
-use crate::drive::Coordinate;
-use crate::error::{Error, Result};
+use crate::drive::{Axis, Coordinate, Drive};
+use crate::error::Result;
 use crate::load::Control;
 use crate::simulation::Simulation;
-use crate::step::{Recalled, Recorder, Step};
+use crate::step::{Checkpoint, Loader, Recalled, Recorder, Saver, Step};
 
 /// What moves, and how fast.
 #[derive(Clone, Debug, PartialEq)]
@@ -108,7 +108,7 @@ impl Steady {
     /// or a mean pressure that is held.
     ///
     /// # Errors
-    /// [`Error::Invalid`] naming the quantity; [`Error::Infeasible`] where the load exceeds what the hardness carries.
+    /// [`Error::Invalid`](crate::Error::Invalid) naming the quantity; [`Error::Infeasible`](crate::Error::Infeasible) where the load exceeds what the hardness carries.
     pub fn new(simulation: Simulation, motion: SteadyMotion) -> Result<Self> {
         motion.validate(&simulation)?;
         simulation.validate()?;
@@ -133,14 +133,22 @@ impl Steady {
         })
     }
 
-    /// Stops soon after `flag` has become true: within one iteration of the solver, or some hundred influence coefficients.
-    pub fn interrupt_with(&mut self, flag: Arc<AtomicBool>) {
-        self.interrupt = Some(flag);
-    }
-
-    /// What is simulated.
-    pub fn simulation(&self) -> &Simulation {
-        &self.simulation
+    /// Goes on where a checkpoint of the same sweep was taken.
+    ///
+    /// # Errors
+    /// As [`Steady::new`]; [`Error::Invalid`](crate::Error::Invalid) where the checkpoint belongs to another sweep.
+    pub fn resume(simulation: Simulation, motion: SteadyMotion, checkpoint: &Checkpoint) -> Result<Self> {
+        let mut steady = Steady::new(simulation, motion)?;
+        let from = Loader::new(checkpoint, steady.simulation.grid.shape());
+        steady.done = checkpoint.step;
+        if steady.done > steady.motion.velocities.len() {
+            return Err(from.foreign(format!("{} velocities", checkpoint.step)));
+        }
+        from.field_into("pressure", &mut steady.start)?;
+        steady.last.index = steady.done.saturating_sub(1);
+        steady.last.velocity = steady.motion.velocities[steady.last.index];
+        steady.last.state.pressure.copy_from_slice(&steady.start);
+        Ok(steady)
     }
 
     /// What moves.
@@ -148,71 +156,11 @@ impl Steady {
         &self.motion
     }
 
-    /// The creep functions of the bodies that stream by.
-    pub fn streaming(&self) -> &Streaming {
-        &self.streaming
-    }
-
-    /// Velocities done.
-    pub fn done(&self) -> usize {
-        self.done
-    }
-
-    /// Whether the last velocity is done.
-    pub fn finished(&self) -> bool {
-        self.done == self.motion.velocities.len()
-    }
-
-    /// The pressure that the next velocity is solved from \[Pa\]: that of the last one done, whatever became of a later one. With
-    /// [`done`](Self::done) it is all that the velocities to come depend on.
-    pub fn start(&self) -> &[f64] {
-        &self.start
-    }
-
-    /// Goes on after `done` velocities from the pressure of the last of them \[Pa\].
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] where there are fewer velocities, or the pressure has not one number for each cell.
-    pub fn resume(&mut self, done: usize, pressure: &[f64]) -> Result<()> {
-        if done > self.motion.velocities.len() || pressure.len() != self.simulation.grid.len() {
-            return Err(Error::invalid("checkpoint", format!("{done} velocities"), "one of this sweep"));
-        }
-        self.done = done;
-        self.start.copy_from_slice(pressure);
-        self.last.index = done.saturating_sub(1);
-        self.last.velocity = self.motion.velocities[self.last.index];
-        self.last.state.pressure.copy_from_slice(pressure);
-        Ok(())
-    }
-
     /// Memory that a sweep takes at most \[bytes\]: operators, solver and fields.
     pub fn bytes(simulation: &Simulation, motion: &SteadyMotion) -> usize {
         // Gap and slopes; pressure and U of three states, the start and two fields of work; vectors of GMRES, were all in contact.
         let fields = 3 + 6 + 3 + gmres::FIELDS;
         Operators::bytes(simulation, motion.direction) + 8 * simulation.grid.len() * fields
-    }
-
-    /// The next steady state, or `None` at the end. Its row has the velocity in place of the time.
-    ///
-    /// # Errors
-    /// [`Error::NotConverged`] with the velocity; [`Steady::last`] then has the best state.
-    /// [`Error::Interrupted`].
-    pub fn advance(&mut self) -> Result<Option<Step<'_>>> {
-        let Some(velocity) = self.motion.velocities.get(self.done).copied() else { return Ok(None) };
-        (self.last.index, self.last.velocity) = (self.done, velocity);
-        let solved = self.solve(velocity);
-        let row = self.last.row(&self.simulation, &self.streaming, None);
-        row.record(&mut self.recorder);
-        solved?;
-        self.start.copy_from_slice(&self.last.state.pressure);
-        self.done += 1;
-        Ok(self.last())
-    }
-
-    /// The last steady state; after an error the best one reached. `None` before the first.
-    pub fn last(&self) -> Option<Step<'_>> {
-        let touches = self.last.state.pressure.iter().any(|p| *p > 0.0);
-        touches.then(|| self.last.row(&self.simulation, &self.streaming, Some(&self.recorder)))
     }
 
     /// Solves for one velocity.
@@ -250,6 +198,65 @@ impl Steady {
         };
         *friction = Friction::of(&forces, SecondEstimate::Steady(stream.loss(&state.pressure)));
         solved
+    }
+}
+
+impl Drive for Steady {
+    fn advance(&mut self) -> Result<Option<Step<'_>>> {
+        let Some(velocity) = self.motion.velocities.get(self.done).copied() else { return Ok(None) };
+        (self.last.index, self.last.velocity) = (self.done, velocity);
+        let solved = self.solve(velocity);
+        let row = self.last.row(&self.simulation, &self.streaming, None);
+        row.record(&mut self.recorder);
+        solved?;
+        self.start.copy_from_slice(&self.last.state.pressure);
+        self.done += 1;
+        Ok(self.last())
+    }
+
+    fn last(&self) -> Option<Step<'_>> {
+        let touches = self.last.state.pressure.iter().any(|p| *p > 0.0);
+        touches.then(|| self.last.row(&self.simulation, &self.streaming, Some(&self.recorder)))
+    }
+
+    fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+
+    fn axis(&self) -> Axis {
+        Axis::Velocity
+    }
+
+    fn planned(&self) -> Vec<f64> {
+        self.motion.velocities.clone()
+    }
+
+    fn rows_expected(&self) -> Option<usize> {
+        Some(self.motion.velocities.len())
+    }
+
+    fn done(&self) -> usize {
+        self.done
+    }
+
+    fn finished(&self) -> bool {
+        self.done == self.motion.velocities.len()
+    }
+
+    /// Stops within one iteration of the solver, or some hundred influence coefficients.
+    fn interrupt_with(&mut self, flag: Arc<AtomicBool>) {
+        self.interrupt = Some(flag);
+    }
+
+    /// The pressure of the last velocity done, whatever became of a later one.
+    fn checkpoint(&self) -> Checkpoint<'_> {
+        let mut to = Saver::new(self.done, self.simulation.grid.shape());
+        to.field("pressure", &self.start);
+        to.finish()
+    }
+
+    fn streaming(&self) -> Option<&Streaming> {
+        Some(&self.streaming)
     }
 }
 

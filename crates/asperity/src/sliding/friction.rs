@@ -160,8 +160,7 @@ impl ContactForces<'_> {
 
     /// dg/ds by central differences; 0 beside cells that cannot touch.
     fn slope_of_gap(&self, i: usize, j: usize) -> f64 {
-        let ([nx, ny], [dx, dy], [cx, cy]) =
-            (self.grid.cells(), self.grid.spacing(), self.direction.unit());
+        let ([nx, ny], [dx, dy], [cx, cy]) = (self.grid.cells(), self.grid.spacing(), self.direction.unit());
         let step = |n: usize, count: usize, forward: bool| match (self.boundary, forward) {
             (Boundary::Periodic, true) => (n + 1) % count,
             (Boundary::Periodic, false) => (n + count - 1) % count,

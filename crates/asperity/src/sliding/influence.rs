@@ -222,7 +222,8 @@ mod tests {
         for grid in [Grid::new([8, 8], [8.0, 4.0]).unwrap(), Grid::line(8, 8.0).unwrap()] {
             for l in [0.02, 0.3, 1.0, 7.0, 300.0] {
                 let n = 8;
-                let found = influence(&grid, [n, 3], 0.0, &[Branch { compliance: 1.0, length: l }], None).unwrap();
+                let found =
+                    influence(&grid, [n, 3], 0.0, &[Branch { compliance: 1.0, length: l }], None).unwrap();
                 for (i, j) in [(-8_i64, 0_usize), (-3, 2), (0, 0), (-1, 0), (1, 1), (8, 3)] {
                     let j = if grid.is_line() { 0 } else { j };
                     let dy = grid.spacing()[1];
@@ -242,7 +243,8 @@ mod tests {
     #[test]
     fn a_short_memory_is_the_elastic_body_and_a_long_one_none() {
         let grid = Grid::new([4, 4], [4.0, 4.0]).unwrap();
-        let of = |l: f64| influence(&grid, [4, 0], 0.0, &[Branch { compliance: 1.0, length: l }], None).unwrap();
+        let of =
+            |l: f64| influence(&grid, [4, 0], 0.0, &[Branch { compliance: 1.0, length: l }], None).unwrap();
         let short = of(1e-6);
         assert!((short[4] - love(0.0, 0.0, [1.0, 1.0])).abs() < 1e-5);
         assert!(of(1e9).iter().all(|k| k.abs() < 1e-6));

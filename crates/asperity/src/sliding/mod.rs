@@ -22,8 +22,8 @@ mod steady;
 mod streaming;
 pub(crate) mod torus;
 
-pub use friction::{Direction, Friction};
 pub(crate) use friction::{ContactForces, SecondEstimate};
+pub use friction::{Direction, Friction};
 pub use moving::MovingGap;
 pub use path::Path;
 pub use persson::{Correction, Magnification, Persson, PerssonFriction};

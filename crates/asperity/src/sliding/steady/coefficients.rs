@@ -64,7 +64,10 @@ pub(super) fn on_torus(
                 false => from[i - m / 2],
             };
             let value = match distance > seen {
-                true => end + (value - end) * (1.0 - smooth_step((distance - seen) as f64 / (m / 2 - seen) as f64)),
+                true => {
+                    end + (value - end)
+                        * (1.0 - smooth_step((distance - seen) as f64 / (m / 2 - seen) as f64))
+                }
                 false => value,
             };
             torus[if along_y { j * my + i } else { i * my + j }] = value - least;

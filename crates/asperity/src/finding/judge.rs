@@ -34,7 +34,7 @@ pub struct Known<'a> {
 ///
 /// ```
 /// use asperity::finding::{Judge, Known, CONTACT_AT_BORDER};
-/// use asperity::{march::{March, Simulation}, material::Creep, surface::{Part, Shape, undeformed_gap}, *};
+/// use asperity::{drive::{Drive, March}, material::Creep, surface::{Part, Shape, undeformed_gap}, *};
 /// // A sphere of 10 mm under 20 N on 1 MPa: the contact fills the domain of 2 mm.
 /// let grid = Grid::new([32, 32], [2e-3, 2e-3])?;
 /// let parts = [Part::Shape { shape: Shape::Sphere { radius: 10e-3 }, center: [0.0, 0.0] }];

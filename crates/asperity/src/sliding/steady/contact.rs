@@ -60,10 +60,20 @@ impl<'a> SteadyContact<'a> {
             work: [vec![0.0; n], vec![0.0; n]],
         };
         let mut operators = Operators::plan(&self.stream, false, self.interrupt)?;
-        match self.iterate(&mut operators, &mut fields, STEPS, state)? {
-            true => Ok(()),
-            false => self.continue_from_easier(&mut fields, state),
+        if self.iterate(&mut operators, &mut fields, STEPS, state)? {
+            return Ok(());
         }
+        drop(operators);
+        let found = self.continue_from_easier(&mut fields, state);
+        if let Err(Error::NotConverged(_)) = found {
+            // The pressure of an easier body is no contact of this one.
+            let mut operators = Operators::plan(&self.stream, false, self.interrupt)?;
+            operators.apply_into(&state.pressure, &mut state.unit_displacement);
+            self.tolerance = self.options.tolerance;
+            self.rate(state);
+            return Err(self.not_converged());
+        }
+        found
     }
 
     /// Continuation in the instantaneous compliance: from a body that yields a quarter at once, on which the iteration contracts

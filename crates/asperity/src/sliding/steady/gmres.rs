@@ -6,6 +6,8 @@
 
 use std::sync::atomic::AtomicBool;
 
+use asperity_sweep::{strands, sum, sweep};
+
 use super::operators::Operators;
 use crate::error::Result;
 use crate::sliding::stop_at;
@@ -64,7 +66,7 @@ impl OnSet<'_> {
             let mut column = Vec::with_capacity(k + 2);
             for v in &basis {
                 let product = dot(v, &y);
-                y.iter_mut().zip(v).for_each(|(y, v)| *y -= product * v);
+                add(-product, v, &mut y);
                 column.push(product);
             }
             let length = norm(&y);
@@ -99,26 +101,33 @@ impl OnSet<'_> {
         }
         let mut d = vec![0.0; residual.len()];
         for (z, weight) in preconditioned.iter().zip(&weights) {
-            d.iter_mut().zip(z).for_each(|(d, z)| *d += weight * z);
+            add(*weight, z, &mut d);
         }
         Ok(d)
     }
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+    sweep((a, b), &|(a, b): (&[f64], &[f64])| strands(a.len(), |i| [a[i] * b[i]]))[0]
 }
 
 fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
 }
 
+/// y += factor x.
+fn add(factor: f64, x: &[f64], y: &mut [f64]) {
+    sweep((y, x), &|(y, x): (&mut [f64], &[f64])| {
+        y.iter_mut().zip(x).for_each(|(y, x)| *y += factor * x);
+    });
+}
+
 fn scale(a: &mut [f64], factor: f64) {
-    a.iter_mut().for_each(|a| *a *= factor);
+    sweep(a, &|a: &mut [f64]| a.iter_mut().for_each(|a| *a *= factor));
 }
 
 /// Takes the mean away.
 fn centre(a: &mut [f64]) {
-    let mean = a.iter().sum::<f64>() / a.len().max(1) as f64;
-    a.iter_mut().for_each(|a| *a -= mean);
+    let mean = sum(a) / a.len().max(1) as f64;
+    sweep(a, &|a: &mut [f64]| a.iter_mut().for_each(|a| *a -= mean));
 }

@@ -55,7 +55,7 @@ pub struct SteadyMotion {
 ///
 /// ```
 /// use asperity::{material::{Creep, CreepTerm}, sliding::{Direction, Slopes, Steady, SteadyMotion}};
-/// use asperity::{Boundary, Control, Grid, History, Loading, march::Simulation, surface::{Part, Shape, undeformed_gap}};
+/// use asperity::{Boundary, Control, Drive, Grid, History, Loading, Simulation, surface::{Part, Shape, undeformed_gap}};
 /// // A cylinder of 10 mm rolls over a Zener solid that yields five times its instantaneous compliance in 10 ms.
 /// let grid = Grid::line(128, 4e-3)?;
 /// let parts = [Part::Shape { shape: Shape::Cylinder { radius: 10e-3 }, center: [0.0, 0.0] }];

@@ -147,21 +147,15 @@ impl Stream<'_> {
     /// A on a periodic domain, from its symbol.
     fn periodic(&self, torus: &Torus) -> Spectrum {
         let Simulation { grid, kernel, .. } = self.simulation;
-        let unit = self.streaming.relaxed();
-        let along = self.velocities();
-        let fundamental = grid.size().map(|length| TAU / length);
-        let cells = grid.cells();
+        let (unit, along, fundamental) =
+            (self.streaming.relaxed(), self.velocities(), fundamental(grid, grid.size()));
+        let q = |k: i64, axis: usize| k as f64 * fundamental[axis];
+        // A wave of two cells is the mean of its two directions.
+        let signs = |k: i64, axis: usize| if alternates(grid, k, axis) { [1, -1] } else { [1, 1] };
         torus.spectrum(|kx, ky| {
             if (kx, ky) == (0, 0) {
                 return (kernel.uniform().unwrap_or(0.0) * self.streaming.at(0.0) / unit).re.into();
             }
-            let q = |k: i64, axis: usize| {
-                if grid.is_line() && axis == 1 { 0.0 } else { k as f64 * fundamental[axis] }
-            };
-            // A wave of two cells is the mean of its two directions.
-            let signs = |k: i64, axis: usize| {
-                if 2 * k.unsigned_abs() as usize == cells[axis] { [1, -1] } else { [1, 1] }
-            };
             let mut compliance = Complex64::ZERO;
             for sx in signs(kx, 0) {
                 for sy in signs(ky, 1) {
@@ -196,16 +190,14 @@ impl Stream<'_> {
         if *boundary == Boundary::Periodic || spectrum.0.iter().all(|a| a.re > 0.0) {
             return Cow::Borrowed(spectrum);
         }
-        let (along, unit, lengths) = (self.velocities(), self.streaming.relaxed(), torus.lengths());
+        let (along, unit) = (self.velocities(), self.streaming.relaxed());
+        let size = [0, 1].map(|axis| torus.lengths()[axis] as f64 * grid.spacing()[axis]);
+        let fundamental = fundamental(grid, size);
         let endless = torus.spectrum(|kx, ky| {
             if (kx, ky) == (0, 0) {
                 return Complex64::ZERO;
             }
-            let wave = |k: i64, axis: usize| match grid.is_line() && axis == 1 {
-                true => 0.0,
-                false => TAU * k as f64 / (lengths[axis] as f64 * grid.spacing()[axis]),
-            };
-            let [qx, qy] = [wave(kx, 0), wave(ky, 1)];
+            let [qx, qy] = [kx as f64 * fundamental[0], ky as f64 * fundamental[1]];
             let compliance = self.streaming.at(along[0] * qx + along[1] * qy).re / unit;
             (kernel.symbol(qx.abs(), qy.abs()) * compliance).into()
         });
@@ -220,25 +212,96 @@ impl Stream<'_> {
             return None;
         }
         let mut torus = Torus::new(grid.cells(), grid.cells());
-        let unit = self.direction.unit();
-        let fundamental = grid.size().map(|length| TAU / length);
-        let cells = grid.cells();
+        let (unit, fundamental) = (self.direction.unit(), fundamental(grid, grid.size()));
         let spectrum = torus.spectrum(|kx, ky| {
-            let alternates = |k: i64, axis: usize| 2 * k.unsigned_abs() as usize == cells[axis];
-            let q = |k: i64, axis: usize| match grid.is_line() && axis == 1 || alternates(k, axis) {
-                true => 0.0,
-                false => k as f64 * fundamental[axis],
-            };
-            let along = unit[0] * q(kx, 0) + unit[1] * q(ky, 1);
-            let size =
-                [kx as f64 * fundamental[0], if grid.is_line() { 0.0 } else { ky as f64 * fundamental[1] }];
+            let q = |k: i64, axis: usize| k as f64 * fundamental[axis];
+            let slope = |k: i64, axis: usize| if alternates(grid, k, axis) { 0.0 } else { q(k, axis) };
+            let along = unit[0] * slope(kx, 0) + unit[1] * slope(ky, 1);
             if along == 0.0 {
                 return Complex64::ZERO;
             }
             let compliance = self.streaming.at(along * self.velocity);
-            (along * kernel.symbol(size[0].abs(), size[1].abs()) * compliance.im).into()
+            (along * kernel.symbol(q(kx, 0).abs(), q(ky, 1).abs()) * compliance.im).into()
         });
         let energy = torus.energy(&spectrum, |s, _| s.re, pressure);
         Some(energy * grid.cell_area())
+    }
+}
+
+/// The wave numbers of the longest waves along x and y of a period; 0 across a line.
+fn fundamental(grid: &Grid, period: [f64; 2]) -> [f64; 2] {
+    [TAU / period[0], if grid.is_line() { 0.0 } else { TAU / period[1] }]
+}
+
+/// Whether the k-th wave along an axis of a periodic domain is two cells long.
+fn alternates(grid: &Grid, k: i64, axis: usize) -> bool {
+    2 * k.unsigned_abs() as usize == grid.cells()[axis]
+}
+
+#[cfg(test)]
+mod tests {
+    use ndarray::Array2;
+
+    use super::*;
+    use crate::error::Error;
+    use crate::material::{Creep, CreepTerm};
+
+    /// A body of a hundred times the compliance at once, and one term of time 1.
+    fn simulation(grid: Grid) -> Simulation {
+        let terms = vec![CreepTerm { compliance: 0.99, retardation_time: 1.0 }];
+        let creep = Creep { instantaneous: 0.01, terms, fluidity: 0.0 };
+        Simulation { creep, ..Simulation::new(grid, Array2::zeros(grid.shape())) }
+    }
+
+    #[test]
+    fn a_longer_torus_is_the_same_operator_on_the_domain() {
+        for (grid, direction) in [
+            (Grid::line(33, 1.0).unwrap(), Direction::X),
+            (Grid::new([20, 9], [2.0, 1.0]).unwrap(), Direction::X),
+            (Grid::new([9, 20], [1.0, 2.0]).unwrap(), Direction::Y),
+        ] {
+            let simulation = simulation(grid);
+            let streaming = Streaming::new(&simulation).unwrap();
+            for velocity in [0.0, 0.1, 3.0, 100.0] {
+                let stream = Stream { simulation: &simulation, streaming: &streaming, direction, velocity };
+                let mut p: Vec<f64> = (0..grid.len()).map(|n| (n * 37 % 11) as f64).collect();
+                let mean = p.iter().sum::<f64>() / p.len() as f64;
+                p.iter_mut().for_each(|p| *p -= mean);
+                let [short, long] = [1, LONGEST].map(|times| {
+                    let mut lengths = shortest(&grid);
+                    lengths[direction.axis()] *= times;
+                    let spectrum = coefficients::on_torus(&stream, lengths, shortest(&grid), None).unwrap();
+                    let mut u = vec![0.0; p.len()];
+                    Torus::new(grid.cells(), lengths).apply_into(&spectrum, &p, &mut u);
+                    u
+                });
+                let largest = short.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
+                // A pressure without a mean does not see the constant of a line contact; the rest are roundings of transforms.
+                let apart = short.iter().zip(&long).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                assert!(apart < 1e-12 * largest, "{direction:?} {velocity}: {apart:e} of {largest:e}");
+            }
+        }
+    }
+
+    #[test]
+    fn planning_is_interrupted_and_the_torus_is_bounded() {
+        let grid = Grid::new([16, 16], [1.0, 1.0]).unwrap();
+        let simulation = simulation(grid);
+        let streaming = Streaming::new(&simulation).unwrap();
+        let of = |velocity| Stream {
+            simulation: &simulation,
+            streaming: &streaming,
+            direction: Direction::X,
+            velocity,
+        };
+        let stopped = Operators::plan(&of(1.0), false, Some(&AtomicBool::new(true)));
+        assert!(matches!(stopped, Err(Error::Interrupted)));
+        for decade in -6..=9 {
+            let operators = Operators::plan(&of(10f64.powi(decade)), false, None).unwrap();
+            let [mx, my] = operators.torus.lengths();
+            assert!(mx <= LONGEST * 32 && my == 32, "{decade}: {mx} x {my}");
+        }
+        let wide = Grid::new([4096, 4096], [1.0, 1.0]).unwrap();
+        assert_eq!(lengthened(&wide, shortest(&wide), Direction::X), None);
     }
 }

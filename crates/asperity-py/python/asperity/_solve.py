@@ -67,10 +67,12 @@ class Step(Sealed):
     contact_percolation = Number()
     gap_percolation = Number()
     rms_gap = Number()
+    contact_eccentricity = Number()
     elastic_energy = Number()
     dissipated_energy = Number()
     flattening_work = Number()
     external_work = Number()
+    load_power = Number()
     velocity = Number()
     sliding_distance = Number()
     friction_force = Number()
@@ -431,8 +433,8 @@ def solve(
     method : "projected-cg" or "polonsky-keer"
     plasticity : what remains of flattening on unloading: "cap" (nothing) or "accumulate" (all of it; field "flattening")
     quantities : optional numbers of each row: "contact_stiffness", "contact_spots", "largest_spot", "mean_spot",
-        "contact_perimeter", "contact_percolation", "gap_percolation", "rms_gap", "elastic_energy", "dissipated_energy",
-        "flattening_work", "external_work", and "spot_histogram", "pressure_histogram", "gap_histogram" of that many `bins` up to `largest_pressure` [Pa] (by default the
+        "contact_perimeter", "contact_percolation", "gap_percolation", "rms_gap", "contact_eccentricity", "elastic_energy",
+        "dissipated_energy", "flattening_work", "external_work", "load_power", and "spot_histogram", "pressure_histogram", "gap_histogram" of that many `bins` up to `largest_pressure` [Pa] (by default the
         hardness) and `largest_gap` [m] (by default that of the undeformed gap)
     fields : fields to keep: "pressure", "gap", "displacement", "contact", "flattening"
     every : keep the fields of every n-th row, and of the first and the last; default: of every row, up to 20 rows

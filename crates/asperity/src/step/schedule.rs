@@ -534,3 +534,6 @@ fn met(event: Event, signal: f64, tolerance: f64) -> bool {
         _ => signal.abs() <= tolerance,
     }
 }
+
+#[cfg(test)]
+mod tests;

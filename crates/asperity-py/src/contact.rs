@@ -4,7 +4,7 @@ use std::sync::atomic::AtomicBool;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use asperity::contact::Hardness;
-use asperity::finding::{Judge, Known};
+use asperity::finding::{Diagnostics, Known};
 use asperity::march::Row;
 use asperity::material::Creep;
 use asperity::operator::{Operator, half_space, plan};
@@ -34,7 +34,7 @@ pub struct Elastic {
 }
 
 struct Planned {
-    /// Gap, boundary, modulus and hardness, as the judge takes them.
+    /// Gap, boundary, modulus and hardness, as the diagnostics take them.
     simulation: Simulation,
     /// Whether the body is the half-space: what findings are about.
     half_space: bool,
@@ -261,12 +261,12 @@ fn last(outcome: &Outcome, iterations: &[Iteration]) -> Iteration {
 
 /// What is to be said of a contact, as a JSON list.
 fn judged(simulation: &Simulation, control: Control, row: &Row, state: &ContactState) -> String {
-    let mut judge = Judge::new(simulation, Known::default());
+    let mut diagnostics = Diagnostics::new(simulation, Known::default());
     let pressure = ArrayView2::from_shape(simulation.grid.shape(), &state.pressure);
     if let Ok(pressure) = pressure {
-        judge.see_contact(0, row, pressure, control, simulation.creep.instantaneous);
+        diagnostics.see_contact(0, row, pressure, control, simulation.creep.instantaneous);
     }
-    asperity_io::finding::list(&judge.findings(simulation)).to_string()
+    asperity_io::finding::list(&diagnostics.findings(simulation)).to_string()
 }
 
 /// The number of the spot of each cell with pressure, 1 for the largest, 0 elsewhere.

@@ -2,7 +2,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use asperity::finding::{LeakJudge, LeakState};
+use asperity::finding::{LeakDiagnostics, LeakState};
 use asperity::{Boundary, Error, Grid};
 use asperity_io::case::{LeakageKeys, leak as checked};
 use asperity_io::leakage::Leak;
@@ -35,11 +35,11 @@ pub fn leakage<'py>(
         leak.of_gap(&grid, gap, contact, time)
     })?;
     let state = solved.map_err(|error| raised(py, error))?;
-    let mut judge = LeakJudge::default();
-    let resolved = judge.see(&state.alone());
+    let mut diagnostics = LeakDiagnostics::default();
+    let resolved = diagnostics.see(&state.alone());
     let out = PyDict::new(py);
     out.set_item("leak_resolved", resolved)?;
-    out.set_item("findings", asperity_io::finding::list(&judge.findings()).to_string())?;
+    out.set_item("findings", asperity_io::finding::list(&diagnostics.findings()).to_string())?;
     out.set_item("percolates", state.percolates)?;
     out.set_item("hydraulic_gap", state.hydraulic_gap)?;
     out.set_item("critical_gap", state.critical_gap)?;
@@ -61,17 +61,17 @@ pub fn leakage<'py>(
     Ok(out)
 }
 
-/// A state for the judge: row (none for a gap of no run), critical gap (none where tight), cells across it, error of the gap, pressure drop, contact pressure.
+/// A state for the diagnostics: row (none for a gap of no run), critical gap (none where tight), cells across it, error of the gap, pressure drop, contact pressure.
 type State = (Option<usize>, Option<f64>, Option<usize>, f64, Option<f64>, f64);
 
 /// Which leaks the numbers carry, and what was found against the others (a JSON list).
 #[pyfunction]
 pub fn judge_leaks(states: Vec<State>) -> (Vec<bool>, String) {
-    let mut judge = LeakJudge::default();
+    let mut diagnostics = LeakDiagnostics::default();
     let resolved = states.into_iter().map(|(row, gap, width, gap_error, pressure_drop, contact_pressure)| {
         let constriction = gap.map(|gap| (gap, width));
-        judge.see(&LeakState { row, constriction, gap_error, pressure_drop, contact_pressure })
+        diagnostics.see(&LeakState { row, constriction, gap_error, pressure_drop, contact_pressure })
     });
     let resolved = resolved.collect();
-    (resolved, asperity_io::finding::list(&judge.findings()).to_string())
+    (resolved, asperity_io::finding::list(&diagnostics.findings()).to_string())
 }

@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use asperity::finding::{Judge, Known};
+use asperity::finding::{Diagnostics, Known};
 use asperity::quantities::{Quantities, Quantity};
 use asperity::sliding::{Direction, MovingGap, Path, SteadyMotion};
 use asperity::surface::Part;
@@ -27,7 +27,7 @@ use crate::wait::{detached, without_python};
 pub struct March {
     /// Locked where threads of Python share it.
     march: Mutex<Box<dyn Drive>>,
-    judge: Judge,
+    diagnostics: Diagnostics,
     /// The numbers of the last row.
     last: Option<march::Row>,
     /// Whether the state is that of the last row.
@@ -282,36 +282,36 @@ impl March {
         let moves = moves.transpose()?.transpose().map_err(|error| raised(py, error))?;
         let interrupt = Arc::new(AtomicBool::new(false));
         let made = without_python(py, &interrupt, || {
-            let judge = Judge::new(&simulation, Known { bodies: &bodies, ..Known::default() });
+            let diagnostics = Diagnostics::new(&simulation, Known { bodies: &bodies, ..Known::default() });
             let (motion, steady) = match moves {
                 None => (None, None),
                 Some(Moves::Path(motion)) => (Some(*motion), None),
                 Some(Moves::Steady(motion)) => (None, Some(motion)),
             };
             let drive = drive::of(Simulation { motion, ..simulation }, steady)?;
-            let judge = match drive.streaming() {
-                Some(streaming) => judge.of_sweep(streaming.clone()),
-                None => judge,
+            let diagnostics = match drive.streaming() {
+                Some(streaming) => diagnostics.of_sweep(streaming.clone()),
+                None => diagnostics,
             };
-            Ok((drive, judge))
+            Ok((drive, diagnostics))
         })?;
-        let (mut march, judge) = made.map_err(|error| raised(py, error))?;
+        let (mut march, diagnostics) = made.map_err(|error| raised(py, error))?;
         march.interrupt_with(interrupt.clone());
-        Ok(March { march: Mutex::new(march), judge, last: None, settled: false, interrupt })
+        Ok(March { march: Mutex::new(march), diagnostics, last: None, settled: false, interrupt })
     }
 
     /// Goes on by one row; False at the end.
     fn advance(&mut self, py: Python<'_>) -> PyResult<bool> {
         self.interrupt.store(false, Ordering::Relaxed);
         let march = self.march.get_mut().unwrap_or_else(PoisonError::into_inner);
-        let (judge, last, settled) = (&mut self.judge, &mut self.last, &mut self.settled);
+        let (diagnostics, last, settled) = (&mut self.diagnostics, &mut self.last, &mut self.settled);
         let done = without_python(py, &self.interrupt, || -> asperity::Result<bool> {
             let before = std::mem::replace(settled, false);
             let step = march.advance()?;
             *settled = before || step.is_some();
             let Some(step) = step else { return Ok(false) };
             let row = step.row();
-            judge.see(&step, &row);
+            diagnostics.see(&step, &row);
             *last = Some(row);
             Ok(true)
         })?;
@@ -360,7 +360,7 @@ impl March {
     /// What was found so far, as a JSON list.
     fn findings(&self) -> String {
         let march = self.locked();
-        asperity_io::finding::list(&self.judge.findings(march.simulation())).to_string()
+        asperity_io::finding::list(&self.diagnostics.findings(march.simulation())).to_string()
     }
 
     /// Rows in all.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use asperity::kernel::{HalfSpace, Kernel};
-use asperity::layer::{BodyLayer, Inseparable, Interface, LayeredBody, Response, response};
+use asperity::layer::{BodyLayer, Interface, LayeredBody, NonseparableLayers, Response, response};
 use asperity::material::{
     self, Creep, CreepTerm, Fractional, Lateral, Material, Modulus, ReducedTime, Relaxation, Shift,
     TemperatureFactors, ThermalCreep, VerticalShift,
@@ -112,7 +112,7 @@ pub struct Pair {
     /// How they yield in space.
     pub kernel: Arc<dyn Kernel>,
     /// How their waves creep, where they creep differently.
-    pub waves: Option<Arc<Inseparable>>,
+    pub waves: Option<Arc<NonseparableLayers>>,
     /// The creep function of those of constant temperature.
     pub creep: Creep,
     /// The others, on their clocks.

@@ -1,7 +1,7 @@
 //! What `asperity check` says of a case: what was read, what is to be expected, and what may be off.
 
 use asperity::contact::Prescribed;
-use asperity::finding::{Contact, Expected, Finding, Judge, Known, thin_body};
+use asperity::finding::{Contact, Diagnostics, Expected, Finding, Known, thin_body};
 use asperity::material::Modulus;
 use asperity::surface::statistics::{HeightStatistics, SlopeStatistics};
 use asperity::surface::{Part, Punch, Shape, Surface};
@@ -92,10 +92,12 @@ impl Case {
         let parts = self.parts()?;
         let simulation = self.simulation_of(&parts)?;
         self.steady_of(&parts, &simulation)?;
-        let judge =
-            Judge::new(&simulation, Known { parts: &parts, bodies: &self.bodies, thickness: self.thickness });
+        let diagnostics = Diagnostics::new(
+            &simulation,
+            Known { parts: &parts, bodies: &self.bodies, thickness: self.thickness },
+        );
         let expected = Expected::of(&simulation, &parts);
-        let of_case = self.findings.iter().chain(judge.known()).cloned();
+        let of_case = self.findings.iter().chain(diagnostics.known()).cloned();
         let to_come = expected.iter().flat_map(|expected| expected.findings(&simulation));
         let findings = of_case.chain(to_come).chain(self.thin(expected.as_ref())).collect();
         Ok(Examination {

@@ -65,7 +65,7 @@ use std::sync::Arc;
 
 use asperity::finding::Finding;
 use asperity::kernel::{HalfSpace, Kernel};
-use asperity::layer::{Inseparable, Layered};
+use asperity::layer::{Layered, NonseparableLayers};
 use asperity::material::{Body, Creep, ThermalCreep};
 use asperity::quantities::{Quantities, Quantity};
 use asperity::sliding::{MovingGap, SteadyMotion};
@@ -114,7 +114,7 @@ pub struct Case {
     /// How the bodies yield in space, where they have layers; half-spaces otherwise.
     pub layers: Option<Arc<Layered>>,
     /// How waves on the layers creep, where waves of different lengths creep differently.
-    pub waves: Option<Arc<Inseparable>>,
+    pub waves: Option<Arc<NonseparableLayers>>,
     /// Thickness of the thinnest body that is taken as a half-space \[m\], where it is known.
     pub thickness: Option<f64>,
     /// Contact creep compliance C(t) of the pair \[1/Pa\]; without the bodies of `thermal`.

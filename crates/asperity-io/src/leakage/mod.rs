@@ -153,7 +153,7 @@ pub struct Leakage {
 }
 
 impl Leakage {
-    /// What the judge looks at of a map of the gap of which nothing else is known: the cells across the constriction.
+    /// What the diagnostics look at of a map of the gap of which nothing else is known: the cells across the constriction.
     pub fn alone(&self) -> LeakState {
         LeakState {
             row: None,

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use asperity::finding::{Finding, LeakJudge, LeakState};
+use asperity::finding::{Finding, LeakDiagnostics, LeakState};
 use serde_json::Value;
 use thiserror::Error;
 
@@ -130,7 +130,7 @@ fn evaluate(
     let rows = reader.rows()?;
     let tolerance = reader.header().setup.get("solver_tolerance").and_then(Value::as_f64).unwrap_or(1e-6);
     let initial = reader.initial_gap()?;
-    let mut judge = LeakJudge::default();
+    let mut diagnostics = LeakDiagnostics::default();
     let mut table =
         LeakTable::new(leak.fluid.as_ref().map(Fluid::is_gas), leak.direction == LeakDirection::Both);
     for (done, index) in instants.iter().copied().enumerate() {
@@ -149,7 +149,7 @@ fn evaluate(
         let (sum, count) =
             touching.fold((0.0, 0.0), |(sum, count), ((h, h0), _)| (sum + (h - h0), count + 1.0));
         let displacement = if count > 0.0 { sum / count + row.approach } else { 0.0 };
-        let resolved = judge.see(&LeakState {
+        let resolved = diagnostics.see(&LeakState {
             row: Some(step),
             gap_error: tolerance * displacement.abs(),
             pressure_drop: leak.fluid.as_ref().map(Fluid::pressure_drop),
@@ -162,5 +162,5 @@ fn evaluate(
         table.push(time, step, &state, resolved);
         observe(done + 1, instants.len());
     }
-    Ok(LeakHistory { leak: leak.clone(), table, findings: judge.findings() })
+    Ok(LeakHistory { leak: leak.clone(), table, findings: diagnostics.findings() })
 }

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use asperity::finding::{Finding, Judge, Known};
+use asperity::finding::{Diagnostics, Finding, Known};
 use asperity::march::Row;
 use asperity::sliding::Friction;
 use asperity::{Error, drive};
@@ -156,7 +156,7 @@ fn run_inside(
     let simulation = case.simulation_of(&parts)?;
     let steady = case.steady_of(&parts, &simulation)?;
     let known = Known { parts: &parts, bodies: &case.bodies, thickness: case.thickness };
-    let judge = Judge::new(&simulation, known);
+    let diagnostics = Diagnostics::new(&simulation, known);
     drop(parts);
     let header = header(case, &simulation, steady.as_ref());
     let (writer, checkpoint, earlier) = if options.resume {
@@ -170,7 +170,8 @@ fn run_inside(
         let writer = Writer::create(&path, &header, simulation.gap.view(), options.force);
         (writer.map_err(RunError::Output)?, None, Earlier::default())
     };
-    let mut record = Record { case, writer, judge, path: &path, last: None, friction: None, stress: None };
+    let mut record =
+        Record { case, writer, diagnostics, path: &path, last: None, friction: None, stress: None };
     let drive = match &checkpoint {
         Some(checkpoint) => drive::resume(simulation, steady, checkpoint),
         None => drive::of(simulation, steady),
@@ -180,10 +181,10 @@ fn run_inside(
         Err(source) => return Err(record.fail(None, source)),
     };
     if let Some(streaming) = drive.streaming() {
-        record.judge = record.judge.of_sweep(streaming.clone());
+        record.diagnostics = record.diagnostics.of_sweep(streaming.clone());
     }
     if let Some(checkpoint) = &checkpoint {
-        record.judge.resume(earlier.rows.get(..checkpoint.step).unwrap_or_default(), &earlier.findings);
+        record.diagnostics.resume(earlier.rows.get(..checkpoint.step).unwrap_or_default(), &earlier.findings);
     }
     drive.interrupt_with(options.interrupt.clone());
     let mut maps = Maps::new(case, drive.simulation().grid.shape());

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use asperity::finding::{Finding, Judge};
+use asperity::finding::{Diagnostics, Finding};
 use asperity::march::Row;
 use asperity::sliding::Friction;
 use asperity::{Drive, Error};
@@ -27,11 +27,11 @@ impl Earlier {
         Ok(Earlier { rows: reader.rows()?, findings: reader.findings().to_vec() })
     }
 }
-/// The result of a run under way, and its judge.
+/// The result of a run under way, and its diagnostics.
 pub(super) struct Record<'a> {
     pub(super) case: &'a Case,
     pub(super) writer: Writer,
-    pub(super) judge: Judge,
+    pub(super) diagnostics: Diagnostics,
     pub(super) path: &'a Path,
     /// The last row stored, and its forces.
     pub(super) last: Option<Row>,
@@ -61,7 +61,7 @@ impl Record<'_> {
         }
         let fields = if stored.holds(step.index(), drive.finished(), at) { maps.of(&step) } else { vec![] };
         self.writer.append_with(&row, step.quantities(), &fields)?;
-        self.judge.see(&step, &row);
+        self.diagnostics.see(&step, &row);
         self.last = Some(row);
         self.friction = step.friction();
         Ok(Some(row))
@@ -70,8 +70,8 @@ impl Record<'_> {
     /// What was found so far: of the materials, and of the run.
     fn findings(&self, drive: Option<&dyn Drive>) -> Vec<Finding> {
         let of_run = match drive {
-            Some(drive) => self.judge.findings(drive.simulation()),
-            None => self.judge.known().to_vec(),
+            Some(drive) => self.diagnostics.findings(drive.simulation()),
+            None => self.diagnostics.known().to_vec(),
         };
         let of_stress = self.stress.iter().flat_map(|below| below.findings(&self.case.grid));
         self.case.findings.iter().cloned().chain(of_run).chain(of_stress).collect()

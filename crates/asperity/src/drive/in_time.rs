@@ -112,7 +112,7 @@ impl Drive for March {
         let attempt = loop {
             self.row = Some((self.done, step.instant, None));
             let attempt = self.stepper.attempt(&step)?;
-            match self.schedule.judge(&step, &attempt) {
+            match self.schedule.assess(&step, &attempt) {
                 Verdict::Try(next) => step = next,
                 Verdict::Accept => break attempt,
             }

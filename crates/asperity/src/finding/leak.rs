@@ -50,16 +50,16 @@ impl Worst {
     }
 }
 
-/// The judge of the leaks of one run.
+/// The diagnostics of the leaks of one run.
 #[derive(Clone, Debug, Default)]
-pub struct LeakJudge {
+pub struct LeakDiagnostics {
     below_error: Option<Worst>,
     narrow: Option<Worst>,
     pressure: Option<Worst>,
 }
 
-impl LeakJudge {
-    /// Judges a leak; whether nothing is found against it. A tight seal has no constriction to judge.
+impl LeakDiagnostics {
+    /// Judges a leak; whether nothing is found against it. A tight seal has no constriction to diagnostics.
     pub fn see(&mut self, state: &LeakState) -> bool {
         let mut resolved = true;
         // Takes in a number over its limit, where it is too small or too large by the most.
@@ -143,16 +143,16 @@ mod tests {
             pressure_drop: Some(1e5),
             contact_pressure: 1e6,
         };
-        let mut judge = LeakJudge::default();
-        assert!(judge.see(&good));
-        assert!(judge.see(&LeakState { constriction: None, gap_error: 100.0, ..good }));
-        assert!(judge.see(&LeakState { constriction: Some((1e3, None)), pressure_drop: None, ..good }));
-        assert!(judge.findings().is_empty());
-        assert!(!judge.see(&LeakState { row: Some(2), constriction: Some((20.0, Some(9))), ..good }));
-        assert!(!judge.see(&LeakState { row: Some(3), constriction: Some((10.0, Some(3))), ..good }));
-        assert!(!judge.see(&LeakState { row: Some(4), constriction: Some((25.0, Some(9))), ..good }));
-        assert!(!judge.see(&LeakState { row: Some(5), pressure_drop: Some(2e5), ..good }));
-        let found = judge.findings();
+        let mut diagnostics = LeakDiagnostics::default();
+        assert!(diagnostics.see(&good));
+        assert!(diagnostics.see(&LeakState { constriction: None, gap_error: 100.0, ..good }));
+        assert!(diagnostics.see(&LeakState { constriction: Some((1e3, None)), pressure_drop: None, ..good }));
+        assert!(diagnostics.findings().is_empty());
+        assert!(!diagnostics.see(&LeakState { row: Some(2), constriction: Some((20.0, Some(9))), ..good }));
+        assert!(!diagnostics.see(&LeakState { row: Some(3), constriction: Some((10.0, Some(3))), ..good }));
+        assert!(!diagnostics.see(&LeakState { row: Some(4), constriction: Some((25.0, Some(9))), ..good }));
+        assert!(!diagnostics.see(&LeakState { row: Some(5), pressure_drop: Some(2e5), ..good }));
+        let found = diagnostics.findings();
         let numbers: Vec<_> = found.iter().map(|f| (f.code.as_ref(), f.value, f.limit, f.rows)).collect();
         assert_eq!(
             numbers,

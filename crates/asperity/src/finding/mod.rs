@@ -2,7 +2,7 @@
 //!
 //! A solver converges on any input, also on one that its theory does not cover, that its grid does not resolve, or
 //! that has a slip of the unit. The judges of this module look for that: before a run at the gap, the bodies, the
-//! steps ([`Judge::new`]), during it at each row ([`Judge::see`]), and they say what they found with the number, its
+//! steps ([`Diagnostics::new`]), during it at each row ([`Diagnostics::see`]), and they say what they found with the number, its
 //! limit and what to do. They change no number and need no convolution.
 //!
 //! | file | judges |
@@ -23,10 +23,10 @@
 //! docs/findings.md lists all codes with their limits.
 
 mod contact;
+mod diagnostics;
 mod domain;
 mod energy;
 mod expected;
-mod judge;
 mod leak;
 mod material;
 mod motion;
@@ -39,9 +39,9 @@ mod words;
 
 use std::borrow::Cow;
 
+pub use diagnostics::{Diagnostics, Known};
 pub use expected::{Contact, Expected};
-pub use judge::{Judge, Known};
-pub use leak::{LeakJudge, LeakState};
+pub use leak::{LeakDiagnostics, LeakState};
 pub use material::{
     beyond_data, contradiction, misfit, points_left_out, unlikely_modulus, unlikely_temperature,
 };

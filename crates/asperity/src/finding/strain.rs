@@ -14,7 +14,7 @@ use super::contact::Counted;
 use super::words::{digits, rows, si};
 use super::{Finding, LARGE_STRAIN, UNLIKELY_UNIT};
 use crate::kernel::Kernel;
-use crate::layer::Inseparable;
+use crate::layer::NonseparableLayers;
 use crate::march::{Row, Simulation};
 use crate::material::{Creep, ReducedTime};
 use crate::sliding::Streaming;
@@ -58,7 +58,7 @@ pub(super) struct Strain {
     sweep: Option<(Streaming, f64)>,
     kernel: Arc<dyn Kernel>,
     /// Layers whose waves creep differently.
-    waves: Option<Arc<Inseparable>>,
+    waves: Option<Arc<NonseparableLayers>>,
     time: f64,
     /// Radius of the shapes \[m\], where they are known.
     radius: Option<f64>,

@@ -1,4 +1,4 @@
-//! Each judge fires on a case made for it, and is silent beside it.
+//! Each finding fires on a case made for it, and is silent beside it.
 
 use crate::drive::Drive;
 use ndarray::Array2;
@@ -76,16 +76,16 @@ fn the_expected_share_of_a_rough_contact_is_twice_the_pressure_over_modulus_and_
 }
 
 fn before(simulation: &Simulation, parts: &[Part]) -> Vec<Finding> {
-    Judge::new(simulation, Known { parts, bodies: &[], thickness: None }).known().to_vec()
+    Diagnostics::new(simulation, Known { parts, bodies: &[], thickness: None }).known().to_vec()
 }
 
 fn after(simulation: Simulation, parts: &[Part]) -> Vec<Finding> {
-    let mut judge = Judge::new(&simulation, Known { parts, bodies: &[], thickness: None });
+    let mut diagnostics = Diagnostics::new(&simulation, Known { parts, bodies: &[], thickness: None });
     let mut march = March::new(simulation).unwrap();
     while let Some(step) = march.advance().unwrap() {
-        judge.see(&step, &step.row());
+        diagnostics.see(&step, &step.row());
     }
-    judge.findings(march.simulation())
+    diagnostics.findings(march.simulation())
 }
 
 fn codes(findings: &[Finding]) -> Vec<&str> {
@@ -393,8 +393,9 @@ fn moduli_radii_and_heights_of_unlikely_units_are_found() {
     };
     let parts = [sphere(5e-3)];
     let judged = |bodies: &[Body]| {
-        let judge = Judge::new(&simulation(&parts), Known { parts: &parts, bodies, thickness: None });
-        codes(judge.known()).join(" ")
+        let diagnostics =
+            Diagnostics::new(&simulation(&parts), Known { parts: &parts, bodies, thickness: None });
+        codes(diagnostics.known()).join(" ")
     };
     assert_eq!(judged(&[soft(2e-3)]), UNLIKELY_UNIT);
     // 100 Pa for 100 MPa, and the gel of a brain.
@@ -452,8 +453,8 @@ fn a_resumed_run_finds_what_a_whole_one_does() {
     let simulation = Simulation { loading: loaded(Control::Load, history), times, ..simulation(&parts) };
     let known = Known { parts: &parts, bodies: &[], thickness: None };
     let mut march = March::new(simulation.clone()).unwrap();
-    let mut whole = Judge::new(&simulation, known);
-    let mut second = Judge::new(&simulation, known);
+    let mut whole = Diagnostics::new(&simulation, known);
+    let mut second = Diagnostics::new(&simulation, known);
     let (mut rows, mut stored) = (vec![], vec![]);
     while let Some(step) = march.advance().unwrap() {
         let (row, index) = (step.row(), step.index());
@@ -482,14 +483,14 @@ fn a_half_space_that_is_thinner_than_its_contact_needs_is_told() {
     let rows = |thickness: f64| {
         let simulation = simulation(&parts);
         let known = Known { parts: &parts, bodies: &[], thickness: Some(thickness) };
-        let mut judge = Judge::new(&simulation, known);
+        let mut diagnostics = Diagnostics::new(&simulation, known);
         let mut march = March::new(simulation).unwrap();
         let mut radius: f64 = 0.0;
         while let Some(step) = march.advance().unwrap() {
-            judge.see(&step, &step.row());
+            diagnostics.see(&step, &step.row());
             radius = radius.max((step.row().contact_area / std::f64::consts::PI).sqrt());
         }
-        (judge.findings(march.simulation()), radius)
+        (diagnostics.findings(march.simulation()), radius)
     };
     let (deep, radius) = rows(1.0);
     assert!(deep.iter().all(|finding| finding.code != THIN_BODY), "{deep:?}");
@@ -503,7 +504,7 @@ fn a_half_space_that_is_thinner_than_its_contact_needs_is_told() {
     let side = periodic.grid.size()[0];
     for (thickness, told) in [(side / 1.6, true), (side / 1.4, false)] {
         let known = Known { parts: &parts, bodies: &[], thickness: Some(thickness) };
-        let judge = Judge::new(&periodic, known);
-        assert_eq!(judge.known().iter().any(|finding| finding.code == THIN_BODY), told);
+        let diagnostics = Diagnostics::new(&periodic, known);
+        assert_eq!(diagnostics.known().iter().any(|finding| finding.code == THIN_BODY), told);
     }
 }

@@ -10,11 +10,11 @@
 //!
 //! K is the [`Layered`] kernel of the elastic stacks with moduli 1/s_i. So a march on K with the contact creep function C(t)
 //! is exact. Elastic stacks are the case of a constant J. In other stacks waves of different lengths creep differently:
-//! see [`Inseparable`].
+//! see [`NonseparableLayers`].
 
 use std::sync::Arc;
 
-use super::{Base, Inseparable, Interface, Layer, Layered, Stack};
+use super::{Base, Interface, Layer, Layered, NonseparableLayers, Stack};
 use crate::error::{Error, Result};
 use crate::material::{Body, Creep};
 
@@ -62,7 +62,7 @@ pub struct Response {
     /// Contact creep compliance C(t) that multiplies it \[1/Pa\]: that of the materials at the surface.
     pub creep: Creep,
     /// Where waves of different lengths creep differently: how each of them does.
-    pub waves: Option<Arc<Inseparable>>,
+    pub waves: Option<Arc<NonseparableLayers>>,
 }
 
 /// The response of a body against a rigid one, or of two bodies.
@@ -124,7 +124,7 @@ pub fn response(bodies: &[LayeredBody]) -> Result<Response> {
     if separable {
         return Ok(Response { kernel, creep, waves: None });
     }
-    let waves = Inseparable::new(bodies)?;
+    let waves = NonseparableLayers::new(bodies)?;
     Ok(Response { kernel: waves.glassy().clone(), creep, waves: Some(Arc::new(waves)) })
 }
 

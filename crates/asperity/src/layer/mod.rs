@@ -13,7 +13,7 @@
 //! |---|---|
 //! | `compliance` | C(q) of any stack of layers |
 //! | `body` | bodies of viscoelastic layers, and whether space and time separate |
-//! | `inseparable` | how each wave creeps where they do not |
+//! | `nonseparable` | how each wave creeps where they do not |
 //! | `kernel` | the [`Kernel`](crate::kernel::Kernel) of one or two such bodies |
 //! | `hankel` | from C(q) to the displacement around a load at a point or along a line |
 //! | `series` | C(q) as a series whose terms have known transforms |
@@ -23,16 +23,16 @@
 mod body;
 mod compliance;
 mod hankel;
-mod inseparable;
 mod kernel;
+mod nonseparable;
 #[cfg(test)]
 mod samples;
 mod series;
 
 pub use body::{BodyLayer, LayeredBody, Response, response};
-pub use inseparable::Inseparable;
-pub(crate) use inseparable::TOLERANCE;
 pub use kernel::Layered;
+pub use nonseparable::NonseparableLayers;
+pub(crate) use nonseparable::TOLERANCE;
 
 use crate::error::{Error, Result, length, positive};
 

@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::grid::{Boundary, Grid};
 use crate::history;
 use crate::kernel::{HalfSpace, Kernel};
-use crate::layer::Inseparable;
+use crate::layer::NonseparableLayers;
 use crate::load::{Control, Course, Event, History, Loading, Programme, of_stage};
 use crate::material::{Creep, ThermalCreep};
 use crate::operator;
@@ -62,7 +62,7 @@ pub struct Simulation {
     /// How the surface yields in space, for unit compliance: half-spaces, or [layers](crate::layer::response).
     pub kernel: Arc<dyn Kernel>,
     /// Layers whose waves creep differently; `kernel` and `creep` are then those of short times and short waves.
-    pub layers: Option<Arc<Inseparable>>,
+    pub layers: Option<Arc<NonseparableLayers>>,
     /// Undeformed gap h0 \[m\], shape (nx, ny), least value 0; infinite where a cell cannot touch.
     pub gap: Array2<f64>,
     /// Contact creep compliance C(t) of the pair \[1/Pa\]; without the bodies of `thermal`.

@@ -32,7 +32,7 @@ pub use snapshot::Checkpoint;
 pub(crate) use interval::{Interval, Load, Piece};
 pub(crate) use quantities::Recorder;
 pub(crate) use row::{PERIMETER_SHARE, Recalled};
-pub(crate) use schedule::{Proposal, Reached, Schedule, Summary, Verdict};
+pub(crate) use schedule::{Proposal, Response, Schedule, Summary, Verdict};
 pub(crate) use snapshot::{Loader, Saver};
 pub(crate) use undeformed::UndeformedGap;
 
@@ -245,7 +245,7 @@ impl Stepper {
             is_turn,
             touches: self.now.touches(),
             pulls: self.contact.pulls(),
-            reached: Reached { approach: self.now.approach, load: carried },
+            reached: Response { approach: self.now.approach, load: carried },
             first_touch: minimum(&self.gap),
         }
     }

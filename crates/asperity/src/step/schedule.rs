@@ -5,7 +5,7 @@
 //!
 //! ```text
 //! while let Proposal::Try(interval) = schedule.propose()? {
-//!     loop { match schedule.judge(&attempt(interval)) { Try(next) => interval = next, Accept => break } }
+//!     loop { match schedule.assess(&attempt(interval)) { Try(next) => interval = next, Accept => break } }
 //! }
 //! ```
 //!
@@ -39,14 +39,14 @@ pub(crate) struct Summary {
     pub(crate) touches: bool,
     /// Whether a traction besides the contact acts on the surfaces: then a load of 0 says nothing of the contact.
     pub(crate) pulls: bool,
-    pub(crate) reached: Reached,
+    pub(crate) reached: Response,
     /// Approach at which the surfaces without pressure would just touch \[m\].
     pub(crate) first_touch: f64,
 }
 
 /// What a row reached: a stage may end or begin with it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Reached {
+pub(crate) struct Response {
     pub(crate) approach: f64,
     pub(crate) load: f64,
 }
@@ -73,7 +73,7 @@ pub(crate) enum StopReason {
     /// The last stage has ended, or the time of the run.
     Complete,
     /// A stage waited for an event that did not come.
-    Missed { stage: usize, event: Event, reached: Reached },
+    Missed { stage: usize, event: Event, reached: Response },
 }
 
 /// What the attempts at a row are for.
@@ -117,13 +117,13 @@ pub(crate) struct Schedule {
     size: Option<StepSizeControl>,
     /// The last row, what it reached, and whether the course goes on smoothly after it.
     last: Option<Instant>,
-    reached: Reached,
+    reached: Response,
     touched: bool,
     is_smooth: bool,
     /// Which side of its value the event is waited for from: -1 below, 1 above, 0 not yet known.
     side: f64,
     /// The largest approach and load so far.
-    largest: Reached,
+    largest: Response,
     stopped: Option<StopReason>,
     search: Search,
 }
@@ -159,15 +159,15 @@ impl Schedule {
             jump: None,
             size: None,
             last: None,
-            reached: Reached::default(),
+            reached: Response::default(),
             touched: false,
             is_smooth: false,
             side: 0.0,
-            largest: Reached::default(),
+            largest: Response::default(),
             stopped: None,
             search: Search::Length,
         };
-        schedule.enter(0, 0.0, Reached::default());
+        schedule.enter(0, 0.0, Response::default());
         schedule
     }
 
@@ -272,7 +272,7 @@ impl Schedule {
     }
 
     /// Whether the attempt at an interval stands, or what to try instead.
-    pub(crate) fn judge(&mut self, tried: &Interval, attempt: &Summary) -> Verdict {
+    pub(crate) fn assess(&mut self, tried: &Interval, attempt: &Summary) -> Verdict {
         let dt = attempt.instant.dt;
         match &mut self.search {
             Search::End => return Verdict::Accept,
@@ -347,7 +347,7 @@ impl Schedule {
 
     /// The quantity of an event less its value, and what counts as none.
     fn signal(&self, event: Event, attempt: &Summary) -> (f64, f64) {
-        let Reached { approach, load } = attempt.reached;
+        let Response { approach, load } = attempt.reached;
         let deepest = self.largest.approach.max(approach.abs());
         let heaviest = self.largest.load.max(load.abs());
         let area = self.plan.area;
@@ -406,7 +406,7 @@ impl Schedule {
     }
 
     /// Begins a stage where the quantities have the values `reached`.
-    fn enter(&mut self, stage: usize, time: f64, reached: Reached) {
+    fn enter(&mut self, stage: usize, time: f64, reached: Response) {
         self.is_smooth = false;
         let end = self.plan.times.end();
         let next = self.plan.stages.get(stage).filter(|_| time < end * (1.0 - SAME));
@@ -489,9 +489,9 @@ impl Schedule {
         self.is_smooth = from.number("smooth")? == 1.0;
         self.side = from.number("side")?;
         let [approach, load, touched] = from.array("reached")?;
-        (self.reached, self.touched) = (Reached { approach, load }, touched == 1.0);
+        (self.reached, self.touched) = (Response { approach, load }, touched == 1.0);
         let [approach, load] = from.array("largest")?;
-        self.largest = Reached { approach, load };
+        self.largest = Response { approach, load };
         self.jump = from.number("jump").ok();
         self.last = from.array("last").ok().map(|[time, dt, value, jump]| {
             let (control, stage) = (self.stage().control, self.stage);

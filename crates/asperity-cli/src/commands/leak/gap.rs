@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use asperity::finding::LeakJudge;
+use asperity::finding::LeakDiagnostics;
 use asperity::{Boundary, Grid};
 use asperity_io::case::leak as checked;
 use asperity_io::finding;
@@ -44,9 +44,9 @@ pub fn run(args: &args::Leak, path: &Path) -> Result<(), Failure> {
         asperity::Error::Invalid { .. } => failed(error),
         error => Failure::Solve(error.to_string()),
     })?;
-    let mut judge = LeakJudge::default();
-    let resolved = judge.see(&state.alone());
-    let findings = judge.findings();
+    let mut diagnostics = LeakDiagnostics::default();
+    let resolved = diagnostics.see(&state.alone());
+    let findings = diagnostics.findings();
     if let Some(plot) = &args.plot {
         let figure = asperity_report::leak::state(&leak, &state, gap.heights.view(), grid.size());
         crate::commands::picture::write(&figure, plot, args.force)?;

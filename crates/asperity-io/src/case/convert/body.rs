@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use asperity::finding::{self, Finding};
-use asperity::layer::{Inseparable, Layered};
+use asperity::layer::{Layered, NonseparableLayers};
 use asperity::material::{
     Body, Creep, Lateral, Material, ReducedTime, Shift, TemperatureFactors, ThermalCreep, VerticalShift,
     pair_hardness,
@@ -23,7 +23,7 @@ pub struct Pair {
     /// How the bodies yield in space, where they have layers.
     pub layers: Option<Arc<Layered>>,
     /// How their waves creep, where they creep differently.
-    pub waves: Option<Arc<Inseparable>>,
+    pub waves: Option<Arc<NonseparableLayers>>,
     /// Contact creep compliance [1/Pa] of each body without layers, and its clock where its temperature changes.
     pub creeps: Vec<(Creep, Option<ReducedTime>)>,
     /// Contact creep compliance of the bodies of constant temperature [1/Pa].

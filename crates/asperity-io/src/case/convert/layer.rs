@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use asperity::finding::Finding;
-use asperity::layer::{BodyLayer, Inseparable, Layered, LayeredBody, Response, response};
+use asperity::layer::{BodyLayer, Layered, LayeredBody, NonseparableLayers, Response, response};
 use asperity::march::check_layers;
 use asperity::material::{Body, Creep, ReducedTime};
 use asperity::quantities::Quantity;
@@ -198,7 +198,7 @@ pub fn resolved(
     domain: &At<raw::Domain>,
     grid: &Grid,
     layers: &Layered,
-    waves: Option<&Inseparable>,
+    waves: Option<&NonseparableLayers>,
 ) {
     let boundary = domain.value.boundary.unwrap_or_default();
     if boundary == Boundary::Periodic {

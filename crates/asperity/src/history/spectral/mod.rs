@@ -21,7 +21,7 @@ use crate::contact::ContactState;
 use crate::error::Result;
 use crate::grid::{Boundary, Grid};
 use crate::kernel::Kernel;
-use crate::layer::Inseparable;
+use crate::layer::NonseparableLayers;
 use crate::operator::{self, Operator, of_eigenvalues, wide};
 use crate::simulation::Simulation;
 use crate::sliding::torus::{Spectrum, Torus};
@@ -37,7 +37,7 @@ pub(super) struct Spectral {
     grid: Grid,
     boundary: Boundary,
     kernel: Arc<dyn Kernel>,
-    layers: Arc<Inseparable>,
+    layers: Arc<NonseparableLayers>,
     torus: Torus,
     waves: Waves,
     /// K00 of the kernel \[m\].
@@ -67,7 +67,7 @@ pub(super) struct Spectral {
 
 impl Spectral {
     /// The memory of a simulation with these layers.
-    pub(super) fn new(simulation: &Simulation, layers: &Arc<Inseparable>) -> Result<Self> {
+    pub(super) fn new(simulation: &Simulation, layers: &Arc<NonseparableLayers>) -> Result<Self> {
         let (waves, own) = Waves::new(&simulation.grid, simulation.boundary, layers)?;
         let count = waves.count();
         let still = Table(vec![]);
@@ -312,7 +312,7 @@ impl History for Spectral {
 }
 
 /// Bytes that the states of the waves take.
-pub(super) fn bytes(grid: &Grid, boundary: Boundary, layers: &Inseparable) -> usize {
+pub(super) fn bytes(grid: &Grid, boundary: Boundary, layers: &NonseparableLayers) -> usize {
     let is_wide = boundary == Boundary::Free && layers.creeps_far_away();
     let [mx, my] = if is_wide { wide::lengths(grid) } else { operator::torus(grid, boundary) };
     // Four terms to a wave are usual: their states and moduli, u, g, a third u and what its error takes, and one eigenvalue for

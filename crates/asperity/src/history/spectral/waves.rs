@@ -19,7 +19,7 @@ use crate::error::{Error, Result};
 use crate::grid::{Boundary, Grid};
 use crate::history::relaxation::rules::Share;
 use crate::kernel::Kernel;
-use crate::layer::{Inseparable, TOLERANCE};
+use crate::layer::{NonseparableLayers, TOLERANCE};
 use crate::operator::{eigenvalues, torus, wide};
 
 /// Spacing of ln τ in the tables: six points interpolate to 1e-9.
@@ -105,7 +105,7 @@ impl Waves {
     ///
     /// # Errors
     /// [`Error::Invalid`] where a wave does not creep like a body, and as [`plan`](crate::operator::plan).
-    pub(super) fn new(grid: &Grid, boundary: Boundary, layers: &Inseparable) -> Result<(Self, f64)> {
+    pub(super) fn new(grid: &Grid, boundary: Boundary, layers: &NonseparableLayers) -> Result<(Self, f64)> {
         let tori: &[Width] = match boundary {
             Boundary::Free if layers.creeps_far_away() => &[Width::Wide],
             Boundary::Free => &[Width::Narrow, Width::Wide],
@@ -124,7 +124,7 @@ impl Waves {
         grid: &Grid,
         boundary: Boundary,
         width: Width,
-        layers: &Inseparable,
+        layers: &NonseparableLayers,
     ) -> Result<Option<(Self, f64)>> {
         let lengths = match width {
             Width::Narrow => torus(grid, boundary),
@@ -387,7 +387,7 @@ impl Waves {
 }
 
 /// E_inf and the terms (E_i, τ_i) of a wave with these values of C~; `None` where it does not creep like a body.
-fn relaxation(layers: &Inseparable, values: &[f64]) -> Option<(f64, Vec<(f64, f64)>)> {
+fn relaxation(layers: &NonseparableLayers, values: &[f64]) -> Option<(f64, Vec<(f64, f64)>)> {
     let (creep, _) = layers.fit(values).filter(|(_, misfit)| *misfit <= TOLERANCE)?;
     let relaxation = creep.to_relaxation().ok()?;
     let terms = relaxation.terms.iter().map(|term| (term.modulus, term.relaxation_time));
@@ -398,7 +398,7 @@ fn relaxation(layers: &Inseparable, values: &[f64]) -> Option<(f64, Vec<(f64, f6
 ///
 /// # Errors
 /// [`Error::Invalid`] where a wave does not creep like a body.
-pub fn check_layers(grid: &Grid, boundary: Boundary, layers: &Inseparable) -> Result<()> {
+pub fn check_layers(grid: &Grid, boundary: Boundary, layers: &NonseparableLayers) -> Result<()> {
     if boundary == Boundary::Periodic {
         return Ok(());
     }
@@ -409,7 +409,7 @@ pub fn check_layers(grid: &Grid, boundary: Boundary, layers: &Inseparable) -> Re
     Waves::new(&grid.with_cells(cells)?, boundary, layers).map(|_| ())
 }
 
-fn unlike_a_body(grid: &Grid, boundary: Boundary, layers: &Inseparable) -> Error {
+fn unlike_a_body(grid: &Grid, boundary: Boundary, layers: &NonseparableLayers) -> Error {
     match boundary {
         Boundary::Free => {
             let side = grid.longest_side();

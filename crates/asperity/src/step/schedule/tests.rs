@@ -27,7 +27,7 @@ fn run(mut schedule: Schedule, answer: impl Fn(&Interval) -> Summary) -> (Vec<In
         loop {
             attempts += 1;
             let attempt = answer(&step);
-            match schedule.judge(&step, &attempt) {
+            match schedule.assess(&step, &attempt) {
                 Verdict::Try(next) => step = next,
                 Verdict::Accept => {
                     schedule.accept(&attempt);
@@ -47,7 +47,7 @@ fn reaches(step: &Interval, load: f64) -> Summary {
         is_turn: false,
         touches: load != 0.0,
         pulls: false,
-        reached: Reached { approach: 1.0, load },
+        reached: Response { approach: 1.0, load },
         first_touch: 0.0,
     }
 }
@@ -102,7 +102,7 @@ fn what_never_happens_is_a_reason_to_stop() {
     };
     let (rows, _, reason) =
         run(plan(vec![wait], TimeGrid::Uniform { end: 3.0, steps: 3 }), |step| reaches(step, 2.0));
-    let reached = Reached { approach: 1.0, load: 2.0 };
+    let reached = Response { approach: 1.0, load: 2.0 };
     assert_eq!(reason, StopReason::Missed { stage: 0, event: Event::Load(9.0), reached });
     assert!(rows.len() == 4 && reason.outcome(3.0).is_err());
 }

@@ -1,4 +1,4 @@
-//! The judge of a run: what is known before it, what each row adds, and what is found in the end.
+//! The diagnostics of a run: what is known before it, what each row adds, and what is found in the end.
 
 use ndarray::ArrayView2;
 
@@ -30,10 +30,10 @@ pub struct Known<'a> {
     pub thickness: Option<f64>,
 }
 
-/// The judge of one run.
+/// The diagnostics of one run.
 ///
 /// ```
-/// use asperity::finding::{Judge, Known, CONTACT_AT_BORDER};
+/// use asperity::finding::{Diagnostics, Known, CONTACT_AT_BORDER};
 /// use asperity::{drive::{Drive, March}, material::Creep, surface::{Part, Shape, undeformed_gap}, *};
 /// // A sphere of 10 mm under 20 N on 1 MPa: the contact fills the domain of 2 mm.
 /// let grid = Grid::new([32, 32], [2e-3, 2e-3])?;
@@ -43,17 +43,17 @@ pub struct Known<'a> {
 ///     loading: Loading { control: Control::Load, history: History::Step { value: 20.0 } }.into(),
 ///     ..Simulation::new(grid, undeformed_gap(&grid, &parts)?)
 /// })?;
-/// let mut judge = Judge::new(march.simulation(), Known { parts: &parts, ..Known::default() });
+/// let mut diagnostics = Diagnostics::new(march.simulation(), Known { parts: &parts, ..Known::default() });
 /// while let Some(step) = march.advance()? {
-///     judge.see(&step, &step.row());
+///     diagnostics.see(&step, &step.row());
 /// }
-/// let findings = judge.findings(march.simulation());
+/// let findings = diagnostics.findings(march.simulation());
 /// let border = findings.iter().find(|finding| finding.code == CONTACT_AT_BORDER).expect("it fills the domain");
 /// assert!(border.is_warning() && border.rows == Some([0, 1]));
 /// assert!(border.limit > Some(4e-3)); // the domain that the contact would take
 /// # Ok::<(), asperity::Error>(())
 /// ```
-pub struct Judge {
+pub struct Diagnostics {
     grid: Grid,
     /// Found before the first row.
     known: Vec<Finding>,
@@ -83,12 +83,12 @@ pub struct Judge {
     earlier_balance: Option<Finding>,
 }
 
-impl Judge {
+impl Diagnostics {
     /// Judges what is known before the run.
     pub fn new(simulation: &Simulation, known: Known<'_>) -> Self {
         let Simulation { grid, gap, boundary, kernel, .. } = simulation;
         let free = *boundary == Boundary::Free;
-        Judge {
+        Diagnostics {
             known: before(simulation, known),
             free,
             confined: domain::confined(grid, gap),

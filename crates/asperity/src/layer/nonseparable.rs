@@ -43,7 +43,7 @@ const APART: f64 = 5.0;
 
 /// Creep compliance of bodies whose waves creep differently.
 #[derive(Clone, Debug)]
-pub struct Inseparable {
+pub struct NonseparableLayers {
     /// λ_j \[s\], ascending.
     nodes: Vec<f64>,
     /// The s at which C~ is fitted, besides ∞ and 0 \[1/s\].
@@ -53,11 +53,11 @@ pub struct Inseparable {
     misfit: f64,
 }
 
-impl Inseparable {
+impl NonseparableLayers {
     /// Of one body against a rigid one, or of two bodies.
     pub(super) fn new(bodies: &[LayeredBody]) -> Result<Self> {
         let intervals = intervals(bodies)?;
-        let mut best: Option<Inseparable> = None;
+        let mut best: Option<NonseparableLayers> = None;
         for spacing in SPACINGS {
             let nodes = nodes(&intervals, spacing);
             let between = nodes.windows(2).filter(|pair| pair[1] > APART * pair[0]);
@@ -65,8 +65,8 @@ impl Inseparable {
             let frequencies: Vec<f64> = nodes.iter().copied().chain(between).map(|time| 1.0 / time).collect();
             let all = [f64::INFINITY, 0.0].into_iter().chain(frequencies.iter().copied());
             let stages = all.map(|s| elastic(bodies, s)).collect::<Result<Vec<_>>>()?;
-            let mut tried = Inseparable { nodes, frequencies, stages, misfit: 0.0 };
-            tried.misfit = tried.judge(bodies)?;
+            let mut tried = NonseparableLayers { nodes, frequencies, stages, misfit: 0.0 };
+            tried.misfit = tried.misfit_of(bodies)?;
             if best.as_ref().is_none_or(|best| tried.misfit < best.misfit) {
                 best = Some(tried);
             }
@@ -178,7 +178,7 @@ impl Inseparable {
     }
 
     /// Largest relative error of C~ over the waves, at frequencies beside those of the fit.
-    fn judge(&self, bodies: &[LayeredBody]) -> Result<f64> {
+    fn misfit_of(&self, bodies: &[LayeredBody]) -> Result<f64> {
         let [shortest, longest] = self.times();
         // In the middle between two nodes, or on both sides of the s that is fitted there.
         let between = self.nodes.windows(2).flat_map(|pair| {

@@ -102,10 +102,14 @@ impl Strain {
             Some(_) => 0.0,
             None if creep.is_some() => {
                 // As if the pressure had been there from t = 0 on.
-                let creep = creep.map_or(0.0, |creep| creep.value(row.time()));
+                let creep = creep.map_or(0.0, |creep| creep.value(row.coordinate.value()));
                 row.max_pressure.min(of_hertz) * 0.5 * wave_of(row, contact) * creep
             }
-            None => self.bodies.iter_mut().map(|body| body.strain([start, row.time()], pressure)).sum(),
+            None => self
+                .bodies
+                .iter_mut()
+                .map(|body| body.strain([start, row.coordinate.value()], pressure))
+                .sum(),
         };
         self.pressure.see(index, strain);
         if contact.line {

@@ -3,10 +3,10 @@
 //! A step from t_n to t_(n+1) leaves the displacement u_(n+1) = c U_(n+1) + g with U = K p. The number c and the field g are
 //! known before the solve; how they follow from the past is the history's own matter. Members, one room each:
 //!
-//! - [`Relaxation`]: branches of the relaxation form, u linear over each step (docs/theory.md, section 5);
-//! - [`Spectral`]: every wave of the displacement a body of its own, for layers that creep differently;
-//! - [`ConstantPressure`]: the pressure of a step is that of its end;
-//! - [`HereditarySum`]: the full sum over all steps before.
+//! - `Relaxation`: branches of the relaxation form, u linear over each step (docs/theory.md, section 5);
+//! - `Spectral`: every wave of the displacement a body of its own, for layers that creep differently;
+//! - `ConstantPressure`: the pressure of a step is that of its end;
+//! - `HereditarySum`: the full sum over all steps before.
 //!
 //! A step is opened, solved, opened again at other lengths where its error or an event asks for it, and closed. What came
 //! before it is taken in once, when it is first opened.

@@ -1,7 +1,7 @@
 //! What changes the gap from step to step, or reads the state of each row.
 //!
 //! A process sees a step twice: before it is solved it may move the undeformed gap to where it is at the end of the step
-//! ([`Process::open`], repeatable at any length), and once the row stands it takes it in ([`Process::accept`]). The quantities and
+//! (`Process::open`, repeatable at any length), and once the row stands it takes it in (`Process::accept`). The quantities and
 //! fields that it adds to a row it declares by answering for them. Members: motion, stiffness, energies, power of
 //! the load, flattening.
 

@@ -10,7 +10,7 @@
 //! ```
 //!
 //! An attempt can be repeated at any length until one is accepted. The stepper knows the seams only: what the bodies remember is
-//! a [`History`], what else goes on a [`Process`], when the steps are the [`Schedule`]'s matter.
+//! a `History`, what else goes on a `Process`, when the steps are the `Schedule`'s matter.
 
 mod contact;
 mod dense;

@@ -86,7 +86,7 @@ fn beside_springs(simulation: Simulation, relaxation: &Relaxation) -> Vec<(Row, 
     let mut out = vec![];
     let mut last = Row::default();
     for row in rows {
-        let dt = row.time() - last.time();
+        let dt = row.coordinate.value() - last.coordinate.value();
         // The prescribed values are straight from row to row. After a loss of contact under load the springs' own
         // approach is compared, not set.
         let parts = if dt > 0.0 { 20 } else { 1 };

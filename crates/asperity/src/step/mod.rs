@@ -324,8 +324,12 @@ impl Stepper {
         to.numbers("rounding", vec![self.now.rounding, self.before.rounding]);
         to.numbers("last", vec![self.loads[0], self.last_length]);
         to.within("history", |to| self.history.save(to));
+        to.number("processes", self.processes.len() as f64);
         for process in &self.processes {
-            to.within(process.name(), |to| process.save(to, &self.undeformed));
+            to.within(process.name(), |to| {
+                to.number("is_on", 1.0);
+                process.save(to, &self.undeformed);
+            });
         }
     }
 
@@ -342,8 +346,14 @@ impl Stepper {
         [self.now.rounding, self.before.rounding] = from.array("rounding")?;
         [self.loads[0], self.last_length] = from.array("last")?;
         self.touched = self.now.touches();
+        if from.number("processes")? != self.processes.len() as f64 {
+            return Err(from.foreign("other quantities or processes"));
+        }
         for process in &mut self.processes {
-            from.within(process.name(), |from| process.load(from, &mut self.undeformed))?;
+            from.within(process.name(), |from| {
+                from.number("is_on")?;
+                process.load(from, &mut self.undeformed)
+            })?;
         }
         from.within("history", |from| self.history.load(from))
     }

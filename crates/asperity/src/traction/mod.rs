@@ -75,13 +75,15 @@ pub(crate) struct TractionSolver {
     /// The contact pressure q with K q.
     contact: ContactState,
     extrapolation: Extrapolation,
+    /// The largest Σ|B| + Σ q of all passes: what a force of nothing is measured by.
+    scale: f64,
 }
 
 /// One pass of the loop.
 #[derive(Clone, Copy)]
 struct Pass {
     outcome: Outcome,
-    /// Σ|B - b| over the largest Σ|B| + Σ q.
+    /// Σ|B - b| over the largest Σ|B| + Σ q of all passes.
     residual: f64,
     /// 1/2 <t, c K t> + Σ γ(g), less the work of a prescribed load.
     energy: Option<f64>,
@@ -99,6 +101,7 @@ impl TractionSolver {
             gap: zeros(),
             contact: ContactState::new(cells),
             extrapolation: Extrapolation::default(),
+            scale: 0.0,
         }
     }
 
@@ -120,8 +123,7 @@ impl TractionSolver {
         state: &mut ContactState,
         interrupt: Option<&AtomicBool>,
     ) -> Result<Outcome> {
-        let mut run =
-            Run { own: self, solver, operator, options, interrupt, total: Outcome::default(), scale: 0.0 };
+        let mut run = Run { own: self, solver, operator, options, interrupt, total: Outcome::default() };
         match problem.prescribed {
             Prescribed::Approach(_) => run.solve(problem)?,
             Prescribed::Load(load) => match run.solve(problem) {
@@ -148,8 +150,6 @@ struct Run<'a> {
     options: &'a SolverOptions,
     interrupt: Option<&'a AtomicBool>,
     total: Outcome,
-    /// The largest Σ|B| + Σ q of a pass: what the residual is measured by.
-    scale: f64,
 }
 
 impl Run<'_> {
@@ -229,12 +229,13 @@ impl Run<'_> {
                     [(next[i] - b[i]).abs(), next[i].abs() + q[i], t * (kb[i] + kq[i]), t]
                 })
             });
-        self.scale = self.scale.max(size);
+        let scale = own.scale.max(size);
         let potential = own.law.energy(&own.gap);
+        self.own.scale = scale;
         let of_load = if matches!(problem.prescribed, Prescribed::Load(_)) { w * total } else { 0.0 };
         Ok(Pass {
             outcome,
-            residual: if change > 0.0 { change / self.scale } else { 0.0 },
+            residual: if change > 0.0 { change / scale } else { 0.0 },
             energy: potential.map(|potential| 0.5 * c * work + potential - of_load),
         })
     }
@@ -251,7 +252,8 @@ impl Run<'_> {
         };
         let (mut a, mut fa) = (start, excess(self, start)?);
         let mut step = if fa > 0.0 { -1e-3 } else { 1e-3 } * scale.max(start.abs()).max(1e-12);
-        let small = self.options.tolerance * load.abs().max(fa.abs());
+        // The passes are known to their tolerance.
+        let small = 10.0 * self.options.tolerance * load.abs().max(cell_area * self.own.scale);
         let (mut b, mut fb) = (a, fa);
         for _ in 0..MOST_APPROACHES {
             if fb.abs() <= small {

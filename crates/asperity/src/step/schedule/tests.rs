@@ -82,6 +82,7 @@ fn a_stage_ends_where_its_event_happens_and_the_next_goes_on_from_there() {
     // The load relaxes as exp(-t) and is to fall to 0.3; the approach is held after that.
     let relax = Stage {
         until: Some(Event::Load(0.3)),
+        after_jump: true,
         ..Stage::new(Control::Approach, History::Step { value: 1.0 })
     };
     let rest = Stage::new(Control::Approach, Prescribed::Hold);

@@ -119,12 +119,22 @@ mod tests {
 
     #[test]
     fn files_have_a_crate_and_a_folder() {
-        let listed = "crates/a/src/load.rs\ncrates/a/src/load/programme.rs\ncrates/a/src/lib.rs";
-        assert_eq!(place("crates/a/src/load/programme.rs", listed), ("a", "load"));
-        assert_eq!(place("crates/a/src/load.rs", listed), ("a", "load"));
-        assert_eq!(place("crates/a/src/lib.rs", listed), ("a", FILES));
-        assert_eq!(place("crates/a/python/a/_b.py", listed), ("a", "python"));
-        assert!(is_product("crates/a/src/latest.rs") && !is_product("crates/a/src/load/tests.rs"));
-        assert!(!is_product("fuzz/src/lib.rs") && !is_product("crates/a/src/x/test_y.py"));
+        let path = |words: &str| words.replace(' ', "/");
+        let listed = ["crates a src load.rs", "crates a src load programme.rs", "crates a src lib.rs"];
+        let listed = listed.map(path).join("\n");
+        let of = |words: &str| {
+            let path = path(words);
+            let (name, folder) = place(&path, &listed);
+            (name.to_owned(), folder.to_owned())
+        };
+        let is = |name: &str, folder: &str| (name.to_owned(), folder.to_owned());
+        assert_eq!(of("crates a src load programme.rs"), is("a", "load"));
+        assert_eq!(of("crates a src load.rs"), is("a", "load"));
+        assert_eq!(of("crates a src lib.rs"), is("a", FILES));
+        assert_eq!(of("crates a python a _b.py"), is("a", "python"));
+        assert!(
+            is_product(&path("crates a src latest.rs")) && !is_product(&path("crates a src load tests.rs"))
+        );
+        assert!(!is_product(&path("fuzz src lib.rs")) && !is_product(&path("crates a src x test_y.py")));
     }
 }

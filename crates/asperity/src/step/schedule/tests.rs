@@ -89,7 +89,7 @@ fn a_stage_ends_where_its_event_happens_and_the_next_goes_on_from_there() {
     let (rows, _, reason) = run(plan(vec![relax, rest], TimeGrid::Uniform { end: 3.0, steps: 3 }), |step| {
         reaches(step, (-step.instant.time).exp())
     });
-    let found = rows.iter().filter(|row| row.stage == 0).last().unwrap();
+    let found = rows.iter().rfind(|row| row.stage == 0).unwrap();
     // To a millionth of the largest load.
     assert!(((-found.time).exp() - 0.3).abs() < 1e-6, "{}", found.time);
     assert!(rows.iter().any(|row| row.stage == 1 && row.value == 1.0) && reason == StopReason::Complete);

@@ -1,4 +1,4 @@
-//! The results of two programs, bit by bit, on the cases of `crates/asperity-io/tests/golden`.
+//! The results of two programs, bit by bit, on the cases of `crates/asperity-io/tests/all/golden`.
 
 use std::path::absolute;
 
@@ -10,8 +10,8 @@ pub(crate) fn golden(programs: &[String]) -> Done {
         return Err("golden takes two programs: cargo xtask golden OLD NEW".into());
     };
     let path = |program: &String| absolute(program).map_err(|error| format!("{program}: {error}"));
-    run(cargo(&["test", "--quiet", "-p", "asperity-io", "--test", "golden", "--"])
-        .args(["two_programs", "--ignored", "--nocapture"])
+    run(cargo(&["test", "--quiet", "-p", "asperity-io", "--test", "all", "--"])
+        .args(["golden::programs::two_programs", "--ignored", "--nocapture"])
         .env("ASPERITY_GOLDEN_OLD", path(old)?)
         .env("ASPERITY_GOLDEN_NEW", path(new)?))
 }

@@ -20,7 +20,7 @@ cargo xtask TASK
   test          format, lints, all tests, documentation, licences and advisories of the dependencies (where cargo-deny is
                 installed), Python's view of the results; installs the Python packages that
                 it needs below target/, and fails where it cannot, unless told --without-python
-  golden        runs the cases of crates/asperity-io/tests/golden with two programs, golden OLD NEW, and says of each case whether
+  golden        runs the cases of crates/asperity-io/tests/all/golden with two programs, golden OLD NEW, and says of each case whether
                 the results have the same bits
   bench         times convolution, elastic contact, creep and surfaces, and prints tables (a quiet machine, please);
                 with --quick up to 1024 x 1024 cells

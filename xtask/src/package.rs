@@ -187,7 +187,7 @@ fn python() -> Done {
 
 /// The program with its licences, and the cases and data that the documentation uses, zipped.
 fn program() -> Done {
-    let mut build = cargo(&["build", "--profile", "dist", "--locked", "-p", "asperity-cli", "--target-dir"]);
+    let mut build = cargo(&["build", "--release", "--locked", "-p", "asperity-cli", "--target-dir"]);
     run(portable(build.arg(folder()?.join("build")))?)?;
     let name = format!("asperity-{}-{}", env!("CARGO_PKG_VERSION"), host()?);
     let folder = folder()?;
@@ -199,7 +199,7 @@ fn program() -> Done {
         std::fs::copy(&from, &to).map(drop).map_err(|error| format!("{}: {error}", from.display()))
     };
     let copy = |from: PathBuf| copy_to("", from);
-    let program = folder.join(format!("build/dist/asperity{}", std::env::consts::EXE_SUFFIX));
+    let program = folder.join(format!("build/release/asperity{}", std::env::consts::EXE_SUFFIX));
     presentable(&program)?;
     copy(program)?;
     for file in [

@@ -6,8 +6,7 @@ use asperity::{
     Boundary, ContactState, Grid, Method, Outcome, Prescribed, Problem, Result, Solver, SolverOptions,
 };
 
-mod conditions;
-use conditions::{apart, violation};
+use crate::conditions::{apart, violation};
 
 /// Gap over a unit domain.
 fn gap(grid: &Grid, surface: usize) -> Vec<f64> {

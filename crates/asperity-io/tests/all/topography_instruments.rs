@@ -1,11 +1,9 @@
 //! Files of instruments built by hand after the formats' descriptions: orientation, scale, unit, undefined points,
 //! channels; and what is said of formats that are not read.
 
-mod samples;
-
+use crate::samples::instruments::{self, Nanoscope};
+use crate::samples::{NUMBERS, gzip, zip};
 use asperity_io::topography::{Format, Problem, ReadOptions, Topography, read_bytes};
-use samples::instruments::{self, Nanoscope};
-use samples::{NUMBERS, gzip, zip};
 
 const UM: f64 = 1e-6;
 const NM: f64 = 1e-9;

@@ -8,7 +8,4 @@ mod python;
 mod resume;
 mod round_trip;
 
-#[path = "../common/mod.rs"]
-mod common;
-
-pub(crate) use common::*;
+pub(crate) use crate::common::*;

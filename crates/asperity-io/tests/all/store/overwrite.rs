@@ -5,7 +5,7 @@ use std::path::Path;
 
 use asperity_io::store::{FieldKind, Outcome, Reader, Status, StoreError, Writer, verify};
 
-use crate::{Case, place};
+use super::{Case, place};
 
 fn names(directory: &Path) -> Vec<String> {
     let mut names: Vec<_> =

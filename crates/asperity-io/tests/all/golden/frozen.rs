@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 
 use serde_json::{Map, Value};
 
-use crate::result::{Numbers, Stored};
+use super::result::{Numbers, Stored};
 
 /// Largest change of a number, relative to the largest of its column. The steps are solved to 1e-11 of the mean displacement, in KKT
 /// residual. Pressures are that residual times the condition of the discrete operator, some 100 on these grids, and steps add up over

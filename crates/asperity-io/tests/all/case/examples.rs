@@ -87,7 +87,7 @@ fn the_case_of_the_paper_is_the_paper_s() {
     assert_eq!(case.grid.cells(), [1024, 1024]);
     assert_eq!(case.grid.size(), [0.1e-3, 0.1e-3]);
     assert_eq!(case.hardness, 300e6);
-    assert_eq!(crate::values::history_of(&case).after(0.0), 0.5);
+    assert_eq!(super::values::history_of(&case).after(0.0), 0.5);
     // C(0) = (1 - 0.38^2) / 2491.44 MPa (theory: E(0) of eq. 23), exact up to the root finding
     let modulus = 1.0 / case.creep.instantaneous;
     assert!((modulus * (1.0 - 0.38 * 0.38) / 2491.4388e6 - 1.0).abs() < 1e-12, "{modulus}");

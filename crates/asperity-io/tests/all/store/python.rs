@@ -5,7 +5,7 @@ use std::fs;
 
 use asperity_io::store::{FieldKind, Outcome, Status, Writer};
 
-use crate::{Case, le_bytes, place, python, run_python};
+use super::{Case, le_bytes, place, python, run_python};
 
 #[test]
 fn xarray_reads_the_bits_without_a_warning() {

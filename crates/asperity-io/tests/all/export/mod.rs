@@ -1,14 +1,11 @@
 //! Exports hold the bits of the result, as other programs read them.
 
-#[path = "../common/mod.rs"]
-mod common;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::common::{Case, bits, le_bytes, place, python, run_python};
 use asperity_io::export::{ExportError, Format, Options, export};
 use asperity_io::store::{At, FieldKind, Outcome, Reader, Status, StoreError, Writer};
-use common::{Case, bits, le_bytes, place, python, run_python};
 use netcdf_reader::NcFile;
 use tempfile::TempDir;
 

@@ -7,7 +7,7 @@ use asperity_io::store::{At, FieldKind, Reader, Result, StoreError, Writer, veri
 use proptest::prelude::*;
 use proptest::test_runner::{RngAlgorithm, TestRng};
 
-use crate::{Case, bits, place};
+use super::{Case, bits, place};
 
 const FIELDS: [FieldKind; 2] = [FieldKind::Pressure, FieldKind::Contact];
 

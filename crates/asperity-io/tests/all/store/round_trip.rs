@@ -9,7 +9,7 @@ use zarrs::array::Array;
 use zarrs::array::ArraySubset;
 use zarrs::filesystem::FilesystemStore;
 
-use crate::{Case, bits, place, row_bits};
+use super::{Case, bits, place, row_bits};
 
 /// Sides that are a multiple of no chunk, one chunk, one cell, and long and thin.
 const GRIDS: [[usize; 2]; 5] = [[300, 257], [64, 64], [1, 1], [3, 700], [513, 2]];

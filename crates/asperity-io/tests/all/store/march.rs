@@ -10,7 +10,7 @@ use asperity::{Control, Grid, History, Loading, Plasticity};
 use asperity_io::store::{At, Field, FieldKind, Outcome, Reader, Status, Writer};
 use ndarray::Array2;
 
-use crate::{Case, bits, place, row_bits};
+use super::{Case, bits, place, row_bits};
 
 const FIELDS: [FieldKind; 5] = FieldKind::ALL;
 

@@ -3,7 +3,7 @@
 //! `cases/NAME.toml` is a case, `numbers/NAME.json` what it gave (see [`frozen`]). A change of the solver that is not meant to change
 //! results leaves all numbers within [`frozen::TOLERANCE`]. Counts of iterations and convolutions are compared apart, to the last one.
 //!
-//! `ASPERITY_GOLDEN=freeze cargo test -p asperity-io --test golden` writes all files of numbers again, and `ASPERITY_GOLDEN=work`
+//! `ASPERITY_GOLDEN=freeze cargo test -p asperity-io --test all golden` writes all files of numbers again, and `ASPERITY_GOLDEN=work`
 //! the counts alone; a commit that does either says why. `cargo xtask golden OLD NEW` compares the results of two programs bit by bit.
 
 mod frozen;
@@ -20,12 +20,12 @@ use asperity_io::case::Case;
 use asperity_io::session::{RunOptions, run};
 use asperity_io::store::Status;
 
-use frozen::Frozen;
-use result::Stored;
+use self::frozen::Frozen;
+use self::result::Stored;
 
 /// Beside this file.
 fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden")
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/all/golden")
 }
 
 /// A case, and its result once a test has needed it.

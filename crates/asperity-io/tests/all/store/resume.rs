@@ -2,7 +2,7 @@
 
 use asperity_io::store::{At, FieldKind, Outcome, Reader, Status, StoreError, Writer};
 
-use crate::{Case, bits, place, row_bits};
+use super::{Case, bits, place, row_bits};
 
 const FIELDS: [FieldKind; 2] = [FieldKind::Pressure, FieldKind::Gap];
 

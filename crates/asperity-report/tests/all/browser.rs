@@ -40,10 +40,10 @@ every = 5
 "#;
 
 /// Catches what the page complains of; goes before the page's own script.
-const WATCH: &str = include_str!("browser/watch.html");
+const WATCH: &str = include_str!("../pages/watch.html");
 
 /// Uses the page as a person would, and writes down what it shows.
-const USE: &str = include_str!("browser/use.html");
+const USE: &str = include_str!("../pages/use.html");
 
 fn browser() -> Option<PathBuf> {
     let names = ["chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome"];

@@ -8,8 +8,7 @@ use asperity::{
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-mod conditions;
-use conditions::{apart, violation};
+use crate::conditions::{apart, violation};
 
 const METHODS: [Method; 2] = [Method::ProjectedCg, Method::PolonskyKeer];
 

@@ -362,12 +362,12 @@ pub fn gwy() -> Vec<u8> {
 
 /// `tests/data/netcdf4.nc.gz`, unpacked.
 pub fn netcdf4() -> Vec<u8> {
-    gunzip(include_bytes!("../data/netcdf4.nc.gz"))
+    gunzip(include_bytes!("../../data/netcdf4.nc.gz"))
 }
 
 /// `tests/data/plain.h5.gz`, unpacked.
 pub fn hdf5() -> Vec<u8> {
-    gunzip(include_bytes!("../data/plain.h5.gz"))
+    gunzip(include_bytes!("../../data/plain.h5.gz"))
 }
 
 fn gunzip(packed: &[u8]) -> Vec<u8> {

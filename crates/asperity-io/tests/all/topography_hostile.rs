@@ -4,13 +4,11 @@
 //! One valid file of every kind is cut at every length and has every byte changed in four ways, and is then changed
 //! at random places. The fuzz targets in `fuzz/` go on from here; what they found is kept in `tests/regressions`.
 
-mod samples;
-
 use std::sync::{Mutex, PoisonError};
 
+use crate::samples::files;
 use asperity_io::topography::{Format, ReadOptions, Topography, TopographyError, read_bytes};
 use peak_alloc::PeakAlloc;
-use samples::files;
 
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;

@@ -1,10 +1,8 @@
 //! Formats against files built by hand after their descriptions: orientation, scale, unit, undefined points and the
 //! choice of a channel.
 
-mod samples;
-
+use crate::samples::{NUMBERS, Sur, X3p};
 use asperity_io::topography::{Format, Problem, ReadOptions, Topography, read_bytes};
-use samples::{NUMBERS, Sur, X3p};
 
 const UM: f64 = 1e-6;
 const NM: f64 = 1e-9;
@@ -94,7 +92,7 @@ fn a_sur_file_of_several_objects_has_channels() {
 
 #[test]
 fn al3d_lines_are_padded_and_the_invalid_value_is_undefined() {
-    let surface = read(&samples::al3d());
+    let surface = read(&crate::samples::al3d());
     assert_map(&surface, Format::Al3d, 1.0, [1.5e-6, 0.5e-6], true);
     assert!(surface.metadata.contains(&("Comment".into(), "a comment".into())));
 }
@@ -102,7 +100,7 @@ fn al3d_lines_are_padded_and_the_invalid_value_is_undefined() {
 #[test]
 fn opd_is_turned_and_scaled_by_the_wavelength() {
     for (width, has_mark) in [(1, false), (2, true), (4, true)] {
-        let surface = read(&samples::opd(width));
+        let surface = read(&crate::samples::opd(width));
         // Pixel_size and Aspect are binary32.
         assert_map(&surface, Format::Opd, 300.0 * NM, [30e-6, 10e-6], has_mark);
         assert_eq!(surface.channels, ["RAW_DATA"]);
@@ -113,20 +111,20 @@ fn opd_is_turned_and_scaled_by_the_wavelength() {
 #[test]
 fn bcr_is_read_in_both_widths() {
     // "bit2nm" scales integers to the unit of the heights.
-    assert_map(&read(&samples::bcr(false)), Format::Bcr, 0.5e-12, [6e-6, 4e-6], true);
-    assert_map(&read(&samples::bcr(true)), Format::Bcr, 1e-12, [6e-6, 4e-6], true);
+    assert_map(&read(&crate::samples::bcr(false)), Format::Bcr, 0.5e-12, [6e-6, 4e-6], true);
+    assert_map(&read(&crate::samples::bcr(true)), Format::Bcr, 1e-12, [6e-6, 4e-6], true);
 }
 
 #[test]
 fn sdf_is_read_as_text_and_as_binary_of_every_type() {
     let size = [3e-6, 4e-6];
-    assert_map(&read(&samples::sdf_text()), Format::Sdf, NM, size, true);
+    assert_map(&read(&crate::samples::sdf_text()), Format::Sdf, NM, size, true);
     for data_type in 0..8 {
-        let surface = read(&samples::sdf_binary(data_type));
+        let surface = read(&crate::samples::sdf_binary(data_type));
         assert_map(&surface, Format::Sdf, NM, size, data_type != 0);
         assert!(surface.metadata.contains(&("ManufacID".into(), "maker".into())));
     }
-    let mut packed = samples::sdf_binary(7);
+    let mut packed = crate::samples::sdf_binary(7);
     packed[8 + 10 + 24 + 4 + 32] = 1;
     let error = read_bytes(&packed, &ReadOptions::default()).unwrap_err();
     assert!(matches!(error.problem, Problem::Unsupported { .. }), "{error}");
@@ -135,7 +133,7 @@ fn sdf_is_read_as_text_and_as_binary_of_every_type() {
 #[test]
 fn x3p_is_read_masked_as_a_list_and_in_layers() {
     let size = [3e-6, 4e-6];
-    let masked = read(&samples::x3p(X3p::Masked));
+    let masked = read(&crate::samples::x3p(X3p::Masked));
     // The offset of -10 nm makes the first height 0.
     assert_eq!(
         masked.heights.map(|h| (h / NM).round()).into_raw_vec_and_offset().0[..5],
@@ -143,15 +141,15 @@ fn x3p_is_read_masked_as_a_list_and_in_layers() {
     );
     assert!(masked.heights[[2, 1]].is_nan());
     assert!(masked.metadata.contains(&("Comment".into(), "3 < 4 & 5".into())));
-    assert_map(&read(&samples::x3p(X3p::List)), Format::X3p, NM, size, true);
-    let layers = samples::x3p(X3p::Layers);
+    assert_map(&read(&crate::samples::x3p(X3p::List)), Format::X3p, NM, size, true);
+    let layers = crate::samples::x3p(X3p::Layers);
     assert_map(&read(&layers), Format::X3p, NM, size, false);
     assert_map(&channel(&layers, "layer 1"), Format::X3p, 2.0 * NM, size, false);
 }
 
 #[test]
 fn gwy_channels_of_heights_come_in_their_order_with_units_and_masks() {
-    let bytes = samples::gwy();
+    let bytes = crate::samples::gwy();
     let surface = read(&bytes);
     // The amplitude is the first channel, but no height.
     assert_eq!(surface.channels, ["Amplitude", "Height", "Height (back)"]);
@@ -168,8 +166,9 @@ fn gwy_channels_of_heights_come_in_their_order_with_units_and_masks() {
 
 #[test]
 fn a_gwy_file_of_currents_asks_for_the_unit_of_heights() {
-    let field = samples::gwy_field(NUMBERS.map(f64::from), "m", "A");
-    let container = samples::gwy_object("GwyContainer", &samples::gwy_component("/0/data", b'o', &field));
+    let field = crate::samples::gwy_field(NUMBERS.map(f64::from), "m", "A");
+    let container =
+        crate::samples::gwy_object("GwyContainer", &crate::samples::gwy_component("/0/data", b'o', &field));
     let bytes = [b"GWYP", &container[..]].concat();
     let error = read_bytes(&bytes, &ReadOptions::default()).unwrap_err();
     assert!(matches!(error.problem, Problem::MissingHeightUnit { .. }), "{error}");
@@ -185,7 +184,7 @@ fn square(x: usize, y: usize) -> f64 {
 
 #[test]
 fn netcdf_4_of_the_reference_library_is_read() {
-    let surface = read(&samples::netcdf4());
+    let surface = read(&crate::samples::netcdf4());
     assert_eq!((surface.format, surface.heights.dim()), (Format::NetCdf, (5, 4)));
     assert_eq!(surface.size, [10.0 * UM, 6.0 * UM]);
     assert_eq!(surface.undefined(), 1);
@@ -201,7 +200,7 @@ fn netcdf_4_of_the_reference_library_is_read() {
 
 #[test]
 fn any_map_of_an_hdf5_file_is_a_channel() {
-    let bytes = samples::hdf5();
+    let bytes = crate::samples::hdf5();
     let options = |channel: Option<&str>| ReadOptions {
         size: Some([1.0, 2.0]),
         height_unit: Some(NM),
@@ -221,21 +220,27 @@ fn any_map_of_an_hdf5_file_is_a_channel() {
 
 #[test]
 fn any_file_may_be_packed_by_gzip() {
-    assert_map(&read(&samples::gzip(&samples::gwy())), Format::Gwy, NM, [6e-6, 4e-6], true);
-    assert_map(&read(&samples::gzip(&samples::sdf_text())), Format::Sdf, NM, [3e-6, 4e-6], true);
+    assert_map(&read(&crate::samples::gzip(&crate::samples::gwy())), Format::Gwy, NM, [6e-6, 4e-6], true);
+    assert_map(
+        &read(&crate::samples::gzip(&crate::samples::sdf_text())),
+        Format::Sdf,
+        NM,
+        [3e-6, 4e-6],
+        true,
+    );
 }
 
 #[test]
 fn the_caller_replaces_what_the_file_says() {
     let options = ReadOptions { size: Some([1.0, 2.0]), height_unit: Some(1e-3), ..Default::default() };
-    let surface = read_bytes(&samples::gwy(), &options).unwrap();
+    let surface = read_bytes(&crate::samples::gwy(), &options).unwrap();
     assert_map(&surface, Format::Gwy, 1e-3, [1.0, 2.0], true);
     for bad in [f64::NAN, 0.0, -1.0, f64::INFINITY] {
         let options = ReadOptions { height_unit: Some(bad), ..Default::default() };
-        let error = read_bytes(&samples::gwy(), &options).unwrap_err();
+        let error = read_bytes(&crate::samples::gwy(), &options).unwrap_err();
         assert!(matches!(error.problem, Problem::Option { .. }), "{error}");
         let options = ReadOptions { size: Some([1.0, bad]), ..Default::default() };
-        let error = read_bytes(&samples::gwy(), &options).unwrap_err();
+        let error = read_bytes(&crate::samples::gwy(), &options).unwrap_err();
         assert!(matches!(error.problem, Problem::Option { .. }), "{error}");
     }
 }

@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::process::Command;
 
-use crate::CASES;
-use crate::result::Stored;
+use super::CASES;
+use super::result::Stored;
 
 /// The two programs, by their paths.
 const PROGRAMS: [&str; 2] = ["ASPERITY_GOLDEN_OLD", "ASPERITY_GOLDEN_NEW"];

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use asperity_io::store::{At, FieldKind, Reader, Status, StoreError, Writer};
 
-use crate::{Case, bits, place, row_bits};
+use super::{Case, bits, place, row_bits};
 
 const FIELDS: [FieldKind; 2] = [FieldKind::Pressure, FieldKind::Contact];
 const PATH: &str = "ASPERITY_TEST_STORE_TO_BE_KILLED";
@@ -33,7 +33,7 @@ fn a_killed_process_leaves_every_step_that_it_appended() {
     for wait in [1, 7, 30, 100] {
         let (_directory, path) = place();
         let mut child = Command::new(std::env::current_exe().unwrap())
-            .args(["--exact", "killed::process_to_be_killed", "--nocapture"])
+            .args(["--exact", "store::killed::process_to_be_killed", "--nocapture"])
             .env(PATH, &path)
             .stdout(Stdio::piped())
             .spawn()

@@ -1,0 +1,12 @@
+//! The command as a user meets it, in one program.
+
+mod cli;
+mod findings;
+mod indentation;
+mod leak;
+mod line;
+mod material;
+mod peers;
+mod plot;
+mod stress;
+mod surface;

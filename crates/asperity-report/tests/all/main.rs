@@ -1,0 +1,4 @@
+//! Pictures and pages, in one program.
+
+mod browser;
+mod paper;

@@ -13,6 +13,7 @@ pub mod leakage;
 pub mod material_export;
 pub mod output;
 pub mod preparation;
+pub mod quantity;
 pub mod readable;
 pub mod resources;
 pub mod session;

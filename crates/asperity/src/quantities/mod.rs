@@ -320,28 +320,45 @@ impl Quantities {
         self.list.iter().any(|quantity| quantity.is_energy())
     }
 
-    /// The quantities with their bins, for an undeformed gap \[m\] and a largest hardness \[Pa\] (infinite for none).
+    /// Checks the list and the bins, as far as they do not depend on a gap; `capped` where there is a hardness.
     ///
     /// # Errors
     /// [`Error::Invalid`] where a quantity is named twice, the bins are none or too many, an end is not positive, or the
     /// histogram of the pressure has no upper end.
-    pub fn columns(&self, grid: &Grid, gap: &Array2<f64>, hardness: f64) -> Result<Vec<Column>> {
+    pub fn validate(&self, capped: bool) -> Result<()> {
         for (n, quantity) in self.list.iter().enumerate() {
             if self.list[..n].contains(quantity) {
-                return Err(Error::invalid(
-                    "list of quantities",
-                    format!("{quantity} twice"),
-                    "each named once",
-                ));
+                let twice = format!("{quantity} twice");
+                return Err(Error::invalid("list of quantities", twice, "each named once"));
             }
         }
         if !(1..=MOST_BINS).contains(&self.bins) {
-            return Err(Error::invalid(
-                "bins of the histograms",
-                self.bins,
-                format!("between 1 and {MOST_BINS}"),
-            ));
+            let expected = format!("between 1 and {MOST_BINS}");
+            return Err(Error::invalid("bins of the histograms", self.bins, expected).of("histogram.bins"));
         }
+        if let (true, Some(top)) = (self.has(Quantity::PressureHistogram), self.largest_pressure) {
+            positive("largest pressure of the histogram", top, "Pa")?;
+        }
+        if let (true, Some(top)) = (self.has(Quantity::GapHistogram), self.largest_gap) {
+            positive("largest gap of the histogram", top, "m")?;
+        }
+        if self.has(Quantity::PressureHistogram) && self.largest_pressure.is_none() && !capped {
+            return Err(Error::invalid(
+                "largest pressure of the histogram",
+                "not given",
+                "a pressure, as the bodies have no hardness that bounds it: histogram = { pressure = \"...\" }",
+            )
+            .of("quantities"));
+        }
+        Ok(())
+    }
+
+    /// The quantities with their bins, for an undeformed gap \[m\] and a largest hardness \[Pa\] (infinite for none).
+    ///
+    /// # Errors
+    /// As [`validate`](Self::validate); where the histogram of the gap has no upper end.
+    pub fn columns(&self, grid: &Grid, gap: &Array2<f64>, hardness: f64) -> Result<Vec<Column>> {
+        self.validate(hardness.is_finite())?;
         let evenly = |top: f64| (0..=self.bins).map(|k| top * k as f64 / self.bins as f64).collect();
         let edges = |quantity: &Quantity| -> Result<Vec<f64>> {
             Ok(match quantity {
@@ -349,19 +366,9 @@ impl Quantities {
                     let classes = grid.len().ilog2() as i32 + 1;
                     (0..=classes).map(|k| grid.cell_area() * libm::ldexp(1.0, k)).collect()
                 }
-                Quantity::PressureHistogram => match self.largest_pressure {
-                    Some(top) => evenly(positive("largest pressure of the histogram", top, "Pa")?),
-                    None if hardness.is_finite() => evenly(hardness),
-                    None => {
-                        return Err(Error::invalid(
-                            "largest pressure of the histogram",
-                            "not given",
-                            "a pressure, as the bodies have no hardness that bounds it",
-                        ));
-                    }
-                },
+                Quantity::PressureHistogram => evenly(self.largest_pressure.unwrap_or(hardness)),
                 Quantity::GapHistogram => match self.largest_gap {
-                    Some(top) => evenly(positive("largest gap of the histogram", top, "m")?),
+                    Some(top) => evenly(top),
                     None => {
                         let top = gap.iter().filter(|h| h.is_finite()).fold(0.0, |m: f64, h| m.max(*h));
                         if top <= 0.0 {

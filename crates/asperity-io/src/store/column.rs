@@ -7,7 +7,7 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use asperity::march::Row;
+use asperity::step::Row;
 
 use super::checksum::Sums;
 use super::chunks::Chunks;

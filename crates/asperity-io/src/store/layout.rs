@@ -1,7 +1,7 @@
 //! Names, units, dimensions and chunks of the arrays of a result.
 
-use asperity::march::Row;
 use asperity::quantities::{Column as Quantity, Quantity as Kind};
+use asperity::step::Row;
 use asperity::{Axis, Grid};
 use serde_json::{Value, json};
 

@@ -11,7 +11,6 @@ mod bounds;
 mod certificate;
 mod coarse;
 mod direction;
-mod gauss_seidel;
 mod polonsky_keer;
 mod problem;
 mod projected_cg;
@@ -25,7 +24,6 @@ mod sweeps;
 mod workspace;
 
 pub use bounds::Hardness;
-pub use gauss_seidel::gauss_seidel;
 pub use polonsky_keer::PolonskyKeer;
 pub(crate) use problem::SAME_LOAD;
 pub use problem::{Prescribed, Problem};

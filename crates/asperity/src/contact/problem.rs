@@ -4,7 +4,7 @@ use super::sweeps::feasible::{LargestGap, Limits};
 use super::{ContactState, Hardness, Outcome};
 use crate::error::{Error, Result};
 use crate::operator::Operator;
-use asperity_sweep::{Min, run, sum, sweep};
+use asperity_sweep::{Min, each, run, sum};
 
 /// One elastic contact of unit operator K.
 #[derive(Clone, Copy, Debug)]
@@ -96,12 +96,9 @@ impl Problem<'_> {
         if load < max * (1.0 - SAME_LOAD) {
             return Ok(None);
         }
-        let bound = |(p, gap, hardness): (&mut [f64], &[f64], Hardness)| {
-            p.iter_mut().zip(gap).enumerate().for_each(|(n, (p, h))| {
-                *p = if *h < f64::INFINITY { hardness.at(n) } else { 0.0 };
-            });
-        };
-        sweep((&mut state.pressure[..], self.gap, self.hardness), &bound);
+        each(&mut state.pressure, (self.gap, self.hardness), |p, (h, hardness)| {
+            *p = if h < f64::INFINITY { hardness } else { 0.0 };
+        });
         operator.apply_into(&state.pressure, &mut state.unit_displacement);
         state.rounding = 1.0;
         let (u, gap, compliance) = (&state.unit_displacement[..], self.gap, self.compliance);

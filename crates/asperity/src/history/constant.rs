@@ -17,7 +17,7 @@ use crate::contact::ContactState;
 use crate::error::Result;
 use crate::simulation::Simulation;
 use crate::step::{Interval, Loader, Saver};
-use asperity_sweep::{strands, sweep, zeros};
+use asperity_sweep::{dot, zeros};
 
 pub(super) struct ConstantPressure {
     clocks: Clocks,
@@ -136,8 +136,7 @@ impl History for ConstantPressure {
     fn exchange(&mut self, ends: &Ends<'_>) -> Option<Exchange> {
         let (springs, stored) = self.springs.as_mut()?;
         let (p, unit) = (&ends.now.pressure[..], &ends.now.unit_displacement[..]);
-        let whole =
-            sweep((p, unit), &|(p, unit): (&[f64], &[f64])| strands(p.len(), |k| [p[k] * unit[k]]))[0];
+        let whole = dot(p, unit);
         let with_strains = self.strains.products(&self.unit, p);
         let (mut now, mut heat) = (self.instantaneous * whole, 0.0);
         for (n, element) in self.elements.iter().enumerate() {

@@ -9,7 +9,7 @@ use crate::contact::ContactState;
 use crate::error::Result;
 use crate::material::{Creep, ThermalCreep};
 use crate::step::{Interval, Loader, Saver};
-use asperity_sweep::sweep;
+use asperity_sweep::each;
 
 pub(super) struct HereditarySum {
     creep: Creep,
@@ -67,9 +67,7 @@ impl HereditarySum {
             let next = self.starts.get(k + 1).unwrap_or(open);
             let weight = self.compliance(&self.starts[k], end) - self.compliance(next, end);
             if weight != 0.0 {
-                sweep((&mut *gap, &past[..]), &|(gap, past): (&mut [f64], &[f64])| {
-                    gap.iter_mut().zip(past).for_each(|(g, u)| *g += weight * u);
-                });
+                each(gap, &past[..], |g, u| *g += weight * u);
             }
         }
     }

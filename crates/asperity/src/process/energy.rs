@@ -11,13 +11,12 @@
 //! alone: the mean of W over the step, on the clock in which u runs, times the change of w.
 
 use super::{Process, Solved};
-use crate::contact::Hardness;
 use crate::error::Result;
 use crate::history::History;
 use crate::quantities::Quantity;
 use crate::simulation::{Plasticity, Simulation};
 use crate::step::{Loader, Saver, UndeformedGap};
-use asperity_sweep::{strands, sweep};
+use asperity_sweep::sums;
 
 /// The energies at the end of the last row \[J\].
 #[derive(Clone, Copy, Debug, Default)]
@@ -105,10 +104,8 @@ impl Process for Energy {
 fn overlap_work(row: &Solved<'_>) -> f64 {
     let (c, w) = (row.compliance, row.now.approach);
     let cells = (&row.now.pressure[..], &row.now.unit_displacement[..], &row.gap[..], row.hardness);
-    sweep(cells, &|(p, u, h, hardness): (&[f64], &[f64], &[f64], Hardness)| {
-        strands(p.len(), |i| {
-            let overlap = if p[i] >= hardness.at(i) { (w - c * u[i] - h[i]).max(0.0) } else { 0.0 };
-            [if overlap > 0.0 { p[i] * overlap } else { 0.0 }]
-        })
+    sums(cells, |(p, u, h, hardness)| {
+        let overlap = if p >= hardness { (w - c * u - h).max(0.0) } else { 0.0 };
+        [if overlap > 0.0 { p * overlap } else { 0.0 }]
     })[0]
 }

@@ -27,7 +27,7 @@
 //!
 //! What each costs and how it is derived: docs/theory.md ("Energy and other
 //! quantities of a row", "Permanent flattening"). A march takes them by
-//! [`Simulation::quantities`](crate::Simulation::quantities) and lends them in [`Step::quantity`](crate::march::Step::quantity).
+//! [`Simulation::quantities`](crate::Simulation::quantities) and lends them in [`Step::quantity`](crate::step::Step::quantity).
 
 mod eccentricity;
 mod histogram;

@@ -1,6 +1,6 @@
 //! The forces of a contact in motion.
 
-use asperity_sweep::{Cells, strands, sweep};
+use asperity_sweep::sums;
 
 use super::Slopes;
 use crate::grid::{Boundary, Grid};
@@ -187,10 +187,7 @@ impl ContactForces<'_> {
             let edge = self.slope_of_gap(i, j);
             [p, p * (cx * sx + cy * sy), p * (cx * sy - cy * sx), p * arm, p * edge, 1.0]
         };
-        let sums = sweep(Numbers { first: 0, count: grid.len() }, &|numbers: Numbers| {
-            strands(numbers.count, |n| of_cell(numbers.first + n))
-        });
-        sums.map(|sum| grid.cell_area() * sum)
+        sums(0..grid.len(), of_cell).map(|sum| grid.cell_area() * sum)
     }
 
     /// dg/ds by central differences; 0 beside cells that cannot touch.
@@ -213,21 +210,5 @@ impl ContactForces<'_> {
         };
         let slope = cx * along_x + cy * along_y;
         if slope.is_finite() { slope } else { 0.0 }
-    }
-}
-
-/// Numbers of cells that follow one another, to be swept.
-struct Numbers {
-    first: usize,
-    count: usize,
-}
-
-impl Cells for Numbers {
-    fn cells(&self) -> usize {
-        self.count
-    }
-    fn split(self, mid: usize) -> (Self, Self) {
-        let Numbers { first, count } = self;
-        (Numbers { first, count: mid }, Numbers { first: first + mid, count: count - mid })
     }
 }

@@ -6,11 +6,11 @@
 //! pressure-weighted mean, sum p (h0 + u - w) = 0 over 0 < p < H. The steps themselves take no notice.
 
 use super::Stepper;
-use crate::contact::{ContactState, Hardness};
+use crate::contact::ContactState;
 use crate::history::Moment;
 use crate::load::Control;
 use crate::time::Instant;
-use asperity_sweep::{minimum, strands, sum, sweep, zeros};
+use asperity_sweep::{each, minimum, sum, sums, zeros};
 
 /// A state within the last step of a run; [`Drive::view`](crate::Drive::view) shows it as a row.
 pub struct Between {
@@ -40,25 +40,16 @@ impl Stepper {
         let mixed = before + share * (now - before);
         let scale = if mixed > 0.0 { load / mixed } else { 1.0 };
         let mut pressure = zeros(from.len());
-        let fields = (&mut pressure[..], from, to, hardness);
-        sweep(fields, &|(m, a, b, top): (&mut [f64], &[f64], &[f64], Hardness)| {
-            for (i, m) in m.iter_mut().enumerate() {
-                let value = a[i] + share * (b[i] - a[i]);
-                // Cells at the hardness at both ends stay there.
-                *m = if value >= top.at(i) { top.at(i) } else { (scale * value).min(top.at(i)) };
-            }
+        each(&mut pressure, (from, to, hardness), |m, (a, b, top)| {
+            let value = a + share * (b - a);
+            // Cells at the hardness at both ends stay there.
+            *m = if value >= top { top } else { (scale * value).min(top) };
         });
         let mut gap = self.undeformed.now().to_vec();
-        sweep((&mut gap[..], &displacement[..]), &|(h, u): (&mut [f64], &[f64])| {
-            h.iter_mut().zip(u).for_each(|(h, u)| *h += u);
-        });
-        let cells = (&pressure[..], &gap[..], hardness);
-        let [weight, closed, touching] = sweep(cells, &|(p, h, hardness): (&[f64], &[f64], Hardness)| {
-            strands(p.len(), |i| {
-                let free = if p[i] > 0.0 && p[i] < hardness.at(i) { p[i] } else { 0.0 };
-                let closed = if free > 0.0 { free * h[i] } else { 0.0 };
-                [free, closed, f64::from(u8::from(p[i] > 0.0))]
-            })
+        each(&mut gap, &displacement[..], |h, u| *h += u);
+        let [weight, closed, touching] = sums((&pressure[..], &gap[..], hardness), |(p, h, hardness)| {
+            let free = if p > 0.0 && p < hardness { p } else { 0.0 };
+            [free, if free > 0.0 { free * h } else { 0.0 }, f64::from(u8::from(p > 0.0))]
         });
         let approach = match row.instant.control {
             _ if weight > 0.0 => closed / weight,

@@ -22,7 +22,7 @@ use super::shape::moment;
 use super::{Relaxation, UnderWay};
 use crate::history::{Ends, Exchange};
 use crate::material::{Dual, integrate};
-use asperity_sweep::{strands, sweep};
+use asperity_sweep::dot;
 
 /// Products of the states q_i and u (the last) with each other, at the end of a step.
 #[derive(Clone, Debug)]
@@ -43,8 +43,7 @@ impl Relaxation {
     /// What the step under way, which has just been solved, did; brings `products` to its end.
     pub(super) fn exchanged(&self, products: &mut Products, ends: &Ends<'_>) -> Exchange {
         let (p, unit) = (&ends.now.pressure[..], &ends.now.unit_displacement[..]);
-        let energy =
-            sweep((p, unit), &|(p, unit): (&[f64], &[f64])| strands(p.len(), |k| [p[k] * unit[k]]))[0];
+        let energy = dot(p, unit);
         if self.is_elastic() {
             let own = &mut products.list[0][0];
             let before = std::mem::replace(own, 0.5 * self.rules.compliance * energy);

@@ -3,7 +3,7 @@
 use super::rules::{Driver, Rules};
 use super::{Relaxation, UnderWay};
 use crate::history::{Ends, Moment};
-use asperity_sweep::sweep;
+use asperity_sweep::each;
 
 impl Relaxation {
     /// The moment that lies this far into the step, in laboratory time and on the clock of each body.
@@ -42,27 +42,15 @@ impl Relaxation {
                 self.recall(&rules, None, u);
             }
             _ if self.is_elastic() => {
-                let before = &ends.before.unit_displacement[..];
-                sweep((u, before, unit), &|(u, before, unit): (&mut [f64], &[f64], &[f64])| {
-                    for (u, (start, end)) in u.iter_mut().zip(before.iter().zip(unit)) {
-                        *u = compliance * (start + share * (end - start));
-                    }
-                });
+                let fields = (&ends.before.unit_displacement[..], unit);
+                each(u, fields, |u, (start, end)| *u = compliance * (start + share * (end - start)));
             }
             _ => {
-                let fields = (u, &self.displacement[..], unit, ends.gap, ends.rigid);
-                sweep(fields, &|(u, start, unit, gap, rigid): (
-                    &mut [f64],
-                    &[f64],
-                    &[f64],
-                    &[f64],
-                    &[f64],
-                )| {
-                    for (k, u) in u.iter_mut().enumerate() {
-                        let g = gap[k] - rigid[k];
-                        let end = compliance * unit[k] + if g.is_finite() { g } else { 0.0 };
-                        *u = start[k] + share * (end - start[k]);
-                    }
+                let fields = (&self.displacement[..], unit, ends.gap, ends.rigid);
+                each(u, fields, |u, (start, unit, gap, rigid)| {
+                    let g = gap - rigid;
+                    let end = compliance * unit + if g.is_finite() { g } else { 0.0 };
+                    *u = start + share * (end - start);
                 });
             }
         }

@@ -150,7 +150,7 @@ impl Spectral {
             Width::Narrow => unit,
             Width::Wide => wide::narrowed(&self.grid, &unit),
         };
-        of_eigenvalues(self.grid, self.boundary, self.kernel.clone(), &unit)
+        of_eigenvalues(operator::default_backend(), self.grid, self.boundary, self.kernel.clone(), &unit)
     }
 
     fn cells(&self) -> usize {

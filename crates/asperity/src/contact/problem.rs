@@ -2,7 +2,7 @@
 
 use super::sweeps::feasible::{LargestGap, Limits};
 use super::{ContactState, Hardness, Outcome};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 use crate::operator::Operator;
 use asperity_sweep::{Min, each, run, sum};
 
@@ -82,9 +82,8 @@ impl Problem<'_> {
         operator: &mut dyn Operator,
         state: &mut ContactState,
     ) -> Result<Option<Outcome>> {
-        if !(load >= 0.0 && load.is_finite()) {
-            return Err(Error::invalid("load", format!("{load} N"), "finite and not negative"));
-        }
+        let sound = load >= 0.0 && load.is_finite();
+        require(sound, "load", format!("{load} N"), "finite and not negative")?;
         if load == 0.0 {
             state.lift_off(extent.first_touch);
             return Ok(Some(Outcome::default()));
@@ -113,9 +112,7 @@ impl Problem<'_> {
         operator: &mut dyn Operator,
         state: &mut ContactState,
     ) -> Result<Option<Outcome>> {
-        if !approach.is_finite() {
-            return Err(Error::invalid("approach", format!("{approach} m"), "finite"));
-        }
+        require(approach.is_finite(), "approach", format!("{approach} m"), "finite")?;
         if approach <= extent.first_touch {
             state.lift_off(approach);
             return Ok(Some(Outcome::default()));

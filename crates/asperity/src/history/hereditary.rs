@@ -101,7 +101,7 @@ impl History for HereditarySum {
 
     fn save<'a>(&'a self, to: &mut Saver<'a>) {
         let moments = self.starts.iter().chain(self.open.iter().flatten());
-        to.numbers("moments", moments.map(|moment| moment.time).collect());
+        to.value("moments", &moments.map(|moment| moment.time).collect::<Vec<f64>>());
         for (k, past) in self.past.iter().enumerate() {
             to.field(&format!("past_{k}"), past);
         }

@@ -15,7 +15,7 @@ use crate::error::Result;
 use crate::history::History;
 use crate::quantities::Quantity;
 use crate::simulation::{Plasticity, Simulation};
-use crate::step::{Loader, Saver, UndeformedGap};
+use crate::step::{Loader, Saver, UndeformedGap, saved};
 use asperity_sweep::sums;
 
 /// The energies at the end of the last row \[J\].
@@ -42,10 +42,10 @@ impl Energy {
         let wanted = simulation.quantities.list.iter().any(is_wanted);
         (wanted && history.track_energy()).then(Energy::default)
     }
+}
 
-    fn numbers(&self) -> [f64; 5] {
-        [self.elastic, self.dissipated, self.flattening, self.work, self.approach]
-    }
+saved! {
+    Energy { "energies": elastic, dissipated, flattening, work, approach; }
 }
 
 impl Process for Energy {
@@ -90,13 +90,12 @@ impl Process for Energy {
     }
 
     fn save<'a>(&'a self, to: &mut Saver<'a>, _gap: &'a UndeformedGap) {
-        to.numbers("energies", self.numbers().to_vec());
+        self.save_own(to);
     }
 
     fn load(&mut self, from: &mut Loader<'_>, _gap: &mut UndeformedGap) -> Result<()> {
-        let [elastic, dissipated, flattening, work, approach] = from.array("energies")?;
-        *self = Energy { elastic, dissipated, flattening, work, approach, power: f64::NAN };
-        Ok(())
+        self.power = f64::NAN;
+        self.load_own(from)
     }
 }
 

@@ -6,7 +6,6 @@
 
 use super::{Process, Solved};
 use crate::error::Result;
-use crate::quantities::Quantity;
 use crate::simulation::{Plasticity, Simulation};
 use crate::step::{Loader, Saver, UndeformedGap};
 use asperity_sweep::each;
@@ -34,10 +33,6 @@ impl Process for Flattening {
         each(row.undeformed.own_mut(), cells, |h, (p, u, gap, most)| *h += overlap(p, u, gap, most));
         each(row.gap, (p, u, row.hardness), |gap, (p, u, most)| *gap += overlap(p, u, *gap, most));
         Ok(())
-    }
-
-    fn quantity(&self, _quantity: Quantity) -> Option<f64> {
-        None
     }
 
     fn name(&self) -> &'static str {

@@ -3,8 +3,10 @@
 use asperity_sweep::sums;
 
 use super::Slopes;
+use crate::error::{Error, Result, require, rounded};
 use crate::grid::{Boundary, Grid};
 use crate::quantities::Quantity;
+use crate::simulation::Simulation;
 
 /// Direction of motion: that of the contact over the body that the grid is fixed to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,8 +30,22 @@ impl Direction {
         }
     }
 
+    /// Whether a contact of this simulation can move this way.
+    pub(crate) fn validate(self, simulation: &Simulation) -> Result<()> {
+        let across = simulation.grid.is_line() && self != Direction::X;
+        require(!across, "direction of motion of a line contact", "not x", "x")?;
+        match self {
+            Direction::Angle(angle) if simulation.boundary == Boundary::Free => Err(Error::invalid(
+                "direction of motion on a free domain",
+                format!("{} degrees", rounded(angle.to_degrees())),
+                "x or y; other directions need a periodic domain",
+            )),
+            _ => Ok(()),
+        }
+    }
+
     /// The axis that it is along, of x or y.
-    pub(super) fn axis(self) -> usize {
+    pub(crate) fn axis(self) -> usize {
         usize::from(self == Direction::Y)
     }
 

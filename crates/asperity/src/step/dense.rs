@@ -31,11 +31,11 @@ impl Stepper {
             return None;
         }
         let part = row.up_to(time);
-        let mut displacement = zeros(self.gap.len());
-        let Moment { share, load } = self.history.within(&part, &self.ends(), &mut displacement)?;
+        let mut displacement = zeros(self.state.gap.len());
+        let Moment { share, load } = self.history.within(&part, &self.state.ends(), &mut displacement)?;
         let hardness = self.contact.hardness();
         let cell_area = self.simulation.grid.cell_area();
-        let (from, to) = (&self.before.pressure[..], &self.now.pressure[..]);
+        let (from, to) = (&self.state.before.pressure[..], &self.state.now.pressure[..]);
         let [before, now] = [from, to].map(|p| cell_area * sum(p));
         let mixed = before + share * (now - before);
         let scale = if mixed > 0.0 { load / mixed } else { 1.0 };
@@ -45,7 +45,7 @@ impl Stepper {
             // Cells at the hardness at both ends stay there.
             *m = if value >= top { top } else { (scale * value).min(top) };
         });
-        let mut gap = self.undeformed.now().to_vec();
+        let mut gap = self.state.undeformed.now().to_vec();
         each(&mut gap, &displacement[..], |h, u| *h += u);
         let [weight, closed, touching] = sums((&pressure[..], &gap[..], hardness), |(p, h, hardness)| {
             let free = if p > 0.0 && p < hardness { p } else { 0.0 };
@@ -55,7 +55,7 @@ impl Stepper {
             _ if weight > 0.0 => closed / weight,
             Control::Approach => part.instant.value,
             // Every touching cell is at the hardness: bounded from below only.
-            _ if touching > 0.0 => self.now.approach,
+            _ if touching > 0.0 => self.state.now.approach,
             _ => minimum(&gap),
         };
         // The gap holds u itself: nothing is multiplied by a compliance.

@@ -119,9 +119,8 @@ impl Relaxation {
         }
         let relaxed = if piece.is_after_jump { self::soon(&self.dual, longest, rate) } else { longest };
         let Some(slope) = piece.load_rate(soon) else { return relaxed };
-        self.dual.to_strains(&self.end.states, self.end.driver, &mut self.strains);
-        self.shape.set(&self.dual, self.end.load, slope / rate, &self.strains);
-        growing(&self.dual, &self.shape, self.end.driver, [relaxed, longest], rate)
+        self.cell.go_on(&self.dual, slope / rate);
+        growing(&self.dual, &self.cell.shape, self.cell.end.driver, [relaxed, longest], rate)
     }
 }
 

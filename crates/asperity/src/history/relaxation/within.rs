@@ -1,6 +1,6 @@
 //! The state within the step that was solved last: u between its values at the ends, on the clock in which it ran.
 
-use super::rules::{Driver, Rules};
+use super::rules::Rules;
 use super::{Relaxation, UnderWay};
 use crate::history::{Ends, Moment};
 use asperity_sweep::each;
@@ -11,22 +11,10 @@ impl Relaxation {
         let x = self.pair.length(lengths);
         let whole = self.rules.length;
         if self.under_way != UnderWay::Contact || x >= whole {
-            return Moment { share: 1.0, load: self.end.load };
+            return Moment { share: 1.0, load: self.cell.end.load };
         }
-        let (share, driver) = match self.rules.driver {
-            Driver::Time => (x / whole, Driver::Time),
-            Driver::Load(change) => {
-                let part = self.shape.change(&self.dual, x);
-                (part / change, Driver::Load(part))
-            }
-        };
-        let mut rules = Rules::new(self.dual.states());
-        rules.set(&self.dual, x, driver, &self.shape);
-        let driver = self.total.driver + share * (self.end.driver - self.total.driver);
-        let recalled = rules.recalled();
-        let sum: f64 = recalled.weights.iter().zip(&self.total.states).map(|(w, q)| w * q).sum();
-        let load = (driver - sum - recalled.own * self.total.driver) / rules.compliance;
-        Moment { share, load: load.max(0.0) }
+        let (share, driver) = self.cell.gone(&self.dual, self.rules.driver, x, whole);
+        self.cell.moment(&self.dual, x, share, driver)
     }
 
     /// Writes u that lies `lengths` into the step, where `moment` is.

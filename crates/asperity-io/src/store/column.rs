@@ -12,7 +12,7 @@ use asperity::step::Row;
 use super::checksum::Sums;
 use super::chunks::Chunks;
 use super::error::{Result, corrupt, io};
-use super::layout::{ArraySpec, Entry};
+use super::layout::{ArraySpec, Entry, Stored};
 
 /// The writing end of a per-step array.
 pub(super) struct Column {

@@ -17,7 +17,7 @@ use super::document::{Document, Pages};
 use super::error::{Result, StoreError, input, io};
 use super::field_kind::FieldKind;
 use super::header::{Header, Progress, SCHEMA, Status, Work};
-use super::layout::{Entry, SCALARS};
+use super::layout::{Entry, SCALARS, Stored};
 use super::leftovers;
 use super::replace::Way;
 use super::stress::{self, StressSet};

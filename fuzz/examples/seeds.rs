@@ -1,7 +1,7 @@
 //! Writes valid files of every format, and those that once broke a reader, into the corpora of the fuzz targets:
 //! `cargo run --example seeds` in `fuzz/`.
 
-#[path = "../../crates/asperity-io/tests/samples/mod.rs"]
+#[path = "../../crates/asperity-io/tests/all/samples/mod.rs"]
 mod samples;
 
 use std::io::{Cursor, Write};

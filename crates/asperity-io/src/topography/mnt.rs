@@ -16,14 +16,13 @@ use std::io::Read;
 
 use flate2::read::ZlibDecoder;
 
-use super::compound::Compound;
 use super::cursor::Cursor;
 use super::finish::{Lateral, Measured, Unit, choose_heights, unit_of};
 use super::grid::{self, Layout};
 use super::sample::{Kind, Order};
 use super::unit::{LoneA, metres};
 use super::unpack::{most_unpacked, read_bounded};
-use super::{Format, Problem, foreign};
+use super::{Format, Problem, compound, foreign};
 
 const CONTENTS: &str = "ScopedContents";
 /// Tag of the part that an entry extends.
@@ -39,7 +38,9 @@ mod class {
 
 /// Reads the surface asked for.
 pub(super) fn read_mnt(bytes: &[u8], channel: Option<&str>) -> Result<Measured, Problem> {
-    let Some(contents) = Compound::open(bytes)?.stream(CONTENTS)? else {
+    let contents = compound::stream(bytes, CONTENTS)
+        .map_err(|error| Problem::malformed("the compound document", error, "undamaged"))?;
+    let Some(contents) = contents else {
         return Err(foreign::unread(bytes));
     };
     let tree = Node(contents.get(8..).unwrap_or_default());

@@ -29,7 +29,7 @@
 
 mod al3d;
 mod bcr;
-mod compound;
+pub(crate) mod compound;
 mod cursor;
 mod error;
 mod finish;

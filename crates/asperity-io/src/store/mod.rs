@@ -56,6 +56,7 @@
 mod checkpoint;
 mod checksum;
 mod chunks;
+mod codec;
 mod column;
 mod create;
 mod document;

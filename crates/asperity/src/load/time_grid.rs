@@ -23,7 +23,7 @@ pub enum TimeGrid {
     },
     /// The instants themselves, increasing.
     List(Vec<f64>),
-    /// Steps as long as their local error allows (see [`crate::march`]), to `end`.
+    /// Steps as long as their local error allows (see docs/theory.md, section 5), to `end`.
     Adaptive {
         /// Last instant \[s\].
         end: f64,

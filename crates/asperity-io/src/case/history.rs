@@ -63,7 +63,7 @@ pub enum History {
     /// Straight lines between points; two points at one time are a jump.
     Table {
         /// Pairs [time, value] in order of time, the first at 0; a time given twice is a jump.
-        #[schemars(example = [["0 s", "0 N"], ["10 s", "0.5 N"]])]
+        #[schemars(example = (("0 s", "0 N"), ("10 s", "0.5 N")))]
         #[schemars(length(min = 1))]
         points: Vec<Two<Time, Prescribed>>,
     },

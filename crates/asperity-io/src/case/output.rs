@@ -40,10 +40,10 @@ pub struct OutputKeys {
     #[schemars(example = "rough_pmma.zarr")]
     path: Option<String>,
     /// The fields that are stored; ["pressure", "gap"] if not given, [] for none.
-    #[schemars(example = ["pressure", "gap"])]
+    #[schemars(example = ("pressure", "gap"))]
     fields: Option<Vec<FieldKind>>,
     /// Optional quantities of each row, in addition to load, approach and areas; ["all"] for all that the case allows.
-    #[schemars(example = ["contact_stiffness", "contact_spots", "dissipated_energy"])]
+    #[schemars(example = ("contact_stiffness", "contact_spots", "dissipated_energy"))]
     #[serde(default)]
     quantities: Vec<Wanted>,
     /// Bins of the histograms among the quantities.
@@ -55,7 +55,7 @@ pub struct OutputKeys {
     pub every: Option<Whole<1>>,
     /// Times at which fields are stored, in addition to the first and the last row. Each becomes a step; if steps are
     /// adaptive the state there is interpolated instead. This or `every`.
-    #[schemars(example = ["1 s", "10 s", "100 s"])]
+    #[schemars(example = ("1 s", "10 s", "100 s"))]
     pub times: Option<Vec<Time<NonNegative>>>,
     /// Whether a run can be resumed; true if not given.
     #[schemars(example = true)]

@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use asperity::finding::{self, Finding};
+use asperity::history::check_layers;
 use asperity::layer::{Layered, NonseparableLayers, Response, response};
-use asperity::march::check_layers;
 use asperity::material::{Body, Creep, ReducedTime, ThermalCreep, pair_hardness};
 use asperity::time::Plan;
 use asperity::{Boundary, Error, Grid};

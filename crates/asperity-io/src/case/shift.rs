@@ -43,7 +43,7 @@ enum Model {
     /// A table of shift factors, with log10 a_T linear in between.
     Table {
         /// Pairs [temperature, log10 a_T] in order of temperature; 0 at the reference temperature. This or `path`.
-        #[schemars(example = [("0 °C", 2.5), ("20 °C", 0.0), ("60 °C", -3.0)])]
+        #[schemars(example = (("0 °C", 2.5), ("20 °C", 0.0), ("60 °C", -3.0)))]
         points: Option<Vec<Two<Temperature, Number>>>,
         /// A file of them, relative to the case file: a table with columns T and log_aT (or ln_aT, aT), with units in the
         /// header. This or `points`.

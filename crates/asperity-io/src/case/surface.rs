@@ -32,7 +32,7 @@ pub enum Kind {
         /// Radius of curvature.
         radius: Length<PositiveOrInfinite>,
         /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
-        #[schemars(example = ["0 mm", "0.02 mm"])]
+        #[schemars(example = ("0 mm", "0.02 mm"))]
         center: Option<Axes<Length>>,
     },
     /// An ellipsoid, as the paraboloid x^2/(2 Rx) + y^2/(2 Ry).
@@ -43,7 +43,7 @@ pub enum Kind {
         #[schemars(example = "2 mm")]
         radius_y: Length<PositiveOrInfinite>,
         /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
-        #[schemars(example = ["0 mm", "0.02 mm"])]
+        #[schemars(example = ("0 mm", "0.02 mm"))]
         center: Option<Axes<Length>>,
     },
     /// A cylinder along y, as the parabola x^2/(2 R).
@@ -52,7 +52,7 @@ pub enum Kind {
         #[schemars(example = "10 mm")]
         radius: Length<PositiveOrInfinite>,
         /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
-        #[schemars(example = ["0.02 mm"])]
+        #[schemars(example = ("0.02 mm",))]
         center: Option<Axes<Length>>,
     },
     /// A wedge along y, edge towards the other body.
@@ -61,7 +61,7 @@ pub enum Kind {
         #[schemars(example = 0.1)]
         slope: Number<Positive>,
         /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
-        #[schemars(example = ["0.02 mm"])]
+        #[schemars(example = ("0.02 mm",))]
         center: Option<Axes<Length>>,
     },
     /// A cone, tip towards the other body.
@@ -70,7 +70,7 @@ pub enum Kind {
         #[schemars(example = 0.1)]
         slope: Number<Positive>,
         /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
-        #[schemars(example = ["0 mm", "0.02 mm"])]
+        #[schemars(example = ("0 mm", "0.02 mm"))]
         center: Option<Axes<Length>>,
     },
     /// A flat punch: cells outside its face cannot touch.
@@ -79,10 +79,10 @@ pub enum Kind {
         #[schemars(example = "20 um")]
         radius: Option<Length<Positive>>,
         /// Sides of a rectangular face along x and y, or the width on a line; this or `radius`.
-        #[schemars(example = ["20 um", "40 um"])]
+        #[schemars(example = ("20 um", "40 um"))]
         size: Option<Axes<Length<Positive>>>,
         /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
-        #[schemars(example = ["0 mm", "0.02 mm"])]
+        #[schemars(example = ("0 mm", "0.02 mm"))]
         center: Option<Axes<Length>>,
     },
     /// A wave: the product of cosines along x and y.
@@ -91,10 +91,10 @@ pub enum Kind {
         #[schemars(example = "1 um")]
         amplitude: Length,
         /// Wavelength along x and y; "inf" for no variation along that axis. On a line one value.
-        #[schemars(example = ["50 um", "inf"])]
+        #[schemars(example = ("50 um", "inf"))]
         wavelength: Axes<Length<PositiveOrInfinite>>,
         /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
-        #[schemars(example = ["0 mm", "0.02 mm"])]
+        #[schemars(example = ("0 mm", "0.02 mm"))]
         center: Option<Axes<Length>>,
     },
     /// Random roughness with a self-affine power spectrum, the same on every machine for one seed.
@@ -181,7 +181,7 @@ pub struct File {
     #[schemars(example = &"Topography")]
     pub channel: Option<Label>,
     /// Physical size along x and y, if the file does not state it; of a profile its length.
-    #[schemars(example = ["0.1 mm", "0.1 mm"])]
+    #[schemars(example = ("0.1 mm", "0.1 mm"))]
     pub size: Option<Axes<Length<Positive>>>,
     /// Unit of the heights, if the file does not state it.
     #[schemars(example = &"um")]

@@ -38,7 +38,7 @@ enum TemperatureHistory {
     /// Linear between points, held after the last; two points at the same time are a jump.
     Table {
         /// Pairs [time, temperature] in order of time, the first at 0; a time given twice is a jump.
-        #[schemars(example = [["0 s", "20 °C"], ["100 s", "60 °C"]])]
+        #[schemars(example = (("0 s", "20 °C"), ("100 s", "60 °C")))]
         #[schemars(length(min = 1))]
         points: Vec<Two<Time, Kelvin>>,
     },

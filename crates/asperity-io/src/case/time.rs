@@ -37,7 +37,7 @@ pub struct Times {
     #[schemars(example = 1e-3)]
     tolerance: Option<Number<Positive>>,
     /// List of the times after 0, instead of `end` and `steps`.
-    #[schemars(example = ["1 s", "10 s", "100 s"])]
+    #[schemars(example = ("1 s", "10 s", "100 s"))]
     times: Option<Vec<Time<Positive>>>,
     /// How the pressure varies over a step; "linear" if not given.
     #[serde(default)]

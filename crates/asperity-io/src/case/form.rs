@@ -5,9 +5,11 @@ use std::fmt;
 use std::marker::PhantomData;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::Deserialize;
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
-use serde::de::{Deserializer, Error, IntoDeserializer, MapAccess, SeqAccess, Visitor};
-use serde::{Deserialize, de};
+use serde::de::{Deserializer, Error, IntoDeserializer, MapAccess, SeqAccess, Unexpected, Visitor};
+
+use crate::quantity::scalar::schema;
 
 /// A word, a list or a table.
 #[derive(Clone, Debug)]
@@ -15,6 +17,14 @@ pub enum Form<W, L = Never, T = Never> {
     Word(W),
     List(L),
     Table(T),
+}
+
+/// What is written as a text or a number where a value has several forms.
+pub trait Word {
+    /// All forms of the value, for errors.
+    const FORMS: &'static str;
+    /// Whether its own errors say more.
+    const IS_QUANTITY: bool = false;
 }
 
 /// A form that a value does not have.
@@ -27,19 +37,11 @@ impl<'de> Deserialize<'de> for Never {
     }
 }
 
-impl JsonSchema for Never {
-    fn schema_name() -> Cow<'static, str> {
-        "Never".into()
-    }
-
-    fn json_schema(_: &mut SchemaGenerator) -> Schema {
-        false.into()
-    }
-}
+schema!(Never, "Never", { "not": {} });
 
 impl<'de, W, L, T> Deserialize<'de> for Form<W, L, T>
 where
-    W: Deserialize<'de> + JsonSchema,
+    W: Deserialize<'de> + Word,
     L: Deserialize<'de> + JsonSchema,
     T: Deserialize<'de> + JsonSchema,
 {
@@ -50,50 +52,49 @@ where
 
 struct FormVisitor<W, L, T>(PhantomData<fn() -> Form<W, L, T>>);
 
+impl<W: Word, L, T> FormVisitor<W, L, T> {
+    fn word<E: Error>(&self, word: Result<W, E>, found: Unexpected<'_>) -> Result<Form<W, L, T>, E> {
+        word.map(Form::Word).map_err(|error| match W::IS_QUANTITY {
+            true => error,
+            false => E::invalid_value(found, &W::FORMS),
+        })
+    }
+}
+
 impl<'de, W, L, T> Visitor<'de> for FormVisitor<W, L, T>
 where
-    W: Deserialize<'de> + JsonSchema,
+    W: Deserialize<'de> + Word,
     L: Deserialize<'de> + JsonSchema,
     T: Deserialize<'de> + JsonSchema,
 {
     type Value = Form<W, L, T>;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let forms = [
-            (W::schema_name(), "a word or quantity in quotes"),
-            (L::schema_name(), "a list in brackets"),
-            (T::schema_name(), "a table in braces"),
-        ];
-        let never = Never::schema_name();
-        let forms: Vec<&str> = forms.iter().filter(|form| form.0 != never).map(|form| form.1).collect();
-        f.write_str(&forms.join(" or "))
+        f.write_str(W::FORMS)
     }
 
     fn visit_str<E: Error>(self, text: &str) -> Result<Self::Value, E> {
-        match is_never::<W>() {
-            true => Err(E::invalid_type(de::Unexpected::Str(text), &self)),
-            false => W::deserialize(text.into_deserializer()).map(Form::Word),
-        }
+        self.word(W::deserialize(text.into_deserializer()), Unexpected::Str(text))
     }
 
     fn visit_f64<E: Error>(self, value: f64) -> Result<Self::Value, E> {
-        W::deserialize(value.into_deserializer()).map(Form::Word)
+        self.word(W::deserialize(value.into_deserializer()), Unexpected::Float(value))
     }
 
     fn visit_i64<E: Error>(self, value: i64) -> Result<Self::Value, E> {
-        W::deserialize(value.into_deserializer()).map(Form::Word)
+        self.word(W::deserialize(value.into_deserializer()), Unexpected::Signed(value))
     }
 
     fn visit_seq<S: SeqAccess<'de>>(self, list: S) -> Result<Self::Value, S::Error> {
         match is_never::<L>() {
-            true => Err(S::Error::invalid_type(de::Unexpected::Seq, &self)),
+            true => Err(S::Error::invalid_type(Unexpected::Seq, &self)),
             false => L::deserialize(SeqAccessDeserializer::new(list)).map(Form::List),
         }
     }
 
     fn visit_map<M: MapAccess<'de>>(self, table: M) -> Result<Self::Value, M::Error> {
         match is_never::<T>() {
-            true => Err(M::Error::invalid_type(de::Unexpected::Map, &self)),
+            true => Err(M::Error::invalid_type(Unexpected::Map, &self)),
             false => T::deserialize(MapAccessDeserializer::new(table)).map(Form::Table),
         }
     }

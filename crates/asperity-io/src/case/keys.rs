@@ -3,7 +3,7 @@
 pub use schemars::JsonSchema;
 pub use serde::Deserialize;
 
-pub use super::form::{Form, Never};
+pub use super::form::{Form, Never, Word};
 pub use super::list::{Axes, Two};
 pub use super::place::Place;
 pub use crate::quantity::range::{

@@ -101,6 +101,16 @@ pub enum RangeSpacing {
     Linear,
 }
 
+impl Word for Velocity {
+    const FORMS: &'static str =
+        "a velocity such as \"10 mm/s\", or a history such as { kind = \"ramp\", ... }";
+    const IS_QUANTITY: bool = true;
+}
+
+impl Word for Never {
+    const FORMS: &'static str = "a list of velocities, or { from, to, count, spacing }";
+}
+
 /// "x", "y", or an angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Heading(Direction);

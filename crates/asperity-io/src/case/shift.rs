@@ -62,6 +62,11 @@ enum Model {
 /// pairs [temperature, b_T] in order of temperature: 1 at the reference, ln b_T is linear in between.
 type Vertical = Form<VerticalWord, Vec<Two<Temperature, Number<Positive>>>, VerticalDensity>;
 
+impl Word for VerticalWord {
+    const FORMS: &'static str = "\"density\" (b_T = reference/T, as for a rubber), \"free\" (one factor for each sweep of a file), \
+                                 { expansion = \"6e-4 1/K\" }, or pairs [temperature, b_T]";
+}
+
 /// Moduli grow as density times absolute temperature: b_T = (reference/T) (1 + expansion (T - reference)).
 #[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -16,6 +16,10 @@ pub enum Stored {
     All,
 }
 
+impl Word for Stored {
+    const FORMS: &'static str = "\"fields\", \"all\" or a list of times";
+}
+
 /// The times asked for \[s\], the inner `None` for all that are stored; the outer one is a fault.
 pub fn stored_times(
     at: &Place<'_>,

@@ -52,6 +52,10 @@ enum Auto {
     Auto,
 }
 
+impl Word for Auto {
+    const FORMS: &'static str = "\"auto\", a list of lengths, or a table { from, to, count, spacing }";
+}
+
 /// A row of depths; the surface itself is added.
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]

@@ -31,9 +31,12 @@ pub fn translate(text: &Text<'_>, error: &toml::de::Error, section: Range<usize>
         rest.rsplit_once("`, expected ").or_else(|| rest.rsplit_once("`, there "))
     };
     if let Some((name, known)) = named("unknown field `") {
-        let table = spot.key.strip_suffix(name).unwrap_or(&spot.key).trim_end_matches('.');
-        let known = [backticked(known).as_slice(), read::shared(table)].concat();
-        return unknown_key(text, spot, name, &known);
+        return unknown_key(text, spot, name, &backticked(known));
+    }
+    // The same of a member of a union, in the words of the crate toml.
+    if let Some((_, known)) = message.rsplit_once(", available keys: ") {
+        let (name, known) = (text.value(&spot), known.split(", ").filter(|key| !key.is_empty()));
+        return unknown_key(text, spot, &name, &known.collect::<Vec<_>>());
     }
     if let Some((name, known)) = named("unknown variant `") {
         return wrong_choice(text, spot, Some((name, &backticked(known))));
@@ -62,6 +65,7 @@ pub fn unknown_key(text: &Text<'_>, spot: Spot, name: &str, known: &[&str]) -> C
         None | Some("") => "the case file",
         Some(table) => table,
     };
+    let known = [known, read::shared(table)].concat();
     let names = known.join(", ");
     let expected = if known.is_empty() { "no key".to_owned() } else { format!("one of {names}") };
     if let Some((_, reason)) = RETIRED.iter().find(|retired| retired.0 == key) {
@@ -70,7 +74,7 @@ pub fn unknown_key(text: &Text<'_>, spot: Spot, name: &str, known: &[&str]) -> C
     if let Some(reason) = not_available(name) {
         return text.error(spot, None, &expected, "", format!("{key} {reason}"));
     }
-    let help = match nearest(name, known) {
+    let help = match nearest(name, &known) {
         Some(near) => format!("did you mean `{near}`?"),
         None if known.is_empty() => "it has none".to_owned(),
         None => format!("its keys: {names}"),

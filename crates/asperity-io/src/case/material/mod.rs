@@ -13,6 +13,7 @@ mod measured;
 mod prony;
 mod relaxation_table;
 mod springpot;
+mod standard_linear_solid;
 mod zener;
 
 use asperity::material::{Fractional, Material as Known, Modulus, Shift as ShiftLaw, VerticalShift};
@@ -88,6 +89,7 @@ laws! {
     "maxwell" Maxwell(maxwell::Maxwell),
     "kelvin-voigt" KelvinVoigt(kelvin_voigt::KelvinVoigt),
     "zener" Zener(zener::Zener),
+    "standard-linear-solid" StandardLinearSolid(standard_linear_solid::StandardLinearSolid),
     "burgers" Burgers(burgers::Burgers),
     "prony" Prony(prony::Prony),
     "creep" Creep(creep::Creep),

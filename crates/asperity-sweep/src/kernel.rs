@@ -1,8 +1,8 @@
 //! The declaration of a sweep kernel.
 
-/// Declares a sweep kernel: fields of one number of cells, which are walked together, and numbers that are the same for all
-/// cells. The first field must have all cells. With a [`Work`](crate::simd::Work) that handles a part of the
-/// cells, [`run`](crate::run()) applies it to all of them.
+/// Declares a sweep kernel: fields with the same number of cells, which are processed together, and numbers that are the same for
+/// all cells. The first field must have all cells. With a [`Work`](crate::simd::Work) that handles a part of the cells,
+/// [`run`](crate::run()) applies it to all of them.
 #[macro_export]
 macro_rules! kernel {
     ($(#[$doc:meta])* $view:vis struct $name:ident<$life:lifetime> {

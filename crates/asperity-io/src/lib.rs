@@ -15,6 +15,7 @@ pub mod material_export;
 mod npz;
 pub mod output;
 pub mod preparation;
+pub mod quantity;
 pub mod readable;
 pub mod resources;
 pub mod session;

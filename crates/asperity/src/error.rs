@@ -9,6 +9,9 @@ pub enum Error {
     /// An argument is outside its domain.
     #[error("{what} is {value}, but must be {expected}")]
     Invalid {
+        /// Path of the argument among those of the call, in the words of case files ("longest", "histogram.bins",
+        /// "body\[0\].layer\[1\]"); empty where the whole is meant.
+        parameter: String,
         /// The quantity, in terms of the field ("Poisson's ratio", "radius").
         what: String,
         /// The value as given.
@@ -103,7 +106,20 @@ impl Error {
         value: impl std::fmt::Display,
         expected: impl Into<String>,
     ) -> Self {
-        Error::Invalid { what: what.into(), value: value.to_string(), expected: expected.into() }
+        let (what, expected) = (what.into(), expected.into());
+        Error::Invalid { parameter: String::new(), what, value: value.to_string(), expected }
+    }
+
+    /// The same error, of the argument `outer` or of one inside of it.
+    #[must_use]
+    pub fn of(self, outer: &str) -> Self {
+        match self {
+            Error::Invalid { parameter, what, value, expected } => {
+                let dot = if parameter.is_empty() { "" } else { "." };
+                Error::Invalid { parameter: format!("{outer}{dot}{parameter}"), what, value, expected }
+            }
+            other => other,
+        }
     }
 }
 

@@ -16,7 +16,7 @@ use std::io::Read;
 
 use flate2::read::ZlibDecoder;
 
-use super::compound::{Compound, is_compound};
+use super::compound::{self, is_compound};
 use super::cursor::Cursor;
 use super::finish::{Lateral, Measured, Unit, unit_of};
 use super::grid::{self, Layout};
@@ -42,7 +42,9 @@ mod class {
 
 /// Reads the surface asked for.
 fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
-    let Some(contents) = Compound::open(bytes)?.stream(CONTENTS)? else {
+    let contents = compound::stream(bytes, CONTENTS)
+        .map_err(|error| Problem::malformed("the compound document", error, "undamaged"))?;
+    let Some(contents) = contents else {
         return Err(foreign::unread(bytes));
     };
     let tree = Node(contents.get(8..).unwrap_or_default());

@@ -9,7 +9,7 @@
 
 mod al3d;
 mod bcr;
-mod compound;
+pub(crate) mod compound;
 mod cursor;
 mod entries;
 mod error;

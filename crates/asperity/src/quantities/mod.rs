@@ -27,7 +27,7 @@
 //!
 //! What each costs and how it is derived: docs/theory.md ("Energy and other
 //! quantities of a row", "Permanent flattening"). A march takes them by
-//! [`Simulation::quantities`](crate::Simulation::quantities) and lends them in [`Step::quantity`](crate::march::Step::quantity).
+//! [`Simulation::quantities`](crate::Simulation::quantities) and lends them in [`Step::quantity`](crate::step::Step::quantity).
 
 mod eccentricity;
 mod histogram;
@@ -37,7 +37,7 @@ mod stiffness;
 
 use ndarray::Array2;
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, positive, require};
 use crate::grid::Grid;
 
 pub(crate) use eccentricity::eccentricity;
@@ -336,6 +336,10 @@ impl Default for Quantities {
 /// Most bins of a histogram.
 const MOST_BINS: usize = 10_000;
 
+/// Upper ends of the histograms, as errors name them.
+const PRESSURE_END: &str = "largest pressure of the histogram";
+const GAP_END: &str = "largest gap of the histogram";
+
 /// A quantity with the ends of its bins.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
@@ -376,21 +380,11 @@ impl Quantities {
     /// histogram of the pressure has no upper end.
     pub fn columns(&self, grid: &Grid, gap: &Array2<f64>, hardness: f64) -> Result<Vec<Column>> {
         for (n, quantity) in self.list.iter().enumerate() {
-            if self.list[..n].contains(quantity) {
-                return Err(Error::invalid(
-                    "list of quantities",
-                    format!("{quantity} twice"),
-                    "each named once",
-                ));
-            }
+            let once = !self.list[..n].contains(quantity);
+            require(once, "list of quantities", format!("{quantity} twice"), "each named once")?;
         }
-        if !(1..=MOST_BINS).contains(&self.bins) {
-            return Err(Error::invalid(
-                "bins of the histograms",
-                self.bins,
-                format!("between 1 and {MOST_BINS}"),
-            ));
-        }
+        let possible = (1..=MOST_BINS).contains(&self.bins);
+        require(possible, "bins of the histograms", self.bins, format!("between 1 and {MOST_BINS}"))?;
         let evenly = |top: f64| (0..=self.bins).map(|k| top * k as f64 / self.bins as f64).collect();
         let edges = |quantity: &Quantity| -> Result<Vec<f64>> {
             Ok(match quantity {
@@ -399,27 +393,19 @@ impl Quantities {
                     (0..=classes).map(|k| grid.cell_area() * libm::ldexp(1.0, k)).collect()
                 }
                 Quantity::PressureHistogram => match self.largest_pressure {
-                    Some(top) => evenly(positive("largest pressure of the histogram", top, "Pa")?),
+                    Some(top) => evenly(positive(PRESSURE_END, top, "Pa")?),
                     None if hardness.is_finite() => evenly(hardness),
                     None => {
-                        return Err(Error::invalid(
-                            "largest pressure of the histogram",
-                            "not given",
-                            "a pressure, as the bodies have no hardness that bounds it",
-                        ));
+                        let expected = "a pressure, as the bodies have no hardness that bounds it";
+                        return Err(Error::invalid(PRESSURE_END, "not given", expected));
                     }
                 },
                 Quantity::GapHistogram => match self.largest_gap {
-                    Some(top) => evenly(positive("largest gap of the histogram", top, "m")?),
+                    Some(top) => evenly(positive(GAP_END, top, "m")?),
                     None => {
                         let top = gap.iter().filter(|h| h.is_finite()).fold(0.0, |m: f64, h| m.max(*h));
-                        if top <= 0.0 {
-                            return Err(Error::invalid(
-                                "largest gap of the histogram",
-                                "not given",
-                                "a length, as the undeformed surfaces are flat",
-                            ));
-                        }
+                        let expected = "a length, as the undeformed surfaces are flat";
+                        require(top > 0.0, GAP_END, "not given", expected)?;
                         evenly(top)
                     }
                 },

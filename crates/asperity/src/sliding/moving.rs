@@ -10,7 +10,7 @@ use rustfft::num_complex::Complex64;
 use super::slopes::derivatives;
 use super::torus::{Spectrum, Torus};
 use super::{Direction, Slopes};
-use crate::error::{Error, Result};
+use crate::error::{Result, require};
 use crate::grid::{Boundary, Grid};
 use crate::surface::{Part, Shape, undeformed_gap};
 
@@ -86,9 +86,7 @@ impl MovingGap {
             MovingGap { grid: *grid, boundary, still, shapes, heights, spectra, lowest: 0.0, centre };
         let (start, _) = moving.at(0.0, Direction::X)?;
         moving.lowest = start.iter().fold(f64::INFINITY, |low, h| low.min(*h));
-        if !moving.lowest.is_finite() {
-            return Err(Error::invalid("area that can touch", "no cell", "one cell at least"));
-        }
+        require(moving.lowest.is_finite(), "area that can touch", "no cell", "one cell at least")?;
         Ok(moving)
     }
 

@@ -1,9 +1,9 @@
 //! Names, units, dimensions and chunks of the arrays of a result.
 
-use asperity::step::Row;
 pub(super) use asperity::quantities::Entry;
 use asperity::quantities::{Column as Quantity, Quantity as Kind};
 pub use asperity::quantities::{ROW_COLUMNS as SCALARS, RowColumn as Scalar};
+use asperity::step::Row;
 use asperity::{Axis, Grid};
 use serde_json::{Value, json};
 

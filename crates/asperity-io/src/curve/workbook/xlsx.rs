@@ -11,7 +11,7 @@ use zip::ZipArchive;
 use super::cells::Cells;
 use super::{Book, MOST_CHARACTERS, Named, damaged};
 use crate::curve::error::{Fault, fault};
-use crate::xml::{Piece, walk};
+use crate::xml::{self, Piece};
 
 /// Most bytes that are unpacked: far above what a table of measurements needs.
 const MOST_UNPACKED: u64 = 128 << 20;
@@ -213,6 +213,11 @@ impl Parts<'_> {
         })?;
         Ok(found)
     }
+}
+
+/// Gives the pieces of a part to `on`, one after the other.
+fn walk(part: &str, on: impl FnMut(Piece<'_>) -> Result<(), Fault>) -> Result<(), Fault> {
+    xml::walk(part, on)
 }
 
 /// The attributes of these names, without their namespace.

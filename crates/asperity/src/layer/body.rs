@@ -98,7 +98,7 @@ pub struct Response {
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] where layers creep differently in a way that is not solved, naming the layer; as [`Stack::new`] and
+/// [`Error::Invalid`] if layers creep differently in a way that is not solved, naming the layer; as [`Stack::new`] and
 /// [`Body::contact_creep`].
 pub fn response(bodies: &[LayeredBody]) -> Result<Response> {
     let mut common: Option<Creep> = None;
@@ -165,7 +165,7 @@ fn size(creep: &Creep) -> f64 {
     )
 }
 
-/// s in a(t) = s b(t); `None` where there is none.
+/// s in a(t) = s b(t); `None` if there is none.
 fn ratio(a: &Creep, b: &Creep) -> Option<f64> {
     let s = size(a) / size(b);
     let close = |x: f64, y: f64, scale: f64| (x - y).abs() <= SAME * scale;

@@ -139,7 +139,7 @@ impl NonseparableLayers {
     /// C(q, t) \[m/Pa\] of waves of wave number q > 0 \[rad/m\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where q is so extreme that the compliance leaves the range of numbers.
+    /// [`Error::Invalid`] if q is so extreme that the compliance leaves the range of numbers.
     pub fn creep(&self, q: f64) -> Result<Creep> {
         let values: Vec<f64> = self.stages.iter().map(|(kernel, c)| c * kernel.wave(q)).collect();
         self.fit(&values).map(|(creep, _)| creep).ok_or_else(|| {

@@ -6,7 +6,7 @@
 //! sum over all cells of (s - T)/(s + T) = 0,
 //! ```
 //!
-//! in two dimensions (D. A. G. Bruggeman, Ann. Phys. 416 (1935) 636). It is 0 where half of the cells or less are open; rough
+//! in two dimensions (D. A. G. Bruggeman, Ann. Phys. 416 (1935) 636). It is 0 if half of the cells or less are open; rough
 //! contacts percolate until about 42 % of them are in contact, and on either side of this the estimate says little.
 
 use super::opening::Opening;

@@ -16,7 +16,7 @@ const FACTORISED: usize = if cfg!(test) { 1 << 7 } else { 1 << 18 };
 /// A level and those below it.
 pub(super) struct Multigrid {
     network: Network,
-    /// One over the diagonal, 0 where a cell is no unknown.
+    /// One over the diagonal, 0 if a cell is no unknown.
     inverse: Vec<f64>,
     below: Below,
 }

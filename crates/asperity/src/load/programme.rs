@@ -119,7 +119,7 @@ impl Course {
         }
     }
 
-    /// When the course bends or jumps for the first time, on the clock of the stage \[s\]; `None` where it never does.
+    /// When the course bends or jumps for the first time, on the clock of the stage \[s\]; `None` if it never does.
     pub fn first_break(&self) -> Option<f64> {
         match self {
             Course::Given(history) => history.breaks(f64::INFINITY).first().copied(),

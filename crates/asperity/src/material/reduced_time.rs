@@ -150,7 +150,7 @@ impl ReducedTime {
         self.pieces.partition_point(|p| p.start <= t).max(1) - 1
     }
 
-    /// Integral of 1/a_T over part of a piece; `None` where its temperatures are too steep for numbers.
+    /// Integral of 1/a_T over part of a piece; `None` if its temperatures are too steep for numbers.
     fn within(&self, piece: &Piece, t0: f64, t1: f64) -> Option<f64> {
         if t1 <= t0 {
             return Some(0.0);

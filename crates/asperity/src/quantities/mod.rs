@@ -392,10 +392,10 @@ impl Quantities {
         if let (true, Some(top)) = (self.has(Quantity::GapHistogram), self.largest_gap) {
             positive(GAP_END, top, "m")?;
         }
-        let bounded = !self.has(Quantity::PressureHistogram) || self.largest_pressure.is_some() || capped;
+        let is_bounded = !self.has(Quantity::PressureHistogram) || self.largest_pressure.is_some() || capped;
         let expected =
             "a pressure, as the bodies have no hardness that bounds it: histogram = { pressure = \"...\" }";
-        require(bounded, PRESSURE_END, "not given", expected).map_err(|error| error.of("quantities"))
+        require(is_bounded, PRESSURE_END, "not given", expected).map_err(|error| error.of("quantities"))
     }
 
     /// The quantities with their bins, for an undeformed gap \[m\] and a largest hardness \[Pa\] (infinite for none).

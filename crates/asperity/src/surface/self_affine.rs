@@ -103,7 +103,7 @@ impl SelfAffine {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the exponent, the roughness or a wavelength is outside its domain,
+    /// [`Error::Invalid`] if the exponent, the roughness or a wavelength is outside its domain,
     /// the wavelengths are out of order or do not fit the grid, or no wave of the domain falls between
     /// them.
     pub fn heights(&self, grid: &Grid) -> Result<Array2<f64>> {

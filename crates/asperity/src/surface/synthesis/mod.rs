@@ -101,7 +101,7 @@ impl Synthesis {
     /// Checks the lay and the distribution; [`SelfAffine::validate`] checks the spectrum against a grid.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the lay is outside its domain, or where no such distribution exists.
+    /// [`Error::Invalid`] if the lay is outside its domain, or where no such distribution exists.
     pub fn validate(&self) -> Result<()> {
         let Lay { angle, ratio } = self.lay.unwrap_or(Lay { angle: 0.0, ratio: 1.0 });
         if !(ratio.is_finite() && ratio >= 1.0) {

@@ -115,14 +115,17 @@ impl<W: JsonSchema, L: JsonSchema, T: JsonSchema> JsonSchema for Form<W, L, T> {
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let mut forms = vec![];
-        for (never, form) in [
-            (is_never::<W>(), SchemaGenerator::subschema_for::<W> as fn(&mut SchemaGenerator) -> Schema),
-            (is_never::<L>(), SchemaGenerator::subschema_for::<L>),
-            (is_never::<T>(), SchemaGenerator::subschema_for::<T>),
-        ] {
-            if !never {
-                forms.push(form(generator));
-            }
+        if !is_never::<W>() {
+            forms.push(generator.subschema_for::<W>());
+        }
+        if !is_never::<L>() {
+            let mut list = generator.subschema_for::<L>();
+            // An empty list says nothing.
+            list.insert("minItems".to_owned(), 1.into());
+            forms.push(list);
+        }
+        if !is_never::<T>() {
+            forms.push(generator.subschema_for::<T>());
         }
         json_schema!({ "anyOf": forms })
     }

@@ -114,8 +114,8 @@ impl Layered {
     }
 
     /// Displacements \[m\] at the distances `xs` \[m\] from the middle of a strip of width `dx` \[m\] under unit pressure, in
-    /// plane strain. If a body has no rigid base, a constant is undetermined: it is chosen such that the smallest displacement is
-    /// 0. Distances must be ascending.
+    /// plane strain. If a body has no rigid base, a constant is undetermined: it is chosen such that the smallest displacement
+    /// is 0. Distances must be ascending.
     ///
     /// # Errors
     /// [`Error::Invalid`] if the layers differ too much.

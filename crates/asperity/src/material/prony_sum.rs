@@ -186,7 +186,7 @@ fn nodes([first, last]: [f64; 2], step: f64) -> Vec<f64> {
 }
 
 impl<'a> Exact<'a> {
-    /// Samples both functions over `window`, in which `tolerance` is to be met.
+    /// Samples both functions over `window`, in which `tolerance` must be reached.
     pub(super) fn new(
         creep: &dyn Fn(f64) -> f64,
         relaxation: &'a dyn Fn(f64) -> f64,

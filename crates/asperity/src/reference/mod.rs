@@ -1,6 +1,6 @@
-//! Closed forms and one-dimensional solutions to check against.
+//! Closed forms and one-dimensional solutions for checks.
 //!
-//! Independent of the solver: nothing here uses a convolution, and only [`full_contact_friction`] a grid.
+//! They are independent of the solver: nothing here uses a convolution, and only [`full_contact_friction`] uses a grid.
 //!
 //! | case | type | source |
 //! |---|---|---|

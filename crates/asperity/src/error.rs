@@ -9,6 +9,9 @@ pub enum Error {
     /// An argument is outside its domain.
     #[error("{what} is {value}, but must be {expected}")]
     Invalid {
+        /// Path of the argument among those of the call, in the words of case files ("longest", "histogram.bins",
+        /// "body\[0\].layer\[1\]"); empty where the whole is meant.
+        parameter: String,
         /// The quantity, in terms of the field ("Poisson's ratio", "radius").
         what: String,
         /// The value as given.
@@ -103,8 +106,31 @@ impl Error {
         value: impl std::fmt::Display,
         expected: impl Into<String>,
     ) -> Self {
-        Error::Invalid { what: what.into(), value: value.to_string(), expected: expected.into() }
+        let (what, expected) = (what.into(), expected.into());
+        Error::Invalid { parameter: String::new(), what, value: value.to_string(), expected }
     }
+
+    /// The same error, of the argument `outer` or of one inside of it.
+    #[must_use]
+    pub fn of(self, outer: &str) -> Self {
+        match self {
+            Error::Invalid { parameter, what, value, expected } => {
+                let dot = if parameter.is_empty() { "" } else { "." };
+                Error::Invalid { parameter: format!("{outer}{dot}{parameter}"), what, value, expected }
+            }
+            other => other,
+        }
+    }
+}
+
+/// The error of a `what` that is `value`, but must be `expected`, unless that `holds`.
+pub(crate) fn require(
+    holds: bool,
+    what: impl Into<String>,
+    value: impl std::fmt::Display,
+    expected: impl Into<String>,
+) -> Result<()> {
+    if holds { Ok(()) } else { Err(Error::invalid(what, value, expected)) }
 }
 
 /// `Ok(value)` if it is finite and > 0.
@@ -137,6 +163,11 @@ pub(crate) fn non_negative(what: &str, value: f64, unit: &str) -> Result<f64> {
 /// A temperature \[K\] to a hundredth: "293.15 K".
 pub(crate) fn kelvin(temperature: f64) -> String {
     format!("{} K", (100.0 * temperature).round() / 100.0)
+}
+
+/// A number to four digits, as short as it can be written.
+pub(crate) fn rounded(x: f64) -> String {
+    format!("{x:.3e}").parse::<f64>().map_or_else(|_| x.to_string(), |x| x.to_string())
 }
 
 /// A number in four digits: "5", "0.025", "1.234e-7".

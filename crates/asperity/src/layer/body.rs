@@ -52,6 +52,11 @@ impl LayeredBody {
     pub fn materials(&self) -> impl Iterator<Item = &Body> {
         self.layers.iter().map(|layer| &layer.material).chain(&self.base)
     }
+
+    /// Where errors say that the `k`th material of the `n`th body stands.
+    pub(super) fn place(&self, n: usize, k: usize) -> String {
+        if k < self.layers.len() { format!("body[{n}].layer[{k}]") } else { format!("body[{n}]") }
+    }
 }
 
 /// The compliance of bodies in space and time.
@@ -100,10 +105,10 @@ pub fn response(bodies: &[LayeredBody]) -> Result<Response> {
     let mut separable = true;
     let mut creep = Creep::default();
     let mut stacks = Vec::new();
-    for body in bodies {
+    for (n, body) in bodies.iter().enumerate() {
         let mut moduli = Vec::new();
-        for material in body.materials() {
-            material.contact_creep()?;
+        for (k, material) in body.materials().enumerate() {
+            material.contact_creep().map_err(|error| error.of(&body.place(n, k)))?;
             let shear = material.shear()?;
             let of_first = common.get_or_insert_with(|| shear.clone());
             match (ratio(&shear, of_first), material.poisson()) {

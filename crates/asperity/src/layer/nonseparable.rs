@@ -242,7 +242,10 @@ fn moduli(material: &Body, s: f64) -> Result<(f64, f64)> {
 /// The intervals of the retardation times of all waves \[s\]: disjoint and ascending.
 fn intervals(bodies: &[LayeredBody]) -> Result<Vec<[f64; 2]>> {
     let mut all = vec![];
-    for material in bodies.iter().flat_map(LayeredBody::materials) {
+    let materials = bodies.iter().enumerate().flat_map(|(n, body)| {
+        body.materials().enumerate().map(move |(k, material)| (body.place(n, k), material))
+    });
+    for (place, material) in materials {
         let creep = material.shear()?.tidy();
         let flows = creep.fluidity > 0.0;
         if flows || creep.instantaneous <= 0.0 {
@@ -253,7 +256,8 @@ fn intervals(bodies: &[LayeredBody]) -> Result<Vec<[f64; 2]>> {
                 what,
                 "one with an instantaneous compliance and a limit for long times, where layers creep differently: add an equilibrium \
                  modulus, or a spring in series",
-            ));
+            )
+            .of(&place));
         }
         let relaxation = creep.to_relaxation()?;
         let (e, c) = (&relaxation.terms, &creep.terms);

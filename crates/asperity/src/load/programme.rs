@@ -197,8 +197,8 @@ impl Stage {
 /// The same error, of the `n`th stage from 0.
 pub(crate) fn of_stage(error: Error, n: usize) -> Error {
     match error {
-        Error::Invalid { what, value, expected } => {
-            Error::Invalid { what: format!("{what} of stage {}", n + 1), value, expected }
+        Error::Invalid { parameter, what, value, expected } => {
+            Error::Invalid { parameter, what: format!("{what} of stage {}", n + 1), value, expected }
         }
         other => other,
     }

@@ -51,8 +51,9 @@ impl ReducedTime {
         validate(temperatures)?;
         for (n, (_, temperature)) in temperatures.iter().enumerate() {
             shift.ln_factor(*temperature).map_err(|error| match error {
-                Error::Invalid { value, expected, .. } => {
-                    Error::Invalid { what: format!("temperature of point {}", n + 1), value, expected }
+                Error::Invalid { parameter, value, expected, .. } => {
+                    let what = format!("temperature of point {}", n + 1);
+                    Error::Invalid { parameter, what, value, expected }
                 }
                 other => other,
             })?;

@@ -172,14 +172,16 @@ impl SelfAffine {
                 "shortest wavelength",
                 meters(self.shortest),
                 format!("at least two cells, {}; refine the grid or cut longer waves off", meters(two_cells)),
-            ));
+            )
+            .of("shortest"));
         }
         if self.longest > domain * (1.0 + SAME) {
             return Err(Error::invalid(
                 "longest wavelength",
                 meters(self.longest),
                 format!("at most the size of the domain, {}", meters(domain)),
-            ));
+            )
+            .of("longest"));
         }
         if !(self.shortest <= self.roll_off && self.roll_off <= self.longest) {
             return Err(Error::invalid(
@@ -190,7 +192,8 @@ impl SelfAffine {
                     meters(self.shortest),
                     meters(self.longest)
                 ),
-            ));
+            )
+            .of("roll_off"));
         }
         Ok(())
     }

@@ -35,13 +35,8 @@ pub fn lacks_figure(words: &[OsString], error: &clap::Error) -> bool {
 pub fn no_figure() -> Failure {
     Failure::input(format!(
         "what to draw is missing: asperity plot RESULT WHAT, with WHAT one of {}",
-        figures()
+        Plot::names()
     ))
-}
-
-/// The names of all figures.
-fn figures() -> String {
-    Plot::ALL.map(Plot::name).join(", ")
 }
 
 /// Draws the figure and prints where it is.
@@ -54,7 +49,7 @@ pub fn run(args: &args::Plot) -> Result<(), Failure> {
                 Failure::input(format!(
                     "there is no figure \"{}\"{near}; choose one of {}",
                     args.what,
-                    figures()
+                    Plot::names()
                 ))
             }
         });

@@ -83,7 +83,7 @@ pub enum History {
 /// A control and its history, for a whole run: the [`Programme`] of one stage.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loading {
-    /// What is prescribed.
+    /// The prescribed quantity of the run.
     pub control: Control,
     /// Its value over time.
     pub history: History,

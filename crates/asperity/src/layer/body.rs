@@ -53,7 +53,7 @@ impl LayeredBody {
         self.layers.iter().map(|layer| &layer.material).chain(&self.base)
     }
 
-    /// Where errors say that the `k`th material of the `n`th body stands.
+    /// Path of the `k`th material of the `n`th body in errors.
     pub(super) fn place(&self, n: usize, k: usize) -> String {
         if k < self.layers.len() { format!("body[{n}].layer[{k}]") } else { format!("body[{n}]") }
     }

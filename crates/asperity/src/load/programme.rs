@@ -29,7 +29,7 @@ pub struct Programme {
 /// A part of the run under one control.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stage {
-    /// What is prescribed.
+    /// The prescribed quantity of the stage.
     pub control: Control,
     /// Its value; the time of this history starts with the stage.
     pub course: Course,

@@ -7,25 +7,25 @@ use crate::error::{Error, Result, positive};
 pub enum TimeGrid {
     /// `steps` equal steps to `end`.
     Uniform {
-        /// Last instant \[s\].
+        /// Last time \[s\].
         end: f64,
         /// Number of steps.
         steps: usize,
     },
-    /// `steps` instants in geometric progression from `first` to `end`.
+    /// `steps` times in geometric progression from `first` to `end`.
     Logarithmic {
-        /// Last instant \[s\].
+        /// Last time \[s\].
         end: f64,
         /// Number of steps.
         steps: usize,
-        /// First instant \[s\].
+        /// First time \[s\].
         first: f64,
     },
-    /// The instants themselves, increasing.
+    /// The times themselves, increasing.
     List(Vec<f64>),
     /// Steps as long as the tolerance of their local error allows (see docs/theory.md, section 5), to `end`.
     Adaptive {
-        /// Last instant \[s\].
+        /// Last time \[s\].
         end: f64,
         /// Largest error of the stress, relative (see [`crate::step::Row::time_error`]).
         tolerance: f64,
@@ -99,7 +99,7 @@ impl TimeGrid {
         }
     }
 
-    /// Last instant \[s\].
+    /// Last time \[s\].
     pub fn end(&self) -> f64 {
         match self {
             TimeGrid::Uniform { end, .. }

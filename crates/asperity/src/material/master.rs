@@ -51,8 +51,8 @@ pub struct MasterCurve {
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] if an isotherm is out of order, has values that are not positive or another
-/// number of curves than the first, or where the shift is not defined at its temperature.
+/// [`Error::Invalid`] if an isotherm is out of order, has values that are not positive or another number of curves than the
+/// first, or if the shift is not defined at its temperature.
 pub fn master_curve(isotherms: &[Isotherm], abscissa: Abscissa, shift: &Shift) -> Result<MasterCurve> {
     validate(isotherms)?;
     let mut points: Vec<(f64, Vec<f64>)> = vec![];

@@ -177,7 +177,7 @@ impl Material {
     /// ```
     ///
     /// # Errors
-    /// As [`Creep::validate`], or where the creep function is 0 at all times.
+    /// As [`Creep::validate`], or if the creep function is 0 at all times.
     pub fn generalised_kelvin(measure: Modulus, creep: Creep) -> Result<Self> {
         creep.validate()?;
         let creep = creep.tidy();

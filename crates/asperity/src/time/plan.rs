@@ -10,7 +10,7 @@ const AGREE: f64 = 1e-5;
 /// A time at which a step must end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Stop {
-    /// On the clock of the run \[s\].
+    /// In the time of the run \[s\].
     pub time: f64,
     /// The prescribed value, before a jump.
     pub before: f64,

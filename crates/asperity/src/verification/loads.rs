@@ -28,7 +28,7 @@ pub(super) fn press_and_hold() -> Result<Vec<Check>> {
     let exact = |t: f64| 0.2 * (1.0 - 0.5 * libm::exp(-1.0) + 0.5 * libm::exp(1.0 - 2.0 * t));
     let held = rows.iter().filter(|row| row.stage == 1);
     let error = held.map(|row| (row.load / exact(row.time()) - 1.0).abs()).fold(0.0, f64::max);
-    // Exact in any steps but for the solver.
+    // Exact in any steps except for the solver tolerance.
     checks.absolute("load while the approach is held, largest relative difference", error, 1e-5);
     Ok(checks.list)
 }

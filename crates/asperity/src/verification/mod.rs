@@ -35,7 +35,7 @@ pub struct Check {
     pub fact: &'static str,
     /// |found/expected - 1|, or the difference in the unit that the quantity names.
     pub error: f64,
-    /// What the discretisation allows.
+    /// The tolerance, from the discretisation.
     pub tolerance: f64,
 }
 

@@ -39,8 +39,8 @@ const MOST_UNCERTAIN_MODULUS: f64 = std::f64::consts::LN_2;
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] as [`estimate_shift`](crate::material::estimate_shift); where the shift is not defined at a temperature;
-/// where a factor is uncertain by more than a factor of two, naming the pair of isotherms with the least information.
+/// [`Error::Invalid`] as [`estimate_shift`](crate::material::estimate_shift); if the shift is not defined at a temperature; if a
+/// factor is uncertain by more than a factor of two, naming the pair of isotherms with the least information.
 pub fn estimate_vertical(
     isotherms: &[Isotherm],
     abscissa: Abscissa,

@@ -29,7 +29,7 @@ use crate::error::{Error, Result};
 pub enum Operation {
     /// [`level()`]: subtract the least-squares form.
     Level(Level),
-    /// [`fill()`]: fill undefined points, at most this share of them.
+    /// [`fill()`]: fill undefined points, up to a given share of all points.
     Fill {
         /// How.
         method: Fill,

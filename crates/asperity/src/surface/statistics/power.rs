@@ -365,7 +365,7 @@ mod tests {
 
     #[test]
     fn the_rings_hold_the_mean_square_height() {
-        // int C d^2q / (2 pi)^2: each wave stands for (2 pi)^2 / (Lx Ly).
+        // int C d^2q / (2 pi)^2: each wave represents (2 pi)^2 / (Lx Ly).
         let surface = rough();
         for rings in [Rings::Linear, Rings::PerDecade(10)] {
             let spectrum = RadialSpectrum::of(&surface, rings).unwrap();

@@ -74,8 +74,7 @@ impl Synthesis {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] as [`SelfAffine::heights`], where the lay is outside its domain, or where no
-    /// such distribution exists.
+    /// [`Error::Invalid`] as [`SelfAffine::heights`], if the lay is outside its domain, or if no such distribution exists.
     pub fn heights(&self, grid: &Grid) -> Result<Array2<f64>> {
         self.validate()?;
         let Lay { angle, ratio } = self.lay.unwrap_or(Lay { angle: 0.0, ratio: 1.0 });
@@ -101,7 +100,7 @@ impl Synthesis {
     /// Checks the lay and the distribution; [`SelfAffine::validate`] checks the spectrum against a grid.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if the lay is outside its domain, or where no such distribution exists.
+    /// [`Error::Invalid`] if the lay is outside its domain, or if no such distribution exists.
     pub fn validate(&self) -> Result<()> {
         let Lay { angle, ratio } = self.lay.unwrap_or(Lay { angle: 0.0, ratio: 1.0 });
         if !(ratio.is_finite() && ratio >= 1.0) {

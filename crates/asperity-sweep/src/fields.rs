@@ -1,4 +1,4 @@
-//! Sweeps that say what happens to one cell.
+//! Sweeps that are defined by the operation on one cell.
 //!
 //! ```
 //! use asperity_sweep::{each, sums};
@@ -15,9 +15,9 @@ use crate::sweep::{strands, sweep};
 
 /// Fields that are read cell by cell: slices, and tuples of them.
 pub trait Fields: Cells {
-    /// What a cell holds.
+    /// The value of a cell.
     type Cell;
-    /// That of a cell.
+    /// The value of this cell.
     fn at(&self, cell: usize) -> Self::Cell;
 }
 
@@ -64,7 +64,7 @@ fields_of_tuple!(A, B, C, D);
 fields_of_tuple!(A, B, C, D, E);
 fields_of_tuple!(A, B, C, D, E, F);
 
-/// Changes each cell of `to` by those of `fields`.
+/// Updates each cell of `to` from those of `fields`.
 pub fn each<T: Send, F: Fields>(to: &mut [T], fields: F, change: impl Fn(&mut T, F::Cell) + Sync) {
     sweep((to, fields), &|(to, fields): (&mut [T], F)| {
         // The number of cells is that of `to`: known to the compiler, which then checks no bounds.

@@ -90,3 +90,22 @@ pub fn each_with_sums<F: Fields, const K: usize>(
 pub fn sums<F: Fields, const K: usize>(fields: F, of: impl Fn(F::Cell) -> [f64; K] + Sync) -> [f64; K] {
     sweep(fields, &|fields: F| strands(fields.cells(), |n| of(fields.at(n))))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sets_are_read_to_their_last_cell() {
+        for cells in [1, 7, 8, 13, 8192, 8192 + 9] {
+            let set = vec![0xff; cells.div_ceil(8)];
+            let mut field = vec![0.0; cells];
+            each(&mut field, Set(&set), |to, on| *to = f64::from(u8::from(on)));
+            assert_eq!(sums(&field[..], |x| [x]), [cells as f64]);
+            assert_eq!(
+                each_with_sums(&mut field, Set(&set), |_, on| [f64::from(u8::from(on))]),
+                [cells as f64]
+            );
+        }
+    }
+}

@@ -9,7 +9,7 @@ use asperity::sliding::{Direction, MovingGap, Path, SteadyMotion};
 use asperity::surface::Part;
 use asperity::{
     Boundary, Course, Drive, Event, Grid, History, Programme, Simulation, SolverOptions, Stage, TimeGrid,
-    drive, march, material,
+    drive, material, process, step,
 };
 use asperity_io::choice::{self, Choice};
 use asperity_io::resources;
@@ -29,7 +29,7 @@ pub struct March {
     march: Mutex<Box<dyn Drive>>,
     diagnostics: Diagnostics,
     /// The numbers of the last row.
-    last: Option<march::Row>,
+    last: Option<step::Row>,
     /// Whether the state is that of the last row.
     settled: bool,
     interrupt: Arc<AtomicBool>,
@@ -145,7 +145,7 @@ type MotionParts = (String, Numbers, Vec<(f64, f64)>, f64, (String, f64), f64, O
 
 /// A motion in time, or steady states.
 enum Moves {
-    Path(Box<march::Motion>),
+    Path(Box<process::Motion>),
     Steady(SteadyMotion),
 }
 
@@ -173,7 +173,7 @@ fn motion(
         _ => Path::of_velocity(history, start),
     };
     Ok(path.map(|path| {
-        Moves::Path(Box::new(march::Motion { path, direction, gap: moving, cells_per_step, shear_stress }))
+        Moves::Path(Box::new(process::Motion { path, direction, gap: moving, cells_per_step, shear_stress }))
     }))
 }
 
@@ -434,7 +434,7 @@ impl March {
                 let mut states = ndarray::Array2::<u8>::zeros(shape);
                 step.contact_into(&mut states);
                 let boundary = march.simulation().boundary;
-                return Some(Map::Contact(march::in_contact_frame(
+                return Some(Map::Contact(process::in_contact_frame(
                     states.view(),
                     boundary,
                     step.frame_shift(),
@@ -451,7 +451,7 @@ impl March {
             }
             // Of a contact that moves, in its frame.
             let beyond = if kind == FieldKind::Pressure { 0.0 } else { f64::NAN };
-            Some(Map::Real(march::in_contact_frame(field.view(), boundary, shift, beyond)))
+            Some(Map::Real(process::in_contact_frame(field.view(), boundary, shift, beyond)))
         })?;
         match found {
             Some(Map::Real(field)) => Ok(field.into_pyarray(py).into_any()),
@@ -474,7 +474,7 @@ impl March {
 }
 
 /// The numbers of a row by their names in results.
-pub fn fill(into: &Bound<'_, PyDict>, row: &march::Row) -> PyResult<()> {
+pub fn fill(into: &Bound<'_, PyDict>, row: &step::Row) -> PyResult<()> {
     for scalar in SCALARS {
         match scalar.is_count() {
             true => into.set_item(scalar.name, scalar.of(row) as u64)?,

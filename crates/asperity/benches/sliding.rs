@@ -6,8 +6,8 @@ use asperity::Drive;
 use std::time::Instant;
 
 use asperity::load::{Control, History, Loading};
-use asperity::march::Simulation;
 use asperity::material::{Creep, Relaxation};
+use asperity::simulation::Simulation;
 use asperity::sliding::{Direction, Slopes, Steady, SteadyMotion};
 use asperity::surface::{Part, Roughness, SelfAffine, undeformed_gap};
 use asperity::{Boundary, Grid, SolverOptions};
@@ -44,7 +44,7 @@ fn steady(n: usize) -> (f64, Vec<usize>) {
     };
     let parts = [Part::SelfAffine(rough)];
     let gap = undeformed_gap(&grid, &parts).expect("a gap");
-    let slopes = Slopes::of(&grid, Boundary::Periodic, &parts, &gap).expect("slopes");
+    let slopes = Slopes::of(&grid, Boundary::Periodic, &parts).expect("slopes");
     let simulation = Simulation {
         boundary: Boundary::Periodic,
         creep: rubber(),

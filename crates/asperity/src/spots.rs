@@ -58,13 +58,13 @@ impl Spots {
         self.areas.is_empty()
     }
 
-    /// Mean area of a spot \[m^2\]; 0 where nothing touches.
+    /// Mean area of a spot \[m^2\]; 0 if nothing touches.
     pub fn mean_area(&self) -> f64 {
         if self.areas.is_empty() { 0.0 } else { self.areas.iter().sum::<f64>() / self.areas.len() as f64 }
     }
 }
 
-/// The number of the spot of each cell, 1 for the largest, and 0 where nothing touches. Of two spots of one size the one
+/// The number of the spot of each cell, 1 for the largest, and 0 if nothing touches. Of two spots of one size the one
 /// that has the earlier cell comes first.
 ///
 /// ```
@@ -83,7 +83,7 @@ pub fn labels<T>(boundary: Boundary, cells: ArrayView2<T>, touches: impl Fn(&T) 
     labels
 }
 
-/// The cell that stands for the spot of each cell, `None` where nothing touches; and how many cells each stands for.
+/// The cell that stands for the spot of each cell, `None` if nothing touches; and how many cells each stands for.
 fn roots<T>(
     boundary: Boundary,
     cells: ArrayView2<T>,

@@ -7,12 +7,12 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use asperity::march::Row;
+use asperity::step::Row;
 
 use super::checksum::Sums;
 use super::chunks::Chunks;
 use super::error::{Result, corrupt, io};
-use super::layout::{ArraySpec, Entry};
+use super::layout::{ArraySpec, Entry, Stored};
 
 /// The writing end of a per-step array.
 pub(super) struct Column {

@@ -4,8 +4,8 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use asperity::finding::Finding;
-use asperity::march::Row;
 use asperity::quantities::Quantity;
+use asperity::step::Row;
 use ndarray::Array2;
 use serde_json::{Map, Value};
 

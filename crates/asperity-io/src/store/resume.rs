@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use asperity::march::Checkpoint;
+use asperity::step::Checkpoint;
 use ndarray::ArrayView2;
 
 use super::checkpoint;

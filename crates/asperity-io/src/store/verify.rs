@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use asperity::march::Row;
+use asperity::step::Row;
 use serde_json::Value;
 
 use super::checkpoint;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use asperity::finding::Finding;
-use asperity::march::{Checkpoint, Row};
+use asperity::step::{Checkpoint, Row};
 use ndarray::ArrayView2;
 
 use super::checkpoint;
@@ -17,7 +17,7 @@ use super::document::{Document, Pages};
 use super::error::{Result, StoreError, input, io};
 use super::field_kind::FieldKind;
 use super::header::{Header, Progress, SCHEMA, Status, Work};
-use super::layout::{Entry, SCALARS};
+use super::layout::{Entry, SCALARS, Stored};
 use super::leftovers;
 use super::replace::Way;
 use super::stress::{self, StressSet};
@@ -276,7 +276,7 @@ impl Writer {
     }
 
     /// Appends a step with the quantities of the header: their numbers one after the other, as
-    /// [`Step::quantities`](asperity::march::Step::quantities) lends them.
+    /// [`Step::quantities`](asperity::step::Step::quantities) lends them.
     ///
     /// # Errors
     /// As [`append`](Self::append); [`StoreError::Input`] where there are more or fewer numbers.

@@ -25,14 +25,14 @@ pub trait Kernel: std::fmt::Debug + Send + Sync {
     /// cell of sides `cell` = \[dx, dy\] \[m\] under unit pressure.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where they cannot be computed.
+    /// [`Error::Invalid`] if they cannot be computed.
     fn influence(&self, cell: [f64; 2], count: [usize; 2]) -> Result<Array2<f64>>;
 
     /// Displacements \[m\] at the centres of the cells 0, 1, ... `count` - 1 away from a strip of width `dx` \[m\] under unit
     /// pressure, in plane strain. Without [`depth`](Self::depth) a constant is free: the smallest one is 0.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where they cannot be computed.
+    /// [`Error::Invalid`] if they cannot be computed.
     fn strip(&self, _dx: f64, _count: usize) -> Result<Vec<f64>> {
         Err(Error::invalid(
             "kernel of a line contact on a free domain",
@@ -45,13 +45,13 @@ pub trait Kernel: std::fmt::Debug + Send + Sync {
     /// zero. Positive.
     fn symbol(&self, qx: f64, qy: f64) -> f64;
 
-    /// Displacement \[m\] under a uniform unit pressure on a periodic domain, not negative; `None` where it is not
+    /// Displacement \[m\] under a uniform unit pressure on a periodic domain, not negative; `None` if it is not
     /// determined, as on a half-space: displacements are then measured from their mean.
     fn uniform(&self) -> Option<f64> {
         None
     }
 
-    /// Thickness \[m\] of what lies on a rigid base, of both bodies together; `None` where a body has no rigid base.
+    /// Thickness \[m\] of what lies on a rigid base, of both bodies together; `None` if a body has no rigid base.
     fn depth(&self) -> Option<f64> {
         None
     }
@@ -64,7 +64,7 @@ pub trait Kernel: std::fmt::Debug + Send + Sync {
     /// Whether cells of a free domain whose longest side is `longest` \[m\] resolve the body.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where they do not.
+    /// [`Error::Invalid`] if they do not.
     fn check(&self, _longest: f64) -> Result<()> {
         Ok(())
     }

@@ -52,6 +52,11 @@ impl LayeredBody {
     pub fn materials(&self) -> impl Iterator<Item = &Body> {
         self.layers.iter().map(|layer| &layer.material).chain(&self.base)
     }
+
+    /// Where errors say that the `k`th material of the `n`th body stands.
+    pub(super) fn place(&self, n: usize, k: usize) -> String {
+        if k < self.layers.len() { format!("body[{n}].layer[{k}]") } else { format!("body[{n}]") }
+    }
 }
 
 /// How bodies yield in space and time.
@@ -93,17 +98,17 @@ pub struct Response {
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] where layers creep differently in a way that is not solved, naming the layer; as [`Stack::new`] and
+/// [`Error::Invalid`] if layers creep differently in a way that is not solved, naming the layer; as [`Stack::new`] and
 /// [`Body::contact_creep`].
 pub fn response(bodies: &[LayeredBody]) -> Result<Response> {
     let mut common: Option<Creep> = None;
     let mut separable = true;
     let mut creep = Creep::default();
     let mut stacks = Vec::new();
-    for body in bodies {
+    for (n, body) in bodies.iter().enumerate() {
         let mut moduli = Vec::new();
-        for material in body.materials() {
-            material.contact_creep()?;
+        for (k, material) in body.materials().enumerate() {
+            material.contact_creep().map_err(|error| error.of(&body.place(n, k)))?;
             let shear = material.shear()?;
             let of_first = common.get_or_insert_with(|| shear.clone());
             match (ratio(&shear, of_first), material.poisson()) {
@@ -160,7 +165,7 @@ fn size(creep: &Creep) -> f64 {
     )
 }
 
-/// s in a(t) = s b(t); `None` where there is none.
+/// s in a(t) = s b(t); `None` if there is none.
 fn ratio(a: &Creep, b: &Creep) -> Option<f64> {
     let s = size(a) / size(b);
     let close = |x: f64, y: f64, scale: f64| (x - y).abs() <= SAME * scale;

@@ -59,7 +59,7 @@ impl Stack {
     }
 }
 
-/// F of the base; `None` where it is rigid.
+/// F of the base; `None` if it is rigid.
 fn base(base: Base) -> Option<Compliance> {
     match base {
         Base::Rigid => None,

@@ -56,7 +56,7 @@ impl Smooth {
     /// For distances up to `reach` \[m\]; `None` for a stack without layers, which has nothing else.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the stack's layers differ too much for the series.
+    /// [`Error::Invalid`] if the stack's layers differ too much for the series.
     pub(super) fn new(stack: &Stack, load: Load, scale: f64, reach: f64) -> Result<Option<Self>> {
         let Some(top) = stack.layers().first() else { return Ok(None) };
         let d = top.thickness;

@@ -62,7 +62,7 @@ impl Layered {
     /// The kernel of these bodies against each other, or of one against a rigid one.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where there are no bodies or more than two.
+    /// [`Error::Invalid`] if there are no bodies or more than two.
     pub fn new(stacks: Vec<Stack>) -> Result<Self> {
         if stacks.is_empty() || stacks.len() > 2 {
             return Err(Error::invalid("number of bodies", stacks.len(), "1 (against a rigid one) or 2"));
@@ -86,7 +86,7 @@ impl Layered {
     /// pressure; distances ascend.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the layers differ too much.
+    /// [`Error::Invalid`] if the layers differ too much.
     pub(crate) fn response(&self, cell: [f64; 2], [xs, ys]: [&[f64]; 2]) -> Result<Array2<f64>> {
         let [dx, dy] = cell;
         let farthest = |side: &[f64], d: f64| side.last().copied().unwrap_or(0.0) + d;
@@ -117,7 +117,7 @@ impl Layered {
     /// Where a body has no rigid base, a constant is free: the smallest one is 0. Distances ascend.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the layers differ too much.
+    /// [`Error::Invalid`] if the layers differ too much.
     pub(crate) fn response_of_line(&self, dx: f64, xs: &[f64]) -> Result<Vec<f64>> {
         let reach = xs.last().copied().unwrap_or(0.0) + dx;
         let smooth = self.stacks.iter().map(|stack| Smooth::new(stack, Load::Line, self.scale, reach));

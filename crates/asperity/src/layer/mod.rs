@@ -98,7 +98,7 @@ impl Stack {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a thickness or a modulus is not positive and finite, Poisson's ratio is outside (-1, 0.5], or
+    /// [`Error::Invalid`] if a thickness or a modulus is not positive and finite, Poisson's ratio is outside (-1, 0.5], or
     /// a rigid base carries no layer.
     pub fn new(layers: Vec<Layer>, base: Base) -> Result<Self> {
         for (n, layer) in layers.iter().enumerate() {

@@ -139,7 +139,7 @@ impl NonseparableLayers {
     /// C(q, t) \[m/Pa\] of waves of wave number q > 0 \[rad/m\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where q is so extreme that the compliance leaves the range of numbers.
+    /// [`Error::Invalid`] if q is so extreme that the compliance leaves the range of numbers.
     pub fn creep(&self, q: f64) -> Result<Creep> {
         let values: Vec<f64> = self.stages.iter().map(|(kernel, c)| c * kernel.wave(q)).collect();
         self.fit(&values).map(|(creep, _)| creep).ok_or_else(|| {
@@ -241,7 +241,10 @@ fn moduli(material: &Body, s: f64) -> Result<(f64, f64)> {
 /// Where the retardation times of all waves lie \[s\]: disjoint intervals, ascending.
 fn intervals(bodies: &[LayeredBody]) -> Result<Vec<[f64; 2]>> {
     let mut all = vec![];
-    for material in bodies.iter().flat_map(LayeredBody::materials) {
+    let materials = bodies.iter().enumerate().flat_map(|(n, body)| {
+        body.materials().enumerate().map(move |(k, material)| (body.place(n, k), material))
+    });
+    for (place, material) in materials {
         let creep = material.shear()?.tidy();
         let flows = creep.fluidity > 0.0;
         if flows || creep.instantaneous <= 0.0 {
@@ -252,7 +255,8 @@ fn intervals(bodies: &[LayeredBody]) -> Result<Vec<[f64; 2]>> {
                 what,
                 "one with an instantaneous compliance and a limit for long times, where layers creep differently: add an equilibrium \
                  modulus, or a spring in series",
-            ));
+            )
+            .of(&place));
         }
         let relaxation = creep.to_relaxation()?;
         let (e, c) = (&relaxation.terms, &creep.terms);

@@ -41,7 +41,7 @@ pub fn factor_bytes(unknowns: usize) -> f64 {
 }
 
 impl Cholesky {
-    /// Factorises; `None` where the memory does not suffice.
+    /// Factorises; `None` if the memory does not suffice.
     pub fn new(network: &Network) -> Option<Cholesky> {
         let m = network.cells[1];
         let diagonal = network.diagonal();
@@ -101,7 +101,7 @@ impl Cholesky {
         Some(Cholesky { symbolic, values: factor, right: vec![0.0; n], cells, scale, work })
     }
 
-    /// out = A^-1 b, 0 where a cell is no unknown.
+    /// out = A^-1 b, 0 if a cell is no unknown.
     pub fn solve(&mut self, b: &[f64], out: &mut [f64]) {
         for ((right, cell), scale) in self.right.iter_mut().zip(&self.cells).zip(&self.scale) {
             *right = b[*cell as usize] * scale;

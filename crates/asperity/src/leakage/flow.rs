@@ -25,7 +25,7 @@ const SMALLEST_GAP: f64 = 1e-6;
 /// The flow of a liquid through a gap.
 #[derive(Clone, Debug)]
 pub struct Flow {
-    /// T \[m^3\]; exactly 0 where the seal is tight.
+    /// T \[m^3\]; exactly 0 if the seal is tight.
     pub transmissivity: f64,
     /// Pressure over the pressure drop, 1 at the inlet to 0 at the outlet, shape (nx, ny); NaN in contact and in pockets, and
     /// where narrower passages than a millionth of the critical gap are the only connection.
@@ -43,7 +43,7 @@ impl Flow {
     /// Q = T dP W/(12 mu L) \[m^3/s\] of a pressure drop \[Pa\] and a viscosity \[Pa s\].
     ///
     /// # Errors
-    /// [`Error::Invalid`](crate::Error::Invalid) where either is not positive.
+    /// [`Error::Invalid`](crate::Error::Invalid) if either is not positive.
     pub fn leak_rate(&self, opening: &Opening, pressure_drop: f64, viscosity: f64) -> Result<f64> {
         leak_rate(self.transmissivity, opening, pressure_drop, viscosity)
     }
@@ -52,7 +52,7 @@ impl Flow {
 /// Q = T dP W/(12 mu L) \[m^3/s\] of a transmissivity T \[m^3\], a pressure drop \[Pa\] and a viscosity \[Pa s\].
 ///
 /// # Errors
-/// [`Error::Invalid`](crate::Error::Invalid) where drop or viscosity is not positive.
+/// [`Error::Invalid`](crate::Error::Invalid) if drop or viscosity is not positive.
 pub fn leak_rate(transmissivity: f64, opening: &Opening, pressure_drop: f64, viscosity: f64) -> Result<f64> {
     let drop = positive("pressure drop", pressure_drop, "Pa")?;
     let mu = positive("viscosity", viscosity, "Pa s")?;
@@ -63,7 +63,7 @@ pub fn leak_rate(transmissivity: f64, opening: &Opening, pressure_drop: f64, vis
 /// Solves the flow of a liquid.
 ///
 /// # Errors
-/// [`Error::NotConverged`](crate::Error::NotConverged) where the iteration (beyond the memory of a factorisation) does not end.
+/// [`Error::NotConverged`](crate::Error::NotConverged) if the iteration (beyond the memory of a factorisation) does not end.
 pub fn liquid(opening: &Opening, passages: &Passages, options: &FlowOptions) -> Result<Flow> {
     let Some(constriction) = passages.constriction else {
         return Ok(Flow { transmissivity: 0.0, pressure: still(opening, passages, None), iterations: 0 });
@@ -166,7 +166,7 @@ pub(super) fn still(
 }
 
 /// |h^3 grad P| of each cell, for pictures: the mean over its faces, with `size` the lengths of the domain \[m\], the gap \[m\] and
-/// the pressure (NaN where there is none), shape (nx, ny).
+/// the pressure (NaN if there is none), shape (nx, ny).
 pub fn flux(size: [f64; 2], gap: ArrayView2<'_, f64>, pressure: ArrayView2<'_, f64>) -> Array2<f64> {
     let (nx, ny) = gap.dim();
     let [dx, dy] = [size[0] / nx as f64, size[1] / ny as f64];

@@ -126,7 +126,7 @@ impl Gas {
     /// A gas with these properties.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where one is not positive; a molar mass above 1 kg/mol (then it is in g/mol).
+    /// [`Error::Invalid`] if one is not positive; a molar mass above 1 kg/mol (then it is in g/mol).
     pub fn new(viscosity: f64, molar_mass: f64, temperature: f64) -> Result<Gas> {
         positive("viscosity of the gas", viscosity, "Pa s")?;
         positive("molar mass of the gas", molar_mass, "kg/mol")?;
@@ -141,7 +141,7 @@ impl Gas {
     /// A gas with known properties, at a temperature \[K\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the temperature is not between 200 K and 500 K.
+    /// [`Error::Invalid`] if the temperature is not between 200 K and 500 K.
     pub fn of(species: Species, temperature: f64) -> Result<Gas> {
         if !(KNOWN[0]..=KNOWN[1]).contains(&temperature) {
             return Err(Error::invalid(

@@ -33,11 +33,11 @@ const WORN: usize = 12;
 /// The flow of a gas through a gap.
 #[derive(Clone, Debug)]
 pub struct GasFlow {
-    /// Leak \[kg/s\]; exactly 0 where the seal is tight.
+    /// Leak \[kg/s\]; exactly 0 if the seal is tight.
     pub leak_rate: f64,
     /// Pressure \[Pa\], shape (nx, ny); NaN as in [`Flow::pressure`](super::Flow::pressure).
     pub pressure: Array2<f64>,
-    /// Knudsen number at the critical constriction, at the mean of inlet and outlet pressure; NaN where the seal is tight.
+    /// Knudsen number at the critical constriction, at the mean of inlet and outlet pressure; NaN if the seal is tight.
     pub knudsen: f64,
     /// Passes done.
     pub passes: usize,
@@ -63,7 +63,7 @@ fn pressures(inlet: f64, outlet: f64) -> Result<()> {
 /// Leak \[kg/s\] between parallel plates at a distance `gap` \[m\], of length and width `size` \[m\].
 ///
 /// # Errors
-/// [`Error::Invalid`] where the pressures \[Pa\] are not positive and falling (the outlet may be 0).
+/// [`Error::Invalid`] if the pressures \[Pa\] are not positive and falling (the outlet may be 0).
 pub fn plate(
     gas: &Gas,
     rarefaction: Rarefaction,
@@ -84,7 +84,7 @@ pub fn plate(
 /// Solves the flow of a gas between the pressures `inlet` and `outlet` \[Pa, absolute\].
 ///
 /// # Errors
-/// [`Error::Invalid`] where the pressures are not positive and falling (the outlet may be 0); [`Error::NotConverged`] as for a
+/// [`Error::Invalid`] if the pressures are not positive and falling (the outlet may be 0); [`Error::NotConverged`] as for a
 /// [`liquid`](super::liquid).
 pub fn gas_flow(
     opening: &Opening,

@@ -3,7 +3,7 @@
 //! The gap h is narrow, so the flow obeys Reynolds' equation for a thin film,
 //!
 //! ```text
-//! div(h^3/(12 mu) grad P) = 0 where the bodies do not touch; no flow into the contact
+//! div(h^3/(12 mu) grad P) = 0 if the bodies do not touch; no flow into the contact
 //! P = P_in at one border of the domain, P_out at the opposite one
 //! ```
 //!

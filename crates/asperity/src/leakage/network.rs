@@ -1,7 +1,7 @@
 //! Finite volumes: a network of conductances between the centres of neighbouring cells.
 //!
 //! The flux between two cells is t (P_1 - P_2). For cells of mobility k = h^3 the conductance t is their harmonic mean,
-//! 2 k_1 k_2/(k_1 + k_2), times width over length of the cells, and 0 where either is closed. The harmonic mean is the exact one
+//! 2 k_1 k_2/(k_1 + k_2), times width over length of the cells, and 0 if either is closed. The harmonic mean is the exact one
 //! in series; where elastic surfaces part, h^3 falls as the 4.5th power of the distance from the contact, so that edges of the
 //! contact need no special treatment.
 //!

@@ -40,7 +40,7 @@ pub struct Opening {
     pub(super) cells: [usize; 2],
     /// Their lengths \[m\].
     pub(super) spacing: [f64; 2],
-    /// Gap \[m\], 0 where closed; C-order, the flow along axis 0.
+    /// Gap \[m\], 0 if closed; C-order, the flow along axis 0.
     pub(super) gap: Vec<f64>,
     pub(super) sides: Sides,
     pub(super) direction: Direction,
@@ -108,7 +108,7 @@ impl Opening {
         [self.cells[0] as f64 * self.spacing[0], self.cells[1] as f64 * self.spacing[1]]
     }
 
-    /// The largest gap \[m\]; 0 where every cell is closed.
+    /// The largest gap \[m\]; 0 if every cell is closed.
     pub fn largest(&self) -> f64 {
         self.gap.iter().fold(0.0, |most: f64, h| most.max(*h))
     }

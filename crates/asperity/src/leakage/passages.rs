@@ -34,7 +34,7 @@ pub struct Constriction {
     pub gap: f64,
     /// Its cell (i, j) on the grid.
     pub cell: [usize; 2],
-    /// Its width in cells: the shortest row of open cells through it, along both axes and both diagonals; `None` where none of
+    /// Its width in cells: the shortest row of open cells through it, along both axes and both diagonals; `None` if none of
     /// them ends at contact on both sides.
     pub width: Option<usize>,
 }
@@ -42,7 +42,7 @@ pub struct Constriction {
 /// The connected parts of an opening.
 #[derive(Clone, Debug)]
 pub struct Passages {
-    /// The critical constriction; `None` where the seal is tight.
+    /// The critical constriction; `None` if the seal is tight.
     pub constriction: Option<Constriction>,
     /// Area of the pockets \[m^2\].
     pub trapped_area: f64,

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! for k = x, y, so that the flow per width under a gradient is -K grad P/(12 mu). Only parts of the gap that wind around the
-//! torus carry flow: the others are left out, so that K is exactly 0 where none does.
+//! torus carry flow: the others are left out, so that K is exactly 0 if none does.
 
 use super::network::Network;
 use super::opening::Opening;

@@ -119,7 +119,7 @@ impl Course {
         }
     }
 
-    /// When the course bends or jumps for the first time, on the clock of the stage \[s\]; `None` where it never does.
+    /// When the course bends or jumps for the first time, on the clock of the stage \[s\]; `None` if it never does.
     pub fn first_break(&self) -> Option<f64> {
         match self {
             Course::Given(history) => history.breaks(f64::INFINITY).first().copied(),
@@ -197,8 +197,8 @@ impl Stage {
 /// The same error, of the `n`th stage from 0.
 pub(crate) fn of_stage(error: Error, n: usize) -> Error {
     match error {
-        Error::Invalid { what, value, expected } => {
-            Error::Invalid { what: format!("{what} of stage {}", n + 1), value, expected }
+        Error::Invalid { parameter, what, value, expected } => {
+            Error::Invalid { parameter, what: format!("{what} of stage {}", n + 1), value, expected }
         }
         other => other,
     }

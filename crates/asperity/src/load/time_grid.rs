@@ -23,11 +23,11 @@ pub enum TimeGrid {
     },
     /// The instants themselves, increasing.
     List(Vec<f64>),
-    /// Steps as long as their local error allows (see [`crate::march`]), to `end`.
+    /// Steps as long as their local error allows (see docs/theory.md, section 5), to `end`.
     Adaptive {
         /// Last instant \[s\].
         end: f64,
-        /// Largest error of the stress, relative (see [`crate::march::Row::time_error`]).
+        /// Largest error of the stress, relative (see [`crate::step::Row::time_error`]).
         tolerance: f64,
         /// The first step after t = 0 and after each break or jump is no longer \[s\]; it is shorter where the material or the
         /// course ask for it.
@@ -48,7 +48,7 @@ impl TimeGrid {
             if (1..=10_000_000).contains(&steps) {
                 Ok(())
             } else {
-                Err(Error::invalid("number of steps", steps, "between 1 and 10 000 000"))
+                Err(Error::invalid("number of steps", steps, "between 1 and 10000000").of("steps"))
             }
         };
         let first_in_range = |first: f64, end: f64| {
@@ -73,10 +73,11 @@ impl TimeGrid {
                 first_in_range(*first, *end)?;
                 if *first < SHORTEST * end {
                     let least = format!("at least {:e} s, {SHORTEST:e} of the end", SHORTEST * end);
-                    return Err(Error::invalid("first step", format!("{first:e} s"), least));
+                    return Err(Error::invalid("first step", format!("{first:e} s"), least).of("first"));
                 }
                 if !(1e-9..=0.1).contains(tolerance) {
-                    return Err(Error::invalid("tolerance of the steps", tolerance, "between 1e-9 and 0.1"));
+                    return Err(Error::invalid("tolerance of the steps", tolerance, "between 1e-9 and 0.1")
+                        .of("tolerance"));
                 }
                 Ok(())
             }

@@ -134,7 +134,7 @@ pub(super) fn apart(pairs: &[[Logs; 2]], d: f64) -> f64 {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Raised {
     pub value: f64,
-    /// Standard deviation at this distance; infinite where the curves do not tell it.
+    /// Standard deviation at this distance; infinite if the curves do not tell it.
     pub deviation: f64,
     /// Change of the value with the distance.
     pub slope: f64,

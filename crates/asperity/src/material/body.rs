@@ -135,7 +135,7 @@ impl Body {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] where Poisson's ratio is outside (-1, 0.5], the bulk modulus or the hardness
+    /// [`Error::Invalid`] if Poisson's ratio is outside (-1, 0.5], the bulk modulus or the hardness
     /// is not positive, or the bulk modulus is too small for the Young's moduli (9 B > E(0) is needed).
     pub fn contact_creep(&self) -> Result<Creep> {
         if let Some(hardness) = self.hardness
@@ -218,7 +218,7 @@ impl Body {
 /// ```
 ///
 /// # Errors
-/// As [`Body::contact_creep`]; [`Error::Invalid`] where there are no bodies or more than two.
+/// As [`Body::contact_creep`]; [`Error::Invalid`] if there are no bodies or more than two.
 pub fn pair_creep(bodies: &[Body]) -> Result<Creep> {
     match bodies {
         [body] => body.contact_creep(),

@@ -229,7 +229,7 @@ fn doubt(distance: f64) -> f64 {
     LAW[0] * LN_10 + LAW[1] * distance
 }
 
-/// The distances of the pairs by the law through the measured ones; `None` where fewer than two of them are known or warmer
+/// The distances of the pairs by the law through the measured ones; `None` if fewer than two of them are known or warmer
 /// is not faster.
 fn law(temperatures: &[f64], measured: &[Distance]) -> Option<Vec<f64>> {
     let known = measured.iter().filter(|distance| distance.deviation < FLAT * LN_10).count();

@@ -175,7 +175,7 @@ impl Fractional {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] where an argument is out of its range, or where the tolerance is too tight.
+    /// [`Error::Invalid`] if an argument is out of its range, or where the tolerance is too tight.
     pub fn to_prony(&self, window: [f64; 2], tolerance: f64) -> Result<Approximation> {
         self.validate()?;
         let (time, order) = self.time_and_order();

@@ -51,7 +51,7 @@ pub struct MasterCurve {
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] where an isotherm is out of order, has values that are not positive or another
+/// [`Error::Invalid`] if an isotherm is out of order, has values that are not positive or another
 /// number of curves than the first, or where the shift is not defined at its temperature.
 pub fn master_curve(isotherms: &[Isotherm], abscissa: Abscissa, shift: &Shift) -> Result<MasterCurve> {
     validate(isotherms)?;

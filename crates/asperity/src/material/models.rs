@@ -57,7 +57,7 @@ impl Material {
     /// ```
     ///
     /// # Errors
-    /// `Invalid` where the modulus is not finite and positive.
+    /// `Invalid` if the modulus is not finite and positive.
     pub fn elastic(measure: Modulus, modulus: f64) -> Result<Self> {
         positive(measure.name(), modulus, "Pa")?;
         Self::generalised_kelvin(measure, Creep::elastic(1.0 / modulus))
@@ -74,7 +74,7 @@ impl Material {
     /// ```
     ///
     /// # Errors
-    /// `Invalid` where an argument is not finite and positive.
+    /// `Invalid` if an argument is not finite and positive.
     pub fn maxwell(measure: Modulus, modulus: f64, relaxation_time: f64) -> Result<Self> {
         positive(measure.name(), modulus, "Pa")?;
         positive("relaxation time", relaxation_time, "s")?;
@@ -95,7 +95,7 @@ impl Material {
     /// ```
     ///
     /// # Errors
-    /// `Invalid` where an argument is not finite and positive.
+    /// `Invalid` if an argument is not finite and positive.
     pub fn kelvin_voigt(measure: Modulus, modulus: f64, retardation_time: f64) -> Result<Self> {
         positive(measure.name(), modulus, "Pa")?;
         let terms = vec![CreepTerm { compliance: 1.0 / modulus, retardation_time }];
@@ -115,7 +115,7 @@ impl Material {
     /// ```
     ///
     /// # Errors
-    /// `Invalid` where an argument is not finite and positive.
+    /// `Invalid` if an argument is not finite and positive.
     pub fn zener(measure: Modulus, modulus: f64, modulus_kelvin: f64, retardation_time: f64) -> Result<Self> {
         let spring = Self::elastic(measure, modulus)?;
         let kelvin = Self::kelvin_voigt(measure, modulus_kelvin, retardation_time)?;
@@ -135,7 +135,7 @@ impl Material {
     /// ```
     ///
     /// # Errors
-    /// `Invalid` where an argument is not finite and positive.
+    /// `Invalid` if an argument is not finite and positive.
     pub fn burgers(
         measure: Modulus,
         modulus: f64,
@@ -189,7 +189,7 @@ impl Material {
     /// as long.
     ///
     /// # Errors
-    /// `Invalid` where a time leaves the range of floating-point numbers.
+    /// `Invalid` if a time leaves the range of floating-point numbers.
     pub fn stretched(&self, factor: f64) -> Result<Self> {
         positive("shift factor", factor, "")?;
         Self::generalised_kelvin(self.measure, self.creep.stretched(factor))
@@ -206,7 +206,7 @@ impl Material {
     /// ```
     ///
     /// # Errors
-    /// `Invalid` where the factor is not finite and positive, or a compliance leaves the range of floating-point numbers.
+    /// `Invalid` if the factor is not finite and positive, or a compliance leaves the range of floating-point numbers.
     pub fn scaled(&self, factor: f64) -> Result<Self> {
         positive("factor of the moduli", factor, "")?;
         Self::generalised_kelvin(self.measure, self.creep.scaled(1.0 / factor))

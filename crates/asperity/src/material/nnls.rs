@@ -103,7 +103,7 @@ fn move_towards(columns: &[Vec<f64>], b: &[f64], x: &mut [f64], passive: &mut Ve
     }
 }
 
-/// Least squares over some of the columns by Householder QR; `None` where they are dependent.
+/// Least squares over some of the columns by Householder QR; `None` if they are dependent.
 fn least_squares(columns: &[Vec<f64>], chosen: &[usize], b: &[f64]) -> Option<Vec<f64>> {
     if chosen.len() > b.len() {
         return None;

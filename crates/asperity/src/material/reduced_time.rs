@@ -51,8 +51,9 @@ impl ReducedTime {
         validate(temperatures)?;
         for (n, (_, temperature)) in temperatures.iter().enumerate() {
             shift.ln_factor(*temperature).map_err(|error| match error {
-                Error::Invalid { value, expected, .. } => {
-                    Error::Invalid { what: format!("temperature of point {}", n + 1), value, expected }
+                Error::Invalid { parameter, value, expected, .. } => {
+                    let what = format!("temperature of point {}", n + 1);
+                    Error::Invalid { parameter, what, value, expected }
                 }
                 other => other,
             })?;
@@ -149,7 +150,7 @@ impl ReducedTime {
         self.pieces.partition_point(|p| p.start <= t).max(1) - 1
     }
 
-    /// Integral of 1/a_T over part of a piece; `None` where its temperatures are too steep for numbers.
+    /// Integral of 1/a_T over part of a piece; `None` if its temperatures are too steep for numbers.
     fn within(&self, piece: &Piece, t0: f64, t1: f64) -> Option<f64> {
         if t1 <= t0 {
             return Some(0.0);

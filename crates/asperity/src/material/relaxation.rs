@@ -28,7 +28,7 @@ pub struct Relaxation {
     pub equilibrium: f64,
     /// The relaxing terms, in order of relaxation time.
     pub terms: Vec<RelaxationTerm>,
-    /// Newtonian dashpot in parallel \[Pa s\] (Kelvin-Voigt); 0 where the modulus at t = 0 is finite.
+    /// Newtonian dashpot in parallel \[Pa s\] (Kelvin-Voigt); 0 if the modulus at t = 0 is finite.
     pub viscosity: f64,
 }
 
@@ -45,7 +45,7 @@ impl Relaxation {
     /// From the equilibrium modulus \[Pa\] and (modulus \[Pa\], relaxation time \[s\]) terms.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a modulus is negative, a time not positive, or all moduli are zero.
+    /// [`Error::Invalid`] if a modulus is negative, a time not positive, or all moduli are zero.
     pub fn absolute(equilibrium: f64, terms: &[(f64, f64)]) -> Result<Self> {
         let terms =
             terms.iter().map(|&(modulus, relaxation_time)| RelaxationTerm { modulus, relaxation_time });
@@ -65,7 +65,7 @@ impl Relaxation {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a fraction is negative, their sum exceeds 1 (by more than 1e-12, which
+    /// [`Error::Invalid`] if a fraction is negative, their sum exceeds 1 (by more than 1e-12, which
     /// is rounding and taken as 1), a time is not positive, or the modulus is not positive.
     pub fn from_instantaneous(instantaneous: f64, fractions: &[(f64, f64)]) -> Result<Self> {
         positive("instantaneous modulus", instantaneous, "Pa")?;
@@ -102,7 +102,7 @@ impl Relaxation {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a ratio is negative, a time not positive, or the modulus not positive.
+    /// [`Error::Invalid`] if a ratio is negative, a time not positive, or the modulus not positive.
     pub fn from_equilibrium(equilibrium: f64, ratios: &[(f64, f64)]) -> Result<Self> {
         positive("equilibrium modulus", equilibrium, "Pa")?;
         for (n, (ratio, _)) in ratios.iter().enumerate() {

@@ -55,7 +55,7 @@ impl Shift {
     /// Checks the constants.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a constant is not finite and positive, or a table has fewer than two
+    /// [`Error::Invalid`] if a constant is not finite and positive, or a table has fewer than two
     /// points or points out of order.
     pub fn validate(&self) -> Result<()> {
         match self {
@@ -225,7 +225,7 @@ pub struct ShiftFit {
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] where there are fewer than three points besides the reference, or where warmer is
+/// [`Error::Invalid`] if there are fewer than three points besides the reference, or where warmer is
 /// not faster.
 pub fn fit_wlf(points: &[(f64, f64)], reference: f64) -> Result<ShiftFit> {
     let points = usable(points, reference, 3)?;
@@ -260,7 +260,7 @@ pub fn fit_wlf(points: &[(f64, f64)], reference: f64) -> Result<ShiftFit> {
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] where there is no point besides the reference, or where warmer is not faster.
+/// [`Error::Invalid`] if there is no point besides the reference, or where warmer is not faster.
 pub fn fit_arrhenius(points: &[(f64, f64)], reference: f64) -> Result<ShiftFit> {
     let points = usable(points, reference, 1)?;
     let slope = |t: f64| (reference - t) / (t * reference) / GAS_CONSTANT;

@@ -28,7 +28,7 @@ impl TemperatureFactors {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a shift is not defined at this temperature, or a_T is not a number.
+    /// [`Error::Invalid`] if a shift is not defined at this temperature, or a_T is not a number.
     pub fn at(shift: &Shift, vertical: Option<&VerticalShift>, kelvin: f64) -> Result<Self> {
         let times = shift.factor(kelvin)?;
         let moduli = vertical.map_or(Ok(1.0), |vertical| vertical.factor(kelvin))?;
@@ -45,7 +45,7 @@ impl TemperatureFactors {
     /// The material that is `reference` at the reference temperature.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where its times or moduli are no numbers.
+    /// [`Error::Invalid`] if its times or moduli are no numbers.
     pub fn of(self, reference: &Material) -> Result<Material> {
         let stretched =
             if self.times == 1.0 { reference.clone() } else { reference.stretched(self.times)? };

@@ -70,7 +70,7 @@ impl CappedHertz {
     /// limit is taken: a = sqrt(W / (pi H)), approach = a^2 / (2 R) + 4 H a / (pi E*).
     ///
     /// # Errors
-    /// [`Error::Invalid`](crate::Error::Invalid) where the radius, the modulus or the hardness is not
+    /// [`Error::Invalid`](crate::Error::Invalid) if the radius, the modulus or the hardness is not
     /// positive or the load is negative.
     pub fn under_load(radius: f64, contact_modulus: f64, hardness: f64, load: f64) -> Result<Self> {
         let hertz = HertzSphere::under_load(radius, contact_modulus, load)?;

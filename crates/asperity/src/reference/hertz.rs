@@ -45,7 +45,7 @@ impl HertzSphere {
     /// From the load W >= 0 \[N\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the radius or the modulus is not positive or the load is negative.
+    /// [`Error::Invalid`] if the radius or the modulus is not positive or the load is negative.
     pub fn under_load(radius: f64, contact_modulus: f64, load: f64) -> Result<Self> {
         check(radius, contact_modulus)?;
         non_negative("load", load, "N")?;
@@ -57,7 +57,7 @@ impl HertzSphere {
     /// From the approach \[m\]; a negative one is no contact.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the radius or the modulus is not positive or the approach not finite.
+    /// [`Error::Invalid`] if the radius or the modulus is not positive or the approach not finite.
     pub fn under_approach(radius: f64, contact_modulus: f64, approach: f64) -> Result<Self> {
         check(radius, contact_modulus)?;
         if !approach.is_finite() {
@@ -131,7 +131,7 @@ impl HertzEllipse {
     /// From the load W >= 0 \[N\] and the radii along x and y \[m\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a radius or the modulus is not positive and finite, the load is
+    /// [`Error::Invalid`] if a radius or the modulus is not positive and finite, the load is
     /// negative, or one radius exceeds the other by more than 1e12 (a line contact, which has no
     /// approach).
     pub fn under_load(radii: [f64; 2], contact_modulus: f64, load: f64) -> Result<Self> {

@@ -69,7 +69,7 @@ impl HunterCylinder {
     /// compliance of at most one retarded term.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the radius is not positive, the speed or the load negative, or the creep function has no
+    /// [`Error::Invalid`] if the radius is not positive, the speed or the load negative, or the creep function has no
     /// instantaneous compliance, flows, or has several terms.
     pub fn under_load(radius: f64, creep: &Creep, velocity: f64, load_per_length: f64) -> Result<Self> {
         positive("radius", radius, "m")?;

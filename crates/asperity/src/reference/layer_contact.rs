@@ -103,7 +103,7 @@ impl LayerContact {
     /// Of a layer of that thickness \[m\] and Poisson's ratio on a rigid base, for depths up to `deepest` \[m\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a number is not positive, Poisson's ratio is outside (-1, 0.5], or the contact becomes more
+    /// [`Error::Invalid`] if a number is not positive, Poisson's ratio is outside (-1, 0.5], or the contact becomes more
     /// than 30 times as wide as the layer is thick.
     pub fn new(
         profile: MdrProfile,

@@ -39,7 +39,7 @@ impl HertzLine {
     /// From the load per length W' >= 0 \[N/m\].
     ///
     /// # Errors
-    /// [`Error::Invalid`](crate::Error::Invalid) where the radius or the modulus is not positive or the load is negative.
+    /// [`Error::Invalid`](crate::Error::Invalid) if the radius or the modulus is not positive or the load is negative.
     pub fn under_load(radius: f64, contact_modulus: f64, load_per_length: f64) -> Result<Self> {
         check(radius, contact_modulus)?;
         non_negative("load per length", load_per_length, "N/m")?;

@@ -21,7 +21,7 @@ pub(super) struct Point {
     pub(super) below: f64,
 }
 
-/// Integral of f from a to b, to rounding; 0 where b <= a.
+/// Integral of f from a to b, to rounding; 0 if b <= a.
 pub(super) fn integrate(a: f64, b: f64, f: impl Fn(f64) -> f64) -> f64 {
     integrate_to(1e-14, a, b, |p| f(p.x))
 }

@@ -50,7 +50,7 @@ impl SlidingSphere {
     /// From the load >= 0 \[N\] and the contact creep compliance of a solid.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the radius is not positive, the load negative, the creep function of a fluid or without an
+    /// [`Error::Invalid`] if the radius is not positive, the load negative, the creep function of a fluid or without an
     /// instantaneous compliance.
     pub fn under_load(radius: f64, creep: &Creep, load: f64) -> Result<Self> {
         creep.validate_solid()?;
@@ -96,7 +96,7 @@ impl FullContactWave {
     /// From the contact creep compliance of a solid.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a length is not positive or the creep function is that of a fluid.
+    /// [`Error::Invalid`] if a length is not positive or the creep function is that of a fluid.
     pub fn new(amplitude: f64, wavelength: f64, creep: &Creep) -> Result<Self> {
         positive("amplitude of the wave", amplitude, "m")?;
         positive("wavelength", wavelength, "m")?;
@@ -134,7 +134,7 @@ impl FullContactWave {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the time is negative.
+    /// [`Error::Invalid`] if the time is negative.
     pub fn friction_stress_after_start(&self, v: f64, t: f64) -> Result<f64> {
         non_negative("time", t, "s")?;
         let w = self.wave_number() * v.abs();
@@ -170,7 +170,7 @@ impl FullContactWave {
 /// where the mean pressure is large enough, which the caller knows.
 ///
 /// # Errors
-/// [`Error::Invalid`] where a point of the surface is undefined, the velocity or its direction not finite, or the creep function
+/// [`Error::Invalid`] if a point of the surface is undefined, the velocity or its direction not finite, or the creep function
 /// that of a fluid.
 pub fn full_contact_friction(
     surface: &Surface,

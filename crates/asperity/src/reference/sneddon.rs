@@ -34,7 +34,7 @@ impl SneddonCone {
     /// From the load W >= 0 \[N\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the slope or the modulus is not positive or the load is negative.
+    /// [`Error::Invalid`] if the slope or the modulus is not positive or the load is negative.
     pub fn under_load(slope: f64, contact_modulus: f64, load: f64) -> Result<Self> {
         positive("slope of the cone", slope, "")?;
         positive("contact modulus", contact_modulus, "Pa")?;
@@ -46,7 +46,7 @@ impl SneddonCone {
     /// From the approach \[m\]; a negative one is no contact.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the slope or the modulus is not positive or the approach not finite.
+    /// [`Error::Invalid`] if the slope or the modulus is not positive or the approach not finite.
     pub fn under_approach(slope: f64, contact_modulus: f64, approach: f64) -> Result<Self> {
         positive("slope of the cone", slope, "")?;
         if !approach.is_finite() {
@@ -102,7 +102,7 @@ impl CircularPunch {
     /// From the load W >= 0 \[N\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the radius or the modulus is not positive or the load is negative.
+    /// [`Error::Invalid`] if the radius or the modulus is not positive or the load is negative.
     pub fn under_load(radius: f64, contact_modulus: f64, load: f64) -> Result<Self> {
         positive("radius of the flat punch", radius, "m")?;
         positive("contact modulus", contact_modulus, "Pa")?;
@@ -115,7 +115,7 @@ impl CircularPunch {
     /// Lee and J. R. M. Radok, J. Appl. Mech. 27 (1960) 438).
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the radius is not positive, the history or the creep is invalid, or t is
+    /// [`Error::Invalid`] if the radius is not positive, the history or the creep is invalid, or t is
     /// negative.
     pub fn viscoelastic(radius: f64, creep: &Creep, history: &History, t: f64) -> Result<Self> {
         positive("radius of the flat punch", radius, "m")?;

@@ -39,7 +39,7 @@ impl StripPunch {
     /// From the mean pressure >= 0 \[Pa\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a length or the modulus is not positive, a strip is as wide as the period or the pressure is
+    /// [`Error::Invalid`] if a length or the modulus is not positive, a strip is as wide as the period or the pressure is
     /// negative.
     pub fn under_pressure(
         half_width: f64,

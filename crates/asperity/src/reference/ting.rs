@@ -76,7 +76,7 @@ impl Ting {
     /// A contact from t = 0 to `end` \[s\] under the load `history` \[N\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the radius, the creep function or the history is invalid, the creep
+    /// [`Error::Invalid`] if the radius, the creep function or the history is invalid, the creep
     /// function has no instantaneous compliance, the load is negative at times, or the contact grows
     /// again after it shrank.
     pub fn new(radius: f64, creep: &Creep, history: &History, end: f64) -> Result<Self> {
@@ -105,7 +105,7 @@ impl Ting {
     /// Load, contact radius, approach and peak pressure at t \[s\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where t is outside \[0, end\].
+    /// [`Error::Invalid`] if t is outside \[0, end\].
     pub fn at(&self, t: f64) -> Result<TingState> {
         self.check_time(t)?;
         let (reached, seen) = self.reached(t);
@@ -118,7 +118,7 @@ impl Ting {
     /// Pressure at the distance r from the axis and the time t \[Pa\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where t is outside \[0, end\] or r is negative.
+    /// [`Error::Invalid`] if t is outside \[0, end\] or r is negative.
     pub fn pressure(&self, r: f64, t: f64) -> Result<f64> {
         self.check_time(t)?;
         non_negative("distance from the axis", r, "m")?;
@@ -130,7 +130,7 @@ impl Ting {
     /// contact grows \[m\]: int C(t - s) d(K p)(s) is the elastic displacement of the contact radius a(t).
     ///
     /// # Errors
-    /// [`Error::Invalid`] where t is outside \[0, turn\] or r is negative.
+    /// [`Error::Invalid`] if t is outside \[0, turn\] or r is negative.
     pub fn growing_displacement(&self, r: f64, t: f64) -> Result<f64> {
         self.check_time(t)?;
         non_negative("distance from the axis", r, "m")?;

@@ -38,7 +38,7 @@ impl Westergaard {
     /// From the mean pressure >= 0 \[Pa\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a length or the modulus is not positive or the pressure is negative.
+    /// [`Error::Invalid`] if a length or the modulus is not positive or the pressure is negative.
     pub fn under_pressure(
         amplitude: f64,
         wavelength: f64,
@@ -119,7 +119,7 @@ impl WestergaardStep {
     /// From the mean pressure >= 0 \[Pa\] and the contact creep compliance C(t).
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a length is not positive, the pressure is negative, the creep function is
+    /// [`Error::Invalid`] if a length is not positive, the pressure is negative, the creep function is
     /// invalid or has no instantaneous compliance.
     pub fn under_pressure(
         amplitude: f64,
@@ -145,7 +145,7 @@ impl WestergaardStep {
     /// viscoelastic ones at t (its pressure is not).
     ///
     /// # Errors
-    /// [`Error::Invalid`] where t is negative or the contact is full by then.
+    /// [`Error::Invalid`] if t is negative or the contact is full by then.
     pub fn shape(&self, t: f64) -> Result<Westergaard> {
         non_negative("time", t, "s")?;
         if self.closure(t) > 1.0 {
@@ -158,7 +158,7 @@ impl WestergaardStep {
     /// Pressure at the distance x from a crest and the time t \[Pa\].
     ///
     /// # Errors
-    /// [`Error::Invalid`] where t is negative or the contact is full by then.
+    /// [`Error::Invalid`] if t is negative or the contact is full by then.
     pub fn pressure(&self, x: f64, t: f64) -> Result<f64> {
         self.shape(t)?;
         let psi = PI * x / self.wavelength;
@@ -204,7 +204,7 @@ impl JohnsonWave {
     /// A double wave.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a length or the modulus is not positive.
+    /// [`Error::Invalid`] if a length or the modulus is not positive.
     pub fn new(amplitude: f64, wavelength: f64, contact_modulus: f64) -> Result<Self> {
         positive("amplitude of the wave", amplitude, "m")?;
         positive("wavelength", wavelength, "m")?;

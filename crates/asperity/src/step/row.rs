@@ -1,20 +1,19 @@
 //! What a row of the result tells: numbers of the contact, and the fields on request.
 
-use asperity_sweep::simd::{F64x8, Work, vectorize};
 use ndarray::{Array2, ArrayView2};
 
+use super::state::StepState;
+use super::{Recorder, Stepper, UndeformedGap};
 use crate::contact::{ContactState, Hardness, Outcome};
 use crate::drive::Coordinate;
-use crate::grid::{Boundary, Grid};
 use crate::history::History;
 use crate::load::Control;
 use crate::process::{Process, cells};
 use crate::quantities::{Column, Quantity, contact_edges};
 use crate::simulation::Simulation;
 use crate::sliding::Friction;
-use crate::step::{Recorder, UndeformedGap};
 use crate::time::Instant;
-use asperity_sweep::{Max, sweep};
+use asperity_sweep::{Max, kernel, run};
 
 /// The numbers of one row.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -97,6 +96,33 @@ pub(crate) enum Recalled<'a> {
 }
 
 impl<'a> Step<'a> {
+    /// The state of a contact, of no time and velocity yet.
+    pub(crate) fn of(
+        simulation: &'a Simulation,
+        hardness: Hardness<'a>,
+        (state, outcome): (&'a ContactState, Outcome),
+        (gap, compliance): (&'a [f64], f64),
+    ) -> Self {
+        Step {
+            index: 0,
+            coordinate: Coordinate::None,
+            instant: None,
+            control: Control::Load,
+            simulation,
+            hardness,
+            state,
+            gap,
+            compliance,
+            outcome,
+            recalled: Recalled::Nothing,
+            time_error: None,
+            undeformed: None,
+            processes: &[],
+            recorder: None,
+            friction: None,
+        }
+    }
+
     /// Number of the row; 0 is t = 0+.
     pub fn index(&self) -> usize {
         self.index
@@ -189,15 +215,37 @@ impl<'a> Step<'a> {
 
     /// The numbers of the row.
     pub fn row(&self) -> Row {
+        let Step { state, outcome, hardness, .. } = self;
         let Simulation { grid, boundary, .. } = self.simulation;
-        let bodies = (self.gap, self.hardness, self.compliance);
-        let contact = Row::of_contact(grid, *boundary, bodies, self.state, &self.outcome);
+        let survey = Survey {
+            p: &state.pressure,
+            u: &state.unit_displacement,
+            h: self.gap,
+            hardness: *hardness,
+            c: self.compliance,
+            w: state.approach,
+        };
+        let ([pressure, touching, capped, gap, touchable], Max(max_pressure)) = run(survey);
+        // The border of a free domain is no edge of the contact, and the ends of a line contact are points.
+        let edges = if grid.is_line() { 0 } else { contact_edges(self.pressure(), *boundary).number() };
+        let cell = grid.cell_area();
         Row {
             coordinate: self.coordinate,
-            approach: self.state.approach - self.datum(),
+            load: pressure * cell,
+            approach: state.approach - self.datum(),
+            contact_area: touching * cell,
+            contact_area_corrected: touching * cell - PERIMETER_SHARE * edges as f64 * cell,
+            contact_fraction: touching / grid.len() as f64,
+            capped_area: capped * cell,
+            mean_pressure: pressure / grid.len() as f64,
+            max_pressure,
+            mean_gap: gap / touchable,
+            iterations: outcome.iterations,
+            convolutions: outcome.convolutions,
+            residual: outcome.residual,
+            certificate: outcome.certificate,
             time_error: self.time_error,
             stage: self.instant.map_or(0, |instant| instant.stage),
-            ..contact
         }
     }
 
@@ -242,6 +290,19 @@ impl<'a> Step<'a> {
     }
 }
 
+impl Stepper {
+    /// The state as a row of no time yet.
+    pub(crate) fn row(&self) -> Step<'_> {
+        let StepState { now, gap, compliance, undeformed, .. } = &self.state;
+        Step {
+            recalled: Recalled::History(&*self.history),
+            undeformed: Some(undeformed),
+            processes: &self.processes,
+            ..Step::of(&self.simulation, self.contact.hardness(), (now, self.outcome), (gap, *compliance))
+        }
+    }
+}
+
 impl Recalled<'_> {
     fn write(self, g: &mut [f64]) {
         match self {
@@ -260,66 +321,15 @@ impl Row {
             _ => f64::NAN,
         }
     }
+}
 
-    /// The numbers of one elastic contact, at the time 0: of a state that solves the problem of this gap \[m\], hardness and
-    /// compliance \[1/Pa\], each cell of the grid.
-    pub fn of_contact(
-        grid: &Grid,
-        boundary: Boundary,
-        (gap, hardness, compliance): (&[f64], Hardness<'_>, f64),
-        state: &ContactState,
-        outcome: &Outcome,
-    ) -> Row {
-        let (c, w) = (compliance, state.approach);
-        let ([pressure, touching, capped, gap, touchable], Max(peak)) = sweep(
-            (&state.pressure[..], &state.unit_displacement[..], gap, hardness),
-            &|(p, u, h, hardness): (&[f64], &[f64], &[f64], Hardness)| {
-                vectorize(Survey { p, u, h, hardness, c, w })
-            },
-        );
-        // The border of a free domain is no edge of the contact, and the ends of a line contact are points.
-        let edges = match grid.is_line() {
-            true => 0,
-            false => contact_edges(to_view(grid.shape(), &state.pressure), boundary).number(),
-        };
-        let cell = grid.cell_area();
-        let contact_area = touching * cell;
-        Row {
-            coordinate: Coordinate::None,
-            load: pressure * cell,
-            approach: w,
-            contact_area,
-            contact_area_corrected: contact_area - PERIMETER_SHARE * edges as f64 * cell,
-            contact_fraction: touching / grid.len() as f64,
-            capped_area: capped * cell,
-            mean_pressure: pressure / grid.len() as f64,
-            max_pressure: peak,
-            mean_gap: gap / touchable,
-            iterations: outcome.iterations,
-            convolutions: outcome.convolutions,
-            residual: outcome.residual,
-            certificate: outcome.certificate,
-            time_error: None,
-            stage: 0,
-        }
+kernel! {
+    /// The sums of p, of touching cells, of capped ones, of gaps, and of cells that can touch; and the largest p.
+    struct Survey<'a> {
+        cells { p: &'a [f64], u: &'a [f64], h: &'a [f64], hardness: Hardness<'a> }
+        numbers { c: f64, w: f64 }
     }
-}
-
-/// The sums of p, of touching cells, of capped ones, of gaps, and of cells that can touch; and the largest p.
-struct Survey<'a> {
-    p: &'a [f64],
-    u: &'a [f64],
-    h: &'a [f64],
-    hardness: Hardness<'a>,
-    c: f64,
-    w: f64,
-}
-
-impl Work for Survey<'_> {
-    type Yield = ([f64; 5], Max);
-
-    #[inline(always)]
-    fn run<V: F64x8>(self) -> ([f64; 5], Max) {
+    fn run<V>(self) -> ([f64; 5], Max) {
         let [zero, c, w] = [0.0, self.c, self.w].map(V::splat);
         let (mut sums, mut peak) = ([zero; 5], zero);
         for n in (0..self.p.len()).step_by(8) {

@@ -20,7 +20,7 @@ pub fn rectangle(component: Component, [x, y]: [f64; 2], depth: f64, half: [f64;
     (g(x + a, y + b) - g(x - a, y + b) - g(x + a, y - b) + g(x - a, y - b)) / std::f64::consts::TAU
 }
 
-/// G of a corner at (x, y) from the point at depth z; neither x nor y is 0 where z is.
+/// G of a corner at (x, y) from the point at depth z; neither x nor y is 0 if z is.
 ///
 /// At depths beyond the corners (`is_far`) G tends to functions of one coordinate, which the mixed difference takes out:
 /// -(1 - 2 nu) ln 2z - 1 for xy, y/z for xz and x/z for yz. They are left out there, so that their rounding errors do not

@@ -94,7 +94,7 @@ impl SubsurfaceStress {
     /// Takes the pressure p \[Pa\] of the surface, nx ny cells in C-order.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where their number differs or one is not finite.
+    /// [`Error::Invalid`] if their number differs or one is not finite.
     pub fn set_pressure(&mut self, p: &[f64]) -> Result<()> {
         self.check(p)?;
         self.sources.clear();
@@ -127,7 +127,7 @@ impl SubsurfaceStress {
     /// on a body of ratio 0 and that of 2 P on one of ratio 1/2.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where their number differs from that of the cells, or one is not finite.
+    /// [`Error::Invalid`] if their number differs from that of the cells, or one is not finite.
     pub fn set_transverse(&mut self, p: &[f64], transverse: &[f64], confined: f64) -> Result<()> {
         for field in [p, transverse] {
             self.check(field)?;

@@ -15,7 +15,7 @@ const CELLS: f64 = 4.0;
 const MOST: usize = 10_000;
 
 /// 0, and 24 depths in geometric progression from half a cell: on a free domain to 2 sqrt(A/pi), A the area of the rectangle
-/// around the contact ([`contact_box`]; 0 where there is no contact: the domain's), of a line to the width of the contact; on a
+/// around the contact ([`contact_box`]; 0 if there is no contact: the domain's), of a line to the width of the contact; on a
 /// periodic domain to half its shorter side; to four cells at least.
 ///
 /// ```
@@ -61,7 +61,7 @@ pub(super) fn longest_cell(grid: &Grid) -> f64 {
     grid.cell_sides().fold(0.0, f64::max)
 }
 
-/// Area of the rectangle around the cells under pressure \[m^2\], of a line the width of the contact \[m\]; 0 where there are none.
+/// Area of the rectangle around the cells under pressure \[m^2\], of a line the width of the contact \[m\]; 0 if there are none.
 pub fn contact_box(grid: &Grid, pressure: &[f64]) -> f64 {
     let ny = grid.cells()[1];
     let touching = || pressure.iter().enumerate().filter(|(_, p)| **p > 0.0).map(|(n, _)| [n / ny, n % ny]);

@@ -95,7 +95,7 @@ impl StressQuantity {
     /// Its field, from the six components in the order of [`Component::ALL`]; all of one length.
     ///
     /// # Panics
-    /// Where the lengths differ.
+    /// If the lengths differ.
     pub fn field_into(self, six: &[Vec<f64>; 6], out: &mut [f64]) {
         if let Some(component) = self.component() {
             out.copy_from_slice(&six[component as usize]);

@@ -181,7 +181,7 @@ impl Known {
     }
 
     /// The depth at which the parabola through the largest value and its neighbours, in the logarithm of the depth, is
-    /// highest; `None` where the three are not all below the surface, or nothing new is to be found there.
+    /// highest; `None` if the three are not all below the surface, or nothing new is to be found there.
     fn vertex(&self, of: fn(&Slab) -> First) -> Option<f64> {
         let best = self.best(of);
         let three = self.0.get(best.checked_sub(1)?..best + 2)?;

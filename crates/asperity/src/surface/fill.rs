@@ -39,9 +39,9 @@ pub enum Fill {
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] where more than `largest_share` (0 to 1) of the points are undefined, all of
+/// [`Error::Invalid`] if more than `largest_share` (0 to 1) of the points are undefined, all of
 /// them are, `method` is [`Fill::Error`] and one is, or the shape is not the grid's;
-/// [`Error::NotConverged`] where the membrane is not found.
+/// [`Error::NotConverged`] if the membrane is not found.
 pub fn fill(grid: &Grid, heights: ArrayView2<f64>, method: Fill, largest_share: f64) -> Result<Array2<f64>> {
     check_shape(grid, heights)?;
     if !(0.0..=1.0).contains(&largest_share) {

@@ -44,7 +44,7 @@ pub enum Part {
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] where a part is outside its domain, heights do not have the shape of the grid
+/// [`Error::Invalid`] if a part is outside its domain, heights do not have the shape of the grid
 /// or are not finite, the sum overflows, or no cell can touch. No part at all is flat on flat: 0.
 pub fn undeformed_gap(grid: &Grid, parts: &[Part]) -> Result<Array2<f64>> {
     let mut gap = Array2::zeros(grid.shape());

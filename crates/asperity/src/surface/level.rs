@@ -38,7 +38,7 @@ pub enum Level {
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] where a form is to be removed and no height is defined.
+/// [`Error::Invalid`] if a form is to be removed and no height is defined.
 pub fn level(heights: ArrayView2<f64>, form: Level) -> Result<Array2<f64>> {
     let mut flat = heights.to_owned();
     flat.par_mapv_inplace(|z| if z.is_finite() { z } else { f64::NAN });

@@ -103,7 +103,7 @@ impl SelfAffine {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the exponent, the roughness or a wavelength is outside its domain,
+    /// [`Error::Invalid`] if the exponent, the roughness or a wavelength is outside its domain,
     /// the wavelengths are out of order or do not fit the grid, or no wave of the domain falls between
     /// them.
     pub fn heights(&self, grid: &Grid) -> Result<Array2<f64>> {
@@ -175,14 +175,16 @@ impl SelfAffine {
                 "shortest wavelength",
                 meters(self.shortest),
                 format!("at least two cells, {}; refine the grid or cut longer waves off", meters(two_cells)),
-            ));
+            )
+            .of("shortest"));
         }
         if self.longest > domain * (1.0 + SAME) {
             return Err(Error::invalid(
                 "longest wavelength",
                 meters(self.longest),
                 format!("at most the size of the domain, {}", meters(domain)),
-            ));
+            )
+            .of("longest"));
         }
         if !(self.shortest <= self.roll_off && self.roll_off <= self.longest) {
             return Err(Error::invalid(
@@ -193,7 +195,8 @@ impl SelfAffine {
                     meters(self.shortest),
                     meters(self.longest)
                 ),
-            ));
+            )
+            .of("roll_off"));
         }
         Ok(())
     }

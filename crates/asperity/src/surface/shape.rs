@@ -48,7 +48,7 @@ pub enum Shape {
         /// Rise per length, the cotangent of the cone's half angle.
         slope: f64,
     },
-    /// h = 0 where a cell's centre lies inside (its edge included), [`f64::INFINITY`] outside.
+    /// h = 0 if a cell's centre lies inside (its edge included), [`f64::INFINITY`] outside.
     FlatPunch(Punch),
     /// h = amplitude (1 - cos(2 pi x / lx) cos(2 pi y / ly)), a crest at the centre.
     ///
@@ -163,7 +163,7 @@ impl Shape {
     /// Checks the shape's numbers.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a radius or wavelength is not positive (infinity is accepted), the
+    /// [`Error::Invalid`] if a radius or wavelength is not positive (infinity is accepted), the
     /// slope or a punch's size is not positive, or the amplitude is not finite.
     pub fn validate(&self) -> Result<()> {
         match self {

@@ -99,7 +99,7 @@ pub struct Plan {
     /// The rows. Where they are not [`exact`](Self::exact): with every stage at full length, the stages after an
     /// event as if it came at once, and of adaptive steps the first after each break; their times may run back.
     pub instants: Vec<Instant>,
-    /// Whether the run has these rows and no others. (A value is NaN where it is only known as the run goes.)
+    /// Whether the run has these rows and no others. (A value is NaN if it is only known as the run goes.)
     pub exact: bool,
 }
 

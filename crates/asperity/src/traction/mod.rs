@@ -15,19 +15,19 @@
 //! Under a prescribed load W a pass in which Σ b alone exceeds W/A leaves no load to the contact: then the approach is searched at
 //! which the tractions carry W. After convergence the state holds t and U = K t: what the bodies remember is the total traction.
 
-#![allow(clippy::type_complexity)] // the closures of a sweep spell out the slices that they walk
-
 mod extrapolation;
 #[cfg(test)]
 mod tests;
 
 use std::sync::atomic::AtomicBool;
 
-use crate::contact::{ContactState, Outcome, Prescribed, Problem, Solver, SolverOptions, Start};
-use crate::error::{Error, NotConverged, Result};
+use crate::contact::{
+    ContactState, Outcome, Prescribed, Problem, Solver, SolverOptions, Start, not_converged,
+};
+use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::operator::Operator;
-use asperity_sweep::{strands, sum, sweep};
+use asperity_sweep::{each, sum, sums};
 use extrapolation::Extrapolation;
 
 /// Passes after which a solve is given up.
@@ -160,12 +160,9 @@ impl Run<'_> {
         let mut energy = f64::INFINITY;
         for _ in 0..MOST_PASSES {
             let pass = self.pass(problem)?;
-            self.total = Outcome {
-                iterations: self.total.iterations + pass.outcome.iterations,
-                convolutions: self.total.convolutions + pass.outcome.convolutions + 1,
-                residual: pass.residual.max(pass.outcome.residual),
-                ..pass.outcome
-            };
+            self.total = self.total.then(pass.outcome);
+            self.total.convolutions += 1;
+            self.total.residual = pass.residual.max(pass.outcome.residual);
             if pass.residual <= self.options.tolerance {
                 return Ok(());
             }
@@ -176,24 +173,13 @@ impl Run<'_> {
             best = best.min(pass.residual);
             energy = pass.energy.map_or(energy, |now| now.min(energy));
         }
-        Err(Error::NotConverged(NotConverged {
-            method: "surface traction",
-            iterations: self.total.iterations,
-            residual: self.total.residual,
-            tolerance: self.options.tolerance,
-            certificate: self.total.certificate,
-            time: None,
-            velocity: None,
-        }))
+        Err(not_converged("surface traction", self.options, &self.total))
     }
 
     fn pass(&mut self, problem: &Problem) -> Result<Pass> {
         let (own, c) = (&mut *self.own, problem.compliance);
         self.operator.apply_into(&own.bound, &mut own.image);
-        let fields = (&mut own.shifted[..], problem.gap, &own.image[..]);
-        sweep(fields, &|(to, h, u): (&mut [f64], &[f64], &[f64])| {
-            to.iter_mut().zip(h.iter().zip(u)).for_each(|(to, (h, u))| *to = h + c * u);
-        });
+        each(&mut own.shifted, (problem.gap, &own.image[..]), |to, (h, u)| *to = h + c * u);
         let cell_area = self.operator.grid().cell_area();
         let prescribed = match problem.prescribed {
             Prescribed::Load(load) => {
@@ -212,23 +198,18 @@ impl Run<'_> {
         let outcome =
             solver.solve_from(Start::Pressure, self.operator, &inner, &options, state, self.interrupt)?;
         let w = own.contact.approach;
-        let fields = (&mut own.gap[..], &own.shifted[..], &own.contact.unit_displacement[..]);
-        sweep(fields, &|(to, h, u): (&mut [f64], &[f64], &[f64])| {
-            to.iter_mut().zip(h.iter().zip(u)).for_each(|(to, (h, u))| *to = (h + c * u - w).max(0.0));
-        });
+        let fields = (&own.shifted[..], &own.contact.unit_displacement[..]);
+        each(&mut own.gap, fields, |to, (h, u)| *to = (h + c * u - w).max(0.0));
         self.own.law.bound(&self.own.gap, &self.own.contact.pressure, &mut self.own.next)?;
         let own = &*self.own;
         let fields = (
             (&own.bound[..], &own.next[..], &own.contact.pressure[..]),
             (&own.image[..], &own.contact.unit_displacement[..]),
         );
-        let [change, size, work, total] =
-            sweep(fields, &|((b, next, q), (kb, kq)): ((&[f64], &[f64], &[f64]), (&[f64], &[f64]))| {
-                strands(b.len(), |i| {
-                    let t = b[i] + q[i];
-                    [(next[i] - b[i]).abs(), next[i].abs() + q[i], t * (kb[i] + kq[i]), t]
-                })
-            });
+        let [change, size, work, total] = sums(fields, |((b, next, q), (kb, kq))| {
+            let t = b + q;
+            [(next - b).abs(), next.abs() + q, t * (kb + kq), t]
+        });
         let scale = own.scale.max(size);
         let potential = own.law.energy(&own.gap);
         self.own.scale = scale;

@@ -3,8 +3,10 @@
 use asperity::Drive;
 use std::f64::consts::{PI, TAU};
 
-use asperity::march::{Row, Simulation};
+use asperity::step::Row;
+
 use asperity::material::{Creep, CreepTerm};
+use asperity::simulation::Simulation;
 use asperity::sliding::{Direction, Friction, Slopes, Steady, SteadyMotion};
 use asperity::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
 use asperity::{Boundary, Control, Grid, History, Loading, SolverOptions};
@@ -31,7 +33,7 @@ struct Case<'a> {
 impl Case<'_> {
     fn steady(&self, velocities: &[f64]) -> Steady {
         let gap = undeformed_gap(&self.grid, self.parts).unwrap();
-        let slopes = Slopes::of(&self.grid, self.boundary, self.parts, &gap).unwrap();
+        let slopes = Slopes::of(&self.grid, self.boundary, self.parts).unwrap();
         let simulation = Simulation {
             boundary: self.boundary,
             creep: self.creep.clone(),
@@ -316,7 +318,7 @@ fn a_resumed_sweep_has_the_same_bits() {
     let mut steady = case.steady(&velocities);
     let mut rows = vec![];
     // No shear stress is given.
-    let friction = |step: &asperity::march::Step| Friction { total: 0.0, ..step.friction().unwrap() };
+    let friction = |step: &asperity::step::Step| Friction { total: 0.0, ..step.friction().unwrap() };
     while let Some(step) = steady.advance().unwrap() {
         rows.push((step.row(), friction(&step), step.pressure().to_owned()));
     }
@@ -338,12 +340,12 @@ fn a_resumed_sweep_has_the_same_bits() {
 fn memory_of_a_sweep_is_bounded_whatever_the_velocity() {
     let parts = shape(Shape::Cylinder { radius: 1.0 });
     let steady = cylinder(&parts, 128, 100.0, 1e-6).steady(&[1.0]);
-    assert!(Steady::bytes(steady.simulation(), steady.motion()) < 1 << 20);
+    assert!(Steady::bytes(steady.simulation(), steady.motion().direction) < 1 << 20);
     let grid = Grid::new([512, 512], [1.0, 1.0]).unwrap();
     let ball = shape(Shape::Sphere { radius: 10.0 });
     let case = Case { grid, ..cylinder(&ball, 128, 100.0, 1e-6) };
     let steady = case.steady(&[1.0]);
-    let bytes = Steady::bytes(steady.simulation(), steady.motion());
+    let bytes = Steady::bytes(steady.simulation(), steady.motion().direction);
     assert!((1 << 28..3 << 30).contains(&bytes), "{bytes}");
 }
 

@@ -36,13 +36,8 @@ pub fn lacks_figure(words: &[OsString], error: &clap::Error) -> bool {
 pub fn no_figure() -> Failure {
     Failure::input(format!(
         "what to draw is missing: asperity plot RESULT WHAT, with WHAT one of {}",
-        figures()
+        Plot::names()
     ))
-}
-
-/// The names of all figures.
-fn figures() -> String {
-    Plot::ALL.map(Plot::name).join(", ")
 }
 
 impl Verb for args::Plot {
@@ -64,7 +59,7 @@ impl Verb for args::Plot {
                     Failure::input(format!(
                         "there is no figure \"{}\"{near}; choose one of {}",
                         self.what,
-                        figures()
+                        Plot::names()
                     ))
                 }
             });

@@ -9,7 +9,7 @@ pub(super) struct Joint {
     pub slope: f64,
     /// The best v.
     pub raised: f64,
-    /// Half of the second derivative of the squares with v; 0 where they do not depend on it.
+    /// Half of the second derivative of the squares with v; 0 if they do not depend on it.
     pub told: f64,
 }
 

@@ -110,7 +110,7 @@ fn equilibrium(storage: &Curve<'_>, spectrum: &Spectrum) -> f64 {
     (above / below).max(0.0)
 }
 
-/// The refusal of both moduli together, with the misfit that each reaches alone; `None` where neither does, or where both are met
+/// The refusal of both moduli together, with the misfit that each reaches alone; `None` if neither does, or where both are met
 /// together but for a few points.
 fn alone(curves: &[Curve; 2], window: [f64; 2], options: &FitOptions) -> Option<Error> {
     let any = FitOptions { limit: f64::MAX, ..*options };

@@ -29,7 +29,7 @@ impl Mdr {
     /// gives two rows, before and after it.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the loading is invalid, controls the mean pressure (a single contact has
+    /// [`Error::Invalid`] if the loading is invalid, controls the mean pressure (a single contact has
     /// no area to average over), asks for a negative load, or the times are not increasing and positive;
     /// as [`step`](Self::step) otherwise.
     pub fn march(

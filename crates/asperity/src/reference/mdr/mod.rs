@@ -98,7 +98,7 @@ impl Mdr {
     /// 32 times) where the contact grows beyond.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a number is not positive, the relaxation function is invalid, or the
+    /// [`Error::Invalid`] if a number is not positive, the relaxation function is invalid, or the
     /// springs are fewer than 2 or more than a million.
     pub fn new(
         profile: MdrProfile,
@@ -145,7 +145,7 @@ impl Mdr {
     /// Goes on by `dt` >= 0 \[s\] (0: a jump) to the target.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where `dt` is negative, the load is negative, the target is not finite, a
+    /// [`Error::Invalid`] if `dt` is negative, the load is negative, the target is not finite, a
     /// relaxation function with a viscosity jumps, the contact would open from within (it is not one
     /// disc any more), or it outgrows the row.
     pub fn step(&mut self, dt: f64, target: MdrTarget) -> Result<MdrState> {

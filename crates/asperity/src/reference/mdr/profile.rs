@@ -43,7 +43,7 @@ impl MdrProfile {
         }
     }
 
-    /// The x >= 0 where g(x) = height \[m\].
+    /// The x >= 0 if g(x) = height \[m\].
     pub fn reach(&self, height: f64) -> f64 {
         match self {
             MdrProfile::Sphere { radius } => (height * radius).sqrt(),

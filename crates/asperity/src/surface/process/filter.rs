@@ -85,7 +85,7 @@ impl Band {
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`] where a height is undefined, or a wavelength is not positive or the longest is
+/// [`Error::Invalid`] if a height is undefined, or a wavelength is not positive or the longest is
 /// below the shortest.
 pub fn filter(surface: &Surface, band: Band) -> Result<Surface> {
     for (name, cut_off) in [("longest wavelength", band.longest), ("shortest wavelength", band.shortest)] {

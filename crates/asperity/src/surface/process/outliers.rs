@@ -29,7 +29,7 @@ impl Default for Outliers {
 /// The surface with its outliers undefined; fill them next.
 ///
 /// # Errors
-/// [`Error::Invalid`] where the threshold is not positive or the radius not between 1 and 10.
+/// [`Error::Invalid`] if the threshold is not positive or the radius not between 1 and 10.
 pub fn remove_outliers(surface: &Surface, outliers: Outliers) -> Result<Surface> {
     positive("threshold of the outliers", outliers.threshold, "(standard deviations)")?;
     if !(1..=10).contains(&outliers.radius) {
@@ -120,7 +120,7 @@ mod lanes {
 
     type Lanes = [f64; LANES];
 
-    /// The medians around (i, j) ... (i, j + LANES - 1); `None` where a neighbourhood is cut off by the edge or holds
+    /// The medians around (i, j) ... (i, j + LANES - 1); `None` if a neighbourhood is cut off by the edge or holds
     /// an undefined point.
     pub fn medians(heights: ArrayView2<f64>, radius: usize, (i, j): (usize, usize)) -> Option<Lanes> {
         let (nx, ny) = heights.dim();

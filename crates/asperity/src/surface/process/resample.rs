@@ -44,7 +44,7 @@ pub enum Resampling {
 /// ```
 ///
 /// # Errors
-/// [`Error::Invalid`](crate::Error::Invalid) where a count is 0 or absurd, or (band-limited) a height is undefined.
+/// [`Error::Invalid`](crate::Error::Invalid) if a count is 0 or absurd, or (band-limited) a height is undefined.
 pub fn resample(surface: &Surface, cells: [usize; 2], method: Resampling) -> Result<Surface> {
     let cells = if surface.grid().is_line() { [cells[0], 1] } else { cells };
     let grid = surface.grid().with_cells(cells)?;

@@ -35,7 +35,7 @@ impl fmt::Display for Window {
 /// surface first: a window turns a mean or a tilt into long waves.
 ///
 /// # Errors
-/// [`Error::Invalid`] where the share of Tukey's window is not in \[0, 1\].
+/// [`Error::Invalid`] if the share of Tukey's window is not in \[0, 1\].
 pub fn window(surface: &Surface, shape: Window) -> Result<Surface> {
     if let Window::Tukey { share } = shape
         && !(0.0..=1.0).contains(&share)

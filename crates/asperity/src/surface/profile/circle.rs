@@ -78,7 +78,7 @@ pub fn remove_circle(heights: &[f64], spacing: f64, radius: Option<f64>) -> Resu
     Ok((flat.collect(), sign * r * half))
 }
 
-/// Coefficients of three functions that fit z best, by the normal equations; 0 where a function adds nothing.
+/// Coefficients of three functions that fit z best, by the normal equations; 0 if a function adds nothing.
 fn fit(x: &[f64], z: &[f64], basis: impl Fn(f64) -> [f64; 3]) -> [f64; 3] {
     let mut m = [[0.0; 4]; 3];
     for (x, z) in x.iter().zip(z) {

@@ -34,7 +34,7 @@ pub struct ProfileParameters {
     pub rsk: f64,
     /// Rku: kurtosis; 0 for a flat.
     pub rku: f64,
-    /// Rsm: mean length of a profile element \[m\]; `None` where there is no whole one.
+    /// Rsm: mean length of a profile element \[m\]; `None` if there is no whole one.
     pub rsm: Option<f64>,
     /// Rdq: root mean square of the slope; `None` for fewer than seven points.
     pub rdq: Option<f64>,

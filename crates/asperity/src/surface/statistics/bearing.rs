@@ -21,7 +21,7 @@ impl BearingCurve {
     /// At `levels` heights, 2 at least.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where no point is defined or the levels are fewer than 2 or more than 2^24.
+    /// [`Error::Invalid`] if no point is defined or the levels are fewer than 2 or more than 2^24.
     pub fn of(surface: &Surface, levels: usize) -> Result<Self> {
         if !(2..=MOST).contains(&levels) {
             return Err(Error::invalid(
@@ -87,7 +87,7 @@ impl BearingCurve {
     /// Smc(mr): height \[m\] that the share mr of the surface reaches, linear between the levels.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the share is not in \[0, 1\].
+    /// [`Error::Invalid`] if the share is not in \[0, 1\].
     pub fn height_at(&self, share: f64) -> Result<f64> {
         if !(0.0..=1.0).contains(&share) {
             return Err(Error::invalid("material ratio", share, "between 0 and 1"));
@@ -105,7 +105,7 @@ impl BearingCurve {
 /// Probability density of the heights: (middles of `bins` equal bins \[m\], density \[1/m\]).
 ///
 /// # Errors
-/// [`Error::Invalid`] where no point is defined, the surface is flat (its density is infinite), or the
+/// [`Error::Invalid`] if no point is defined, the surface is flat (its density is infinite), or the
 /// bins are none or more than 2^24.
 pub fn height_distribution(surface: &Surface, bins: usize) -> Result<(Vec<f64>, Vec<f64>)> {
     if !(1..=MOST).contains(&bins) {

@@ -43,7 +43,7 @@ impl Autocorrelation {
     /// Of a surface whose points are all defined.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a point is undefined or the surface is flat.
+    /// [`Error::Invalid`] if a point is undefined or the surface is flat.
     pub fn of(surface: &Surface, extent: Extent) -> Result<Self> {
         let (grid, heights) = (*surface.grid(), surface.heights());
         check_defined(heights)?;
@@ -112,20 +112,20 @@ impl Autocorrelation {
         sums.into_iter().filter(|s| s.2 > 0).map(|(lag, f, n)| (lag / n as f64, f / n as f64)).unzip()
     }
 
-    /// Sal, the shortest lag at which f falls to 0.2 \[m\]; `None` where it does not within the known lags.
+    /// Sal, the shortest lag at which f falls to 0.2 \[m\]; `None` if it does not within the known lags.
     pub fn length(&self) -> Option<f64> {
         self.fastest_decay().map(|(_, length)| length)
     }
 
     /// The direction in which f falls to 0.2 first, an angle from x to y in 0 to pi \[rad\], and the lag at which it does \[m\]: Sal.
-    /// `None` where f does not fall that far within the known lags.
+    /// `None` if f does not fall that far within the known lags.
     pub fn fastest_decay(&self) -> Option<(f64, f64)> {
         let found = self.lengths().enumerate().filter_map(|(n, lag)| Some((n, lag?)));
         let (degree, lag) = found.min_by(|a, b| a.1.total_cmp(&b.1))?;
         Some((PI * degree as f64 / 180.0, lag))
     }
 
-    /// Str, the shortest over the longest of the lags at which f falls to 0.2; `None` where it does not
+    /// Str, the shortest over the longest of the lags at which f falls to 0.2; `None` if it does not
     /// in some direction.
     pub fn texture_aspect_ratio(&self) -> Option<f64> {
         let lengths: Option<Vec<f64>> = self.lengths().collect();

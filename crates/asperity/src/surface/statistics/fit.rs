@@ -58,7 +58,7 @@ impl SelfAffineFit {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] where fewer than five rings with power lie in the range.
+    /// [`Error::Invalid`] if fewer than five rings with power lie in the range.
     pub fn of(spectrum: &RadialSpectrum, longest: f64, shortest: f64) -> Result<Self> {
         // Powers of rounding size lie beyond a cut-off of the surface.
         let largest = spectrum.power.iter().copied().fold(0.0, f64::max);

@@ -50,7 +50,7 @@ impl HeightStatistics {
     /// Of the defined points.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where no point is defined.
+    /// [`Error::Invalid`] if no point is defined.
     pub fn of(surface: &Surface) -> Result<Self> {
         let heights = surface.heights();
         let mean = mean(heights)?;
@@ -88,7 +88,7 @@ impl HeightStatistics {
 /// Mean of the defined heights \[m\].
 ///
 /// # Errors
-/// [`Error::Invalid`] where no height is defined.
+/// [`Error::Invalid`] if no height is defined.
 pub fn mean(heights: ArrayView2<f64>) -> Result<f64> {
     // About the first height: a surface far from zero keeps its digits.
     let Some(first) = defined(heights).next() else {
@@ -101,7 +101,7 @@ pub fn mean(heights: ArrayView2<f64>) -> Result<f64> {
 /// Root mean square of the defined heights about their mean \[m\], Sq.
 ///
 /// # Errors
-/// [`Error::Invalid`] where no height is defined.
+/// [`Error::Invalid`] if no height is defined.
 pub fn rms_height(heights: ArrayView2<f64>) -> Result<f64> {
     let mean = mean(heights)?;
     let (sum, count) = defined(heights).fold((0.0, 0usize), |(sum, n), z| (sum + (z - mean).powi(2), n + 1));

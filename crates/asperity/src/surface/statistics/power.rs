@@ -61,7 +61,7 @@ impl RadialSpectrum {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a point is undefined or the rings are not between 1 and 1000 to a decade.
+    /// [`Error::Invalid`] if a point is undefined or the rings are not between 1 and 1000 to a decade.
     pub fn of(surface: &Surface, rings: Rings) -> Result<Self> {
         PowerSpectrum::of(surface)?.radial(rings)
     }
@@ -79,7 +79,7 @@ impl PowerSpectrum {
     /// Of a surface whose points are all defined.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a point is undefined.
+    /// [`Error::Invalid`] if a point is undefined.
     pub fn of(surface: &Surface) -> Result<Self> {
         PowerSpectrum::of_heights(surface.grid(), surface.heights())
     }
@@ -119,7 +119,7 @@ impl PowerSpectrum {
     /// Radially averaged spectrum.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the rings are not between 1 and 1000 to a decade.
+    /// [`Error::Invalid`] if the rings are not between 1 and 1000 to a decade.
     pub fn radial(&self, rings: Rings) -> Result<RadialSpectrum> {
         self.averaged(rings, [[1.0, 0.0], [0.0, 1.0]])
     }
@@ -313,7 +313,7 @@ impl SpectralMoments {
     /// slope along it.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where a point is undefined.
+    /// [`Error::Invalid`] if a point is undefined.
     pub fn of(surface: &Surface) -> Result<Self> {
         Ok(PowerSpectrum::of(surface)?.moments())
     }
@@ -328,7 +328,7 @@ impl SpectralMoments {
 /// sum of |q|^2 |A_q|^2. Waves on the Nyquist frequency of an axis have no derivative along it.
 ///
 /// # Errors
-/// [`Error::Invalid`] where a height is undefined or the shape is not the grid's.
+/// [`Error::Invalid`] if a height is undefined or the shape is not the grid's.
 pub fn rms_gradient(grid: &Grid, heights: ArrayView2<f64>) -> Result<f64> {
     Ok(PowerSpectrum::of_heights(grid, heights)?.even_moments()[1].sqrt())
 }

@@ -29,7 +29,7 @@ use crate::error::{Error, Result};
 pub struct SlopeStatistics {
     /// Root mean square slope Sdq.
     pub sdq: f64,
-    /// Developed interfacial area ratio Sdr (1 is 100 %); 0 where no square of points is defined.
+    /// Developed interfacial area ratio Sdr (1 is 100 %); 0 if no square of points is defined.
     pub sdr: f64,
 }
 
@@ -45,7 +45,7 @@ impl SlopeStatistics {
     /// Of the defined points.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where no two neighbours are defined.
+    /// [`Error::Invalid`] if no two neighbours are defined.
     pub fn of(surface: &Surface) -> Result<Self> {
         let (heights, [dx, dy]) = (surface.heights(), surface.grid().spacing());
         // Rows in parallel, their sums added in order.

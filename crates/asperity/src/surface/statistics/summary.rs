@@ -20,9 +20,9 @@ const MOST_FILLED: f64 = 0.25;
 pub struct Summary {
     /// Height parameters of the heights as given.
     pub heights: HeightStatistics,
-    /// Slope parameters of the heights as given; `None` where no point has neighbours.
+    /// Slope parameters of the heights as given; `None` if no point has neighbours.
     pub slopes: Option<SlopeStatistics>,
-    /// What the waves tell; `None` where more than a quarter of the points are undefined.
+    /// What the waves tell; `None` if more than a quarter of the points are undefined.
     pub waves: Option<Waves>,
 }
 
@@ -36,7 +36,7 @@ pub struct Waves {
     /// Radially averaged power spectrum; of a surface with a clear lay averaged over ellipses of its axes, over the wave number
     /// across it.
     pub spectrum: RadialSpectrum,
-    /// Self-affine spectrum fitted over the whole range, up to where the spectrum breaks off; `None` where there are
+    /// Self-affine spectrum fitted over the whole range, up to where the spectrum breaks off; `None` if there are
     /// too few rings.
     pub fit: Option<SelfAffineFit>,
 }
@@ -66,7 +66,7 @@ impl Summary {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`](crate::Error::Invalid) where no point is defined.
+    /// [`Error::Invalid`](crate::Error::Invalid) if no point is defined.
     pub fn of(surface: &Surface, extent: Extent) -> Result<Self> {
         let heights = HeightStatistics::of(surface)?;
         // A single line of one point, say, has no slope, and that is all that can be wrong.
@@ -104,7 +104,7 @@ impl Waves {
     }
 }
 
-/// Wavelength at which the spectrum breaks off \[m\], 0 where it does not: there the power falls faster than q^-8,
+/// Wavelength at which the spectrum breaks off \[m\], 0 if it does not: there the power falls faster than q^-8,
 /// twice the steepest self-affine spectrum, and never comes back. An instrument or a filter cuts waves off like that.
 fn cut_off(spectrum: &RadialSpectrum) -> f64 {
     /// Rings of fewer waves scatter too much to tell: the mean of 100 random powers by a tenth.

@@ -181,7 +181,7 @@ fn jacobian([b, c, d]: [f64; 3]) -> [[f64; 3]; 3] {
     ]
 }
 
-/// Cramer's rule; `None` where the determinant vanishes.
+/// Cramer's rule; `None` if the determinant vanishes.
 fn solve3(m: [[f64; 3]; 3], r: [f64; 3]) -> Option<[f64; 3]> {
     let det = |m: [[f64; 3]; 3]| {
         m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])

@@ -101,16 +101,16 @@ impl Synthesis {
     /// Checks the lay and the distribution; [`SelfAffine::validate`] checks the spectrum against a grid.
     ///
     /// # Errors
-    /// [`Error::Invalid`] where the lay is outside its domain, or where no such distribution exists.
+    /// [`Error::Invalid`] if the lay is outside its domain, or where no such distribution exists.
     pub fn validate(&self) -> Result<()> {
         let Lay { angle, ratio } = self.lay.unwrap_or(Lay { angle: 0.0, ratio: 1.0 });
         if !(ratio.is_finite() && ratio >= 1.0) {
-            return Err(Error::invalid("ratio of the lay", ratio, "finite, 1 or more"));
+            return Err(Error::invalid("ratio of the lay", ratio, "finite, 1 or more").of("lay"));
         }
         if !angle.is_finite() {
-            return Err(Error::invalid("angle of the lay", angle, "finite, in rad"));
+            return Err(Error::invalid("angle of the lay", angle, "finite, in rad").of("lay"));
         }
-        self.distribution.validate()
+        self.distribution.validate().map_err(|error| error.of("distribution"))
     }
 }
 

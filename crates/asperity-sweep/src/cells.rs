@@ -58,7 +58,7 @@ impl Cells for Set<'_> {
         8 * self.0.len()
     }
     fn split(self, mid: usize) -> (Self, Self) {
-        let (first, second) = self.0.split_at(mid / 8);
+        let (first, second) = self.0.split_at(mid.div_ceil(8));
         (Set(first), Set(second))
     }
 }
@@ -68,7 +68,7 @@ impl Cells for SetMut<'_> {
         8 * self.0.len()
     }
     fn split(self, mid: usize) -> (Self, Self) {
-        let (first, second) = self.0.split_at_mut(mid / 8);
+        let (first, second) = self.0.split_at_mut(mid.div_ceil(8));
         (SetMut(first), SetMut(second))
     }
 }

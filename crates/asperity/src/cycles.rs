@@ -32,8 +32,8 @@ const FEWEST: usize = 8;
 /// The full periods from `start` \[s\] on, of rows in order of `time` \[s\] with `load` \[N\] and `approach` \[m\]; steps need
 /// not be equal, and ends of periods need not be rows. Periods with fewer than 8 steps are left out.
 ///
-/// Each first harmonic is the least-squares fit of mean, drift, cosine and sine to the rows of the period, weighted by
-/// their steps: exact for a harmonic on a straight line, whatever the steps.
+/// Each first harmonic is the least-squares fit of mean, drift, cosine and sine to the rows of the period, weighted by their
+/// steps: exact for a harmonic on a straight line, for any steps.
 ///
 /// ```
 /// // K* = 100 exp(0.3 i) N/m at 2 Hz, an amplitude of 1 um: a cycle dissipates pi |K*| sin(delta) w1^2.

@@ -9,14 +9,14 @@ pub enum Error {
     /// An argument is outside its domain.
     #[error("{what} is {value}, but must be {expected}")]
     Invalid {
-        /// Path of the argument among those of the call, in the words of case files ("longest", "histogram.bins",
-        /// "body\[0\].layer\[1\]"); empty where the whole is meant.
+        /// Path of the argument among those of the call, in the names of case files ("longest", "histogram.bins",
+        /// "body\[0\].layer\[1\]"); empty if it concerns the whole.
         parameter: String,
         /// The quantity, in terms of the field ("Poisson's ratio", "radius").
         what: String,
         /// The value as given.
         value: String,
-        /// What is accepted, with unit.
+        /// The accepted values, with unit.
         expected: String,
     },
     /// The contact cannot carry the load: W > H A (no solution exists).
@@ -110,7 +110,7 @@ impl Error {
         Error::Invalid { parameter: String::new(), what, value: value.to_string(), expected }
     }
 
-    /// The same error, of the argument `outer` or of one inside of it.
+    /// The same error, for the argument `outer` or one inside it.
     #[must_use]
     pub fn of(self, outer: &str) -> Self {
         match self {
@@ -123,7 +123,7 @@ impl Error {
     }
 }
 
-/// The error of a `what` that is `value`, but must be `expected`, unless that `holds`.
+/// The error that `what` is `value`, but must be `expected`, unless `holds` is true.
 pub(crate) fn require(
     holds: bool,
     what: impl Into<String>,
@@ -170,7 +170,7 @@ pub(crate) fn rounded(x: f64) -> String {
     format!("{x:.3e}").parse::<f64>().map_or_else(|_| x.to_string(), |x| x.to_string())
 }
 
-/// A number in four digits: "5", "0.025", "1.234e-7".
+/// A number with four digits: "5", "0.025", "1.234e-7".
 fn four(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 || (1e-3..1e5).contains(&size) {

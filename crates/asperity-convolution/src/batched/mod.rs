@@ -199,7 +199,7 @@ impl<T: Real> Chain<'_, T> {
     /// wait for another thread.
     ///
     /// # Panics
-    /// Where `kept` has another length.
+    /// If `kept` has another length.
     pub fn modify(&mut self, kept: &mut [T], modify: &Modify<T>) {
         self.engine.modify(kept, modify, true);
     }
@@ -207,7 +207,7 @@ impl<T: Real> Chain<'_, T> {
     /// The last operation: x is not convolved again.
     ///
     /// # Panics
-    /// Where `kept` has another length.
+    /// If `kept` has another length.
     pub fn finish(self, kept: &mut [T], modify: &Modify<T>) {
         self.engine.modify(kept, modify, false);
     }

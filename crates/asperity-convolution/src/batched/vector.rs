@@ -53,7 +53,7 @@ pub unsafe trait Vector:
 {
     /// What one lane holds.
     type Scalar: Scalar;
-    /// How many lanes there are.
+    /// Number of lanes.
     const LANES: usize;
 
     /// x in every lane.

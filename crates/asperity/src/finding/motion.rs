@@ -15,7 +15,7 @@ const UNCERTAIN: f64 = 0.1;
 const NONE: f64 = 1e-7;
 /// Rows with less than this fraction of the largest force are ignored, because friction changes its sign there.
 const SMALL: f64 = 0.1;
-/// Memory length over domain up to which the material has not forgotten the previous contact or averaged over many.
+/// Range of memory length over domain in which the previous contact still has an effect at the next one.
 const REACH: std::ops::Range<f64> = 0.1..10.0;
 /// Smallest fraction of the compliance of a relevant branch.
 const SHARE: f64 = 0.05;

@@ -65,7 +65,7 @@ mod tests {
 
     #[test]
     fn coefficients_fall_and_are_convex() {
-        // So their cosine series is positive on any torus (Polya), and the operator positive definite.
+        // Therefore their cosine series is positive on any torus (Polya), and the operator is positive definite.
         let k = strip(1e-6, 500);
         assert!(k.windows(2).all(|k| k[0] > k[1]));
         assert!(k.windows(3).all(|k| k[0] + k[2] > 2.0 * k[1]));

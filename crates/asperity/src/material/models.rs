@@ -82,8 +82,8 @@ impl Material {
         Self::generalised_kelvin(measure, Creep { fluidity, ..Creep::elastic(1.0 / modulus) })
     }
 
-    /// Spring and dashpot in parallel: J = (1 - exp(-t/`retardation_time`))/G. It does not yield at
-    /// t = 0+, so a jump of the load has no solution there.
+    /// Spring and dashpot in parallel: J = (1 - exp(-t/`retardation_time`))/G. Its compliance is zero at t = 0+, so a jump of the
+    /// load has no solution.
     ///
     /// ```
     /// use asperity::material::{Material, Modulus};
@@ -177,7 +177,7 @@ impl Material {
     /// ```
     ///
     /// # Errors
-    /// As [`Creep::validate`], or where the creep function is 0 at all times.
+    /// As [`Creep::validate`], or if the creep function is 0 at all times.
     pub fn generalised_kelvin(measure: Modulus, creep: Creep) -> Result<Self> {
         creep.validate()?;
         let creep = creep.tidy();
@@ -185,8 +185,7 @@ impl Material {
         Ok(Material { measure, creep })
     }
 
-    /// The material at a temperature whose shift factor a_T is `factor`: all its times are as many times
-    /// as long.
+    /// The material at a temperature whose shift factor a_T is `factor`: all its times are multiplied by this factor.
     ///
     /// # Errors
     /// `Invalid` if a time leaves the range of floating-point numbers.
@@ -195,7 +194,7 @@ impl Material {
         Self::generalised_kelvin(self.measure, self.creep.stretched(factor))
     }
 
-    /// The material whose moduli are `factor` times as large: 1/b_T at a temperature with a
+    /// The material with all moduli multiplied by `factor`: 1/b_T at a temperature with a
     /// [`VerticalShift`](super::VerticalShift).
     ///
     /// ```

@@ -3,7 +3,7 @@
 use super::{Material, Shift, VerticalShift};
 use crate::error::{Error, Result};
 
-/// What a constant temperature makes of a material: its times are multiplied by a_T, its moduli are divided by b_T.
+/// The effect of a constant temperature on a material: its times are multiplied by a_T, its moduli are divided by b_T.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TemperatureFactors {
     /// a_T.
@@ -45,14 +45,14 @@ impl TemperatureFactors {
     /// The material that is `reference` at the reference temperature.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if its times or moduli are no numbers.
+    /// [`Error::Invalid`] if its times or moduli are out of range.
     pub fn of(self, reference: &Material) -> Result<Material> {
         let stretched =
             if self.times == 1.0 { reference.clone() } else { reference.stretched(self.times)? };
         if self.moduli == 1.0 { Ok(stretched) } else { stretched.scaled(1.0 / self.moduli) }
     }
 
-    /// The error of a material with a vertical shift whose temperature changes.
+    /// The error for a material with a vertical shift whose temperature changes.
     pub fn not_constant() -> Error {
         Error::invalid(
             "temperature of a material with a vertical shift",

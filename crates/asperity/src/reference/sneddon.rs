@@ -43,7 +43,7 @@ impl SneddonCone {
         Ok(SneddonCone { slope, contact_modulus, load, contact_radius: a, approach: FRAC_PI_2 * slope * a })
     }
 
-    /// From the approach \[m\]; a negative one is no contact.
+    /// From the approach \[m\]; a negative approach means no contact.
     ///
     /// # Errors
     /// [`Error::Invalid`] if the slope or the modulus is not positive or the approach not finite.
@@ -110,9 +110,8 @@ impl CircularPunch {
         Ok(CircularPunch { radius, load, approach: load / (2.0 * contact_modulus * radius) })
     }
 
-    /// Under the load that `history` has just after t \[s\], on a body of contact creep compliance C(t):
-    /// approach = (1 / 2a) int C(t - s) dW(s), for any history that keeps the contact full, W > 0 (E. H.
-    /// Lee and J. R. M. Radok, J. Appl. Mech. 27 (1960) 438).
+    /// Under the load of `history` just after t \[s\], on a body of contact creep compliance C(t): approach = (1 / 2a) int C(t -
+    /// s) dW(s), for any history that keeps the contact full, W > 0 (E. H. Lee and J. R. M. Radok, J. Appl. Mech. 27 (1960) 438).
     ///
     /// # Errors
     /// [`Error::Invalid`] if the radius is not positive, the history or the creep is invalid, or t is
@@ -145,7 +144,7 @@ mod tests {
     use super::*;
     use crate::material::CreepTerm;
 
-    // The formulas have a handful of operations each.
+    // The formulas have a few operations each.
     const ROUNDING: f64 = 2e-15;
 
     fn close(a: f64, b: f64) -> bool {

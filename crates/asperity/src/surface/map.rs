@@ -29,7 +29,7 @@ impl Surface {
     pub fn new(grid: Grid, mut heights: Array2<f64>) -> Result<Self> {
         check_shape(&grid, heights.view())?;
         heights.par_mapv_inplace(|z| if z.is_finite() { z } else { f64::NAN });
-        // C order, whatever came in.
+        // C order for any input.
         if !heights.is_standard_layout() {
             heights = heights.as_standard_layout().into_owned();
         }

@@ -34,9 +34,9 @@ pub struct HeightStatistics {
     pub sa: f64,
     /// Root mean square deviation from the mean \[m\].
     pub sq: f64,
-    /// Skewness; NaN for a flat.
+    /// Skewness; NaN for a flat surface.
     pub ssk: f64,
-    /// Kurtosis, 3 for a Gaussian surface; NaN for a flat.
+    /// Kurtosis, 3 for a Gaussian surface; NaN for a flat surface.
     pub sku: f64,
     /// Highest peak above the mean \[m\].
     pub sp: f64,
@@ -90,7 +90,7 @@ impl HeightStatistics {
 /// # Errors
 /// [`Error::Invalid`] if no height is defined.
 pub fn mean(heights: ArrayView2<f64>) -> Result<f64> {
-    // About the first height: a surface far from zero keeps its digits.
+    // Relative to the first height, so that a surface far from zero keeps its digits.
     let Some(first) = defined(heights).next() else {
         return Err(Error::invalid("number of defined heights", 0, "1 at least"));
     };
@@ -135,8 +135,8 @@ mod tests {
 
     #[test]
     fn a_wave_has_its_closed_forms() {
-        // sin: Sa = 2/pi, Sq = 1/sqrt 2, Ssk = 0, Sku = 3/2; the sums over whole waves are exact but
-        // for Sa, whose kinks leave (pi/n)^2 / 6.
+        // sin: Sa = 2/pi, Sq = 1/sqrt 2, Ssk = 0, Sku = 3/2; the sums over whole waves are exact except for Sa, whose kinks cause
+        // an error of (pi/n)^2 / 6.
         let s = of(Array2::from_shape_fn((64, 3), |(i, _)| {
             1e-6 * (std::f64::consts::TAU * (i as f64 + 0.5) / 64.0).sin() + 0.25
         }));

@@ -5,9 +5,9 @@
 //! Sdr = <sqrt(1 + (dz/dx)^2 + (dz/dy)^2) - 1>      developed over projected area, less one
 //! ```
 //!
-//! Each mean of Sdq runs over the pairs of neighbours that are both defined; Sdr over the squares of
-//! four defined points, each the mean of its two ways of being cut into triangles. For a periodic
-//! surface known by its waves see [`rms_gradient`](super::rms_gradient).
+//! Each mean of Sdq is over the pairs of neighbours that are both defined. Sdr is over the squares of four defined points, each
+//! with the mean of its two divisions into triangles. For a periodic surface given by its waves see
+//! [`rms_gradient`](super::rms_gradient).
 
 use ndarray::parallel::prelude::*;
 use ndarray::{ArrayView1, Axis};

@@ -8,7 +8,7 @@ use toml::Value;
 
 use super::convert::{self, Checks};
 use super::error::CaseError;
-use super::plan::Surface;
+use super::given;
 use super::raw;
 use super::read;
 use super::text::Text;
@@ -180,25 +180,11 @@ pub fn roughness(keys: &[(&str, &str)]) -> Result<(Grid, Part), Vec<Fault>> {
             }
         }
     }
-    let document = document(vec![
-        ("domain", Value::Table(domain)),
-        ("surface", Value::Array(vec![Value::Table(surface)])),
+    let document = toml::Table::from_iter([
+        ("domain".to_owned(), Value::Table(domain)),
+        ("surface".to_owned(), Value::Array(vec![Value::Table(surface)])),
     ]);
-    let text = Text::parse(&document).map_err(faults)?;
-    let (domain, surfaces) = read::roughness(&text).map_err(faults)?;
-    let mut checks = Checks { text: &text, dir: Path::new(""), errors: Vec::new() };
-    let grid = convert::domain::grid(&mut checks, &domain, &[]);
-    convert::domain::memory(&mut checks, &domain, grid.as_ref(), 0, 0, asperity::Scheme::Linear);
-    let part = surfaces.iter().find_map(|surface| match &surface.value {
-        raw::Surface::SelfAffine(roughness) => {
-            convert::surface::self_affine(&mut checks, roughness, grid.as_ref())
-        }
-        _ => None,
-    });
-    match (grid, part, checks.errors.is_empty()) {
-        (Some(grid), Some(Surface::Part(part)), true) => Ok((grid, part)),
-        _ => Err(faults(checks.errors)),
-    }
+    given::surface(&document).map_err(|wrong| faults(wrong.errors))
 }
 
 /// The stress below the surface from words: the keys of `[stress]` but `times`, for a body among these.

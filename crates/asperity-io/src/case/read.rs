@@ -11,7 +11,7 @@ use toml::de::{DeString, DeTable, DeValue, ValueDeserializer};
 use super::error::CaseError;
 use super::quantity::range::{Poisson, Positive};
 use super::quantity::{Number, Pressure};
-use super::raw::{At, Document, Domain, Material, Motion, Stress, Surface, Time};
+use super::raw::{At, Body, Document, Domain, Material, Motion, Shift, Stress, Surface, Temperature, Time};
 use super::text::{MOST_ERRORS, Text};
 use super::words;
 
@@ -97,6 +97,21 @@ pub fn roughness(text: &Text<'_>) -> Read<(At<Domain>, Vec<At<Surface>>)> {
         (Some(domain), true) => Ok((domain, surfaces)),
         _ => Err(reader.errors),
     }
+}
+
+/// The bodies and the temperature of a document that may have nothing else.
+pub fn bodies(text: &Text<'_>) -> Read<(Vec<At<Body>>, Option<At<Temperature>>)> {
+    let mut reader = Reader { text, errors: Vec::new(), misspelt: Vec::new() };
+    let bodies = reader.list("body", MATERIAL);
+    let temperature = reader.optional("temperature", HISTORY);
+    if reader.errors.is_empty() { Ok((bodies, temperature)) } else { Err(reader.errors) }
+}
+
+/// The table `shift` of a document that has nothing else.
+pub fn shift(text: &Text<'_>) -> Read<At<Shift>> {
+    let mut reader = Reader { text, errors: Vec::new(), misspelt: Vec::new() };
+    let shift = reader.required("shift", &[Tag { inside: &[], key: "model" }]);
+    shift.ok_or(reader.errors)
 }
 
 /// The section `[stress]` of a document that may have nothing else.

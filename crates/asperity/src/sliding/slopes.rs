@@ -32,12 +32,9 @@ impl Slopes {
         let mut middle = None;
         for part in parts {
             match part {
-                Part::Shape { shape: Shape::FlatPunch(_), .. } => {
-                    return Err(Error::invalid(
-                        "surface of a contact in motion",
-                        "a flat punch",
-                        "a shape with slopes: the force on the edge of a punch cannot be computed from its slope",
-                    ));
+                Part::Shape { shape: Shape::FlatPunch(_), .. } => return Err(edge()),
+                Part::Heights { heights, .. } if heights.iter().any(|z| z.is_infinite()) => {
+                    return Err(edge());
                 }
                 Part::Shape { shape, center } => {
                     let at = [x0 + center[0], y0 + center[1]];
@@ -70,6 +67,14 @@ impl Slopes {
         self.x -= &x;
         self.y -= &y;
     }
+}
+
+fn edge() -> Error {
+    Error::invalid(
+        "surface of a contact in motion",
+        "a flat punch",
+        "a shape with slopes: the force on the edge of a punch cannot be computed from its slope",
+    )
 }
 
 /// dz/dx and dz/dy of a field.

@@ -1,10 +1,11 @@
-//! The hardness of each cell, from a file.
+//! The hardness of each cell, from a file or an array.
 
 use asperity::Grid;
 use ndarray::Array2;
 
 use super::Checks;
-use crate::case::raw::{At, HardnessFile};
+use crate::case::given::of_grid;
+use crate::case::raw::{At, Body, HardnessFile};
 use crate::digest::md5;
 use crate::topography::{Format, ReadOptions, read};
 
@@ -15,33 +16,57 @@ pub struct Hardness {
 }
 
 /// The softer body decides in each cell; `None` after a fault.
-pub fn of_cells<'a>(
-    checks: &mut Checks<'_, '_>,
-    files: impl Iterator<Item = &'a At<HardnessFile>>,
-    grid: Option<&Grid>,
-) -> Option<Hardness> {
+pub fn of_cells(checks: &mut Checks<'_, '_>, bodies: &[At<Body>], grid: Option<&Grid>) -> Option<Hardness> {
     let mut all = Hardness { map: None, files: Vec::new() };
     let mut good = true;
-    for at in files {
-        match one(checks, at, grid) {
-            Some((map, file)) => {
-                all.map = Some(match all.map.take() {
-                    Some(softer) => ndarray::Zip::from(&softer).and(&map).map_collect(|a, b| a.min(*b)),
-                    None => map,
-                });
-                all.files.push(file);
-            }
-            None => good = false,
+    for body in bodies {
+        let of_file = body.value.hardness_file.as_ref().map(|at| of_file(checks, at, grid));
+        let of_array = body.value.hardness_array.as_ref().map(|at| Some((of_array(checks, at, grid)?, None)));
+        for found in of_file.into_iter().chain(of_array) {
+            let Some((map, file)) = found else {
+                good = false;
+                continue;
+            };
+            all.map = Some(match all.map.take() {
+                Some(softer) => ndarray::Zip::from(&softer).and(&map).map_collect(|a, b| a.min(*b)),
+                None => map,
+            });
+            all.files.extend(file);
         }
     }
     good.then_some(all)
 }
 
-fn one(
+fn of_array(checks: &mut Checks<'_, '_>, at: &At<String>, grid: Option<&Grid>) -> Option<Array2<f64>> {
+    match of_grid(checks.text.arrays, &at.value, grid?) {
+        Ok(map) => positive(checks, at, map.as_standard_layout().into_owned(), "the array"),
+        Err((message, expected)) => {
+            checks.fault(&at.span, message, &expected, None);
+            None
+        }
+    }
+}
+
+/// The map, where every cell has a hardness.
+fn positive(
+    checks: &mut Checks<'_, '_>,
+    at: &At<String>,
+    map: Array2<f64>,
+    holder: &str,
+) -> Option<Array2<f64>> {
+    if let Some(((i, j), hardness)) = map.indexed_iter().find(|(_, h)| !(h.is_finite() && **h > 0.0)) {
+        let what = format!("the hardness of cell ({i}, {j}) in {holder} is {hardness} Pa");
+        checks.fault(&at.span, what, "finite and greater than 0 in every cell", None);
+        return None;
+    }
+    Some(map)
+}
+
+fn of_file(
     checks: &mut Checks<'_, '_>,
     at: &At<HardnessFile>,
     grid: Option<&Grid>,
-) -> Option<(Array2<f64>, (String, String))> {
+) -> Option<(Array2<f64>, Option<(String, String)>)> {
     let HardnessFile { path, unit } = &at.value;
     let full = checks.file(path)?;
     let digest = match std::fs::read(&full) {
@@ -75,10 +100,6 @@ fn one(
     }
     let unit = unit.map_or(1.0, |unit| unit.get());
     let map = numbers.heights.mapv(|number| number * unit);
-    if let Some(((i, j), hardness)) = map.indexed_iter().find(|(_, h)| !(h.is_finite() && **h > 0.0)) {
-        let what = format!("the hardness of cell ({i}, {j}) in {} is {hardness} Pa", full.display());
-        checks.fault(&path.span, what, "finite and greater than 0 in every cell", None);
-        return None;
-    }
-    Some((map, (path.value.clone(), digest)))
+    let map = positive(checks, path, map, &full.display().to_string())?;
+    Some((map, Some((path.value.clone(), digest))))
 }

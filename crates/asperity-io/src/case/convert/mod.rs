@@ -27,15 +27,17 @@ use std::path::{Path, PathBuf};
 use asperity::kernel::Kernel;
 use asperity::load::Course;
 use asperity::material::Material;
+use asperity::surface::Part;
 use asperity::time::Plan;
 use asperity::{Boundary, Grid, Scheme, TimeGrid};
 
 use super::error::CaseError;
-use super::plan::{Output, Rows, Travel};
+use super::plan::{Output, Rows, Surface, Travel};
 use super::quantity::QuantityError;
 use super::raw::{self, At, Document};
 use super::text::{MOST_ERRORS, Text};
 use super::{Case, MaterialReport};
+use crate::curve::{ShiftRequest, VerticalRequest};
 
 /// Most letters of a title.
 const TITLE: usize = 1000;
@@ -70,7 +72,9 @@ pub fn case(
         time::first_step(material::shortest(&samples, points, end), course)
     };
     let stages = document.load.value.stages.as_ref().map(|list| list.value.as_slice()).unwrap_or_default();
-    let own = |stage: &At<raw::Stage>| stage.value.steps.is_some() || stage.value.spacing.is_some();
+    let own = |stage: &At<raw::Stage>| {
+        stage.value.steps.is_some() || stage.value.spacing.is_some() || stage.value.time.is_some()
+    };
     let all_own = !stages.is_empty() && stages.iter().all(own);
     let prescription = load::prescription(&mut checks, &document.load, line, |checks, stage, course| {
         time::of_stage(checks, stage, |end| first_step(end, course))
@@ -131,8 +135,7 @@ pub fn case(
     };
     let mut files: Vec<_> = samples.iter().flatten().filter_map(|sample| sample.file.clone()).collect();
     files.extend(temperatures.iter().flatten().filter_map(|t| t.file.clone()));
-    let maps = document.body.iter().filter_map(|body| body.value.hardness_file.as_ref());
-    let hardness = hardness::of_cells(&mut checks, maps, grid.as_ref());
+    let hardness = hardness::of_cells(&mut checks, &document.body, grid.as_ref());
     files.extend(hardness.iter().flat_map(|hardness| hardness.files.iter().cloned()));
     files.extend(prescription.iter().flat_map(|p| p.files.clone()));
     let plan = |breaks: &[f64]| match (&times, programme) {
@@ -289,6 +292,53 @@ pub fn case(
         }),
         _ => Err(checks.errors),
     }
+}
+
+/// Bodies that stand alone, in a run of these instants.
+pub fn bodies(
+    text: &Text<'_>,
+    bodies: &[At<raw::Body>],
+    temperature: Option<&At<raw::Temperature>>,
+    plan: &Plan,
+) -> Result<body::Pair, Vec<CaseError>> {
+    let mut checks = Checks { text, dir: Path::new(""), errors: Vec::new() };
+    let parts = layer::parts(&mut checks, bodies);
+    let samples: Vec<_> = parts.iter().map(|part| material::sample(&mut checks, part.material)).collect();
+    let temperatures = temperature::temperatures(&mut checks, temperature, &samples);
+    let points = temperatures.iter().flatten().map(|t| t.points.as_slice()).next();
+    let instants = |_: &[f64]| plan.clone();
+    let course = body::Course { end: None, plan: &instants, temperatures: points, beyond: 1.0 };
+    match body::pair(&mut checks, bodies, &parts, &samples, &course) {
+        Some(pair) if checks.errors.is_empty() => Ok(pair),
+        _ => Err(checks.errors),
+    }
+}
+
+/// A part of the gap that stands alone, not one of a file, on its domain.
+pub fn surface_alone(
+    text: &Text<'_>,
+    domain: &At<raw::Domain>,
+    surfaces: &[At<raw::Surface>],
+) -> Result<(Grid, Part), Vec<CaseError>> {
+    let mut checks = Checks { text, dir: Path::new(""), errors: Vec::new() };
+    let grid = domain::grid(&mut checks, domain, &[]);
+    domain::memory(&mut checks, domain, grid.as_ref(), 0, 0, Scheme::Linear);
+    let line = grid.as_ref().is_some_and(Grid::is_line);
+    let parts = surface::surfaces(&mut checks, surfaces, &[None], grid.as_ref(), line);
+    match (grid, parts.and_then(|mut parts| parts.pop()), checks.errors.is_empty()) {
+        (Some(grid), Some(Surface::Part(part)), true) => Ok((grid, part)),
+        _ => Err(checks.errors),
+    }
+}
+
+/// A shift that stands alone, and how moduli depend on temperature.
+pub fn shift(
+    text: &Text<'_>,
+    at: &At<raw::Shift>,
+) -> Result<(ShiftRequest, VerticalRequest), Vec<CaseError>> {
+    let mut checks = Checks { text, dir: Path::new(""), errors: Vec::new() };
+    let made = temperature::shift(&mut checks, at);
+    made.zip(temperature::vertical(&mut checks, Some(at), None)).ok_or(checks.errors)
 }
 
 /// A material that stands alone, at its own temperature or its reference, or the faults found. Fractional models

@@ -6,6 +6,7 @@ use asperity::surface::{
 };
 
 use super::{Checks, axes, prepare};
+use crate::case::given::of_grid;
 use crate::case::measured::Measured;
 use crate::case::plan::Surface;
 use crate::case::quantity::range::Positive;
@@ -83,6 +84,7 @@ fn part(
         }
         raw::Surface::SelfAffine(roughness) => return self_affine(checks, roughness, grid),
         raw::Surface::File(_) => return None, // see `files`
+        raw::Surface::Array(array) => return given(checks, &array.array, grid?),
     };
     checks.core(&surface.span, shape.validate())?;
     let center = match center {
@@ -90,6 +92,20 @@ fn part(
         Some(at) => axes::values(checks, at, line, 0.0, |length| length.get())?,
     };
     Some(Surface::Part(Part::Shape { shape, center }))
+}
+
+/// Heights given beside the case.
+fn given(checks: &mut Checks<'_, '_>, name: &At<String>, grid: &Grid) -> Option<Surface> {
+    match of_grid(checks.text.arrays, &name.value, grid) {
+        Ok(heights) => {
+            let heights = heights.as_standard_layout().into_owned();
+            Some(Surface::Part(Part::Heights { name: name.value.clone(), heights }))
+        }
+        Err((message, expected)) => {
+            checks.fault(&name.span, message, &expected, None);
+            None
+        }
+    }
 }
 
 /// Refuses shapes that no line contact has.

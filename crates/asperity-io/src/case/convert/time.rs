@@ -85,6 +85,14 @@ pub fn of_stage(
         first: raw.first.as_ref(),
         tolerance: raw.tolerance.as_ref(),
     };
+    if let Some(time) = &raw.time {
+        if !steps.none() || time.value.scheme.is_some() {
+            let message = "`time` has all keys of the steps of a stage, and no `scheme`".to_owned();
+            checks.fault(&time.span, message, "one of the two", Some("leave the others out"));
+            return None;
+        }
+        return times(checks, time, false, first_step).map(Some);
+    }
     if steps.none() {
         return Some(None);
     }

@@ -60,6 +60,10 @@ pub struct Stage {
     /// If the spacing is "adaptive": as in `[time]`.
     #[schemars(example = 1e-3)]
     pub tolerance: Option<At<Number<Positive>>>,
+    /// The times of the stage after its start, with the keys of `[time]` but `scheme`; instead of the four keys above, and without
+    /// a need of `duration`.
+    #[schemars(example = serde_json::json!({ "times": ["1 s", "10 s"] }))]
+    pub time: Option<At<Time>>,
 }
 
 /// What ends a stage.

@@ -33,6 +33,9 @@ pub enum Surface {
     SelfAffine(Box<At<SelfAffine>>),
     /// A measured topography from a file.
     File(Box<File>),
+    /// Heights that a program gives beside the case.
+    #[schemars(skip)]
+    Array(Array),
 }
 
 impl Surface {
@@ -48,6 +51,7 @@ impl Surface {
             Surface::Wave(shape) => shape.moves,
             Surface::SelfAffine(surface) => surface.value.moves,
             Surface::File(file) => file.moves,
+            Surface::Array(array) => array.moves,
         }
     }
 }
@@ -231,6 +235,15 @@ pub struct Distribution {
     /// does not matter.
     #[schemars(example = "measured.sur")]
     pub path: Option<At<String>>,
+}
+
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Array {
+    /// Name of the array: heights \[m\], minus infinity where nothing can touch.
+    pub array: At<String>,
+    /// Whether the part moves with the contact (`[motion]`); true if not given.
+    pub moves: Option<bool>,
 }
 
 #[derive(Debug, Deserialize, JsonSchema)]

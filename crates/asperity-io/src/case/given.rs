@@ -1,0 +1,156 @@
+//! What a program gives in place of a case file: keys and values, and beside them arrays that the keys name.
+//!
+//! A surface of `kind = "array"` and the key `hardness_array` of a body name an array. Numbers without a unit are SI, and keep every
+//! bit.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use asperity::kernel::{HalfSpace, Kernel};
+use asperity::layer::NonseparableLayers;
+use asperity::material::{Body, Creep};
+use asperity::surface::Part;
+use asperity::time::{Instant, Plan};
+use asperity::{Control, Grid};
+use ndarray::Array2;
+use toml::Table;
+
+use super::error::CaseError;
+use super::text::Text;
+use super::{Case, CaseErrors, MaterialReport, convert, read};
+use crate::curve::{ShiftRequest, VerticalRequest};
+
+/// Arrays of shape (nx, ny) by their names.
+pub type Arrays = BTreeMap<String, Array2<f64>>;
+
+impl Case {
+    /// The case of these keys and arrays; relative paths begin at `dir`.
+    ///
+    /// ```
+    /// use asperity_io::case::{Arrays, Case};
+    ///
+    /// let keys = toml::toml! {
+    ///     domain = { cells = [2, 2], size = [1e-3, 1e-3] }
+    ///     surface = [{ kind = "array", array = "heights" }]
+    ///     body = [{ poisson = 0.5, material = { model = "elastic", young = 1e6 } }]
+    ///     load = { control = "load", history = { kind = "step", value = 1e-3 } }
+    ///     time = { times = [1.0] }
+    /// };
+    /// let arrays = Arrays::from([("heights".to_owned(), ndarray::arr2(&[[0.0, 1e-6], [0.0, 0.0]]))]);
+    /// let case = Case::given(&keys, &arrays, ".".as_ref())?;
+    /// assert_eq!(case.gap()?, ndarray::arr2(&[[1e-6, 0.0], [1e-6, 1e-6]]));
+    ///
+    /// let errors = Case::given(&keys, &Arrays::new(), ".".as_ref()).unwrap_err();
+    /// assert_eq!(errors.errors[0].key, "surface[0].array");
+    /// # Ok::<(), asperity_io::case::CaseErrors>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`CaseErrors`] with what is wrong; their lines are those of [`CaseErrors::source`].
+    pub fn given(keys: &Table, arrays: &Arrays, dir: &Path) -> Result<Case, CaseErrors> {
+        from_keys(keys, arrays, |text| {
+            let document = read::document(text)?;
+            convert::case(text, &document, dir, "result.zarr".into())
+        })
+    }
+}
+
+/// Bodies without a load.
+pub struct GivenBodies {
+    /// What they consist of: each half-space, layer and base.
+    pub bodies: Vec<Body>,
+    /// How well the material of each is known.
+    pub reports: Vec<MaterialReport>,
+    /// How the pair yields in space.
+    pub kernel: Arc<dyn Kernel>,
+    /// How its waves creep, where waves of different lengths creep differently.
+    pub waves: Option<Arc<NonseparableLayers>>,
+    /// Its contact creep compliance \[1/Pa\], at its temperature where that is constant.
+    pub creep: Creep,
+}
+
+/// The bodies of the keys `body` and, where it is given, `temperature`; fractional models are Prony sums over `window` \[s\].
+///
+/// # Errors
+/// [`CaseErrors`] with what is wrong.
+pub fn bodies(keys: &Table, window: Option<[f64; 2]>) -> Result<GivenBodies, CaseErrors> {
+    let instant = |[dt, time]: [f64; 2]| Instant {
+        time,
+        dt,
+        value: 0.0,
+        jump: false,
+        control: Control::Load,
+        stage: 0,
+    };
+    let plan = Plan { instants: window.into_iter().map(instant).collect(), exact: true };
+    let pair = from_keys(keys, &Arrays::new(), |text| {
+        let (bodies, temperature) = read::bodies(text)?;
+        convert::bodies(text, &bodies, temperature.as_ref(), &plan)
+    })?;
+    let kernel: Arc<dyn Kernel> = match pair.layers {
+        Some(layers) => layers,
+        None => Arc::new(HalfSpace),
+    };
+    Ok(GivenBodies {
+        bodies: pair.bodies,
+        reports: pair.reports,
+        kernel,
+        waves: pair.waves,
+        creep: pair.creep,
+    })
+}
+
+/// The grid of the key `domain`, and the part of the gap that is the one `surface`; not one of a file.
+///
+/// # Errors
+/// [`CaseErrors`] with what is wrong.
+pub fn surface(keys: &Table) -> Result<(Grid, Part), CaseErrors> {
+    from_keys(keys, &Arrays::new(), |text| {
+        let (domain, surfaces) = read::roughness(text)?;
+        convert::surface_alone(text, &domain, &surfaces)
+    })
+}
+
+/// The shift of these keys of a material's `shift`, and how moduli depend on temperature.
+///
+/// # Errors
+/// [`CaseErrors`] with what is wrong.
+pub fn shift(keys: Table) -> Result<(ShiftRequest, VerticalRequest), CaseErrors> {
+    let keys = Table::from_iter([("shift".to_owned(), keys.into())]);
+    from_keys(&keys, &Arrays::new(), |text| convert::shift(text, &read::shift(text)?))
+}
+
+/// What `make` makes of these keys as a text.
+fn from_keys<T>(
+    keys: &Table,
+    arrays: &Arrays,
+    make: impl FnOnce(&Text<'_>) -> Result<T, Vec<CaseError>>,
+) -> Result<T, CaseErrors> {
+    let name = "case";
+    let source = toml::to_string(keys).map_err(|error| {
+        CaseErrors::without_place(name, error.to_string(), "keys and values of a case file", None)
+    })?;
+    let made = Text::parse(&source).and_then(|text| make(&Text { arrays, ..text }));
+    made.map_err(|errors| CaseErrors { name: name.to_owned(), source, errors })
+}
+
+/// The array that a key names, where it has a number for each cell of the grid; or what is wrong, and what was expected.
+pub(super) fn of_grid<'t>(
+    arrays: &'t Arrays,
+    name: &str,
+    grid: &Grid,
+) -> Result<&'t Array2<f64>, (String, String)> {
+    let (expected, (nx, ny)) = (format!("{:?}", grid.shape()), grid.shape());
+    match arrays.get(name) {
+        None => Err((
+            format!("there is no array \"{name}\""),
+            "an array given beside the keys (by a program)".into(),
+        )),
+        Some(array) if array.dim() != (nx, ny) => Err((
+            format!("the array has shape {:?}", array.dim()),
+            format!("shape {expected}, a number for each cell"),
+        )),
+        Some(array) => Ok(array),
+    }
+}

@@ -1,26 +1,28 @@
 //! Writes valid files of every format, and those that once broke a reader, into the corpora of the fuzz targets:
 //! `cargo run --example seeds` in `fuzz/`.
 
-#[path = "../../crates/asperity-io/tests/samples/mod.rs"]
+#[path = "../../crates/asperity-io/tests/all/samples/mod.rs"]
 mod samples;
 
 use std::io::{Cursor, Write};
 use std::path::Path;
 
 fn main() -> std::io::Result<()> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folder = root.join("corpus/surface");
+    std::fs::create_dir_all(&folder)?;
+    let seed = |name: &str, format: &str, bytes: &[u8]| {
+        std::fs::write(folder.join(name), [format.as_bytes(), b"\n", bytes].concat())
+    };
     for (i, (format, bytes)) in samples::files().into_iter().enumerate() {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus").join(format.name());
-        std::fs::create_dir_all(&folder)?;
-        std::fs::write(folder.join(format!("seed-{i}")), bytes)?;
+        seed(&format!("{format}-{i}"), format.name(), &bytes)?;
     }
     // The name starts with the format.
-    let broken = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/asperity-io/tests/regressions");
-    for entry in std::fs::read_dir(&broken)? {
-        let name = entry?.file_name().to_string_lossy().into_owned();
+    for entry in std::fs::read_dir(root.join("../crates/asperity-io/tests/regressions"))? {
+        let path = entry?.path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         if let Some((format, _)) = name.split_once('-') {
-            let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("corpus").join(format);
-            std::fs::create_dir_all(&folder)?;
-            std::fs::copy(broken.join(&name), folder.join(&name))?;
+            seed(&name, format, &std::fs::read(&path)?)?;
         }
     }
     curves()

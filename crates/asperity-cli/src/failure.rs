@@ -1,8 +1,10 @@
 //! What ends a command early, how it is printed, and its exit code.
 
+use std::io::IsTerminal;
+
+use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use asperity_io::case::{CaseError, CaseErrors};
 use asperity_io::readable::counted;
-use miette::{Diagnostic, GraphicalReportHandler, LabeledSpan, NamedSource, SourceCode};
 
 /// Why a command did not do what was asked.
 #[derive(Debug)]
@@ -75,21 +77,37 @@ impl From<CaseErrors> for Failure {
 
 /// Each fault with the lines of the case that it is in.
 fn print_case(errors: &CaseErrors) {
-    let handler = GraphicalReportHandler::new().with_width(terminal_width()).with_links(false);
     let source = masked(&errors.source);
     let short = source.lines().all(|line| line.len() <= LONGEST_LINE);
     for error in &errors.errors {
-        let fault = Fault { error, source: NamedSource::new(&errors.name, source.clone()) };
-        let mut text = String::new();
-        let drawn = short && error.span.is_some() && handler.render_report(&mut text, &fault).is_ok();
-        if drawn {
-            crate::messages::write(&text);
+        if short && let Some(text) = drawn(error, &errors.name, &source) {
+            crate::messages::write(&format!("{text}\n\n"));
         } else {
             let text = format!("{}: {error}", errors.name);
             let cut = text.char_indices().nth(LONGEST_LINE).map_or(text.as_str(), |(end, _)| &text[..end]);
             crate::messages::message!("error: {cut}{}", if cut.len() < text.len() { " ..." } else { "" });
         }
     }
+}
+
+/// A fault below its line of the source; `None` where it has no place there.
+fn drawn(error: &CaseError, name: &str, source: &str) -> Option<String> {
+    let span = error.span.clone().filter(|span| source.get(span.clone()).is_some())?;
+    let label = match error.expected.as_str() {
+        // The message says it.
+        expected if expected.is_empty() || expected.len() > LONGEST_LABEL => "here".to_owned(),
+        expected => format!("expected {expected}"),
+    };
+    let line = error.line.map_or(String::new(), |line| format!("line {line}: "));
+    let place =
+        Snippet::source(source).path(name).annotation(AnnotationKind::Primary.span(span).label(label));
+    let mut report = Level::ERROR.primary_title(format!("{line}{}", error.message)).element(place);
+    if let Some(help) = &error.help {
+        report = report.element(Level::HELP.message(help));
+    }
+    let coloured = std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
+    let renderer = if coloured { Renderer::styled() } else { Renderer::plain() };
+    Some(renderer.term_width(terminal_width()).render(&[report]))
 }
 
 /// Longer words below a place of a case file are left out \[bytes\].
@@ -115,45 +133,6 @@ fn masked(source: &str) -> String {
 
 fn terminal_width() -> usize {
     std::env::var("COLUMNS").ok().and_then(|c| c.parse().ok()).unwrap_or(100)
-}
-
-/// A case error as the renderer takes it.
-#[derive(Debug)]
-struct Fault<'a> {
-    error: &'a CaseError,
-    source: NamedSource<String>,
-}
-
-impl std::fmt::Display for Fault<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self.error.line {
-            Some(line) => write!(f, "line {line}: {}", self.error.message),
-            None => write!(f, "{}", self.error.message),
-        }
-    }
-}
-
-impl std::error::Error for Fault<'_> {}
-
-impl Diagnostic for Fault<'_> {
-    fn help<'b>(&'b self) -> Option<Box<dyn std::fmt::Display + 'b>> {
-        self.error.help.as_ref().map(|help| Box::new(help) as Box<dyn std::fmt::Display>)
-    }
-
-    fn source_code(&self) -> Option<&dyn SourceCode> {
-        Some(&self.source)
-    }
-
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        let span = self.error.span.clone()?;
-        let label = match self.error.expected.as_str() {
-            "" => "here".to_owned(),
-            // The message says it.
-            expected if expected.len() > LONGEST_LABEL => "here".to_owned(),
-            expected => format!("expected {expected}"),
-        };
-        Some(Box::new(std::iter::once(LabeledSpan::new(Some(label), span.start, span.len()))))
-    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! Numbers as a person reads them.
 
-use asperity::march::Row;
+use asperity::step::Row;
 pub use asperity_io::readable::{bytes, coordinate, counted, duration, quantity};
 
 /// The mean pressure over the contact [Pa]; 0 where nothing touches.

@@ -4,10 +4,8 @@ use std::fmt::Write as _;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use tracing::field::{Field, Visit};
-use tracing::{Event, Level, Subscriber};
-use tracing_subscriber::Layer;
-use tracing_subscriber::layer::{Context, SubscriberExt};
-use tracing_subscriber::util::SubscriberInitExt;
+use tracing::span::{Attributes, Id, Record};
+use tracing::{Event, Level, Metadata, Subscriber};
 
 /// Where the contact solver's events come from.
 const SOLVER: &str = "asperity::contact";
@@ -22,32 +20,29 @@ const COLUMNS: [(&str, &str, usize); 5] = [
 
 /// Listens to the library; `verbose` is how often `-v` was given.
 pub fn listen(verbose: u8) {
-    let warnings = tracing_subscriber::fmt::layer()
-        .with_writer(std::io::stderr)
-        .with_ansi(std::io::IsTerminal::is_terminal(&std::io::stderr()))
-        .with_target(false)
-        .without_time()
-        .log_internal_errors(false)
-        .with_filter(tracing_subscriber::filter::LevelFilter::WARN);
-    let table = (verbose >= 2).then(Table::default);
     // Fails only where another part of the process listens already.
-    let _ = tracing_subscriber::registry().with(warnings).with(table).try_init();
+    let _ = tracing::subscriber::set_global_default(Listener {
+        with_table: verbose >= 2,
+        headed: AtomicBool::new(false),
+    });
 }
 
-/// Prints one line for every iteration of the contact solver.
-#[derive(Default)]
-struct Table {
+/// Prints warnings, and one line for every iteration of the contact solver.
+struct Listener {
+    with_table: bool,
     headed: AtomicBool,
 }
 
-impl<S: Subscriber> Layer<S> for Table {
-    fn enabled(&self, metadata: &tracing::Metadata<'_>, _: Context<'_, S>) -> bool {
-        *metadata.level() <= Level::WARN || metadata.target().starts_with(SOLVER)
+impl Subscriber for Listener {
+    fn enabled(&self, metadata: &Metadata<'_>) -> bool {
+        *metadata.level() <= Level::WARN || self.with_table && metadata.target().starts_with(SOLVER)
     }
 
-    fn on_event(&self, event: &Event<'_>, _: Context<'_, S>) {
-        if !event.metadata().target().starts_with(SOLVER) {
-            return;
+    fn event(&self, event: &Event<'_>) {
+        if *event.metadata().level() <= Level::WARN {
+            let mut message = Message::default();
+            event.record(&mut message);
+            return crate::messages::message!("warning: {}", message.0);
         }
         let mut line = Line::default();
         event.record(&mut line);
@@ -56,6 +51,31 @@ impl<S: Subscriber> Layer<S> for Table {
             crate::messages::message!("{}", headings.join("  "));
         }
         crate::messages::message!("{}", line.print());
+    }
+
+    // The library has events only.
+    fn new_span(&self, _: &Attributes<'_>) -> Id {
+        Id::from_u64(1)
+    }
+
+    fn record(&self, _: &Id, _: &Record<'_>) {}
+
+    fn record_follows_from(&self, _: &Id, _: &Id) {}
+
+    fn enter(&self, _: &Id) {}
+
+    fn exit(&self, _: &Id) {}
+}
+
+/// The text of a warning.
+#[derive(Default)]
+struct Message(String);
+
+impl Visit for Message {
+    fn record_debug(&mut self, field: &Field, value: &dyn std::fmt::Debug) {
+        if field.name() == "message" {
+            self.0 = format!("{value:?}");
+        }
     }
 }
 

@@ -5,10 +5,10 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use asperity::contact::Hardness;
 use asperity::finding::{Diagnostics, Known};
-use asperity::march::Row;
 use asperity::material::Creep;
 use asperity::operator::{Operator, half_space, plan};
 use asperity::quantities::ContactStiffness;
+use asperity::step::Row;
 use asperity::{
     Boundary, ContactState, Control, History, Loading, Outcome, Prescribed, Problem, Simulation, Solver,
     SolverOptions,

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use asperity::finding::{Diagnostics, Finding, Known};
 use asperity::quantities::Quantity;
-use asperity::{Drive, drive, march};
+use asperity::{Drive, drive, process, step};
 use asperity_io::case::{Case, CaseErrors};
 use asperity_io::session;
 use asperity_io::store::{FieldKind, SCALARS};
@@ -29,7 +29,7 @@ pub struct March {
     found: Vec<Finding>,
     setup: String,
     /// The numbers of the last row.
-    last: Option<march::Row>,
+    last: Option<step::Row>,
     /// Whether the state is that of the last row.
     settled: bool,
     interrupt: Arc<AtomicBool>,
@@ -218,7 +218,7 @@ impl March {
                 let mut states = ndarray::Array2::<u8>::zeros(shape);
                 step.contact_into(&mut states);
                 let boundary = march.simulation().boundary;
-                return Some(Map::Contact(march::in_contact_frame(
+                return Some(Map::Contact(process::in_contact_frame(
                     states.view(),
                     boundary,
                     step.frame_shift(),
@@ -235,7 +235,7 @@ impl March {
             }
             // Of a contact that moves, in its frame.
             let beyond = if kind == FieldKind::Pressure { 0.0 } else { f64::NAN };
-            Some(Map::Real(march::in_contact_frame(field.view(), boundary, shift, beyond)))
+            Some(Map::Real(process::in_contact_frame(field.view(), boundary, shift, beyond)))
         })?;
         match found {
             Some(Map::Real(field)) => Ok(field.into_pyarray(py).into_any()),
@@ -258,7 +258,7 @@ impl March {
 }
 
 /// The numbers of a row by their names in results.
-pub fn fill(into: &Bound<'_, PyDict>, row: &march::Row) -> PyResult<()> {
+pub fn fill(into: &Bound<'_, PyDict>, row: &step::Row) -> PyResult<()> {
     for scalar in SCALARS {
         match scalar.is_count() {
             true => into.set_item(scalar.name, scalar.of(row) as u64)?,

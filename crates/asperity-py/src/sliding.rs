@@ -1,7 +1,8 @@
 //! Friction of moving contacts.
 
 use asperity::Grid;
-use asperity::sliding::{self, Correction, Direction};
+use asperity::reference::{self, Correction};
+use asperity::sliding::Direction;
 use asperity::surface::Surface;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
@@ -17,7 +18,7 @@ type Curve<'py> = Bound<'py, PyArray1<f64>>;
 /// Persson's theory for one surface, material and nominal pressure.
 #[pyclass(frozen)]
 pub struct Persson {
-    inner: sliding::Persson,
+    inner: reference::Persson,
 }
 
 #[pymethods]
@@ -45,7 +46,7 @@ impl Persson {
         let inner = detached(py, || {
             let (nx, ny) = heights.dim();
             let surface = Surface::new(Grid::new([nx, ny], size)?, heights)?;
-            sliding::Persson::of_surface(&surface, direction, &creep, pressure, correction)
+            reference::Persson::of_surface(&surface, direction, &creep, pressure, correction)
         })?;
         Ok(Persson { inner: inner.map_err(|error| raised(py, error))? })
     }

@@ -30,17 +30,6 @@ const stresses = new Panels("stress-curves", overRows);
 const materials = new Panels("curves", {});
 const spectra = new Panels("spectrum", {});
 
-/** The panels that every result has: title, label, and the series by name. */
-const ALWAYS = [
-  state.grid.line
-    ? ["Contact length", "contact length", [["", "contact_area"], ["at the hardness", "capped_area"]]]
-    : ["Contact area", "contact area", [["counted", "contact_area"], ["corrected", "contact_area_corrected"], ["at the hardness", "capped_area"],
-        ...(state.series.persson_contact_area ? [["Persson's theory", "persson_contact_area"]] : [])]],
-  ["Approach", "approach", [["", "approach"]]],
-  ["Load", "load", [["", "load"]]],
-  ["Pressure", "pressure", [["nominal mean", "mean_pressure"], ["largest", "max_pressure"], ["mean over the contact", "contact_pressure"]]],
-  ...(state.series.temperature ? [["Temperature", "temperature", [["", "temperature"]]]] : []),
-];
 /** Words in place of curves that are zero at all times. */
 const ZERO = { contact_area: "Nothing touches at any time.", mean_pressure: "No pressure: nothing touches at any time.",
   contact_spots: "No contact spots: nothing touches at any time.", largest_spot: "No contact spots: nothing touches at any time." };
@@ -55,15 +44,14 @@ function stages() {
 
 function evolutionPart() {
   const time = state.series.time, events = stages();
-  evolution.set([...ALWAYS, ...state.quantities].map(([title, label, names, states]) => ({
+  evolution.set(state.evolution.map(([title, label, names, states]) => ({
     title,
     x: rowsAxis(),
     y: { label, unit: plain(state.units[names[0][1]]), states: states?.length ? states : null, linear: Boolean(states?.length) || label === "temperature" },
     zero: ZERO[names[0][1]],
     none: names[0][1] in ZERO ? ZERO[names[0][1]] : undefined,
     events,
-    series: names.filter(([, key]) => key !== "capped_area" || state.series[key].some((value) => value > 0))
-      .map(([name, key]) => ({ name, x: time, y: numbers(key), dashed: key.startsWith("persson") })),
+    series: names.map(([name, key]) => ({ name, x: time, y: numbers(key), dashed: key.startsWith("persson") })),
   })));
   const over = (title, from, to) => ({
     title, free: true, x: { label: "approach", unit: "m" }, y: { label: "load", unit: state.units.load },
@@ -91,11 +79,11 @@ function cyclePanels(part) {
 function solverPart() {
   const row = { label: "row", unit: "", linear: true };
   const points = (name, key) => ({ name, x: state.series.time.map((_, n) => n), y: numbers(key), points: true });
-  solver.set([
-    { title: "Work of each row", x: row, y: { label: "number", unit: "" }, series: [points("iterations", "iterations"), points("convolutions", "convolutions")] },
-    { title: "Error of each row", x: row, y: { label: "relative error", unit: "", log: true }, zero: "The error is zero in all rows.",
-      series: [points("contact conditions (residual)", "residual"), points("pressure (certificate)", "certificate")] },
-  ]);
+  solver.set(state.solver.map(([title, label, names]) => ({
+    title, x: row, y: { label, unit: "", log: label === "relative error" },
+    zero: label === "relative error" ? "The error is zero in all rows." : undefined,
+    series: names.map(([name, key]) => points(name, key)),
+  })));
 }
 
 function materialPart() {

@@ -83,7 +83,7 @@ fn flow(found: &Leakage, gap: ArrayView2<'_, f64>, size: [f64; 2]) -> Map {
 }
 
 /// The same with a capital.
-fn sentence(words: &str) -> String {
+pub(crate) fn sentence(words: &str) -> String {
     let mut letters = words.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }

@@ -80,13 +80,7 @@ pub fn pictures(
         write(&figure(reader, Plot::Leak, &Options::default())?, "leak.png")?;
     }
     for kind in fields.unwrap_or(&reader.header().fields) {
-        let plot = match kind {
-            FieldKind::Pressure => Plot::Pressure,
-            FieldKind::Gap => Plot::Gap,
-            FieldKind::Displacement => Plot::Displacement,
-            FieldKind::Contact => Plot::Contact,
-            FieldKind::Flattening => Plot::Flattening,
-        };
+        let Some(plot) = Plot::of_field(*kind) else { continue };
         let range = range(reader, *kind)?;
         let line = reader.header().grid.is_line();
         if line && let Some(map) = over_time(reader, *kind)? {

@@ -36,6 +36,17 @@ impl<C: Cells> Cells for Option<C> {
     }
 }
 
+/// The numbers of cells that follow one another.
+impl Cells for std::ops::Range<usize> {
+    fn cells(&self) -> usize {
+        self.len()
+    }
+    fn split(self, mid: usize) -> (Self, Self) {
+        let middle = self.start + mid;
+        (self.start..middle, middle..self.end)
+    }
+}
+
 /// A set of cells, eight in a byte (see [`crate::simd`]).
 pub struct Set<'a>(pub &'a [u8]);
 

@@ -6,6 +6,7 @@
 //! gives the same bits on one thread and on many; nothing is allocated.
 
 mod cells;
+mod fields;
 mod instructions;
 #[macro_use]
 mod kernel;
@@ -15,6 +16,7 @@ pub mod simd;
 mod sweep;
 
 pub use cells::{Cells, Set, SetMut};
+pub use fields::{Fields, each, each_with_sums, sums};
 pub use instructions::Instructions;
 pub use merge::{Max, Merge, Min, larger, smaller};
 pub use reductions::{count_finite, count_positive, dot, is_zero, maximum, minimum, sum};

@@ -2,7 +2,6 @@
 //! on every processor.
 
 use crate::merge::{Max, Min};
-use crate::simd::{F64x8, Work};
 use crate::sweep::run;
 
 /// Declares a reduction of one field or more, eight cells at a time, by what one sweep over a block does: the value that it
@@ -15,12 +14,7 @@ macro_rules! reduction {
         pub fn $name($first: &[f64] $(, $next: &[f64])*) -> $result {
             kernel! {
                 struct Reduction<'a> { cells { $first: &'a [f64] $(, $next: &'a [f64])* } }
-            }
-            impl Work for Reduction<'_> {
-                type Yield = $yield;
-
-                #[inline(always)]
-                fn run<V: F64x8>(self) -> $yield {
+                fn run<V>(self) -> $yield {
                     let mut $value = V::splat($start);
                     for n in (0..self.$first.len()).step_by(8) {
                         let $first = V::load(self.$first, n, $beyond);

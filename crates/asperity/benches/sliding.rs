@@ -6,8 +6,8 @@ use asperity::Drive;
 use std::time::Instant;
 
 use asperity::load::{Control, History, Loading};
-use asperity::march::Simulation;
 use asperity::material::{Creep, Relaxation};
+use asperity::simulation::Simulation;
 use asperity::sliding::{Direction, Slopes, Steady, SteadyMotion};
 use asperity::surface::{Part, Roughness, SelfAffine, undeformed_gap};
 use asperity::{Boundary, Grid, SolverOptions};

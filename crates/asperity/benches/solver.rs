@@ -12,9 +12,10 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use asperity::contact::ProjectedCg;
-use asperity::march::{March, Simulation};
+use asperity::drive::March;
 use asperity::material::{Creep, CreepTerm};
 use asperity::operator::half_space;
+use asperity::simulation::Simulation;
 use asperity::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
 use asperity::{
     Boundary, ContactState, Control, Grid, History, Loading, Method, Prescribed, Problem, Solver,

@@ -8,9 +8,11 @@
 use asperity::Drive;
 use std::time::Instant;
 
-use asperity::march::{March, Simulation};
+use asperity::drive::March;
+
 use asperity::material::{Creep, CreepTerm};
 use asperity::operator::half_space;
+use asperity::simulation::Simulation;
 use asperity::surface::{Part, Roughness, SelfAffine, undeformed_gap};
 use asperity::{
     Boundary, ContactState, Control, Grid, History, Loading, Method, Prescribed, Problem, Solver,

@@ -108,6 +108,16 @@ impl Error {
     }
 }
 
+/// The error of a `what` that is `value`, but must be `expected`, unless that `holds`.
+pub(crate) fn require(
+    holds: bool,
+    what: impl Into<String>,
+    value: impl std::fmt::Display,
+    expected: impl Into<String>,
+) -> Result<()> {
+    if holds { Ok(()) } else { Err(Error::invalid(what, value, expected)) }
+}
+
 /// `Ok(value)` where it is finite and > 0.
 pub(crate) fn positive(what: &str, value: f64, unit: &str) -> Result<f64> {
     if value.is_finite() && value > 0.0 {
@@ -138,6 +148,11 @@ pub(crate) fn non_negative(what: &str, value: f64, unit: &str) -> Result<f64> {
 /// A temperature \[K\] to a hundredth: "293.15 K".
 pub(crate) fn kelvin(temperature: f64) -> String {
     format!("{} K", (100.0 * temperature).round() / 100.0)
+}
+
+/// A number to four digits, as short as it can be written.
+pub(crate) fn rounded(x: f64) -> String {
+    format!("{x:.3e}").parse::<f64>().map_or_else(|_| x.to_string(), |x| x.to_string())
 }
 
 /// A number in four digits: "5", "0.025", "1.234e-7".

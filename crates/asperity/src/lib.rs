@@ -65,15 +65,6 @@ pub use load::{Control, Course, Event, History, Loading, Programme, Stage};
 pub use simulation::{Plasticity, Scheme, Simulation};
 pub use time::TimeGrid;
 
-/// The march in time: what it takes and gives.
-pub mod march {
-    pub use crate::drive::March;
-    pub use crate::history::check_layers;
-    pub use crate::process::{Motion, in_contact_frame};
-    pub use crate::simulation::{Plasticity, Scheme, Simulation};
-    pub use crate::step::{Between, Checkpoint, Row, Step};
-}
-
 /// The examples of the READMEs of the repository and of this crate, compiled and run by the tests.
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]

@@ -6,8 +6,10 @@ use asperity::Drive;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use asperity::march::{March, Simulation};
+use asperity::drive::March;
+
 use asperity::material::{Creep, CreepTerm};
+use asperity::simulation::Simulation;
 use asperity::surface::{Part, Shape, undeformed_gap};
 use asperity::{Control, Grid, History, Loading, TimeGrid};
 

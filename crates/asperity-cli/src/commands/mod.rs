@@ -21,7 +21,6 @@ pub mod surface;
 pub mod verify;
 pub mod verify_result;
 pub mod view;
-mod write_timeout;
 
 use std::path::Path;
 

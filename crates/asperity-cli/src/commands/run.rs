@@ -2,7 +2,7 @@
 
 use asperity::Axis;
 use asperity::finding::Finding;
-use asperity::march::Row;
+use asperity::step::Row;
 use asperity_io::case::Case;
 use asperity_io::leakage::LeakError;
 use asperity_io::session::{RunError, RunOptions, Summary, run as run_case};

@@ -1,7 +1,7 @@
 //! `asperity show`: a result in the terminal.
 
-use asperity::march::Row;
 use asperity::quantities::Quantity;
+use asperity::step::Row;
 use asperity::{Axis, Grid};
 use asperity_io::cycles;
 use asperity_io::leakage::LeakHistory;

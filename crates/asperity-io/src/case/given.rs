@@ -154,3 +154,96 @@ pub(super) fn of_grid<'t>(
         Some(array) => Ok(array),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use asperity::{Event, TimeGrid};
+    use ndarray::arr2;
+
+    fn keys() -> Table {
+        toml::toml! {
+            domain = { cells = [2, 2], size = [1e-3, 1e-3] }
+            surface = [{ kind = "array", array = "heights" }]
+            body = [{ poisson = 0.5, material = { model = "zener", shear = 1e6, shear_kelvin = 1e6, retardation_time = 0.1 } }]
+            load = { control = "load", history = { kind = "step", value = 1e-3 } }
+            time = { end = 1.0, steps = 2 }
+        }
+    }
+
+    fn heights() -> Arrays {
+        Arrays::from([("heights".to_owned(), arr2(&[[0.0, f64::NEG_INFINITY], [-1e-6, 0.0]]))])
+    }
+
+    fn fault(keys: &Table, arrays: &Arrays) -> (String, String) {
+        let error = Case::given(keys, arrays, Path::new("")).unwrap_err().errors.remove(0);
+        (error.key, error.message)
+    }
+
+    #[test]
+    fn numbers_keep_every_bit_and_cells_may_never_touch() {
+        let odd = f64::from_bits(0x3f50_6249_1234_5679);
+        let mut keys = keys();
+        keys["load"]["history"]["value"] = odd.into();
+        let case = Case::given(&keys, &heights(), Path::new("")).unwrap();
+        assert_eq!(case.loading.stages[0].course.resolve(0.0).after(0.0).to_bits(), odd.to_bits());
+        assert_eq!(case.gap().unwrap(), arr2(&[[0.0, f64::INFINITY], [1e-6, 0.0]]));
+    }
+
+    #[test]
+    fn a_hardness_for_each_cell_is_checked() {
+        let mut keys = keys();
+        keys["body"][0].as_table_mut().unwrap().insert("hardness_array".into(), "hard".into());
+        let with = |map| {
+            let mut arrays = heights();
+            arrays.insert("hard".into(), map);
+            arrays
+        };
+        let case = Case::given(&keys, &with(arr2(&[[1e6, 2e6], [3e6, 4e6]])), Path::new("")).unwrap();
+        assert_eq!(case.hardness_map.unwrap()[[1, 0]], 3e6);
+        let (key, message) = fault(&keys, &with(arr2(&[[1e6, 0.0], [3e6, 4e6]])));
+        assert_eq!(key, "body[0].hardness_array");
+        assert!(message.contains("(0, 1)"), "{message}");
+        let (key, message) = fault(&keys, &with(arr2(&[[1e6]])));
+        assert_eq!(key, "body[0].hardness_array");
+        assert!(message.contains("(1, 1)"), "{message}");
+    }
+
+    #[test]
+    fn a_stage_takes_all_that_times_may_be() {
+        let mut keys = keys();
+        keys["load"] = toml::toml! {
+            stages = [{ control = "load", history = { kind = "step", value = 1e-3 }, until = { approach = 1e-6 }, duration = 5.0,
+                        time = { times = [0.1, 0.7] } }]
+        }
+        .into();
+        let case = Case::given(&keys, &heights(), Path::new("")).unwrap();
+        let stage = &case.loading.stages[0];
+        assert_eq!(stage.times, Some(TimeGrid::List(vec![0.1, 0.7])));
+        assert_eq!(stage.until, Some(Event::Approach(1e-6)));
+        keys["load"]["stages"][0].as_table_mut().unwrap().insert("steps".into(), 3.into());
+        assert_eq!(fault(&keys, &heights()).0, "load.stages[0].time");
+    }
+
+    #[test]
+    fn bodies_surfaces_and_shifts_stand_alone() {
+        let fractional = toml::toml! {
+            body = [{ poisson = 0.5, material = { model = "springpot", shear = 1e6, time = 1.0, order = 0.3 } }]
+        };
+        let made = bodies(&fractional, Some([1e-2, 1e3])).unwrap();
+        assert_eq!(made.reports[0].window, Some([1e-2, 1e3]));
+        assert!(made.reports[0].error.is_some_and(|error| error < 1e-3));
+        let wrong = toml::toml! { body = [{ poisson = 0.7, material = { model = "elastic", young = 1e6 } }] };
+        assert_eq!(bodies(&wrong, None).err().unwrap().errors[0].key, "body[0].poisson");
+        let shape = toml::toml! {
+            domain = { cells = [4], size = [1e-3] }
+            surface = [{ kind = "cylinder", radius = 1e-2 }]
+        };
+        assert!(surface(&shape).unwrap().0.is_line());
+        let shift = self::shift(toml::toml! { model = "wlf"
+        c1 = 8.86
+        c2 = 101.6
+        reference = 293.15 });
+        assert!(matches!(shift, Ok((ShiftRequest::Given(_), VerticalRequest::None))));
+    }
+}

@@ -280,12 +280,12 @@ impl Case {
     }
 
     /// The motion in time, where there is one.
-    fn motion_of(&self, parts: &[Part]) -> Result<Option<asperity::march::Motion>, CaseErrors> {
+    fn motion_of(&self, parts: &[Part]) -> Result<Option<asperity::process::Motion>, CaseErrors> {
         let Some((motion, Travel::Path(path))) = self.motion.as_ref().map(|motion| (motion, &motion.travel))
         else {
             return Ok(None);
         };
-        Ok(Some(asperity::march::Motion {
+        Ok(Some(asperity::process::Motion {
             path: path.clone(),
             direction: motion.direction,
             gap: self.moving(parts, motion)?,

@@ -4,133 +4,19 @@
 //! The names are those of the exports of DMAs and rheometers (TA, Netzsch, Anton Paar, Mettler) in English and German and
 //! of the tables of Python and Matlab users.
 
-mod names;
+mod table;
 
 use std::str::FromStr;
 
 use asperity::material::Modulus;
 
-/// What a column holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Role {
-    /// Time since the step.
-    Time,
-    /// Relaxation modulus.
-    Modulus,
-    /// Creep compliance.
-    Compliance,
-    /// Frequency, in Hz or rad/s.
-    Frequency,
-    /// Storage modulus.
-    Storage,
-    /// Loss modulus.
-    Loss,
-    /// Loss factor E''/E', in place of the loss modulus.
-    TanDelta,
-    /// Phase angle, in place of the loss factor.
-    Phase,
-    /// Absolute value of the complex modulus, in place of the storage modulus.
-    ComplexModulus,
-    /// Real part of the complex compliance.
-    StorageCompliance,
-    /// Imaginary part of the complex compliance.
-    LossCompliance,
-    /// Absolute value of the complex viscosity.
-    ComplexViscosity,
-    /// Real part of the complex viscosity, loss modulus over angular frequency.
-    RealViscosity,
-    /// Imaginary part of the complex viscosity, storage modulus over angular frequency.
-    ImaginaryViscosity,
-    /// Temperature of the point.
-    Temperature,
-    /// Number or name of the sweep that the point belongs to.
-    Set,
-    /// Load of an indentation.
-    Load,
-    /// Depth of an indentation.
-    Depth,
-}
+pub use table::Role;
 
 impl Role {
-    /// All of them.
-    pub const ALL: [Role; 18] = [
-        Role::Time,
-        Role::Modulus,
-        Role::Compliance,
-        Role::Frequency,
-        Role::Storage,
-        Role::Loss,
-        Role::TanDelta,
-        Role::Phase,
-        Role::ComplexModulus,
-        Role::StorageCompliance,
-        Role::LossCompliance,
-        Role::ComplexViscosity,
-        Role::RealViscosity,
-        Role::ImaginaryViscosity,
-        Role::Temperature,
-        Role::Set,
-        Role::Load,
-        Role::Depth,
-    ];
-
-    /// Its key in case files and on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Role::Time => "time",
-            Role::Modulus => "modulus",
-            Role::Compliance => "compliance",
-            Role::Frequency => "frequency",
-            Role::Storage => "storage",
-            Role::Loss => "loss",
-            Role::TanDelta => "tan_delta",
-            Role::Phase => "phase",
-            Role::ComplexModulus => "complex_modulus",
-            Role::StorageCompliance => "storage_compliance",
-            Role::LossCompliance => "loss_compliance",
-            Role::ComplexViscosity => "complex_viscosity",
-            Role::RealViscosity => "real_viscosity",
-            Role::ImaginaryViscosity => "imaginary_viscosity",
-            Role::Temperature => "temperature",
-            Role::Set => "set",
-            Role::Load => "load",
-            Role::Depth => "depth",
-        }
-    }
-
-    /// Unit in which a number without one is taken.
-    pub(super) fn si(self) -> &'static str {
-        match self {
-            Role::Time => "s",
-            Role::Modulus | Role::Storage | Role::Loss | Role::ComplexModulus => "Pa",
-            Role::Compliance | Role::StorageCompliance | Role::LossCompliance => "1/Pa",
-            Role::ComplexViscosity | Role::RealViscosity | Role::ImaginaryViscosity => "Pa s",
-            Role::Frequency => "Hz",
-            Role::TanDelta | Role::Set => "",
-            Role::Phase => "rad",
-            Role::Temperature => "K",
-            Role::Load => "N",
-            Role::Depth => "m",
-        }
-    }
-
-    /// A unit of an example.
-    pub(super) fn example(self) -> &'static str {
-        match self {
-            Role::Modulus | Role::Storage | Role::Loss | Role::ComplexModulus => "MPa",
-            Role::Compliance | Role::StorageCompliance | Role::LossCompliance => "1/MPa",
-            Role::TanDelta | Role::Set => "-",
-            Role::Phase => "deg",
-            Role::Temperature => "°C",
-            Role::Load => "mN",
-            Role::Depth => "um",
-            role => role.si(),
-        }
-    }
-
     /// Whether a name means it.
     pub(super) fn is_called(self, name: &str) -> bool {
-        names::of(self).contains(&bare(name).as_str())
+        let name = bare(name);
+        self.names().any(|known| known == name)
     }
 }
 

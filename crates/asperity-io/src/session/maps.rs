@@ -1,6 +1,8 @@
 //! The fields of a row that are stored.
 
-use asperity::march::{Step, in_contact_frame};
+use asperity::step::Step;
+
+use asperity::process::in_contact_frame;
 use ndarray::Array2;
 
 use crate::case::Case;

@@ -13,8 +13,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use asperity::finding::{Diagnostics, Finding, Known};
-use asperity::march::Row;
 use asperity::sliding::Friction;
+use asperity::step::Row;
 use asperity::{Error, drive};
 use thiserror::Error;
 

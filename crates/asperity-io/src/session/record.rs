@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use asperity::finding::{Diagnostics, Finding};
-use asperity::march::Row;
 use asperity::sliding::Friction;
+use asperity::step::Row;
 use asperity::{Drive, Error};
 
 use super::maps::Maps;

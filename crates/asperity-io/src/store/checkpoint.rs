@@ -9,7 +9,7 @@ use std::fs::{self, File};
 use std::io::{BufReader, Read, Write};
 use std::path::{Path, PathBuf};
 
-use asperity::march::Checkpoint;
+use asperity::step::Checkpoint;
 use flate2::Crc;
 use ndarray::Array2;
 use serde::{Deserialize, Serialize};

@@ -1,133 +1,67 @@
-//! Chunks: the files that hold the numbers, encoded and decoded by zarrs.
+//! Chunks: the files that hold the numbers of an array.
 
 use std::fs;
-use std::io::Read;
-use std::num::NonZeroU64;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
-use flate2::read::GzDecoder;
 use ndarray::{Array2, ArrayView2, s};
 use rayon::prelude::*;
-use zarrs::array::{
-    Array, ArrayBytes, ArrayToBytesCodecTraits, CodecOptions, Element, ElementOwned, FromArrayBytes,
-};
 
+use super::codec::{Codec, Number};
 use super::error::{Result, StoreError, corrupt, io};
-use super::layout::{ArraySpec, LEVEL};
+use super::layout::ArraySpec;
 use crate::resources;
 
 /// The chunks of one array.
 pub(super) struct Chunks {
+    /// The directory of the array.
     root: PathBuf,
+    /// Cells of a chunk along each dimension.
     chunk: Vec<usize>,
-    sides: Vec<NonZeroU64>,
-    /// Codecs that squeeze, and those of the same format that only wrap.
-    deflated: Array<()>,
-    wrapped: Array<()>,
-    /// The codec of the numbers alone.
-    plain: Array<()>,
-    /// Bytes of the numbers of a chunk.
-    length: u64,
-    compressed: bool,
-    summed: bool,
+    codec: Codec,
 }
 
 impl Chunks {
-    pub(super) fn new(root: &Path, spec: &ArraySpec) -> Result<Self> {
-        let array = |spec: &ArraySpec, level| {
-            let path = format!("/{}", spec.name);
-            let malformed = |error: &dyn std::fmt::Display| corrupt(&root.join(spec.name), error);
-            let metadata = serde_json::from_value(spec.document(level)).map_err(|e| malformed(&e))?;
-            Array::new_with_metadata(Arc::new(()), &path, metadata).map_err(|e| malformed(&e))
-        };
-        Ok(Chunks {
-            root: root.to_owned(),
-            chunk: spec.chunk.clone(),
-            sides: spec.chunk.iter().filter_map(|side| NonZeroU64::new(*side as u64)).collect(),
-            deflated: array(spec, LEVEL)?,
-            wrapped: array(spec, 0)?,
-            plain: array(&ArraySpec { compressed: false, summed: false, ..spec.clone() }, 0)?,
-            length: (spec.chunk.iter().product::<usize>() * spec.data_type.width()) as u64,
-            compressed: spec.compressed,
-            summed: spec.summed,
-        })
+    pub(super) fn new(root: &Path, spec: &ArraySpec) -> Self {
+        Chunks { root: root.join(spec.name), chunk: spec.chunk.clone(), codec: Codec::of(spec) }
     }
 
-    /// The file of a chunk.
+    /// The file of a chunk: `c/1/0` of the array.
     pub(super) fn path(&self, index: &[u64]) -> PathBuf {
-        self.root.join(self.deflated.chunk_key(index).as_str())
+        index.iter().fold(self.root.join("c"), |path, n| path.join(n.to_string()))
     }
 
-    /// Writes one chunk. Numbers that differ from cell to cell do not deflate: they are wrapped only,
-    /// thirty times as fast. Repeated ones (no pressure, pressure at the hardness, no contact) do.
-    pub(super) fn write<T: Element + PartialEq>(&self, index: &[u64], cells: &[T]) -> Result<()> {
-        let repeats = cells.windows(2).filter(|pair| pair[0] == pair[1]).count();
-        let array = if repeats >= cells.len() / 8 { &self.deflated } else { &self.wrapped };
-        let path = self.path(index);
-        let encode = || {
-            let bytes = T::to_array_bytes(array.data_type(), cells)?;
-            let options = CodecOptions::default().with_concurrent_target(1);
-            let encoded =
-                array.codecs().encode(bytes, &self.sides, array.data_type(), array.fill_value(), &options);
-            Ok::<_, zarrs::array::ArrayError>(encoded?.into_owned())
-        };
-        let bytes = encode().map_err(|error| corrupt(&path, error))?;
-        fs::write(&path, bytes).map_err(io("write", &path))
+    /// Writes one chunk, and makes its directory.
+    pub(super) fn write<T: Number>(&self, index: &[u64], cells: &[T]) -> Result<()> {
+        self.make_directory(index)?;
+        self.put(index, cells)
     }
 
-    /// Reads one chunk; a lost or damaged one is an error.
-    pub(super) fn read<T: ElementOwned>(&self, index: &[u64]) -> Result<Vec<T>> {
+    fn make_directory(&self, index: &[u64]) -> Result<()> {
         let path = self.path(index);
-        let bytes = self.unpacked(&path, self.verified(index)?)?;
-        let array = &self.plain;
-        let decode = || {
-            let sides: Vec<u64> = self.sides.iter().map(|side| side.get()).collect();
-            let options = CodecOptions::default().with_concurrent_target(1);
-            let codecs = array.codecs();
-            let decoded: ArrayBytes<'_> =
-                codecs.decode(bytes.into(), &self.sides, array.data_type(), array.fill_value(), &options)?;
-            Vec::<T>::from_array_bytes(decoded.into_owned(), &sides, array.data_type())
-        };
-        decode().map_err(|error| corrupt(&path, error))
+        let directory = path.parent().unwrap_or(&self.root);
+        fs::create_dir_all(directory).map_err(io("make", directory))
+    }
+
+    fn put<T: Number>(&self, index: &[u64], cells: &[T]) -> Result<()> {
+        let path = self.path(index);
+        let written = self.codec.encode(cells).and_then(|bytes| fs::write(&path, bytes));
+        written.map_err(io("write", &path))
+    }
+
+    /// Reads one chunk; a missing or damaged one is an error.
+    pub(super) fn read<T: Number>(&self, index: &[u64]) -> Result<Vec<T>> {
+        self.decoded(index).map(|bytes| T::from_bytes(&bytes))
     }
 
     /// Compares a chunk with its checksum and its length; in results of form 1, with the checksum of its compression.
     pub(super) fn verify(&self, index: &[u64]) -> Result<()> {
-        self.unpacked(&self.path(index), self.verified(index)?).map(drop)
+        self.decoded(index).map(drop)
     }
 
-    /// The bytes of a chunk before their checksum.
-    fn verified(&self, index: &[u64]) -> Result<Vec<u8>> {
-        let mut bytes = self.bytes(index)?;
-        if self.summed {
-            let sum = bytes.split_last_chunk().map(|(_, sum)| u32::from_le_bytes(*sum));
-            bytes.truncate(bytes.len().saturating_sub(4));
-            if sum != Some(crc32c::crc32c(&bytes)) {
-                return Err(corrupt(&self.path(index), "its checksum is wrong"));
-            }
-        }
-        Ok(bytes)
-    }
-
-    /// The bytes of the numbers; what would unpack to more is refused before it does.
-    fn unpacked(&self, path: &Path, bytes: Vec<u8>) -> Result<Vec<u8>> {
-        let plain = if self.compressed {
-            let mut plain = Vec::with_capacity(self.length as usize);
-            let unpacked = GzDecoder::new(&bytes[..]).take(self.length + 1).read_to_end(&mut plain);
-            unpacked.map_err(|error| corrupt(path, error))?;
-            plain
-        } else {
-            bytes
-        };
-        if plain.len() as u64 != self.length {
-            let more = if plain.len() as u64 > self.length { "more" } else { "fewer" };
-            return Err(corrupt(
-                path,
-                format_args!("it holds {more} than the {} bytes of its numbers", self.length),
-            ));
-        }
-        Ok(plain)
+    /// The bytes of the numbers of a chunk.
+    fn decoded(&self, index: &[u64]) -> Result<Vec<u8>> {
+        let bytes = self.bytes(index)?;
+        self.codec.decode(bytes).map_err(|what| corrupt(&self.path(index), what))
     }
 
     /// The file of a chunk as it is.
@@ -148,7 +82,7 @@ impl Chunks {
             }
             Err(source) => return Err(StoreError::Io { path, action: "read", source }),
         };
-        if length > self.length + self.length / 4 + 1024 {
+        if length > self.codec.longest() {
             return Err(corrupt(
                 &path,
                 format_args!("the chunk has {length} bytes, more than its numbers need"),
@@ -158,16 +92,11 @@ impl Chunks {
     }
 
     /// Writes a map over the last two dimensions, or the last one of a line; `lead` holds the index of the dimensions before.
-    pub(super) fn write_map<T>(&self, lead: &[u64], map: ArrayView2<'_, T>) -> Result<()>
-    where
-        T: Element + PartialEq + Copy + Send + Sync,
-    {
+    pub(super) fn write_map<T: Number>(&self, lead: &[u64], map: ArrayView2<'_, T>) -> Result<()> {
         let (blocks, [side_x, side_y]) = self.blocks(lead, map.dim());
         for block in &blocks {
-            let path = self.path(&block.index);
-            let directory = path.parent().unwrap_or(&self.root);
             if block.y.start == 0 {
-                fs::create_dir_all(directory).map_err(io("make", directory))?;
+                self.make_directory(&block.index)?;
             }
         }
         blocks.par_iter().try_for_each(|block| {
@@ -180,7 +109,7 @@ impl Chunks {
                     *cell = *value;
                 }
             }
-            self.write(&block.index, &cells)
+            self.put(&block.index, &cells)
         })
     }
 
@@ -195,10 +124,7 @@ impl Chunks {
     }
 
     /// The inverse of [`write_map`](Self::write_map).
-    pub(super) fn read_map<T>(&self, lead: &[u64], shape: (usize, usize)) -> Result<Array2<T>>
-    where
-        T: ElementOwned + Clone + Default + Send + Sync,
-    {
+    pub(super) fn read_map<T: Number>(&self, lead: &[u64], shape: (usize, usize)) -> Result<Array2<T>> {
         let (blocks, [_, side_y]) = self.blocks(lead, shape);
         blocks.iter().try_for_each(|block| self.find(&block.index))?;
         let mut map = Array2::<T>::default(shape);
@@ -210,7 +136,7 @@ impl Chunks {
                 let mut part = map.slice_mut(s![block.x.clone(), block.y.clone()]);
                 for (mut row, cells) in part.rows_mut().into_iter().zip(cells.chunks(side_y)) {
                     for (value, cell) in row.iter_mut().zip(cells) {
-                        *value = cell.clone();
+                        *value = *cell;
                     }
                 }
             }

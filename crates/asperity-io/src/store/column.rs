@@ -7,12 +7,12 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-use asperity::march::Row;
+use asperity::step::Row;
 
 use super::checksum::Sums;
 use super::chunks::Chunks;
 use super::error::{Result, corrupt, io};
-use super::layout::{ArraySpec, Entry};
+use super::layout::{ArraySpec, Entry, Stored};
 
 /// The writing end of a per-step array.
 pub(super) struct Column {
@@ -55,10 +55,10 @@ impl Layout {
 
 impl Column {
     /// After the first `rows` rows, whose checksum is in `sums`.
-    pub(super) fn new(root: &Path, spec: &ArraySpec, rows: usize, sums: &Sums) -> Result<Self> {
-        let (chunks, layout) = (Chunks::new(root, spec)?, Layout::of(spec));
+    pub(super) fn new(root: &Path, spec: &ArraySpec, rows: usize, sums: &Sums) -> Self {
+        let (chunks, layout) = (Chunks::new(root, spec), Layout::of(spec));
         let sum = sums.get(spec.name).copied().unwrap_or(0);
-        Ok(Column { chunks, layout, open: None, name: spec.name, rows, sum, later: Vec::new() })
+        Column { chunks, layout, open: None, name: spec.name, rows, sum, later: Vec::new() }
     }
 
     /// The checksum of the first `rows` rows, set in `sums`.
@@ -135,7 +135,7 @@ pub(super) fn read(root: &Path, spec: &ArraySpec, length: usize, sums: &Sums) ->
 }
 
 fn read_unchecked(root: &Path, spec: &ArraySpec, length: usize) -> Result<Vec<[u8; 8]>> {
-    let chunks = Chunks::new(root, spec)?;
+    let chunks = Chunks::new(root, spec);
     let layout = Layout::of(spec);
     let mut numbers = Vec::new();
     // A length beyond what the files hold ends at the first missing chunk, not at the memory's end.

@@ -194,7 +194,7 @@ pub(super) fn constants(root: &Path, header: &Header, form: u64) -> Result<Vec<P
         !(layout::is_of_rows(spec.dimensions[0]) || layout::is_of_maps(spec.dimensions[0]))
     };
     for spec in layout::arrays(header, 0, 0).into_iter().filter(is_constant) {
-        let chunks = Chunks::new(root, &spec.clone().of_form(form))?;
+        let chunks = Chunks::new(root, &spec.clone().of_form(form));
         match spec.name {
             "initial_gap" => files.extend(chunks.paths(&[], header.grid.shape())),
             _ => files.push(chunks.path(&[0])),
@@ -218,7 +218,7 @@ pub(super) fn write_constants(
             "x" => (0..nx).map(|i| grid.x(i)).collect(),
             "y" => (0..ny).map(|j| grid.y(j)).collect(),
             "initial_gap" => {
-                Chunks::new(root, &spec)?.write_map(&[], initial_gap)?;
+                Chunks::new(root, &spec).write_map(&[], initial_gap)?;
                 continue;
             }
             name => match lines.iter().find(|(series, _)| series.name == name) {
@@ -226,11 +226,7 @@ pub(super) fn write_constants(
                 None => continue,
             },
         };
-        let chunks = Chunks::new(root, &spec)?;
-        let path = chunks.path(&[0]);
-        let directory = path.parent().unwrap_or(root);
-        fs::create_dir_all(directory).map_err(io("make", directory))?;
-        chunks.write(&[0], &centres)?;
+        Chunks::new(root, &spec).write(&[0], &centres)?;
     }
     Ok(())
 }

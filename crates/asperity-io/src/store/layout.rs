@@ -1,7 +1,9 @@
 //! Names, units, dimensions and chunks of the arrays of a result.
 
-use asperity::march::Row;
+pub(super) use asperity::quantities::Entry;
 use asperity::quantities::{Column as Quantity, Quantity as Kind};
+pub use asperity::quantities::{ROW_COLUMNS as SCALARS, RowColumn as Scalar};
+use asperity::step::Row;
 use asperity::{Axis, Grid};
 use serde_json::{Value, json};
 
@@ -17,46 +19,6 @@ const LONGEST_SIDE: usize = 256;
 /// Longest chunk of a field on a line: as many bytes.
 const LONGEST_LINE: usize = LONGEST_SIDE * LONGEST_SIDE;
 
-/// A number that each step has one of.
-#[derive(Clone, Copy, Debug)]
-pub struct Scalar {
-    /// Its name in results.
-    pub name: &'static str,
-    /// Its unit; "1" where it has none.
-    pub units: &'static str,
-    /// What it is, for axes and legends.
-    pub long_name: &'static str,
-    pub(super) entry: Entry,
-}
-
-impl Scalar {
-    /// Its number in a row; NaN for none.
-    pub fn of(&self, row: &Row) -> f64 {
-        let mut row = *row;
-        match self.entry {
-            Entry::Coordinate => row.coordinate.value(),
-            Entry::Real(entry) => *entry(&mut row),
-            Entry::Maybe(entry) => entry(&mut row).unwrap_or(f64::NAN),
-            Entry::Count(entry) => *entry(&mut row) as f64,
-        }
-    }
-
-    /// Sets it in a row, whose coordinate is on its axis before.
-    pub fn set(&self, row: &mut Row, value: f64) {
-        match self.entry {
-            Entry::Coordinate => row.coordinate = row.coordinate.axis().at(value),
-            Entry::Real(entry) => *entry(row) = value,
-            Entry::Maybe(entry) => *entry(row) = Some(value).filter(|number| !number.is_nan()),
-            Entry::Count(entry) => *entry(row) = value as usize,
-        }
-    }
-
-    /// Whether it is a whole number.
-    pub fn is_count(&self) -> bool {
-        matches!(self.entry, Entry::Count(_))
-    }
-}
-
 /// A per-step number that a result has, whether every result has it or it was asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Series {
@@ -71,24 +33,13 @@ pub struct Series {
 impl Series {
     /// A scalar of a result: on a line forces and areas are per length, and what is measured from the end of the domain says so.
     pub(super) fn of_scalar(scalar: &Scalar, header: &Header) -> Series {
-        let long_name = match scalar.name {
-            "approach" if header.is_up_to_a_constant() => {
-                "rigid-body approach, measured from the end of the domain (known up to a constant on a free line)"
-            }
-            "contact_area" if header.grid.is_line() => "contact length",
-            "contact_area_corrected" if header.grid.is_line() => {
-                "contact length (without correction on a line)"
-            }
-            "contact_fraction" if header.grid.is_line() => "contact length over length of the domain",
-            "capped_area" if header.grid.is_line() => "length at the hardness",
-            "load" if header.grid.is_line() => "normal load per length along y",
-            "mean_pressure" if header.grid.is_line() => "load over length of the domain",
-            "time" => header.axis().name(),
-            _ => scalar.long_name,
-        };
-        let units = match scalar.name {
-            "time" => header.axis().unit(),
-            _ => header.grid.units(scalar.units),
+        let (units, long_name) = match scalar.name {
+            "time" => (header.axis().unit(), header.axis().name()),
+            "approach" if header.is_up_to_a_constant() => (
+                scalar.units,
+                "rigid-body approach, measured from the end of the domain (known up to a constant on a free line)",
+            ),
+            _ => (header.grid.units(scalar.units), scalar.long_name_on(header.grid.is_line())),
         };
         Series { name: header.stored(scalar.name), units, long_name }
     }
@@ -102,16 +53,9 @@ impl Series {
         Series { name: header.stored("field_time"), units, long_name }
     }
 
-    /// A quantity of a result. The border of a contact on a line are its ends, which are counted.
+    /// A quantity of a result.
     pub(crate) fn of_quantity(kind: Kind, grid: &Grid) -> Series {
-        let (units, long_name) = match kind {
-            Kind::ContactPerimeter if grid.is_line() => ("1", "number of ends of the contact"),
-            Kind::LargestSpot if grid.is_line() => ("m", "length of the largest contact spot"),
-            Kind::MeanSpot if grid.is_line() => ("m", "mean length of a contact spot"),
-            Kind::SpotHistogram if grid.is_line() => ("1", "number of contact spots per class of length"),
-            _ => (grid.units(kind.units()), kind.long_name()),
-        };
-        Series { name: kind.name(), units, long_name }
+        Series { name: kind.name(), units: kind.units_on(grid), long_name: kind.long_name_on(grid) }
     }
 }
 
@@ -158,18 +102,18 @@ pub(crate) fn coordinates(column: &Quantity, grid: &Grid) -> Vec<(Series, Vec<f6
     vec![(on(of_middles), middles), (on(of_edges), column.edges.clone())]
 }
 
-/// Where a row keeps a scalar.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Entry {
-    /// On its axis, which the row has before.
-    Coordinate,
-    Real(fn(&mut Row) -> &mut f64),
-    Count(fn(&mut Row) -> &mut usize),
-    /// A number that not every row has: NaN for none.
-    Maybe(fn(&mut Row) -> &mut Option<f64>),
+/// How a number of a row is stored.
+pub(super) trait Stored {
+    fn data_type(self) -> DataType;
+
+    /// The eight bytes that stand for it in the store.
+    fn to_bytes(self, row: &Row) -> [u8; 8];
+
+    /// Sets it from those bytes; `None` where they hold no count.
+    fn set(self, row: &mut Row, bytes: [u8; 8]) -> Option<()>;
 }
 
-impl Entry {
+impl Stored for Entry {
     fn data_type(self) -> DataType {
         match self {
             Entry::Coordinate | Entry::Real(_) | Entry::Maybe(_) => DataType::Float64,
@@ -177,8 +121,7 @@ impl Entry {
         }
     }
 
-    /// The eight bytes that stand for it in the store.
-    pub(super) fn to_bytes(self, row: &Row) -> [u8; 8] {
+    fn to_bytes(self, row: &Row) -> [u8; 8] {
         let mut row = *row;
         match self {
             Entry::Coordinate => row.coordinate.value().to_le_bytes(),
@@ -188,8 +131,7 @@ impl Entry {
         }
     }
 
-    /// Sets it from those bytes; `None` where they hold no count.
-    pub(super) fn set(self, row: &mut Row, bytes: [u8; 8]) -> Option<()> {
+    fn set(self, row: &mut Row, bytes: [u8; 8]) -> Option<()> {
         match self {
             Entry::Coordinate => row.coordinate = row.coordinate.axis().at(f64::from_le_bytes(bytes)),
             Entry::Real(entry) => *entry(row) = f64::from_le_bytes(bytes),
@@ -201,36 +143,6 @@ impl Entry {
         Some(())
     }
 }
-
-macro_rules! scalars {
-    ($($kind:ident $name:ident [$units:literal] $long_name:literal;)*) => {
-        [Scalar { name: "time", units: "s", long_name: "time", entry: Entry::Coordinate }, $(Scalar {
-            name: stringify!($name),
-            units: $units,
-            long_name: $long_name,
-            entry: Entry::$kind(|row| &mut row.$name),
-        }),*]
-    };
-}
-
-/// The per-step numbers of a result, the coordinate first.
-pub const SCALARS: [Scalar; 16] = scalars![
-    Real load ["N"] "normal load";
-    Real approach ["m"] "rigid-body approach";
-    Real contact_area ["m2"] "contact area";
-    Real contact_area_corrected ["m2"] "contact area corrected by its perimeter";
-    Real contact_fraction ["1"] "contact area over nominal area";
-    Real capped_area ["m2"] "area at the hardness";
-    Real mean_pressure ["Pa"] "load over nominal area";
-    Real max_pressure ["Pa"] "largest pressure";
-    Real mean_gap ["m"] "mean gap";
-    Count iterations ["1"] "iterations of the solver";
-    Count convolutions ["1"] "convolutions";
-    Real residual ["1"] "KKT residual";
-    Real certificate ["1"] "certified relative error in the energy norm";
-    Maybe time_error ["1"] "estimated error of the stress, relative";
-    Count stage ["1"] "stage of the load";
-];
 
 /// Type of the numbers of an array.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -24,7 +24,7 @@ use serde_json::{Map, Value, json};
 
 use super::chunks::Chunks;
 use super::document;
-use super::error::{Result, io};
+use super::error::Result;
 use super::layout::{ArraySpec, DataType, Series, side};
 use super::reader::Reader;
 use super::writer::{lock, remove};
@@ -290,7 +290,7 @@ impl LeakWriter {
     /// [`StoreError::Io`](super::StoreError::Io) where the system refuses.
     pub fn put_pressure(&self, index: usize, pressure: ArrayView2<'_, f64>) -> Result<()> {
         let spec = spec(PRESSURE, index + 1, &self.grid, false).of_form(self.form);
-        Chunks::new(&self.root, &spec)?.write_map(&[index as u64], pressure)
+        Chunks::new(&self.root, &spec).write_map(&[index as u64], pressure)
     }
 
     /// Writes the numbers and makes all of it visible.
@@ -302,11 +302,8 @@ impl LeakWriter {
         let mut specs = vec![];
         for (name, numbers) in &table.columns {
             let spec = spec(name, rows, &self.grid, table.gas).of_form(self.form);
-            let chunks = Chunks::new(&self.root, &spec)?;
+            let chunks = Chunks::new(&self.root, &spec);
             let index = vec![0; spec.shape.len()];
-            let path = chunks.path(&index);
-            let directory = path.parent().unwrap_or(&self.root);
-            fs::create_dir_all(directory).map_err(io("make", directory))?;
             match spec.data_type {
                 DataType::Int64 => {
                     chunks.write(&index, &numbers.iter().map(|x| *x as i64).collect::<Vec<_>>())?;

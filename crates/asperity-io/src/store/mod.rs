@@ -56,6 +56,7 @@
 mod checkpoint;
 mod checksum;
 mod chunks;
+mod codec;
 mod column;
 mod create;
 mod document;
@@ -73,7 +74,7 @@ mod sync;
 mod verify;
 mod writer;
 
-pub use asperity::march::{Checkpoint, Row};
+pub use asperity::step::{Checkpoint, Row};
 pub use error::{Result, StoreError};
 pub use field_kind::FieldKind;
 pub use header::{Header, Status, Work};

@@ -4,8 +4,8 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use asperity::finding::Finding;
-use asperity::march::Row;
 use asperity::quantities::Quantity;
+use asperity::step::Row;
 use ndarray::Array2;
 use serde_json::{Map, Value};
 
@@ -345,7 +345,7 @@ impl Reader {
         let spec = self.spec(name)?;
         let index = vec![0; spec.shape.len()];
         let numbers = leaks.rows * spec.shape[1..].iter().product::<usize>();
-        let chunks = Chunks::new(&self.root, &spec)?;
+        let chunks = Chunks::new(&self.root, &spec);
         let mut values: Vec<f64> = match spec.data_type {
             DataType::Int64 => chunks.read::<i64>(&index)?.into_iter().map(|count| count as f64).collect(),
             _ => chunks.read(&index)?,
@@ -363,7 +363,7 @@ impl Reader {
             let how = "set leakage.field = true in the case, or store it by `asperity leak RESULT --field`";
             return Err(self.missing(format!("fluid pressure {index}"), how.into()));
         }
-        Chunks::new(&self.root, &self.spec("fluid_pressure")?)?
+        Chunks::new(&self.root, &self.spec("fluid_pressure")?)
             .read_map(&[index as u64], self.header().grid.shape())
     }
 
@@ -372,7 +372,7 @@ impl Reader {
     /// # Errors
     /// [`StoreError::Corrupt`] where a file is missing or damaged, [`StoreError::Io`] where the system refuses.
     pub fn initial_gap(&self) -> Result<Array2<f64>> {
-        Chunks::new(&self.root, &self.spec("initial_gap")?)?.read_map(&[], self.header().grid.shape())
+        Chunks::new(&self.root, &self.spec("initial_gap")?).read_map(&[], self.header().grid.shape())
     }
 
     /// All rows of a per-step array.
@@ -393,7 +393,7 @@ impl Reader {
             return Err(self.no_field(kind));
         }
         let index = self.index(at)? as u64;
-        Ok((Chunks::new(&self.root, &self.spec(kind.name())?)?, index))
+        Ok((Chunks::new(&self.root, &self.spec(kind.name())?), index))
     }
 
     /// The error of a result that has no row yet.

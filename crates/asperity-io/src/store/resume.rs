@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use asperity::march::Checkpoint;
+use asperity::step::Checkpoint;
 use ndarray::ArrayView2;
 
 use super::checkpoint;
@@ -55,7 +55,7 @@ impl Writer {
         let all = reader.rows()?;
         let maps = reader.field_steps().iter().take_while(|step| **step < rows).count();
         for kind in &reader.header().fields {
-            let chunks = Chunks::new(path, &reader.spec(kind.name())?)?;
+            let chunks = Chunks::new(path, &reader.spec(kind.name())?);
             for map in 0..maps {
                 chunks.verify_map(&[map as u64], reader.header().grid.shape())?;
             }

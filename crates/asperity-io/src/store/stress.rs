@@ -11,7 +11,7 @@ use super::checksum::Sums;
 use super::chunks::Chunks;
 use super::column::Column;
 use super::document::{Document, Pages};
-use super::error::{Result, corrupt, io};
+use super::error::{Result, corrupt};
 use super::layout::{ArraySpec, Series};
 use super::reader::{At, Reader};
 use super::replace::Way;
@@ -227,7 +227,7 @@ impl StressWriter {
             let spec = specs.iter().find(|spec| spec.name == series.name);
             let spec = spec
                 .ok_or_else(|| reader.missing(format!("array `{}`", series.name), "it is damaged".into()))?;
-            Ok((*quantity, Chunks::new(root, spec)?))
+            Ok((*quantity, Chunks::new(root, spec)))
         };
         Ok(StressWriter {
             fields: set.fields().iter().map(chunks).collect::<Result<_>>()?,
@@ -268,15 +268,11 @@ impl StressWriter {
         let bytes = |numbers: &[f64]| numbers.iter().flat_map(|x| x.to_le_bytes()).collect::<Vec<u8>>();
         let find = |name: &str| self.specs.iter().find(|spec| spec.name == name);
         if let Some(spec) = find(DEPTH) {
-            let chunks = Chunks::new(&self.root, spec)?;
-            let path = chunks.path(&[0]);
-            let directory = path.parent().unwrap_or(&self.root);
-            std::fs::create_dir_all(directory).map_err(io("make", directory))?;
-            chunks.write(&[0], &self.set.depths)?;
+            Chunks::new(&self.root, spec).write(&[0], &self.set.depths)?;
         }
         for (n, series) in self.set.scalars().iter().enumerate() {
             let Some(spec) = find(series.name) else { continue };
-            let mut column = Column::new(&self.root, spec, 0, &Sums::new())?;
+            let mut column = Column::new(&self.root, spec, 0, &Sums::new());
             for (map, numbers) in self.scalars.iter().enumerate() {
                 column.put_row(map, &bytes(&numbers[n..=n]))?;
             }
@@ -284,7 +280,7 @@ impl StressWriter {
         }
         for (n, series) in self.set.profiles().iter().enumerate() {
             let Some(spec) = find(series.name) else { continue };
-            let mut column = Column::new(&self.root, spec, 0, &Sums::new())?;
+            let mut column = Column::new(&self.root, spec, 0, &Sums::new());
             for (map, profiles) in self.profiles.iter().enumerate() {
                 column.put_row(map, &bytes(&profiles[n]))?;
             }
@@ -404,7 +400,7 @@ impl Reader {
         if !set.instants.contains(&index) {
             return Ok(Array2::from_elem(shape, f64::NAN));
         }
-        let chunks = Chunks::new(self.path(), &self.spec(field_name(quantity))?)?;
+        let chunks = Chunks::new(self.path(), &self.spec(field_name(quantity))?);
         chunks.read_map(&[index as u64, depth as u64], shape)
     }
 }

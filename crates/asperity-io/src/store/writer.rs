@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use asperity::finding::Finding;
-use asperity::march::{Checkpoint, Row};
+use asperity::step::{Checkpoint, Row};
 use ndarray::ArrayView2;
 
 use super::checkpoint;
@@ -17,7 +17,7 @@ use super::document::{Document, Pages};
 use super::error::{Result, StoreError, input, io};
 use super::field_kind::FieldKind;
 use super::header::{Header, Progress, SCHEMA, Status, Work};
-use super::layout::{Entry, SCALARS};
+use super::layout::{Entry, SCALARS, Stored};
 use super::leftovers;
 use super::replace::Way;
 use super::stress::{self, StressSet};
@@ -191,13 +191,13 @@ impl Writer {
             specs.iter().find(|spec| spec.name == name).ok_or_else(|| input("array", name, "one of a result"))
         };
         let Progress { rows, maps, sums, .. } = &document.progress;
-        let per_row = |name: &'static str| Column::new(root, spec(name)?, *rows, sums);
-        let per_map = |name: &'static str| Column::new(root, spec(name)?, *maps, sums);
+        let per_row = |name: &'static str| Ok(Column::new(root, spec(name)?, *rows, sums));
+        let per_map = |name: &'static str| Ok(Column::new(root, spec(name)?, *maps, sums));
         let columns = SCALARS.iter().map(|s| Ok((s.entry, per_row(s.name)?)));
         let quantities = document.header.quantities.iter();
         let quantities = quantities.map(|q| Ok((q.width(), per_row(q.quantity.name())?)));
         let fields = document.header.fields.iter();
-        let fields = fields.map(|kind| Ok((*kind, Chunks::new(root, spec(kind.name())?)?)));
+        let fields = fields.map(|kind| Ok((*kind, Chunks::new(root, spec(kind.name())?))));
         Ok(Writer {
             columns: columns.collect::<Result<_>>()?,
             quantities: quantities.collect::<Result<_>>()?,
@@ -276,7 +276,7 @@ impl Writer {
     }
 
     /// Appends a step with the quantities of the header: their numbers one after the other, as
-    /// [`Step::quantities`](asperity::march::Step::quantities) lends them.
+    /// [`Step::quantities`](asperity::step::Step::quantities) lends them.
     ///
     /// # Errors
     /// As [`append`](Self::append); [`StoreError::Input`] where there are more or fewer numbers.

@@ -4,40 +4,44 @@
 //! where the depth image is: binary32 in metres, lines padded to a multiple of 8 bytes. Undefined points have the
 //! tagged value (3e15) or more. (AL3D File Format Specification, version 1.0, 2005.)
 
-use super::Problem;
 use super::cursor::Cursor;
+use super::entries::Entries;
 use super::finish::{Lateral, Measured, Unit};
 use super::grid::Layout;
 use super::sample::{Kind, Order};
+use super::{Problem, Reader, Request};
 
 const SIGNATURE: &[u8] = b"AliconaImaging\0\r\n";
 
-/// Whether the bytes are an AL3D file.
-pub(super) fn is_al3d(bytes: &[u8]) -> bool {
-    bytes.starts_with(SIGNATURE)
-}
+pub(super) const AL3D: Reader = Reader {
+    name: "al3d",
+    aliases: &[],
+    sniff: |bytes| bytes.starts_with(SIGNATURE),
+    read: read,
+    write: None,
+};
 
 /// Reads the depth image.
-pub(super) fn read_al3d(bytes: &[u8]) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     let mut cursor = Cursor::new(bytes, Order::Little);
     cursor.bytes(SIGNATURE.len() as u64, "the signature")?;
-    let mut tags = vec![tag(&mut cursor)?, tag(&mut cursor)?];
-    let count: u32 = number(&tags, "TagCount")?;
-    for _ in 0..count {
-        tags.push(tag(&mut cursor)?);
+    let mut tags = Entries::new("the AL3D tags");
+    read_tag(&mut cursor, &mut tags)?;
+    read_tag(&mut cursor, &mut tags)?;
+    for _ in 0..tags.whole("TagCount")? {
+        read_tag(&mut cursor, &mut tags)?;
     }
     let comment = cursor.text(256, "the comment")?;
 
-    let [nx, ny] = [number::<u64>(&tags, "Cols")?, number(&tags, "Rows")?];
-    let pixel = [number::<f64>(&tags, "PixelSizeXMeter")?, number(&tags, "PixelSizeYMeter")?];
-    let offset: u64 = number(&tags, "DepthImageOffset")?;
+    let [nx, ny] = [tags.whole("Cols")?, tags.whole("Rows")?];
+    let pixel = [tags.number("PixelSizeXMeter")?, tags.number("PixelSizeYMeter")?];
+    let offset = tags.whole("DepthImageOffset")?;
     if offset == 0 {
-        let detail = "it has no depth image".to_owned();
-        return Err(Problem::NoHeights { format: super::Format::Al3d, detail });
+        return Err(request.no_heights("it has no depth image"));
     }
     let image = Cursor::at(bytes, offset, Order::Little, "the depth image")?.rest();
     // The tag is written with fewer digits than the binary32 values have.
-    let invalid: f64 = number(&tags, "InvalidPixelValue").unwrap_or(f64::NAN);
+    let invalid = tags.number("InvalidPixelValue").unwrap_or(f64::NAN);
     let tolerance = 1.5e-7 * invalid.abs();
     let height = |v: f64| {
         let undefined = (v - invalid).abs() <= tolerance || (invalid > 0.0 && v > invalid);
@@ -46,31 +50,17 @@ pub(super) fn read_al3d(bytes: &[u8]) -> Result<Measured, Problem> {
     let stride = nx.saturating_mul(4).checked_next_multiple_of(8).unwrap_or(u64::MAX);
     let layout = Layout { points: [nx, ny], kind: Kind::F32, order: Order::Little, stride };
     let heights = layout.map(image, "the depth image", height)?;
-    let mut metadata: Vec<_> = tags.into_iter().filter(|(key, _)| key != "TagCount").collect();
-    if !comment.is_empty() {
-        metadata.push(("Comment".to_owned(), comment));
-    }
-    Ok(Measured {
-        heights,
-        unit: Unit::Metres(1.0),
-        lateral: Lateral::Metres([nx as f64 * pixel[0].abs(), ny as f64 * pixel[1].abs()]),
-        channel: None,
-        channels: Vec::new(),
-        metadata,
-    })
+    let lateral = Lateral::Metres([nx as f64 * pixel[0].abs(), ny as f64 * pixel[1].abs()]);
+    let tags = tags.into_iter().filter(|(key, _)| key != "TagCount");
+    Ok(Measured::new(heights, Unit::Metres(1.0), lateral).with(tags).with([("Comment", comment)]))
 }
 
-fn tag(cursor: &mut Cursor) -> Result<(String, String), Problem> {
+fn read_tag(cursor: &mut Cursor, tags: &mut Entries) -> Result<(), Problem> {
     let (key, value) = (cursor.text(20, "a tag")?, cursor.text(30, "a tag")?);
     let end = cursor.bytes(2, "a tag")?;
     if end != b"\r\n" {
         return Err(Problem::malformed(format!("the end of the tag {key:?}"), format!("{end:?}"), "CR LF"));
     }
-    Ok((key, value))
-}
-
-fn number<T: std::str::FromStr>(tags: &[(String, String)], key: &str) -> Result<T, Problem> {
-    let value = tags.iter().find(|(k, _)| k == key).map(|(_, v)| v.as_str());
-    let value = value.ok_or_else(|| Problem::malformed(format!("the tag {key}"), "missing", "present"))?;
-    value.parse().map_err(|_| Problem::malformed(format!("the tag {key}"), value, "a number"))
+    tags.push(&key, &value);
+    Ok(())
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 
-use super::Format;
+use super::{Format, format};
 
 /// A file that cannot be read or written as a topography.
 #[derive(Debug, Error)]
@@ -29,9 +29,8 @@ pub enum Problem {
     TooLarge(String),
     /// The content belongs to none of the formats.
     #[error(
-        "the content is none of the known formats (text, XYZ, CSV, NPY, NPZ, NetCDF, HDF5, SDF, BCR, X3P, SUR, \
-         MNT, GWY, AL3D, OPD, Nanoscope, MetroPro, PLU, IBW, NID, FRT); export it from the instrument's software as \
-         X3P, SDF or text"
+        "the content is none of the known formats ({}); export it from the instrument's software as x3p, sdf or text",
+        format::list(Format::ALL.iter().copied())
     )]
     Unrecognised,
     /// The content belongs to a known format that is not read.
@@ -114,7 +113,7 @@ pub enum Problem {
         /// As given.
         value: String,
         /// What is accepted.
-        expected: &'static str,
+        expected: String,
     },
 }
 

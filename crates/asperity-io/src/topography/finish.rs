@@ -8,6 +8,8 @@ use super::{Format, Problem, ReadOptions, Topography, grid};
 /// What a reader found.
 #[derive(Debug)]
 pub(super) struct Measured {
+    /// The format, where the content tells it better than the signature.
+    pub format: Option<Format>,
     /// Heights in the file's unit, axis 0 = x, C order, NaN = undefined.
     pub heights: Array2<f64>,
     /// Unit of the heights.
@@ -44,6 +46,42 @@ pub(super) enum Lateral {
     Unstated(String),
 }
 
+impl Measured {
+    /// Heights of a file without channels.
+    pub(super) fn new(heights: Array2<f64>, unit: Unit, lateral: Lateral) -> Self {
+        let (channels, metadata) = (Vec::new(), Vec::new());
+        Measured { format: None, heights, unit, lateral, channel: None, channels, metadata }
+    }
+
+    /// Heights of one of these channels.
+    pub(super) fn of_channel(self, names: Vec<String>, index: usize) -> Self {
+        match names.get(index).filter(|name| !name.is_empty()).cloned() {
+            Some(name) => Measured { channel: Some(name), channels: names, ..self },
+            None => self,
+        }
+    }
+
+    /// With what else the file says; empty values say nothing.
+    pub(super) fn with<K: Into<String>>(mut self, metadata: impl IntoIterator<Item = (K, String)>) -> Self {
+        let entries = metadata.into_iter().filter(|(_, value)| !value.is_empty());
+        self.metadata.extend(entries.map(|(key, value)| (key.into(), value)));
+        self
+    }
+}
+
+impl Lateral {
+    /// Lengths along x and y in the units that the file gives them.
+    pub(super) fn of([x, y]: [f64; 2], units: [Unit; 2]) -> Self {
+        match units {
+            [Unit::Metres(ux), Unit::Metres(uy)] => Lateral::Metres([x * ux, y * uy]),
+            [Unit::Other(label), _] | [_, Unit::Other(label)] => {
+                Lateral::Unstated(format!(" in a unit of length (it says {label:?})"))
+            }
+            _ => Lateral::Bare([x, y]),
+        }
+    }
+}
+
 /// Settles size and unit.
 pub(super) fn finish(
     format: Format,
@@ -51,7 +89,8 @@ pub(super) fn finish(
     options: &ReadOptions,
 ) -> Result<Topography, Problem> {
     check_options(options)?;
-    let Measured { mut heights, unit, lateral, channel, channels, metadata } = measured;
+    let Measured { format: found, mut heights, unit, lateral, channel, channels, metadata } = measured;
+    let format = found.unwrap_or(format);
     let height_unit = match (options.height_unit, &unit) {
         (Some(metres), _) => metres,
         (None, Unit::Metres(metres)) => *metres,
@@ -103,46 +142,15 @@ fn check_options(options: &ReadOptions) -> Result<(), Problem> {
         && !size.iter().all(|l| positive(*l))
     {
         let value = format!("{} m x {} m", size[0], size[1]);
-        return Err(Problem::Option { what: "size", value, expected: "two lengths greater than 0 m" });
+        return Err(Problem::Option { what: "size", value, expected: "two lengths greater than 0 m".into() });
     }
     match options.height_unit {
         Some(unit) if !positive(unit) => Err(Problem::Option {
             what: "height_unit",
             value: unit.to_string(),
-            expected: "metres per unit, greater than 0",
+            expected: "metres per unit, greater than 0".into(),
         }),
         _ => Ok(()),
-    }
-}
-
-/// The channel asked for by name (any case) or number; by default the first of heights, and without one the first.
-///
-/// A length is not always a height (the deflection of a cantilever is one too): names decide first.
-pub(super) fn choose_heights(
-    format: Format,
-    names: &[String],
-    unit: impl Fn(usize) -> Unit,
-    wanted: Option<&str>,
-) -> Result<usize, Problem> {
-    const NAMES: [&str; 6] = ["height", "zsensor", "z-axis", "topo", "elevation", "relief"];
-    let first = choose(format, names, wanted)?;
-    if wanted.is_some() {
-        return Ok(first);
-    }
-    let lengths = || (0..names.len()).filter(|i| matches!(unit(*i), Unit::Metres(_)));
-    let is_named = |i: &usize| {
-        let name = names[*i].to_lowercase();
-        NAMES.iter().any(|word| name.contains(word))
-    };
-    Ok(lengths().find(is_named).or_else(|| lengths().next()).unwrap_or(first))
-}
-
-/// Refuses a file of more channels than any instrument writes: every one is looked at.
-pub(super) fn check_channels(count: usize) -> Result<(), Problem> {
-    const MOST: usize = 1000;
-    match count <= MOST {
-        true => Ok(()),
-        false => Err(Problem::malformed("the number of channels", count, format!("at most {MOST}"))),
     }
 }
 
@@ -153,18 +161,4 @@ pub(super) fn unit_of(label: &str, lone_a: LoneA) -> Unit {
         (None, "") => Unit::Unstated,
         (None, label) => Unit::Other(label.to_owned()),
     }
-}
-
-/// The channel asked for by name (any case) or number, or the first.
-pub(super) fn choose(format: Format, names: &[String], wanted: Option<&str>) -> Result<usize, Problem> {
-    if names.is_empty() {
-        return Err(Problem::NoHeights { format, detail: "no channel with heights in it".into() });
-    }
-    let Some(wanted) = wanted else { return Ok(0) };
-    names
-        .iter()
-        .position(|n| n == wanted)
-        .or_else(|| names.iter().position(|n| n.to_lowercase() == wanted.to_lowercase()))
-        .or_else(|| wanted.parse().ok().filter(|i| *i < names.len()))
-        .ok_or_else(|| Problem::NoChannel { wanted: wanted.into(), available: names.to_vec() })
 }

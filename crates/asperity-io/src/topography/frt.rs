@@ -6,10 +6,18 @@
 //! marks an undefined point. (The readers of Gwyddion and SurfaceTopography.)
 
 use super::cursor::Cursor;
-use super::finish::{Lateral, Measured, Unit, choose};
+use super::finish::{Lateral, Measured, Unit};
 use super::grid::{self, Layout};
 use super::sample::{Kind, Order};
-use super::{Format, Problem};
+use super::{Problem, Reader, Request};
+
+pub(super) const FRT: Reader = Reader {
+    name: "frt",
+    aliases: &[],
+    sniff: |bytes| bytes.starts_with(SIGNATURE),
+    read: read,
+    write: None,
+};
 
 const SIGNATURE: &[u8] = b"FRTM_GLIDERV1.0";
 const UNDEFINED: f64 = 1.0;
@@ -29,11 +37,6 @@ const HEIGHTS: [(u32, &str); 4] =
     [(0x4, "Topography"), (0x80, "Thickness"), (0x800, "Sample thickness"), (0x1000, "AFM")];
 const BOTTOM_SENSOR: u32 = 0x1000_0000;
 
-/// Whether the bytes are a MicroProf file.
-pub(super) fn is_frt(bytes: &[u8]) -> bool {
-    bytes.starts_with(SIGNATURE)
-}
-
 struct Image<'a> {
     name: String,
     points: [u64; 2],
@@ -42,7 +45,7 @@ struct Image<'a> {
 }
 
 /// Reads the image asked for.
-pub(super) fn read_frt(bytes: &[u8], channel: Option<&str>) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     const H: &str = "the start of the FRT file";
     let mut c = Cursor::new(bytes, Order::Little);
     c.bytes(SIGNATURE.len() as u64, H)?;
@@ -76,10 +79,7 @@ pub(super) fn read_frt(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
             tag::IMAGES => images = parse_images(&mut c, &what)?,
             tag::COMMENT | tag::SETUP => {
                 let key = if tag == tag::COMMENT { "Comment" } else { "Setup" };
-                let value = super::cursor::text(content);
-                if !value.is_empty() {
-                    metadata.push((key.to_owned(), value));
-                }
+                metadata.push((key, super::cursor::text(content)));
             }
             _ => {}
         }
@@ -90,7 +90,7 @@ pub(super) fn read_frt(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
         images.insert(0, Image { name: "default".into(), points, bits, data });
     }
     let names: Vec<String> = images.iter().map(|i| i.name.clone()).collect();
-    let index = choose(Format::Frt, &names, channel)?;
+    let index = request.choose(&names)?;
     let image = &images[index];
     let missing = |what: &str| Problem::malformed(what, "missing", "present");
     let unit = scale.ok_or_else(|| missing("the block 0x6c (scale of the heights)"))?;
@@ -99,14 +99,7 @@ pub(super) fn read_frt(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
     let layout = Layout::dense(image.points, kind(image.bits)?, Order::Little);
     let heights = layout.map_from_bottom(image.data, &what, height)?;
     let lateral = size.map_or(Lateral::Unstated(String::new()), Lateral::Metres);
-    Ok(Measured {
-        heights,
-        unit: Unit::Metres(1.0),
-        lateral,
-        channel: Some(names[index].clone()),
-        channels: names,
-        metadata,
-    })
+    Ok(Measured::new(heights, Unit::Metres(1.0), lateral).of_channel(names, index).with(metadata))
 }
 
 fn kind(bits: u32) -> Result<Kind, Problem> {

@@ -11,23 +11,26 @@ use std::collections::BTreeMap;
 use ndarray::Array2;
 
 use super::cursor::{Cursor, text};
-use super::finish::{Lateral, Measured, Unit, choose_heights};
+use super::finish::{Lateral, Measured, Unit, unit_of};
 use super::grid::Layout;
 use super::sample::{Kind, Order};
-use super::unit::{LoneA, metres};
-use super::{Format, Problem};
+use super::unit::LoneA;
+use super::{Problem, Reader, Request, write};
+
+pub(super) const GWY: Reader = Reader {
+    name: "gwy",
+    aliases: &[],
+    sniff: |bytes| bytes.starts_with(SIGNATURE),
+    read: read,
+    write: Some(write::gwy::encode),
+};
 
 const SIGNATURE: &[u8] = b"GWYP";
 /// Objects lie in objects: Gwyddion nests some five deep.
 const DEEPEST: usize = 32;
 
-/// Whether the bytes are a GWY file.
-pub(super) fn is_gwy(bytes: &[u8]) -> bool {
-    bytes.starts_with(SIGNATURE)
-}
-
 /// Reads the channel asked for.
-pub(super) fn read_gwy(bytes: &[u8], channel: Option<&str>) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     let mut cursor = Cursor::new(bytes, Order::Little);
     cursor.bytes(SIGNATURE.len() as u64, "the signature")?;
     let container = Object::parse(&mut cursor, 0)?;
@@ -46,7 +49,7 @@ pub(super) fn read_gwy(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
             _ => format!("channel {n}"),
         })
         .collect();
-    let index = choose_heights(Format::Gwy, &names, |i| fields[i].1.unit("si_unit_z"), channel)?;
+    let index = request.choose_heights(&names, |i| fields[i].1.unit("si_unit_z"))?;
     let (n, data) = fields[index];
 
     let mut heights = data.map()?;
@@ -66,31 +69,21 @@ pub(super) fn read_gwy(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
         Some(Value::Double(length)) if length.is_finite() && *length != 0.0 => Some(length.abs()),
         _ => None,
     };
-    let lateral = match (length("xreal"), length("yreal"), data.unit("si_unit_xy")) {
-        (Some(x), Some(y), Unit::Metres(metres)) => Lateral::Metres([x * metres, y * metres]),
-        (Some(x), Some(y), Unit::Unstated) => Lateral::Bare([x, y]),
-        (_, _, Unit::Other(label)) => Lateral::Unstated(format!(" in a unit of length (it says {label:?})")),
+    let unit = data.unit("si_unit_xy");
+    let lateral = match (length("xreal"), length("yreal")) {
+        (Some(x), Some(y)) => Lateral::of([x, y], [unit.clone(), unit]),
         _ => Lateral::Unstated(String::new()),
     };
-    let metadata = match container.get(&format!("/{n}/meta")) {
-        Some(Value::Object(meta)) => meta
-            .components
-            .iter()
-            .filter_map(|(key, value)| match value {
-                Value::Text(value) => Some((text(key), text(value))),
-                _ => None,
-            })
-            .collect(),
-        _ => Vec::new(),
+    let meta = match container.get(&format!("/{n}/meta")) {
+        Some(Value::Object(meta)) => Some(&meta.components),
+        _ => None,
     };
-    Ok(Measured {
-        heights,
-        unit: data.unit("si_unit_z"),
-        lateral,
-        channel: Some(names[index].clone()),
-        channels: names,
-        metadata,
-    })
+    let metadata = meta.into_iter().flatten().filter_map(|(key, value)| match value {
+        Value::Text(value) => Some((text(key), text(value))),
+        _ => None,
+    });
+    let unit = data.unit("si_unit_z");
+    Ok(Measured::new(heights, unit, lateral).of_channel(names, index).with(metadata))
 }
 
 /// N of "/N/data".
@@ -147,9 +140,7 @@ impl<'a> Object<'a> {
         let Some(Value::Object(unit)) = self.get(key) else { return Unit::Unstated };
         match unit.get("unitstr") {
             // A lone A is the ampere of Gwyddion's current channels.
-            Some(Value::Text(label)) if !text(label).is_empty() => {
-                metres(&text(label), LoneA::Ampere).map_or(Unit::Other(text(label)), Unit::Metres)
-            }
+            Some(Value::Text(label)) => unit_of(&text(label), LoneA::Ampere),
             _ => Unit::Unstated,
         }
     }
@@ -177,22 +168,16 @@ impl<'a> Value<'a> {
             c.bytes(u64::from(count) * width, &what())
         };
         Ok(match kind {
-            b'b' | b'c' => {
-                c.u8(&what())?;
-                Value::Skipped
-            }
             b'i' => Value::Int(c.i32(&what())?),
-            b'q' => {
-                c.bytes(8, &what())?;
-                Value::Skipped
-            }
             b'd' => Value::Double(c.f64(&what())?),
             b's' => Value::Text(string(c)?),
             b'o' => Value::Object(Object::parse(c, depth + 1)?),
+            b'D' => Value::Doubles(array(c, 8)?),
+            b'b' | b'c' => skip(c.bytes(1, &what())?),
+            b'q' => skip(c.bytes(8, &what())?),
             b'C' => skip(array(c, 1)?),
             b'I' => skip(array(c, 4)?),
             b'Q' => skip(array(c, 8)?),
-            b'D' => Value::Doubles(array(c, 8)?),
             b'S' => {
                 for _ in 0..c.u32(&what())? {
                     string(c)?;

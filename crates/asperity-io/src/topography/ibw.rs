@@ -9,11 +9,14 @@
 //! "DeflectionRetrace" are lengths, "PhaseRetrace" is an angle.
 
 use super::cursor::{Cursor, text};
-use super::finish::{Lateral, Measured, Unit, check_channels, choose_heights, unit_of};
+use super::finish::{Lateral, Measured, unit_of};
 use super::grid::{self, Layout};
+use super::request::check_channels;
 use super::sample::{Kind, Order};
 use super::unit::LoneA;
-use super::{Format, Problem};
+use super::{Problem, Reader, Request};
+
+pub(super) const IBW: Reader = Reader { name: "ibw", aliases: &[], sniff: is_ibw, read: read, write: None };
 
 const HEADER: u64 = 64;
 const WAVE_HEADER: u64 = 320;
@@ -29,7 +32,7 @@ fn order(bytes: &[u8]) -> Option<Order> {
 }
 
 /// Whether the bytes are a wave of Igor Pro.
-pub(super) fn is_ibw(bytes: &[u8]) -> bool {
+fn is_ibw(bytes: &[u8]) -> bool {
     let Some(order) = order(bytes) else { return false };
     let number = |at: u64| Cursor::at(bytes, at, order, "").and_then(|mut c| c.i32("")).unwrap_or(-1);
     let kind = Cursor::at(bytes, 80, order, "").and_then(|mut c| c.u16("")).unwrap_or(u16::MAX);
@@ -39,7 +42,7 @@ pub(super) fn is_ibw(bytes: &[u8]) -> bool {
 }
 
 /// Reads the layer asked for.
-pub(super) fn read_ibw(bytes: &[u8], channel: Option<&str>) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     const H: &str = "the header of the Igor wave";
     let order = order(bytes).ok_or_else(|| {
         Problem::unsupported("an Igor wave of another version than 5", "save it with Igor Pro 6 or newer")
@@ -86,15 +89,14 @@ pub(super) fn read_ibw(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
     }
 
     let [nx, ny, layers, more] = points;
-    let none = |detail: String| Problem::NoHeights { format: Format::Ibw, detail };
     if more > 1 {
-        return Err(none("four dimensions".into()));
+        return Err(request.no_heights("four dimensions"));
     }
     if nx < 2 || ny < 2 {
-        return Err(none(format!("a curve of {} points", nx.max(ny))));
+        return Err(request.no_heights(format!("a curve of {} points", nx.max(ny))));
     }
     if layers == 0 && labels[1].iter().any(|l| !l.is_empty()) {
-        return Err(none(format!("{ny} curves ({})", labels[1].join(", "))));
+        return Err(request.no_heights(format!("{ny} curves ({})", labels[1].join(", "))));
     }
     let layers = layers.max(1);
     check_channels(usize::try_from(layers).unwrap_or(usize::MAX))?;
@@ -112,21 +114,15 @@ pub(super) fn read_ibw(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
         Some(label) if !note.is_empty() => unit_of(&asylum_unit(label, &note), LoneA::Ampere),
         _ => unit_of(&units[0], LoneA::Ampere),
     };
-    let index = choose_heights(Format::Ibw, &names, unit, channel)?;
+    let index = request.choose_heights(&names, unit)?;
 
     let start = index * layer as usize;
     let layout = Layout::dense([nx, ny], kind, order);
     let heights = layout.map_from_bottom(&data[start..], "a layer of the Igor wave", |h| h)?;
     let size = [nx as f64 * spacing[0].abs(), ny as f64 * spacing[1].abs()];
-    let lateral = match [&units[1], &units[2]].map(|u| unit_of(u, LoneA::Ampere)) {
-        [Unit::Metres(ux), Unit::Metres(uy)] => Lateral::Metres([size[0] * ux, size[1] * uy]),
-        [Unit::Unstated, _] | [_, Unit::Unstated] => Lateral::Bare(size),
-        _ => Lateral::Unstated(format!(" in a unit of length (it says {:?})", units[1])),
-    };
-    let unit = unit(index);
-    let mut metadata = vec![("Wave".to_owned(), name)];
-    metadata.extend(note);
-    Ok(Measured { heights, unit, lateral, channel: Some(names[index].clone()), channels: names, metadata })
+    let lateral = Lateral::of(size, [&units[1], &units[2]].map(|u| unit_of(u, LoneA::Ampere)));
+    let measured = Measured::new(heights, unit(index), lateral).of_channel(names, index);
+    Ok(measured.with([("Wave", name)]).with(note))
 }
 
 fn kind(code: u16) -> Result<Kind, Problem> {

@@ -13,7 +13,15 @@ use super::cursor::Cursor;
 use super::finish::{Lateral, Measured, Unit};
 use super::grid::Layout;
 use super::sample::{Kind, Order};
-use super::{Format, Problem};
+use super::{Problem, Reader, Request};
+
+pub(super) const METROPRO: Reader = Reader {
+    name: "metropro",
+    aliases: &["dat"],
+    sniff: |bytes| header_length(bytes).is_some(),
+    read: read,
+    write: None,
+};
 
 /// The least phase that is none.
 const UNDEFINED: f64 = 2_147_483_640.0;
@@ -29,13 +37,8 @@ fn header_length(bytes: &[u8]) -> Option<u32> {
     }
 }
 
-/// Whether the bytes are a MetroPro file.
-pub(super) fn is_metropro(bytes: &[u8]) -> bool {
-    header_length(bytes).is_some()
-}
-
 /// Reads the phases.
-pub(super) fn read_metropro(bytes: &[u8]) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     const H: &str = "the MetroPro header";
     let expected = header_length(bytes).ok_or_else(|| {
         Problem::malformed("the signature", "something else", "881b036f, 881b0370 or 881b0371")
@@ -55,8 +58,7 @@ pub(super) fn read_metropro(bytes: &[u8]) -> Result<Measured, Problem> {
     let [nx, ny] = [u64::from(c.u16(H)?), u64::from(c.u16(H)?)];
     let phases = c.u32(H)?;
     if nx == 0 || ny == 0 || phases == 0 {
-        let detail = "no phases, only images of intensity".to_owned();
-        return Err(Problem::NoHeights { format: Format::MetroPro, detail });
+        return Err(request.no_heights("no phases, only images of intensity"));
     }
     if u64::from(phases) != 4 * nx * ny {
         let expected = format!("{} bytes for {nx} x {ny} points", 4 * nx * ny);
@@ -89,8 +91,6 @@ pub(super) fn read_metropro(bytes: &[u8]) -> Result<Measured, Problem> {
         false => Lateral::Unstated(" (its lateral resolution was not calibrated)".into()),
     };
     let metadata = [("Date", date), ("Comment", comment), ("Objective", objective), ("Part", part)];
-    let metadata =
-        metadata.into_iter().filter(|(_, v)| !v.is_empty()).map(|(k, v)| (k.to_owned(), v)).collect();
-    let channel = Some(NAME.to_owned());
-    Ok(Measured { heights, unit: Unit::Metres(1.0), lateral, channels: vec![NAME.into()], channel, metadata })
+    let measured = Measured::new(heights, Unit::Metres(1.0), lateral).of_channel(vec![NAME.into()], 0);
+    Ok(measured.with(metadata))
 }

@@ -16,14 +16,18 @@ use std::io::Read;
 
 use flate2::read::ZlibDecoder;
 
-use super::compound::Compound;
+use super::compound::{self, is_compound};
 use super::cursor::Cursor;
-use super::finish::{Lateral, Measured, Unit, choose_heights, unit_of};
+use super::finish::{Lateral, Measured, Unit, unit_of};
 use super::grid::{self, Layout};
 use super::sample::{Kind, Order};
 use super::unit::{LoneA, metres};
 use super::unpack::{most_unpacked, read_bounded};
-use super::{Format, Problem, foreign};
+use super::{Problem, Reader, Request, foreign};
+
+// Other documents of this kind are refused by the reader.
+pub(super) const MNT: Reader =
+    Reader { name: "mnt", aliases: &[], sniff: is_compound, read: read, write: None };
 
 const CONTENTS: &str = "ScopedContents";
 /// Tag of the part that an entry extends.
@@ -38,13 +42,16 @@ mod class {
 }
 
 /// Reads the surface asked for.
-pub(super) fn read_mnt(bytes: &[u8], channel: Option<&str>) -> Result<Measured, Problem> {
-    let Some(contents) = Compound::open(bytes)?.stream(CONTENTS)? else {
+fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
+    let contents = compound::stream(bytes, CONTENTS)
+        .map_err(|error| Problem::malformed("the compound document", error, "undamaged"))?;
+    let Some(contents) = contents else {
         return Err(foreign::unread(bytes));
     };
     let tree = Node(contents.get(8..).unwrap_or_default());
     // Main part, contents, document, list of objects.
-    let objects = tree.at(&[0x1, 0x2bd, 0x2, 0x1])?.ok_or_else(|| none("no list of objects"))?;
+    let objects =
+        tree.at(&[0x1, 0x2bd, 0x2, 0x1])?.ok_or_else(|| request.no_heights("no list of objects"))?;
     let mut surfaces = Vec::new();
     let mut c = Cursor::new(objects.0, Order::Little);
     while !c.rest().is_empty() {
@@ -58,12 +65,8 @@ pub(super) fn read_mnt(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
         }
     }
     let names: Vec<String> = surfaces.iter().map(|s| s.name.clone()).collect();
-    let index = choose_heights(Format::Mnt, &names, |i| surfaces[i].unit(), channel)?;
+    let index = request.choose_heights(&names, |i| surfaces[i].unit())?;
     surfaces.swap_remove(index).measured(names, index)
-}
-
-fn none(detail: &str) -> Problem {
-    Problem::NoHeights { format: Format::Mnt, detail: detail.into() }
 }
 
 /// The entries of one level.
@@ -242,20 +245,10 @@ impl<'a> Surface<'a> {
             });
         }
         let [nx, ny] = self.points.map(|n| n as f64);
-        let lateral = match (metres(&x.unit, LoneA::Angstrom), metres(&y.unit, LoneA::Angstrom)) {
-            (Some(ux), Some(uy)) => Lateral::Metres([nx * x.step.abs() * ux, ny * y.step.abs() * uy]),
-            _ if x.unit.is_empty() => Lateral::Bare([nx * x.step.abs(), ny * y.step.abs()]),
-            _ => Lateral::Unstated(format!(" in a unit of length (it says {:?})", x.unit)),
-        };
-        let metadata = self.title.map(|title| ("Title".to_owned(), title)).into_iter().collect();
-        Ok(Measured {
-            heights,
-            unit,
-            lateral,
-            channel: Some(names[index].clone()),
-            channels: names,
-            metadata,
-        })
+        let size = [nx * x.step.abs(), ny * y.step.abs()];
+        let lateral = Lateral::of(size, [&x.unit, &y.unit].map(|u| unit_of(u, LoneA::Angstrom)));
+        let title = self.title.map(|title| ("Title", title));
+        Ok(Measured::new(heights, unit, lateral).of_channel(names, index).with(title))
     }
 }
 

@@ -4,33 +4,14 @@
 //! points as NaN, the physical size in metres, and what else the file says. Size and unit are never guessed: where
 //! a file does not state them, the error asks for them by name.
 //!
-//! | format | source |
-//! |---|---|
-//! | text matrix, CSV | Gwyddion, SPIP, Nova and Wyko headers; any decimal mark |
-//! | XYZ | points of a regular grid in any order |
-//! | NPY, NPZ | NumPy |
-//! | NetCDF, HDF5 | contact.engineering; classic and NetCDF-4 |
-//! | SDF | ISO 25178-71, text and binary |
-//! | X3P | ISO 25178-72 |
-//! | SUR | Digital Surf, MountainsMap; plain and packed |
-//! | GWY | Gwyddion |
-//! | AL3D | Alicona |
-//! | OPD | Wyko |
-//! | BCR, BCRF | Image Metrology |
-//! | Nanoscope (.di, .spm, .000) | Digital Instruments, Veeco, Bruker |
-//! | MetroPro (.dat) | Zygo |
-//! | PLU, APX | Sensofar |
-//! | MNT | MountainsMap |
-//! | IBW | Igor Pro, Asylum Research |
-//! | NID, EZD | Nanosurf |
-//! | FRT | FRT MicroProf |
-//!
-//! All text and binary formats may be packed by gzip. Profiles along a line, two columns of text, are read by [`read_profile`].
+//! [`Format`] lists what is read; the table of the readers follows the modules. Every format may be packed by gzip.
+//! Profiles along a line, two columns of text, are read by [`read_profile`].
 
 mod al3d;
 mod bcr;
-mod compound;
+pub(crate) mod compound;
 mod cursor;
+mod entries;
 mod error;
 mod finish;
 mod foreign;
@@ -49,6 +30,7 @@ mod npy;
 mod opd;
 mod plu;
 mod profile;
+mod request;
 mod sample;
 mod sdf;
 mod sur;
@@ -64,13 +46,68 @@ use std::path::Path;
 use ndarray::Array2;
 
 pub use error::{Problem, TopographyError};
-pub use format::{Format, detect};
+pub use format::detect;
 pub use profile::{Profile, profile_of, read_profile};
 pub use write::{to_bytes, write};
 
 use crate::resources;
 use finish::finish;
+use format::{Reader, formats};
+use request::Request;
 pub(crate) use text::{dialect, is_numbers, to_text};
+
+formats! {
+    /// A file format.
+    ///
+    /// Its name, as `Display` writes it and `FromStr` takes it, is the usual ending of the file name; text matrices are
+    /// `asc`, Nanoscope files (whose names end in .spm or a number too) `di`, MetroPro files (.dat) `metropro`.
+    ///
+    /// The order is that in which the formats are looked for: those with a signature first.
+    pub enum Format;
+
+    /// One NumPy array.
+    Npy: npy::NPY;
+    /// ISO 25178-72.
+    X3p: x3p::X3P;
+    /// Zip of NumPy arrays.
+    Npz: npy::NPZ;
+    /// Digital Surf (MountainsMap).
+    Sur: sur::SUR;
+    /// Gwyddion.
+    Gwy: gwy::GWY;
+    /// Alicona Imaging.
+    Al3d: al3d::AL3D;
+    /// Wyko.
+    Opd: opd::OPD;
+    /// Digital Instruments, Veeco and Bruker Nanoscope.
+    Nanoscope: nanoscope::NANOSCOPE;
+    /// Zygo MetroPro.
+    MetroPro: metropro::METROPRO;
+    /// MountainsMap document.
+    Mnt: mnt::MNT;
+    /// Igor Pro binary wave (Asylum Research).
+    Ibw: ibw::IBW;
+    /// Nanosurf.
+    Nid: nid::NID;
+    /// FRT MicroProf.
+    Frt: frt::FRT;
+    /// ISO 25178-71 surface data file, text or binary.
+    Sdf: sdf::SDF;
+    /// BCR-STM or BCRF.
+    Bcr: bcr::BCR;
+    /// NetCDF, classic or NetCDF-4.
+    NetCdf: netcdf::NETCDF;
+    /// Other HDF5.
+    Hdf5: netcdf::HDF5;
+    /// Sensofar PLU and APX.
+    Plu: plu::PLU;
+    /// Lines of x, y and height.
+    Xyz: text::XYZ;
+    /// Text matrix with values parted by commas or semicolons.
+    Csv: text::CSV;
+    /// Text matrix: one line per y, values along x.
+    Text: text::TEXT;
+}
 
 /// Heights over a rectangle, with what the file says about them.
 ///
@@ -217,28 +254,8 @@ fn parse(bytes: &[u8], options: &ReadOptions) -> Result<Topography, Problem> {
         None => detect(bytes).ok_or_else(|| foreign::unread(bytes))?,
     };
     let channel = options.channel.as_deref();
-    let (format, measured) = match format {
-        Format::Text | Format::Csv => (format, text::read_matrix(bytes, channel, options.format.is_some())?),
-        Format::Xyz => (format, text::read_xyz(bytes, channel)?),
-        Format::Npy => (format, npy::read_npy(bytes)?),
-        Format::Npz => (format, npy::read_npz(bytes, channel)?),
-        Format::Sdf => (format, sdf::read_sdf(bytes)?),
-        Format::Bcr => (format, bcr::read_bcr(bytes)?),
-        Format::X3p => (format, x3p::read_x3p(bytes, channel)?),
-        Format::Sur => (format, sur::read_sur(bytes, channel)?),
-        Format::Gwy => (format, gwy::read_gwy(bytes, channel)?),
-        Format::Al3d => (format, al3d::read_al3d(bytes)?),
-        Format::Opd => (format, opd::read_opd(bytes, channel)?),
-        Format::Nanoscope => (format, nanoscope::read_nanoscope(bytes, channel)?),
-        Format::MetroPro => (format, metropro::read_metropro(bytes)?),
-        Format::Plu => (format, plu::read_plu(bytes, channel)?),
-        Format::Mnt => (format, mnt::read_mnt(bytes, channel)?),
-        Format::Ibw => (format, ibw::read_ibw(bytes, channel)?),
-        Format::Nid => (format, nid::read_nid(bytes, channel)?),
-        Format::Frt => (format, frt::read_frt(bytes, channel)?),
-        // NetCDF-4 is HDF5; the content tells which.
-        Format::NetCdf | Format::Hdf5 => netcdf::read_netcdf(bytes, channel)?,
-    };
+    let request = Request { format, channel, insists: options.format.is_some() };
+    let measured = (format.reader().read)(bytes, &request)?;
     if let Some(wanted) = channel
         && measured.channels.is_empty()
         && wanted != "0"

@@ -14,13 +14,17 @@
 //! SurfaceTopography.)
 
 use super::cursor::Cursor;
-use super::finish::{Lateral, Measured, Unit, check_channels, choose_heights, unit_of};
+use super::entries::Entries;
+use super::finish::{Lateral, Measured, Unit, unit_of};
 use super::grid::{self, Layout};
+use super::request::check_channels;
 use super::sample::{Kind, Order};
 use super::unit::{LoneA, metres};
-use super::{Format, Problem};
+use super::{Problem, Reader, Request};
 
-const FORMAT: Format = Format::Nanoscope;
+pub(super) const NANOSCOPE: Reader =
+    Reader { name: "di", aliases: &["spm", "nanoscope"], sniff: is_nanoscope, read: read, write: None };
+
 /// First words of a file; "?" in place of "\\" says that the numbers are written as text.
 const STARTS: [&str; 3] = ["*file list", "*force file list", "*ec file list"];
 /// Headers have some 100 kB.
@@ -29,7 +33,7 @@ const LONGEST_HEADER: usize = 1 << 20;
 const VERSION_OF_32_BITS: u32 = 0x0920_0000;
 
 /// Whether the bytes are a Nanoscope file.
-pub(super) fn is_nanoscope(bytes: &[u8]) -> bool {
+fn is_nanoscope(bytes: &[u8]) -> bool {
     let Some((b'\\' | b'?', rest)) = bytes.split_first() else { return false };
     let starts =
         |start: &str| rest.get(..start.len()).is_some_and(|r| r.eq_ignore_ascii_case(start.as_bytes()));
@@ -37,53 +41,46 @@ pub(super) fn is_nanoscope(bytes: &[u8]) -> bool {
 }
 
 /// Reads the image asked for.
-pub(super) fn read_nanoscope(bytes: &[u8], channel: Option<&str>) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     if bytes.first() == Some(&b'?') {
         let instead = "save it as binary, or export it as ASCII matrix from NanoScope Analysis";
         return Err(Problem::unsupported("a Nanoscope file whose numbers are written as text", instead));
     }
     let header = Header::parse(bytes);
-    header.refuse_curves()?;
-    let images: Vec<&Section> = header.sections.iter().filter(|s| s.is_image()).collect();
+    if let Some(detail) = header.no_map() {
+        return Err(request.no_heights(detail));
+    }
+    let images: Vec<&Entries> = header.sections.iter().filter(|s| is_image(s)).collect();
     check_channels(images.len())?;
-    let names: Vec<String> = images.iter().map(|image| image.names().0).collect();
+    let names: Vec<String> = images.iter().map(|image| image_names(image).0).collect();
     if names.is_empty() {
-        return Err(none("no image in it"));
+        return Err(request.no_heights("no image in it"));
     }
     let unit = |i: usize| header.scale(images[i]).map_or(Unit::Unstated, |(_, unit)| unit);
     // "Height Sensor" is the label of the image named ZSensor.
-    let by_label = channel.filter(|wanted| !names.iter().any(|n| n.eq_ignore_ascii_case(wanted)));
+    let by_label = request.channel.filter(|wanted| !names.iter().any(|n| n.eq_ignore_ascii_case(wanted)));
     let by_label = by_label
-        .and_then(|wanted| images.iter().position(|image| image.names().1.eq_ignore_ascii_case(wanted)));
+        .and_then(|wanted| images.iter().position(|image| image_names(image).1.eq_ignore_ascii_case(wanted)));
     let index = match by_label {
         Some(index) => index,
-        None => choose_heights(FORMAT, &names, unit, channel)?,
+        None => request.choose_heights(&names, unit)?,
     };
     let image = images[index];
 
     let (scale, unit) = header.scale(image)?;
     let plane = header.plane(image)?;
-    let offset = image.whole("data offset")?;
+    let offset = image.whole("Data offset")?;
     let what = format!("the image {:?}", names[index]);
     let data = Cursor::at(bytes, offset, Order::Little, &what)?.rest();
     let layout = Layout::dense(plane.points, plane.kind, Order::Little);
     let heights = layout.map_from_bottom(data, &what, |n| n * scale)?;
-    let (channel, metadata) = (Some(names[index].clone()), header.metadata(image));
-    Ok(Measured { heights, unit, lateral: plane.lateral, channel, channels: names, metadata })
+    let measured = Measured::new(heights, unit, plane.lateral).of_channel(names, index);
+    Ok(measured.with(header.metadata(image)))
 }
 
-fn none(detail: &str) -> Problem {
-    Problem::NoHeights { format: FORMAT, detail: detail.into() }
-}
-
-/// Entries under a title; keys and titles compare without case.
-struct Section {
-    title: String,
-    entries: Vec<(String, String)>,
-}
-
+/// Sections with titles in small letters.
 struct Header {
-    sections: Vec<Section>,
+    sections: Vec<Entries>,
 }
 
 /// Points, numbers and lengths of an image.
@@ -96,7 +93,7 @@ struct Plane {
 impl Header {
     fn parse(bytes: &[u8]) -> Self {
         let bytes = &bytes[..bytes.len().min(LONGEST_HEADER)];
-        let mut sections: Vec<Section> = Vec::new();
+        let mut sections: Vec<Entries> = Vec::new();
         for line in bytes.split(|b| *b == b'\n') {
             let line = super::cursor::text(line);
             // The numbers of the first image follow the last entry.
@@ -105,11 +102,11 @@ impl Header {
                 if title.eq_ignore_ascii_case("file list end") {
                     break;
                 }
-                sections.push(Section { title: title.to_lowercase(), entries: Vec::new() });
+                sections.push(Entries::new(title.to_lowercase()));
             } else if let Some(section) = sections.last_mut() {
                 // "\Capture mode : ...": the colon before a blank, as "@2:Z scale" has one too.
                 let (key, value) = entry.split_once(": ").unwrap_or((entry.trim_end_matches(':'), ""));
-                section.entries.push((key.trim().to_owned(), value.trim().to_owned()));
+                section.push(key, value);
             }
         }
         Header { sections }
@@ -120,7 +117,8 @@ impl Header {
         self.sections.iter().filter(|s| s.title.ends_with(title)).find_map(|s| s.get(key))
     }
 
-    fn refuse_curves(&self) -> Result<(), Problem> {
+    /// What the file holds instead of a map.
+    fn no_map(&self) -> Option<&'static str> {
         let is = |key: &str, value: &str| {
             self.sections.iter().any(|s| s.get(key).is_some_and(|v| v.eq_ignore_ascii_case(value)))
         };
@@ -128,13 +126,11 @@ impl Header {
             || is("operating mode", "force")
             || self.get("file list", "start context") == Some("FOL")
         {
-            return Err(none("force curves; an image of the same measurement has its own file"));
+            return Some("force curves; an image of the same measurement has its own file");
         }
         let context = self.get("file list", "start context").unwrap_or_default();
-        if context.ends_with("VAR") && !is("operating mode", "force volume") {
-            return Err(none("profiles that are not evenly spaced"));
-        }
-        Ok(())
+        let uneven = context.ends_with("VAR") && !is("operating mode", "force volume");
+        uneven.then_some("profiles that are not evenly spaced")
     }
 
     fn version(&self) -> u32 {
@@ -143,7 +139,7 @@ impl Header {
     }
 
     /// What one unit of the image's numbers is worth, and in which unit.
-    fn scale(&self, image: &Section) -> Result<(f64, Unit), Problem> {
+    fn scale(&self, image: &Entries) -> Result<(f64, Unit), Problem> {
         let scale = image.get("@4:z scale").or(image.get("@2:z scale")).ok_or_else(|| {
             Problem::unsupported(
                 "a Nanoscope file without \"@2:Z scale\" (before version 4.3)",
@@ -152,7 +148,7 @@ impl Header {
         })?;
         let hard = Scale::parse(scale)
             .ok_or_else(|| image.wrong("@2:Z scale", "like \"V [Sens. Zsens] (0.005 V/LSB) 2.9 V\""))?;
-        let bytes = image.bytes_per_number()?;
+        let bytes = bytes_per_number(image)?;
         let per_number = hard.value / 256f64.powi(i32::try_from(bytes).unwrap_or(2));
         let soft = hard.sensitivity.and_then(|name| {
             let key = format!("@{name}");
@@ -170,9 +166,9 @@ impl Header {
         }
     }
 
-    fn plane(&self, image: &Section) -> Result<Plane, Problem> {
-        let stated = [image.whole("samps/line")?, image.whole("number of lines")?];
-        let length = image.whole("data length")?;
+    fn plane(&self, image: &Entries) -> Result<Plane, Problem> {
+        let stated = [image.whole("Samps/line")?, image.whole("Number of lines")?];
+        let length = image.whole("Data length")?;
         let global =
             ["samps/line", "lines"].map(|key| self.get("scan list", key).and_then(|n| n.parse().ok()));
         let global = match global {
@@ -181,7 +177,7 @@ impl Header {
         };
         let count = |[x, y]: [u64; 2]| grid::points(x, y).map(|n| n as u64);
         let stated_count = count(stated)?;
-        let bytes = image.bytes_per_number()?;
+        let bytes = bytes_per_number(image)?;
         let wide = self.version() >= VERSION_OF_32_BITS && length >= stated_count.saturating_mul(4);
         let (kind, width) = if wide || bytes == 4 { (Kind::I32, 4) } else { (Kind::I16, 2) };
         let [mut sx, mut sy, unit] = size(image)?;
@@ -226,18 +222,17 @@ impl Header {
         Some([length("scan size")?, length("slow axis size")?])
     }
 
-    fn metadata(&self, image: &Section) -> Vec<(String, String)> {
+    fn metadata(&self, image: &Entries) -> Vec<(String, String)> {
         let global = [("file list", "Version"), ("file list", "Date"), ("equipment list", "Description")];
         let global = global
             .into_iter()
             .filter_map(|(title, key)| Some((key.to_owned(), self.get(title, key)?.to_owned())));
-        let of_image = image.entries.iter().filter(|(_, value)| !value.is_empty()).cloned();
-        global.chain(of_image).collect()
+        global.chain(image.clone()).collect()
     }
 }
 
 /// "500 500 nm", "10 10 ~m" or, for a square, "500 nm": both lengths and metres per unit.
-fn size(image: &Section) -> Result<[f64; 3], Problem> {
+fn size(image: &Entries) -> Result<[f64; 3], Problem> {
     let text = image.get("scan size").unwrap_or("missing");
     let words: Vec<&str> = text.split_whitespace().collect();
     let number = |i: usize| words.get(i).and_then(|w| w.parse::<f64>().ok());
@@ -307,41 +302,24 @@ impl<'a> Scale<'a> {
     }
 }
 
-impl Section {
-    fn is_image(&self) -> bool {
-        let title = self.title.as_str();
-        ["ciao image list", "afm image list", "stm image list", "ncafm image list", "image list"]
-            .contains(&title)
-    }
+fn is_image(section: &Entries) -> bool {
+    ["ciao image list", "afm image list", "stm image list", "ncafm image list", "image list"]
+        .contains(&section.title.as_str())
+}
 
-    fn get(&self, key: &str) -> Option<&str> {
-        self.entries.iter().find(|(k, _)| k.eq_ignore_ascii_case(key)).map(|(_, v)| v.as_str())
-    }
+/// Name and label of an image: `S [ZSensor] "Height Sensor"`.
+fn image_names(image: &Entries) -> (String, String) {
+    let keys = ["@2:image data", "@3:image data", "@4:image data", "image data"];
+    let value = keys.into_iter().find_map(|key| image.get(key)).unwrap_or("no name");
+    let label = value.split('"').nth(1).unwrap_or(value).trim();
+    let name = value.split_once('[').and_then(|(_, rest)| rest.split_once(']')).map(|(name, _)| name.trim());
+    (name.filter(|n| !n.is_empty()).unwrap_or(label).to_owned(), label.to_owned())
+}
 
-    /// Name and label of an image: `S [ZSensor] "Height Sensor"`.
-    fn names(&self) -> (String, String) {
-        let keys = ["@2:image data", "@3:image data", "@4:image data", "image data"];
-        let value = keys.into_iter().find_map(|key| self.get(key)).unwrap_or("no name");
-        let label = value.split('"').nth(1).unwrap_or(value).trim();
-        let name =
-            value.split_once('[').and_then(|(_, rest)| rest.split_once(']')).map(|(name, _)| name.trim());
-        (name.filter(|n| !n.is_empty()).unwrap_or(label).to_owned(), label.to_owned())
-    }
-
-    fn bytes_per_number(&self) -> Result<u64, Problem> {
-        match self.get("bytes/pixel") {
-            None | Some("2") => Ok(2),
-            Some("4") => Ok(4),
-            Some(_) => Err(self.wrong("Bytes/pixel", "2 or 4")),
-        }
-    }
-
-    fn whole(&self, key: &str) -> Result<u64, Problem> {
-        self.get(key).and_then(|n| n.parse().ok()).ok_or_else(|| self.wrong(key, "a whole number"))
-    }
-
-    fn wrong(&self, key: &str, expected: &str) -> Problem {
-        let what = format!("{key:?} of the image {:?}", self.names().0);
-        Problem::malformed(what, self.get(key).unwrap_or("missing"), expected)
+fn bytes_per_number(image: &Entries) -> Result<u64, Problem> {
+    match image.get("Bytes/pixel") {
+        None | Some("2") => Ok(2),
+        Some("4") => Ok(4),
+        Some(_) => Err(image.wrong("Bytes/pixel", "2 or 4")),
     }
 }

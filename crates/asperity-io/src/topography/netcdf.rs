@@ -11,32 +11,39 @@ use std::sync::Arc;
 use ndarray::{Array2, ArrayD, Ix2};
 use netcdf_reader::{NcAttrValue, NcFile, NcFormat, NcOpenOptions, NcType, NcVariable};
 
-use super::finish::{Lateral, Measured, Unit, choose_heights, unit_of};
+use super::finish::{Lateral, Measured, Unit, unit_of};
 use super::groups::broken;
-use super::unit::{LoneA, metres};
+use super::unit::LoneA;
 use super::unpack::most_unpacked;
-use super::{Format, Problem, foreign, grid, groups};
+use super::{Format, Problem, Reader, Request, foreign, grid, groups, write};
 
 /// What NetCDF writes where a variable was never written.
 const DEFAULT_FILL: f64 = 9.969_209_968_386_869e36;
 
-/// Which of the two the bytes are.
-pub(super) fn detect(bytes: &[u8]) -> Option<Format> {
-    match bytes {
-        [b'C', b'D', b'F', 1 | 2 | 5, ..] => Some(Format::NetCdf),
-        _ if bytes.starts_with(b"\x89HDF\r\n\x1a\n") => Some(Format::Hdf5),
-        _ => None,
-    }
+// NetCDF-4 is HDF5; reading tells which.
+pub(super) const NETCDF: Reader = Reader {
+    name: "nc",
+    aliases: &["netcdf"],
+    sniff: |bytes| matches!(bytes, [b'C', b'D', b'F', 1 | 2 | 5, ..]),
+    read: read,
+    write: Some(write::netcdf::encode),
+};
+
+pub(super) const HDF5: Reader =
+    Reader { name: "h5", aliases: &["hdf5"], sniff: is_hdf5, read: read, write: None };
+
+fn is_hdf5(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"\x89HDF\r\n\x1a\n")
 }
 
 /// Reads the variable asked for, and tells NetCDF-4 from other HDF5.
-pub(super) fn read_netcdf(bytes: &[u8], channel: Option<&str>) -> Result<(Format, Measured), Problem> {
+fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     foreign::refuse_look_alikes(bytes)?;
     let most = usize::try_from(most_unpacked(bytes.len())).unwrap_or(usize::MAX);
     let options =
         || NcOpenOptions { max_read_bytes: most, max_chunk_bytes: most, ..NcOpenOptions::default() };
     let bytes: Arc<[u8]> = bytes.into();
-    if detect(&bytes) == Some(Format::Hdf5) {
+    if is_hdf5(&bytes) {
         groups::check(bytes.clone(), options().into())?;
     }
     let available = bytes.len() as u64;
@@ -44,13 +51,13 @@ pub(super) fn read_netcdf(bytes: &[u8], channel: Option<&str>) -> Result<(Format
     let maps = maps(&file)?;
     let is_netcdf = !matches!(file.format(), NcFormat::Nc4 | NcFormat::Nc4Classic)
         || file.dimensions().is_ok_and(|d| !d.is_empty());
-    let format = if is_netcdf { Format::NetCdf } else { Format::Hdf5 };
+    let request = &Request { format: if is_netcdf { Format::NetCdf } else { Format::Hdf5 }, ..*request };
     let names: Vec<String> = maps.iter().map(|(name, _)| name.clone()).collect();
     let index = match names.iter().position(|n| n == "heights") {
-        Some(heights) if channel.is_none() => heights,
+        Some(heights) if request.channel.is_none() => heights,
         _ => {
             let unit = |i: usize| unit_of(&label(maps[i].1).unwrap_or_default(), LoneA::Angstrom);
-            choose_heights(format, &names, unit, channel)?
+            request.choose_heights(&names, unit)?
         }
     };
     let (name, variable) = &maps[index];
@@ -90,9 +97,9 @@ pub(super) fn read_netcdf(bytes: &[u8], channel: Option<&str>) -> Result<(Format
     });
     let unit = label.map_or(Unit::Unstated, |label| unit_of(&label, LoneA::Angstrom));
     let metadata = file.global_attributes().unwrap_or_default().iter();
-    let metadata = metadata.filter_map(|a| Some((a.name.clone(), text(&a.value)?))).collect();
-    let channel = Some(name.clone());
-    Ok((format, Measured { heights, unit, lateral, channel, channels: names, metadata }))
+    let metadata = metadata.filter_map(|a| Some((a.name.clone(), text(&a.value)?)));
+    let measured = Measured::new(heights, unit, lateral).of_channel(names, index).with(metadata);
+    Ok(Measured { format: Some(request.format), ..measured })
 }
 
 /// The two-dimensional variables of numbers with their paths, those of outer groups first.
@@ -184,14 +191,7 @@ fn lateral(lengths: [Option<(f64, Option<String>)>; 2]) -> (Lateral, Option<Stri
     let [Some((x, x_label)), Some((y, y_label))] = lengths else {
         return (Lateral::Unstated(String::new()), None);
     };
-    let unit = |label: &Option<String>| label.as_ref().map(|l| metres(l, LoneA::Angstrom));
-    let lateral = match (unit(&x_label), unit(&y_label)) {
-        (Some(Some(ux)), Some(Some(uy))) => Lateral::Metres([x * ux, y * uy]),
-        (Some(None), _) | (_, Some(None)) => {
-            let label = x_label.clone().or(y_label.clone()).unwrap_or_default();
-            Lateral::Unstated(format!(" in a unit of length (it says {label:?})"))
-        }
-        _ => Lateral::Bare([x, y]),
-    };
+    let unit = |label: &Option<String>| unit_of(label.as_deref().unwrap_or_default(), LoneA::Angstrom);
+    let lateral = Lateral::of([x, y], [unit(&x_label), unit(&y_label)]);
     (lateral, x_label.filter(|label| y_label.as_ref() == Some(label)))
 }

@@ -7,30 +7,39 @@
 
 use ndarray::Array2;
 
-use super::finish::{Lateral, Measured, Unit, choose};
+use super::finish::{Lateral, Measured, Unit, unit_of};
 use super::grid::{self, Layout};
 use super::sample::{Kind, Order, decode};
-use super::unit::{LoneA, metres};
-use super::unpack::Archive;
-use super::{Format, HISTORY, Problem};
+use super::unit::LoneA;
+use super::unpack::{Archive, holds_member};
+use super::{HISTORY, Problem, Reader, Request, write};
+
+pub(super) const NPY: Reader = Reader {
+    name: "npy",
+    aliases: &[],
+    sniff: |bytes| bytes.starts_with(SIGNATURE),
+    read: read,
+    write: None,
+};
+
+pub(super) const NPZ: Reader = Reader {
+    name: "npz",
+    aliases: &[],
+    sniff: |bytes| holds_member(bytes, |name| name.ends_with(".npy")),
+    read: read_archive,
+    write: Some(write::npz::encode),
+};
 
 const SIGNATURE: &[u8] = b"\x93NUMPY";
 
 /// Reads an NPY file.
-pub(super) fn read_npy(bytes: &[u8]) -> Result<Measured, Problem> {
-    let array = Npy::parse(bytes)?;
-    Ok(Measured {
-        heights: array.heights(Format::Npy)?,
-        unit: Unit::Unstated,
-        lateral: Lateral::Unstated(String::new()),
-        channel: None,
-        channels: Vec::new(),
-        metadata: Vec::new(),
-    })
+fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
+    let heights = Npy::parse(bytes)?.heights(request)?;
+    Ok(Measured::new(heights, Unit::Unstated, Lateral::Unstated(String::new())))
 }
 
 /// Reads the channel asked for of an NPZ file: each two-dimensional array is one.
-pub(super) fn read_npz(bytes: &[u8], channel: Option<&str>) -> Result<Measured, Problem> {
+fn read_archive(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     let mut archive = Archive::open(bytes)?;
     let (mut names, mut size, mut unit, mut metadata) = (Vec::new(), None, None, Vec::new());
     for member in archive.names() {
@@ -44,35 +53,25 @@ pub(super) fn read_npz(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
             }
             "unit" if array.shape.is_empty() => unit = array.text(),
             "history" if array.shape.is_empty() => {
-                metadata.extend(array.text().map(|text| (HISTORY.to_owned(), text)));
+                metadata.extend(array.text().map(|text| (HISTORY, text)));
             }
             _ if array.shape.len() == 2 && array.kind().is_some() => names.push(name.to_owned()),
             _ => {}
         }
     }
     let index = match names.iter().position(|n| n == "heights") {
-        Some(heights) if channel.is_none() => heights,
-        _ => choose(Format::Npz, &names, channel)?,
+        Some(heights) if request.channel.is_none() => heights,
+        _ => request.choose(&names)?,
     };
     let content = archive.member(&format!("{}.npy", names[index]))?;
     let array = Npy::parse(&content)?;
-    let unit = match unit {
-        None => Unit::Unstated,
-        Some(label) => metres(&label, LoneA::Angstrom).map_or(Unit::Other(label), Unit::Metres),
-    };
+    let unit = unit_of(&unit.unwrap_or_default(), LoneA::Angstrom);
     let lateral = match (size, &unit) {
         (Some(size), Unit::Metres(metres)) => Lateral::Metres(size.map(|l| l * metres)),
         (Some(size), _) => Lateral::Bare(size),
         (None, _) => Lateral::Unstated(String::new()),
     };
-    Ok(Measured {
-        heights: array.heights(Format::Npz)?,
-        unit,
-        lateral,
-        channel: Some(names[index].clone()),
-        channels: names,
-        metadata,
-    })
+    Ok(Measured::new(array.heights(request)?, unit, lateral).of_channel(names, index).with(metadata))
 }
 
 /// An array in an NPY file.
@@ -184,10 +183,10 @@ impl<'a> Npy<'a> {
         decode(self.data, kind, order, count, "the NPY array")
     }
 
-    fn heights(&self, format: Format) -> Result<Array2<f64>, Problem> {
+    fn heights(&self, request: &Request) -> Result<Array2<f64>, Problem> {
         let &[nx, ny] = self.shape.as_slice() else {
             let detail = format!("its array has the shape {:?}, not (nx, ny)", self.shape);
-            return Err(Problem::NoHeights { format, detail });
+            return Err(request.no_heights(detail));
         };
         grid::points(nx, ny)?;
         // In Fortran order x runs fastest.

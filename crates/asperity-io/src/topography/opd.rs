@@ -7,9 +7,11 @@
 use ndarray::{Array2, Axis};
 
 use super::cursor::Cursor;
-use super::finish::{Lateral, Measured, Unit, choose};
+use super::finish::{Lateral, Measured, Unit};
 use super::sample::{Kind, Order, decode};
-use super::{Format, Problem, cursor, grid};
+use super::{Problem, Reader, Request, cursor, grid};
+
+pub(super) const OPD: Reader = Reader { name: "opd", aliases: &[], sniff: is_opd, read: read, write: None };
 
 /// Names of the arrays that hold heights; others ("Image", "SecArr_0") hold intensities.
 const HEIGHTS: [&str; 5] = ["RAW_DATA", "RAW DATA", "Raw", "OPD", "SAMPLE_DATA"];
@@ -24,7 +26,7 @@ mod block_type {
 }
 
 /// Whether the bytes are an OPD file.
-pub(super) fn is_opd(bytes: &[u8]) -> bool {
+fn is_opd(bytes: &[u8]) -> bool {
     bytes.get(2..).is_some_and(|b| b.starts_with(b"Directory\0"))
 }
 
@@ -35,12 +37,12 @@ struct Block<'a> {
 }
 
 /// Reads the heights asked for.
-pub(super) fn read_opd(bytes: &[u8], channel: Option<&str>) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     let blocks = blocks(bytes)?;
     let arrays: Vec<&Block> =
         blocks.iter().filter(|b| b.kind == block_type::ARRAY && HEIGHTS.contains(&b.name.as_str())).collect();
     let names: Vec<String> = arrays.iter().map(|b| b.name.clone()).collect();
-    let index = choose(Format::Opd, &names, channel)?;
+    let index = request.choose(&names)?;
 
     let number = |name: &str| blocks.iter().find(|b| b.name == name).and_then(Block::number);
     let wavelength = number("Wavelength").ok_or_else(|| {
@@ -58,9 +60,8 @@ pub(super) fn read_opd(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
         Some(pixel) => Lateral::Metres([nx as f64 * pixel * MM, ny as f64 * pixel * aspect * MM]),
         None => Lateral::Unstated(String::new()),
     };
-    let metadata = blocks.iter().filter_map(|b| Some((b.name.clone(), b.label()?))).collect();
-    let channel = Some(names[index].clone());
-    Ok(Measured { heights, unit: Unit::Metres(NM), lateral, channel, channels: names, metadata })
+    let metadata = blocks.iter().filter_map(|b| Some((b.name.clone(), b.label()?)));
+    Ok(Measured::new(heights, Unit::Metres(NM), lateral).of_channel(names, index).with(metadata))
 }
 
 fn blocks(bytes: &[u8]) -> Result<Vec<Block<'_>>, Problem> {

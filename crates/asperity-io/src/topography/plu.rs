@@ -6,10 +6,14 @@
 //! the readers of Gwyddion and SurfaceTopography know it.)
 
 use super::cursor::{Cursor, text};
-use super::finish::{Lateral, Measured, Unit, choose};
+use super::finish::{Lateral, Measured, Unit};
 use super::grid::{self, Layout};
 use super::sample::{Kind, Order};
-use super::{Format, Problem};
+use super::{Problem, Reader, Request};
+
+// The least certain sign: there is no signature.
+pub(super) const PLU: Reader =
+    Reader { name: "plu", aliases: &["apx"], sniff: is_plu, read: read, write: None };
 
 const UNDEFINED: f64 = 1_000_001.0;
 const UM: f64 = 1e-6;
@@ -50,7 +54,7 @@ impl Header {
 }
 
 /// Whether the bytes can be a PLU file: there is no signature, but a date "Fri Mar 10 16:35:59 2023" and sane numbers.
-pub(super) fn is_plu(bytes: &[u8]) -> bool {
+fn is_plu(bytes: &[u8]) -> bool {
     let Ok(header) = Header::parse(&mut Cursor::new(bytes, Order::Little)) else { return false };
     let words: Vec<&str> = header.date.split_whitespace().collect();
     let has_clock =
@@ -77,14 +81,14 @@ struct Layer<'a> {
 }
 
 /// Reads the layer asked for.
-pub(super) fn read_plu(bytes: &[u8], channel: Option<&str>) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     const S: &str = "the settings of the PLU file";
     let mut c = Cursor::new(bytes, Order::Little);
     let header = Header::parse(&mut c)?;
     if header.kind != TOPOGRAPHY {
         let kind =
             KINDS.get(header.kind as usize).map_or(format!("kind {}", header.kind), |k| (*k).to_owned());
-        return Err(Problem::NoHeights { format: Format::Plu, detail: format!("{kind}, not a topography") });
+        return Err(request.no_heights(format!("{kind}, not a topography")));
     }
     // Their meaning depends on the kind of the area, their length does not.
     c.bytes(40, S)?;
@@ -103,7 +107,7 @@ pub(super) fn read_plu(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
         }
     }
     let names: Vec<String> = (0..found.len()).map(|i| format!("layer{i}")).collect();
-    let index = choose(Format::Plu, &names, channel)?;
+    let index = request.choose(&names)?;
     let layer = &found[index];
     let height = |h: f64| if h == UNDEFINED { f64::NAN } else { h };
     let layout = Layout::dense(layer.points, Kind::F32, Order::Little);
@@ -111,14 +115,5 @@ pub(super) fn read_plu(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
     let [nx, ny] = layer.points.map(|n| n as f64);
     let lateral = Lateral::Metres([nx * header.pixel[0] * UM, ny * header.pixel[1] * UM]);
     let metadata = [("Date", header.date), ("Comment", header.comment)];
-    let metadata =
-        metadata.into_iter().filter(|(_, v)| !v.is_empty()).map(|(k, v)| (k.to_owned(), v)).collect();
-    Ok(Measured {
-        heights,
-        unit: Unit::Metres(UM),
-        lateral,
-        channel: Some(names[index].clone()),
-        channels: names,
-        metadata,
-    })
+    Ok(Measured::new(heights, Unit::Metres(UM), lateral).of_channel(names, index).with(metadata))
 }

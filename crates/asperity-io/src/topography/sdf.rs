@@ -7,21 +7,25 @@
 
 use ndarray::Array2;
 
-use super::Problem;
 use super::cursor::{Cursor, text};
+use super::entries::Entries;
 use super::finish::{Lateral, Measured, Unit};
 use super::grid::{self, Layout};
 use super::sample::{Kind, Order};
 use super::text::numbers;
+use super::{Problem, Reader, Request, write};
+
+pub(super) const SDF: Reader =
+    Reader { name: "sdf", aliases: &[], sniff: is_sdf, read: read, write: Some(write::sdf::encode) };
 
 /// Whether the bytes are an SDF file.
-pub(super) fn is_sdf(bytes: &[u8]) -> bool {
+fn is_sdf(bytes: &[u8]) -> bool {
     matches!(bytes.trim_ascii_start().first_chunk(), Some(b"aISO-1.0" | b"aISO-2.0"))
         || matches!(bytes.first_chunk(), Some(b"bISO-1.0" | b"bISO-2.0"))
 }
 
 /// Reads the surface.
-pub(super) fn read_sdf(bytes: &[u8]) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], _: &Request) -> Result<Measured, Problem> {
     if bytes.first() == Some(&b'b') { read_binary(bytes) } else { read_text(bytes) }
 }
 
@@ -55,7 +59,7 @@ fn read_binary(bytes: &[u8]) -> Result<Measured, Problem> {
     let version = c.bytes(8, H)?;
     let mut metadata = Vec::new();
     for (key, length) in [("ManufacID", 10), ("CreateDate", 12), ("ModDate", 12)] {
-        metadata.push((key.to_owned(), c.text(length, H)?));
+        metadata.push((key, c.text(length, H)?));
     }
     let (points, profiles) = match version {
         b"bISO-2.0" => (u64::from(c.u32(H)?), u64::from(c.u32(H)?)),
@@ -70,35 +74,19 @@ fn read_binary(bytes: &[u8]) -> Result<Measured, Problem> {
     let height = |v: f64| if v == undefined { f64::NAN } else { v * dz };
     let layout = Layout::dense([points, profiles], kind, Order::Little);
     let heights = layout.map(c.rest(), "the points of the SDF file", height)?;
-    Ok(measured(heights, scale, metadata))
+    Ok(measured(heights, scale).with(metadata))
 }
 
 fn read_text(bytes: &[u8]) -> Result<Measured, Problem> {
     let (header, data, line) = split(bytes)?;
-    let mut metadata = Vec::new();
-    for entry in header.split(|b| *b == b'\n').map(text).filter(|l| !l.starts_with(';')) {
-        if let Some((key, value)) = entry.split_once('=') {
-            metadata.push((key.trim().to_owned(), value.trim().to_owned()));
-        }
-    }
-    let get = |key: &str| metadata.iter().find(|(k, _)| k.eq_ignore_ascii_case(key)).map(|(_, v)| v.as_str());
-    let number = |key: &str| {
-        let value = get(key).unwrap_or("missing");
-        value
-            .parse::<f64>()
-            .map_err(|_| Problem::malformed(format!("{key} of the SDF header"), value, "a number"))
-    };
-    let whole = |key: &str| {
-        let value = get(key).unwrap_or("missing");
-        value
-            .parse::<u64>()
-            .map_err(|_| Problem::malformed(format!("{key} of the SDF header"), value, "a whole number"))
-    };
-    if get("Compression").is_some() {
+    let lines = header.split(|b| *b == b'\n').map(text).filter(|l| !l.starts_with(';'));
+    let header = Entries::from_lines("the SDF header", lines);
+    let whole = |key: &str| header.whole(key);
+    if header.get("Compression").is_some() {
         refuse_compression(whole("Compression")?)?;
     }
     let (points, profiles) = (whole("NumPoints")?, whole("NumProfiles")?);
-    let scale = [number("Xscale")?, number("Yscale")?, number("Zscale")?];
+    let scale = [header.number("Xscale")?, header.number("Yscale")?, header.number("Zscale")?];
     // Text says nothing that depends on the type of the numbers, but a wrong one means another format.
     kind(whole("DataType")?)?;
     let count = grid::points(points, profiles)?;
@@ -109,13 +97,13 @@ fn read_text(bytes: &[u8]) -> Result<Measured, Problem> {
     }
     let lines: Vec<&[f64]> = values.chunks_exact(points as usize).collect();
     let heights = grid::from_lines(points as usize, &lines, |v| v * scale[2]);
-    Ok(measured(heights, scale, metadata))
+    Ok(measured(heights, scale).with(header))
 }
 
-fn measured(heights: Array2<f64>, [dx, dy, _]: [f64; 3], metadata: Vec<(String, String)>) -> Measured {
+fn measured(heights: Array2<f64>, [dx, dy, _]: [f64; 3]) -> Measured {
     let (nx, ny) = heights.dim();
     let lateral = Lateral::Metres([nx as f64 * dx, ny as f64 * dy]);
-    Measured { heights, unit: Unit::Metres(1.0), lateral, channel: None, channels: Vec::new(), metadata }
+    Measured::new(heights, Unit::Metres(1.0), lateral)
 }
 
 /// Header and numbers, which lines of one asterisk end, and the line where the numbers start. The trailer after

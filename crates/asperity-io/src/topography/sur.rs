@@ -14,17 +14,20 @@ use flate2::read::ZlibDecoder;
 use ndarray::Axis;
 
 use super::cursor::Cursor;
-use super::finish::{Lateral, Measured, Unit, choose};
+use super::finish::{Lateral, Measured, unit_of};
 use super::grid::{self, Layout};
 use super::sample::{Kind, Order};
-use super::unit::{LoneA, metres};
+use super::unit::LoneA;
 use super::unpack::{most_unpacked, read_bounded};
-use super::{Format, Problem};
+use super::{Problem, Reader, Request};
 
-/// Whether the bytes are a SUR file.
-pub(super) fn is_sur(bytes: &[u8]) -> bool {
-    bytes.starts_with(b"DIGITAL SURF") || bytes.starts_with(b"DSCOMPRESSED")
-}
+pub(super) const SUR: Reader = Reader {
+    name: "sur",
+    aliases: &[],
+    sniff: |bytes| bytes.starts_with(b"DIGITAL SURF") || bytes.starts_with(b"DSCOMPRESSED"),
+    read: read,
+    write: None,
+};
 
 /// Kinds of objects whose first object, or every one, is a surface.
 mod studiable {
@@ -38,7 +41,7 @@ mod studiable {
 }
 
 /// Reads the surface asked for.
-pub(super) fn read_sur(bytes: &[u8], channel: Option<&str>) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     let mut cursor = Cursor::new(bytes, Order::Little);
     let first = Object::parse(&mut cursor)?;
     // The first header counts the objects; "P size" is the number of channels of each, 0 for one.
@@ -56,7 +59,7 @@ pub(super) fn read_sur(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
         || (first.kind == studiable::PROFILE && first.lines > 1);
     if !has_surface {
         let detail = format!("its objects are of the kind {}, not surfaces", first.kind);
-        return Err(Problem::NoHeights { format: Format::Sur, detail });
+        return Err(request.no_heights(detail));
     }
     let mut objects = vec![first];
     while all_are_surfaces && objects.len() < count && !cursor.rest().is_empty() {
@@ -70,7 +73,7 @@ pub(super) fn read_sur(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
             .map(|(i, o)| if o.name.is_empty() { format!("layer {i}") } else { format!("{} {i}", o.name) })
             .collect(),
     };
-    let index = choose(Format::Sur, &names, channel)?;
+    let index = request.choose(&names)?;
     objects.swap_remove(index).measured(names, index)
 }
 
@@ -91,7 +94,7 @@ struct Object<'a> {
     unit: [String; 3],
     inversion: i16,
     offset: f32,
-    metadata: Vec<(String, String)>,
+    metadata: Vec<(&'static str, String)>,
     data: Data<'a>,
 }
 
@@ -167,16 +170,11 @@ impl<'a> Object<'a> {
             let length = points.saturating_mul(width).saturating_mul(u64::from(values_per_point.max(1)));
             Data::Plain(c.bytes(length, "the points of the SUR object")?)
         };
-        let mut metadata = Vec::new();
-        for (key, value) in [("operator", operator), ("comment", comment)] {
-            if !value.is_empty() {
-                metadata.push((key.to_owned(), value));
-            }
-        }
-        if year > 0 {
-            let date = format!("{year:04}-{month:02}-{day:02} {hour:02}:{minute:02}:{second:02}");
-            metadata.push(("date".to_owned(), date));
-        }
+        let date = match year > 0 {
+            true => format!("{year:04}-{month:02}-{day:02} {hour:02}:{minute:02}:{second:02}"),
+            false => String::new(),
+        };
+        let metadata = vec![("operator", operator), ("comment", comment), ("date", date)];
         Ok(Object {
             objects,
             channels,
@@ -220,7 +218,7 @@ impl<'a> Object<'a> {
         let [dx, dy, dz] = self.spacing.map(f64::from);
         let offset = f64::from(self.offset);
         if offset != 0.0 {
-            self.metadata.push(("z offset".to_owned(), format!("{offset} {}", self.unit[2])));
+            self.metadata.push(("z offset", format!("{offset} {}", self.unit[2])));
         }
         let offset = if self.absolute { offset } else { 0.0 };
         // 1: heights inverted; 2: and mirrored left-right; 3: and upside down.
@@ -235,20 +233,9 @@ impl<'a> Object<'a> {
         }
         let (nx, ny) = heights.dim();
 
-        let [ux, uy, uz] = self.unit.each_ref().map(|u| metres(u, LoneA::Angstrom));
-        let lateral = match (ux, uy) {
-            (Some(ux), Some(uy)) => Lateral::Metres([nx as f64 * dx.abs() * ux, ny as f64 * dy.abs() * uy]),
-            _ if self.unit[0].is_empty() => Lateral::Bare([nx as f64 * dx.abs(), ny as f64 * dy.abs()]),
-            _ => Lateral::Unstated(format!(" in a unit of length (it says {:?})", self.unit[0])),
-        };
-        let unit = match (uz, self.unit[2].as_str()) {
-            (Some(uz), _) => Unit::Metres(uz),
-            (None, "") => Unit::Unstated,
-            (None, label) => Unit::Other(label.to_owned()),
-        };
-        let channel = Some(names[index].clone()).filter(|n| !n.is_empty());
-        let channels = if channel.is_some() { names } else { Vec::new() };
-        Ok(Measured { heights, unit, lateral, channel, channels, metadata: self.metadata })
+        let [ux, uy, unit] = self.unit.each_ref().map(|u| unit_of(u, LoneA::Angstrom));
+        let lateral = Lateral::of([nx as f64 * dx.abs(), ny as f64 * dy.abs()], [ux, uy]);
+        Ok(Measured::new(heights, unit, lateral).of_channel(names, index).with(self.metadata))
     }
 }
 

@@ -5,7 +5,7 @@ use std::io::{Cursor, Read};
 use flate2::read::MultiGzDecoder;
 use zip::ZipArchive;
 
-use super::{Format, Problem};
+use super::Problem;
 
 /// Most bytes that `packed` bytes may unpack to.
 ///
@@ -107,14 +107,10 @@ fn broken(name: &str, error: impl std::fmt::Display) -> Problem {
     Problem::malformed(format!("member {name:?} of the zip archive"), error, "readable")
 }
 
-/// Which format a zip archive is.
-pub(super) fn zip_format(bytes: &[u8]) -> Option<Format> {
-    let names = Archive::open(bytes).ok()?.names();
-    if names.iter().any(|n| n == "main.xml") {
-        Some(Format::X3p)
-    } else {
-        names.iter().any(|n| n.ends_with(".npy")).then_some(Format::Npz)
-    }
+/// Whether the bytes are a zip archive with a member of such a name.
+pub(super) fn holds_member(bytes: &[u8], is_named: impl Fn(&str) -> bool) -> bool {
+    let names = || Archive::open(bytes).map(|archive| archive.names()).unwrap_or_default();
+    bytes.starts_with(b"PK\x03\x04") && names().iter().any(|name| is_named(name))
 }
 
 #[cfg(test)]

@@ -5,30 +5,40 @@
 //! points (x runs fastest, little-endian) with a link to the bit mask of valid points, or the points as a list of
 //! `Datum`. Lengths are metres. Height = number x Increment + Offset of the z axis.
 
-use std::collections::HashMap;
-
 use ndarray::Array2;
-use quick_xml::Reader;
+
 use quick_xml::events::Event;
 
-use super::finish::{Lateral, Measured, Unit, choose};
+use super::entries::Entries;
+use super::finish::{Lateral, Measured, Unit};
 use super::grid::{self, Layout};
 use super::sample::{Kind, Order};
-use super::unpack::Archive;
-use super::{Format, HISTORY, Problem};
+use super::unpack::{Archive, holds_member};
+use super::{HISTORY, Problem, Reader, Request, write};
+
+pub(super) const X3P: Reader = Reader {
+    name: "x3p",
+    aliases: &[],
+    sniff: |bytes| holds_member(bytes, |name| name == "main.xml"),
+    read: read,
+    write: Some(write::x3p::encode),
+};
 
 /// Elements nest five deep in the standard's schema.
 const DEEPEST: usize = 32;
+/// It has some 40 elements.
+const MOST_ELEMENTS: usize = 10_000;
 
 /// Reads the layer asked for.
-pub(super) fn read_x3p(bytes: &[u8], channel: Option<&str>) -> Result<Measured, Problem> {
+fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     let mut archive = Archive::open(bytes)?;
     let xml = archive.member("main.xml")?;
     let main = Main::parse(&xml)?;
-    main.check()?;
+    let elements = &main.elements;
+    check(elements, request)?;
     let [nx, ny] =
-        [main.whole("Record3/MatrixDimension/SizeX")?, main.whole("Record3/MatrixDimension/SizeY")?];
-    let layers = main.whole("Record3/MatrixDimension/SizeZ").unwrap_or(1).max(1);
+        [elements.whole("Record3/MatrixDimension/SizeX")?, elements.whole("Record3/MatrixDimension/SizeY")?];
+    let layers = elements.whole("Record3/MatrixDimension/SizeZ").unwrap_or(1).max(1);
     let count = grid::points(nx, ny)?;
     let all = grid::points(nx.saturating_mul(ny), layers)?;
     let names: Vec<String> = match layers {
@@ -36,13 +46,13 @@ pub(super) fn read_x3p(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
         // More layers than bytes are refused when the points are read; no list of names for them.
         _ => (0..layers.min(1 << 16)).map(|i| format!("layer {i}")).collect(),
     };
-    let layer = choose(Format::X3p, &names, channel)?;
+    let layer = request.choose(&names)?;
     let range = layer * count..(layer + 1) * count;
 
-    let increment = main.number_or("Record1/Axes/CZ/Increment", 1.0)?;
-    let offset = main.number_or("Record1/Axes/CZ/Offset", 0.0)?;
+    let or = |path: &str, default| elements.get(path).map_or(Ok(default), |_| elements.number(path));
+    let (increment, offset) = (or("Record1/Axes/CZ/Increment", 1.0)?, or("Record1/Axes/CZ/Offset", 0.0)?);
     let height = |v: f64| v * increment + offset;
-    let heights = match main.get("Record3/DataLink/PointDataLink") {
+    let heights = match elements.get("Record3/DataLink/PointDataLink") {
         Some(link) => main.linked(&mut archive, link, [nx, ny], all, range, height)?,
         None if main.data.len() == all => {
             let lines: Vec<&[f64]> = main.data[range].chunks_exact(nx as usize).collect();
@@ -53,22 +63,17 @@ pub(super) fn read_x3p(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
             return Err(Problem::malformed("the number of points in DataList", main.data.len(), expected));
         }
     };
-    let [dx, dy] = [main.number("Record1/Axes/CX/Increment")?, main.number("Record1/Axes/CY/Increment")?];
-    let channel = (layers > 1).then(|| names[layer].clone());
-    Ok(Measured {
-        heights,
-        unit: Unit::Metres(1.0),
-        lateral: Lateral::Metres([nx as f64 * dx.abs(), ny as f64 * dy.abs()]),
-        channel,
-        channels: if layers > 1 { names } else { Vec::new() },
-        metadata: main.metadata(),
-    })
+    let [dx, dy] =
+        [elements.number("Record1/Axes/CX/Increment")?, elements.number("Record1/Axes/CY/Increment")?];
+    let lateral = Lateral::Metres([nx as f64 * dx.abs(), ny as f64 * dy.abs()]);
+    Ok(Measured::new(heights, Unit::Metres(1.0), lateral)
+        .of_channel(names, layer)
+        .with(metadata(main.elements)))
 }
 
 /// The elements of main.xml by their path below the root, and the list of data.
 struct Main {
-    elements: HashMap<String, String>,
-    order: Vec<String>,
+    elements: Entries,
     data: Vec<f64>,
 }
 
@@ -76,8 +81,8 @@ impl Main {
     fn parse(xml: &[u8]) -> Result<Self, Problem> {
         let broken = |e: String| Problem::malformed("main.xml", e, "well-formed XML");
         let xml = String::from_utf8_lossy(xml);
-        let mut reader = Reader::from_str(xml.trim_start_matches('\u{feff}'));
-        let mut main = Main { elements: HashMap::new(), order: Vec::new(), data: Vec::new() };
+        let mut reader = quick_xml::Reader::from_str(xml.trim_start_matches('\u{feff}'));
+        let mut main = Main { elements: Entries::new("main.xml"), data: Vec::new() };
         let mut path: Vec<String> = Vec::new();
         let mut content = String::new();
         loop {
@@ -104,11 +109,8 @@ impl Main {
                     let text = content.trim();
                     match path.last().map(String::as_str) {
                         Some("Datum") => main.data.push(datum(text)?),
-                        Some(_) if !text.is_empty() => {
-                            let key = path[1..].join("/");
-                            if main.elements.insert(key.clone(), text.to_owned()).is_none() {
-                                main.order.push(key);
-                            }
+                        Some(_) if !text.is_empty() && main.elements.len() < MOST_ELEMENTS => {
+                            main.elements.push(&path[1..].join("/"), text);
                         }
                         _ => {}
                     }
@@ -122,41 +124,6 @@ impl Main {
         }
     }
 
-    fn get(&self, path: &str) -> Option<&str> {
-        self.elements.get(path).map(String::as_str)
-    }
-
-    fn number(&self, path: &str) -> Result<f64, Problem> {
-        let value = self.get(path).unwrap_or("missing");
-        value.parse().map_err(|_| Problem::malformed(format!("{path} in main.xml"), value, "a number"))
-    }
-
-    fn number_or(&self, path: &str, default: f64) -> Result<f64, Problem> {
-        if self.get(path).is_some() { self.number(path) } else { Ok(default) }
-    }
-
-    fn whole(&self, path: &str) -> Result<u64, Problem> {
-        let value = self.get(path).unwrap_or("missing");
-        value.parse().map_err(|_| Problem::malformed(format!("{path} in main.xml"), value, "a whole number"))
-    }
-
-    /// Refuses profiles, point clouds and points that are not equally spaced.
-    fn check(&self) -> Result<(), Problem> {
-        if let Some(kind @ ("PRF" | "PCL")) = self.get("Record1/FeatureType") {
-            let detail = format!("its feature type is {kind}, not SUR");
-            return Err(Problem::NoHeights { format: Format::X3p, detail });
-        }
-        for axis in ["CX", "CY"] {
-            if self.get(&format!("Record1/Axes/{axis}/AxisType")) == Some("A") {
-                return Err(Problem::unsupported(
-                    format!("an X3P file whose points are not equally spaced (axis {axis} is absolute)"),
-                    "resample it to a regular grid before the export",
-                ));
-            }
-        }
-        Ok(())
-    }
-
     /// The heights of one layer from a member of the archive; `all` is the number of points in all layers.
     fn linked(
         &self,
@@ -167,19 +134,12 @@ impl Main {
         range: std::ops::Range<usize>,
         height: impl Fn(f64) -> f64 + Sync,
     ) -> Result<Array2<f64>, Problem> {
-        let kind = match self.get("Record1/Axes/CZ/DataType") {
+        let kind = match self.elements.get("Record1/Axes/CZ/DataType") {
             Some("I") => Kind::I16,
             Some("L") => Kind::I32,
             Some("F") => Kind::F32,
             Some("D") => Kind::F64,
-            other => {
-                let other = other.unwrap_or("missing");
-                return Err(Problem::malformed(
-                    "Record1/Axes/CZ/DataType in main.xml",
-                    other,
-                    "I, L, F or D",
-                ));
-            }
+            _ => return Err(self.elements.wrong("Record1/Axes/CZ/DataType", "I, L, F or D")),
         };
         let content = archive.member(link)?;
         let needed = all as u64 * kind.width() as u64;
@@ -188,7 +148,7 @@ impl Main {
         }
         let bytes = &content[range.start * kind.width()..range.end * kind.width()];
         let mut heights = Layout::dense([nx, ny], kind, Order::Little).map(bytes, "the points", height)?;
-        if let Some(link) = self.get("Record3/DataLink/ValidPointsLink") {
+        if let Some(link) = self.elements.get("Record3/DataLink/ValidPointsLink") {
             let mask = archive.member(link)?;
             let needed = all.div_ceil(8);
             if mask.len() < needed {
@@ -208,19 +168,30 @@ impl Main {
         }
         Ok(heights)
     }
+}
 
-    /// Record2: instrument, dates, comment.
-    fn metadata(self) -> Vec<(String, String)> {
-        let Main { mut elements, order, .. } = self;
-        order
-            .into_iter()
-            .filter_map(|key| {
-                let value = elements.remove(&key)?;
-                Some((key.strip_prefix("Record2/")?.to_owned(), value))
-            })
-            .flat_map(split_history)
-            .collect()
+/// Refuses profiles, point clouds and points that are not equally spaced.
+fn check(elements: &Entries, request: &Request) -> Result<(), Problem> {
+    if let Some(kind @ ("PRF" | "PCL")) = elements.get("Record1/FeatureType") {
+        return Err(request.no_heights(format!("its feature type is {kind}, not SUR")));
     }
+    for axis in ["CX", "CY"] {
+        if elements.get(&format!("Record1/Axes/{axis}/AxisType")) == Some("A") {
+            return Err(Problem::unsupported(
+                format!("an X3P file whose points are not equally spaced (axis {axis} is absolute)"),
+                "resample it to a regular grid before the export",
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// Record2: instrument, dates, comment.
+fn metadata(elements: Entries) -> impl Iterator<Item = (String, String)> {
+    let record = elements
+        .into_iter()
+        .filter_map(|(key, value)| Some((key.strip_prefix("Record2/")?.to_owned(), value)));
+    record.flat_map(split_history)
 }
 
 /// The history of the heights, which the writer of this crate puts at the end of the comment.

@@ -104,8 +104,8 @@ fn findings_of_the_fuzzer_stay_mended() {
 #[test]
 fn every_other_format_is_refused_when_insisted_on() {
     for (format, file) in files() {
-        for other in Format::ALL.into_iter().filter(|f| *f != format) {
-            let _ = read(&file, Some(other));
+        for other in Format::ALL.iter().filter(|f| **f != format) {
+            let _ = read(&file, Some(*other));
         }
     }
 }

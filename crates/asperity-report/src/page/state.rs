@@ -14,7 +14,9 @@ use super::facts::{facts, time};
 use super::maps::Maps;
 use super::{material, stress};
 use crate::figure::Colours;
-use crate::result::{Options, Rows, persson, temperature_at_rows};
+use crate::leak::sentence;
+use crate::result::panels::{self, CONTACT_PRESSURE, RowPanel};
+use crate::result::{Options, Rows, look, persson, temperature_at_rows};
 
 /// The result's title, or its file name.
 pub(super) fn title(reader: &Reader) -> String {
@@ -37,12 +39,8 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
     }
     // What the rows follow, of a sweep the velocities.
     series.insert("time".into(), json!(reader.series("time")?));
-    let contact = reader.series("load")?.into_iter().zip(reader.series("contact_area")?);
-    series.insert(
-        "contact_pressure".into(),
-        json!(contact.map(|(load, area)| load / area).collect::<Vec<_>>()),
-    );
-    units.insert("contact_pressure".into(), json!("Pa"));
+    series.insert(CONTACT_PRESSURE.into(), json!(panels::values(reader, CONTACT_PRESSURE)?));
+    units.insert(CONTACT_PRESSURE.into(), json!("Pa"));
     if let Some(temperature) = temperature_at_rows(reader)? {
         series.insert("temperature".into(), json!(temperature));
         units.insert("temperature".into(), json!("°C"));
@@ -55,7 +53,7 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
         let friction: Vec<f64> = theory.iter().map(|at| at.friction_coefficient).collect();
         let area: Vec<f64> = theory.iter().map(|at| at.contact_fraction * whole).collect();
         series.insert(PERSSON_FRICTION.into(), json!(friction));
-        series.insert("persson_contact_area".into(), json!(area));
+        series.insert(PERSSON_AREA.into(), json!(area));
     }
     let note = match maps.block {
         1 => String::new(),
@@ -84,7 +82,8 @@ pub(super) fn state(reader: &Reader, maps: &Maps) -> Result<Value, StoreError> {
         "rows": {"label": rows.of.name(), "unit": rows.of.unit(), "symbol": rows.of.symbol(), "log": rows.log},
         "last_cycle": last_cycle(reader)?,
         "cycles": each_cycle(reader)?,
-        "quantities": quantities(reader, theory.is_some()),
+        "evolution": evolution(reader, theory.is_some())?,
+        "solver": panels::of_work(reader)?.iter().map(panel).collect::<Vec<_>>(),
         "fields": maps.fields.iter().map(field).collect::<Vec<_>>(),
         "instants": instants.collect::<Vec<_>>(),
         "note": note,
@@ -133,34 +132,43 @@ fn leak(reader: &Reader) -> Result<Value, StoreError> {
     Ok(Value::Object(columns))
 }
 
-/// The series of Persson's theory beside the computed friction coefficient.
+/// The series of Persson's theory beside the computed friction coefficient and area.
 const PERSSON_FRICTION: &str = "persson_friction_coefficient";
+const PERSSON_AREA: &str = "persson_contact_area";
 
-/// The quantities that were asked for, as panels over the rows: title, label, and the series by name. Energies share one;
-/// where the page has the friction of `theory`, it stands beside the computed one.
-fn quantities(reader: &Reader, theory: bool) -> Vec<Value> {
-    crate::result::quantity_panels(reader)
-        .into_iter()
-        .map(|mut panel| {
-            if theory && panel.lines.iter().any(|(_, series)| *series == "friction_coefficient") {
-                panel.lines.push(("Persson's theory", PERSSON_FRICTION));
-            }
-            let lines: Vec<_> = panel.lines.iter().map(|(name, series)| json!([name, series])).collect();
-            json!([panel.title, panel.label, lines, panel.states])
-        })
-        .collect()
+/// The panels over the rows, those of the quantities last; where the page has `theory`, it stands beside what was computed.
+fn evolution(reader: &Reader, theory: bool) -> Result<Vec<Value>, StoreError> {
+    let mut panels = panels::of_evolution(reader)?;
+    if temperature_at_rows(reader)?.is_some() {
+        let lines = vec![("", "temperature")];
+        panels.push(RowPanel { title: "Temperature", label: "temperature", lines, states: &[] });
+    }
+    panels.extend(panels::of_quantities(reader)?);
+    let beside = [("friction_coefficient", PERSSON_FRICTION), ("contact_area", PERSSON_AREA)];
+    for (computed, expected) in beside.into_iter().filter(|_| theory) {
+        if let Some(panel) = panels.iter_mut().find(|p| p.lines.iter().any(|(_, name)| *name == computed)) {
+            panel.lines.push(("Persson's theory", expected));
+        }
+    }
+    Ok(panels.iter().map(panel).collect())
+}
+
+/// Title, label, name and series of each line, and the names of states.
+fn panel(panel: &RowPanel) -> Value {
+    let lines: Vec<_> = panel.lines.iter().map(|(name, series)| json!([name, series])).collect();
+    json!([panel.title, panel.label, lines, panel.states])
 }
 
 fn field(kind: &FieldKind) -> Value {
-    let (title, label, colours) = match kind {
-        FieldKind::Pressure => ("Pressure", "pressure", "pressure"),
-        FieldKind::Gap => ("Gap", "gap", "sequential"),
-        FieldKind::Displacement => ("Displacement", "displacement", "sequential"),
-        FieldKind::Flattening => ("Permanent flattening", "flattening", "sequential"),
-        FieldKind::Contact => ("Contact", "state", "states"),
+    let (label, colours) = look(*kind);
+    let colours = match colours {
+        Some(Colours::Pressure) => "pressure",
+        // The page itself leaves the gap of cells in contact light.
+        Some(_) => "sequential",
+        None => "states",
     };
     json!({
-        "name": kind.name(), "title": title, "label": label, "unit": kind.units(), "colours": colours,
+        "name": kind.name(), "title": sentence(label), "label": label, "unit": kind.units(), "colours": colours,
     })
 }
 

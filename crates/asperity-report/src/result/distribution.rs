@@ -2,9 +2,9 @@
 
 use asperity::spots::Spots;
 use asperity_io::readable::{counted, quantity};
-use asperity_io::store::{At, FieldKind, Reader, StoreError};
+use asperity_io::store::{FieldKind, Reader};
 
-use super::{boundary, caption};
+use super::{Options, PlotError, boundary, caption};
 use crate::figure::{Axis, Curves, Figure, Series, Style};
 use crate::histogram;
 
@@ -12,7 +12,8 @@ const BINS: usize = 60;
 /// Values that differ by this share are the same but for rounding.
 const ROUNDING: f64 = 1e-9;
 
-pub(super) fn histogram(reader: &Reader, at: At) -> Result<Figure, StoreError> {
+pub(super) fn histogram(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
+    let at = options.at;
     let kept = &reader.header().fields;
     let index = reader.index(at)?;
     let mut figure = Figure::new("");
@@ -32,7 +33,7 @@ pub(super) fn histogram(reader: &Reader, at: At) -> Result<Figure, StoreError> {
         figure = figure.with(density(["Gap out of contact", "gap", "m"], &open, all, "no open cell"));
     }
     if figure.panels.is_empty() {
-        return Err(reader.no_field(FieldKind::Pressure));
+        return Err(reader.no_field(FieldKind::Pressure).into());
     }
     Ok(figure.caption(format!("Probability densities. {}", caption(reader, index)?)))
 }
@@ -59,8 +60,8 @@ fn at_least(falling: &[f64]) -> (Vec<f64>, Vec<f64>) {
     (0..falling.len()).filter(|n| is_last(*n)).map(|n| (falling[n], (n + 1) as f64)).unzip()
 }
 
-pub(super) fn spots(reader: &Reader, at: At) -> Result<Figure, StoreError> {
-    let states = reader.contact_states(at)?;
+pub(super) fn spots(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
+    let states = reader.contact_states(options.at)?;
     let spots = Spots::of(&reader.header().grid, boundary(reader), states.view(), |state| *state > 0);
     let (sizes, numbers) = at_least(&spots.areas);
     let grid = &reader.header().grid;
@@ -78,7 +79,7 @@ pub(super) fn spots(reader: &Reader, at: At) -> Result<Figure, StoreError> {
         counted(spots.len(), "spot"),
         quantity(spots.mean_area(), units),
         quantity(largest, units),
-        caption(reader, reader.index(at)?)?
+        caption(reader, reader.index(options.at)?)?
     );
     let mut figure = Figure::new("").with(panel).caption(sizes);
     figure.panel = [345.0, 260.0];

@@ -1,128 +1,14 @@
-//! What changes over the rows.
+//! Load over approach, its last cycle, and the work of each row.
 
 use std::ops::RangeInclusive;
 
-use asperity::quantities::{Panel, Quantity};
 use asperity_io::cycles;
 use asperity_io::readable::quantity;
 use asperity_io::store::{Reader, StoreError};
 
 use super::rows::Rows;
 use super::{Options, PlotError, nameless};
-use crate::figure::{Axis, Curves, Figure, Series, Style};
-
-pub(super) fn evolution(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
-    let time = times(reader)?;
-    let rows = Rows::within(reader, options)?;
-    let axis = || rows.axis(options.log);
-    let line = |name: &str, series: &str| -> Result<Series, StoreError> {
-        Ok(Series::new(name, Style::Line, time.clone(), reader.series(series)?))
-    };
-    let grid = &reader.header().grid;
-    let mut area = match grid.is_line() {
-        true => Curves::new("Contact length", axis(), Axis::linear("contact length", "m"))
-            .with(line("", "contact_area")?),
-        false => Curves::new("Contact area", axis(), Axis::linear("contact area", "m2"))
-            .with(line("counted", "contact_area")?)
-            .with(line("corrected", "contact_area_corrected")?),
-    };
-    if reader.series("capped_area")?.iter().any(|area| *area > 0.0) {
-        area = area.with(line("at the hardness", "capped_area")?);
-    }
-    let approach = Curves::new("Approach", axis(), Axis::linear("approach", "m"));
-    let load = Curves::new("Load", axis(), Axis::linear("load", grid.units("N")));
-    let loads = reader.series("load")?;
-    let over_contact: Vec<f64> =
-        loads.iter().zip(reader.series("contact_area")?).map(|(load, area)| load / area).collect();
-    let pressure = Curves::new("Pressure", axis(), Axis::linear("pressure", "Pa"))
-        .with(line("nominal mean", "mean_pressure")?)
-        .with(line("largest", "max_pressure")?)
-        .with(Series::new("mean over the contact", Style::Line, time.clone(), over_contact));
-    let figure = Figure::new("")
-        .with(area)
-        .with(nameless(approach, &time, reader.series("approach")?))
-        .with(nameless(load, &time, reader.series("load")?))
-        .with(pressure);
-    let temperature = super::temperature::panel(reader, rows, options.log)?;
-    Ok(temperature.into_iter().fold(figure, Figure::with))
-}
-
-/// A panel of quantities over time.
-pub(crate) struct QuantityPanel {
-    pub(crate) title: &'static str,
-    pub(crate) label: &'static str,
-    pub(crate) units: &'static str,
-    /// Name in the legend and name of the series.
-    pub(crate) lines: Vec<(&'static str, &'static str)>,
-    /// Names of the values 0, 1, 2 ... of a quantity that is a state; empty for a number.
-    pub(crate) states: &'static [&'static str],
-}
-
-/// Directions in which something percolates, by number.
-const DIRECTIONS: [&str; 4] = ["none", "x", "y", "x and y"];
-
-/// The quantities with one number per row that were asked for: one panel for all energies, one for the areas of spots,
-/// one for each other.
-pub(crate) fn quantity_panels(reader: &Reader) -> Vec<QuantityPanel> {
-    let mut panels: Vec<QuantityPanel> = vec![];
-    let scalars = reader.scalars();
-    let line = reader.header().grid.is_line();
-    for column in &reader.header().quantities {
-        let quantity = column.quantity;
-        let Some(Panel { title, label, legend }) = quantity.panel() else { continue };
-        // Spots of a line contact have lengths, and its border are points.
-        let (title, label) = match (quantity, line) {
-            (Quantity::LargestSpot | Quantity::MeanSpot, true) => ("Lengths of contact spots", "length"),
-            (Quantity::ContactPerimeter, true) => ("Ends of the contact", "number"),
-            _ => (title, label),
-        };
-        let percolates = matches!(quantity, Quantity::ContactPercolation | Quantity::GapPercolation);
-        let states: &'static [&'static str] = if percolates { &DIRECTIONS } else { &[] };
-        let line = (legend, quantity.name());
-        // The mean gap, which every row has, beside the rms gap.
-        let mean = (quantity == Quantity::RmsGap).then_some(("mean", "mean_gap"));
-        match panels.iter_mut().find(|panel| panel.title == title) {
-            Some(panel) => panel.lines.push(line),
-            None => {
-                let units =
-                    scalars.iter().find(|series| series.name == quantity.name()).map_or("", |s| s.units);
-                let units = if units == "1" { "" } else { units };
-                panels.push(QuantityPanel {
-                    title,
-                    label,
-                    units,
-                    lines: std::iter::once(line).chain(mean).collect(),
-                    states,
-                });
-            }
-        }
-    }
-    panels
-}
-
-pub(super) fn quantities(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
-    let time = times(reader)?;
-    let rows = Rows::within(reader, options)?;
-    let panels = quantity_panels(reader);
-    if panels.is_empty() {
-        return Err(reader.no_quantities().into());
-    }
-    let mut figure = Figure::new("");
-    for panel in panels {
-        let (up, steps) = match panel.states {
-            [] if panel.label == "number" => (Axis::linear("number", "").counting(), false),
-            [] => (Axis::linear(panel.label, panel.units), false),
-            names => (Axis::states(panel.label, names), true),
-        };
-        let mut curves = Curves::new(panel.title, rows.axis(options.log), up);
-        for (name, series) in panel.lines {
-            let line = Series::new(name, Style::Line, time.clone(), reader.series(series)?);
-            curves = curves.with(if steps { line.stepped() } else { line });
-        }
-        figure = figure.with(curves);
-    }
-    Ok(figure)
-}
+use crate::figure::{Axis, Curves, Figure};
 
 pub(super) fn load_displacement(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
     let kept = shown(reader, options)?;
@@ -213,24 +99,9 @@ fn between_peaks(course: &[f64]) -> Option<RangeInclusive<usize>> {
 
 pub(super) fn work(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
     let kept = shown(reader, options)?;
-    let row: Vec<f64> = kept.iter().map(|row| *row as f64).collect();
-    let points = |name: &str, series: &str| -> Result<Series, StoreError> {
-        let values = reader.series(series)?;
-        let picked: Vec<f64> = kept.iter().filter_map(|row| values.get(*row).copied()).collect();
-        Ok(Series::new(name, Style::Points, row.clone(), picked))
-    };
-    let counts = Curves::new(
-        "Work of each row",
-        Axis::linear("row", "").counting(),
-        Axis::linear("number", "").counting(),
-    )
-    .with(points("iterations", "iterations")?)
-    .with(points("convolutions", "convolutions")?);
-    let errors =
-        Curves::new("Error of each row", Axis::linear("row", "").counting(), Axis::log("relative error", ""))
-            .with(points("contact conditions (residual)", "residual")?)
-            .with(points("pressure (certificate)", "certificate")?);
-    Ok(Figure::new("").with(counts).with(errors))
+    let panels = super::panels::of_work(reader)?;
+    let curves = panels.iter().map(|panel| panel.points(reader, &kept));
+    Ok(curves.collect::<Result<Vec<_>, _>>()?.into_iter().fold(Figure::new(""), Figure::with))
 }
 
 /// Numbers of the rows in the window.

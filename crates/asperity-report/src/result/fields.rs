@@ -3,7 +3,7 @@
 use asperity_io::store::{At, FieldKind, Reader, StoreError};
 use ndarray::Array2;
 
-use super::{caption, line, no_contact};
+use super::{Options, PlotError, caption, line, look, no_contact};
 use crate::figure::{Colours, Figure, Map, OPEN, Panel};
 
 /// Names and colours of the contact states.
@@ -36,17 +36,11 @@ pub(super) fn gap(reader: &Reader, at: At) -> Result<Array2<f64>, StoreError> {
 }
 
 /// The map of a field at an instant.
-pub(super) fn map(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, StoreError> {
+pub(super) fn map(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, PlotError> {
     if reader.header().grid.is_line() {
-        return line::field(reader, kind, at);
+        return Ok(line::field(reader, kind, at)?);
     }
-    let (title, colours) = match kind {
-        FieldKind::Pressure => ("Pressure", Colours::Pressure),
-        FieldKind::Gap => ("Gap", Colours::Gap),
-        FieldKind::Displacement => ("Displacement", Colours::Sequential),
-        FieldKind::Flattening => ("Permanent flattening", Colours::Sequential),
-        FieldKind::Contact => return contact(reader, at),
-    };
+    let (label, Some(colours)) = look(kind) else { return states(reader, at) };
     let values = if kind == FieldKind::Gap { gap(reader, at)? } else { reader.field(kind, at)? };
     let index = reader.index(at)?;
     let touches = |value: &f64| *value == 0.0;
@@ -62,34 +56,32 @@ pub(super) fn map(reader: &Reader, kind: FieldKind, at: At) -> Result<Figure, St
         _ => (no_contact(reader, index)?, ""),
     };
     let size = reader.header().grid.size();
-    let map = Map::new(heading, [&title.to_lowercase(), kind.units()], colours, values.view(), size);
+    let map = Map::new(heading, [label, kind.units()], colours, values.view(), size);
     let overlap = if kind == FieldKind::Gap && values.iter().any(|gap| *gap < 0.0) { OVERLAP } else { "" };
-    single(map, caption(reader, index)? + light + overlap)
+    Ok(single(map, caption(reader, index)? + light + overlap))
 }
 
-pub(super) fn contact(reader: &Reader, at: At) -> Result<Figure, StoreError> {
-    if reader.header().grid.is_line() {
-        return line::field(reader, FieldKind::Contact, at);
-    }
+/// The map of the contact states.
+fn states(reader: &Reader, at: At) -> Result<Figure, PlotError> {
     let states = reader.contact_states(at)?;
     let index = reader.index(at)?;
     let names = CONTACT_STATES.map(|(name, colour)| (name.to_owned(), colour)).to_vec();
     let title = no_contact(reader, index)?;
     let map = Map::states(title, names, states.mapv(f64::from).view(), reader.header().grid.size());
-    single(map, caption(reader, index)?)
+    Ok(single(map, caption(reader, index)?))
 }
 
-pub(super) fn initial_gap(reader: &Reader) -> Result<Figure, StoreError> {
+pub(super) fn initial_gap(reader: &Reader, _: &Options) -> Result<Figure, PlotError> {
     if reader.header().grid.is_line() {
-        return line::initial_gap(reader);
+        return Ok(line::initial_gap(reader)?);
     }
     let values = reader.initial_gap()?;
     let size = reader.header().grid.size();
     let map = Map::new("", ["undeformed gap", "m"], Colours::Sequential, values.view(), size);
-    single(map, String::new())
+    Ok(single(map, String::new()))
 }
 
-fn single(map: Map, caption: String) -> Result<Figure, StoreError> {
+fn single(map: Map, caption: String) -> Figure {
     let figure = Figure { panel: [345.0, 280.0], panels: vec![Panel::Map(map)], ..Figure::new("") };
-    Ok(figure.caption(caption))
+    figure.caption(caption)
 }

@@ -1,7 +1,8 @@
 //! Friction of a contact in motion: over the velocity of steady states, or over time.
 
 use asperity::Boundary;
-use asperity::sliding::{Correction, Direction, Persson, PerssonFriction};
+use asperity::reference::{Correction, Persson, PerssonFriction};
+use asperity::sliding::Direction;
 use asperity::surface::Surface;
 use asperity_io::store::{Reader, StoreError};
 

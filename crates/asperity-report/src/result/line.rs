@@ -4,8 +4,8 @@ use asperity_io::store::{At, FieldKind, Reader, StoreError};
 use ndarray::Array2;
 
 use super::fields::CONTACT_STATES;
-use super::{caption, nameless, no_contact};
-use crate::figure::{Axis, COLOURS, Colours, Curves, Figure, INK, Map, Series, Style, means, states};
+use super::{caption, look, nameless, no_contact};
+use crate::figure::{Axis, COLOURS, Curves, Figure, INK, Map, Series, Style, means, states};
 
 /// Rows of a picture over time, and most columns.
 const ROWS: usize = 256;
@@ -105,7 +105,7 @@ fn axis(reader: &Reader, kind: FieldKind) -> Axis {
                 .any(|(key, value)| key.starts_with("hardness") && !value.is_null());
             Axis::states("", if is_capped { &names } else { &names[..2] })
         }
-        kind => Axis::linear(title(kind), kind.units()),
+        kind => Axis::linear(look(kind).0, kind.units()),
     }
 }
 
@@ -138,19 +138,12 @@ pub(crate) fn over_time(reader: &Reader, kind: FieldKind) -> Result<Option<Map>,
         held = Some((index, values));
     }
     let size = [reader.header().grid.size()[0], last - first];
-    let map = match kind {
-        FieldKind::Contact => {
+    let map = match look(kind) {
+        (_, None) => {
             let names = CONTACT_STATES.map(|(name, colour)| (name.to_owned(), colour)).to_vec();
             Map::states("", names, picture.view(), size)
         }
-        kind => {
-            let colours = match kind {
-                FieldKind::Pressure => Colours::Pressure,
-                FieldKind::Gap => Colours::Gap,
-                _ => Colours::Sequential,
-            };
-            Map::new("", [title(kind), kind.units()], colours, picture.view(), size)
-        }
+        (label, Some(colours)) => Map::new("", [label, kind.units()], colours, picture.view(), size),
     };
     Ok(Some(map.over_time(first)))
 }
@@ -166,15 +159,5 @@ fn one(reader: &Reader, kind: FieldKind, at: At) -> Result<Array2<f64>, StoreErr
         FieldKind::Contact => Ok(reader.contact_states(at)?.mapv(f64::from)),
         FieldKind::Gap => super::fields::gap(reader, at),
         kind => reader.field(kind, at),
-    }
-}
-
-fn title(kind: FieldKind) -> &'static str {
-    match kind {
-        FieldKind::Pressure => "pressure",
-        FieldKind::Gap => "gap",
-        FieldKind::Displacement => "displacement",
-        FieldKind::Flattening => "permanent flattening",
-        FieldKind::Contact => "contact",
     }
 }

@@ -17,6 +17,8 @@ mod fields;
 mod friction;
 mod leak;
 pub(crate) mod line;
+pub(crate) mod panels;
+mod plot;
 mod profile;
 mod rows;
 mod stress;
@@ -27,15 +29,17 @@ use asperity::Boundary;
 use asperity::material::{Creep, CreepTerm};
 use asperity_io::choice;
 use asperity_io::readable::{coordinate, quantity};
-use asperity_io::store::{At, FieldKind, Reader, StoreError};
+use asperity_io::store::{At, Reader, StoreError};
 use asperity_io::stress::StressError;
 use serde_json::Value;
 
 pub(crate) use common::Common;
 pub use common::common_limits;
-pub(crate) use evolution::{last_cycle, quantity_panels};
+pub(crate) use evolution::last_cycle;
 pub(crate) use friction::persson;
 pub(crate) use leak::last_map as last_leak_map;
+pub use plot::Plot;
+pub(crate) use plot::look;
 pub(crate) use rows::Rows;
 pub use rows::is_logarithmic;
 pub use stress::stress_figure;
@@ -44,43 +48,6 @@ pub use temperature::temperatures;
 pub use together::together;
 
 use crate::figure::{Colours, Curves, Figure, FigureError, Palette, Panel, Scale, Series, Values};
-
-/// A figure of a result.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Plot {
-    /// Contact area, approach, load and pressures over time.
-    Evolution,
-    /// Load over approach.
-    LoadDisplacement,
-    /// Map of the pressure at an instant; of a line contact a curve, and a picture over x and time. So are the other maps.
-    Pressure,
-    /// Map of the gap at an instant.
-    Gap,
-    /// Map of the displacement at an instant.
-    Displacement,
-    /// Map of the contact area at an instant.
-    Contact,
-    /// Map of the permanent flattening at an instant.
-    Flattening,
-    /// Map of the undeformed gap.
-    InitialGap,
-    /// Pressure and gap along a line at an instant.
-    Profile,
-    /// Distribution of the pressure and of the gap at an instant.
-    Histogram,
-    /// Sizes of the contact spots at an instant.
-    Spots,
-    /// Iterations, convolutions, residual and certificate of each step.
-    Work,
-    /// The quantities that were asked for, over time.
-    Quantities,
-    /// Sections of the stress below the surface, a map of it, and its profile over depth, at an instant.
-    Stress,
-    /// Leak rate and gaps over time, and the flow at an instant.
-    Leak,
-    /// Friction of a contact in motion, over the velocity of steady states or over time.
-    Friction,
-}
 
 /// What a figure shows of a result.
 #[derive(Clone, Debug, PartialEq)]
@@ -197,87 +164,6 @@ pub enum PlotError {
     },
 }
 
-impl Plot {
-    /// Every plot.
-    pub const ALL: [Plot; 16] = [
-        Plot::Evolution,
-        Plot::LoadDisplacement,
-        Plot::Pressure,
-        Plot::Gap,
-        Plot::Displacement,
-        Plot::Contact,
-        Plot::Flattening,
-        Plot::InitialGap,
-        Plot::Profile,
-        Plot::Histogram,
-        Plot::Spots,
-        Plot::Work,
-        Plot::Quantities,
-        Plot::Stress,
-        Plot::Leak,
-        Plot::Friction,
-    ];
-
-    /// Its name on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            Plot::Evolution => "evolution",
-            Plot::LoadDisplacement => "load-displacement",
-            Plot::Pressure => "pressure",
-            Plot::Gap => "gap",
-            Plot::Displacement => "displacement",
-            Plot::Contact => "contact",
-            Plot::Flattening => "flattening",
-            Plot::InitialGap => "initial-gap",
-            Plot::Profile => "profile",
-            Plot::Histogram => "histogram",
-            Plot::Spots => "spots",
-            Plot::Work => "work",
-            Plot::Quantities => "quantities",
-            Plot::Stress => "stress",
-            Plot::Leak => "leak",
-            Plot::Friction => "friction",
-        }
-    }
-
-    /// The SI unit of the values whose colours it shows; `None` where it has no such map.
-    pub fn unit(self) -> Option<&'static str> {
-        match self {
-            Plot::Pressure | Plot::Stress => Some("Pa"),
-            Plot::Gap | Plot::Displacement | Plot::Flattening | Plot::InitialGap => Some("m"),
-            _ => None,
-        }
-    }
-
-    /// Whether it shows an instant.
-    pub fn is_of_an_instant(self) -> bool {
-        !matches!(
-            self,
-            Plot::Evolution
-                | Plot::LoadDisplacement
-                | Plot::Work
-                | Plot::Quantities
-                | Plot::Friction
-                | Plot::InitialGap
-        )
-    }
-
-    /// Whether it shows the rows over time.
-    pub fn is_over_time(self) -> bool {
-        !self.is_of_an_instant() && self != Plot::InitialGap || self == Plot::Leak
-    }
-
-    /// Whether it shows numbers over the rows that are zero where nothing touches.
-    fn is_of_the_load(self) -> bool {
-        matches!(self, Plot::Evolution | Plot::LoadDisplacement | Plot::Quantities | Plot::Friction)
-    }
-
-    /// The plot of that name.
-    pub fn from_name(name: &str) -> Option<Plot> {
-        Plot::ALL.into_iter().find(|plot| plot.name() == name)
-    }
-}
-
 /// The figure of a result.
 ///
 /// # Errors
@@ -325,24 +211,7 @@ fn panels(reader: &Reader, plot: Plot, options: &Options) -> Result<Figure, Plot
             _ => {}
         }
     }
-    let mut figure = match plot {
-        Plot::Evolution => evolution::evolution(reader, options)?,
-        Plot::LoadDisplacement => evolution::load_displacement(reader, options)?,
-        Plot::Work => evolution::work(reader, options)?,
-        Plot::Quantities => evolution::quantities(reader, options)?,
-        Plot::Leak => leak::over_time(reader, options)?,
-        Plot::Friction => friction::friction(reader, options)?,
-        Plot::Flattening => fields::map(reader, FieldKind::Flattening, options.at)?,
-        Plot::Pressure => fields::map(reader, FieldKind::Pressure, options.at)?,
-        Plot::Gap => fields::map(reader, FieldKind::Gap, options.at)?,
-        Plot::Displacement => fields::map(reader, FieldKind::Displacement, options.at)?,
-        Plot::Contact => fields::contact(reader, options.at)?,
-        Plot::InitialGap => fields::initial_gap(reader)?,
-        Plot::Profile => profile::profile(reader, options)?,
-        Plot::Histogram => distribution::histogram(reader, options.at)?,
-        Plot::Spots => distribution::spots(reader, options.at)?,
-        Plot::Stress => stress::stress(reader, options.at)?,
-    };
+    let mut figure = plot.draw(reader, options)?;
     if plot.is_of_the_load() && nothing_touches(reader, options)? {
         figure.caption += match options.window {
             [None, None] => " Nothing touches at any time.",

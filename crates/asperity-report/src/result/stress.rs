@@ -5,7 +5,7 @@ use asperity_io::store::{At, FieldKind, Reader};
 use asperity_io::stress::{Below, Instant, Section, StressError, StressPlan, below_at, section};
 use ndarray::{Array2, s};
 
-use super::{PlotError, caption, moment};
+use super::{Options, PlotError, caption, moment};
 use crate::figure::{Axis, Colours, Curves, Figure, Map, Series, Style, Values};
 
 /// A section is this many times as wide as deep, unless the domain ends before.
@@ -13,11 +13,11 @@ const WIDE: f64 = 3.0;
 
 /// The stress at a stored instant: what the result holds, or the largest values of its first body. In place of a last instant
 /// without contact stands the last one with contact, and the caption says so.
-pub(super) fn stress(reader: &Reader, at: At) -> Result<Figure, PlotError> {
+pub(super) fn stress(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
     let plan = StressPlan::for_result(reader)?;
     let stored = Below::of(reader)?;
-    let last = reader.index(at)?;
-    let index = match at {
+    let last = reader.index(options.at)?;
+    let index = match options.at {
         At::Last => last_with_contact(reader)?.ok_or_else(|| StressError::NoContact {
             path: reader.path().to_owned(),
             when: "any stored time".to_owned(),

@@ -2,7 +2,7 @@
 
 use asperity_sweep::simd::F64x8;
 
-use asperity_sweep::Cells;
+use asperity_sweep::{Cells, Fields};
 
 /// Cut-off H of the pressure \[Pa\].
 ///
@@ -72,6 +72,14 @@ impl Cells for Hardness<'_> {
                 (Hardness::Cells(first), Hardness::Cells(second))
             }
         }
+    }
+}
+
+impl Fields for Hardness<'_> {
+    type Cell = f64;
+    #[inline(always)]
+    fn at(&self, cell: usize) -> f64 {
+        Hardness::at(self, cell)
     }
 }
 

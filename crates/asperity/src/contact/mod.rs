@@ -11,7 +11,6 @@ mod bounds;
 mod certificate;
 mod coarse;
 mod direction;
-mod gauss_seidel;
 mod polonsky_keer;
 mod problem;
 mod projected_cg;
@@ -25,7 +24,6 @@ mod sweeps;
 mod workspace;
 
 pub use bounds::Hardness;
-pub use gauss_seidel::gauss_seidel;
 pub use polonsky_keer::PolonskyKeer;
 pub(crate) use problem::SAME_LOAD;
 pub use problem::{Prescribed, Problem};
@@ -35,7 +33,7 @@ pub use workspace::ProjectedCg;
 
 use std::sync::atomic::AtomicBool;
 
-use crate::error::{Error, NotConverged, Result};
+use crate::error::{Error, NotConverged, Result, require};
 use crate::grid::{Boundary, Grid};
 use crate::operator::Operator;
 use asperity_sweep::sum;
@@ -76,13 +74,9 @@ impl SolverOptions {
     /// # Errors
     /// [`Error::Invalid`] where the tolerance is not in \[1e-14, 0.1\] or no iteration is allowed.
     pub fn validate(&self) -> Result<()> {
-        if !(self.tolerance >= 1e-14 && self.tolerance <= 0.1) {
-            return Err(Error::invalid("solver tolerance", self.tolerance, "between 1e-14 and 0.1"));
-        }
-        if self.max_iterations == 0 {
-            return Err(Error::invalid("largest number of iterations", 0, "at least 1"));
-        }
-        Ok(())
+        let within = (1e-14..=0.1).contains(&self.tolerance);
+        require(within, "solver tolerance", self.tolerance, "between 1e-14 and 0.1")?;
+        require(self.max_iterations > 0, "largest number of iterations", 0, "at least 1")
     }
 }
 
@@ -99,6 +93,25 @@ pub struct Outcome {
     pub certificate: f64,
     /// Every touching cell is at the hardness: the approach is only bounded from below.
     pub saturated: bool,
+}
+
+impl Outcome {
+    /// That of a further solve of the same row: its work adds up.
+    pub(crate) fn then(self, next: Outcome) -> Outcome {
+        Outcome {
+            iterations: self.iterations + next.iterations,
+            convolutions: self.convolutions + next.convolutions,
+            ..next
+        }
+    }
+}
+
+impl NotConverged {
+    /// How good the state is where the solve stopped.
+    pub(crate) fn outcome(&self) -> Outcome {
+        let NotConverged { iterations, residual, certificate, .. } = *self;
+        Outcome { iterations, residual, certificate, ..Outcome::default() }
+    }
 }
 
 /// A contact solver with its own working memory. What one solve finds does not depend on the solves before it.

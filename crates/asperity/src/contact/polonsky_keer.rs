@@ -15,13 +15,11 @@ use gradient::Progress;
 use super::bounds::clip;
 use super::residual::ResidualReport;
 use super::start::{make_feasible, set_sum};
-use super::{
-    ContactState, Hardness, Outcome, Prescribed, Problem, SolverOptions, interrupted, not_converged,
-};
+use super::{ContactState, Outcome, Prescribed, Problem, SolverOptions, interrupted, not_converged};
 use crate::error::{Error, Result};
 use crate::grid::Grid;
 use crate::operator::Operator;
-use asperity_sweep::{strands, sweep};
+use asperity_sweep::{each, each_with_sums, sums};
 
 /// The method's working memory: 24 bytes per cell and a set of cells.
 pub struct PolonskyKeer {
@@ -131,91 +129,55 @@ impl PolonskyKeer {
     /// r on D = {0 < p < H}, 0 elsewhere; returns G = <r, r>.
     fn residual_on_free(&mut self, problem: &Problem, state: &ContactState) -> f64 {
         let (c, w) = (problem.compliance, state.approach);
-        sweep(
-            (
-                &mut self.residual[..],
-                &state.pressure[..],
-                &state.unit_displacement[..],
-                problem.gap,
-                problem.hardness,
-            ),
-            &|(r, p, u, h, hardness): (&mut [f64], &[f64], &[f64], &[f64], Hardness)| {
-                strands(r.len(), |i| {
-                    r[i] = if is_free(p[i], hardness.at(i)) { c * u[i] + h[i] - w } else { 0.0 };
-                    [r[i] * r[i]]
-                })
-            },
-        )[0]
+        let fields = (&state.pressure[..], &state.unit_displacement[..], problem.gap, problem.hardness);
+        let [product] = each_with_sums(&mut self.residual, fields, |r, (p, u, h, hardness)| {
+            *r = if is_free(p, hardness) { c * u + h - w } else { 0.0 };
+            [*r * *r]
+        });
+        product
     }
 
     /// d <- r + beta d on D; under load control with its mean over D removed.
     fn update_direction(&mut self, problem: &Problem, state: &ContactState, beta: f64) {
         let hardness = problem.hardness;
-        let [sum, cells] = sweep(
-            (&mut self.direction[..], &self.residual[..], &state.pressure[..], hardness),
-            &|(d, r, p, hardness): (&mut [f64], &[f64], &[f64], Hardness)| {
-                strands(d.len(), |i| {
-                    let free = is_free(p[i], hardness.at(i));
-                    d[i] = if free { r[i] + beta * d[i] } else { 0.0 };
-                    [d[i], f64::from(u8::from(free))]
-                })
-            },
-        );
+        let fields = (&self.residual[..], &state.pressure[..], hardness);
+        let [sum, cells] = each_with_sums(&mut self.direction, fields, |d, (r, p, hardness)| {
+            let free = is_free(p, hardness);
+            *d = if free { r + beta * *d } else { 0.0 };
+            [*d, f64::from(u8::from(free))]
+        });
         if cells > 0.0 && matches!(problem.prescribed, Prescribed::Load(_)) {
             let mean = sum / cells;
-            sweep((&mut self.direction[..], &state.pressure[..], hardness), &|(d, p, hardness): (
-                &mut [f64],
-                &[f64],
-                Hardness,
-            )| {
-                for i in 0..d.len() {
-                    d[i] -= if is_free(p[i], hardness.at(i)) { mean } else { 0.0 };
-                }
+            each(&mut self.direction, (&state.pressure[..], hardness), |d, (p, hardness)| {
+                *d -= if is_free(p, hardness) { mean } else { 0.0 };
             });
         }
     }
 
     /// <r, d> and <d, K d>.
     fn products(&self) -> [f64; 2] {
-        sweep((&self.residual[..], &self.direction[..], &self.image[..]), &|(r, d, k): (
-            &[f64],
-            &[f64],
-            &[f64],
-        )| {
-            strands(r.len(), |i| [r[i] * d[i], d[i] * k[i]])
-        })
+        sums((&self.residual[..], &self.direction[..], &self.image[..]), |(r, d, k)| [r * d, d * k])
     }
 
     /// p <- clip(p - a d); cells that must leave their bound move by -`release` r. True where the set changed.
     fn step(&self, problem: &Problem, state: &mut ContactState, length: f64, release: f64) -> bool {
         let (c, w) = (problem.compliance, state.approach);
-        let [changes] = sweep(
-            (
-                &mut state.pressure[..],
-                &self.direction[..],
-                &state.unit_displacement[..],
-                problem.gap,
-                problem.hardness,
-            ),
-            &|(p, d, u, h, hardness): (&mut [f64], &[f64], &[f64], &[f64], Hardness)| {
-                strands(p.len(), |i| {
-                    let hardness = hardness.at(i);
-                    let r = c * u[i] + h[i] - w;
-                    let released = is_released(p[i], r, hardness);
-                    let new = p[i] - length * d[i] - if released { release * r } else { 0.0 };
-                    let clipped = clip(new, hardness);
-                    p[i] = if h[i] < f64::INFINITY { clipped } else { 0.0 };
-                    [f64::from(u8::from(released || clipped != new))]
-                })
-            },
-        );
+        let fields = (&self.direction[..], &state.unit_displacement[..], problem.gap, problem.hardness);
+        let [changes] = each_with_sums(&mut state.pressure, fields, |p, (d, u, h, hardness)| {
+            let r = c * u + h - w;
+            let released = is_released(*p, r, hardness);
+            let new = *p - length * d - if released { release * r } else { 0.0 };
+            let clipped = clip(new, hardness);
+            *p = if h < f64::INFINITY { clipped } else { 0.0 };
+            [f64::from(u8::from(released || clipped != new))]
+        });
         changes > 0.0
     }
 }
 
 /// u <- u + t k
 fn add(u: &mut [f64], t: f64, k: &[f64]) {
-    sweep((u, k), &|(u, k): (&mut [f64], &[f64])| u.iter_mut().zip(k).for_each(|(u, k)| *u += t * k));
+    each(u, k, |u, k| *u += t * k);
 }
 
 /// True in D.

@@ -2,9 +2,9 @@
 
 use super::sweeps::feasible::{LargestGap, Limits};
 use super::{ContactState, Hardness, Outcome};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 use crate::operator::Operator;
-use asperity_sweep::{Min, run, sum, sweep};
+use asperity_sweep::{Min, each, run, sum};
 
 /// One elastic contact of unit operator K.
 #[derive(Clone, Copy, Debug)]
@@ -82,9 +82,8 @@ impl Problem<'_> {
         operator: &mut dyn Operator,
         state: &mut ContactState,
     ) -> Result<Option<Outcome>> {
-        if !(load >= 0.0 && load.is_finite()) {
-            return Err(Error::invalid("load", format!("{load} N"), "finite and not negative"));
-        }
+        let sound = load >= 0.0 && load.is_finite();
+        require(sound, "load", format!("{load} N"), "finite and not negative")?;
         if load == 0.0 {
             state.lift_off(extent.first_touch);
             return Ok(Some(Outcome::default()));
@@ -96,12 +95,9 @@ impl Problem<'_> {
         if load < max * (1.0 - SAME_LOAD) {
             return Ok(None);
         }
-        let bound = |(p, gap, hardness): (&mut [f64], &[f64], Hardness)| {
-            p.iter_mut().zip(gap).enumerate().for_each(|(n, (p, h))| {
-                *p = if *h < f64::INFINITY { hardness.at(n) } else { 0.0 };
-            });
-        };
-        sweep((&mut state.pressure[..], self.gap, self.hardness), &bound);
+        each(&mut state.pressure, (self.gap, self.hardness), |p, (h, hardness)| {
+            *p = if h < f64::INFINITY { hardness } else { 0.0 };
+        });
         operator.apply_into(&state.pressure, &mut state.unit_displacement);
         state.rounding = 1.0;
         let (u, gap, compliance) = (&state.unit_displacement[..], self.gap, self.compliance);
@@ -116,9 +112,7 @@ impl Problem<'_> {
         operator: &mut dyn Operator,
         state: &mut ContactState,
     ) -> Result<Option<Outcome>> {
-        if !approach.is_finite() {
-            return Err(Error::invalid("approach", format!("{approach} m"), "finite"));
-        }
+        require(approach.is_finite(), "approach", format!("{approach} m"), "finite")?;
         if approach <= extent.first_touch {
             state.lift_off(approach);
             return Ok(Some(Outcome::default()));

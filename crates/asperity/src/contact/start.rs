@@ -3,10 +3,10 @@
 use super::projection::Trial;
 use super::search::Search;
 use super::sweeps::feasible::{BelowAndCapped, Clip, Scale, ShiftAll};
-use super::{ContactState, Hardness, Problem, ProjectedCg, bounds};
+use super::{ContactState, Hardness, Problem, ProjectedCg};
 use crate::error::{Error, Result};
 use crate::operator::Operator;
-use asperity_sweep::{Set, SetMut, run, sweep};
+use asperity_sweep::{Set, SetMut, each, run};
 
 /// What is known of the state that a solve starts from.
 #[derive(Clone, Copy, Debug)]
@@ -73,12 +73,9 @@ pub(super) fn make_feasible(
     };
     if sum <= 0.0 {
         let uniform = target / cells;
-        let fill = |(p, set, hardness): (&mut [f64], Set, Hardness)| {
-            p.iter_mut().enumerate().for_each(|(n, p)| {
-                *p = bounds::clip(uniform * f64::from(set.0[n / 8] >> (n % 8) & 1), hardness.at(n));
-            });
-        };
-        sweep((&mut state.pressure[..], Set(touchable), hardness), &fill);
+        each(&mut state.pressure, (Set(touchable), hardness), |p, (on, hardness)| {
+            *p = if on { uniform.min(hardness) } else { 0.0 };
+        });
         // Soft cells of a mixed surface carry less.
         if matches!(hardness, Hardness::Uniform(_)) {
             return Ok(());

@@ -123,7 +123,7 @@ impl Drive for March {
 
     fn last(&self) -> Option<Step<'_>> {
         let (index, instant, time_error) = self.row?;
-        let of_stepper = self.stepper.state();
+        let of_stepper = self.stepper.row();
         Some(Step {
             index,
             coordinate: Coordinate::Time(instant.time),
@@ -188,7 +188,7 @@ impl Drive for March {
             compliance: 0.0,
             recalled: Recalled::Field(&between.displacement),
             processes: &[],
-            ..self.stepper.state()
+            ..self.stepper.row()
         })
     }
 }

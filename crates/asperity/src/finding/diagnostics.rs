@@ -14,9 +14,10 @@ use super::{
 };
 use crate::grid::{Boundary, Grid};
 use crate::load::Control;
-use crate::march::{Row, Simulation, Step};
 use crate::material::Body;
+use crate::simulation::Simulation;
 use crate::sliding::Streaming;
+use crate::step::{Row, Step};
 use crate::surface::{Part, Shape};
 
 /// What is known of a simulation besides its numbers.

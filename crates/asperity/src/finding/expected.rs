@@ -19,7 +19,7 @@ use super::{Finding, contact, domain, strain, surface};
 use crate::contact::Prescribed;
 use crate::grid::{Boundary, Grid};
 use crate::load::{Control, Course, Event, Stage};
-use crate::march::Simulation;
+use crate::simulation::Simulation;
 use crate::surface::{Part, Punch, Shape};
 
 /// The domain of a contact should be so many times as wide as its radius.

@@ -2,7 +2,7 @@
 
 use super::words::{digits, si};
 use super::{BEYOND_MATERIAL_DATA, Finding, MATERIAL_MISFIT, POINTS_LEFT_OUT, UNLIKELY_UNIT};
-use crate::march::Simulation;
+use crate::simulation::Simulation;
 
 /// Moduli of solids: from the softest gels to beyond diamond \[Pa\].
 const MODULI: [f64; 2] = [150.0, 3e12];

@@ -15,9 +15,10 @@ use super::words::{digits, rows, si};
 use super::{Finding, LARGE_STRAIN, UNLIKELY_UNIT};
 use crate::kernel::Kernel;
 use crate::layer::NonseparableLayers;
-use crate::march::{Row, Simulation};
 use crate::material::{Creep, ReducedTime};
+use crate::simulation::Simulation;
 use crate::sliding::Streaming;
+use crate::step::Row;
 
 /// Contact radius over radius.
 const WIDEST: f64 = 0.3;

@@ -4,11 +4,12 @@ use crate::drive::Drive;
 use ndarray::Array2;
 
 use super::*;
+use crate::drive::March;
 use crate::grid::{Boundary, Grid};
 use crate::load::{Control, History, Loading};
-use crate::march::{March, Simulation};
 use crate::material::{Body, Creep, CreepTerm, Lateral, Material, Modulus};
 use crate::quantities::{Quantities, Quantity};
+use crate::simulation::Simulation;
 use crate::surface::statistics::SelfAffineFit;
 use crate::surface::{Part, Roughness, SelfAffine, Shape, Surface, undeformed_gap};
 use crate::time::TimeGrid;

@@ -10,7 +10,7 @@
 use super::words::{digits, rows, si};
 use super::{ALIASED_HISTORY, Finding, STEPS_TOO_LONG};
 use crate::load::{Control, Course, History, Stage};
-use crate::march::Simulation;
+use crate::simulation::Simulation;
 use crate::time::{Instant, Plan};
 
 /// Steps to a period.

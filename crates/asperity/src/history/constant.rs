@@ -17,7 +17,7 @@ use crate::contact::ContactState;
 use crate::error::Result;
 use crate::simulation::Simulation;
 use crate::step::{Interval, Loader, Saver};
-use asperity_sweep::{strands, sweep, zeros};
+use asperity_sweep::{dot, zeros};
 
 pub(super) struct ConstantPressure {
     clocks: Clocks,
@@ -136,8 +136,7 @@ impl History for ConstantPressure {
     fn exchange(&mut self, ends: &Ends<'_>) -> Option<Exchange> {
         let (springs, stored) = self.springs.as_mut()?;
         let (p, unit) = (&ends.now.pressure[..], &ends.now.unit_displacement[..]);
-        let whole =
-            sweep((p, unit), &|(p, unit): (&[f64], &[f64])| strands(p.len(), |k| [p[k] * unit[k]]))[0];
+        let whole = dot(p, unit);
         let with_strains = self.strains.products(&self.unit, p);
         let (mut now, mut heat) = (self.instantaneous * whole, 0.0);
         for (n, element) in self.elements.iter().enumerate() {
@@ -160,33 +159,23 @@ impl History for ConstantPressure {
     }
 
     fn save<'a>(&'a self, to: &mut Saver<'a>) {
-        to.number("under_way", f64::from(u8::from(self.under_way)));
-        to.numbers("updates", self.updates.iter().flat_map(|update| [update.keep, update.new]).collect());
+        to.value("under_way", &self.under_way);
+        to.value("updates", &self.updates);
         if let Some((springs, stored)) = &self.springs {
-            to.numbers("springs", springs.clone());
-            to.number("stored", *stored);
+            to.value("springs", springs);
+            to.value("stored", stored);
         }
-        for (k, strains) in self.strains.save().into_iter().enumerate() {
-            to.owned_field(&format!("strain_{k}"), strains);
-        }
+        self.strains.save(to, "strain");
     }
 
     fn load(&mut self, from: &mut Loader<'_>) -> Result<()> {
-        self.under_way = from.number("under_way")? == 1.0;
-        let mut numbers = vec![0.0; 2 * self.updates.len()];
-        from.numbers_into("updates", &mut numbers)?;
-        for ((update, kept), n) in self.updates.iter_mut().zip(&mut self.kept).zip(numbers.chunks(2)) {
-            *update = Update { keep: n[0], old: 0.0, new: n[1] };
-            *kept = n[0];
-        }
+        from.values_into("under_way", &mut [&mut self.under_way])?;
+        from.values_into("updates", &mut [&mut self.updates])?;
+        self.kept.iter_mut().zip(&self.updates).for_each(|(kept, update)| *kept = update.keep);
         if let Some((springs, stored)) = &mut self.springs {
-            from.numbers_into("springs", springs)?;
-            *stored = from.number("stored")?;
+            from.values_into("springs", &mut [springs])?;
+            from.values_into("stored", &mut [stored])?;
         }
-        let strains = (0..self.elements.len()).map(|k| from.field(&format!("strain_{k}")));
-        match self.strains.load(&strains.collect::<Result<Vec<_>>>()?) {
-            true => Ok(()),
-            false => Err(from.foreign("strains of another material")),
-        }
+        self.strains.load(from, "strain")
     }
 }

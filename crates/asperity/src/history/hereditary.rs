@@ -9,7 +9,7 @@ use crate::contact::ContactState;
 use crate::error::Result;
 use crate::material::{Creep, ThermalCreep};
 use crate::step::{Interval, Loader, Saver};
-use asperity_sweep::sweep;
+use asperity_sweep::each;
 
 pub(super) struct HereditarySum {
     creep: Creep,
@@ -67,9 +67,7 @@ impl HereditarySum {
             let next = self.starts.get(k + 1).unwrap_or(open);
             let weight = self.compliance(&self.starts[k], end) - self.compliance(next, end);
             if weight != 0.0 {
-                sweep((&mut *gap, &past[..]), &|(gap, past): (&mut [f64], &[f64])| {
-                    gap.iter_mut().zip(past).for_each(|(g, u)| *g += weight * u);
-                });
+                each(gap, &past[..], |g, u| *g += weight * u);
             }
         }
     }
@@ -103,7 +101,7 @@ impl History for HereditarySum {
 
     fn save<'a>(&'a self, to: &mut Saver<'a>) {
         let moments = self.starts.iter().chain(self.open.iter().flatten());
-        to.numbers("moments", moments.map(|moment| moment.time).collect());
+        to.value("moments", &moments.map(|moment| moment.time).collect::<Vec<f64>>());
         for (k, past) in self.past.iter().enumerate() {
             to.field(&format!("past_{k}"), past);
         }

@@ -10,7 +10,7 @@
 //! contacts percolate until about 42 % of them are in contact, and on either side of this the estimate says little.
 
 use super::opening::Opening;
-use asperity_sweep::{strands, sweep};
+use asperity_sweep::sums;
 
 /// T \[m^3\] of the effective medium.
 pub fn effective_medium(opening: &Opening) -> f64 {
@@ -22,12 +22,7 @@ pub fn effective_medium(opening: &Opening) -> f64 {
     }
     // Sum and its derivative over ln T.
     let at = |t: f64| {
-        let [sum, slope] = sweep(&open[..], &|open: &[f64]| {
-            strands(open.len(), |i| {
-                let s = open[i];
-                [(s - t) / (s + t), -2.0 * s * t / ((s + t) * (s + t))]
-            })
-        });
+        let [sum, slope] = sums(&open[..], |s| [(s - t) / (s + t), -2.0 * s * t / ((s + t) * (s + t))]);
         (sum - closed, slope)
     };
     let (mut low, mut high) =

@@ -7,7 +7,8 @@
 
 use super::cholesky::Cholesky;
 use super::network::Network;
-use super::solve::{add, dot};
+use super::solve::add;
+use asperity_sweep::dot;
 
 /// Cells that are factorised: 150 MB. Few in tests, so that they have several levels.
 const FACTORISED: usize = if cfg!(test) { 1 << 7 } else { 1 << 18 };

@@ -9,7 +9,7 @@ use super::cholesky::{Cholesky, factor_bytes};
 use super::multigrid::Multigrid;
 use super::network::Network;
 use crate::error::{Error, NotConverged, Result};
-use asperity_sweep::{strands, sweep};
+use asperity_sweep::{dot, each};
 
 /// How flows are solved.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,13 +61,9 @@ impl Inverse {
     }
 }
 
-pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    sweep((a, b), &|(a, b): (&[f64], &[f64])| strands(a.len(), |i| [a[i] * b[i]]))[0]
-}
-
 /// x += s y.
 pub(super) fn add(x: &mut [f64], s: f64, y: &[f64]) {
-    sweep((x, y), &|(x, y): (&mut [f64], &[f64])| x.iter_mut().zip(y).for_each(|(x, y)| *x += s * y));
+    each(x, y, |x, y| *x += s * y);
 }
 
 /// Solves A x = b from the x given. `power` is what the flow of an x dissipates, in any unit. Returns it, and the iterations.
@@ -93,9 +89,7 @@ pub(super) fn solve(
         let new = dot(&r, &z);
         let beta = if rho > 0.0 { (new - dot(&old, &z)) / rho } else { 0.0 };
         let beta = if beta.is_finite() { beta.max(0.0) } else { 0.0 };
-        sweep((&mut p[..], &z[..]), &|(p, z): (&mut [f64], &[f64])| {
-            p.iter_mut().zip(z).for_each(|(p, z)| *p = z + beta * *p);
-        });
+        each(&mut p, &z[..], |p, z| *p = z + beta * *p);
         network.apply(&p, &mut q);
         let curvature = dot(&p, &q);
         if !(new > 0.0 && curvature > 0.0) {

@@ -23,11 +23,11 @@ pub enum TimeGrid {
     },
     /// The instants themselves, increasing.
     List(Vec<f64>),
-    /// Steps as long as their local error allows (see [`crate::march`]), to `end`.
+    /// Steps as long as their local error allows (see docs/theory.md, section 5), to `end`.
     Adaptive {
         /// Last instant \[s\].
         end: f64,
-        /// Largest error of the stress, relative (see [`crate::march::Row::time_error`]).
+        /// Largest error of the stress, relative (see [`crate::step::Row::time_error`]).
         tolerance: f64,
         /// The first step after t = 0 and after each break or jump is no longer \[s\]; it is shorter where the material or the
         /// course ask for it.

@@ -1,80 +1,15 @@
-//! The free domain: no pressure outside, by influence coefficients and zero-padded convolution (DC-FFT: Liu, Wang & Liu, Wear
-//! 243, 2000).
-
-use std::sync::Arc;
+//! The free domain, u(i, j) = sum K(i - i', j - j') p(i', j') with no pressure outside: by influence coefficients and zero-padded
+//! convolution (DC-FFT: Liu, Wang & Liu, Wear 243, 2000).
 
 use ndarray::{Array1, Array2};
 
-use super::backend::{Backend, ConvolutionPlan};
-use super::{ApproximateInverse, Operator, default_backend, mean};
-use crate::convolution::{Convolution, even_spectrum};
+use crate::convolution::Convolution;
 use crate::error::{Error, Result};
-use crate::grid::{Boundary, Grid};
+use crate::grid::Grid;
 use crate::kernel::{HalfSpace, Kernel, strip};
 
-/// u(i, j) = sum K(i - i', j - j') p(i', j'), with no pressure outside the domain.
-pub struct Free {
-    grid: Grid,
-    backend: Arc<dyn Backend>,
-    kernel: Arc<dyn Kernel>,
-    convolution: Box<dyn ConvolutionPlan>,
-    self_influence: f64,
-}
-
-impl Free {
-    /// Plans the operator; the influence coefficients are computed here.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] where the kernel cannot be computed on the grid, or is not positive definite there.
-    pub fn new(backend: Arc<dyn Backend>, grid: Grid, kernel: Arc<dyn Kernel>) -> Result<Self> {
-        let influence = influence(&grid, &*kernel)?;
-        let spectrum = even_spectrum(&influence, padded(&grid));
-        Ok(Free::planned(backend, grid, kernel, influence[(0, 0)], &spectrum))
-    }
-
-    pub(super) fn eigenvalues(grid: &Grid, kernel: &dyn Kernel) -> Result<Array2<f64>> {
-        Ok(even_spectrum(&influence(grid, kernel)?, padded(grid)))
-    }
-
-    pub(super) fn of_eigenvalues(
-        backend: Arc<dyn Backend>,
-        grid: Grid,
-        kernel: Arc<dyn Kernel>,
-        eigenvalues: &Array2<f64>,
-    ) -> Self {
-        Free::planned(backend, grid, kernel, mean(padded(&grid), eigenvalues.view()), eigenvalues)
-    }
-
-    /// The operator of the elastic half-space.
-    pub fn half_space(backend: Arc<dyn Backend>, grid: Grid) -> Self {
-        let influence = match grid.is_line() {
-            true => of_strips(strip(grid.spacing()[0], computed(&grid)[0]), padded(&grid)[1]),
-            false => HalfSpace.coefficients(grid.spacing(), computed(&grid)),
-        };
-        let spectrum = even_spectrum(&influence, padded(&grid));
-        debug_assert!(spectrum.iter().all(|s| *s > 0.0), "the kernel is positive definite");
-        Free::planned(backend, grid, Arc::new(HalfSpace), influence[(0, 0)], &spectrum)
-    }
-
-    fn planned(
-        backend: Arc<dyn Backend>,
-        grid: Grid,
-        kernel: Arc<dyn Kernel>,
-        self_influence: f64,
-        spectrum: &Array2<f64>,
-    ) -> Self {
-        let convolution = backend.plan(grid.cells(), padded(&grid), spectrum.view());
-        Free { grid, backend, kernel, convolution, self_influence }
-    }
-
-    /// Bytes that the operator takes on that grid.
-    pub(super) fn bytes(grid: &Grid) -> usize {
-        default_backend().bytes(grid.cells(), padded(grid))
-    }
-}
-
 /// The influence coefficients on the quadrant of the padded torus.
-fn influence(grid: &Grid, kernel: &dyn Kernel) -> Result<Array2<f64>> {
+pub(super) fn influence(grid: &Grid, kernel: &dyn Kernel) -> Result<Array2<f64>> {
     kernel.check(grid.longest_cell())?;
     let influence = match grid.is_line() {
         true => of_strips(kernel.strip(grid.spacing()[0], computed(grid)[0])?, padded(grid)[1]),
@@ -82,6 +17,14 @@ fn influence(grid: &Grid, kernel: &dyn Kernel) -> Result<Array2<f64>> {
     };
     plausible(&influence)?;
     Ok(influence)
+}
+
+/// The same of the elastic half-space.
+pub(super) fn influence_of_half_space(grid: &Grid) -> Array2<f64> {
+    match grid.is_line() {
+        true => of_strips(strip(grid.spacing()[0], computed(grid)[0]), padded(grid)[1]),
+        false => HalfSpace.coefficients(grid.spacing(), computed(grid)),
+    }
 }
 
 /// The coefficients of a line as those of a grid with one cell along y, on a torus that is so long along y.
@@ -120,39 +63,10 @@ pub(super) fn plausible(influence: &Array2<f64>) -> Result<()> {
     }
 }
 
-impl Operator for Free {
-    fn grid(&self) -> &Grid {
-        &self.grid
-    }
-
-    fn boundary(&self) -> Boundary {
-        Boundary::Free
-    }
-
-    fn apply_into(&mut self, p: &[f64], u: &mut [f64]) {
-        self.convolution.apply_into(p, u);
-    }
-
-    fn self_influence(&self) -> f64 {
-        self.self_influence
-    }
-
-    fn determines_mean(&self) -> bool {
-        true
-    }
-
-    fn approximate_inverse(&self) -> ApproximateInverse {
-        ApproximateInverse::new(self.backend.clone(), self.grid, Boundary::Free, self.kernel.clone())
-    }
-
-    fn on_grid(&self, grid: Grid) -> Option<Box<dyn Operator>> {
-        Some(Box::new(Free::new(self.backend.clone(), grid, self.kernel.clone()).ok()?))
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::convolution::even_spectrum;
 
     #[test]
     fn the_spectrum_is_positive_for_any_shape() {
@@ -164,14 +78,12 @@ mod tests {
             ([65, 129], [3.0, 2.0]),
         ] {
             let grid = Grid::new(cells, size).unwrap();
-            let spectrum =
-                even_spectrum(&HalfSpace.coefficients(grid.spacing(), computed(&grid)), padded(&grid));
+            let spectrum = even_spectrum(&influence_of_half_space(&grid), padded(&grid));
             assert!(spectrum.iter().all(|s| *s > 0.0), "{cells:?} {size:?}");
         }
         for cells in [2, 3, 17, 64, 1000] {
             let grid = Grid::line(cells, 1e-3).unwrap();
-            let strips = of_strips(strip(grid.spacing()[0], computed(&grid)[0]), padded(&grid)[1]);
-            let spectrum = even_spectrum(&strips, padded(&grid));
+            let spectrum = even_spectrum(&influence_of_half_space(&grid), padded(&grid));
             assert!(spectrum.iter().all(|s| *s > 0.0), "a line of {cells}");
         }
     }

@@ -6,25 +6,23 @@
 //! convolutions of an operator and of its approximate inverse are planned on one [`Backend`].
 
 mod backend;
+mod convolved;
 mod cpu;
-mod dense;
 mod free;
 mod inverse;
-mod periodic;
 pub(crate) mod wide;
 
 pub use backend::{Backend, ConvolutionPlan, InversePlan};
+pub(crate) use convolved::{Body, Convolved};
 pub use cpu::Cpu;
-pub use dense::Dense;
-pub use free::Free;
 pub use inverse::ApproximateInverse;
-pub use periodic::Periodic;
 
 use std::sync::Arc;
 
 use ndarray::parallel::prelude::*;
 use ndarray::{Array2, ArrayView1, ArrayView2};
 
+use crate::convolution::even_spectrum;
 use crate::error::Result;
 use crate::grid::{Boundary, Grid};
 use crate::kernel::{HalfSpace, Kernel};
@@ -91,17 +89,24 @@ pub fn plan_on(
     boundary: Boundary,
     kernel: Arc<dyn Kernel>,
 ) -> Result<Box<dyn Operator>> {
-    Ok(match boundary {
-        Boundary::Free => Box::new(Free::new(backend, grid, kernel)?),
-        Boundary::Periodic => Box::new(Periodic::new(backend, grid, kernel)),
-    })
+    let eigenvalues = match boundary {
+        Boundary::Free => {
+            return Ok(of_influence(backend, grid, kernel.clone(), &free::influence(&grid, &*kernel)?));
+        }
+        Boundary::Periodic => eigenvalues(&grid, boundary, &*kernel)?,
+    };
+    Ok(of_eigenvalues(backend, grid, boundary, kernel, &eigenvalues))
 }
 
 /// The operator of the elastic half-space.
 pub fn half_space(grid: Grid, boundary: Boundary) -> Box<dyn Operator> {
+    let (backend, kernel) = (default_backend(), Arc::new(HalfSpace));
     match boundary {
-        Boundary::Free => Box::new(Free::half_space(default_backend(), grid)),
-        Boundary::Periodic => Box::new(Periodic::new(default_backend(), grid, Arc::new(HalfSpace))),
+        Boundary::Free => of_influence(backend, grid, kernel, &free::influence_of_half_space(&grid)),
+        Boundary::Periodic => {
+            let eigenvalues = periodic_eigenvalues(&grid, &HalfSpace);
+            of_eigenvalues(backend, grid, boundary, kernel, &eigenvalues)
+        }
     }
 }
 
@@ -111,9 +116,15 @@ pub fn half_space(grid: Grid, boundary: Boundary) -> Box<dyn Operator> {
 /// As [`plan`].
 pub(crate) fn eigenvalues(grid: &Grid, boundary: Boundary, kernel: &dyn Kernel) -> Result<Array2<f64>> {
     match boundary {
-        Boundary::Free => Free::eigenvalues(grid, kernel),
-        Boundary::Periodic => Ok(Periodic::eigenvalues(grid, kernel)),
+        Boundary::Free => Ok(even_spectrum(&free::influence(grid, kernel)?, free::padded(grid))),
+        Boundary::Periodic => Ok(periodic_eigenvalues(grid, kernel)),
     }
+}
+
+/// The symbol of the kernel on the waves of a periodic domain (Stanley & Kato, J. Tribol. 119, 1997).
+fn periodic_eigenvalues(grid: &Grid, kernel: &dyn Kernel) -> Array2<f64> {
+    let symbol = |qx, qy| kernel.symbol(qx, qy);
+    wave_spectrum(grid.cells(), grid.size(), kernel.uniform().unwrap_or(0.0), symbol)
 }
 
 /// Lengths of the torus of [`eigenvalues`].
@@ -124,18 +135,29 @@ pub(crate) fn torus(grid: &Grid, boundary: Boundary) -> [usize; 2] {
     }
 }
 
+/// The operator of a free domain with these influence coefficients.
+fn of_influence(
+    backend: Arc<dyn Backend>,
+    grid: Grid,
+    kernel: Arc<dyn Kernel>,
+    influence: &Array2<f64>,
+) -> Box<dyn Operator> {
+    let lengths = free::padded(&grid);
+    let body = Body { grid, boundary: Boundary::Free, backend, kernel, has_coarser: true };
+    Convolved::new(body, lengths, &even_spectrum(influence, lengths), influence[(0, 0)])
+}
+
 /// The operator with these [`eigenvalues`]; `kernel` stands for it where an approximate inverse is asked for.
 pub(crate) fn of_eigenvalues(
+    backend: Arc<dyn Backend>,
     grid: Grid,
     boundary: Boundary,
     kernel: Arc<dyn Kernel>,
     eigenvalues: &Array2<f64>,
 ) -> Box<dyn Operator> {
-    let backend = default_backend();
-    match boundary {
-        Boundary::Free => Box::new(Free::of_eigenvalues(backend, grid, kernel, eigenvalues)),
-        Boundary::Periodic => Box::new(Periodic::of_eigenvalues(backend, grid, kernel, eigenvalues)),
-    }
+    let lengths = torus(&grid, boundary);
+    let body = Body { grid, boundary, backend, kernel, has_coarser: true };
+    Convolved::new(body, lengths, eigenvalues, mean(lengths, eigenvalues.view()))
 }
 
 /// The mean of an even spectrum over all waves, of which the array has those of a quarter: the response to a unit where it is.
@@ -148,10 +170,7 @@ pub(crate) fn mean([nx, ny]: [usize; 2], spectrum: ArrayView2<f64>) -> f64 {
 
 /// Bytes that the operator of a grid takes.
 pub fn bytes(grid: &Grid, boundary: Boundary) -> usize {
-    match boundary {
-        Boundary::Free => Free::bytes(grid),
-        Boundary::Periodic => Periodic::bytes(grid),
-    }
+    default_backend().bytes(grid.cells(), torus(grid, boundary))
 }
 
 /// `symbol`(qx, qy) on the wave vectors of a torus of `cells` and `size`, `uniform` for q = 0.

@@ -11,13 +11,12 @@
 //! alone: the mean of W over the step, on the clock in which u runs, times the change of w.
 
 use super::{Process, Solved};
-use crate::contact::Hardness;
 use crate::error::Result;
 use crate::history::History;
 use crate::quantities::Quantity;
 use crate::simulation::{Plasticity, Simulation};
-use crate::step::{Loader, Saver, UndeformedGap};
-use asperity_sweep::{strands, sweep};
+use crate::step::{Loader, Saver, UndeformedGap, saved};
+use asperity_sweep::sums;
 
 /// The energies at the end of the last row \[J\].
 #[derive(Clone, Copy, Debug, Default)]
@@ -43,10 +42,10 @@ impl Energy {
         let wanted = simulation.quantities.list.iter().any(is_wanted);
         (wanted && history.track_energy()).then(Energy::default)
     }
+}
 
-    fn numbers(&self) -> [f64; 5] {
-        [self.elastic, self.dissipated, self.flattening, self.work, self.approach]
-    }
+saved! {
+    Energy { "energies": elastic, dissipated, flattening, work, approach; }
 }
 
 impl Process for Energy {
@@ -91,13 +90,12 @@ impl Process for Energy {
     }
 
     fn save<'a>(&'a self, to: &mut Saver<'a>, _gap: &'a UndeformedGap) {
-        to.numbers("energies", self.numbers().to_vec());
+        self.save_own(to);
     }
 
     fn load(&mut self, from: &mut Loader<'_>, _gap: &mut UndeformedGap) -> Result<()> {
-        let [elastic, dissipated, flattening, work, approach] = from.array("energies")?;
-        *self = Energy { elastic, dissipated, flattening, work, approach, power: f64::NAN };
-        Ok(())
+        self.power = f64::NAN;
+        self.load_own(from)
     }
 }
 
@@ -105,10 +103,8 @@ impl Process for Energy {
 fn overlap_work(row: &Solved<'_>) -> f64 {
     let (c, w) = (row.compliance, row.now.approach);
     let cells = (&row.now.pressure[..], &row.now.unit_displacement[..], &row.gap[..], row.hardness);
-    sweep(cells, &|(p, u, h, hardness): (&[f64], &[f64], &[f64], Hardness)| {
-        strands(p.len(), |i| {
-            let overlap = if p[i] >= hardness.at(i) { (w - c * u[i] - h[i]).max(0.0) } else { 0.0 };
-            [if overlap > 0.0 { p[i] * overlap } else { 0.0 }]
-        })
+    sums(cells, |(p, u, h, hardness)| {
+        let overlap = if p >= hardness { (w - c * u - h).max(0.0) } else { 0.0 };
+        [if overlap > 0.0 { p * overlap } else { 0.0 }]
     })[0]
 }

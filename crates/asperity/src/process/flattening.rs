@@ -5,12 +5,10 @@
 //! solution of the contact conditions, now of the flattened surface.
 
 use super::{Process, Solved};
-use crate::contact::Hardness;
 use crate::error::Result;
-use crate::quantities::Quantity;
 use crate::simulation::{Plasticity, Simulation};
 use crate::step::{Loader, Saver, UndeformedGap};
-use asperity_sweep::sweep;
+use asperity_sweep::each;
 
 pub(super) struct Flattening;
 
@@ -25,33 +23,16 @@ impl Process for Flattening {
     /// Makes the overlap of the row a part of the undeformed gap.
     fn accept(&mut self, row: &mut Solved<'_>) -> Result<()> {
         let (c, w) = (row.compliance, row.now.approach);
-        let cells = (
-            &row.now.pressure[..],
-            &row.now.unit_displacement[..],
-            &mut row.gap[..],
-            row.undeformed.own_mut(),
-            row.hardness,
-        );
-        sweep(cells, &|(p, u, gap, flattened, hardness): (
-            &[f64],
-            &[f64],
-            &mut [f64],
-            &mut [f64],
-            Hardness,
-        )| {
-            for i in 0..p.len() {
-                let overlap = w - (c * u[i] + gap[i]);
-                if p[i] >= hardness.at(i) && overlap > 0.0 {
-                    gap[i] += overlap;
-                    flattened[i] += overlap;
-                }
-            }
-        });
+        // The undeformed gap first: it is told by the gap as it was.
+        let overlap = |p: f64, u: f64, gap: f64, hardness: f64| match w - (c * u + gap) {
+            overlap if p >= hardness && overlap > 0.0 => overlap,
+            _ => 0.0,
+        };
+        let (p, u) = (&row.now.pressure[..], &row.now.unit_displacement[..]);
+        let cells = (p, u, &row.gap[..], row.hardness);
+        each(row.undeformed.own_mut(), cells, |h, (p, u, gap, most)| *h += overlap(p, u, gap, most));
+        each(row.gap, (p, u, row.hardness), |gap, (p, u, most)| *gap += overlap(p, u, *gap, most));
         Ok(())
-    }
-
-    fn quantity(&self, _quantity: Quantity) -> Option<f64> {
-        None
     }
 
     fn name(&self) -> &'static str {

@@ -4,7 +4,6 @@ use super::{Process, Solved};
 use crate::error::Result;
 use crate::quantities::Quantity;
 use crate::simulation::Simulation;
-use crate::step::{Loader, Saver, UndeformedGap};
 
 pub(super) struct LoadPower {
     /// Of the last step \[W\].
@@ -33,11 +32,5 @@ impl Process for LoadPower {
 
     fn name(&self) -> &'static str {
         "load_power"
-    }
-
-    fn save<'a>(&'a self, _to: &mut Saver<'a>, _gap: &'a UndeformedGap) {}
-
-    fn load(&mut self, _from: &mut Loader<'_>, _gap: &mut UndeformedGap) -> Result<()> {
-        Ok(())
     }
 }

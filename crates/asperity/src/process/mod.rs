@@ -40,13 +40,17 @@ pub(crate) trait Process: Send {
     fn accept(&mut self, row: &mut Solved<'_>) -> Result<()>;
 
     /// A quantity of the last row, where it is one of this process.
-    fn quantity(&self, quantity: Quantity) -> Option<f64>;
+    fn quantity(&self, _quantity: Quantity) -> Option<f64> {
+        None
+    }
 
     /// Saves what the rest of a run depends on.
-    fn save<'a>(&'a self, to: &mut Saver<'a>, _gap: &'a UndeformedGap);
+    fn save<'a>(&'a self, _to: &mut Saver<'a>, _gap: &'a UndeformedGap) {}
 
     /// Takes back what [`save`](Self::save) gave; the gap is that of the last row afterwards.
-    fn load(&mut self, from: &mut Loader<'_>, gap: &mut UndeformedGap) -> Result<()>;
+    fn load(&mut self, _from: &mut Loader<'_>, _gap: &mut UndeformedGap) -> Result<()> {
+        Ok(())
+    }
 
     /// The name under which it saves its state.
     fn name(&self) -> &'static str;

@@ -7,7 +7,7 @@
 use ndarray::{Array2, ArrayView2};
 
 use super::{Process, Solved};
-use crate::error::{Error, Result};
+use crate::error::{Result, require, rounded};
 use crate::grid::Boundary;
 use crate::material::Creep;
 use crate::quantities::Quantity;
@@ -46,63 +46,36 @@ impl Motion {
 
     /// Checks what can be known before the run.
     pub(crate) fn validate(&self, simulation: &Simulation) -> Result<()> {
-        if !(self.cells_per_step.is_finite() && self.cells_per_step > 0.0 && self.cells_per_step <= 8.0) {
-            return Err(Error::invalid(
-                "cells_per_step",
-                self.cells_per_step,
-                "greater than 0 and at most 8",
-            ));
-        }
+        let fine = self.cells_per_step > 0.0 && self.cells_per_step <= 8.0;
+        require(fine, "cells_per_step", self.cells_per_step, "greater than 0 and at most 8")?;
         let stops = self.stops(simulation)?;
-        if simulation.scheme != Scheme::Linear {
-            return Err(Error::invalid(
-                "scheme of a contact in motion",
-                format!("{:?}", simulation.scheme).to_lowercase(),
-                "linear: with a pressure that is constant in each step friction is wrong by tens of per cent",
-            ));
-        }
-        if simulation.plasticity == Plasticity::Accumulate {
-            return Err(Error::invalid(
-                "plasticity of a contact in motion",
-                "accumulate",
-                "cap: which of the two bodies keeps the dents is not known",
-            ));
-        }
-        if simulation.grid.is_line() && self.direction != Direction::X {
-            return Err(Error::invalid("direction of motion of a line contact", "not x", "x"));
-        }
+        require(
+            simulation.scheme == Scheme::Linear,
+            "scheme of a contact in motion",
+            format!("{:?}", simulation.scheme).to_lowercase(),
+            "linear: with a pressure that is constant in each step friction is wrong by tens of per cent",
+        )?;
+        let expected = "cap: which of the two bodies keeps the dents is not known";
+        let cap = simulation.plasticity == Plasticity::Cap;
+        require(cap, "plasticity of a contact in motion", "accumulate", expected)?;
+        self.direction.validate(simulation)?;
         if simulation.boundary == Boundary::Free {
-            if let Direction::Angle(angle) = self.direction {
-                return Err(Error::invalid(
-                    "direction of motion on a free domain",
-                    format!("{} degrees", rounded(angle.to_degrees())),
-                    "x or y; other directions need a periodic domain",
-                ));
-            }
-            let axis = usize::from(self.direction == Direction::Y);
+            let axis = self.direction.axis();
             let (length, start) = (simulation.grid.size()[axis], self.gap.centre()[axis]);
             let places = stops.iter().map(|t| start + self.path.position(*t));
             let [least, most] = places.fold([start; 2], |[least, most], x| [least.min(x), most.max(x)]);
-            if least < 0.0 || most > length {
-                return Err(Error::invalid(
-                    "place of the moving body on a free domain",
-                    format!("{} m to {} m", rounded(least), rounded(most)),
-                    format!(
-                        "within 0 m and {length} m, its track: the grid does not go with the body. Take a domain that holds the travel of \
-                         {} m and the contact, let the body start elsewhere (center), or take a periodic domain or steady states \
-                         ([motion.steady])",
-                        rounded(most - least)
-                    ),
-                ));
-            }
+            let expected = format!(
+                "within 0 m and {length} m, its track: the grid does not go with the body. Take a domain that holds the travel of \
+                 {} m and the contact, let the body start elsewhere (center), or take a periodic domain or steady states \
+                 ([motion.steady])",
+                rounded(most - least)
+            );
+            let track = format!("{} m to {} m", rounded(least), rounded(most));
+            let on_track = least >= 0.0 && most <= length;
+            require(on_track, "place of the moving body on a free domain", track, expected)?;
         }
         Ok(())
     }
-}
-
-/// To four digits.
-fn rounded(x: f64) -> String {
-    format!("{x:.3e}").parse::<f64>().map_or_else(|_| x.to_string(), |x| x.to_string())
 }
 
 /// The contact in motion: where the gap is at the end of the step under way, and the forces of the last row.
@@ -178,14 +151,14 @@ impl Process for Moving {
     }
 
     fn save<'a>(&'a self, to: &mut Saver<'a>, _gap: &'a UndeformedGap) {
-        to.number("distance", self.before);
-        to.number("force", self.friction.force);
+        to.value("distance", &self.before);
+        to.value("force", &self.friction.force);
     }
 
     fn load(&mut self, from: &mut Loader<'_>, gap: &mut UndeformedGap) -> Result<()> {
-        self.move_to(from.number("distance")?, gap)?;
+        self.move_to(from.get("distance")?, gap)?;
         self.before = self.distance;
-        self.friction.force = from.number("force")?;
+        self.friction.force = from.get("force")?;
         Ok(())
     }
 }

@@ -6,7 +6,6 @@ use crate::error::Result;
 use crate::operator::Operator;
 use crate::quantities::{ContactStiffness, Quantity};
 use crate::simulation::{Plasticity, Simulation};
-use crate::step::{Loader, Saver, UndeformedGap};
 
 pub(super) struct Stiffness {
     solver: ContactStiffness,
@@ -42,11 +41,5 @@ impl Process for Stiffness {
 
     fn name(&self) -> &'static str {
         "stiffness"
-    }
-
-    fn save<'a>(&'a self, _to: &mut Saver<'a>, _gap: &'a UndeformedGap) {}
-
-    fn load(&mut self, _from: &mut Loader<'_>, _gap: &mut UndeformedGap) -> Result<()> {
-        Ok(())
     }
 }

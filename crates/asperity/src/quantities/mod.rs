@@ -27,26 +27,29 @@
 //!
 //! What each costs and how it is derived: docs/theory.md ("Energy and other
 //! quantities of a row", "Permanent flattening"). A march takes them by
-//! [`Simulation::quantities`](crate::Simulation::quantities) and lends them in [`Step::quantity`](crate::march::Step::quantity).
+//! [`Simulation::quantities`](crate::Simulation::quantities) and lends them in [`Step::quantity`](crate::step::Step::quantity).
 
 mod eccentricity;
 mod histogram;
 mod perimeter;
+mod rows;
 mod stiffness;
 
 use ndarray::Array2;
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, positive, require};
 use crate::grid::Grid;
 
 pub(crate) use eccentricity::eccentricity;
 pub(crate) use histogram::{densities, spot_classes};
 pub use perimeter::{Edges, contact_edges};
+pub use rows::{Entry, ROW_COLUMNS, RowColumn, RowFigure};
 pub use stiffness::ContactStiffness;
 
 macro_rules! quantities {
     ($($(#[$doc:meta])* $variant:ident = $name:literal [$units:literal] $long_name:literal, $kind:ident,
-       ($title:literal, $label:literal, $legend:literal);)*) => {
+       ($title:literal, $label:literal, $legend:literal)
+       $(, on a line [$line_units:literal] $line_name:literal ($line_title:literal, $line_label:literal))?;)*) => {
         /// A quantity that each row may have; see the table of [`self`].
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         #[cfg_attr(
@@ -71,6 +74,12 @@ macro_rules! quantities {
                         long_name: $long_name,
                         kind: Kind::$kind,
                         panel: Panel { title: $title, label: $label, legend: $legend },
+                        line: [$(Line {
+                            units: $line_units,
+                            long_name: $line_name,
+                            title: $line_title,
+                            label: $line_label,
+                        })?].first().copied(),
                     },)*
                 }
             }
@@ -79,7 +88,7 @@ macro_rules! quantities {
 }
 
 // Each quantity once: what it is, name in results and case files, unit ("1": none), words for axes, kind, and the panel of figures that
-// shows it (title, axis, name in the legend).
+// shows it (title, axis, name in the legend); on a line of cells where these differ unit, words, title and axis.
 quantities! {
     /// Slope of load over approach under a small, sudden change, in N/m; about ten convolutions per row.
     ///
@@ -92,14 +101,17 @@ quantities! {
     /// Cells that share an edge belong to one spot; on a periodic domain opposite borders are neighbours.
     ContactSpots = "contact_spots" ["1"] "contact spots", Spots, ("Contact spots", "number", "");
     /// Area of the largest contact spot, in m2; 0 without contact.
-    LargestSpot = "largest_spot" ["m2"] "area of the largest contact spot", Spots, ("Areas of contact spots", "area", "largest");
+    LargestSpot = "largest_spot" ["m2"] "area of the largest contact spot", Spots, ("Areas of contact spots", "area", "largest"),
+        on a line ["m"] "length of the largest contact spot" ("Lengths of contact spots", "length");
     /// Mean area of a contact spot, in m2; 0 without contact.
-    MeanSpot = "mean_spot" ["m2"] "mean area of a contact spot", Spots, ("Areas of contact spots", "area", "mean");
+    MeanSpot = "mean_spot" ["m2"] "mean area of a contact spot", Spots, ("Areas of contact spots", "area", "mean"),
+        on a line ["m"] "mean length of a contact spot" ("Lengths of contact spots", "length");
     /// Length of the edges between cells in and out of contact, in m.
     ///
     /// The border of a free domain does not count. A smooth contour without preferred direction is shorter by π/4
     /// (Yastrebov, Anciaux & Molinari 2017).
-    ContactPerimeter = "contact_perimeter" ["m"] "counted perimeter of the contact", State, ("Perimeter of the contact", "length", "");
+    ContactPerimeter = "contact_perimeter" ["m"] "counted perimeter of the contact", State, ("Perimeter of the contact", "length", ""),
+        on a line ["1"] "number of ends of the contact" ("Ends of the contact", "number");
     /// Whether cells in contact that share edges reach from border to border: 1 along x, 2 along y, 3 both, 0 neither.
     ///
     /// On a periodic domain they may pass across the borders at their sides.
@@ -128,7 +140,8 @@ quantities! {
     /// Power of the load in the step, mean load times change of the approach over time, in W; 0 in a jump.
     LoadPower = "load_power" ["W"] "power of the load", Response, ("Power of the load", "power", "");
     /// Number of contact spots per class of area: 1 cell, 2 to 3, 4 to 7, and so on.
-    SpotHistogram = "spot_histogram" ["1"] "number of contact spots per class of area", SpotHistogram, ("", "", "");
+    SpotHistogram = "spot_histogram" ["1"] "number of contact spots per class of area", SpotHistogram, ("", "", ""),
+        on a line ["1"] "number of contact spots per class of length" ("", "");
     /// Probability density of the pressure of the cells in contact, in 1/Pa.
     PressureHistogram = "pressure_histogram" ["1/Pa"] "probability density of the contact pressure", Histogram, ("", "", "");
     /// Probability density of the gap of the open cells, in 1/m.
@@ -160,6 +173,16 @@ struct Declaration {
     long_name: &'static str,
     kind: Kind,
     panel: Panel,
+    line: Option<Line>,
+}
+
+/// What a quantity is on a line of cells.
+#[derive(Clone, Copy)]
+struct Line {
+    units: &'static str,
+    long_name: &'static str,
+    title: &'static str,
+    label: &'static str,
 }
 
 /// What a quantity is taken from.
@@ -223,9 +246,35 @@ impl Quantity {
         self.declaration().long_name
     }
 
-    /// Where figures show it; `None` of a histogram.
-    pub fn panel(self) -> Option<Panel> {
-        (!self.is_histogram()).then_some(self.declaration().panel)
+    /// Its unit on this grid; "1" where it has none.
+    pub fn units_on(self, grid: &Grid) -> &'static str {
+        match self.declaration().line.filter(|_| grid.is_line()) {
+            Some(line) => line.units,
+            None => grid.units(self.units()),
+        }
+    }
+
+    /// What it is on this grid, for axes and legends.
+    pub fn long_name_on(self, grid: &Grid) -> &'static str {
+        self.declaration().line.filter(|_| grid.is_line()).map_or(self.long_name(), |line| line.long_name)
+    }
+
+    /// Where figures show it on this grid; `None` of a histogram.
+    pub fn panel_on(self, grid: &Grid) -> Option<Panel> {
+        let Declaration { panel, line, .. } = self.declaration();
+        let panel = match line.filter(|_| grid.is_line()) {
+            Some(Line { title, label, .. }) => Panel { title, label, ..panel },
+            None => panel,
+        };
+        (!self.is_histogram()).then_some(panel)
+    }
+
+    /// Names of its values 0, 1, 2 ...; empty of a number.
+    pub fn states(self) -> &'static [&'static str] {
+        match self.declaration().kind {
+            Kind::Percolation => &["none", "x", "y", "x and y"],
+            _ => &[],
+        }
     }
 
     /// Whether it has a number per bin; otherwise one per row.
@@ -287,6 +336,10 @@ impl Default for Quantities {
 /// Most bins of a histogram.
 const MOST_BINS: usize = 10_000;
 
+/// Upper ends of the histograms, as errors name them.
+const PRESSURE_END: &str = "largest pressure of the histogram";
+const GAP_END: &str = "largest gap of the histogram";
+
 /// A quantity with the ends of its bins.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
@@ -327,21 +380,11 @@ impl Quantities {
     /// histogram of the pressure has no upper end.
     pub fn columns(&self, grid: &Grid, gap: &Array2<f64>, hardness: f64) -> Result<Vec<Column>> {
         for (n, quantity) in self.list.iter().enumerate() {
-            if self.list[..n].contains(quantity) {
-                return Err(Error::invalid(
-                    "list of quantities",
-                    format!("{quantity} twice"),
-                    "each named once",
-                ));
-            }
+            let once = !self.list[..n].contains(quantity);
+            require(once, "list of quantities", format!("{quantity} twice"), "each named once")?;
         }
-        if !(1..=MOST_BINS).contains(&self.bins) {
-            return Err(Error::invalid(
-                "bins of the histograms",
-                self.bins,
-                format!("between 1 and {MOST_BINS}"),
-            ));
-        }
+        let possible = (1..=MOST_BINS).contains(&self.bins);
+        require(possible, "bins of the histograms", self.bins, format!("between 1 and {MOST_BINS}"))?;
         let evenly = |top: f64| (0..=self.bins).map(|k| top * k as f64 / self.bins as f64).collect();
         let edges = |quantity: &Quantity| -> Result<Vec<f64>> {
             Ok(match quantity {
@@ -350,27 +393,19 @@ impl Quantities {
                     (0..=classes).map(|k| grid.cell_area() * libm::ldexp(1.0, k)).collect()
                 }
                 Quantity::PressureHistogram => match self.largest_pressure {
-                    Some(top) => evenly(positive("largest pressure of the histogram", top, "Pa")?),
+                    Some(top) => evenly(positive(PRESSURE_END, top, "Pa")?),
                     None if hardness.is_finite() => evenly(hardness),
                     None => {
-                        return Err(Error::invalid(
-                            "largest pressure of the histogram",
-                            "not given",
-                            "a pressure, as the bodies have no hardness that bounds it",
-                        ));
+                        let expected = "a pressure, as the bodies have no hardness that bounds it";
+                        return Err(Error::invalid(PRESSURE_END, "not given", expected));
                     }
                 },
                 Quantity::GapHistogram => match self.largest_gap {
-                    Some(top) => evenly(positive("largest gap of the histogram", top, "m")?),
+                    Some(top) => evenly(positive(GAP_END, top, "m")?),
                     None => {
                         let top = gap.iter().filter(|h| h.is_finite()).fold(0.0, |m: f64, h| m.max(*h));
-                        if top <= 0.0 {
-                            return Err(Error::invalid(
-                                "largest gap of the histogram",
-                                "not given",
-                                "a length, as the undeformed surfaces are flat",
-                            ));
-                        }
+                        let expected = "a length, as the undeformed surfaces are flat";
+                        require(top > 0.0, GAP_END, "not given", expected)?;
                         evenly(top)
                     }
                 },

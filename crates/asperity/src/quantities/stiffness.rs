@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::error::{Error, NotConverged, Result};
 use crate::grid::{Boundary, Grid};
 use crate::operator::{ApproximateInverse, Operator};
-use asperity_sweep::{strands, sweep};
+use asperity_sweep::{dot, each, sums};
 
 /// Iterations end where one adds less than this share of the sum: its relative error is then of that size.
 const SMALLEST_SHARE: f64 = 1e-7;
@@ -99,10 +99,13 @@ impl ContactStiffness {
             }
             self.single.iter_mut().zip(&self.residual).for_each(|(single, r)| *single = *r as f32);
             self.inverse.apply_into(&self.single, &mut self.image);
-            let last = std::mem::replace(&mut product, self.preconditioned_product());
+            let last = std::mem::replace(
+                &mut product,
+                sums((&self.residual[..], &self.image[..]), |(r, z)| [r * f64::from(z)])[0],
+            );
             self.turn(product / last);
             operator.apply_into(&self.direction, &mut self.moved);
-            let curvature = self.curvature();
+            let curvature = dot(&self.direction, &self.moved);
             if !(product > 0.0 && curvature > 0.0) {
                 // Nothing but rounding is left.
                 return Ok((operator.grid().cell_area() * sum / compliance, iteration));
@@ -112,7 +115,9 @@ impl ContactStiffness {
             if length * product <= SMALLEST_SHARE * sum {
                 return Ok((operator.grid().cell_area() * sum / compliance, iteration));
             }
-            self.advance(length);
+            each(&mut self.residual, (&self.moved[..], &self.set[..]), |r, (moved, on)| {
+                *r -= if on { length * moved } else { 0.0 };
+            });
         }
         Err(Error::NotConverged(NotConverged {
             method: "contact stiffness",
@@ -125,45 +130,10 @@ impl ContactStiffness {
         }))
     }
 
-    /// <r, z>; r is 0 outside of S.
-    fn preconditioned_product(&self) -> f64 {
-        sweep((&self.residual[..], &self.image[..]), &|(r, z): (&[f64], &[f32])| {
-            strands(r.len(), |i| [r[i] * f64::from(z[i])])
-        })[0]
-    }
-
     /// d = z + beta d on S.
     fn turn(&mut self, beta: f64) {
-        sweep((&mut self.direction[..], &self.image[..], &self.set[..]), &|(d, z, set): (
-            &mut [f64],
-            &[f32],
-            &[bool],
-        )| {
-            for ((d, z), on) in d.iter_mut().zip(z).zip(set) {
-                *d = if *on { f64::from(*z) + beta * *d } else { 0.0 };
-            }
-        });
-    }
-
-    /// <d, K d>; d is 0 outside of S.
-    fn curvature(&self) -> f64 {
-        sweep((&self.direction[..], &self.moved[..]), &|(d, moved): (&[f64], &[f64])| {
-            strands(d.len(), |i| [d[i] * moved[i]])
-        })[0]
-    }
-
-    /// r = r - α K d on S.
-    fn advance(&mut self, length: f64) {
-        sweep((&mut self.residual[..], &self.moved[..], &self.set[..]), &|(r, moved, set): (
-            &mut [f64],
-            &[f64],
-            &[bool],
-        )| {
-            for ((r, moved), on) in r.iter_mut().zip(moved).zip(set) {
-                if *on {
-                    *r -= length * moved;
-                }
-            }
+        each(&mut self.direction, (&self.image[..], &self.set[..]), |d, (z, on)| {
+            *d = if on { f64::from(z) + beta * *d } else { 0.0 };
         });
     }
 }
@@ -171,7 +141,8 @@ impl ContactStiffness {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::operator::{Dense, half_space};
+    use crate::operator::half_space;
+    use crate::reference::Dense;
 
     #[test]
     fn the_sum_meets_the_direct_solution() {

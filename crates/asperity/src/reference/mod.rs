@@ -1,6 +1,7 @@
 //! Closed forms and one-dimensional solutions to check against.
 //!
-//! Independent of the solver: nothing here uses a convolution, and only [`full_contact_friction`] a grid.
+//! Independent of the solver: nothing here uses a convolution, and only the matrix ([`Dense`]), [`gauss_seidel`], [`Persson`] and
+//! [`full_contact_friction`] a grid.
 //!
 //! | case | type | source |
 //! |---|---|---|
@@ -15,16 +16,21 @@
 //! | cylinder that rolls or slides on a viscoelastic body | [`HunterCylinder`] | Hunter 1961 |
 //! | sphere that slides slowly or fast on a viscoelastic body | [`SlidingSphere`] | Hertz 1881, first order in the speed |
 //! | waves that slide on a viscoelastic body in full contact | [`FullContactWave`], [`full_contact_friction`] | Persson 2001 |
+//! | friction and contact area of a rough surface, an estimate | [`Persson`] | Persson 2001, Yang & Persson 2008 |
+//! | any elastic contact on a small grid | [`Dense`], [`gauss_seidel`] | Wilton et al. 1984 |
 
 mod bessel;
 mod capped_hertz;
+mod dense;
 mod elliptic;
+mod gauss_seidel;
 mod hereditary;
 mod hertz;
 mod hunter;
 mod layer_contact;
 mod line_hertz;
 mod mdr;
+mod persson;
 mod quadrature;
 mod sliding;
 mod sneddon;
@@ -33,13 +39,16 @@ mod ting;
 mod westergaard;
 
 pub use capped_hertz::CappedHertz;
+pub use dense::Dense;
 pub use elliptic::{Elliptic, elliptic};
+pub use gauss_seidel::gauss_seidel;
 pub use hertz::{HertzEllipse, HertzSphere};
 pub use hunter::HunterCylinder;
 pub use layer_contact::LayerContact;
 pub(crate) use layer_contact::SpringProfile;
 pub use line_hertz::HertzLine;
 pub use mdr::{Mdr, MdrOptions, MdrProfile, MdrState, MdrTarget};
+pub use persson::{Correction, Magnification, Persson, PerssonFriction};
 pub use sliding::{FullContactWave, SlidingSphere, full_contact_friction};
 pub use sneddon::{CircularPunch, SneddonCone};
 pub use strip_punch::StripPunch;

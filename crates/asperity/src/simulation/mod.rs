@@ -1,26 +1,25 @@
 //! What is simulated: all that a march needs to know.
 
+mod validate;
+
 use std::sync::Arc;
 
 use ndarray::Array2;
 
 use crate::contact::{Solver, SolverOptions};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::grid::{Boundary, Grid};
 use crate::history;
 use crate::kernel::{HalfSpace, Kernel};
 use crate::layer::NonseparableLayers;
-use crate::load::{Control, Course, Event, History, Loading, Programme, of_stage};
+use crate::load::{Control, History, Loading, Programme};
 use crate::material::{Creep, ThermalCreep};
 use crate::operator;
 use crate::process::Motion;
 use crate::quantities::{Column, ContactStiffness, Quantities, Quantity};
 use crate::spots::Spots;
-use crate::time::{Plan, SAME, TimeGrid};
+use crate::time::{Plan, TimeGrid};
 use crate::traction::TractionLaw;
-
-/// Fewer steps than this to the period of a sine miss its course.
-const LEAST_PER_PERIOD: f64 = 20.0;
 
 /// How the pressure varies over a time step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -93,10 +92,6 @@ pub struct Simulation {
     /// A traction on the surfaces besides the contact, as a function of the gap.
     pub traction: Option<Arc<dyn TractionLaw>>,
 }
-
-/// Layers on a rigid base under a periodic domain may be so many times as thick as the domain is wide: the tolerance is relative
-/// to displacements that include their uniform compression.
-const DEEPEST: f64 = 1000.0;
 
 impl Simulation {
     /// A free half-space of unit compliance under no load for one second, to set the rest on.
@@ -196,306 +191,15 @@ impl Simulation {
         quantities.columns(&self.grid, &self.gap, hardness)
     }
 
-    /// Checks all that can be known before the first solve.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`], [`Error::Infeasible`].
-    pub fn validate(&self) -> Result<()> {
-        if self.gap.dim() != self.grid.shape() {
-            let [nx, ny] = self.grid.cells();
-            return Err(Error::invalid(
-                "shape of the gap",
-                format!("{:?}", self.gap.dim()),
-                format!("that of the grid, ({nx}, {ny})"),
-            ));
-        }
-        if !self.gap.is_standard_layout() {
-            return Err(Error::invalid("memory order of the gap", "not C-order", "C-order"));
-        }
-        if let Some(((i, j), h)) =
-            self.gap.indexed_iter().find(|(_, h)| h.is_nan() || **h == f64::NEG_INFINITY)
-        {
-            return Err(Error::invalid(
-                format!("gap at cell ({i}, {j})"),
-                h,
-                "a number (infinite where the cell cannot touch)",
-            ));
-        }
-        let touchable = self.gap.iter().filter(|h| h.is_finite()).count();
-        if touchable == 0 {
-            return Err(Error::invalid("gap", "infinite everywhere", "finite in one cell at least"));
-        }
-        if self.boundary == Boundary::Free {
-            self.kernel.check(self.grid.longest_cell())?;
-        }
-        let widest = self.grid.longest_side();
-        if let Some(depth) = self.kernel.depth()
-            && self.boundary == Boundary::Periodic
-            && depth > DEEPEST * widest
-        {
-            return Err(Error::invalid(
-                "thickness of the layers on their rigid base",
-                format!("{depth:e} m"),
-                format!(
-                    "at most {DEEPEST} times the periodic domain, {widest:e} m: no wave reaches the base, but its compression \
-                     would swamp the displacements; describe the body as a half-space"
-                ),
-            ));
-        }
-        self.parts().try_for_each(Creep::validate)?;
-        if self.parts().all(|creep| creep.value(f64::MAX.sqrt()) <= 0.0) {
-            return Err(Error::invalid(
-                "contact creep compliance",
-                0,
-                "greater than 0 (both bodies are rigid)",
-            ));
-        }
-        if self.hardness.is_nan() || self.hardness <= 0.0 {
-            return Err(Error::invalid("hardness", format!("{} Pa", self.hardness), "greater than 0"));
-        }
-        self.validate_hardness_map()?;
-        self.validate_line()?;
-        if self.plasticity == Plasticity::Accumulate
-            && self.hardness.is_infinite()
-            && self.hardness_map.is_none()
-        {
-            return Err(Error::invalid(
-                "hardness",
-                "infinite",
-                "finite where flattening stays (plasticity \"accumulate\"): nothing is flattened without",
-            ));
-        }
-        self.columns()?;
-        if self.quantities.has_energy() && self.scheme == Scheme::Direct {
-            let energies = self.quantities.list.iter().filter(|quantity| quantity.is_energy());
-            let names: Vec<_> = energies.map(|quantity| quantity.name()).collect();
-            return Err(Error::invalid(
-                "scheme",
-                "direct",
-                format!(
-                    "linear or constant where {} is asked for: the full hereditary sum knows no springs and dashpots",
-                    names.join(", ")
-                ),
-            ));
-        }
-        self.validate_layers()?;
-        self.loading.validate()?;
-        self.times.validate()?;
-        if self.is_adaptive() && self.scheme != Scheme::Linear {
-            return Err(Error::invalid(
-                "scheme of a run with adaptive steps",
-                format!("{:?}", self.scheme).to_lowercase(),
-                "linear (the error estimate belongs to it)",
-            ));
-        }
-        self.solver.validate()?;
-        if let Some(motion) = &self.motion {
-            motion.validate(self)?;
-        }
-        self.validate_steps()?;
-        self.validate_load()?;
-        self.validate_jumps()
-    }
-
-    /// What goes with layers that creep differently.
-    fn validate_layers(&self) -> Result<()> {
-        if self.layers.is_none() {
-            return Ok(());
-        }
-        let refused = |what: &str, value: String, expected: &str| {
-            Err(Error::invalid(format!("{what} of layers that creep differently"), value, expected))
-        };
-        if self.scheme != Scheme::Linear {
-            return refused("scheme", format!("{:?}", self.scheme).to_lowercase(), "linear");
-        }
-        if !self.thermal.is_empty() {
-            return refused("temperature", "not constant".into(), "a constant one");
-        }
-        if self.motion.is_some() {
-            return refused("motion", "given".into(), "none: the contact stays in its place");
-        }
-        let unknown = |q: &&Quantity| q.is_energy() || **q == Quantity::ContactStiffness;
-        match self.quantities.list.iter().find(unknown) {
-            Some(quantity) => refused("quantity", quantity.name().to_string(), "another one"),
-            None => Ok(()),
-        }
-    }
-
     /// Whether displacements are known up to a constant, which the approach then has too: in a line contact on a free domain, unless
     /// all bodies lie on a rigid base.
     pub fn is_up_to_a_constant(&self) -> bool {
         self.grid.is_line() && self.boundary == Boundary::Free && self.kernel.depth().is_none()
     }
 
-    /// Where displacements are known up to a constant.
-    fn validate_line(&self) -> Result<()> {
-        if !self.is_up_to_a_constant() {
-            return Ok(());
-        }
-        if self.grid.len() < 2 {
-            return Err(Error::invalid("number of cells of a free line contact", 1, "2 at least"));
-        }
-        for (n, stage) in self.loading.stages.iter().enumerate() {
-            let event = matches!(stage.until, Some(Event::Approach(_)));
-            if stage.control == Control::Approach || event {
-                let (what, value) = match event {
-                    true => ("event of a free line contact", "an approach"),
-                    false => ("control of a free line contact", "approach"),
-                };
-                let error = Error::invalid(
-                    what,
-                    value,
-                    "a load or a pressure: under a load on a line a half-space moves endlessly, so the approach is known up to a \
-                     constant that depends on the domain; a periodic domain (boundary = \"periodic\") has no such limit, nor have \
-                     layers on a rigid base",
-                );
-                return Err(if self.loading.stages.len() > 1 { of_stage(error, n) } else { error });
-            }
-        }
-        let moves = self.motion.is_some();
-        let depends = |q: &&Quantity| q.is_of_time() || **q == Quantity::DissipatedPower && moves;
-        match self.quantities.list.iter().find(depends) {
-            Some(quantity) => Err(Error::invalid(
-                "quantity of a free line contact",
-                quantity.name(),
-                "one that does not depend on displacements, which are known up to a constant; a periodic domain has no such limit",
-            )),
-            None => Ok(()),
-        }
-    }
-
-    fn validate_hardness_map(&self) -> Result<()> {
-        let Some(map) = &self.hardness_map else {
-            return Ok(());
-        };
-        if map.dim() != self.grid.shape() {
-            return Err(Error::invalid(
-                "shape of the hardness of the cells",
-                format!("{:?}", map.dim()),
-                format!("{:?}, one for each cell", self.grid.shape()),
-            ));
-        }
-        match map.indexed_iter().find(|(_, h)| !(h.is_finite() && **h > 0.0)) {
-            Some(((i, j), h)) => Err(Error::invalid(
-                format!("hardness of cell ({i}, {j})"),
-                format!("{h} Pa"),
-                "finite and greater than 0",
-            )),
-            None => Ok(()),
-        }
-    }
-
     /// The cut-off that holds in each cell, where it is not the same everywhere.
     pub(crate) fn hardness_of_cells(&self) -> Option<Vec<f64>> {
         let map = self.hardness_map.as_ref()?;
         Some(map.iter().map(|hardness| hardness.min(self.hardness)).collect())
-    }
-
-    /// Sum of the cut-off over the cells that can touch \[Pa\].
-    fn most(&self) -> f64 {
-        let can_touch = |h: &&f64| h.is_finite();
-        match self.hardness_of_cells() {
-            Some(cells) => {
-                self.gap.iter().zip(cells).filter(|(h, _)| can_touch(h)).map(|(_, cell)| cell).sum()
-            }
-            None => self.hardness * self.gap.iter().filter(can_touch).count() as f64,
-        }
-    }
-
-    fn validate_load(&self) -> Result<()> {
-        let end = self.times.end();
-        for (n, stage) in self.loading.stages.iter().enumerate() {
-            let factor = match stage.control {
-                Control::Approach => continue,
-                Control::Load => 1.0,
-                Control::Pressure => self.grid.area(),
-            };
-            let lasts = stage.duration.unwrap_or(end).min(end);
-            let [least, most] = match &stage.course {
-                Course::Given(history) => history.range(lasts),
-                Course::Hold => continue,
-                Course::RampTo { value, .. } => [*value; 2],
-            };
-            if least < 0.0 && self.traction.is_none() {
-                let (what, unit) = match stage.control {
-                    Control::Pressure => ("smallest mean pressure", "Pa"),
-                    _ => ("smallest load", "N"),
-                };
-                let error =
-                    Error::invalid(what, format!("{least} {unit}"), "not negative (bodies only press)");
-                return Err(if self.loading.stages.len() > 1 { of_stage(error, n) } else { error });
-            }
-            let max = self.most() * self.grid.cell_area();
-            if most * factor > max * (1.0 + 1e-12) {
-                return Err(Error::Infeasible { load: most * factor, max });
-            }
-        }
-        Ok(())
-    }
-
-    /// Steps must follow a sine, and times of a history must be apart.
-    fn validate_steps(&self) -> Result<()> {
-        let end = self.times.end();
-        for (n, stage) in self.loading.stages.iter().enumerate() {
-            let Course::Given(history) = &stage.course else { continue };
-            let breaks = history.breaks(end);
-            let close = |pair: &&[f64]| pair[1] > pair[0] && pair[1] - pair[0] <= SAME * end;
-            let times: Vec<f64> = std::iter::once(0.0).chain(breaks).collect();
-            if let Some(pair) = times.windows(2).find(close) {
-                let error = Error::invalid(
-                    "times of the history",
-                    format!("{} s and {} s", pair[0], pair[1]),
-                    format!(
-                        "at least {:e} s apart, {SAME:e} of the run: rounding joins closer ones",
-                        SAME * end
-                    ),
-                );
-                return Err(if self.loading.stages.len() > 1 { of_stage(error, n) } else { error });
-            }
-        }
-        let mut longest = vec![0.0_f64; self.loading.stages.len()];
-        for instant in self.plan().instants {
-            longest[instant.stage] = longest[instant.stage].max(instant.dt);
-        }
-        for (n, (stage, longest)) in self.loading.stages.iter().zip(longest).enumerate() {
-            let Course::Given(History::Sine { amplitude, frequency, .. }) = stage.course else { continue };
-            let grid = stage.times.as_ref().unwrap_or(&self.times);
-            if amplitude == 0.0 || grid.is_adaptive() || longest * frequency <= 1.001 / LEAST_PER_PERIOD {
-                continue;
-            }
-            let lasts = stage.duration.unwrap_or(end).min(grid.end());
-            let error = Error::invalid(
-                "longest time step under a sine",
-                format!("{longest} s"),
-                format!(
-                    "at most {} s, {LEAST_PER_PERIOD} steps to a period: {} uniform steps at least, or adaptive ones",
-                    1.0 / (LEAST_PER_PERIOD * frequency),
-                    (LEAST_PER_PERIOD * frequency * lasts).ceil(),
-                ),
-            );
-            return Err(if self.loading.stages.len() > 1 { of_stage(error, n) } else { error });
-        }
-        Ok(())
-    }
-
-    /// Without instantaneous compliance nothing follows a jump.
-    fn validate_jumps(&self) -> Result<()> {
-        if self.instantaneous() > 0.0 {
-            return Ok(());
-        }
-        let mut last = 0.0;
-        let mut stage = 0;
-        for instant in self.plan().instants {
-            // What a stage starts from may be known only as the run goes; the march looks then.
-            if instant.jump && instant.stage == stage && instant.value != last {
-                return Err(Error::invalid(
-                    format!("jump of the history at t = {} s", instant.time),
-                    format!("{:e} to {:e}", last, instant.value),
-                    "a ramp: the material has no instantaneous compliance, so no contact follows a jump",
-                ));
-            }
-            (last, stage) = (instant.value, instant.stage);
-        }
-        Ok(())
     }
 }

@@ -1,10 +1,12 @@
 //! The forces of a contact in motion.
 
-use asperity_sweep::{Cells, strands, sweep};
+use asperity_sweep::sums;
 
 use super::Slopes;
+use crate::error::{Error, Result, require, rounded};
 use crate::grid::{Boundary, Grid};
 use crate::quantities::Quantity;
+use crate::simulation::Simulation;
 
 /// Direction of motion: that of the contact over the body that the grid is fixed to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,8 +30,22 @@ impl Direction {
         }
     }
 
+    /// Whether a contact of this simulation can move this way.
+    pub(crate) fn validate(self, simulation: &Simulation) -> Result<()> {
+        let across = simulation.grid.is_line() && self != Direction::X;
+        require(!across, "direction of motion of a line contact", "not x", "x")?;
+        match self {
+            Direction::Angle(angle) if simulation.boundary == Boundary::Free => Err(Error::invalid(
+                "direction of motion on a free domain",
+                format!("{} degrees", rounded(angle.to_degrees())),
+                "x or y; other directions need a periodic domain",
+            )),
+            _ => Ok(()),
+        }
+    }
+
     /// The axis that it is along, of x or y.
-    pub(super) fn axis(self) -> usize {
+    pub(crate) fn axis(self) -> usize {
         usize::from(self == Direction::Y)
     }
 
@@ -187,10 +203,7 @@ impl ContactForces<'_> {
             let edge = self.slope_of_gap(i, j);
             [p, p * (cx * sx + cy * sy), p * (cx * sy - cy * sx), p * arm, p * edge, 1.0]
         };
-        let sums = sweep(Numbers { first: 0, count: grid.len() }, &|numbers: Numbers| {
-            strands(numbers.count, |n| of_cell(numbers.first + n))
-        });
-        sums.map(|sum| grid.cell_area() * sum)
+        sums(0..grid.len(), of_cell).map(|sum| grid.cell_area() * sum)
     }
 
     /// dg/ds by central differences; 0 beside cells that cannot touch.
@@ -213,21 +226,5 @@ impl ContactForces<'_> {
         };
         let slope = cx * along_x + cy * along_y;
         if slope.is_finite() { slope } else { 0.0 }
-    }
-}
-
-/// Numbers of cells that follow one another, to be swept.
-struct Numbers {
-    first: usize,
-    count: usize,
-}
-
-impl Cells for Numbers {
-    fn cells(&self) -> usize {
-        self.count
-    }
-    fn split(self, mid: usize) -> (Self, Self) {
-        let Numbers { first, count } = self;
-        (Numbers { first, count: mid }, Numbers { first: first + mid, count: count - mid })
     }
 }

@@ -9,76 +9,23 @@ use super::torus::Spectrum;
 use crate::error::{Error, Result};
 use crate::grid::{Boundary, Grid};
 use crate::kernel::Kernel;
-use crate::operator::{ApproximateInverse, Backend, ConvolutionPlan, Operator, default_backend};
+use crate::operator::{Body, Convolved, default_backend, mean};
 
-/// u = M p.
-pub(super) struct Metric {
+/// M from the spectrum of A on a torus of these lengths; `kernel` is near M on an endless plane.
+pub(super) fn metric(
     grid: Grid,
     boundary: Boundary,
-    backend: Arc<dyn Backend>,
+    spectrum: &Spectrum,
+    [mx, my]: [usize; 2],
     kernel: Arc<dyn Kernel>,
-    convolution: Box<dyn ConvolutionPlan>,
-    self_influence: f64,
-    determines_mean: bool,
-}
-
-impl Metric {
-    /// From the spectrum of A on a torus of these lengths; `kernel` is near M on an endless plane.
-    pub(super) fn new(
-        grid: Grid,
-        boundary: Boundary,
-        spectrum: &Spectrum,
-        [mx, my]: [usize; 2],
-        kernel: Arc<dyn Kernel>,
-    ) -> Self {
-        let of = |(kx, ky): (usize, usize)| {
-            let a = spectrum.0[ky * mx + kx];
-            if a.re > 0.0 { a.norm_sqr() / a.re } else { 0.0 }
-        };
-        let quarter = Array2::from_shape_fn((mx / 2 + 1, my / 2 + 1), of);
-        let times = |k: usize, m: usize| if k == 0 || 2 * k == m { 1.0 } else { 2.0 };
-        let sum: f64 = quarter.indexed_iter().map(|((kx, ky), s)| times(kx, mx) * times(ky, my) * s).sum();
-        let backend = default_backend();
-        Metric {
-            convolution: backend.plan(grid.cells(), [mx, my], quarter.view()),
-            self_influence: sum / (mx as f64 * my as f64),
-            determines_mean: quarter[(0, 0)] > 0.0,
-            grid,
-            boundary,
-            backend,
-            kernel,
-        }
-    }
-}
-
-impl Operator for Metric {
-    fn grid(&self) -> &Grid {
-        &self.grid
-    }
-
-    fn boundary(&self) -> Boundary {
-        self.boundary
-    }
-
-    fn apply_into(&mut self, p: &[f64], u: &mut [f64]) {
-        self.convolution.apply_into(p, u);
-    }
-
-    fn self_influence(&self) -> f64 {
-        self.self_influence
-    }
-
-    fn determines_mean(&self) -> bool {
-        self.determines_mean
-    }
-
-    fn approximate_inverse(&self) -> ApproximateInverse {
-        ApproximateInverse::new(self.backend.clone(), self.grid, self.boundary, self.kernel.clone())
-    }
-
-    fn on_grid(&self, _grid: Grid) -> Option<Box<dyn Operator>> {
-        None
-    }
+) -> Box<Convolved> {
+    let of = |(kx, ky): (usize, usize)| {
+        let a = spectrum.0[ky * mx + kx];
+        if a.re > 0.0 { a.norm_sqr() / a.re } else { 0.0 }
+    };
+    let quarter = Array2::from_shape_fn((mx / 2 + 1, my / 2 + 1), of);
+    let body = Body { grid, boundary, backend: default_backend(), kernel, has_coarser: false };
+    Convolved::new(body, [mx, my], &quarter, mean([mx, my], quarter.view()))
 }
 
 /// The symbol of M on an endless plane, for the preconditioner.

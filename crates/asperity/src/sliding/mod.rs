@@ -6,7 +6,7 @@
 //!
 //! - [`Steady`]: one steady state for each velocity;
 //! - motion in time is part of the [march](crate::March): the gap moves over a body that keeps its memory;
-//! - [`Persson`]: the estimate of Persson's theory from the power spectrum, for comparison.
+//! - [`Persson`](crate::reference::Persson): the estimate of Persson's theory from the power spectrum, for comparison.
 //!
 //! docs/sliding.md has the theory, what is computed and how it was checked.
 
@@ -15,8 +15,6 @@ mod influence;
 mod metric;
 mod moving;
 mod path;
-mod persson;
-mod shells;
 mod slopes;
 mod steady;
 mod streaming;
@@ -26,7 +24,6 @@ pub(crate) use friction::{ContactForces, SecondEstimate};
 pub use friction::{Direction, Friction};
 pub use moving::MovingGap;
 pub use path::Path;
-pub use persson::{Correction, Magnification, Persson, PerssonFriction};
 pub use slopes::Slopes;
 pub use steady::{Steady, SteadyMotion};
 pub use streaming::Streaming;

@@ -10,7 +10,7 @@ use rustfft::num_complex::Complex64;
 use super::slopes::derivatives;
 use super::torus::{Spectrum, Torus};
 use super::{Direction, Slopes};
-use crate::error::{Error, Result};
+use crate::error::{Result, require};
 use crate::grid::{Boundary, Grid};
 use crate::surface::{Part, Shape, undeformed_gap};
 
@@ -86,9 +86,7 @@ impl MovingGap {
             MovingGap { grid: *grid, boundary, still, shapes, heights, spectra, lowest: 0.0, centre };
         let (start, _) = moving.at(0.0, Direction::X)?;
         moving.lowest = start.iter().fold(f64::INFINITY, |low, h| low.min(*h));
-        if !moving.lowest.is_finite() {
-            return Err(Error::invalid("area that can touch", "no cell", "one cell at least"));
-        }
+        require(moving.lowest.is_finite(), "area that can touch", "no cell", "one cell at least")?;
         Ok(moving)
     }
 
@@ -222,6 +220,16 @@ fn unit(angle: f64) -> Complex64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn cells_that_cannot_touch_do_not_move() {
+        let grid = Grid::new([4, 4], [1.0, 1.0]).unwrap();
+        let mut heights = Array2::zeros((4, 4));
+        heights[[1, 2]] = f64::NEG_INFINITY;
+        let parts = [(Part::Heights { name: "punch".into(), heights }, true)];
+        let refused = MovingGap::new(&grid, Boundary::Free, &parts).unwrap_err().to_string();
+        assert!(refused.contains("flat punch"), "{refused}");
+    }
 
     #[test]
     fn waves_move_exactly_by_any_distance() {

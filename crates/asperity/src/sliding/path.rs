@@ -1,6 +1,6 @@
 //! How far the contact has moved: a path, or a velocity, over time.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, require};
 use crate::load::History;
 
 /// Where the contact is over time.
@@ -44,13 +44,8 @@ impl Path {
 
     fn new(history: History, of_velocity: bool, start: f64) -> Result<Self> {
         history.validate()?;
-        if !(start.is_finite() && start >= 0.0) {
-            return Err(Error::invalid(
-                "start of the motion",
-                format!("{start} s"),
-                "finite and not negative",
-            ));
-        }
+        let sound = start.is_finite() && start >= 0.0;
+        require(sound, "start of the motion", format!("{start} s"), "finite and not negative")?;
         Ok(Path { history, of_velocity, start })
     }
 
@@ -119,13 +114,9 @@ impl Path {
             turns.push(pair[1]);
         }
         let travel: f64 = turns.windows(2).map(|t| (self.position(t[1]) - self.position(t[0])).abs()).sum();
-        if travel / step > MOST {
-            return Err(Error::invalid(
-                "travel in cells",
-                format!("{:e}", travel / step),
-                format!("at most {MOST:e}; a steady state ([motion.steady]) needs no travel"),
-            ));
-        }
+        let expected = format!("at most {MOST:e}; a steady state ([motion.steady]) needs no travel");
+        let cells = travel / step;
+        require(!(cells > MOST), "travel in cells", format!("{cells:e}"), expected)?;
         let mut found = vec![];
         for pair in turns.windows(2) {
             let [a, b] = [pair[0], pair[1]].map(|t| self.position(t) / step);

@@ -10,7 +10,7 @@
 
 use rustfft::num_complex::Complex64;
 
-use crate::error::{Error, Result};
+use crate::error::{Result, require};
 use crate::material::Creep;
 use crate::simulation::Simulation;
 
@@ -31,32 +31,26 @@ impl Streaming {
             let end = simulation.times.end();
             let rate = body.clock.elapsed(0.0, 1e-9 * end) / (1e-9 * end);
             let later = body.clock.elapsed(0.0, end) / end;
-            if (later / rate - 1.0).abs() > 1e-6 {
-                return Err(Error::invalid(
-                    "temperature of a steady state",
-                    "one that changes in time",
-                    "a constant temperature",
-                ));
-            }
+            let steady = !((later / rate - 1.0).abs() > 1e-6);
+            let (what, value) = ("temperature of a steady state", "one that changes in time");
+            require(steady, what, value, "a constant temperature")?;
             parts.push((body.creep.clone(), rate));
         }
         let streaming = Streaming { parts };
-        if streaming.parts.iter().any(|(creep, _)| creep.fluidity > 0.0) {
-            return Err(Error::invalid(
-                "material of a steady state of motion",
-                "one that flows (fluidity above 0)",
-                "a solid: a fluid has no steady sliding state, as the bodies sink into each other for ever",
-            ));
-        }
+        require(
+            streaming.parts.iter().all(|(creep, _)| creep.fluidity <= 0.0),
+            "material of a steady state of motion",
+            "one that flows (fluidity above 0)",
+            "a solid: a fluid has no steady sliding state, as the bodies sink into each other for ever",
+        )?;
         let (instantaneous, relaxed) = (streaming.instantaneous(), streaming.relaxed());
-        if instantaneous <= 1e-6 * relaxed {
-            return Err(Error::invalid(
-                "instantaneous compliance over the relaxed one",
-                format!("{:e}", instantaneous / relaxed),
-                "more than 1e-6: a body in motion needs an instantaneous compliance; add one of a thousandth of the relaxed \
-                 compliance at least (a Kelvin-Voigt material has none)",
-            ));
-        }
+        require(
+            instantaneous > 1e-6 * relaxed,
+            "instantaneous compliance over the relaxed one",
+            format!("{:e}", instantaneous / relaxed),
+            "more than 1e-6: a body in motion needs an instantaneous compliance; add one of a thousandth of the relaxed \
+             compliance at least (a Kelvin-Voigt material has none)",
+        )?;
         Ok(streaming)
     }
 

@@ -6,11 +6,11 @@
 //! pressure-weighted mean, sum p (h0 + u - w) = 0 over 0 < p < H. The steps themselves take no notice.
 
 use super::Stepper;
-use crate::contact::{ContactState, Hardness};
+use crate::contact::ContactState;
 use crate::history::Moment;
 use crate::load::Control;
 use crate::time::Instant;
-use asperity_sweep::{minimum, strands, sum, sweep, zeros};
+use asperity_sweep::{each, minimum, sum, sums, zeros};
 
 /// A state within the last step of a run; [`Drive::view`](crate::Drive::view) shows it as a row.
 pub struct Between {
@@ -31,40 +31,31 @@ impl Stepper {
             return None;
         }
         let part = row.up_to(time);
-        let mut displacement = zeros(self.gap.len());
-        let Moment { share, load } = self.history.within(&part, &self.ends(), &mut displacement)?;
+        let mut displacement = zeros(self.state.gap.len());
+        let Moment { share, load } = self.history.within(&part, &self.state.ends(), &mut displacement)?;
         let hardness = self.contact.hardness();
         let cell_area = self.simulation.grid.cell_area();
-        let (from, to) = (&self.before.pressure[..], &self.now.pressure[..]);
+        let (from, to) = (&self.state.before.pressure[..], &self.state.now.pressure[..]);
         let [before, now] = [from, to].map(|p| cell_area * sum(p));
         let mixed = before + share * (now - before);
         let scale = if mixed > 0.0 { load / mixed } else { 1.0 };
         let mut pressure = zeros(from.len());
-        let fields = (&mut pressure[..], from, to, hardness);
-        sweep(fields, &|(m, a, b, top): (&mut [f64], &[f64], &[f64], Hardness)| {
-            for (i, m) in m.iter_mut().enumerate() {
-                let value = a[i] + share * (b[i] - a[i]);
-                // Cells at the hardness at both ends stay there.
-                *m = if value >= top.at(i) { top.at(i) } else { (scale * value).min(top.at(i)) };
-            }
+        each(&mut pressure, (from, to, hardness), |m, (a, b, top)| {
+            let value = a + share * (b - a);
+            // Cells at the hardness at both ends stay there.
+            *m = if value >= top { top } else { (scale * value).min(top) };
         });
-        let mut gap = self.undeformed.now().to_vec();
-        sweep((&mut gap[..], &displacement[..]), &|(h, u): (&mut [f64], &[f64])| {
-            h.iter_mut().zip(u).for_each(|(h, u)| *h += u);
-        });
-        let cells = (&pressure[..], &gap[..], hardness);
-        let [weight, closed, touching] = sweep(cells, &|(p, h, hardness): (&[f64], &[f64], Hardness)| {
-            strands(p.len(), |i| {
-                let free = if p[i] > 0.0 && p[i] < hardness.at(i) { p[i] } else { 0.0 };
-                let closed = if free > 0.0 { free * h[i] } else { 0.0 };
-                [free, closed, f64::from(u8::from(p[i] > 0.0))]
-            })
+        let mut gap = self.state.undeformed.now().to_vec();
+        each(&mut gap, &displacement[..], |h, u| *h += u);
+        let [weight, closed, touching] = sums((&pressure[..], &gap[..], hardness), |(p, h, hardness)| {
+            let free = if p > 0.0 && p < hardness { p } else { 0.0 };
+            [free, if free > 0.0 { free * h } else { 0.0 }, f64::from(u8::from(p > 0.0))]
         });
         let approach = match row.instant.control {
             _ if weight > 0.0 => closed / weight,
             Control::Approach => part.instant.value,
             // Every touching cell is at the hardness: bounded from below only.
-            _ if touching > 0.0 => self.now.approach,
+            _ if touching > 0.0 => self.state.now.approach,
             _ => minimum(&gap),
         };
         // The gap holds u itself: nothing is multiplied by a compliance.

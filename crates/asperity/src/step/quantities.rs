@@ -1,11 +1,10 @@
 //! The quantities of a row, taken when the row is solved: those of its state here, the others from the processes.
 
 use super::Step;
-use crate::contact::Hardness;
 use crate::quantities::{Column, Quantity, contact_edges, densities, eccentricity, spot_classes};
 use crate::simulation::Plasticity;
 use crate::spots::{Spots, spans};
-use asperity_sweep::{strands, sweep};
+use asperity_sweep::sums;
 
 /// The quantities of the last row.
 #[derive(Clone, Debug, Default)]
@@ -114,12 +113,10 @@ impl Step<'_> {
         // Where flattening stays, a cell ends its row just closed.
         let closes = self.simulation.plasticity == Plasticity::Accumulate;
         let cells = (&self.state.unit_displacement[..], self.gap, &self.state.pressure[..], self.hardness);
-        let [square, cells] = sweep(cells, &|(u, h, p, hardness): (&[f64], &[f64], &[f64], Hardness)| {
-            strands(u.len(), |i| {
-                let apart = h[i] < f64::INFINITY && !(closes && p[i] >= hardness.at(i));
-                let gap = if apart { c * u[i] + h[i] - w } else { 0.0 };
-                [gap * gap, f64::from(u8::from(h[i] < f64::INFINITY))]
-            })
+        let [square, cells] = sums(cells, |(u, h, p, hardness)| {
+            let apart = h < f64::INFINITY && !(closes && p >= hardness);
+            let gap = if apart { c * u + h - w } else { 0.0 };
+            [gap * gap, f64::from(u8::from(h < f64::INFINITY))]
         });
         (square / cells).sqrt()
     }

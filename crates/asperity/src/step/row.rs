@@ -1,6 +1,5 @@
 //! What a row of the result tells: numbers of the contact, and the fields on request.
 
-use asperity_sweep::simd::{F64x8, Work, vectorize};
 use ndarray::{Array2, ArrayView2};
 
 use crate::contact::{ContactState, Hardness, Outcome};
@@ -12,9 +11,9 @@ use crate::process::{Process, cells};
 use crate::quantities::{Column, Quantity, contact_edges};
 use crate::simulation::Simulation;
 use crate::sliding::Friction;
-use crate::step::{Recorder, UndeformedGap};
+use crate::step::{Recorder, Stepper, UndeformedGap};
 use crate::time::Instant;
-use asperity_sweep::{Max, sweep};
+use asperity_sweep::{Max, kernel, run};
 
 /// The numbers of one row.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -242,6 +241,30 @@ impl<'a> Step<'a> {
     }
 }
 
+impl Stepper {
+    /// The state as a row of no time yet.
+    pub(crate) fn row(&self) -> Step<'_> {
+        Step {
+            index: 0,
+            coordinate: Coordinate::None,
+            instant: None,
+            control: Control::Load,
+            simulation: &self.simulation,
+            hardness: self.contact.hardness(),
+            state: &self.state.now,
+            gap: &self.state.gap,
+            compliance: self.state.compliance,
+            outcome: self.outcome,
+            recalled: Recalled::History(&*self.history),
+            time_error: None,
+            undeformed: Some(&self.state.undeformed),
+            processes: &self.processes,
+            recorder: None,
+            friction: None,
+        }
+    }
+}
+
 impl Recalled<'_> {
     fn write(self, g: &mut [f64]) {
         match self {
@@ -271,12 +294,9 @@ impl Row {
         outcome: &Outcome,
     ) -> Row {
         let (c, w) = (compliance, state.approach);
-        let ([pressure, touching, capped, gap, touchable], Max(peak)) = sweep(
-            (&state.pressure[..], &state.unit_displacement[..], gap, hardness),
-            &|(p, u, h, hardness): (&[f64], &[f64], &[f64], Hardness)| {
-                vectorize(Survey { p, u, h, hardness, c, w })
-            },
-        );
+        let (p, u, h) = (&state.pressure[..], &state.unit_displacement[..], gap);
+        let ([pressure, touching, capped, gap, touchable], Max(peak)) =
+            run(Survey { p, u, h, hardness, c, w });
         // The border of a free domain is no edge of the contact, and the ends of a line contact are points.
         let edges = match grid.is_line() {
             true => 0,
@@ -305,21 +325,13 @@ impl Row {
     }
 }
 
-/// The sums of p, of touching cells, of capped ones, of gaps, and of cells that can touch; and the largest p.
-struct Survey<'a> {
-    p: &'a [f64],
-    u: &'a [f64],
-    h: &'a [f64],
-    hardness: Hardness<'a>,
-    c: f64,
-    w: f64,
-}
-
-impl Work for Survey<'_> {
-    type Yield = ([f64; 5], Max);
-
-    #[inline(always)]
-    fn run<V: F64x8>(self) -> ([f64; 5], Max) {
+kernel! {
+    /// The sums of p, of touching cells, of capped ones, of gaps, and of cells that can touch; and the largest p.
+    struct Survey<'a> {
+        cells { p: &'a [f64], u: &'a [f64], h: &'a [f64], hardness: Hardness<'a> }
+        numbers { c: f64, w: f64 }
+    }
+    fn run<V>(self) -> ([f64; 5], Max) {
         let [zero, c, w] = [0.0, self.c, self.w].map(V::splat);
         let (mut sums, mut peak) = ([zero; 5], zero);
         for n in (0..self.p.len()).step_by(8) {

@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 use super::event::{Enclosure, MET};
 use super::interval::{Course, Interval, Piece};
-use super::snapshot::{Loader, Saver};
+use super::snapshot::{Loader, Saver, saved};
 use super::step_size::StepSizeControl;
 use crate::error::{Error, Result};
 use crate::load::{Control, Event, History, Stage};
@@ -451,63 +451,58 @@ impl Schedule {
         (self.stage, self.started_from) = (stage, reached);
     }
 
-    pub(crate) fn save(&self, to: &mut Saver<'_>) {
-        let flag = |yes: bool| f64::from(u8::from(yes));
-        to.numbers("stage", vec![self.stage as f64, self.course.start, self.started_from, self.next as f64]);
-        to.number("smooth", flag(self.is_smooth));
-        to.number("side", self.side);
-        to.numbers("reached", vec![self.reached.approach, self.reached.load, flag(self.touched)]);
-        to.numbers("largest", vec![self.largest.approach, self.largest.load]);
-        if let Some(value) = self.jump {
-            to.number("jump", value);
-        }
-        if let Some(last) = self.last {
-            to.numbers("last", vec![last.time, last.dt, last.value, flag(last.jump)]);
+    pub(crate) fn save<'a>(&'a self, to: &mut Saver<'a>) {
+        to.values("stage", &[&self.stage, &self.course.start, &self.started_from, &self.next]);
+        self.save_own(to);
+        if let Some(Instant { time, dt, value, jump, .. }) = &self.last {
+            to.values("last", &[time, dt, value, jump]);
         }
         if let Some(size) = &self.size {
-            to.numbers("step_size", vec![size.dt, size.elapsed]);
+            to.values("step_size", &[&size.dt, &size.elapsed]);
         }
         let stopped = match self.stopped {
-            None => 0.0,
-            Some(StopReason::Complete) => 1.0,
-            Some(StopReason::Missed { .. }) => 2.0,
+            None => 0usize,
+            Some(StopReason::Complete) => 1,
+            Some(StopReason::Missed { .. }) => 2,
         };
-        to.number("stopped", stopped);
+        to.value("stopped", &stopped);
     }
 
     pub(crate) fn load(&mut self, from: &mut Loader<'_>) -> Result<()> {
-        let [stage, start, reached, next] = from.array("stage")?;
-        let is_sound = stage >= 0.0 && stage < self.plan.stages.len() as f64 && start >= 0.0 && next >= 0.0;
-        if !is_sound || !start.is_finite() || !reached.is_finite() {
+        let (mut stage, mut start, mut reached, mut next) = (0_usize, 0.0_f64, 0.0_f64, 0_usize);
+        from.values_into("stage", &mut [&mut stage, &mut start, &mut reached, &mut next])?;
+        if stage >= self.plan.stages.len() || !(start.is_finite() && start >= 0.0 && reached.is_finite()) {
             return Err(from.foreign("stages of another programme"));
         }
-        self.arrive(stage as usize, start, reached);
-        self.next = next as usize;
+        self.arrive(stage, start, reached);
+        self.next = next;
         if self.next > self.stops.len() {
             return Err(from.foreign("times of another programme"));
         }
-        self.is_smooth = from.number("smooth")? == 1.0;
-        self.side = from.number("side")?;
-        let [approach, load, touched] = from.array("reached")?;
-        (self.reached, self.touched) = (Response { approach, load }, touched == 1.0);
-        let [approach, load] = from.array("largest")?;
-        self.largest = Response { approach, load };
-        self.jump = from.number("jump").ok();
-        self.last = from.array("last").ok().map(|[time, dt, value, jump]| {
-            let (control, stage) = (self.stage().control, self.stage);
-            Instant { time, dt, value, jump: jump == 1.0, control, stage }
-        });
-        if let (Some(size), Ok([dt, elapsed])) = (&mut self.size, from.array("step_size")) {
-            (size.dt, size.elapsed) = (dt, elapsed);
+        self.load_own(from)?;
+        let (control, stage) = (self.stage().control, self.stage);
+        let mut last = Instant { time: 0.0, dt: 0.0, value: 0.0, jump: false, control, stage };
+        let Instant { time, dt, value, jump, .. } = &mut last;
+        self.last = from.values_into("last", &mut [time, dt, value, jump]).ok().map(|()| last);
+        if let Some(size) = &mut self.size {
+            from.values_into("step_size", &mut [&mut size.dt, &mut size.elapsed])?;
         }
-        self.stopped = match (from.number("stopped")?, self.stage().until) {
-            (0.0, _) => None,
-            (2.0, Some(event)) => {
-                Some(StopReason::Missed { stage: self.stage, event, reached: self.reached })
-            }
+        self.stopped = match (from.get("stopped")?, self.stage().until) {
+            (0_usize, _) => None,
+            (2, Some(event)) => Some(StopReason::Missed { stage: self.stage, event, reached: self.reached }),
             _ => Some(StopReason::Complete),
         };
         Ok(())
+    }
+}
+
+saved! {
+    Schedule {
+        "smooth": is_smooth;
+        "side": side;
+        "reached": reached.approach, reached.load, touched;
+        "largest": largest.approach, largest.load;
+        "jump": jump;
     }
 }
 

@@ -3,6 +3,8 @@
 //! Each room saves its own state under its own name ("schedule/stage", "history/displacement") and takes it back by that name,
 //! so that no room knows what the others save, or in which order.
 
+use std::slice::Iter;
+
 use ndarray::{Array2, ArrayView2, CowArray, Ix2};
 
 use crate::error::{Error, Result};
@@ -25,6 +27,82 @@ impl Checkpoint<'_> {
         Checkpoint { step: self.step, numbers: self.numbers, fields: fields.collect() }
     }
 }
+
+/// What a checkpoint holds as numbers.
+pub(crate) trait Saved {
+    fn save(&self, to: &mut Vec<f64>);
+
+    /// Takes its numbers back from the first ones left; `None` where they do not fit.
+    fn load(&mut self, from: &mut Iter<'_, f64>) -> Option<()>;
+}
+
+impl Saved for f64 {
+    fn save(&self, to: &mut Vec<f64>) {
+        to.push(*self);
+    }
+    fn load(&mut self, from: &mut Iter<'_, f64>) -> Option<()> {
+        from.next().map(|number| *self = *number)
+    }
+}
+
+impl Saved for bool {
+    fn save(&self, to: &mut Vec<f64>) {
+        to.push(f64::from(u8::from(*self)));
+    }
+    fn load(&mut self, from: &mut Iter<'_, f64>) -> Option<()> {
+        from.next().map(|number| *self = *number == 1.0)
+    }
+}
+
+impl Saved for usize {
+    fn save(&self, to: &mut Vec<f64>) {
+        to.push(*self as f64);
+    }
+    fn load(&mut self, from: &mut Iter<'_, f64>) -> Option<()> {
+        from.next().filter(|number| **number >= 0.0).map(|number| *self = *number as usize)
+    }
+}
+
+/// As many as there are.
+impl<T: Saved> Saved for Vec<T> {
+    fn save(&self, to: &mut Vec<f64>) {
+        self.iter().for_each(|value| value.save(to));
+    }
+    fn load(&mut self, from: &mut Iter<'_, f64>) -> Option<()> {
+        self.iter_mut().try_for_each(|value| value.load(from))
+    }
+}
+
+/// The last of its list.
+impl<T: Saved + Default> Saved for Option<T> {
+    fn save(&self, to: &mut Vec<f64>) {
+        self.iter().for_each(|value| value.save(to));
+    }
+    fn load(&mut self, from: &mut Iter<'_, f64>) -> Option<()> {
+        *self = (from.len() > 0).then(T::default);
+        self.iter_mut().try_for_each(|value| value.load(from))
+    }
+}
+
+/// Declares once what of a state is saved and taken back, by name: numbers, several values to a list, and fields.
+macro_rules! saved {
+    ($state:ty { $($name:literal: $($value:tt $(. $part:tt)* $([$index:literal])?),+;)* }
+     $(fields { $($field_name:literal: $field:tt $(. $field_part:tt)*;)* })?) => {
+        impl $state {
+            pub(crate) fn save_own<'a>(&'a self, to: &mut crate::step::Saver<'a>) {
+                $(to.values($name, &[$(&self.$value $(. $part)* $([$index])?),+]);)*
+                $($(to.field($field_name, &self.$field $(. $field_part)*);)*)?
+            }
+
+            pub(crate) fn load_own(&mut self, from: &crate::step::Loader<'_>) -> crate::error::Result<()> {
+                $(from.values_into($name, &mut [$(&mut self.$value $(. $part)* $([$index])?),+])?;)*
+                $($(from.field_into($field_name, &mut self.$field $(. $field_part)*)?;)*)?
+                Ok(())
+            }
+        }
+    };
+}
+pub(crate) use saved;
 
 /// Writes a checkpoint, room by room.
 pub(crate) struct Saver<'a> {
@@ -51,11 +129,14 @@ impl<'a> Saver<'a> {
         self.room = outer;
     }
 
-    pub(crate) fn number(&mut self, name: &str, number: f64) {
-        self.numbers(name, vec![number]);
+    pub(crate) fn value(&mut self, name: &str, value: &dyn Saved) {
+        self.values(name, &[value]);
     }
 
-    pub(crate) fn numbers(&mut self, name: &str, numbers: Vec<f64>) {
+    /// Several values as one list.
+    pub(crate) fn values(&mut self, name: &str, values: &[&dyn Saved]) {
+        let mut numbers = vec![];
+        values.iter().for_each(|value| value.save(&mut numbers));
         self.checkpoint.numbers.push((format!("{}{name}", self.room), numbers));
     }
 
@@ -116,30 +197,20 @@ impl<'a> Loader<'a> {
         found.map(|(_, numbers)| &numbers[..]).ok_or_else(|| self.foreign(format!("without {name}")))
     }
 
-    pub(crate) fn array<const N: usize>(&self, name: &str) -> Result<[f64; N]> {
-        let numbers = self.numbers(name)?;
-        numbers.try_into().map_err(|_| self.foreign(format!("{} numbers of {name}", numbers.len())))
+    pub(crate) fn get<T: Saved + Default>(&self, name: &str) -> Result<T> {
+        let mut value = T::default();
+        self.values_into(name, &mut [&mut value])?;
+        Ok(value)
     }
 
-    pub(crate) fn number(&self, name: &str) -> Result<f64> {
-        self.array::<1>(name).map(|[number]| number)
-    }
-
-    pub(crate) fn numbers_into(&self, name: &str, to: &mut [f64]) -> Result<()> {
-        self.check(name, |numbers| {
-            let fits = numbers.len() == to.len();
-            if fits {
-                to.copy_from_slice(numbers);
-            }
-            fits
-        })
-    }
-
-    /// Hands numbers to `take`, which says whether they fit.
-    pub(crate) fn check(&self, name: &str, take: impl FnOnce(&[f64]) -> bool) -> Result<()> {
-        match take(self.numbers(name)?) {
-            true => Ok(()),
-            false => Err(self.foreign(format!("with other {name}"))),
+    /// Takes the values of one list back.
+    pub(crate) fn values_into(&self, name: &str, to: &mut [&mut dyn Saved]) -> Result<()> {
+        let found = self.numbers(name);
+        let mut numbers = found.as_ref().map_or(&[][..], |numbers| numbers).iter();
+        let taken = to.iter_mut().try_for_each(|value| value.load(&mut numbers));
+        match taken.filter(|()| numbers.len() == 0) {
+            Some(()) => Ok(()),
+            None => Err(found.err().unwrap_or_else(|| self.foreign(format!("with other {name}")))),
         }
     }
 

@@ -9,7 +9,6 @@ use super::event::Enclosure;
 use super::{Interval, Load, Stepper};
 use crate::error::Result;
 use crate::load::Control;
-use asperity_sweep::minimum;
 
 /// Bodies that are closer than this share of their motion in the step touch from its start on.
 const TOUCHING: f64 = 1e-6;
@@ -39,7 +38,7 @@ impl Stepper {
             }
             // Pressure from the start on.
             let step = step.under(Load::Approach);
-            self.reset(&step)?;
+            self.reopen(&step)?;
             return Ok((step, false));
         }
         if locates && overlap <= 0.0 {
@@ -62,18 +61,18 @@ impl Stepper {
 
     fn cut(&mut self, step: &Interval, dt: f64) -> Result<(Interval, bool)> {
         let step = step.of_length(dt);
-        self.reset(&step)?;
+        self.reopen(&step)?;
         Ok((step, true))
     }
 
     /// How far the prescribed approach goes beyond first touch at the end of a step of this length.
     fn overlap_at(&mut self, step: &Interval, dt: f64) -> Result<f64> {
         let step = step.of_length(dt);
-        self.reset(&step)?;
+        self.reopen(&step)?;
         Ok(self.overlap(&step))
     }
 
     fn overlap(&self, step: &Interval) -> f64 {
-        step.instant.value - minimum(&self.gap)
+        step.instant.value - self.state.first_touch()
     }
 }

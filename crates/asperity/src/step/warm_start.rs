@@ -7,7 +7,7 @@
 //! state, and where it could show, U is computed afresh. Where layers creep differently the operator is another one in each step:
 //! there the two U cost a convolution each, and save several iterations.
 
-use asperity_sweep::simd::{F64x8, Mask, Work};
+use asperity_sweep::simd::Mask;
 
 use super::{Interval, Stepper};
 use crate::contact::{ContactState, Hardness, Prescribed, SAME_LOAD, Start};
@@ -139,7 +139,7 @@ impl Pair {
 }
 
 impl Stepper {
-    /// Makes the guess for the contact of `step` in `self.now`, which holds the row before the last one, or the last attempt at this
+    /// Makes the guess for the contact of `step` in `self.state.now`, which holds the row before the last one, or the last attempt at this
     /// row.
     pub(super) fn guess(&mut self, step: &Interval, prescribed: Prescribed) -> Start {
         if let Some(start) = self.guess_shifted(step, prescribed) {
@@ -147,7 +147,7 @@ impl Stepper {
         }
         let linear = match self.tried {
             Some(tried) => -(step.length() / tried).min(REACH.end),
-            None if self.last_length > 0.0 => (step.length() / self.last_length).min(REACH.end),
+            None if self.state.last_length > 0.0 => (step.length() / self.state.last_length).min(REACH.end),
             None => 0.0,
         };
         self.combine(prescribed, linear)
@@ -155,9 +155,9 @@ impl Stepper {
 
     /// The guess where the gap moves: the last pressure, moved by whole cells. `None` where it does not move so far.
     fn guess_shifted(&mut self, step: &Interval, prescribed: Prescribed) -> Option<Start> {
-        let shift = self.shift(step).filter(|shift| *shift != [0; 2] && self.touched)?;
+        let shift = self.shift(step).filter(|shift| *shift != [0; 2] && self.state.touched)?;
         let (grid, boundary) = (&self.simulation.grid, self.simulation.boundary);
-        let (from, to) = (&self.before, &mut self.now);
+        let (from, to) = (&self.state.before, &mut self.state.now);
         roll(grid.shape(), boundary, shift, &from.pressure, &mut to.pressure);
         roll(grid.shape(), boundary, shift, &from.unit_displacement, &mut to.unit_displacement);
         to.rounding = from.rounding + 1.0;
@@ -172,34 +172,35 @@ impl Stepper {
 
     /// `linear` is the f of extrapolation in time.
     fn combine(&mut self, prescribed: Prescribed, linear: f64) -> Start {
-        for known in [&mut self.now, &mut self.before] {
+        for known in [&mut self.state.now, &mut self.state.before] {
             self.outcome.convolutions += self.contact.refresh(known);
         }
         let cell_area = self.simulation.grid.cell_area();
         let (hardness, tolerance) = (self.contact.hardness(), self.contact.tolerance());
-        let ContactState { pressure: p, unit_displacement: u, .. } = &mut self.now;
-        let ContactState { pressure: p_last, unit_displacement: u_last, .. } = &self.before;
+        let ContactState { pressure: p, unit_displacement: u, .. } = &mut self.state.now;
+        let ContactState { pressure: p_last, unit_displacement: u_last, .. } = &self.state.before;
         let (p, u, p_last, u_last) = (&mut p[..], &mut u[..], &p_last[..], &u_last[..]);
-        let pair = run(Products { p: &*p, u: &*u, p_last, u_last, gap: &self.gap, hardness });
+        let pair = run(Products { p: &*p, u: &*u, p_last, u_last, gap: &self.state.gap, hardness });
         let combination = pair.best(&Wanted {
-            compliance: self.compliance,
+            compliance: self.state.compliance,
             prescribed,
             cell_area,
             linear,
             tolerance,
-            rounding: 16.0 * f64::EPSILON * self.before.approach.abs(),
+            rounding: 16.0 * f64::EPSILON * self.state.before.approach.abs(),
         });
         let [total, feasible, outside, kept] = run(Combine { p, u, p_last, u_last, hardness, combination });
         // After a row whose U was computed afresh the next one is, too: the error of the row before it is still in f.
-        let refreshed = self.now.rounding > REFRESHED * self.before.rounding;
+        let refreshed = self.state.now.rounding > REFRESHED * self.state.before.rounding;
         let Combination { a, f } = combination;
-        self.now.rounding = (a + f).abs() * self.before.rounding + f.abs() * self.now.rounding + 1.0;
+        self.state.now.rounding =
+            (a + f).abs() * self.state.before.rounding + f.abs() * self.state.now.rounding + 1.0;
         // The load is met but for rounding; where nothing presses, the solver starts cold.
         let has_load = match prescribed {
             Prescribed::Load(load) => (cell_area * total / load - 1.0).abs() <= SAME_LOAD,
             Prescribed::Approach(_) => feasible > 0.0,
         };
-        let is_precise = self.now.is_precise(tolerance) && !refreshed;
+        let is_precise = self.state.now.is_precise(tolerance) && !refreshed;
         if has_load && is_precise && kept == 0.0 && outside <= OUTSIDE * feasible {
             Start::Displacement { feasible: outside == 0.0 }
         } else {
@@ -216,13 +217,7 @@ kernel! {
             gap: &'a [f64], hardness: Hardness<'a>,
         }
     }
-}
-
-impl Work for Products<'_> {
-    type Yield = Pair;
-
-    #[inline(always)]
-    fn run<V: F64x8>(self) -> Pair {
+    fn run<V>(self) -> Pair {
         let zero = V::splat(0.0);
         let (mut energy, mut work, mut sum) = ([zero; 3], [zero; 2], [zero; 2]);
         let (mut size, mut at_cut_off) = (zero, zero);
@@ -273,13 +268,7 @@ kernel! {
         }
         numbers { combination: Combination }
     }
-}
-
-impl Work for Combine<'_> {
-    type Yield = [f64; 4];
-
-    #[inline(always)]
-    fn run<V: F64x8>(self) -> [f64; 4] {
+    fn run<V>(self) -> [f64; 4] {
         let Combination { a, f } = self.combination;
         let (a, f, zero) = (V::splat(a), V::splat(f), V::splat(0.0));
         let mut sums = [zero; 4];
@@ -343,7 +332,8 @@ mod tests {
             while let Some(step) = march.advance().unwrap() {
                 let row = step.row();
                 rows += usize::from(row.convolutions == row.iterations);
-                let Stepper { contact, now, .. } = &mut march.stepper;
+                let Stepper { contact, state, .. } = &mut march.stepper;
+                let now = &mut state.now;
                 contact.operator.apply_into(&now.pressure, &mut fresh);
                 let largest = fresh.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
                 let off = fresh.iter().zip(&now.unit_displacement).map(|(a, b)| (a - b).abs());
@@ -365,18 +355,18 @@ mod tests {
                 march.advance().unwrap();
             }
             let March { stepper, schedule, .. } = &mut march;
-            let (last, before) = (stepper.now.pressure.clone(), stepper.before.pressure.clone());
+            let (last, before) = (stepper.state.now.pressure.clone(), stepper.state.before.pressure.clone());
             let Proposal::Try(step) = schedule.propose().unwrap() else { panic!("more rows are planned") };
-            let step = stepper.set(&step).unwrap();
+            let step = stepper.open(&step).unwrap();
             stepper.guess(&step, step.prescribed(1.0));
-            let guess = stepper.now.pressure.clone();
+            let guess = stepper.state.now.pressure.clone();
             let mut energy = |beside: f64| -> f64 {
                 let p: Vec<f64> =
                     (0..last.len()).map(|n| guess[n] + beside * (last[n] - before[n])).collect();
                 let mut u = vec![0.0; p.len()];
                 stepper.contact.operator.apply_into(&p, &mut u);
-                let terms = p.iter().zip(&u).zip(&stepper.gap);
-                terms.map(|((p, u), h)| 0.5 * stepper.compliance * p * u + h * p).sum()
+                let terms = p.iter().zip(&u).zip(&stepper.state.gap);
+                terms.map(|((p, u), h)| 0.5 * stepper.state.compliance * p * u + h * p).sum()
             };
             let [less, here, more] = [-0.1, 0.0, 0.1].map(&mut energy);
             // A parabola with its end here, to what differences of the energy keep.

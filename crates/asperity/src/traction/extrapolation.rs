@@ -1,6 +1,6 @@
 //! Extrapolation of a fixed-point iteration b <- B(b) from its last passes (D. G. Anderson, J. ACM 12 (1965) 547).
 
-use asperity_sweep::{strands, sweep};
+use asperity_sweep::{dot, each};
 
 /// Passes that are looked back to.
 const DEPTH: usize = 2;
@@ -32,19 +32,14 @@ impl Extrapolation {
         let weights = self.weights();
         bound.fill(0.0);
         for ([b, f], weight) in self.passes.iter().zip(&weights) {
-            sweep((&mut *bound, &b[..], &f[..]), &|(to, b, f): (&mut [f64], &[f64], &[f64])| {
-                to.iter_mut().zip(b.iter().zip(f)).for_each(|(to, (b, f))| *to += weight * (b + f));
-            });
+            each(bound, (&b[..], &f[..]), |to, (b, f)| *to += weight * (b + f));
         }
     }
 
     /// Weights of sum 1 whose combination of the f is least.
     fn weights(&self) -> Vec<f64> {
         let count = self.passes.len();
-        let product = |i: usize, j: usize| {
-            let fields = (&self.passes[i][1][..], &self.passes[j][1][..]);
-            sweep(fields, &|(a, b): (&[f64], &[f64])| strands(a.len(), |k| [a[k] * b[k]]))[0]
-        };
+        let product = |i: usize, j: usize| dot(&self.passes[i][1], &self.passes[j][1]);
         let mut plain = vec![0.0; count];
         if let Some(last) = plain.last_mut() {
             *last = 1.0;

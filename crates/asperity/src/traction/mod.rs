@@ -15,8 +15,6 @@
 //! Under a prescribed load W a pass in which Σ b alone exceeds W/A leaves no load to the contact: then the approach is searched at
 //! which the tractions carry W. After convergence the state holds t and U = K t: what the bodies remember is the total traction.
 
-#![allow(clippy::type_complexity)] // the closures of a sweep spell out the slices that they walk
-
 mod extrapolation;
 #[cfg(test)]
 mod tests;
@@ -27,7 +25,7 @@ use crate::contact::{ContactState, Outcome, Prescribed, Problem, Solver, SolverO
 use crate::error::{Error, NotConverged, Result};
 use crate::grid::Grid;
 use crate::operator::Operator;
-use asperity_sweep::{strands, sum, sweep};
+use asperity_sweep::{each, sum, sums};
 use extrapolation::Extrapolation;
 
 /// Passes after which a solve is given up.
@@ -190,10 +188,7 @@ impl Run<'_> {
     fn pass(&mut self, problem: &Problem) -> Result<Pass> {
         let (own, c) = (&mut *self.own, problem.compliance);
         self.operator.apply_into(&own.bound, &mut own.image);
-        let fields = (&mut own.shifted[..], problem.gap, &own.image[..]);
-        sweep(fields, &|(to, h, u): (&mut [f64], &[f64], &[f64])| {
-            to.iter_mut().zip(h.iter().zip(u)).for_each(|(to, (h, u))| *to = h + c * u);
-        });
+        each(&mut own.shifted, (problem.gap, &own.image[..]), |to, (h, u)| *to = h + c * u);
         let cell_area = self.operator.grid().cell_area();
         let prescribed = match problem.prescribed {
             Prescribed::Load(load) => {
@@ -212,23 +207,18 @@ impl Run<'_> {
         let outcome =
             solver.solve_from(Start::Pressure, self.operator, &inner, &options, state, self.interrupt)?;
         let w = own.contact.approach;
-        let fields = (&mut own.gap[..], &own.shifted[..], &own.contact.unit_displacement[..]);
-        sweep(fields, &|(to, h, u): (&mut [f64], &[f64], &[f64])| {
-            to.iter_mut().zip(h.iter().zip(u)).for_each(|(to, (h, u))| *to = (h + c * u - w).max(0.0));
-        });
+        let fields = (&own.shifted[..], &own.contact.unit_displacement[..]);
+        each(&mut own.gap, fields, |to, (h, u)| *to = (h + c * u - w).max(0.0));
         self.own.law.bound(&self.own.gap, &self.own.contact.pressure, &mut self.own.next)?;
         let own = &*self.own;
         let fields = (
             (&own.bound[..], &own.next[..], &own.contact.pressure[..]),
             (&own.image[..], &own.contact.unit_displacement[..]),
         );
-        let [change, size, work, total] =
-            sweep(fields, &|((b, next, q), (kb, kq)): ((&[f64], &[f64], &[f64]), (&[f64], &[f64]))| {
-                strands(b.len(), |i| {
-                    let t = b[i] + q[i];
-                    [(next[i] - b[i]).abs(), next[i].abs() + q[i], t * (kb[i] + kq[i]), t]
-                })
-            });
+        let [change, size, work, total] = sums(fields, |((b, next, q), (kb, kq))| {
+            let t = b + q;
+            [(next - b).abs(), next.abs() + q, t * (kb + kq), t]
+        });
         let scale = own.scale.max(size);
         let potential = own.law.energy(&own.gap);
         self.own.scale = scale;

@@ -3,11 +3,12 @@
 use super::{Check, Checks, elastic_contact, shape_on};
 use crate::contact::SolverOptions;
 use crate::drive::Drive;
+use crate::drive::March;
 use crate::error::Result;
 use crate::grid::{Boundary, Grid};
 use crate::load::{Control, History, Loading};
-use crate::march::{March, Simulation};
 use crate::reference::{CappedHertz, CircularPunch, HertzEllipse, HertzSphere, SneddonCone, Westergaard};
+use crate::simulation::Simulation;
 use crate::surface::{Part, Punch, Shape, undeformed_gap};
 
 /// (dx/a)^2 times `factor`: what the discretisation leaves of approach and peak pressure.

@@ -3,11 +3,13 @@
 use super::{Check, Checks, shape_on, step_load, zener};
 use crate::contact::SolverOptions;
 use crate::drive::Drive;
+use crate::drive::March;
 use crate::error::Result;
 use crate::load::{Control, History, Loading};
-use crate::march::{March, Plasticity, Row, Simulation};
 use crate::material::Creep;
 use crate::quantities::{Quantities, Quantity};
+use crate::simulation::{Plasticity, Simulation};
+use crate::step::Row;
 use crate::surface::{Punch, Shape};
 use crate::time::TimeGrid;
 

@@ -3,11 +3,13 @@
 use super::{Check, Checks, rows, step_load, zener};
 use crate::contact::SolverOptions;
 use crate::drive::Drive;
+use crate::drive::March;
 use crate::error::Result;
 use crate::grid::{Boundary, Grid};
 use crate::load::{Control, History, Loading, Programme};
-use crate::march::{March, Row, Simulation};
 use crate::material::Creep;
+use crate::simulation::Simulation;
+use crate::step::Row;
 use crate::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
 use crate::time::TimeGrid;
 

@@ -4,11 +4,13 @@ use crate::drive::Drive;
 use std::f64::consts::{FRAC_2_PI, PI};
 
 use super::{Check, Checks, step_load};
+use crate::drive::March;
 use crate::error::Result;
 use crate::grid::{Boundary, Grid};
 use crate::load::{Control, History, Loading};
-use crate::march::{March, Row, Simulation};
 use crate::reference::Westergaard;
+use crate::simulation::Simulation;
+use crate::step::Row;
 use crate::surface::{Part, Punch, Shape, undeformed_gap};
 
 /// The first row of a line contact, its pressure and its displacement.

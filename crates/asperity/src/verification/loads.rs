@@ -3,10 +3,12 @@
 use super::{Check, Checks, rows, shape_on, step_load, zener};
 use crate::cycles::cycles;
 use crate::drive::Drive;
+use crate::drive::March;
 use crate::error::Result;
 use crate::load::{Control, Course, Event, History, Loading, Programme, Stage};
-use crate::march::{March, Row, Simulation};
 use crate::material::{Creep, CreepTerm};
+use crate::simulation::Simulation;
+use crate::step::Row;
 use crate::surface::{Punch, Shape};
 use crate::time::TimeGrid;
 

@@ -15,11 +15,13 @@ mod temperature;
 mod viscoelastic;
 
 use crate::drive::Drive;
+use crate::drive::March;
 use crate::error::Result;
 use crate::grid::Grid;
 use crate::load::{Control, History, Loading, Programme};
-use crate::march::{March, Row, Simulation};
 use crate::material::{Creep, CreepTerm, Relaxation, RelaxationTerm};
+use crate::simulation::Simulation;
+use crate::step::Row;
 use crate::surface::{Part, Shape, undeformed_gap};
 
 /// One compared quantity.

@@ -4,8 +4,9 @@
 use super::{Check, Checks, rows, shape_on, zener, zener_relaxation};
 use crate::error::Result;
 use crate::load::{Control, History, Loading};
-use crate::march::{Row, Simulation};
 use crate::reference::{Mdr, MdrOptions, MdrProfile, MdrState};
+use crate::simulation::Simulation;
+use crate::step::Row;
 use crate::surface::Shape;
 use crate::time::TimeGrid;
 

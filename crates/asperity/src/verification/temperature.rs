@@ -3,9 +3,9 @@
 use super::{Check, Checks, rows, shape_on, step_load, zener, zener_relaxation};
 use crate::error::Result;
 use crate::load::{Control, History, Loading};
-use crate::march::Simulation;
 use crate::material::{Creep, ReducedTime, Shift, ThermalCreep};
 use crate::reference::{HertzSphere, Mdr, MdrProfile, MdrTarget};
+use crate::simulation::Simulation;
 use crate::surface::Shape;
 use crate::time::TimeGrid;
 

@@ -3,12 +3,14 @@
 use super::{Check, Checks, rows, shape_on, zener, zener_relaxation};
 use crate::contact::SolverOptions;
 use crate::drive::Drive;
+use crate::drive::March;
 use crate::error::Result;
 use crate::grid::{Boundary, Grid};
 use crate::load::{Control, History, Loading};
-use crate::march::{March, Row, Simulation};
 use crate::material::Relaxation;
 use crate::reference::{CircularPunch, Ting, WestergaardStep};
+use crate::simulation::Simulation;
+use crate::step::Row;
 use crate::surface::{Part, Punch, Shape, undeformed_gap};
 use crate::time::TimeGrid;
 

@@ -2,10 +2,12 @@
 
 use asperity::Drive;
 use asperity::contact::Hardness;
+use asperity::drive::March;
 use asperity::load::{Control, Course, Event, History, Loading, Programme, Stage};
-use asperity::march::{Checkpoint, March, Row, Scheme, Simulation};
 use asperity::material::{Creep, CreepTerm};
 use asperity::operator::half_space;
+use asperity::simulation::{Scheme, Simulation};
+use asperity::step::{Checkpoint, Row};
 use asperity::surface::{Part, Shape, undeformed_gap};
 use asperity::{ContactState, Grid, Method, Prescribed, Problem, Solver, SolverOptions, TimeGrid};
 use ndarray::Array2;

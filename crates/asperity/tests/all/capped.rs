@@ -1,6 +1,7 @@
 //! Contacts that yield, up to nearly all of the domain: both methods solve them, and find the same pressure.
 
-use asperity::operator::{Dense, half_space};
+use asperity::operator::half_space;
+use asperity::reference::Dense;
 use asperity::surface::{Roughness, SelfAffine};
 use asperity::{
     Boundary, ContactState, Grid, Method, Outcome, Prescribed, Problem, Result, Solver, SolverOptions,

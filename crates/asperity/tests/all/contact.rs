@@ -1,7 +1,8 @@
 //! The contact solver against closed forms, the slow truth, and itself.
 
-use asperity::contact::{Hardness, gauss_seidel};
-use asperity::operator::{Dense, half_space};
+use asperity::contact::Hardness;
+use asperity::operator::half_space;
+use asperity::reference::{Dense, gauss_seidel};
 use asperity::{
     Boundary, ContactState, Error, Grid, Method, Outcome, Prescribed, Problem, Result, Solver, SolverOptions,
 };

@@ -1,9 +1,10 @@
 //! Permanent flattening: what follows from the contact conditions of the dented surface.
 
 use asperity::Drive;
+use asperity::drive::March;
 use asperity::load::{Course, Event, Programme, Stage};
-use asperity::march::{March, Plasticity, Simulation};
 use asperity::material::{Creep, CreepTerm};
+use asperity::simulation::{Plasticity, Simulation};
 use asperity::surface::{Part, Shape, undeformed_gap};
 use asperity::{Control, Grid, History, Loading, SolverOptions, TimeGrid};
 use ndarray::Array2;

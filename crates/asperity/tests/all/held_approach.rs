@@ -1,9 +1,11 @@
 //! Stiff bodies under a held approach, steps of any length: what the solution does exactly, and how fast the rest converges.
 
 use asperity::Drive;
+use asperity::drive::March;
 use asperity::load::{Course, Stage};
-use asperity::march::{March, Row, Simulation};
 use asperity::material::{Creep, ReducedTime, Relaxation, Shift, ThermalCreep};
+use asperity::simulation::Simulation;
+use asperity::step::Row;
 use asperity::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
 use asperity::{Boundary, Control, Grid, History, Loading, Programme, SolverOptions, TimeGrid};
 

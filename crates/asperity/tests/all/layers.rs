@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use asperity::kernel::{HalfSpace, Kernel};
 use asperity::layer::{Base, Interface, Layer, Layered, Stack};
-use asperity::march::Simulation;
 use asperity::material::{Creep, CreepTerm};
 use asperity::operator::{Operator, plan};
+use asperity::simulation::Simulation;
 use asperity::surface::{Part, Punch, Shape, undeformed_gap};
 use asperity::{Boundary, Control, Grid, History, Loading, March, SolverOptions, TimeGrid};
 

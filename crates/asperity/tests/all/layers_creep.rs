@@ -3,9 +3,10 @@
 use asperity::Drive;
 use std::sync::Arc;
 
+use asperity::history::check_layers;
 use asperity::layer::{BodyLayer, Interface, LayeredBody, Response, response};
-use asperity::march::{Scheme, Simulation, check_layers};
 use asperity::material::{Body, Lateral, Material, Modulus, Relaxation};
+use asperity::simulation::{Scheme, Simulation};
 use asperity::surface::{Part, Shape, undeformed_gap};
 use asperity::{Boundary, Control, Grid, History, Loading, March, SolverOptions, TimeGrid};
 

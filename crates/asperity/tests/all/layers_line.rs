@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use asperity::kernel::{HalfSpace, Kernel};
 use asperity::layer::{Base, BodyLayer, Interface, Layer, Layered, LayeredBody, Stack, response};
-use asperity::march::Simulation;
 use asperity::material::{Body, Creep, CreepTerm, Lateral, Material, Modulus};
+use asperity::simulation::Simulation;
 use asperity::surface::{Part, Shape, undeformed_gap};
 use asperity::{Boundary, Control, Grid, History, Loading, March, SolverOptions, TimeGrid};
 

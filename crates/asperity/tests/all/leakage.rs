@@ -2,13 +2,14 @@
 
 use asperity::Drive;
 use asperity::contact::{ContactState, Problem, Solver, SolverOptions};
+use asperity::drive::March;
 use asperity::leakage::{
     Direction, FlowOptions, Gas, Opening, Passages, Rarefaction, Sides, Species, gas_flow, liquid, plate,
     standard,
 };
-use asperity::march::{March, Simulation};
 use asperity::material::{Creep, CreepTerm};
 use asperity::operator::half_space;
+use asperity::simulation::Simulation;
 use asperity::surface::{Roughness, SelfAffine};
 use asperity::{Boundary, Control, Grid, History, Loading, Method, Prescribed, TimeGrid};
 use ndarray::Array2;

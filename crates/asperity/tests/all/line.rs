@@ -3,9 +3,13 @@
 use asperity::Drive;
 use std::f64::consts::PI;
 
-use asperity::march::{March, Row, Simulation};
+use asperity::drive::March;
+
+use asperity::step::Row;
+
 use asperity::material::{Creep, CreepTerm};
 use asperity::quantities::{Quantities, Quantity};
+use asperity::simulation::Simulation;
 use asperity::surface::{Part, Punch, Roughness, SelfAffine, Shape, undeformed_gap};
 use asperity::{Boundary, Control, Event, Grid, History, Loading, SolverOptions, TimeGrid};
 use ndarray::Array2;

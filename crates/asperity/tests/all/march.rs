@@ -2,9 +2,11 @@
 
 use asperity::Drive;
 use asperity::contact::Outcome;
-use asperity::march::{Checkpoint, March, Row, Scheme, Simulation};
+use asperity::drive::March;
 use asperity::material::{Creep, CreepTerm, Relaxation, RelaxationTerm};
 use asperity::operator::half_space;
+use asperity::simulation::{Scheme, Simulation};
+use asperity::step::{Checkpoint, Row};
 use asperity::surface::{Part, Punch, Roughness, SelfAffine, Shape, undeformed_gap};
 use asperity::{
     Boundary, ContactState, Control, Error, Grid, History, Loading, Method, Prescribed, Problem, Programme,

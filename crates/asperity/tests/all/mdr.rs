@@ -1,9 +1,11 @@
 //! The march on a grid against the row of springs: loading, unloading, opening, loading again, jumps.
 
 use asperity::Drive;
-use asperity::march::{March, Row, Simulation};
+use asperity::drive::March;
 use asperity::material::Relaxation;
 use asperity::reference::{Mdr, MdrOptions, MdrProfile, MdrState};
+use asperity::simulation::Simulation;
+use asperity::step::Row;
 use asperity::surface::{Part, Shape, undeformed_gap};
 use asperity::{Control, Grid, History, Loading, TimeGrid};
 

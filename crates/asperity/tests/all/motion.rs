@@ -3,9 +3,15 @@
 use asperity::Drive;
 use std::f64::consts::{PI, TAU};
 
-use asperity::march::{March, Motion, Row, Simulation};
+use asperity::drive::March;
+
+use asperity::process::Motion;
+
+use asperity::step::Row;
+
 use asperity::material::{Creep, CreepTerm, Relaxation};
 use asperity::quantities::{Quantities, Quantity};
+use asperity::simulation::Simulation;
 use asperity::sliding::{Direction, Friction, MovingGap, Path, Steady, SteadyMotion};
 use asperity::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
 use asperity::{Boundary, Control, Grid, History, Loading, SolverOptions, TimeGrid};

@@ -3,9 +3,11 @@
 use asperity::Drive;
 use std::f64::consts::PI;
 
-use asperity::march::{March, Scheme, Simulation};
+use asperity::drive::March;
+
 use asperity::material::{Creep, CreepTerm};
 use asperity::quantities::{Quantities, Quantity};
+use asperity::simulation::{Scheme, Simulation};
 use asperity::spots::Spots;
 use asperity::surface::{Part, Punch, Roughness, SelfAffine, Shape, undeformed_gap};
 use asperity::{Boundary, Control, Grid, History, Loading, Plasticity, Programme, SolverOptions, TimeGrid};

@@ -3,8 +3,10 @@
 use asperity::Drive;
 use std::f64::consts::{PI, TAU};
 
-use asperity::march::{Row, Simulation};
+use asperity::step::Row;
+
 use asperity::material::{Creep, CreepTerm};
+use asperity::simulation::Simulation;
 use asperity::sliding::{Direction, Friction, Slopes, Steady, SteadyMotion};
 use asperity::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
 use asperity::{Boundary, Control, Grid, History, Loading, SolverOptions};
@@ -316,7 +318,7 @@ fn a_resumed_sweep_has_the_same_bits() {
     let mut steady = case.steady(&velocities);
     let mut rows = vec![];
     // No shear stress is given.
-    let friction = |step: &asperity::march::Step| Friction { total: 0.0, ..step.friction().unwrap() };
+    let friction = |step: &asperity::step::Step| Friction { total: 0.0, ..step.friction().unwrap() };
     while let Some(step) = steady.advance().unwrap() {
         rows.push((step.row(), friction(&step), step.pressure().to_owned()));
     }

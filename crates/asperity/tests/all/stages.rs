@@ -1,10 +1,12 @@
 //! Stages, events and pull-off: against closed forms that hold on every grid, and the row of springs.
 
 use asperity::Drive;
+use asperity::drive::March;
 use asperity::load::{Control, Course, Event, History, Programme, Stage};
-use asperity::march::{March, Row, Simulation};
 use asperity::material::{Creep, CreepTerm, Relaxation};
 use asperity::reference::{Mdr, MdrProfile, MdrTarget};
+use asperity::simulation::Simulation;
+use asperity::step::Row;
 use asperity::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
 use asperity::{Boundary, Error, Grid, SolverOptions, TimeGrid};
 use ndarray::Array2;

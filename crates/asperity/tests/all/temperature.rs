@@ -1,9 +1,11 @@
 //! Bodies whose temperature changes: the march in reduced time.
 
 use asperity::Drive;
-use asperity::march::{March, Row, Scheme, Simulation};
+use asperity::drive::March;
 use asperity::material::{Creep, CreepTerm, ReducedTime, Shift, ThermalCreep};
 use asperity::operator::half_space;
+use asperity::simulation::{Scheme, Simulation};
+use asperity::step::Row;
 use asperity::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
 use asperity::{
     ContactState, Control, Grid, History, Loading, Method, Prescribed, Problem, Programme, Solver,

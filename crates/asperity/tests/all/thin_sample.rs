@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use asperity::indentation::{IndentationOptions, IndentationRecord, SampleLayer, fit_indentation};
 use asperity::layer::{BodyLayer, Interface, LayeredBody, response};
-use asperity::march::Simulation;
 use asperity::material::{Body, Lateral, Material, Modulus};
 use asperity::reference::MdrProfile;
+use asperity::simulation::Simulation;
 use asperity::surface::{Part, Shape, undeformed_gap};
 use asperity::{Control, Grid, History, Loading, March, SolverOptions, TimeGrid};
 

@@ -52,9 +52,8 @@ fn target(path: &Path, to: Option<&str>, force: bool) -> Result<Format, Failure>
     let format: Format = name.parse().map_err(|error| {
         Failure::input(format!("{error}; name the format to write with --to, e.g. --to gwy"))
     })?;
-    let writable = [Format::Npz, Format::Gwy, Format::X3p, Format::Sdf, Format::NetCdf, Format::Text];
-    if !writable.contains(&format) {
-        let names: Vec<&str> = writable.iter().map(|f| f.name()).collect();
+    if !format.is_written() {
+        let names: Vec<&str> = Format::written().map(Format::name).collect();
         return Err(Failure::input(format!(
             "{format} is read, but not written; write one of {}",
             names.join(", ")

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use asperity::finding::Finding;
+use asperity::history::check_layers;
 use asperity::layer::{BodyLayer, Layered, LayeredBody, NonseparableLayers, Response, response};
-use asperity::march::check_layers;
 use asperity::material::{Body, Creep, ReducedTime};
 use asperity::quantities::Quantity;
 use asperity::{Boundary, Error, Grid, Scheme};

@@ -45,7 +45,7 @@ pub struct Leakage {
     pub smallest_gap: Option<Length<NonNegative>>,
     /// Times at which the leakage is computed: "fields", as the fields are stored; "all", which needs output.every = 1; or a
     /// list of times that are stored. "fields" if not given.
-    #[schemars(example = &"fields", example = ["1 s", "10 s"])]
+    #[schemars(example = &"fields", example = ("1 s", "10 s"))]
     pub times: Option<At<StoredTimes>>,
     /// Whether the pressure of the fluid is stored as a field; false if not given.
     #[schemars(example = true)]

@@ -195,7 +195,7 @@ pub type Point = Two<Duration, At<Prescribed>>;
 #[serde(deny_unknown_fields)]
 pub struct Table {
     /// Pairs [time, value] in order of time, the first at 0; a time given twice is a jump.
-    #[schemars(example = [["0 s", "0 N"], ["10 s", "0.5 N"]])]
+    #[schemars(example = (("0 s", "0 N"), ("10 s", "0.5 N")))]
     #[schemars(length(min = 1))]
     pub points: At<Vec<At<Point>>>,
 }
@@ -234,7 +234,7 @@ pub struct Time {
     #[schemars(example = 1e-3)]
     pub tolerance: Option<At<Number<Positive>>>,
     /// List of the times after 0, instead of `end` and `steps`.
-    #[schemars(example = ["1 s", "10 s", "100 s"])]
+    #[schemars(example = ("1 s", "10 s", "100 s"))]
     pub times: Option<At<Vec<At<Duration<Positive>>>>>,
     /// How the pressure varies over a step; "linear" if not given.
     pub scheme: Option<Scheme>,

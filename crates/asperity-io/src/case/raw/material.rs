@@ -458,6 +458,6 @@ pub struct Fit {
     pub vertical: Option<VerticalWord>,
     /// The part of the curve that is fitted: two times or, for a dma, two frequencies (after the shift, if there
     /// are several temperatures); all of it if not given.
-    #[schemars(example = ["0.1 s", "1000 s"])]
+    #[schemars(example = ("0.1 s", "1000 s"))]
     pub window: Option<Two<At<Prescribed>>>,
 }

@@ -91,11 +91,11 @@ pub struct Document {
 pub struct Domain {
     /// Number of cells along x and y; any numbers, also not square and not powers of two. One number for a line contact.
     /// Those of the measured surface if not given; needed without a measured surface.
-    #[schemars(example = [1024, 1024], example = [1024])]
+    #[schemars(example = (1024, 1024), example = (1024,))]
     pub cells: Option<At<Axes<Whole<1>>>>,
     /// Length of the domain along x and y; one length for a line contact. That of the measured surface if not given; needed
     /// without a measured surface.
-    #[schemars(example = ["0.1 mm", "0.1 mm"], example = ["2 mm"])]
+    #[schemars(example = ("0.1 mm", "0.1 mm"), example = ("2 mm",))]
     pub size: Option<At<Axes<Length<Positive>>>>,
     /// Boundary condition of the domain; "free" if not given.
     pub boundary: Option<Boundary>,

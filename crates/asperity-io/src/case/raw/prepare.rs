@@ -69,16 +69,16 @@ pub struct FillStep {
 #[serde(deny_unknown_fields)]
 pub struct Crop {
     /// Number of cells kept along x and y; this, `size` or `defined`.
-    #[schemars(example = [512, 512])]
+    #[schemars(example = (512, 512))]
     pub cells: Option<Two<Whole<1>>>,
     /// First cell kept along x and y, from 0; with `cells`. If not given, the middle of the surface is kept.
-    #[schemars(example = [0, 0])]
+    #[schemars(example = (0, 0))]
     pub from: Option<Two<Whole<0>>>,
     /// Lengths kept along x and y, rounded to whole cells; this, `cells` or `defined`.
-    #[schemars(example = ["0.2 mm", "0.2 mm"])]
+    #[schemars(example = ("0.2 mm", "0.2 mm"))]
     pub size: Option<Two<Length<Positive>>>,
     /// Corner of the part kept, from the surface's corner; with `size`. If not given, the middle is kept.
-    #[schemars(example = ["0 mm", "0.1 mm"])]
+    #[schemars(example = ("0 mm", "0.1 mm"))]
     pub corner: Option<Two<Length>>,
     /// true: the smallest rectangle that holds all defined points.
     #[schemars(example = true)]
@@ -91,7 +91,7 @@ pub struct ResampleStep {
     /// How; "band-limited" if not given.
     pub method: Option<Resampling>,
     /// Number of cells along x and y; those of the domain if not given.
-    #[schemars(example = [512, 512])]
+    #[schemars(example = (512, 512))]
     pub cells: Option<Two<Whole<1>>>,
 }
 

@@ -40,10 +40,10 @@ pub struct Output {
     #[schemars(example = "rough_pmma.zarr")]
     pub path: Option<At<String>>,
     /// The fields that are stored; ["pressure", "gap"] if not given, [] for none.
-    #[schemars(example = ["pressure", "gap"])]
+    #[schemars(example = ("pressure", "gap"))]
     pub fields: Option<Vec<At<FieldKind>>>,
     /// Optional quantities of each row, in addition to load, approach and areas; ["all"] for all that the case allows.
-    #[schemars(example = ["contact_stiffness", "contact_spots", "dissipated_energy"])]
+    #[schemars(example = ("contact_stiffness", "contact_spots", "dissipated_energy"))]
     pub quantities: Option<Vec<At<Quantities>>>,
     /// Bins of the histograms among the quantities.
     #[schemars(example = serde_json::json!({ "bins": 50, "pressure": "300 MPa" }))]
@@ -54,7 +54,7 @@ pub struct Output {
     pub every: Option<At<Whole<1>>>,
     /// Times at which fields are stored, in addition to the first and the last row. Each becomes a step; if steps are
     /// adaptive the state there is interpolated instead. This or `every`.
-    #[schemars(example = ["1 s", "10 s", "100 s"])]
+    #[schemars(example = ("1 s", "10 s", "100 s"))]
     pub times: Option<At<Vec<At<Time<NonNegative>>>>>,
     /// Whether a run can be resumed; true if not given.
     #[schemars(example = true)]

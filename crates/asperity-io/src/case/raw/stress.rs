@@ -18,7 +18,7 @@ use crate::case::quantity::{Length, Pressure, Whole};
 #[serde(deny_unknown_fields)]
 pub struct Stress {
     /// Depths below the surface, each 0 or at least a quarter of a cell; "auto" if not given.
-    #[schemars(example = &"auto", example = ["0 um", "5 um", "10 um"])]
+    #[schemars(example = &"auto", example = ("0 um", "5 um", "10 um"))]
     #[schemars(example = serde_json::json!({ "from": "1 um", "to": "200 um", "count": 24, "spacing": "log" }))]
     pub depths: Option<At<Depths>>,
     /// The body whose stress is computed: its name, or its number counted from 0; the first if not given.
@@ -26,7 +26,7 @@ pub struct Stress {
     pub body: Option<At<Which>>,
     /// Stress fields that are stored at each depth; none if not given (the largest values and the profile over depth are
     /// always stored).
-    #[schemars(example = ["mises"])]
+    #[schemars(example = ("mises",))]
     pub components: Option<Vec<At<StressQuantity>>>,
     /// The volume in which the von Mises stress is above this threshold is measured.
     #[schemars(example = "100 MPa")]
@@ -39,7 +39,7 @@ pub struct Stress {
     pub rolling: Option<At<Rolling>>,
     /// Times at which the stress is computed: "fields", as the fields are stored; "all", which needs output.every = 1; or a
     /// list of times that are stored. "fields" if not given.
-    #[schemars(example = &"fields", example = ["1 s", "10 s"])]
+    #[schemars(example = &"fields", example = ("1 s", "10 s"))]
     pub times: Option<At<StoredTimes>>,
 }
 

@@ -66,7 +66,7 @@ pub struct Sphere {
     #[schemars(example = false)]
     pub moves: Option<bool>,
     /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
-    #[schemars(example = ["0 mm", "0.02 mm"])]
+    #[schemars(example = ("0 mm", "0.02 mm"))]
     pub center: Option<At<Axes<Length>>>,
 }
 
@@ -83,7 +83,7 @@ pub struct Ellipsoid {
     #[schemars(example = false)]
     pub moves: Option<bool>,
     /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
-    #[schemars(example = ["0 mm", "0.02 mm"])]
+    #[schemars(example = ("0 mm", "0.02 mm"))]
     pub center: Option<At<Axes<Length>>>,
 }
 
@@ -97,7 +97,7 @@ pub struct Cylinder {
     #[schemars(example = false)]
     pub moves: Option<bool>,
     /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
-    #[schemars(example = ["0.02 mm"])]
+    #[schemars(example = ("0.02 mm",))]
     pub center: Option<At<Axes<Length>>>,
 }
 
@@ -111,7 +111,7 @@ pub struct Wedge {
     #[schemars(example = false)]
     pub moves: Option<bool>,
     /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
-    #[schemars(example = ["0.02 mm"])]
+    #[schemars(example = ("0.02 mm",))]
     pub center: Option<At<Axes<Length>>>,
 }
 
@@ -125,7 +125,7 @@ pub struct Cone {
     #[schemars(example = false)]
     pub moves: Option<bool>,
     /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
-    #[schemars(example = ["0 mm", "0.02 mm"])]
+    #[schemars(example = ("0 mm", "0.02 mm"))]
     pub center: Option<At<Axes<Length>>>,
 }
 
@@ -136,13 +136,13 @@ pub struct FlatPunch {
     #[schemars(example = "20 um")]
     pub radius: Option<Length<Positive>>,
     /// Sides of a rectangular face along x and y, or the width on a line; this or `radius`.
-    #[schemars(example = ["20 um", "40 um"])]
+    #[schemars(example = ("20 um", "40 um"))]
     pub size: Option<At<Axes<Length<Positive>>>>,
     /// Whether the part moves with the contact (`[motion]`); true if not given.
     #[schemars(example = false)]
     pub moves: Option<bool>,
     /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
-    #[schemars(example = ["0 mm", "0.02 mm"])]
+    #[schemars(example = ("0 mm", "0.02 mm"))]
     pub center: Option<At<Axes<Length>>>,
 }
 
@@ -153,13 +153,13 @@ pub struct Wave {
     #[schemars(example = "1 um")]
     pub amplitude: Length,
     /// Wavelength along x and y; "inf" for no variation along that axis. On a line one value.
-    #[schemars(example = ["50 um", "inf"])]
+    #[schemars(example = ("50 um", "inf"))]
     pub wavelength: At<Axes<Length<PositiveOrInfinite>>>,
     /// Whether the part moves with the contact (`[motion]`); true if not given.
     #[schemars(example = false)]
     pub moves: Option<bool>,
     /// Position from the centre of the domain, along x and y; 0 if not given. On a line one value.
-    #[schemars(example = ["0 mm", "0.02 mm"])]
+    #[schemars(example = ("0 mm", "0.02 mm"))]
     pub center: Option<At<Axes<Length>>>,
 }
 
@@ -261,7 +261,7 @@ pub struct File {
     #[schemars(example = &"Topography")]
     pub channel: Option<Label>,
     /// Physical size along x and y, if the file does not state it; of a profile its length.
-    #[schemars(example = ["0.1 mm", "0.1 mm"])]
+    #[schemars(example = ("0.1 mm", "0.1 mm"))]
     pub size: Option<At<Axes<Length<Positive>>>>,
     /// Unit of the heights, if the file does not state it.
     #[schemars(example = &"um")]

@@ -60,7 +60,7 @@ pub struct Arrhenius {
 #[serde(deny_unknown_fields)]
 pub struct ShiftTable {
     /// Pairs [temperature, log10 a_T] in order of temperature; 0 at the reference temperature. This or `path`.
-    #[schemars(example = [("0 °C", 2.5), ("20 °C", 0.0), ("60 °C", -3.0)])]
+    #[schemars(example = (("0 °C", 2.5), ("20 °C", 0.0), ("60 °C", -3.0)))]
     pub points: Option<Vec<Two<Kelvin, Number>>>,
     /// A file of them, relative to the case file: a table with columns T and log_aT (or ln_aT, aT), with units in the
     /// header. This or `points`.
@@ -173,7 +173,7 @@ pub type TemperaturePoint = Two<Time, At<Kelvin>>;
 #[serde(deny_unknown_fields)]
 pub struct TemperatureTable {
     /// Pairs [time, temperature] in order of time, the first at 0; a time given twice is a jump.
-    #[schemars(example = [["0 s", "20 °C"], ["100 s", "60 °C"]])]
+    #[schemars(example = (("0 s", "20 °C"), ("100 s", "60 °C")))]
     #[schemars(length(min = 1))]
     pub points: At<Vec<At<TemperaturePoint>>>,
 }

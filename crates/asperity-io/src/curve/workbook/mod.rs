@@ -10,6 +10,7 @@ use self::xlsx::OfficeOpen;
 use super::error::{Fault, Remedy, fault};
 use super::table::{Table, doubtful, is_grouped};
 use super::wide;
+use crate::topography::compound::is_compound;
 
 /// A table of a file.
 pub(super) struct Sheet {
@@ -67,20 +68,15 @@ pub(super) fn sheets(bytes: &[u8], wanted: Option<&str>) -> Result<Vec<Sheet>, F
         .collect())
 }
 
-/// A compound document, as .xls files are.
-fn is_document(bytes: &[u8]) -> bool {
-    bytes.starts_with(&[0xd0, 0xcf, 0x11, 0xe0])
-}
-
 /// A compound document (.xls) or a zip archive (.xlsx).
 fn is_workbook(bytes: &[u8]) -> bool {
-    is_document(bytes) || bytes.starts_with(b"PK\x03\x04")
+    is_compound(bytes) || bytes.starts_with(b"PK\x03\x04")
 }
 
 type Rows = Vec<Vec<String>>;
 
 fn rows(bytes: &[u8], wanted: Option<&str>) -> Result<Vec<(String, Rows)>, Fault> {
-    let mut book: Box<dyn Book + '_> = match is_document(bytes) {
+    let mut book: Box<dyn Book + '_> = match is_compound(bytes) {
         true => Box::new(Excel::open(bytes)?),
         false => Box::new(OfficeOpen::open(bytes)?),
     };

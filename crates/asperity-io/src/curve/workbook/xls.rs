@@ -2,11 +2,10 @@
 //! \[MS-XLS\], versions 5 and 8 of its format, BIFF). Numbers, texts, truth values and results of formulas are read, and no
 //! formatting.
 
-use std::io::{Cursor, Read};
-
 use super::cells::Cells;
 use super::{Book, MOST_CHARACTERS, Named, damaged};
 use crate::curve::error::{Fault, fault};
+use crate::topography::compound;
 
 /// Kinds of records (\[MS-XLS\] 2.3).
 mod kind {
@@ -37,14 +36,14 @@ pub(super) struct Excel {
 
 impl Excel {
     pub(super) fn open(bytes: &[u8]) -> Result<Self, Fault> {
-        let mut document = cfb::CompoundFile::open(Cursor::new(bytes))
-            .map_err(|error| fault(format!("cannot be read as a spreadsheet (.xls): {error}")))?;
-        let workbook = document
-            .open_stream("/Workbook")
-            .or_else(|_| document.open_stream("/Book"))
-            .map_err(|_| other())?;
-        let mut stream = Vec::new();
-        workbook.take(bytes.len() as u64).read_to_end(&mut stream).map_err(|_| damaged())?;
+        let stream_of = |name| {
+            compound::stream(bytes, name)
+                .map_err(|error| fault(format!("cannot be read as a spreadsheet (.xls): {error}")))
+        };
+        let stream = match stream_of("Workbook")? {
+            Some(stream) => stream,
+            None => stream_of("Book")?.ok_or_else(other)?,
+        };
         let (mut sheets, mut parts) = (Vec::new(), Vec::new());
         let (mut version, mut last) = (Version::Eight, 0);
         for (kind, data) in records(&stream) {
@@ -302,7 +301,7 @@ impl<'a> Strings<'a> {
 
 #[cfg(test)]
 mod tests {
-    use std::io::Write;
+    use std::io::{Cursor, Write};
 
     use super::*;
 

@@ -6,7 +6,7 @@
 
 use super::encoding;
 use super::labels::{Label, label};
-use crate::topography::finish::{Lateral, Unit};
+use crate::topography::finish::{Lateral, Unit, unit_of};
 use crate::topography::unit::{LoneA, metres};
 
 /// Most comments of one header that are kept for the order of Gwyddion's lines.
@@ -210,21 +210,15 @@ impl Header {
     fn lateral(&self, length: [Option<Length>; 2]) -> Lateral {
         let [Some(x), Some(y)] = length else { return Lateral::Unstated(String::new()) };
         let unit = |length: &Length, axis: usize| {
-            if !length.unit.is_empty() {
-                return metres(&length.unit, LoneA::Ampere);
-            }
             let stated = self.lateral_unit[axis].as_ref().or(self.lateral_unit[0].as_ref());
-            match stated {
-                Some(label) => metres(label, LoneA::Ampere),
+            match (length.unit.as_str(), stated) {
                 // SPIP writes lengths in nanometres.
-                None => self.spip.then_some(1e-9),
+                ("", None) if self.spip => Unit::Metres(1e-9),
+                ("", stated) => named(stated.map(String::as_str)),
+                (label, _) => named(Some(label)),
             }
         };
-        match (unit(&x, 0), unit(&y, 1)) {
-            (Some(ux), Some(uy)) => Lateral::Metres([x.value * ux, y.value * uy]),
-            _ if x.unit.is_empty() && y.unit.is_empty() => Lateral::Bare([x.value, y.value]),
-            _ => Lateral::Unstated(format!(" in a unit of length (it says {:?})", x.unit)),
-        }
+        Lateral::of([x.value, y.value], [unit(&x, 0), unit(&y, 1)])
     }
 
     fn wyko_scales(&self, wyko: &Wyko, points: [usize; 2]) -> (Option<String>, Lateral, Unit, f64) {
@@ -271,10 +265,7 @@ impl Header {
 
 /// The unit of that name.
 fn named(label: Option<&str>) -> Unit {
-    match label.map(str::trim) {
-        None | Some("") => Unit::Unstated,
-        Some(label) => metres(label, LoneA::Ampere).map_or(Unit::Other(label.to_owned()), Unit::Metres),
-    }
+    unit_of(label.unwrap_or_default(), LoneA::Ampere)
 }
 
 /// "key: value", "key = value", with the wide colon of Japanese and Chinese too.

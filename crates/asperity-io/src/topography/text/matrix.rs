@@ -2,14 +2,14 @@
 
 use super::parse::table;
 use super::{Block, Text, decode};
-use crate::topography::finish::{Measured, Unit, choose};
-use crate::topography::{Format, Problem, grid};
+use crate::topography::finish::{Measured, Unit};
+use crate::topography::{Problem, Request, grid};
 
 /// Reads the channel asked for; each block of numbers is one, those of no length are left out where others are.
 ///
-/// Two columns are a profile (position, height) rather than an area, unless the header or the caller (`insists`)
-/// says that they are a matrix.
-pub(crate) fn read_matrix(bytes: &[u8], channel: Option<&str>, insists: bool) -> Result<Measured, Problem> {
+/// Two columns are a profile (position, height) rather than an area, unless the header or the caller says that they
+/// are a matrix.
+pub(super) fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     let bytes = decode(bytes)?;
     let text = Text::split(&bytes)?;
     let unit = |block: &&Block| block.header.scales([1, 1]).2;
@@ -21,14 +21,14 @@ pub(crate) fn read_matrix(bytes: &[u8], channel: Option<&str>, insists: bool) ->
     let names: Vec<String> =
         blocks.iter().enumerate().map(|(i, b)| name(b).unwrap_or(format!("{i}"))).collect();
     if names.is_empty() {
-        return Err(Problem::NoHeights { format: Format::Text, detail: "no line of numbers".into() });
+        return Err(request.no_heights("no line of numbers"));
     }
-    let index = choose(Format::Text, &names, channel)?;
+    let index = request.choose(&names)?;
     let block = blocks[index];
 
     let table = table(text.dialect, block)?;
     let (nx, ny) = (table.columns, table.len());
-    if nx < 2 || ny < 2 || (nx == 2 && !insists && !block.header.says_matrix()) {
+    if nx < 2 || ny < 2 || (nx == 2 && !request.insists && !block.header.says_matrix()) {
         let detail = match (nx, ny) {
             (2, 2..) => format!(
                 "{ny} lines of 2 values are taken for a profile (position and height), not an area; if they are a matrix, \
@@ -39,7 +39,7 @@ pub(crate) fn read_matrix(bytes: &[u8], channel: Option<&str>, insists: bool) ->
                  columns or more"
             ),
         };
-        return Err(Problem::NoHeights { format: Format::Text, detail });
+        return Err(request.no_heights(detail));
     }
     grid::points(nx as u64, ny as u64)?;
     for (axis, found, stated) in [("x", nx, block.header.points[0]), ("y", ny, block.header.points[1])] {
@@ -53,5 +53,6 @@ pub(crate) fn read_matrix(bytes: &[u8], channel: Option<&str>, insists: bool) ->
     let (channel, lateral, unit, scale) = block.header.scales([nx, ny]);
     let heights = grid::from_lines(nx, &table.lines().collect::<Vec<_>>(), |number| number * scale);
     let channels = if channel.is_some() || names.len() > 1 { names } else { Vec::new() };
-    Ok(Measured { heights, unit, lateral, channel, channels, metadata: text.metadata(block) })
+    let metadata = text.metadata(block);
+    Ok(Measured { channel, channels, metadata, ..Measured::new(heights, unit, lateral) })
 }

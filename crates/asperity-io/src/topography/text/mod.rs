@@ -20,12 +20,34 @@ use memchr::memchr;
 use dialect::{Dialect, Separator};
 use header::Header;
 
-use super::{Format, Problem};
+use super::{Format, Problem, Reader, write};
 
-pub(super) use matrix::read_matrix;
 pub(super) use parse::numbers;
 pub(super) use profile::{is_profile, read_columns};
-pub(super) use xyz::read_xyz;
+
+pub(super) const XYZ: Reader = Reader {
+    name: "xyz",
+    aliases: &[],
+    sniff: |bytes| detect(bytes) == Some(Format::Xyz),
+    read: xyz::read,
+    write: None,
+};
+
+pub(super) const CSV: Reader = Reader {
+    name: "csv",
+    aliases: &[],
+    sniff: |bytes| detect(bytes) == Some(Format::Csv),
+    read: matrix::read,
+    write: None,
+};
+
+pub(super) const TEXT: Reader = Reader {
+    name: "asc",
+    aliases: &["text", "txt", "matrix"],
+    sniff: |bytes| detect(bytes) == Some(Format::Text),
+    read: matrix::read,
+    write: Some(write::text::encode),
+};
 
 /// One block of numbers and what the lines before it say.
 struct Block<'a> {
@@ -78,7 +100,7 @@ pub(crate) fn dialect<'a>(
 }
 
 /// Whether the bytes are text with a block of numbers, and which.
-pub(super) fn detect(bytes: &[u8]) -> Option<Format> {
+fn detect(bytes: &[u8]) -> Option<Format> {
     // Enough for any header; a line of numbers that is cut off at the end is left away.
     const PREFIX: usize = 1 << 20;
     let mut prefix = &bytes[..bytes.len().min(PREFIX)];

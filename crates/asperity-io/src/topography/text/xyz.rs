@@ -9,9 +9,9 @@ use rayon::prelude::*;
 use super::header::Column;
 use super::parse::{Table, table};
 use super::{Text, decode};
-use crate::topography::finish::{Lateral, Measured, choose};
-use crate::topography::unit::{LoneA, metres};
-use crate::topography::{Format, Problem, grid};
+use crate::topography::finish::{Lateral, Measured, unit_of};
+use crate::topography::unit::LoneA;
+use crate::topography::{Format, Problem, Request, grid};
 
 /// Most grid points per point of the file: a file that covers less is no grid.
 const MOST_CELLS_PER_POINT: usize = 8;
@@ -35,19 +35,22 @@ pub(super) fn named_columns(columns: &[Column]) -> Option<[usize; 2]> {
 }
 
 /// Reads points.
-pub(crate) fn read_xyz(bytes: &[u8], channel: Option<&str>) -> Result<Measured, Problem> {
+pub(super) fn read(bytes: &[u8], request: &Request) -> Result<Measured, Problem> {
     let bytes = decode(bytes)?;
     let text = Text::split(&bytes)?;
-    let none = |detail: String| Problem::NoHeights { format: Format::Xyz, detail };
     let block = match text.blocks.as_slice() {
-        [] => return Err(none("no line of numbers".into())),
+        [] => return Err(request.no_heights("no line of numbers")),
         [block] => block,
-        more => return Err(none(format!("{} blocks of numbers between other lines", more.len()))),
+        more => {
+            return Err(request.no_heights(format!("{} blocks of numbers between other lines", more.len())));
+        }
     };
     let table = table(text.dialect, block)?;
     let header = &block.header;
     if table.columns < 3 {
-        return Err(none(format!("its lines have {} values, not x, y and a height", table.columns)));
+        return Err(
+            request.no_heights(format!("its lines have {} values, not x, y and a height", table.columns))
+        );
     }
     let columns = header.columns();
     let named = named_columns(&columns).filter(|_| columns.len() == table.columns);
@@ -57,25 +60,20 @@ pub(crate) fn read_xyz(bytes: &[u8], channel: Option<&str>) -> Result<Measured, 
         Some(_) => heights.iter().map(|c| columns[*c].name.clone()).collect(),
         None => heights.iter().map(|c| format!("column {}", c + 1)).collect(),
     };
-    let z = heights[choose(Format::Xyz, &names, channel)?];
+    let z = heights[request.choose(&names)?];
 
     let [x_axis, y_axis] = [(x, "x"), (y, "y")].map(|(column, name)| Axis::of(&table, column, name));
     let (x_axis, y_axis) = (x_axis?, y_axis?);
     let map = gridded(&table, [x, y, z], &x_axis, &y_axis, block.line)?;
     let size = [x_axis.size(), y_axis.size()];
     let (units, unit) = header.point_units([x, y, z]);
-    let lateral = match &units {
-        [Some(ux), Some(uy)] => match (metres(ux, LoneA::Ampere), metres(uy, LoneA::Ampere)) {
-            (Some(ux), Some(uy)) => Lateral::Metres([size[0] * ux, size[1] * uy]),
-            _ => Lateral::Unstated(format!(" in a unit of length (it says {ux:?})")),
-        },
-        _ => Lateral::Bare(size),
-    };
+    let lateral = Lateral::of(size, units.map(|u| unit_of(&u.unwrap_or_default(), LoneA::Ampere)));
     let (channel, channels) = match named {
         Some(_) => (Some(columns[z].name.clone()), names),
         None => (header.channel.clone(), Vec::new()),
     };
-    Ok(Measured { heights: map, unit, lateral, channel, channels, metadata: text.metadata(block) })
+    let metadata = text.metadata(block);
+    Ok(Measured { channel, channels, metadata, ..Measured::new(map, unit, lateral) })
 }
 
 /// Equally spaced positions.

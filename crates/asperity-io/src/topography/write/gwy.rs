@@ -3,7 +3,7 @@
 use super::title;
 use crate::topography::{HISTORY, Problem, Topography};
 
-pub(super) fn encode(topography: &Topography) -> Result<Vec<u8>, Problem> {
+pub(in crate::topography) fn encode(topography: &Topography) -> Result<Vec<u8>, Problem> {
     let (nx, ny) = topography.heights.dim();
     let too_large = || Problem::unsupported(format!("a GWY file of {nx} x {ny} points"), "write NPZ instead");
     let mut container = Vec::new();

@@ -3,12 +3,12 @@
 //! Every writer states size and unit (metres), keeps all digits of the heights and marks undefined points in the
 //! way of the format, so that reading gives the same topography back.
 
-mod gwy;
-mod netcdf;
-mod npz;
-mod sdf;
-mod text;
-mod x3p;
+pub(super) mod gwy;
+pub(super) mod netcdf;
+pub(super) mod npz;
+pub(super) mod sdf;
+pub(super) mod text;
+pub(super) mod x3p;
 
 use std::io::Write;
 use std::path::Path;
@@ -17,6 +17,7 @@ use rayon::prelude::*;
 
 use crate::output;
 
+use super::format::list;
 use super::{Format, Problem, Topography, TopographyError};
 
 /// Writes a topography into a file; an existing one is replaced. It appears whole or not at all.
@@ -44,7 +45,7 @@ pub fn write(path: &Path, topography: &Topography, format: Format) -> Result<(),
 /// ```
 ///
 /// # Errors
-/// [`Problem::Option`] where the format is not among those that can be written (NPZ, GWY, X3P, SDF, NetCDF, text),
+/// [`Problem::Option`] where the format is not [written](Format::is_written),
 /// [`Problem::Unsupported`] where the format cannot hold so many points, [`Problem::Malformed`] where heights or
 /// size are empty or no numbers.
 pub fn to_bytes(topography: &Topography, format: Format) -> Result<Vec<u8>, TopographyError> {
@@ -59,19 +60,12 @@ fn encode(topography: &Topography, format: Format) -> Result<Vec<u8>, Problem> {
         let value = format!("{lx:e} m x {ly:e} m");
         return Err(Problem::malformed("the physical size", value, "positive and finite"));
     }
-    match format {
-        Format::Npz => npz::encode(topography),
-        Format::Gwy => gwy::encode(topography),
-        Format::X3p => x3p::encode(topography),
-        Format::Sdf => sdf::encode(topography),
-        Format::NetCdf => netcdf::encode(topography),
-        Format::Text => Ok(text::encode(topography)),
-        other => Err(Problem::Option {
-            what: "the format to write",
-            value: other.to_string(),
-            expected: "one of npz, gwy, x3p, sdf, nc, asc",
-        }),
-    }
+    let encode = format.reader().write.ok_or_else(|| Problem::Option {
+        what: "the format to write",
+        value: format.to_string(),
+        expected: format!("one of {}", list(Format::written())),
+    })?;
+    encode(topography)
 }
 
 /// Name of the channel, as a file states it.

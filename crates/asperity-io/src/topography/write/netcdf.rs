@@ -23,7 +23,7 @@ struct Variable {
     data: Vec<u8>,
 }
 
-pub(super) fn encode(topography: &Topography) -> Result<Vec<u8>, Problem> {
+pub(in crate::topography) fn encode(topography: &Topography) -> Result<Vec<u8>, Problem> {
     let (nx, ny) = topography.heights.dim();
     let [count_x, count_y] = [nx, ny].map(|n| u32::try_from(n).ok().filter(|n| *n < 1 << 31));
     let (Some(count_x), Some(count_y)) = (count_x, count_y) else {

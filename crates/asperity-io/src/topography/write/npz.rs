@@ -8,7 +8,7 @@ use zip::{CompressionMethod, ZipWriter};
 
 use crate::topography::{Problem, Topography};
 
-pub(super) fn encode(topography: &Topography) -> Result<Vec<u8>, Problem> {
+pub(in crate::topography) fn encode(topography: &Topography) -> Result<Vec<u8>, Problem> {
     let (nx, ny) = topography.heights.dim();
     let heights: Vec<u8> = topography.heights.iter().flat_map(|h| h.to_le_bytes()).collect();
     let size: Vec<u8> = topography.size.iter().flat_map(|l| l.to_le_bytes()).collect();

@@ -5,7 +5,7 @@
 use super::lines;
 use crate::topography::{Problem, Topography};
 
-pub(super) fn encode(topography: &Topography) -> Result<Vec<u8>, Problem> {
+pub(in crate::topography) fn encode(topography: &Topography) -> Result<Vec<u8>, Problem> {
     let (nx, ny) = topography.heights.dim();
     let [lx, ly] = topography.size;
     let narrow = u16::try_from(nx).ok().zip(u16::try_from(ny).ok());

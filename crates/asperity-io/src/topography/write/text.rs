@@ -3,10 +3,10 @@
 use rayon::prelude::*;
 
 use super::title;
-use crate::topography::Topography;
+use crate::topography::{Problem, Topography};
 
 /// The shortest decimal numbers that give the same heights back.
-pub(super) fn encode(topography: &Topography) -> Vec<u8> {
+pub(in crate::topography) fn encode(topography: &Topography) -> Result<Vec<u8>, Problem> {
     let [lx, ly] = topography.size;
     // A line break in the name would end the line.
     let title = title(topography).replace(['\n', '\r'], " ");
@@ -38,5 +38,5 @@ pub(super) fn encode(topography: &Topography) -> Vec<u8> {
         })
         .collect();
     bytes.extend(lines.iter().flat_map(|l| l.bytes()));
-    bytes
+    Ok(bytes)
 }

@@ -13,7 +13,7 @@ use crate::topography::{Format, HISTORY, Problem, Topography};
 
 const DATA: &str = "bindata/data.bin";
 
-pub(super) fn encode(topography: &Topography) -> Result<Vec<u8>, Problem> {
+pub(in crate::topography) fn encode(topography: &Topography) -> Result<Vec<u8>, Problem> {
     let data = lines(topography);
     let xml = main(topography, &md5(&data));
     let checksums = format!("{} *main.xml\n", md5(xml.as_bytes()));

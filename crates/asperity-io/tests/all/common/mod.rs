@@ -2,6 +2,8 @@
 
 #![allow(dead_code)] // each test program uses a part
 
+pub(crate) mod zarr;
+
 use asperity::{Coordinate, Grid};
 use asperity_io::store::{Checkpoint, Field, FieldKind, Header, Result, Row, Writer};
 use ndarray::Array2;

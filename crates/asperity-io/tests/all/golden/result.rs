@@ -3,11 +3,8 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::sync::Arc;
 
-use serde_json::Value;
-use zarrs::array::{Array, ArraySubset};
-use zarrs::filesystem::FilesystemStore;
+use crate::common::zarr::Array;
 
 /// One array of a result.
 pub(crate) struct Numbers {
@@ -24,31 +21,13 @@ pub(crate) struct Stored(pub(crate) BTreeMap<String, Numbers>);
 impl Stored {
     /// Reads a result without this project's reader.
     pub(crate) fn read(result: &Path) -> Stored {
-        let store = Arc::new(FilesystemStore::new(result).unwrap());
         let mut arrays = BTreeMap::new();
         for entry in fs::read_dir(result).unwrap() {
             let entry = entry.unwrap();
-            let Ok(text) = fs::read_to_string(entry.path().join("zarr.json")) else { continue };
-            let document: Value = serde_json::from_str(&text).unwrap();
-            let name = entry.file_name().into_string().unwrap();
-            let array = Array::open(store.clone(), &format!("/{name}")).unwrap();
-            let all = ArraySubset::new_with_shape(array.shape().to_vec());
-            let values: Vec<f64> = match document["data_type"].as_str().unwrap() {
-                "float64" => array.retrieve_array_subset(&all).unwrap(),
-                "int64" => {
-                    let counts: Vec<i64> = array.retrieve_array_subset(&all).unwrap();
-                    counts.into_iter().map(|count| count as f64).collect()
-                }
-                "uint8" => {
-                    let states: Vec<u8> = array.retrieve_array_subset(&all).unwrap();
-                    states.into_iter().map(f64::from).collect()
-                }
-                other => panic!("{name}: {other}"),
-            };
-            let shape = array.shape().iter().map(|length| *length as usize).collect();
-            let dimensions = document["dimension_names"].as_array().unwrap().iter();
-            let dimensions = dimensions.map(|name| name.as_str().unwrap().to_owned()).collect();
-            arrays.insert(name, Numbers { dimensions, shape, values });
+            let Some(array) = Array::read(&entry.path()) else { continue };
+            let dimensions = array.dimensions();
+            let numbers = Numbers { dimensions, shape: array.shape, values: array.values };
+            arrays.insert(entry.file_name().into_string().unwrap(), numbers);
         }
         Stored(arrays)
     }

@@ -1,6 +1,6 @@
 //! Small files of instruments, built by hand after the formats' descriptions; maps as in the parent module.
 
-use std::io::Write;
+use std::io::{Cursor, Write};
 
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
@@ -296,39 +296,10 @@ pub fn mnt(masked: bool) -> Vec<u8> {
     compound("ScopedContents", &[&(tree.len() as u64).to_le_bytes()[..], &tree].concat())
 }
 
-/// A compound document of sectors of 512 bytes with one stream.
+/// A compound document with one stream.
 pub fn compound(name: &str, stream: &[u8]) -> Vec<u8> {
-    const END: u32 = 0xffff_fffe;
-    let sectors = stream.len().div_ceil(512) as u32;
-    let mut b = b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1".to_vec();
-    b.resize(512, 0);
-    let mut put = |at: usize, bytes: &[u8]| b[at..at + bytes.len()].copy_from_slice(bytes);
-    put(24, &[0x3e, 0, 3, 0, 0xfe, 0xff, 9, 0, 6, 0]);
-    put(44, &1u32.to_le_bytes());
-    put(48, &1u32.to_le_bytes());
-    put(56, &4096u32.to_le_bytes());
-    put(60, &[END, 0, END, 0].map(u32::to_le_bytes).concat());
-    put(76, &[0xff; 436]);
-    put(76, &0u32.to_le_bytes());
-    // The table: itself, the directory, the chain of the stream.
-    let mut table = vec![0xffff_fffd, END];
-    table.extend((0..sectors).map(|i| if i + 1 == sectors { END } else { 3 + i }));
-    table.resize(128, u32::MAX);
-    b.extend(table.iter().flat_map(|n| n.to_le_bytes()));
-    for (name, kind, first, length) in
-        [("Root Entry", 5, END, 0), ("Other", 2, 2, 4096), (name, 2, 2, stream.len() as u64), ("", 0, 0, 0)]
-    {
-        let characters: Vec<u8> = name.encode_utf16().flat_map(u16::to_le_bytes).collect();
-        let mut entry = characters.clone();
-        entry.resize(64, 0);
-        entry.extend((characters.len() as u16 + 2).to_le_bytes());
-        entry.extend([kind, 1]);
-        entry.resize(116, 0);
-        entry.extend(first.to_le_bytes());
-        entry.extend(length.to_le_bytes());
-        b.extend(entry);
-    }
-    b.extend(stream);
-    b.resize(512 * (3 + sectors as usize), 0);
-    b
+    let memory = Cursor::new(Vec::new());
+    let mut file = cfb::CompoundFile::create_with_version(cfb::Version::V3, memory).unwrap();
+    file.create_stream(name).unwrap().write_all(stream).unwrap();
+    file.into_inner().into_inner()
 }

@@ -1,9 +1,10 @@
 //! A march that was stopped and resumed by way of its result ends with the bits of one that was not.
 
 use asperity::Drive;
-use asperity::march::{March, Simulation};
+use asperity::drive::March;
 use asperity::material::{Creep, CreepTerm};
 use asperity::quantities::{Quantities, Quantity};
+use asperity::simulation::Simulation;
 use asperity::surface::{Part, Roughness, SelfAffine, Shape, undeformed_gap};
 use asperity::time::TimeGrid;
 use asperity::{Control, Grid, History, Loading, Plasticity};

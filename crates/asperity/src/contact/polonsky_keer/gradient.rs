@@ -7,10 +7,10 @@
 
 use super::super::projection::{Shift, Trial};
 use super::super::sweeps::gradient::{GradientStep, GradientTrial};
-use super::super::{ContactState, Hardness, Problem};
+use super::super::{ContactState, Problem};
 use super::{PolonskyKeer, add};
 use crate::operator::Operator;
-use asperity_sweep::{Set, run, sweep};
+use asperity_sweep::{Set, each, run};
 
 /// Iterations without a halving of the residual that are the first stall.
 const PATIENCE: usize = 20;
@@ -74,16 +74,10 @@ impl PolonskyKeer {
             t = (-slope / curvature).min(1.0);
             *b = square / curvature;
         }
-        sweep((&mut state.pressure[..], &self.direction[..], problem.hardness), &|(p, s, hardness): (
-            &mut [f64],
-            &[f64],
-            Hardness,
-        )| {
-            for i in 0..p.len() {
-                // p + (H - p) may differ from H by rounding.
-                let (new, hardness) = (p[i] + t * s[i], hardness.at(i));
-                p[i] = if new < hardness * (1.0 - 2.0 * f64::EPSILON) { new } else { hardness };
-            }
+        each(&mut state.pressure, (&self.direction[..], problem.hardness), |p, (s, hardness)| {
+            // p + (H - p) may differ from H by rounding.
+            let new = *p + t * s;
+            *p = if new < hardness * (1.0 - 2.0 * f64::EPSILON) { new } else { hardness };
         });
         add(&mut state.unit_displacement, t, &self.image);
         true

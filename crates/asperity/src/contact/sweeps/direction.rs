@@ -1,7 +1,7 @@
 //! Kernels of the search direction, all on the working set: products of the preconditioned residual, the conjugate direction,
 //! and the steepest descent over all cells that can touch.
 
-use asperity_sweep::simd::{F64x8, Mask, Work};
+use asperity_sweep::simd::Mask;
 
 use asperity_sweep::{Set, SetMut, kernel};
 
@@ -11,13 +11,7 @@ kernel! {
         cells { r: &'a mut [f32], set: Set<'a> }
         numbers { mean: f64, unit: f64 }
     }
-}
-
-impl Work for Centre<'_> {
-    type Yield = ();
-
-    #[inline(always)]
-    fn run<V: F64x8>(self) {
+    fn run<V>(self) {
         let (mean, per) = (V::splat(self.mean), V::splat(1.0 / self.unit));
         for (n, set) in (0..).step_by(8).zip(self.set.0).filter(|(_, set)| **set != 0) {
             let r = (V::load(self.r, n, 0.0) - mean) * per;
@@ -31,13 +25,7 @@ kernel! {
     pub(in crate::contact) struct Products<'a> {
         cells { z: &'a [f32], r: &'a [f32], r_old: &'a [f32], d_old: &'a [f32], set: Set<'a> }
     }
-}
-
-impl Work for Products<'_> {
-    type Yield = [f64; 5];
-
-    #[inline(always)]
-    fn run<V: F64x8>(self) -> [f64; 5] {
+    fn run<V>(self) -> [f64; 5] {
         let zero = V::splat(0.0);
         let (mut sum_z, mut zr, mut zr_old, mut sum_r_old, mut sum_d_old) = (zero, zero, zero, zero, zero);
         for (n, set) in (0..).step_by(8).zip(self.set.0).filter(|(_, set)| **set != 0) {
@@ -60,13 +48,7 @@ kernel! {
         cells { d: &'a mut [f32], z: &'a [f32], set: Set<'a>, set_old: Set<'a> }
         numbers { beta: f64, mean: f64 }
     }
-}
-
-impl Work for Conjugate<'_> {
-    type Yield = ();
-
-    #[inline(always)]
-    fn run<V: F64x8>(self) {
+    fn run<V>(self) {
         let (beta, mean) = (V::splat(self.beta), V::splat(self.mean));
         for ((n, set), old) in (0..).step_by(8).zip(self.set.0).zip(self.set_old.0) {
             if *set | *old == 0 {
@@ -87,13 +69,7 @@ kernel! {
         }
         numbers { compliance: f64, w: f64, unit: f64 }
     }
-}
-
-impl Work for Steepest<'_> {
-    type Yield = ();
-
-    #[inline(always)]
-    fn run<V: F64x8>(self) {
+    fn run<V>(self) {
         let (c, w, per) = (V::splat(self.compliance), V::splat(self.w), V::splat(1.0 / self.unit));
         for (n, set) in (0..).step_by(8).zip(self.set.0) {
             let g = c * V::load(self.u, n, 0.0) + V::load(self.gap, n, f64::INFINITY);

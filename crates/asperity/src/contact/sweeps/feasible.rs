@@ -1,6 +1,6 @@
 //! Kernels that make a pressure feasible: within its bounds, zero where nothing can touch, with a given sum.
 
-use asperity_sweep::simd::{F64x8, Mask, Work};
+use asperity_sweep::simd::Mask;
 
 use crate::contact::Hardness;
 use crate::contact::projection::Shift;
@@ -11,13 +11,7 @@ kernel! {
     pub(in crate::contact) struct Limits<'a> {
         cells { gap: &'a [f64], hardness: Hardness<'a> }
     }
-}
-
-impl Work for Limits<'_> {
-    type Yield = ([f64; 2], Min);
-
-    #[inline(always)]
-    fn run<V: F64x8>(self) -> Self::Yield {
+    fn run<V>(self) -> ([f64; 2], Min) {
         let [mut touchable, mut most] = [V::splat(0.0); 2];
         let mut least = V::splat(f64::INFINITY);
         for n in (0..self.gap.len()).step_by(8) {
@@ -37,13 +31,7 @@ kernel! {
         cells { u: &'a [f64], gap: &'a [f64] }
         numbers { compliance: f64 }
     }
-}
-
-impl Work for LargestGap<'_> {
-    type Yield = Max;
-
-    #[inline(always)]
-    fn run<V: F64x8>(self) -> Max {
+    fn run<V>(self) -> Max {
         let (compliance, none) = (V::splat(self.compliance), V::splat(f64::NEG_INFINITY));
         let mut largest = none;
         for n in (0..self.gap.len()).step_by(8) {
@@ -61,13 +49,7 @@ kernel! {
     pub(in crate::contact) struct Clip<'a> {
         cells { p: &'a mut [f64], gap: &'a [f64], touchable: SetMut<'a>, hardness: Hardness<'a> }
     }
-}
-
-impl Work for Clip<'_> {
-    type Yield = [f64; 2];
-
-    #[inline(always)]
-    fn run<V: F64x8>(self) -> [f64; 2] {
+    fn run<V>(self) -> [f64; 2] {
         let (mut sum, mut cells) = (V::splat(0.0), V::splat(0.0));
         for (n, set) in (0..).step_by(8).zip(self.touchable.0) {
             let can_touch = V::load(self.gap, n, f64::INFINITY).less(V::splat(f64::INFINITY));
@@ -86,13 +68,7 @@ kernel! {
     pub(in crate::contact) struct BelowAndCapped<'a> {
         cells { p: &'a [f64], hardness: Hardness<'a> }
     }
-}
-
-impl Work for BelowAndCapped<'_> {
-    type Yield = [f64; 2];
-
-    #[inline(always)]
-    fn run<V: F64x8>(self) -> [f64; 2] {
+    fn run<V>(self) -> [f64; 2] {
         let (mut sum, mut capped) = (V::splat(0.0), V::splat(0.0));
         for n in (0..self.p.len()).step_by(8) {
             let p = V::load(self.p, n, 0.0);
@@ -110,13 +86,7 @@ kernel! {
         cells { p: &'a mut [f64], hardness: Hardness<'a> }
         numbers { factor: f64 }
     }
-}
-
-impl Work for Scale<'_> {
-    type Yield = f64;
-
-    #[inline(always)]
-    fn run<V: F64x8>(self) -> f64 {
+    fn run<V>(self) -> f64 {
         let mut over = V::splat(0.0);
         for n in (0..self.p.len()).step_by(8) {
             let p = V::load(self.p, n, 0.0);
@@ -135,13 +105,7 @@ kernel! {
         cells { p: &'a mut [f64], set: Set<'a>, hardness: Hardness<'a> }
         numbers { shift: Shift }
     }
-}
-
-impl Work for ShiftAll<'_> {
-    type Yield = ();
-
-    #[inline(always)]
-    fn run<V: F64x8>(self) {
+    fn run<V>(self) {
         for (n, set) in (0..).step_by(8).zip(self.set.0) {
             let p = self.shift.project(V::load(self.p, n, 0.0), self.hardness.interval(n));
             p.only(V::Mask::from_bits(*set)).store(self.p, n);

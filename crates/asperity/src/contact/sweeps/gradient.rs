@@ -1,6 +1,6 @@
 //! Kernels of a projected-gradient step in double precision: the trial point, and the step to its projection.
 
-use asperity_sweep::simd::{F64x8, Mask, Work};
+use asperity_sweep::simd::Mask;
 
 use crate::contact::Hardness;
 use crate::contact::projection::Shift;
@@ -14,13 +14,7 @@ kernel! {
         }
         numbers { compliance: f64, w: f64, length: f64 }
     }
-}
-
-impl Work for GradientTrial<'_> {
-    type Yield = ();
-
-    #[inline(always)]
-    fn run<V: F64x8>(self) {
+    fn run<V>(self) {
         let [compliance, w, length] = [self.compliance, self.w, self.length].map(V::splat);
         for (n, set) in (0..).step_by(8).zip(self.set.0) {
             let r = compliance * V::load(self.u, n, 0.0) + V::load(self.gap, n, 0.0) - w;
@@ -37,13 +31,7 @@ kernel! {
         cells { y: &'a mut [f64], r: &'a [f64], p: &'a [f64], set: Set<'a>, hardness: Hardness<'a> }
         numbers { shift: Shift }
     }
-}
-
-impl Work for GradientStep<'_> {
-    type Yield = [f64; 2];
-
-    #[inline(always)]
-    fn run<V: F64x8>(self) -> [f64; 2] {
+    fn run<V>(self) -> [f64; 2] {
         let [mut slope, mut square] = [V::splat(0.0); 2];
         for (n, set) in (0..).step_by(8).zip(self.set.0) {
             let q = self.shift.project(V::load(self.y, n, 0.0), self.hardness.interval(n));

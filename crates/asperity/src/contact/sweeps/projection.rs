@@ -1,6 +1,6 @@
 //! Kernels of the projection that keeps the load: the sum of clip(p - a d + lambda) over a set, and where it bends.
 
-use asperity_sweep::simd::{F64x8, Mask, Work};
+use asperity_sweep::simd::Mask;
 
 use crate::contact::Hardness;
 use asperity_sweep::{Max, Min, Set, kernel};
@@ -12,13 +12,7 @@ kernel! {
         cells { p: &'a [f64], d: Option<&'a [f32]>, set: Set<'a>, hardness: Hardness<'a> }
         numbers { length: f64, lambda: f64 }
     }
-}
-
-impl Work for ClippedSum<'_> {
-    type Yield = [f64; 2];
-
-    #[inline(always)]
-    fn run<V: F64x8>(self) -> [f64; 2] {
+    fn run<V>(self) -> [f64; 2] {
         let (mut sum, mut inside) = (V::splat(0.0), V::splat(0.0));
         let (length, lambda) = (V::splat(self.length), V::splat(self.lambda));
         for (n, set) in (0..).step_by(8).zip(self.set.0).filter(|(_, set)| **set != 0) {
@@ -40,13 +34,7 @@ kernel! {
         cells { p: &'a [f64], d: Option<&'a [f32]>, set: Set<'a>, hardness: Hardness<'a> }
         numbers { length: f64, lambda: f64 }
     }
-}
-
-impl Work for Bends<'_> {
-    type Yield = (Min, Max, Max);
-
-    #[inline(always)]
-    fn run<V: F64x8>(self) -> Self::Yield {
+    fn run<V>(self) -> (Min, Max, Max) {
         let [zero, up, down] = [0.0, f64::INFINITY, f64::NEG_INFINITY].map(V::splat);
         let (mut above, mut below, mut capped) = (up, down, zero);
         let (length, lambda) = (V::splat(self.length), V::splat(self.lambda));

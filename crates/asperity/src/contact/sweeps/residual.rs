@@ -1,7 +1,7 @@
 //! Kernels of the residual report: the mean gap of the free cells, and for an approach w the residual r = c U + h - w, the working
 //! set, and the sums and extremes of [`ResidualReport`].
 
-use asperity_sweep::simd::{F64x8, Mask, Work};
+use asperity_sweep::simd::{F64x8, Mask};
 
 use crate::contact::Hardness;
 use crate::contact::bounds::Interval;
@@ -14,13 +14,7 @@ kernel! {
         cells { p: &'a [f64], u: &'a [f64], gap: &'a [f64], hardness: Hardness<'a> }
         numbers { compliance: f64 }
     }
-}
-
-impl Work for FreeGap<'_> {
-    type Yield = [f64; 2];
-
-    #[inline(always)]
-    fn run<V: F64x8>(self) -> [f64; 2] {
+    fn run<V>(self) -> [f64; 2] {
         let (mut sum, mut cells) = (V::splat(0.0), V::splat(0.0));
         let c = V::splat(self.compliance);
         for n in (0..self.p.len()).step_by(8) {
@@ -39,13 +33,7 @@ kernel! {
         cells { p: &'a [f64], u: &'a [f64], gap: &'a [f64], hardness: Hardness<'a> }
         numbers { compliance: f64, w: f64 }
     }
-}
-
-impl Work for FindResidual<'_> {
-    type Yield = ResidualReport;
-
-    #[inline(always)]
-    fn run<V: F64x8>(self) -> ResidualReport {
+    fn run<V>(self) -> ResidualReport {
         let mut residuals = Residuals::<V>::new(self.compliance, self.hardness, self.w);
         for n in (0..self.p.len()).step_by(8) {
             let (p, u) = (V::load(self.p, n, 0.0), V::load(self.u, n, 0.0));
@@ -65,13 +53,7 @@ kernel! {
         }
         numbers { compliance: f64, w: f64 }
     }
-}
-
-impl Work for FindWorking<'_> {
-    type Yield = ResidualReport;
-
-    #[inline(always)]
-    fn run<V: F64x8>(self) -> ResidualReport {
+    fn run<V>(self) -> ResidualReport {
         let mut residuals = Residuals::<V>::new(self.compliance, self.hardness, self.w);
         for (n, set) in (0..).step_by(8).zip(self.set.0) {
             let (p, u) = (V::load(self.p, n, 0.0), V::load(self.u, n, 0.0));

@@ -1,6 +1,6 @@
 //! Kernels of a step: the step s to the projected trial point, its curvature, and the state moved along it.
 
-use asperity_sweep::simd::{F64x8, Mask, Work};
+use asperity_sweep::simd::Mask;
 
 use crate::contact::Hardness;
 use crate::contact::projection::Shift;
@@ -16,13 +16,7 @@ kernel! {
         }
         numbers { length: f64, shift: Shift }
     }
-}
-
-impl Work for FindStep<'_> {
-    type Yield = ([f64; 2], Min);
-
-    #[inline(always)]
-    fn run<V: F64x8>(self) -> Self::Yield {
+    fn run<V>(self) -> ([f64; 2], Min) {
         let (zero, length) = (V::splat(0.0), V::splat(self.length));
         let [mut slope, mut square] = [zero; 2];
         let mut reach = V::splat(f64::INFINITY);
@@ -51,13 +45,7 @@ kernel! {
     pub(in crate::contact) struct Curvature<'a> {
         cells { s: &'a [f64], image: &'a [f64], set: Set<'a> }
     }
-}
-
-impl Work for Curvature<'_> {
-    type Yield = f64;
-
-    #[inline(always)]
-    fn run<V: F64x8>(self) -> f64 {
+    fn run<V>(self) -> f64 {
         let mut sum = V::splat(0.0);
         for (n, _) in (0..).step_by(8).zip(self.set.0).filter(|(_, set)| **set != 0) {
             sum = sum + V::load(self.s, n, 0.0) * V::load(self.image, n, 0.0);
@@ -76,13 +64,7 @@ kernel! {
         }
         numbers { t: f64, compliance: f64 }
     }
-}
-
-impl Work for Advance<'_> {
-    type Yield = [f64; 2];
-
-    #[inline(always)]
-    fn run<V: F64x8>(self) -> [f64; 2] {
+    fn run<V>(self) -> [f64; 2] {
         let (t, c) = (V::splat(self.t), V::splat(self.compliance));
         let (mut sum, mut cells) = (V::splat(0.0), V::splat(0.0));
         for (n, set) in (0..).step_by(8).zip(self.set.0) {

@@ -3,6 +3,8 @@
 //! The blocks of the fields lie side by side, \[block\]\[branch\]\[cell\], so that a sweep's block is one slice, and each field is
 //! read and written once per step.
 
+use crate::error::Result;
+use crate::step::{Loader, Saver};
 use asperity_sweep::{BLOCK, Cells, strands, sweep};
 
 /// Cells that are worked on together: their branches stay in the first caches.
@@ -163,32 +165,29 @@ impl Branches {
         (0..=count).map(|i| blocks.iter().map(|sums| sums[i]).sum()).collect()
     }
 
-    /// The fields, one after the other.
-    pub(crate) fn save(&self) -> Vec<Vec<f64>> {
+    /// Saves the fields `name`_0, `name`_1 and so on.
+    pub(crate) fn save(&self, to: &mut Saver<'_>, name: &str) {
         let mut fields = vec![Vec::with_capacity(self.cells); self.count];
-        let mut rest = &self.data[..];
-        while !rest.is_empty() {
-            let n = BLOCK.min(rest.len() / self.count);
-            for field in &mut fields {
-                let (block, after) = rest.split_at(n);
-                field.extend_from_slice(block);
-                rest = after;
-            }
+        for block in self.data.chunks(BLOCK * self.count.max(1)) {
+            let parts = block.chunks(block.len() / self.count);
+            fields.iter_mut().zip(parts).for_each(|(field, part)| field.extend_from_slice(part));
         }
-        fields
+        fields.into_iter().enumerate().for_each(|(k, field)| to.owned_field(&format!("{name}_{k}"), field));
     }
 
-    /// Takes back what [`Branches::save`] gave; false where it does not fit.
-    pub(crate) fn load(&mut self, fields: &[Vec<f64>]) -> bool {
-        if fields.len() != self.count || fields.iter().any(|f| f.len() != self.cells) {
-            return false;
-        }
+    /// Takes back what [`Branches::save`] gave.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`](crate::Error::Invalid) where it does not fit.
+    pub(crate) fn load(&mut self, from: &Loader<'_>, name: &str) -> Result<()> {
+        let fields = (0..self.count).map(|k| from.field(&format!("{name}_{k}")));
+        let fields = fields.collect::<Result<Vec<_>>>()?;
         self.data.clear();
         for start in (0..self.cells).step_by(BLOCK) {
             let end = self.cells.min(start + BLOCK);
             fields.iter().for_each(|f| self.data.extend_from_slice(&f[start..end]));
         }
-        true
+        Ok(())
     }
 }
 
@@ -208,26 +207,17 @@ struct Interleaved<D> {
     data: D,
 }
 
-impl Cells for Interleaved<&mut [f64]> {
+impl<D: Cells> Cells for Interleaved<D> {
     fn cells(&self) -> usize {
         self.cells
     }
 
     fn split(self, mid: usize) -> (Self, Self) {
-        let (first, second) = self.data.split_at_mut(mid * self.branches);
-        let rest = self.cells - mid;
-        (Interleaved { cells: mid, data: first, ..self }, Interleaved { cells: rest, data: second, ..self })
-    }
-}
-
-impl Cells for Interleaved<&[f64]> {
-    fn cells(&self) -> usize {
-        self.cells
-    }
-
-    fn split(self, mid: usize) -> (Self, Self) {
-        let (first, second) = self.data.split_at(mid * self.branches);
-        let rest = self.cells - mid;
-        (Interleaved { cells: mid, data: first, ..self }, Interleaved { cells: rest, data: second, ..self })
+        let (branches, rest) = (self.branches, self.cells - mid);
+        let (first, second) = self.data.split(mid * branches);
+        (
+            Interleaved { cells: mid, branches, data: first },
+            Interleaved { cells: rest, branches, data: second },
+        )
     }
 }

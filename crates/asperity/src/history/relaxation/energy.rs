@@ -22,14 +22,14 @@ use super::shape::moment;
 use super::{Relaxation, UnderWay};
 use crate::history::{Ends, Exchange};
 use crate::material::{Dual, integrate};
-use asperity_sweep::{strands, sweep};
+use asperity_sweep::dot;
 
 /// Products of the states q_i and u (the last) with each other, at the end of a step.
 #[derive(Clone, Debug)]
 pub(super) struct Products {
-    rates: Vec<f64>,
-    dual: Dual,
-    list: Vec<Vec<f64>>,
+    pub(super) rates: Vec<f64>,
+    pub(super) dual: Dual,
+    pub(super) list: Vec<Vec<f64>>,
 }
 
 /// Integrals of a branch over the course of a step: ∫ exp(-s/τ) dr and ∫ (r - Γ) dr.
@@ -43,12 +43,11 @@ impl Relaxation {
     /// What the step under way, which has just been solved, did; brings `products` to its end.
     pub(super) fn exchanged(&self, products: &mut Products, ends: &Ends<'_>) -> Exchange {
         let (p, unit) = (&ends.now.pressure[..], &ends.now.unit_displacement[..]);
-        let energy =
-            sweep((p, unit), &|(p, unit): (&[f64], &[f64])| strands(p.len(), |k| [p[k] * unit[k]]))[0];
+        let energy = dot(p, unit);
         if self.is_elastic() {
             let own = &mut products.list[0][0];
             let before = std::mem::replace(own, 0.5 * self.rules.compliance * energy);
-            let mean_load = 0.5 * (self.total.load + self.end.load);
+            let mean_load = 0.5 * (self.cell.start.load + self.cell.end.load);
             return Exchange { stored: *own, work: *own - before, heat: 0.0, mean_load };
         }
         if products.rates != self.rates {
@@ -95,9 +94,9 @@ impl Relaxation {
             relaxation.equilibrium * (own + 0.5 * square) + branches.sum::<f64>() + dashpot * square
         };
         let mut work = of(change[count], square, &|i| change[i]);
-        let driven = self.end.driver - self.total.driver;
+        let driven = self.cell.end.driver - self.cell.start.driver;
         // Of L itself, not of its square.
-        let mean_load = of(self.total.driver, driven, &|i| self.total.states[i]);
+        let mean_load = of(self.cell.start.driver, driven, &|i| self.cell.start.states[i]);
         products.list.iter_mut().zip(&of_end).for_each(|(row, end)| row.push(*end));
         let mut last = of_end;
         last.push(itself);
@@ -142,12 +141,12 @@ impl Relaxation {
         let along = |f: &dyn Fn(f64) -> f64| -> f64 {
             edges.windows(2).map(|edge| integrate(edge[1], edge[0], f)).sum()
         };
-        let speed = |s: f64| self.shape.slope(&self.dual, s) / change;
+        let speed = |s: f64| self.cell.shape.slope(&self.dual, s) / change;
         let of = |i: usize| Followed {
             fading: along(&|s| libm::exp(-s / terms[i].relaxation_time) * speed(s)),
             growing: along(&|s| {
-                let gone = self.shape.change(&self.dual, s);
-                self.shape.share(&self.dual, i, s, gone).left * gone / change * speed(s)
+                let gone = self.cell.shape.change(&self.dual, s);
+                self.cell.shape.share(&self.dual, i, s, gone).left * gone / change * speed(s)
             }),
         };
         let viscous = self.dual.relaxation.viscosity > 0.0;
@@ -199,21 +198,5 @@ impl Products {
         let branches: f64 =
             relaxation.terms.iter().enumerate().map(|(i, e)| e.modulus * branch(i).max(0.0)).sum();
         0.5 * (relaxation.equilibrium * own + branches)
-    }
-
-    /// Its numbers, for a checkpoint.
-    pub(super) fn save(&self) -> Vec<f64> {
-        self.list.iter().flatten().copied().collect()
-    }
-
-    /// Takes back what [`save`](Self::save) gave of a state with these rates; false where it does not fit.
-    pub(super) fn restore(&mut self, rates: &[f64], dual: &Dual, numbers: &[f64]) -> bool {
-        let n = self.list.len();
-        if numbers.len() != n * n {
-            return false;
-        }
-        (self.rates, self.dual) = (rates.to_vec(), dual.clone());
-        self.list = numbers.chunks(n).map(<[f64]>::to_vec).collect();
-        true
     }
 }

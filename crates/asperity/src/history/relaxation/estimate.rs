@@ -27,7 +27,7 @@ use super::{Reference, Relaxation};
 use crate::history::Ends;
 use crate::material::Dual;
 use crate::step::Piece;
-use asperity_sweep::{strands, sweep};
+use asperity_sweep::{each, sums};
 
 /// Share of the stress at the start, and of the relaxed one, that an error is measured by at the least.
 pub(crate) const FLOOR: f64 = 0.1;
@@ -51,17 +51,10 @@ impl Relaxation {
             return;
         }
         let unit = &ends.now.unit_displacement[..];
-        sweep((&mut self.third[..], unit, ends.gap, ends.rigid), &|(third, unit, gap, rigid): (
-            &mut [f64],
-            &[f64],
-            &[f64],
-            &[f64],
-        )| {
-            for (k, third) in third.iter_mut().enumerate() {
-                // A cell that cannot touch has no finite gap, and no say.
-                let g = gap[k] - rigid[k];
-                *third = if g.is_finite() { compliance * unit[k] + g } else { 0.0 };
-            }
+        each(&mut self.third, (unit, ends.gap, ends.rigid), |third, (unit, gap, rigid)| {
+            // A cell that cannot touch has no finite gap, and no say.
+            let g = gap - rigid;
+            *third = if g.is_finite() { compliance * unit + g } else { 0.0 };
         });
     }
 
@@ -83,30 +76,23 @@ impl Relaxation {
             (ends.gap, ends.rigid),
         );
         let [curved, now, before, displaced] =
-            sweep(cells, &|((u, u_third), (p, unit), (p_now, unit_now), (gap, rigid)): (
-                (&[f64], &[f64]),
-                (&[f64], &[f64]),
-                (&[f64], &[f64]),
-                (&[f64], &[f64]),
-            )| {
-                strands(u.len(), |i| {
-                    let presses = p[i] > 0.0 || p_now[i] > 0.0;
-                    let overlaps = rigid[i] < ends.now.approach;
-                    if !(presses || overlaps) {
-                        return [0.0; 4];
-                    }
-                    let u_now = compliance * unit_now[i] + (gap[i] - rigid[i]);
-                    let (before, now) = (u_third[i] - u[i], u_now - u[i]);
-                    let second = (before / third - now / step) / (third - step);
-                    // What rounding errors of u make of it.
-                    let rounding = ROUNDING * u[i].abs().max(u_now.abs()) * spread;
-                    let curved = if second.abs() > rounding { second.abs() * step * step } else { 0.0 };
-                    if !presses {
-                        return [curved, 0.0, 0.0, 0.0];
-                    }
-                    let touched = if p[i] > 0.0 { 0.0 } else { LATE * (advance - now.abs()) };
-                    [curved.max(touched), unit_now[i], unit[i], u_now.abs()]
-                })
+            sums(cells, |((u, u_third), (p, unit), (p_now, unit_now), (gap, rigid))| {
+                let presses = p > 0.0 || p_now > 0.0;
+                let overlaps = rigid < ends.now.approach;
+                if !(presses || overlaps) {
+                    return [0.0; 4];
+                }
+                let u_now = compliance * unit_now + (gap - rigid);
+                let (before, now) = (u_third - u, u_now - u);
+                let second = (before / third - now / step) / (third - step);
+                // What rounding errors of u make of it.
+                let rounding = ROUNDING * u.abs().max(u_now.abs()) * spread;
+                let curved = if second.abs() > rounding { second.abs() * step * step } else { 0.0 };
+                if !presses {
+                    return [curved, 0.0, 0.0, 0.0];
+                }
+                let touched = if p > 0.0 { 0.0 } else { LATE * (advance - now.abs()) };
+                [curved.max(touched), unit_now, unit, u_now.abs()]
             });
         let relaxed = self.dual.relaxation.equilibrium * displaced;
         let scale = now.max(FLOOR * before).max(FLOOR * relaxed);
@@ -133,9 +119,8 @@ impl Relaxation {
         }
         let relaxed = if piece.is_after_jump { self::soon(&self.dual, longest, rate) } else { longest };
         let Some(slope) = piece.load_rate(soon) else { return relaxed };
-        self.dual.to_strains(&self.end.states, self.end.driver, &mut self.strains);
-        self.shape.set(&self.dual, self.end.load, slope / rate, &self.strains);
-        growing(&self.dual, &self.shape, self.end.driver, [relaxed, longest], rate)
+        self.cell.go_on(&self.dual, slope / rate);
+        growing(&self.dual, &self.cell.shape, self.cell.end.driver, [relaxed, longest], rate)
     }
 }
 

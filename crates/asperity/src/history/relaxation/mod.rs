@@ -18,19 +18,19 @@
 pub(super) mod branches;
 mod energy;
 mod estimate;
+pub(super) mod load_cell;
 mod pair;
 pub(super) mod rules;
 pub(super) mod shape;
-mod snapshot;
 mod within;
 
 pub(super) use estimate::{FLOOR, LATE, ROUNDING, growing, remembered_defect, soon};
 
 use branches::Branches;
 use energy::{Products, transition};
+use load_cell::LoadCell;
 use pair::Pair;
 use rules::{Driver, Rules};
-use shape::Shape;
 
 use super::clocks::Clocks;
 use super::{Ends, Exchange, History, Law, Moment, ThirdState};
@@ -38,7 +38,7 @@ use crate::contact::ContactState;
 use crate::error::Result;
 use crate::material::Dual;
 use crate::simulation::Simulation;
-use crate::step::{Interval, Load, Loader, Piece, Saver};
+use crate::step::{Interval, Load, Loader, Piece, Saved, Saver, saved};
 use asperity_sweep::zeros;
 
 /// The memory of a pair of bodies as branches that relax.
@@ -58,17 +58,13 @@ pub(crate) struct Relaxation {
     since_kink: f64,
     /// How far the clocks have gone without pressure since the states were those of the cells.
     gone: Vec<f64>,
-    /// The load as a cell at the start of the step under way, and at its end.
-    total: Total,
-    end: Total,
+    cell: LoadCell,
     under_way: UnderWay,
     rules: Rules,
     /// How far the clocks go in the step under way.
     elapsed: Vec<f64>,
     /// The rules of the next step, while the last one ends.
     next: Rules,
-    shape: Shape,
-    strains: Vec<f64>,
     left: Vec<f64>,
     /// The account of the energy, where it is kept.
     products: Option<Products>,
@@ -82,27 +78,12 @@ pub(crate) enum UnderWay {
     Apart,
 }
 
-/// The load W, its driver L and its states.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Total {
-    pub(crate) load: f64,
-    pub(crate) driver: f64,
-    pub(crate) states: Vec<f64>,
-}
-
 /// When the third state is, seen from the start of the step under way: before it (a negative length), or after it; and
 /// how u ran in between.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Reference {
     pub(crate) length: f64,
     pub(crate) driver: Driver,
-}
-
-impl Total {
-    pub(crate) fn set(&mut self, other: &Total) {
-        (self.load, self.driver) = (other.load, other.driver);
-        self.states.copy_from_slice(&other.states);
-    }
 }
 
 impl Relaxation {
@@ -113,7 +94,6 @@ impl Relaxation {
         let dual = Dual::of(pair.creep(&rates))?;
         let (count, cells) = (dual.states(), simulation.grid.len());
         let elastic = count == 0 && dual.relaxation.viscosity == 0.0;
-        let total = Total { load: 0.0, driver: 0.0, states: vec![0.0; count] };
         Ok(Relaxation {
             clocks: Clocks::new(simulation),
             gone: vec![0.0; pair.count()],
@@ -124,13 +104,10 @@ impl Relaxation {
             third: zeros(if elastic || !estimates { 0 } else { cells }),
             reference: None,
             since_kink: 0.0,
-            end: total.clone(),
-            total,
+            cell: LoadCell::at_rest(&dual),
             under_way: UnderWay::Nothing,
             rules: Rules::new(count),
             next: Rules::new(count),
-            shape: Shape::new(dual.creep.terms.len()),
-            strains: vec![0.0; dual.strains()],
             left: Vec::with_capacity(dual.strains()),
             products: None,
             pair,
@@ -151,7 +128,7 @@ impl Relaxation {
         if load == Load::Apart {
             self.under_way = UnderWay::Apart;
             let recalled = self.recovered(&self.elapsed);
-            self.next.set(&self.dual, x, Driver::Time, &self.shape);
+            self.next.set(&self.dual, x, Driver::Time, &self.cell.shape);
             self.next.set_apart(&recalled);
             return;
         }
@@ -159,19 +136,9 @@ impl Relaxation {
         if self.gone.iter().any(|gone| *gone > 0.0) {
             self.recast(None);
         }
-        let driver = match load {
-            Load::Total(load) if x > 0.0 => {
-                self.dual.to_strains(&self.total.states, self.total.driver, &mut self.strains);
-                let slope = (load - self.total.load) / x;
-                self.shape.set(&self.dual, self.total.load, slope, &self.strains);
-                match self.shape.runs_one_way(&self.dual, self.total.driver, x) {
-                    true => Driver::Load(self.shape.change(&self.dual, x)),
-                    false => Driver::Time,
-                }
-            }
-            _ => Driver::Time,
-        };
-        self.next.set(&self.dual, x, driver, &self.shape);
+        let load = if let Load::Total(load) = load { Some(load) } else { None };
+        let driver = self.cell.driver(&self.dual, load, x);
+        self.next.set(&self.dual, x, driver, &self.cell.shape);
     }
 
     /// Weights of (q, u) in the displacement that is left when a step without pressure, so long on the clocks, ends.
@@ -197,8 +164,8 @@ impl Relaxation {
         }
         self.states.recast(&rows, &mut self.displacement);
         // The load as a cell is up to date already.
-        self.dual.to_strains(&self.total.states, self.total.driver, &mut self.strains);
-        new.to_states(&self.strains, &mut self.total.states);
+        self.dual.to_strains(&self.cell.start.states, self.cell.start.driver, &mut self.cell.strains);
+        new.to_states(&self.cell.strains, &mut self.cell.start.states);
         self.gone.fill(0.0);
         if let Some(dual) = dual {
             self.dual = dual;
@@ -215,10 +182,32 @@ impl Relaxation {
     }
 }
 
+saved! {
+    Relaxation {
+        "under_way": under_way;
+        "since_kink": since_kink;
+        "rates": rates;
+        "gone": gone;
+        "elapsed": elapsed;
+        "rules": rules;
+    }
+}
+
+impl Saved for UnderWay {
+    fn save(&self, to: &mut Vec<f64>) {
+        to.push(*self as u8 as f64);
+    }
+    fn load(&mut self, from: &mut std::slice::Iter<'_, f64>) -> Option<()> {
+        let all = [UnderWay::Nothing, UnderWay::Contact, UnderWay::Apart];
+        *self = *all.get(*from.next()? as usize)?;
+        Some(())
+    }
+}
+
 impl History for Relaxation {
     fn open(&mut self, step: &Interval, last: &ContactState, rigid: &[f64], gap: &mut [f64]) -> Result<Law> {
         self.clocks.measure(step);
-        self.total.set(&self.end);
+        self.cell.begin();
         self.since_kink = if step.is_smooth { self.since_kink + self.rules.length } else { 0.0 };
         let ends = self.under_way == UnderWay::Contact;
         let before = Reference { length: -self.rules.length, driver: self.rules.driver };
@@ -265,21 +254,15 @@ impl History for Relaxation {
 
     /// The load as a cell goes on to the end of the step.
     fn close(&mut self, ends: &Ends<'_>) -> Result<()> {
-        let load = ends.loads[1];
-        self.end.set(&self.total);
-        self.end.load = load;
-        match self.under_way {
-            UnderWay::Contact => {
-                self.end.driver = self.rules.end(load, self.total.driver, &mut self.end.states);
-            }
-            UnderWay::Apart => {
-                self.dual.to_strains(&self.total.states, self.total.driver, &mut self.strains);
-                self.pair.fading(&self.elapsed, &mut self.left);
-                self.strains.iter_mut().zip(&self.left).for_each(|(e, left)| *e *= left);
-                self.dual.to_states(&self.strains, &mut self.end.states);
-                self.end.driver = self.strains.iter().sum();
-            }
-            UnderWay::Nothing => {}
+        let rules = Some(&self.rules).filter(|_| self.under_way == UnderWay::Contact);
+        self.cell.close(ends.loads[1], rules);
+        if self.under_way == UnderWay::Apart {
+            let LoadCell { start, end, strains, .. } = &mut self.cell;
+            self.dual.to_strains(&start.states, start.driver, strains);
+            self.pair.fading(&self.elapsed, &mut self.left);
+            strains.iter_mut().zip(&self.left).for_each(|(e, left)| *e *= left);
+            self.dual.to_states(strains, &mut end.states);
+            end.driver = strains.iter().sum();
         }
         Ok(())
     }
@@ -329,10 +312,29 @@ impl History for Relaxation {
     }
 
     fn save<'a>(&'a self, to: &mut Saver<'a>) {
-        self.save_to(to);
+        self.save_own(to);
+        self.cell.save_own(to);
+        if let Some(products) = &self.products {
+            to.value("energy_products", &products.list);
+        }
+        self.states.save(to, "state");
+        if !self.is_elastic() {
+            to.field("displacement", &self.displacement);
+        }
     }
 
     fn load(&mut self, from: &mut Loader<'_>) -> Result<()> {
-        self.load_from(from)
+        self.load_own(from)?;
+        self.cell.load_own(from)?;
+        self.dual = Dual::of(self.pair.creep(&self.rates))?;
+        if let Some(products) = &mut self.products {
+            (products.rates, products.dual) = (self.rates.clone(), self.dual.clone());
+            from.values_into("energy_products", &mut [&mut products.list])?;
+        }
+        self.states.load(from, "state")?;
+        if !self.is_elastic() {
+            from.field_into("displacement", &mut self.displacement)?;
+        }
+        Ok(())
     }
 }

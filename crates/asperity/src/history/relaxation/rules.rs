@@ -15,6 +15,7 @@
 use super::branches::{Combination, Ending, Update};
 use super::shape::{Shape, moment};
 use crate::material::Dual;
+use crate::step::Saved;
 
 /// A rate r'(x) x of the driver below this is taken for this: a dashpot alone needs one.
 const SLOWEST: f64 = 1e-9;
@@ -121,30 +122,38 @@ impl Rules {
         }
         fresh
     }
+}
 
-    /// Its numbers, for a checkpoint.
-    pub(crate) fn save(&self) -> Vec<f64> {
-        let change = if let Driver::Load(change) = self.driver { change } else { f64::INFINITY };
-        let mut numbers = vec![self.length, change, self.compliance, self.own];
-        numbers.extend(&self.recalled);
-        numbers.extend(self.updates.iter().flat_map(|u| [u.keep, u.old, u.new]));
-        numbers
+impl Saved for Driver {
+    fn save(&self, to: &mut Vec<f64>) {
+        to.push(if let Driver::Load(change) = self { *change } else { f64::INFINITY });
     }
+    fn load(&mut self, from: &mut std::slice::Iter<'_, f64>) -> Option<()> {
+        let change = *from.next()?;
+        *self = if change.is_infinite() { Driver::Time } else { Driver::Load(change) };
+        Some(())
+    }
+}
 
-    /// Takes back what [`save`](Self::save) gave; false where it does not fit.
-    pub(crate) fn load(&mut self, numbers: &[f64]) -> bool {
-        let [length, change, compliance, own, rest @ ..] = numbers else { return false };
-        if rest.len() != 4 * self.updates.len() {
-            return false;
-        }
-        (self.length, self.compliance, self.own) = (*length, *compliance, *own);
-        self.driver = if change.is_infinite() { Driver::Time } else { Driver::Load(*change) };
-        let (recalled, updates) = rest.split_at(self.recalled.len());
-        self.recalled.copy_from_slice(recalled);
-        for (update, n) in self.updates.iter_mut().zip(updates.chunks(3)) {
-            *update = Update { keep: n[0], old: n[1], new: n[2] };
-        }
-        true
+impl Saved for Update {
+    fn save(&self, to: &mut Vec<f64>) {
+        to.extend([self.keep, self.old, self.new]);
+    }
+    fn load(&mut self, from: &mut std::slice::Iter<'_, f64>) -> Option<()> {
+        [&mut self.keep, &mut self.old, &mut self.new].into_iter().try_for_each(|number| number.load(from))
+    }
+}
+
+impl Saved for Rules {
+    fn save(&self, to: &mut Vec<f64>) {
+        let Rules { length, driver, compliance, updates, recalled, own } = self;
+        let all: [&dyn Saved; 6] = [length, driver, compliance, own, recalled, updates];
+        all.iter().for_each(|value| value.save(to));
+    }
+    fn load(&mut self, from: &mut std::slice::Iter<'_, f64>) -> Option<()> {
+        let Rules { length, driver, compliance, updates, recalled, own } = self;
+        let all: [&mut dyn Saved; 6] = [length, driver, compliance, own, recalled, updates];
+        all.into_iter().try_for_each(|value| value.load(from))
     }
 }
 

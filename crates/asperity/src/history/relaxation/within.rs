@@ -1,9 +1,9 @@
 //! The state within the step that was solved last: u between its values at the ends, on the clock in which it ran.
 
-use super::rules::{Driver, Rules};
+use super::rules::Rules;
 use super::{Relaxation, UnderWay};
 use crate::history::{Ends, Moment};
-use asperity_sweep::sweep;
+use asperity_sweep::each;
 
 impl Relaxation {
     /// The moment that lies this far into the step, in laboratory time and on the clock of each body.
@@ -11,22 +11,10 @@ impl Relaxation {
         let x = self.pair.length(lengths);
         let whole = self.rules.length;
         if self.under_way != UnderWay::Contact || x >= whole {
-            return Moment { share: 1.0, load: self.end.load };
+            return Moment { share: 1.0, load: self.cell.end.load };
         }
-        let (share, driver) = match self.rules.driver {
-            Driver::Time => (x / whole, Driver::Time),
-            Driver::Load(change) => {
-                let part = self.shape.change(&self.dual, x);
-                (part / change, Driver::Load(part))
-            }
-        };
-        let mut rules = Rules::new(self.dual.states());
-        rules.set(&self.dual, x, driver, &self.shape);
-        let driver = self.total.driver + share * (self.end.driver - self.total.driver);
-        let recalled = rules.recalled();
-        let sum: f64 = recalled.weights.iter().zip(&self.total.states).map(|(w, q)| w * q).sum();
-        let load = (driver - sum - recalled.own * self.total.driver) / rules.compliance;
-        Moment { share, load: load.max(0.0) }
+        let (share, driver) = self.cell.gone(&self.dual, self.rules.driver, x, whole);
+        self.cell.moment(&self.dual, x, share, driver)
     }
 
     /// Writes u that lies `lengths` into the step, where `moment` is.
@@ -42,27 +30,15 @@ impl Relaxation {
                 self.recall(&rules, None, u);
             }
             _ if self.is_elastic() => {
-                let before = &ends.before.unit_displacement[..];
-                sweep((u, before, unit), &|(u, before, unit): (&mut [f64], &[f64], &[f64])| {
-                    for (u, (start, end)) in u.iter_mut().zip(before.iter().zip(unit)) {
-                        *u = compliance * (start + share * (end - start));
-                    }
-                });
+                let fields = (&ends.before.unit_displacement[..], unit);
+                each(u, fields, |u, (start, end)| *u = compliance * (start + share * (end - start)));
             }
             _ => {
-                let fields = (u, &self.displacement[..], unit, ends.gap, ends.rigid);
-                sweep(fields, &|(u, start, unit, gap, rigid): (
-                    &mut [f64],
-                    &[f64],
-                    &[f64],
-                    &[f64],
-                    &[f64],
-                )| {
-                    for (k, u) in u.iter_mut().enumerate() {
-                        let g = gap[k] - rigid[k];
-                        let end = compliance * unit[k] + if g.is_finite() { g } else { 0.0 };
-                        *u = start[k] + share * (end - start[k]);
-                    }
+                let fields = (&self.displacement[..], unit, ends.gap, ends.rigid);
+                each(u, fields, |u, (start, unit, gap, rigid)| {
+                    let g = gap - rigid;
+                    let end = compliance * unit + if g.is_finite() { g } else { 0.0 };
+                    *u = start + share * (end - start);
                 });
             }
         }

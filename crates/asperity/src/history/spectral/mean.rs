@@ -9,9 +9,10 @@
 
 use crate::error::Result;
 use crate::history::Moment;
+use crate::history::relaxation::load_cell::LoadCell;
 use crate::history::relaxation::rules::{Driver, Rules, Share};
-use crate::history::relaxation::shape::{Shape, fading_share, moment};
-use crate::history::relaxation::{Total, growing, soon};
+use crate::history::relaxation::shape::{fading_share, moment};
+use crate::history::relaxation::{growing, soon};
 use crate::material::{Creep, CreepTerm, Dual};
 use crate::step::{Load, Loader, Piece, Saver};
 
@@ -28,28 +29,15 @@ pub(super) enum Run {
 
 pub(super) struct Mean {
     dual: Dual,
-    shape: Shape,
     rules: Rules,
-    strains: Vec<f64>,
-    /// The load as a cell at the start of the step under way, and at its end.
-    start: Total,
-    end: Total,
+    cell: LoadCell,
 }
 
 impl Mean {
     /// Of a creep function, after a first step of length `x` in which the load ran from 0 to `load`.
     pub(super) fn new(creep: Creep, x: f64, load: f64) -> Result<Self> {
         let dual = Dual::of(creep)?;
-        let count = dual.states();
-        let rest = Total { load: 0.0, driver: 0.0, states: vec![0.0; count] };
-        let mut mean = Mean {
-            shape: Shape::new(dual.creep.terms.len()),
-            rules: Rules::new(count),
-            strains: vec![0.0; dual.strains()],
-            start: rest.clone(),
-            end: rest,
-            dual,
-        };
+        let mut mean = Mean { rules: Rules::new(dual.states()), cell: LoadCell::at_rest(&dual), dual };
         mean.run(Load::Total(load), x);
         mean.close(load);
         Ok(mean)
@@ -57,7 +45,7 @@ impl Mean {
 
     /// The row has ended.
     pub(super) fn begin(&mut self) {
-        self.start.set(&self.end);
+        self.cell.begin();
     }
 
     /// How u runs over a step of length `x`.
@@ -67,20 +55,11 @@ impl Mean {
             Load::Apart => Some(0.0),
             Load::Approach | Load::Held => None,
         };
-        let driver = match load {
-            Some(load) if x > 0.0 => {
-                self.dual.to_strains(&self.start.states, self.start.driver, &mut self.strains);
-                self.shape.set(&self.dual, self.start.load, (load - self.start.load) / x, &self.strains);
-                match self.shape.runs_one_way(&self.dual, self.start.driver, x) {
-                    true => Driver::Load(self.shape.change(&self.dual, x)),
-                    false => Driver::Time,
-                }
-            }
-            _ => Driver::Time,
-        };
-        self.rules.set(&self.dual, x, driver, &self.shape);
-        let states = self.dual.relaxation.terms.iter().zip(&self.start.states);
-        let relaxing = states.map(|(e, q)| (e.modulus * (self.start.driver - q), e.relaxation_time));
+        let driver = self.cell.driver(&self.dual, load, x);
+        self.rules.set(&self.dual, x, driver, &self.cell.shape);
+        let start = &self.cell.start;
+        let states = self.dual.relaxation.terms.iter().zip(&start.states);
+        let relaxing = states.map(|(e, q)| (e.modulus * (start.driver - q), e.relaxation_time));
         let relaxing: Vec<(f64, f64)> = relaxing.collect();
         let most = relaxing.iter().fold(0.0, |most: f64, (a, _)| most.max(*a));
         let one_way = most > 0.0 && relaxing.iter().all(|(a, _)| *a >= -ROUNDING * most);
@@ -92,40 +71,27 @@ impl Mean {
 
     /// The step under way ends under this load.
     pub(super) fn close(&mut self, load: f64) {
-        self.end.set(&self.start);
-        self.end.load = load;
-        self.end.driver = self.rules.end(load, self.start.driver, &mut self.end.states);
+        self.cell.close(load, Some(&self.rules));
     }
 
     /// How long the first step of a smooth piece may be \[s\], at most `longest`.
     pub(super) fn first_step(&mut self, piece: &Piece, longest: f64) -> f64 {
         let relaxed = if piece.is_after_jump { soon(&self.dual, longest, 1.0) } else { longest };
         let Some(slope) = piece.load_rate(1e-3 * longest) else { return relaxed };
-        self.dual.to_strains(&self.end.states, self.end.driver, &mut self.strains);
-        self.shape.set(&self.dual, self.end.load, slope, &self.strains);
-        growing(&self.dual, &self.shape, self.end.driver, [relaxed, longest], 1.0)
+        self.cell.go_on(&self.dual, slope);
+        growing(&self.dual, &self.cell.shape, self.cell.end.driver, [relaxed, longest], 1.0)
     }
 
     /// The moment that lies `part` into the step of length `whole` in which u runs so.
     pub(super) fn moment(&self, run: &Run, part: f64, whole: f64) -> Moment {
         let (share, driver) = match run {
-            Run::Linear(Driver::Time) => (part / whole, Driver::Time),
-            Run::Linear(Driver::Load(change)) => {
-                let gone = self.shape.change(&self.dual, part);
-                (gone / change, Driver::Load(gone))
-            }
+            Run::Linear(driver) => self.cell.gone(&self.dual, *driver, part, whole),
             Run::Relaxing(terms) => {
                 let gone = |s: f64| terms.iter().map(|(a, tau)| -a * libm::expm1(-s / tau)).sum::<f64>();
                 (gone(part) / gone(whole), Driver::Time)
             }
         };
-        let mut rules = Rules::new(self.dual.states());
-        rules.set(&self.dual, part, driver, &self.shape);
-        let at = self.start.driver + share * (self.end.driver - self.start.driver);
-        let recalled = rules.recalled();
-        let sum: f64 = recalled.weights.iter().zip(&self.start.states).map(|(w, q)| w * q).sum();
-        let load = (at - sum - recalled.own * self.start.driver) / rules.compliance;
-        Moment { share, load: load.max(0.0) }
+        self.cell.moment(&self.dual, part, share, driver)
     }
 
     /// What a state with the relaxation time `tau` takes over a step of length `x` in which u runs so.
@@ -135,7 +101,7 @@ impl Mean {
             Run::Linear(Driver::Time) => linear(x / tau),
             Run::Linear(Driver::Load(change)) => {
                 let gap = |j: usize| self.dual.creep.terms[j].retardation_time / tau - 1.0;
-                self.shape.share_of(&self.dual, tau, gap, x, *change)
+                self.cell.shape.share_of(&self.dual, tau, gap, x, *change)
             }
         }
     }
@@ -143,10 +109,10 @@ impl Mean {
     /// Saves the creep function and the load as a cell.
     pub(super) fn save<'a>(&'a self, to: &mut Saver<'a>) {
         let creep = &self.dual.creep;
-        to.number("instantaneous", creep.instantaneous);
-        to.numbers("terms", creep.terms.iter().flat_map(|t| [t.compliance, t.retardation_time]).collect());
-        to.numbers("load", vec![self.end.load, self.end.driver]);
-        to.numbers("load_states", self.end.states.clone());
+        let terms = creep.terms.iter().flat_map(|t| [t.compliance, t.retardation_time]);
+        to.value("instantaneous", &creep.instantaneous);
+        to.value("terms", &terms.collect::<Vec<f64>>());
+        self.cell.save_own(to);
     }
 
     /// What [`Mean::save`] gave.
@@ -154,11 +120,9 @@ impl Mean {
         let terms = from.numbers("terms")?;
         let terms = terms.chunks_exact(2);
         let terms = terms.map(|t| CreepTerm { compliance: t[0], retardation_time: t[1] }).collect();
-        let creep = Creep { instantaneous: from.number("instantaneous")?, terms, fluidity: 0.0 };
+        let creep = Creep { instantaneous: from.get("instantaneous")?, terms, fluidity: 0.0 };
         let mut mean = Mean::new(creep, 0.0, 0.0)?;
-        let [load, driver] = from.array("load")?;
-        (mean.end.load, mean.end.driver) = (load, driver);
-        from.numbers_into("load_states", &mut mean.end.states)?;
+        mean.cell.load_own(from)?;
         Ok(mean)
     }
 }

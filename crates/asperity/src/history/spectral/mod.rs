@@ -25,7 +25,7 @@ use crate::layer::NonseparableLayers;
 use crate::operator::{self, Operator, of_eigenvalues, wide};
 use crate::simulation::Simulation;
 use crate::sliding::torus::{Spectrum, Torus};
-use crate::step::{Interval, Load, Loader, Piece, Saver};
+use crate::step::{Interval, Load, Loader, Piece, Saver, saved};
 use mean::{Mean, Run, linear};
 pub use waves::check_layers;
 use waves::{Table, Waves, Width};
@@ -150,7 +150,7 @@ impl Spectral {
             Width::Narrow => unit,
             Width::Wide => wide::narrowed(&self.grid, &unit),
         };
-        of_eigenvalues(self.grid, self.boundary, self.kernel.clone(), &unit)
+        of_eigenvalues(operator::default_backend(), self.grid, self.boundary, self.kernel.clone(), &unit)
     }
 
     fn cells(&self) -> usize {
@@ -163,6 +163,10 @@ impl Spectral {
         gap.iter_mut().zip(rigid).zip(&self.past).for_each(|((gap, rigid), g)| *gap = rigid + g);
         Law { compliance: self.scale(), operator: Some(self.operator()) }
     }
+}
+
+saved! {
+    Spectral { "under_way": under_way; "step": length, driver, since_kink; }
 }
 
 impl History for Spectral {
@@ -264,12 +268,10 @@ impl History for Spectral {
     }
 
     fn save<'a>(&'a self, to: &mut Saver<'a>) {
-        self.under_way.save(to);
-        let change = if let Driver::Load(change) = self.driver { change } else { f64::INFINITY };
-        to.numbers("step", vec![self.length, change, self.since_kink]);
-        to.number("steps", self.steps.len() as f64);
+        self.save_own(to);
+        to.value("steps", &self.steps.len());
         for (k, Table(rows)) in self.steps.iter().enumerate() {
-            to.numbers(&format!("step_{k}"), rows.as_flattened().to_vec());
+            to.value(&format!("step_{k}"), &rows.as_flattened().to_vec());
         }
         if let Some(mean) = &self.mean {
             to.within("mean", |to| mean.save(to));
@@ -285,11 +287,8 @@ impl History for Spectral {
     }
 
     fn load(&mut self, from: &mut Loader<'_>) -> Result<()> {
-        self.under_way = UnderWay::load(from)?;
-        let [length, change, since_kink] = from.array("step")?;
-        (self.length, self.since_kink) = (length, since_kink);
-        self.driver = if change.is_finite() { Driver::Load(change) } else { Driver::Time };
-        let steps = from.number("steps")? as usize;
+        self.load_own(from)?;
+        let steps = from.get::<usize>("steps")?;
         let table = |k: usize| Ok(Table(from.numbers(&format!("step_{k}"))?.as_chunks::<3>().0.to_vec()));
         self.steps = (0..steps).map(table).collect::<Result<_>>()?;
         if self.steps.is_empty() {

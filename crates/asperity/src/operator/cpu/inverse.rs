@@ -4,7 +4,7 @@
 use std::ops::Range;
 
 use asperity_sweep::simd::vectorize;
-use asperity_sweep::zeros;
+use asperity_sweep::{Set, zeros};
 use ndarray::ArrayView2;
 
 use super::super::backend::InversePlan;
@@ -50,14 +50,15 @@ impl InversePlan for CpuInverse {
         let part = |bits: &'_ [u8], first: usize, cells: usize| -> Range<usize> {
             first / 8..(first + cells).div_ceil(8).min(bits.len())
         };
+        let set = |first: usize, x: &[f32]| Set(&set[part(set, first, x.len())]);
         let weigh = |first: usize, x: &mut [f32]| {
-            let bytes = part(set, first, x.len());
-            vectorize(Weigh { x, set: &set[bytes.clone()], adjacent: &adjacent[bytes] });
+            let adjacent = Set(&adjacent[part(adjacent, first, x.len())]);
+            vectorize(Weigh { set: set(first, x), adjacent, x });
         };
         let mut chain = self.fft.chain(r);
         chain.multiply(INVERSE);
         chain.modify(z, &|first, x, z| {
-            vectorize(Keep { z, set: &set[part(set, first, x.len())], x });
+            vectorize(Keep { z, set: set(first, x), x });
             weigh(first, x);
         });
         let by = chain.multiply(SCREENED);
@@ -66,7 +67,7 @@ impl InversePlan for CpuInverse {
         // Where nothing is open, b is zero.
         let a = if by > 0.0 && ymy > 0.0 { by / ymy } else { 0.0 };
         chain.finish(z, &|first, x, z| {
-            vectorize(Add { z, set: &set[part(set, first, x.len())], x, t: -a });
+            vectorize(Add { z, set: set(first, x), x, t: -a });
         });
     }
 }

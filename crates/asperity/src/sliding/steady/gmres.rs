@@ -6,7 +6,7 @@
 
 use std::sync::atomic::AtomicBool;
 
-use asperity_sweep::{strands, sum, sweep};
+use asperity_sweep::{dot, each, sum, sweep};
 
 use super::operators::Operators;
 use crate::error::Result;
@@ -107,19 +107,13 @@ impl OnSet<'_> {
     }
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    sweep((a, b), &|(a, b): (&[f64], &[f64])| strands(a.len(), |i| [a[i] * b[i]]))[0]
-}
-
 fn norm(a: &[f64]) -> f64 {
     dot(a, a).sqrt()
 }
 
 /// y += factor x.
 fn add(factor: f64, x: &[f64], y: &mut [f64]) {
-    sweep((y, x), &|(y, x): (&mut [f64], &[f64])| {
-        y.iter_mut().zip(x).for_each(|(y, x)| *y += factor * x);
-    });
+    each(y, x, |y, x| *y += factor * x);
 }
 
 fn scale(a: &mut [f64], factor: f64) {

@@ -88,13 +88,13 @@ pub struct Steady {
     /// The pressure of the last velocity done, from which the next is solved.
     start: Vec<f64>,
     done: usize,
-    last: Solved,
+    last: SteadyState,
     recorder: Recorder,
     interrupt: Option<Arc<AtomicBool>>,
 }
 
 /// The last state, good or not.
-struct Solved {
+struct SteadyState {
     /// Number of its velocity.
     index: usize,
     velocity: f64,
@@ -113,7 +113,7 @@ impl Steady {
         motion.validate(&simulation)?;
         simulation.validate()?;
         let (cells, load) = (simulation.grid.len(), checks::held_load(&simulation)?);
-        let last = Solved {
+        let last = SteadyState {
             index: 0,
             velocity: 0.0,
             state: ContactState::new(cells),
@@ -178,7 +178,7 @@ impl Steady {
             prescribed: Prescribed::Load(self.load),
         };
         let mut contact = SteadyContact::new(stream, problem, self.interrupt.as_deref());
-        let Solved { state, outcome, friction, .. } = &mut self.last;
+        let SteadyState { state, outcome, friction, .. } = &mut self.last;
         state.pressure.copy_from_slice(&self.start);
         let solved = contact.solve(state);
         *outcome = contact.spent;
@@ -260,7 +260,7 @@ impl Drive for Steady {
     }
 }
 
-impl Solved {
+impl SteadyState {
     /// As a row, with its quantities where they are recorded.
     fn row<'a>(
         &'a self,

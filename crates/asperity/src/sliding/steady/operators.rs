@@ -18,8 +18,9 @@ use crate::contact::Solver;
 use crate::convolution::Convolution;
 use crate::error::Result;
 use crate::grid::{Boundary, Grid};
+use crate::operator::Convolved;
 use crate::simulation::Simulation;
-use crate::sliding::metric::{Metric, MetricKernel};
+use crate::sliding::metric::{MetricKernel, metric};
 use crate::sliding::stop_at;
 use crate::sliding::torus::{Spectrum, Torus};
 use crate::sliding::{Direction, Streaming};
@@ -45,7 +46,7 @@ pub(super) struct Operators {
     torus: Torus,
     steady: Spectrum,
     inverse: Spectrum,
-    metric: Metric,
+    metric: Box<Convolved>,
 }
 
 impl Operators {
@@ -74,7 +75,7 @@ impl Operators {
         };
         Ok(Operators {
             inverse: Spectrum(positive.0.iter().map(reciprocal).collect()),
-            metric: Metric::new(*grid, *boundary, &positive, torus.lengths(), Arc::new(metric_kernel)),
+            metric: metric(*grid, *boundary, &positive, torus.lengths(), Arc::new(metric_kernel)),
             torus,
             steady,
         })
@@ -91,7 +92,7 @@ impl Operators {
     }
 
     /// M.
-    pub(super) fn metric(&mut self) -> &mut Metric {
+    pub(super) fn metric(&mut self) -> &mut Convolved {
         &mut self.metric
     }
 

@@ -1,6 +1,7 @@
 //! The contact conditions of a solution, checked with U = K p by the full matrix, and the distance of two pressures.
 
-use asperity::operator::{Dense, Operator};
+use asperity::operator::Operator;
+use asperity::reference::Dense;
 use asperity::{ContactState, Outcome, Prescribed, Problem};
 
 /// What a state violates, as text: bounds, load, displacement, gap, and whether the residual reported is the true one.

@@ -13,9 +13,9 @@
 
 use std::f64::consts::TAU;
 
-use super::Direction;
 use crate::error::{Error, Result, positive};
 use crate::material::Creep;
+use crate::sliding::Direction;
 use crate::surface::Surface;
 use crate::surface::statistics::{PowerSpectrum, Wave};
 

@@ -16,13 +16,15 @@
 //! shape of contact spots, and it loses its meaning once the motion itself shrinks the contact (S. Sukhomlinov and M. H.
 //! Mueser, Appl. Surf. Sci. Adv. 6 (2021) 100182).
 
+mod shells;
+
 use rayon::prelude::*;
 
-use super::Direction;
-use super::shells::{Fineness, Isotropic, Shells, Waves};
 use crate::error::{Error, Result, positive};
 use crate::material::{Creep, integrate};
+use crate::sliding::Direction;
 use crate::surface::Surface;
+use shells::{Fineness, Isotropic, Shells, Waves};
 
 /// How the strain below partial contact is reduced against that below full contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
@@ -38,7 +40,8 @@ pub enum Correction {
 ///
 /// ```
 /// use asperity::material::{Creep, CreepTerm};
-/// use asperity::sliding::{Correction, Direction, Persson};
+/// use asperity::reference::{Correction, Persson};
+/// use asperity::sliding::Direction;
 /// use asperity::surface::{Roughness, SelfAffine, Surface};
 /// let grid = asperity::Grid::new([64, 64], [1e-3, 1e-3])?;
 /// let roughness = SelfAffine {
@@ -117,7 +120,7 @@ impl Persson {
     ///
     /// ```
     /// use asperity::material::Creep;
-    /// use asperity::sliding::{Correction, Persson};
+    /// use asperity::reference::{Correction, Persson};
     /// // Elastic, C = q^-4 on a decade: <|grad h|^2> = ln(10) / (2 pi), G = <|grad h|^2> (E*/s0)^2 / 8.
     /// let (q, c) = ([1.0, 10.0], [1.0, 1e-4]);
     /// let theory = Persson::of_spectrum(&q, &c, &Creep::elastic(1.0), 0.1, Correction::None)?;

@@ -1,7 +1,8 @@
 //! The slow truth: projected Gauss-Seidel on the influence matrix, for small grids.
 
-use super::{ContactState, Prescribed, Problem};
-use crate::operator::{Dense, Operator};
+use super::Dense;
+use crate::contact::{ContactState, Prescribed, Problem};
+use crate::operator::Operator;
 
 /// Solves a contact cell by cell: p_i <- clip(p_i - r_i/(c K_ii), 0, H), swept until nothing moves.
 ///

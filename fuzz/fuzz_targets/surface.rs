@@ -1,9 +1,19 @@
-//! What every fuzz target of a topography reader checks.
+#![no_main]
+
+//! Every reader of surfaces: the first line of the input names the format, the rest is the file.
 
 use asperity_io::topography::{Format, ReadOptions, detect, read_bytes};
 
+libfuzzer_sys::fuzz_target!(|input: &[u8]| {
+    let Some(end) = input.iter().position(|byte| *byte == b'\n') else { return };
+    let format = std::str::from_utf8(&input[..end]).ok().and_then(|name| name.parse().ok());
+    if let Some(format) = format {
+        read(format, &input[end + 1..]);
+    }
+});
+
 /// Reads `data` as this format: it must be answered, and a topography must not be larger than the file allows.
-pub fn read(format: Format, data: &[u8]) {
+fn read(format: Format, data: &[u8]) {
     let _ = detect(data);
     let options = ReadOptions {
         size: Some([1.0, 1.0]),

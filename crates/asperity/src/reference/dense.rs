@@ -15,9 +15,9 @@ use std::sync::Arc;
 
 use ndarray::{Array2, ArrayView1};
 
-use super::{ApproximateInverse, Operator, default_backend};
 use crate::grid::{Boundary, Grid};
 use crate::kernel::HalfSpace;
+use crate::operator::{ApproximateInverse, Operator, default_backend};
 
 /// u = K p with the full matrix K.
 pub struct Dense {
@@ -123,8 +123,8 @@ impl Operator for Dense {
 
 #[cfg(test)]
 mod tests {
-    use super::super::half_space;
     use super::*;
+    use crate::operator::half_space;
 
     #[test]
     fn the_convolution_equals_the_matrix_on_any_grid() {

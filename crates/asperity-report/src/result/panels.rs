@@ -1,0 +1,165 @@
+//! Panels of curves over the rows: which numbers share one, and what it is called. Figures and pages draw the same.
+
+use asperity::quantities::{ROW_COLUMNS, RowFigure};
+use asperity_io::store::{Reader, StoreError};
+
+use super::rows::Rows;
+use super::{Options, PlotError, temperature};
+use crate::figure::{Axis, Curves, Figure, Series, Style};
+
+/// A panel of numbers over the rows.
+pub(crate) struct RowPanel {
+    pub(crate) title: &'static str,
+    pub(crate) label: &'static str,
+    /// Name in the legend and name of the series, see [`values`].
+    pub(crate) lines: Vec<(&'static str, &'static str)>,
+    /// Names of the values 0, 1, 2 ... of a quantity that is a state; empty for a number.
+    pub(crate) states: &'static [&'static str],
+}
+
+/// The mean pressure over the contact, which no column holds.
+pub(crate) const CONTACT_PRESSURE: &str = "contact_pressure";
+
+/// The numbers of a series at the rows.
+pub(crate) fn values(reader: &Reader, name: &str) -> Result<Vec<f64>, StoreError> {
+    if name != CONTACT_PRESSURE {
+        return reader.series(name);
+    }
+    let rows = reader.series("load")?.into_iter().zip(reader.series("contact_area")?);
+    Ok(rows.map(|(load, area)| load / area).collect())
+}
+
+/// The panels of every row that a figure shows, by the place of the panel.
+fn of_columns(reader: &Reader, is_of: impl Fn(RowFigure) -> Option<u8>) -> Result<Vec<RowPanel>, StoreError> {
+    let mut panels: Vec<(u8, RowPanel)> = vec![];
+    for column in ROW_COLUMNS {
+        let Some((figure, panel)) = column.panel_on(reader.header().grid.is_line()) else { continue };
+        let Some(place) = is_of(figure) else { continue };
+        let is_zero = || Ok(reader.series(column.name)?.iter().all(|value| *value <= 0.0));
+        if column.is_shown_where_positive() && is_zero()? {
+            continue;
+        }
+        let line = (panel.legend, column.name);
+        match panels.iter_mut().find(|(_, other)| other.title == panel.title) {
+            Some((_, panel)) => panel.lines.push(line),
+            None => {
+                let (title, label, states) = (panel.title, panel.label, &[][..]);
+                panels.push((place, RowPanel { title, label, lines: vec![line], states }));
+            }
+        }
+    }
+    panels.sort_by_key(|(place, _)| *place);
+    Ok(panels.into_iter().map(|(_, panel)| panel).collect())
+}
+
+/// How the contact evolves.
+pub(crate) fn of_evolution(reader: &Reader) -> Result<Vec<RowPanel>, StoreError> {
+    let mut panels = of_columns(reader, |figure| match figure {
+        RowFigure::Evolution(place) => Some(place),
+        _ => None,
+    })?;
+    if let Some(pressure) = panels.iter_mut().find(|panel| panel.label == "pressure") {
+        pressure.lines.push(("mean over the contact", CONTACT_PRESSURE));
+    }
+    Ok(panels)
+}
+
+/// The work of the solver.
+pub(crate) fn of_work(reader: &Reader) -> Result<Vec<RowPanel>, StoreError> {
+    of_columns(reader, |figure| (figure == RowFigure::Work).then_some(0))
+}
+
+/// The quantities with one number per row that were asked for: one panel for all energies, one for the areas of spots,
+/// one for each other.
+pub(crate) fn of_quantities(reader: &Reader) -> Result<Vec<RowPanel>, StoreError> {
+    let mut panels: Vec<RowPanel> = vec![];
+    let grid = &reader.header().grid;
+    for column in &reader.header().quantities {
+        let Some(panel) = column.quantity.panel_on(grid) else { continue };
+        let line = (panel.legend, column.quantity.name());
+        match panels.iter_mut().find(|other| other.title == panel.title) {
+            Some(panel) => panel.lines.push(line),
+            None => {
+                let (title, label, states) = (panel.title, panel.label, column.quantity.states());
+                panels.push(RowPanel { title, label, lines: vec![line], states });
+            }
+        }
+    }
+    // Numbers that every row has, beside the quantities of their panel.
+    for beside in of_columns(reader, |figure| (figure == RowFigure::Quantities).then_some(0))? {
+        if let Some(panel) = panels.iter_mut().find(|panel| panel.title == beside.title) {
+            panel.lines.extend(beside.lines);
+        }
+    }
+    Ok(panels)
+}
+
+impl RowPanel {
+    /// The unit of its axis; empty for none.
+    fn units(&self, reader: &Reader) -> &'static str {
+        let first = self.lines.first().map_or("", |(_, name)| name);
+        let units = reader.scalars().iter().find(|series| series.name == first).map_or("", |s| s.units);
+        if units == "1" { "" } else { units }
+    }
+
+    /// The panel over these rows.
+    pub(super) fn curves(
+        &self,
+        reader: &Reader,
+        rows: Rows,
+        log: Option<bool>,
+    ) -> Result<Curves, StoreError> {
+        let (up, steps) = match self.states {
+            [] if self.label == "number" => (Axis::linear("number", "").counting(), false),
+            [] => (Axis::linear(self.label, self.units(reader)), false),
+            names => (Axis::states(self.label, names), true),
+        };
+        let time = reader.series("time")?;
+        let mut curves = Curves::new(self.title, rows.axis(log), up);
+        for (name, series) in &self.lines {
+            let line = Series::new(*name, Style::Line, time.clone(), values(reader, series)?);
+            curves = curves.with(if steps { line.stepped() } else { line });
+        }
+        Ok(curves)
+    }
+
+    /// The panel over the numbers of these rows, as points.
+    pub(super) fn points(&self, reader: &Reader, kept: &[usize]) -> Result<Curves, StoreError> {
+        let up = match self.label {
+            "number" => Axis::linear(self.label, "").counting(),
+            label => Axis::log(label, ""),
+        };
+        let row: Vec<f64> = kept.iter().map(|row| *row as f64).collect();
+        let mut curves = Curves::new(self.title, Axis::linear("row", "").counting(), up);
+        for (name, series) in &self.lines {
+            let values = values(reader, series)?;
+            let picked: Vec<f64> = kept.iter().filter_map(|row| values.get(*row).copied()).collect();
+            curves = curves.with(Series::new(*name, Style::Points, row.clone(), picked));
+        }
+        Ok(curves)
+    }
+}
+
+/// The figure of how the contact evolves.
+pub(super) fn evolution(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
+    let figure = over_rows(reader, options, &of_evolution(reader)?)?;
+    let temperature = temperature::panel(reader, Rows::within(reader, options)?, options.log)?;
+    Ok(temperature.into_iter().fold(figure, Figure::with))
+}
+
+/// The figure of the quantities that were asked for.
+pub(super) fn quantities(reader: &Reader, options: &Options) -> Result<Figure, PlotError> {
+    super::evolution::times(reader)?;
+    let panels = of_quantities(reader)?;
+    match panels.is_empty() {
+        true => Err(reader.no_quantities().into()),
+        false => over_rows(reader, options, &panels),
+    }
+}
+
+fn over_rows(reader: &Reader, options: &Options, panels: &[RowPanel]) -> Result<Figure, PlotError> {
+    super::evolution::times(reader)?;
+    let rows = Rows::within(reader, options)?;
+    let curves = panels.iter().map(|panel| panel.curves(reader, rows, options.log));
+    Ok(curves.collect::<Result<Vec<_>, _>>()?.into_iter().fold(Figure::new(""), Figure::with))
+}
